@@ -1,0 +1,1 @@
+"""flexstage: design and proof of flexure-based ultra-precision positioning stages."""

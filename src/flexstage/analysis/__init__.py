@@ -1,0 +1,1 @@
+"""Analyses: from models to results."""

@@ -1,0 +1,1 @@
+"""Applications: translate requests; no physics."""

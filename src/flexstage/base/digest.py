@@ -1,0 +1,110 @@
+"""Frozen description values compared by content."""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+import struct
+from collections.abc import Mapping
+from dataclasses import fields
+from enum import Enum
+from typing import Any, get_type_hints
+
+import numpy as np
+
+from flexstage.base.number import freeze
+from flexstage.base.quantity import Quantity
+
+DOCUMENT_ONLY = {"physics": False}
+"""Field metadata: the field (a name, tags, sources) does not count in the physics digest."""
+
+
+class Description:
+    """Base of every frozen value that describes a stage: immutable, compared and hashed by content.
+
+    Two digests exist: `digest(value)` covers the whole document; `digest(value, physics=True)` leaves out fields marked `DOCUMENT_ONLY`.
+    Floats are compared by their bits.
+    """
+
+    __slots__ = ()
+
+    def __post_init__(self) -> None:
+        quantities = _quantity_fields(type(self))
+        for field in fields(self):  # type: ignore[arg-type]
+            value = freeze(getattr(self, field.name))
+            if field.name in quantities:
+                value = _as_floats(value)
+            object.__setattr__(self, field.name, value)
+
+    def __eq__(self, other: object) -> bool:
+        return type(other) is type(self) and digest(self) == digest(other)
+
+    def __hash__(self) -> int:
+        return hash(digest(self))
+
+
+@functools.cache
+def _quantity_fields(cls: type) -> frozenset[str]:
+    hints = get_type_hints(cls, include_extras=True)
+    return frozenset(name for name, hint in hints.items() if _has_quantity(hint))
+
+
+def _has_quantity(hint: Any) -> bool:
+    if any(isinstance(item, Quantity) for item in getattr(hint, "__metadata__", ())):
+        return True
+    return any(_has_quantity(item) for item in getattr(hint, "__args__", ()))
+
+
+def _as_floats(value: Any) -> Any:
+    if isinstance(value, int) and not isinstance(value, bool):
+        return float(value)
+    if isinstance(value, tuple):
+        return tuple(_as_floats(item) for item in value)
+    return value
+
+
+def digest(value: Any, *, physics: bool = False) -> str:
+    """Return the SHA-256 of a description's content; with `physics`, of what its mechanics depend on.
+
+    >>> digest(1.0) == digest(1.0), digest(1.0) == digest(1)
+    (True, False)
+    """
+    state = hashlib.sha256()
+    _feed(state, value, physics)
+    return state.hexdigest()
+
+
+def _feed(state: Any, value: Any, physics: bool) -> None:
+    if isinstance(value, Description):
+        state.update(b"D" + type(value).__name__.encode())
+        for field in fields(value):  # type: ignore[arg-type]
+            if not (physics and field.metadata.get("physics") is False):
+                _feed(state, field.name, physics)
+                _feed(state, getattr(value, field.name), physics)
+        state.update(b"d")
+    elif isinstance(value, Enum):
+        state.update(b"E" + str(value.value).encode())
+    elif isinstance(value, Mapping):
+        state.update(b"M")
+        for key in sorted(value):
+            _feed(state, key, physics)
+            _feed(state, value[key], physics)
+        state.update(b"m")
+    elif isinstance(value, (tuple, list)):
+        state.update(b"T")
+        for item in value:
+            _feed(state, item, physics)
+        state.update(b"t")
+    else:
+        _feed_scalar(state, value)
+
+
+def _feed_scalar(state: Any, value: Any) -> None:
+    if isinstance(value, float):
+        state.update(b"F" + struct.pack("<d", value))
+    elif isinstance(value, np.ndarray):
+        state.update(b"A" + str((value.shape, value.dtype)).encode() + value.tobytes())
+    elif isinstance(value, str):
+        state.update(b"S" + str(len(value)).encode() + value.encode())
+    else:
+        state.update(b"O" + repr(value).encode() + b";")

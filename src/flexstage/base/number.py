@@ -1,0 +1,94 @@
+"""Numbers of a description: a float, or a read-only array whose axes are batch axes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+Number: TypeAlias = float | NDArray[np.float64]
+"""A physical value: one design (float) or a batch (array). During differentiation it may be complex."""
+
+Array: TypeAlias = NDArray[Any]
+"""A real or complex array, leading axes are batch axes."""
+
+Vector: TypeAlias = tuple[Number, Number, Number]
+"""Three numbers, the components x, y, z."""
+
+
+class Table(Mapping[str, Any]):
+    """An immutable mapping from names to values that keeps its order and can be pickled.
+
+    >>> Table({"a": 1})["a"]
+    1
+    """
+
+    __slots__ = ("_items",)
+
+    def __init__(self, items: Mapping[str, Any]) -> None:
+        self._items = {name: freeze(value) for name, value in items.items()}
+
+    def __getitem__(self, name: str) -> Any:
+        return self._items[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._items)
+
+    def __len__(self) -> int:
+        return len(self._items)
+
+    def __repr__(self) -> str:
+        return f"Table({self._items!r})"
+
+
+def freeze(value: Any) -> Any:
+    """Return an immutable form of a value: arrays read-only, lists as tuples, mappings as `Table`.
+
+    >>> freeze([1.0, [2.0]])
+    (1.0, (2.0,))
+    """
+    if isinstance(value, np.generic):
+        return value.item()
+    if isinstance(value, np.ndarray):
+        return _frozen_array(value)
+    if isinstance(value, Table):
+        return value
+    if isinstance(value, Mapping):
+        return Table(value)
+    if isinstance(value, (list, tuple)):
+        return tuple(freeze(item) for item in value)
+    return value
+
+
+def _frozen_array(value: Array) -> Any:
+    if value.ndim == 0:
+        return value.item()
+    copy = np.array(value, dtype=np.complex128 if np.iscomplexobj(value) else np.float64)
+    copy.flags.writeable = False
+    return copy
+
+
+def stack(values: Any) -> Array:
+    """Stack numbers of a (nested) sequence along new last axes, broadcasting their batch axes.
+
+    >>> stack([1.0, np.array([2.0, 3.0])]).tolist()
+    [[1.0, 2.0], [1.0, 3.0]]
+    """
+    if not isinstance(values, (list, tuple)):
+        return np.asarray(values)
+    inner = [stack(value) for value in values]
+    if all(item.shape == inner[0].shape for item in inner):
+        depth = _depth(values)
+        return np.stack(inner, axis=-depth)
+    depth = _depth(values)
+    tails = [item.shape[item.ndim - depth + 1 :] if depth > 1 else () for item in inner]
+    batch = np.broadcast_shapes(*(item.shape[: item.ndim - depth + 1] for item in inner))
+    return np.stack(
+        [np.broadcast_to(item, batch + tail) for item, tail in zip(inner, tails, strict=True)], axis=-depth
+    )
+
+
+def _depth(values: Any) -> int:
+    return 1 + _depth(values[0]) if isinstance(values, (list, tuple)) else 0

@@ -1,0 +1,73 @@
+"""Physical quantities: the metadata of a field that says its dimension, its SI unit and the unit it is shown in.
+
+A description field is written `thickness: Annotated[Number, LENGTH, POSITIVE]`; that metadata alone supplies the parsing of a file,
+the JSON Schema, the tables and the checks of sign.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A physical quantity: its name, its coherent SI unit and the unit the field shows it in.
+
+    `example` is a text as it may stand in a design file.
+    """
+
+    name: str
+    si: str
+    shown: str
+    example: str
+
+
+@dataclass(frozen=True)
+class Bound:
+    """The interval a number must lie in; `low` is excluded when `open_low`, and so on."""
+
+    low: float = float("-inf")
+    high: float = float("inf")
+    open_low: bool = False
+    open_high: bool = False
+
+    def text(self) -> str:
+        """Say the interval in words.
+
+        >>> POSITIVE.text()
+        'greater than 0'
+        """
+        words: list[str] = []
+        if self.low != float("-inf"):
+            words.append(f"{'greater than' if self.open_low else 'at least'} {self.low:g}")
+        if self.high != float("inf"):
+            words.append(f"{'less than' if self.open_high else 'at most'} {self.high:g}")
+        return " and ".join(words)
+
+
+POSITIVE = Bound(low=0.0, open_low=True)
+NOT_NEGATIVE = Bound(low=0.0)
+POISSON_RANGE = Bound(low=-1.0, high=0.5, open_low=True, open_high=True)
+
+RATIO = Quantity("ratio", "1", "1", "0.3")
+LENGTH = Quantity("length", "m", "mm", "1.54 mm")
+DISPLACEMENT = Quantity("displacement", "m", "um", "150 um")
+ANGLE = Quantity("angle", "rad", "deg", "30 deg")
+MASS = Quantity("mass", "kg", "kg", "2 kg")
+INERTIA = Quantity("moment of inertia", "kg m^2", "kg m^2", "0.13 kg m^2")
+DENSITY = Quantity("density", "kg/m^3", "kg/m^3", "7750 kg/m^3")
+PRESSURE = Quantity("stress", "Pa", "MPa", "1360 MPa")
+MODULUS = Quantity("modulus", "Pa", "GPa", "200 GPa")
+FORCE = Quantity("force", "N", "N", "5000 N")
+MOMENT = Quantity("moment", "N m", "N m", "1 N m")
+STIFFNESS = Quantity("stiffness", "N/m", "N/um", "17 N/um")
+BENDING_RIGIDITY = Quantity("bending rigidity", "N m^2", "N m^2", "180 N m^2")
+EXPANSION = Quantity("thermal expansion", "1/K", "1/K", "10.3e-6 1/K")
+TEMPERATURE = Quantity("temperature difference", "K", "K", "0.1 K")
+FREQUENCY = Quantity("frequency", "Hz", "Hz", "4 kHz")
+VOLTAGE = Quantity("voltage", "V", "V", "1000 V")
+CAPACITANCE = Quantity("capacitance", "F", "uF", "0.5 uF")
+NOISE_DENSITY = Quantity("noise density", "m/Hz^0.5", "nm/Hz^0.5", "0.05 nm/Hz^0.5")
+ACCELERATION = Quantity("acceleration", "m/s^2", "m/s^2", "9.80665 m/s^2")
+TIME = Quantity("time", "s", "s", "0.1 s")
+RATE = Quantity("rate", "1/s", "1/s", "0.5 1/s")

@@ -1,0 +1,1 @@
+"""Compliance and mass of parts by beam theory."""

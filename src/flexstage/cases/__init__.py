@@ -1,0 +1,1 @@
+"""Shipped stages as functions from parameters to a description, and the catalogue."""

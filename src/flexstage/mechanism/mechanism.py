@@ -1,0 +1,159 @@
+"""The description of a stage: frozen, without state and without results."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Annotated, Any, TypeAlias
+
+from flexstage.base.digest import DOCUMENT_ONLY, Description
+from flexstage.base.number import Number, Table, Vector
+from flexstage.base.quantity import (
+    ACCELERATION,
+    FORCE,
+    FREQUENCY,
+    LENGTH,
+    NOT_NEGATIVE,
+    POSITIVE,
+    RATE,
+    RATIO,
+    STIFFNESS,
+    TIME,
+)
+from flexstage.mechanism.pattern import Pattern
+from flexstage.parts.body import Body, Payload
+from flexstage.parts.freedom import Freedom
+from flexstage.parts.gauge import Gauge, Positive
+from flexstage.parts.material import Material
+from flexstage.parts.part import Part
+
+GROUND = "ground"
+PLATFORM = "platform"
+
+
+def _empty() -> Any:
+    return field(default_factory=lambda: Table({}))
+
+
+@dataclass(frozen=True, eq=False)
+class Link(Description):
+    """A part between two bodies.
+
+    `joins` names them, first to second: the relative twist is that of the second against the first. `part` names an entry of the
+    mechanism's parts. The link frame has its origin at the part's centre `at`, x along `along`, z along `bends` (the axis of the compliant
+    rotation; needed for parts that are not round). `free` overrides the part's intended freedoms.
+    """
+
+    joins: tuple[str, str]
+    part: str
+    at: Annotated[Vector, LENGTH]
+    along: Vector
+    bends: Vector | None = None
+    free: tuple[Freedom, ...] | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Unit(Description):
+    """A sub-assembly drawn once in its own frame and placed by pattern: its `bodies` and `links`.
+
+    Links may also join bodies of the stage (`ground`, `platform`, ...). `stiffness` states the unit's own stiffness in actuator coordinates
+    for the mapped reading (absent: computed where the unit is a direct or a lever unit).
+    """
+
+    bodies: Mapping[str, Body]
+    links: Mapping[str, Link]
+    stiffness: Annotated[Number, STIFFNESS, POSITIVE] | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Placement(Description):
+    """Copies of a unit: its name and the pattern they stand in. The key `B1-B3` names three copies."""
+
+    unit: str
+    pattern: Pattern
+
+
+@dataclass(frozen=True, eq=False)
+class Probe(Description):
+    """Gauges that read the motion of `body` against `base` along the x axis of the pattern's frame, at its origin.
+
+    x points from the gauge to its target: the gap opens when the target moves along +x.
+    """
+
+    gauge: str
+    body: str
+    pattern: Pattern
+    positive: Positive
+    base: str = GROUND
+
+
+@dataclass(frozen=True, eq=False)
+class Force(Description):
+    """A constant force on a body at a point (a bonding force), in the stage's frame."""
+
+    body: str
+    at: Annotated[Vector, LENGTH]
+    force: Annotated[Vector, FORCE]
+
+
+@dataclass(frozen=True, eq=False)
+class ModalDamping(Description):
+    """One damping ratio for all modes."""
+
+    ratio: Annotated[Number, RATIO, NOT_NEGATIVE]
+
+
+@dataclass(frozen=True, eq=False)
+class StructuralDamping(Description):
+    """The loss factor of each part's material: K_p (1 + j eta_p); frequency domain only."""
+
+
+@dataclass(frozen=True, eq=False)
+class RayleighDamping(Description):
+    """C = mass_factor M + stiffness_factor K."""
+
+    mass_factor: Annotated[Number, RATE, NOT_NEGATIVE]
+    stiffness_factor: Annotated[Number, TIME, NOT_NEGATIVE]
+
+
+Damping: TypeAlias = ModalDamping | StructuralDamping | RayleighDamping
+
+
+@dataclass(frozen=True, eq=False)
+class Opening(Description):
+    """A clear opening through the stage along z that nothing may enter: a rectangle (size x, size y) about the z axis."""
+
+    size: tuple[Annotated[Number, LENGTH, POSITIVE], Annotated[Number, LENGTH, POSITIVE]]
+
+
+@dataclass(frozen=True, eq=False)
+class Mechanism(Description):
+    """A stage: one description for all readings.
+
+    A graph of rigid `bodies` and elastic `links`, drawn directly or in `units` placed by pattern (`place`), with `gauges`. Body `ground` is
+    implied, body `platform` is the moving part. `changes` are departures of link parts from the shared part, by address
+    (`horizontal/front.thickness`, `B2/front.thickness`). `mode_limit` is the frequency below which the platform's modes are looked for.
+    """
+
+    name: str = field(metadata=DOCUMENT_ONLY)
+    materials: Mapping[str, Material] = _empty()
+    parts: Mapping[str, Part] = _empty()
+    bodies: Mapping[str, Body] = _empty()
+    links: Mapping[str, Link] = _empty()
+    units: Mapping[str, Unit] = _empty()
+    place: Mapping[str, Placement] = _empty()
+    sensors: Mapping[str, Gauge] = _empty()
+    gauges: Mapping[str, Probe] = _empty()
+    payloads: Mapping[str, Payload] = _empty()
+    forces: Mapping[str, Force] = _empty()
+    gravity: Annotated[Vector, ACCELERATION] = (0.0, 0.0, -9.80665)
+    damping: Damping | None = None
+    envelope: tuple[
+        Annotated[Number, LENGTH, POSITIVE], Annotated[Number, LENGTH, POSITIVE], Annotated[Number, LENGTH, POSITIVE]
+    ] | None = None
+    opening: Opening | None = None
+    mode_limit: Annotated[Number, FREQUENCY, POSITIVE] | None = None
+    changes: Mapping[str, Any] = _empty()
+    requirements: Mapping[str, str] = field(default_factory=lambda: Table({}), metadata=DOCUMENT_ONLY)
+    tags: Mapping[str, str] = field(default_factory=lambda: Table({}), metadata=DOCUMENT_ONLY)
+    sources: Mapping[str, str] = field(default_factory=lambda: Table({}), metadata=DOCUMENT_ONLY)

@@ -1,0 +1,49 @@
+"""Placement by pattern: around an axis, or a single pose."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+from typing import Annotated, TypeAlias
+
+from flexstage.base.digest import Description
+from flexstage.base.number import Number, Vector
+from flexstage.base.quantity import ANGLE, LENGTH, NOT_NEGATIVE
+
+
+class Facing(Enum):
+    """Where the x axis of a copy points: along the circle (counter-clockwise), outward, inward, or along the pattern's axis."""
+
+    TANGENT = "tangent"
+    OUTWARD = "outward"
+    INWARD = "inward"
+    AXIS = "axis"
+
+
+@dataclass(frozen=True, eq=False)
+class Polar(Description):
+    """Copies at equal steps on a circle around the stage's z axis.
+
+    `first` is the *position angle* of the first copy, counted from x towards y; `facing` the direction of each copy's x axis, then turned by
+    `turn` about z. Each copy's z axis is the stage's z axis (for `Facing.AXIS`: x is up and z points inward, before `turn`). `step` is
+    the angle between copies; absent: a full circle shared by the copies.
+    """
+
+    radius: Annotated[Number, LENGTH, NOT_NEGATIVE]
+    first: Annotated[Number, ANGLE]
+    facing: Facing
+    height: Annotated[Number, LENGTH] = 0.0
+    turn: Annotated[Number, ANGLE] = 0.0
+    step: Annotated[Number, ANGLE] | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Pose(Description):
+    """A single copy: its origin `at`, its x axis `along`, its z axis `up` (directions need no unit length; they must be perpendicular)."""
+
+    at: Annotated[Vector, LENGTH] = (0.0, 0.0, 0.0)
+    along: Vector = (1.0, 0.0, 0.0)
+    up: Vector = (0.0, 0.0, 1.0)
+
+
+Pattern: TypeAlias = Polar | Pose

@@ -1,0 +1,82 @@
+"""Rigid bodies: mass properties stated, or taken from solid outlines and their density."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Annotated, TypeAlias
+
+from flexstage.base.digest import Description
+from flexstage.base.number import Number, Table, Vector
+from flexstage.base.quantity import INERTIA, LENGTH, MASS, NOT_NEGATIVE, POSITIVE
+
+
+@dataclass(frozen=True, eq=False)
+class Block(Description):
+    """A rectangular block centred at `at`, edges along the axes of the frame it stands in; `hole` is a rectangular through hole along z.
+
+    A hole of equal sides (hx, hy), centred. Sizes in metres.
+    """
+
+    material: str
+    size: tuple[
+        Annotated[Number, LENGTH, POSITIVE], Annotated[Number, LENGTH, POSITIVE], Annotated[Number, LENGTH, POSITIVE]
+    ]
+    at: Annotated[Vector, LENGTH] = (0.0, 0.0, 0.0)
+    hole: tuple[Annotated[Number, LENGTH, POSITIVE], Annotated[Number, LENGTH, POSITIVE]] | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Cylinder(Description):
+    """A round cylinder or tube centred at `at`, its axis along the direction `along`; `bore` is the diameter of a concentric hole."""
+
+    material: str
+    diameter: Annotated[Number, LENGTH, POSITIVE]
+    length: Annotated[Number, LENGTH, POSITIVE]
+    at: Annotated[Vector, LENGTH] = (0.0, 0.0, 0.0)
+    along: Vector = (0.0, 0.0, 1.0)
+    bore: Annotated[Number, LENGTH, POSITIVE] | None = None
+
+
+Solid: TypeAlias = Block | Cylinder
+
+
+@dataclass(frozen=True, eq=False)
+class Inertia(Description):
+    """Moments and products of inertia about the centre of mass, along the axes of the frame the body stands in [kg m^2].
+
+    The products are the integrals of x y, x z, y z (the tensor's off-diagonal entries are their negatives).
+    """
+
+    xx: Annotated[Number, INERTIA, NOT_NEGATIVE]
+    yy: Annotated[Number, INERTIA, NOT_NEGATIVE]
+    zz: Annotated[Number, INERTIA, NOT_NEGATIVE]
+    xy: Annotated[Number, INERTIA] = 0.0
+    xz: Annotated[Number, INERTIA] = 0.0
+    yz: Annotated[Number, INERTIA] = 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class Body(Description):
+    """A rigid body: `solids` (outlines with materials), or a stated `mass`, `centre` of mass and `inertia`; named `points`.
+
+    Stated mass properties and solids exclude one another; a body with neither has no mass of its own. `reference` is the point its twist is
+    given at (absent: its centre of mass, or without mass the mean of its joints).
+    """
+
+    solids: Mapping[str, Solid] = field(default_factory=lambda: Table({}))
+    mass: Annotated[Number, MASS, NOT_NEGATIVE] | None = None
+    centre: Annotated[Vector, LENGTH] | None = None
+    inertia: Inertia | None = None
+    points: Mapping[str, Annotated[Vector, LENGTH]] = field(default_factory=lambda: Table({}))
+    reference: Annotated[Vector, LENGTH] | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Payload(Description):
+    """A mass carried by a body: `mass`, its centre `at` (in the stage's frame) and optionally its own inertia about that centre."""
+
+    body: str
+    mass: Annotated[Number, MASS, NOT_NEGATIVE]
+    at: Annotated[Vector, LENGTH]
+    inertia: Inertia | None = None

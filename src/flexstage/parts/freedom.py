@@ -1,0 +1,38 @@
+"""The six relative freedoms of a link in its own frame (x along the part)."""
+
+from __future__ import annotations
+
+from enum import Enum
+
+
+class Freedom(Enum):
+    """A component of the relative twist at a link, in the link's frame: three translations, then three rotations.
+
+    >>> [freedom.value for freedom in Freedom]
+    ['x', 'y', 'z', 'rx', 'ry', 'rz']
+    """
+
+    X = "x"
+    Y = "y"
+    Z = "z"
+    RX = "rx"
+    RY = "ry"
+    RZ = "rz"
+
+    @property
+    def index(self) -> int:
+        """Position in a 6-vector."""
+        return list(Freedom).index(self)
+
+
+ALL = tuple(Freedom)
+ROTATIONS = (Freedom.RX, Freedom.RY, Freedom.RZ)
+
+
+def others(freedoms: tuple[Freedom, ...]) -> tuple[Freedom, ...]:
+    """Return the freedoms that are not among those given, in order.
+
+    >>> [freedom.value for freedom in others(ROTATIONS)]
+    ['x', 'y', 'z']
+    """
+    return tuple(freedom for freedom in ALL if freedom not in freedoms)

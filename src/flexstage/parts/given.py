@@ -1,0 +1,51 @@
+"""Parts known by a 6x6 matrix (stated, measured or computed by FEA), and ideal joints."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from enum import Enum
+from typing import Annotated
+
+from flexstage.base.digest import DOCUMENT_ONLY, Description
+from flexstage.base.number import Number
+from flexstage.base.quantity import MASS, NOT_NEGATIVE
+from flexstage.parts.freedom import Freedom
+
+
+class Origin(Enum):
+    """Where a given matrix comes from."""
+
+    STATED = "stated"
+    MEASURED = "measured"
+    FEA = "fea"
+
+
+@dataclass(frozen=True, eq=False)
+class Given(Description):
+    """A part known by its 6x6 compliance about its centre, in its link frame, SI: rows (x, y, z, rx, ry, rz).
+
+    Entries are m/N, rad/N (= m/(N m)) and rad/(N m); the matrix is symmetric and positive definite. `free` states its intended freedoms.
+    """
+
+    compliance: tuple[tuple[Number, ...], ...]
+    free: tuple[Freedom, ...]
+    mass: Annotated[Number, MASS, NOT_NEGATIVE] = 0.0
+    origin: Origin = Origin.STATED
+    source: str = field(default="", metadata=DOCUMENT_ONLY)
+
+    @property
+    def intended(self) -> tuple[Freedom, ...]:
+        """The freedoms the part is meant to have."""
+        return self.free
+
+
+@dataclass(frozen=True, eq=False)
+class Joint(Description):
+    """An ideal joint without elasticity or mass: the `free` freedoms are free, all others locked exactly. No freedom: a weld."""
+
+    free: tuple[Freedom, ...] = ()
+
+    @property
+    def intended(self) -> tuple[Freedom, ...]:
+        """The freedoms the joint leaves free."""
+        return self.free

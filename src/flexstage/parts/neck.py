@@ -1,0 +1,31 @@
+"""Two-axis neck hinges."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated
+
+from flexstage.base.digest import Description
+from flexstage.base.number import Number
+from flexstage.base.quantity import LENGTH, POSITIVE
+from flexstage.parts.freedom import ROTATIONS, Freedom
+from flexstage.parts.profile import Profile
+
+
+@dataclass(frozen=True, eq=False)
+class Neck(Description):
+    """A two-axis hinge: round (`width` absent: `thickness` is the diameter; with a circular profile a toroid), or rectangular.
+
+    A rectangular neck is `thickness` thick along y and `width` wide along z, both grown by the profile. Intended freedoms: the three
+    rotations (its torsion counts as free although its stiffness is used: with it locked every strut passes a couple about its axis).
+    """
+
+    material: str
+    thickness: Annotated[Number, LENGTH, POSITIVE]
+    profile: Profile
+    width: Annotated[Number, LENGTH, POSITIVE] | None = None
+
+    @property
+    def intended(self) -> tuple[Freedom, ...]:
+        """The freedoms the hinge is meant to have."""
+        return ROTATIONS

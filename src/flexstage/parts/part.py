@@ -1,0 +1,57 @@
+"""The parts a link may be made of, and their restriction to some freedoms."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TypeAlias
+
+from flexstage.base.digest import Description
+from flexstage.parts.freedom import Freedom
+from flexstage.parts.given import Given, Joint
+from flexstage.parts.leaf import Leaf
+from flexstage.parts.neck import Neck
+from flexstage.parts.notch import Notch
+from flexstage.parts.piezo import Piezo
+from flexstage.parts.rod import Rod
+
+Elastic: TypeAlias = Notch | Neck | Leaf | Rod | Given | Piezo
+
+
+@dataclass(frozen=True, eq=False)
+class Restricted(Description):
+    """A part of which only the `elastic` freedoms keep their compliance; the `free` ones lose all stiffness, the rest is locked.
+
+    Its mass is left out. Used to connect readings: what the paper's equations know of a hinge.
+    """
+
+    part: Elastic
+    elastic: tuple[Freedom, ...]
+    free: tuple[Freedom, ...] = ()
+
+    @property
+    def intended(self) -> tuple[Freedom, ...]:
+        """The intended freedoms of the part, as far as they are not locked."""
+        left = self.elastic + self.free
+        return tuple(freedom for freedom in self.part.intended if freedom in left)
+
+
+Part: TypeAlias = Elastic | Joint | Restricted
+
+
+def is_actuator(part: Part) -> bool:
+    """Whether the part has an imposed stroke.
+
+    >>> is_actuator(Joint())
+    False
+    """
+    return isinstance(part.part if isinstance(part, Restricted) else part, Piezo)
+
+
+def material_of(part: Part) -> str | None:
+    """Name of the part's material, if it has one.
+
+    >>> material_of(Joint()) is None
+    True
+    """
+    inner = part.part if isinstance(part, Restricted) else part
+    return getattr(inner, "material", None)

@@ -1,0 +1,158 @@
+"""Frames, twists and wrenches: the only home of component order, reference point and 6x6 transport.
+
+Twists and wrenches are 6-vectors (x, y, z, rx, ry, rz): translations then rotations, forces then moments, at a named reference point.
+Small motions. All arrays may carry leading batch axes and may be complex.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.base.number import Array, Number, Vector, stack
+
+COMPONENTS = ("x", "y", "z", "rx", "ry", "rz")
+TWIST_UNITS = ("m", "m", "m", "rad", "rad", "rad")
+WRENCH_UNITS = ("N", "N", "N", "N m", "N m", "N m")
+
+
+@dataclass(frozen=True, eq=False)
+class Frame:
+    """A frame in another: `rotation` (..., 3, 3), columns are its axes, and `position` (..., 3) of its origin."""
+
+    rotation: Array
+    position: Array
+
+    def within(self, outer: Frame) -> Frame:
+        """The same frame seen from the frame that `outer` stands in.
+
+        >>> inner = Frame(np.eye(3), np.array([1.0, 0.0, 0.0]))
+        >>> inner.within(Frame(turn_z(np.pi / 2), np.zeros(3))).position.round(12).tolist()
+        [0.0, 1.0, 0.0]
+        """
+        return Frame(outer.rotation @ self.rotation, outer.point(self.position))
+
+    def point(self, point: Array) -> Array:
+        """A point (..., 3) given in this frame, in the frame it stands in."""
+        return self.position + (self.rotation @ point[..., None])[..., 0]
+
+    def direction(self, direction: Array) -> Array:
+        """A direction (..., 3) given in this frame, in the frame it stands in."""
+        return (self.rotation @ direction[..., None])[..., 0]
+
+
+def identity() -> Frame:
+    """The frame itself.
+
+    >>> identity().position.tolist()
+    [0.0, 0.0, 0.0]
+    """
+    return Frame(np.eye(3), np.zeros(3))
+
+
+def cross_matrix(vector: Array) -> Array:
+    """The matrix [v]x with [v]x w = v x w.
+
+    >>> (cross_matrix(np.array([0.0, 0.0, 1.0])) @ np.array([1.0, 0.0, 0.0])).tolist()
+    [0.0, 1.0, 0.0]
+    """
+    x, y, z = vector[..., 0], vector[..., 1], vector[..., 2]
+    zero = np.zeros_like(x)
+    return np.stack(
+        [np.stack([zero, -z, y], -1), np.stack([z, zero, -x], -1), np.stack([-y, x, zero], -1)], -2
+    )
+
+
+def transport(arm: Array) -> Array:
+    """The 6x6 X that carries a twist at a point P to the point P + arm: v' = v + w x arm.
+
+    Wrenches go the other way: w_P = X^T w_(P + arm).
+
+    >>> (transport(np.array([1.0, 0.0, 0.0])) @ np.array([0, 0, 0, 0, 0, 1.0])).tolist()
+    [0.0, 1.0, 0.0, 0.0, 0.0, 1.0]
+    """
+    arm = np.asarray(arm)
+    result = np.zeros((*arm.shape[:-1], 6, 6), dtype=arm.dtype)
+    result[..., :, :] = np.eye(6)
+    result[..., :3, 3:] = -cross_matrix(arm)
+    return result
+
+
+def turned(rotation: Array) -> Array:
+    """The 6x6 diag(R, R) that turns twists and wrenches from a frame of axes R to the outer axes.
+
+    >>> turned(np.eye(3)).shape
+    (6, 6)
+    """
+    result = np.zeros((*rotation.shape[:-2], 6, 6), dtype=rotation.dtype)
+    result[..., :3, :3] = rotation
+    result[..., 3:, 3:] = rotation
+    return result
+
+
+def seen_at(frame: Frame, reference: Array) -> Array:
+    """The 6x6 that takes a body's twist at `reference` (outer axes) to the twist at the frame's origin, in the frame's axes.
+
+    >>> seen_at(identity(), np.zeros(3)).tolist() == np.eye(6).tolist()
+    True
+    """
+    return np.swapaxes(turned(frame.rotation), -1, -2) @ transport(frame.position - reference)
+
+
+def turn_z(angle: Number) -> Array:
+    """Rotation matrix by `angle` [rad] about z.
+
+    >>> turn_z(0.0).tolist()
+    [[1.0, -0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
+    """
+    cosine, sine = np.cos(angle), np.sin(angle)
+    zero, one = np.zeros_like(cosine), np.ones_like(cosine)
+    return np.stack(
+        [np.stack([cosine, -sine, zero], -1), np.stack([sine, cosine, zero], -1), np.stack([zero, zero, one], -1)], -2
+    )
+
+
+def normalised(vector: Array) -> Array:
+    """The vector divided by its length (complex-analytic: no conjugates).
+
+    >>> normalised(np.array([3.0, 0.0, 4.0])).tolist()
+    [0.6, 0.0, 0.8]
+    """
+    return vector / np.sqrt(np.sum(vector * vector, axis=-1, keepdims=True))
+
+
+def axes(along: Vector | Array, up: Vector | Array | None = None) -> Array:
+    """Rotation matrix whose x axis is `along` and whose z axis is `up`, made unit and exactly perpendicular to x.
+
+    Without `up`: the stage's z axis made perpendicular, or the y axis where `along` is within 5 degrees of z.
+
+    >>> axes((1.0, 0.0, 0.0), (0.0, 0.0, 1.0)).tolist()
+    [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
+    """
+    x = normalised(stack(along) if isinstance(along, tuple) else along)
+    if up is None:
+        steep = np.abs(np.real(x[..., 2:3])) > np.cos(np.deg2rad(5.0))
+        z = np.where(steep, np.array([0.0, 1.0, 0.0]), np.array([0.0, 0.0, 1.0]))
+    else:
+        z = stack(up) if isinstance(up, tuple) else up
+    z = normalised(z - np.sum(z * x, axis=-1, keepdims=True) * x)
+    x, z = np.broadcast_arrays(x, z)
+    return np.stack([x, np.cross(z, x), z], axis=-1)
+
+
+def rigid_inertia(mass: Number, inertia: Array, centre: Array, reference: Array) -> Array:
+    """6x6 inertia of a rigid body for its twist at `reference`; `inertia` (..., 3, 3) is about its centre of mass `centre` [SI].
+
+    M = X^T diag(m I, J) X with X the transport from the reference to the centre of mass.
+
+    >>> rigid_inertia(2.0, np.eye(3), np.zeros(3), np.zeros(3)).diagonal().tolist()
+    [2.0, 2.0, 2.0, 1.0, 1.0, 1.0]
+    """
+    carry = transport(centre - reference)
+    mass = np.asarray(mass)
+    shape = np.broadcast_shapes(mass.shape, inertia.shape[:-2], carry.shape[:-2])
+    core = np.zeros((*shape, 6, 6), dtype=np.result_type(mass, inertia, carry))
+    core[..., :3, :3] = mass[..., None, None] * np.eye(3)
+    core[..., 3:, 3:] = inertia
+    return np.swapaxes(carry, -1, -2) @ core @ carry

@@ -1,0 +1,1 @@
+"""Studies: compositions of descriptions, readings and analyses."""
