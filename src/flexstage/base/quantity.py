@@ -13,13 +13,14 @@ from dataclasses import dataclass
 class Quantity:
     """A physical quantity: its name, its coherent SI unit and the unit the field shows it in.
 
-    `example` is a text as it may stand in a design file.
+    `example` is a text as it may stand in a design file. `also` are units of another form that mean the same (m/(N m) for rad/N).
     """
 
     name: str
     si: str
     shown: str
     example: str
+    also: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -71,3 +72,12 @@ NOISE_DENSITY = Quantity("noise density", "m/Hz^0.5", "nm/Hz^0.5", "0.05 nm/Hz^0
 ACCELERATION = Quantity("acceleration", "m/s^2", "m/s^2", "9.80665 m/s^2")
 TIME = Quantity("time", "s", "s", "0.1 s")
 RATE = Quantity("rate", "1/s", "1/s", "0.5 1/s")
+COMPLIANCE = Quantity("compliance", "m/N", "um/N", "2.91 um/N")
+COUPLING = Quantity("coupling compliance", "rad/N", "urad/N", "4.59 urad/N", also=("m/(N m)",))
+ROTATIONAL_COMPLIANCE = Quantity("rotational compliance", "rad/(N m)", "urad/(N m)", "4590 urad/(N m)")
+
+DIRECTION = Quantity("direction", "1", "1", "x")
+"""Three components of a direction of any length: bare numbers, or `"x"`, `"-y"` and so on in a file."""
+
+COMPLIANCE_MATRIX = Quantity("compliance matrix", "mixed", "mixed", "2.91 um/N")
+"""A 6x6 whose blocks are `COMPLIANCE`, `COUPLING` and `ROTATIONAL_COMPLIANCE`."""

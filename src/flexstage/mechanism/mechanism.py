@@ -10,6 +10,7 @@ from flexstage.base.digest import DOCUMENT_ONLY, Description
 from flexstage.base.number import Number, Table, Vector
 from flexstage.base.quantity import (
     ACCELERATION,
+    DIRECTION,
     FORCE,
     FREQUENCY,
     LENGTH,
@@ -47,8 +48,8 @@ class Link(Description):
     joins: tuple[str, str]
     part: str
     at: Annotated[Vector, LENGTH]
-    along: Vector
-    bends: Vector | None = None
+    along: Annotated[Vector, DIRECTION]
+    bends: Annotated[Vector, DIRECTION] | None = None
     free: tuple[Freedom, ...] | None = None
 
 

@@ -8,7 +8,7 @@ from typing import Annotated, TypeAlias
 
 from flexstage.base.digest import Description
 from flexstage.base.number import Number, Vector
-from flexstage.base.quantity import ANGLE, LENGTH, NOT_NEGATIVE
+from flexstage.base.quantity import ANGLE, DIRECTION, LENGTH, NOT_NEGATIVE
 
 
 class Facing(Enum):
@@ -42,8 +42,8 @@ class Pose(Description):
     """A single copy: its origin `at`, its x axis `along`, its z axis `up` (directions need no unit length; they must be perpendicular)."""
 
     at: Annotated[Vector, LENGTH] = (0.0, 0.0, 0.0)
-    along: Vector = (1.0, 0.0, 0.0)
-    up: Vector = (0.0, 0.0, 1.0)
+    along: Annotated[Vector, DIRECTION] = (1.0, 0.0, 0.0)
+    up: Annotated[Vector, DIRECTION] = (0.0, 0.0, 1.0)
 
 
 Pattern: TypeAlias = Polar | Pose

@@ -8,7 +8,7 @@ from typing import Annotated, TypeAlias
 
 from flexstage.base.digest import Description
 from flexstage.base.number import Number, Table, Vector
-from flexstage.base.quantity import INERTIA, LENGTH, MASS, NOT_NEGATIVE, POSITIVE
+from flexstage.base.quantity import DIRECTION, INERTIA, LENGTH, MASS, NOT_NEGATIVE, POSITIVE
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,7 +34,7 @@ class Cylinder(Description):
     diameter: Annotated[Number, LENGTH, POSITIVE]
     length: Annotated[Number, LENGTH, POSITIVE]
     at: Annotated[Vector, LENGTH] = (0.0, 0.0, 0.0)
-    along: Vector = (0.0, 0.0, 1.0)
+    along: Annotated[Vector, DIRECTION] = (0.0, 0.0, 1.0)
     bore: Annotated[Number, LENGTH, POSITIVE] | None = None
 
 

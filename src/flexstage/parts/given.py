@@ -8,7 +8,7 @@ from typing import Annotated
 
 from flexstage.base.digest import DOCUMENT_ONLY, Description
 from flexstage.base.number import Number
-from flexstage.base.quantity import MASS, NOT_NEGATIVE
+from flexstage.base.quantity import COMPLIANCE_MATRIX, MASS, NOT_NEGATIVE
 from flexstage.parts.freedom import Freedom
 
 
@@ -27,7 +27,7 @@ class Given(Description):
     Entries are m/N, rad/N (= m/(N m)) and rad/(N m); the matrix is symmetric and positive definite. `free` states its intended freedoms.
     """
 
-    compliance: tuple[tuple[Number, ...], ...]
+    compliance: Annotated[tuple[tuple[Number, ...], ...], COMPLIANCE_MATRIX]
     free: tuple[Freedom, ...]
     mass: Annotated[Number, MASS, NOT_NEGATIVE] = 0.0
     origin: Origin = Origin.STATED

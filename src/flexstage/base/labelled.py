@@ -1,0 +1,76 @@
+"""Labelled matrices: results whose rows and columns have names and whose entries have units."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from flexstage.base.number import Array
+
+
+@dataclass(frozen=True, eq=False)
+class Matrix:
+    """A matrix (..., rows, columns) with names on both axes; `unit` is one text, or a text for every entry."""
+
+    values: Array
+    rows: tuple[str, ...]
+    columns: tuple[str, ...]
+    unit: str | tuple[tuple[str, ...], ...]
+
+    def at(self, row: str, column: str) -> Any:
+        """The entry of that row and column name (an array over the batch axes).
+
+        >>> Matrix(np.array([[2.0]]), ("a",), ("b",), "m").at("a", "b").item()
+        2.0
+        """
+        return self.values[..., self.rows.index(row), self.columns.index(column)]
+
+    def part(self, rows: tuple[str, ...], columns: tuple[str, ...]) -> Matrix:
+        """The sub-matrix of the named rows and columns."""
+        row_index = [self.rows.index(row) for row in rows]
+        column_index = [self.columns.index(column) for column in columns]
+        unit = self.unit
+        if not isinstance(unit, str):
+            unit = tuple(tuple(unit[row][column] for column in column_index) for row in row_index)
+        return Matrix(self.values[..., row_index, :][..., column_index], rows, columns, unit)
+
+    def to_json(self) -> dict[str, Any]:
+        """The matrix as {rows, columns, unit, values}.
+
+        >>> Matrix(np.array([[2.0]]), ("a",), ("b",), "m").to_json()
+        {'rows': ['a'], 'columns': ['b'], 'unit': 'm', 'values': [[2.0]]}
+        """
+        unit = self.unit if isinstance(self.unit, str) else [list(row) for row in self.unit]
+        return {"rows": list(self.rows), "columns": list(self.columns), "unit": unit, "values": self.values.tolist()}
+
+    def to_pandas(self) -> Any:
+        """The matrix as a pandas DataFrame (one design)."""
+        import pandas
+
+        return pandas.DataFrame(self.values, index=list(self.rows), columns=list(self.columns))
+
+    def _repr_html_(self) -> str:
+        head = "".join(f"<th>{column}</th>" for column in self.columns)
+        body = "".join(
+            f"<tr><th>{row}</th>{''.join(f'<td>{value:.6g}</td>' for value in line)}</tr>"
+            for row, line in zip(self.rows, self.values, strict=True)
+        )
+        return f"<table><tr><th></th>{head}</tr>{body}</table>"
+
+
+def ratio_units(rows: tuple[str, ...], columns: tuple[str, ...]) -> tuple[tuple[str, ...], ...]:
+    """Units of a matrix that takes quantities in the columns' units to quantities in the rows' units.
+
+    >>> ratio_units(("m",), ("m", "rad"))
+    (('1', 'm/rad'),)
+    """
+    return tuple(tuple(_ratio(row, column) for column in columns) for row in rows)
+
+
+def _ratio(row: str, column: str) -> str:
+    if row == column:
+        return "1"
+    bottom = f"({column})" if " " in column else column
+    return row if column == "1" else f"{row}/{bottom}"

@@ -1,0 +1,214 @@
+"""Expansion of a description into single bodies and links with frames in the stage's frame."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, fields
+
+import numpy as np
+
+from flexstage.base.number import Array, Number, stack
+from flexstage.mechanism.mechanism import GROUND, Link, Mechanism, Probe
+from flexstage.mechanism.path import complete, replaced
+from flexstage.mechanism.pattern import Facing, Pattern, Polar
+from flexstage.parts.body import Body
+from flexstage.parts.gauge import Gauge, Positive
+from flexstage.parts.mass import MassProperties, mass_properties
+from flexstage.parts.material import Material
+from flexstage.parts.part import Part, is_actuator, material_of
+from flexstage.spatial.frame import Frame, axes, identity, turn_z
+
+
+@dataclass(frozen=True, eq=False)
+class PlacedBody:
+    """A body of the expanded stage: its frame, its reference point (..., 3) and its own mass properties, in the stage's frame."""
+
+    name: str
+    body: Body
+    frame: Frame
+    reference: Array
+    mass: MassProperties | None
+
+
+@dataclass(frozen=True, eq=False)
+class PlacedLink:
+    """A link of the expanded stage: bodies joined by name, the part with its departures applied, the link frame in the stage's frame.
+
+    `drawn` is its address in the description (`horizontal/front`), `name` that of this copy (`B1/front`).
+    """
+
+    name: str
+    drawn: str
+    joins: tuple[str, str]
+    link: Link
+    part: Part
+    material: Material | None
+    frame: Frame
+
+
+@dataclass(frozen=True, eq=False)
+class PlacedGauge:
+    """A gauge of the expanded stage: measuring point and direction in the stage's frame, sign of its reading along that direction."""
+
+    name: str
+    gauge: Gauge
+    body: str
+    base: str
+    frame: Frame
+    sign: float
+
+
+@dataclass(frozen=True, eq=False)
+class Assembly:
+    """The expanded stage: every body, link and gauge by name. `actuators` maps input names to link names."""
+
+    bodies: Mapping[str, PlacedBody]
+    links: Mapping[str, PlacedLink]
+    gauges: Mapping[str, PlacedGauge]
+    actuators: Mapping[str, str]
+    points: Mapping[str, tuple[str, Array]]
+
+
+def copy_names(key: str) -> tuple[str, ...]:
+    """The copies that a placement key names.
+
+    >>> copy_names("B1-B3"), copy_names("top")
+    (('B1', 'B2', 'B3'), ('top',))
+    """
+    match = re.fullmatch(r"(.*?)(\d+)-(?:\1)?(\d+)", key)
+    if match is None:
+        return (key,)
+    stem, first, last = match[1], int(match[2]), int(match[3])
+    return tuple(f"{stem}{number}" for number in range(first, last + 1))
+
+
+def copy_frames(pattern: Pattern, count: int) -> tuple[Frame, ...]:
+    """The frames of a pattern's copies in the stage's frame.
+
+    >>> tangent = Polar(radius=0.1, first=0.0, facing=Facing.TANGENT)
+    >>> copy_frames(tangent, 1)[0].direction(np.array([1.0, 0, 0])).round(9).tolist()
+    [0.0, 1.0, 0.0]
+    """
+    if not isinstance(pattern, Polar):
+        return (Frame(axes(pattern.along, pattern.up), stack(pattern.at)),) * count
+    step = pattern.step if pattern.step is not None else 2.0 * np.pi / count
+    return tuple(_polar_frame(pattern, pattern.first + number * step) for number in range(count))
+
+
+def _polar_frame(pattern: Polar, angle: Number) -> Frame:
+    position = stack((pattern.radius * np.cos(angle), pattern.radius * np.sin(angle), pattern.height))
+    if pattern.facing is Facing.AXIS:
+        upright = np.array([[0.0, 0.0, -1.0], [0.0, -1.0, 0.0], [1.0, 0.0, 0.0]])
+        return Frame(turn_z(angle + pattern.turn) @ upright, position)
+    quarter = {Facing.OUTWARD: 0.0, Facing.TANGENT: 0.5 * np.pi, Facing.INWARD: np.pi}[pattern.facing]
+    return Frame(turn_z(angle + quarter + pattern.turn), position)
+
+
+def expand(mechanism: Mechanism) -> Assembly:
+    """Expand a description: units copied by pattern, departures applied, frames in the stage's frame.
+
+    The description must have passed its checks. Without platform reference the platform's twist is given at its own centre of mass.
+    """
+    links = {link.name: link for link in _links(mechanism)}
+    bodies = {name: _placed_body(name, body, frame, mechanism, links) for name, body, frame in _bodies(mechanism)}
+    points = {
+        (point if name == "platform" else f"{name}.{point}"): (name, placed.frame.point(stack(at)))
+        for name, placed in bodies.items()
+        for point, at in placed.body.points.items()
+    }
+    return Assembly(bodies, links, dict(_gauges(mechanism)), _actuators(links), points)
+
+
+def copies(mechanism: Mechanism) -> Iterator[tuple[str, str, Frame]]:
+    """Yield (copy name, unit name, frame) of every placed unit."""
+    for key, placement in mechanism.place.items():
+        names = copy_names(key)
+        frames = copy_frames(placement.pattern, len(names))
+        for name, frame in zip(names, frames, strict=True):
+            yield name, placement.unit, frame
+
+
+def _bodies(mechanism: Mechanism) -> Iterator[tuple[str, Body, Frame]]:
+    for name, body in mechanism.bodies.items():
+        yield name, body, identity()
+    for copy, unit, frame in copies(mechanism):
+        for name, body in mechanism.units[unit].bodies.items():
+            yield f"{copy}/{name}", body, frame
+
+
+def _links(mechanism: Mechanism) -> Iterator[PlacedLink]:
+    for name, link in mechanism.links.items():
+        yield _placed_link(mechanism, link, identity(), (name, f"links.{name}", link.joins))
+    for copy, unit, frame in copies(mechanism):
+        own = mechanism.units[unit].bodies
+        for name, link in mechanism.units[unit].links.items():
+            first, second = (f"{copy}/{body}" if body in own else body for body in link.joins)
+            yield _placed_link(mechanism, link, frame, (f"{copy}/{name}", f"{unit}/{name}", (first, second)))
+
+
+def _placed_link(
+    mechanism: Mechanism, link: Link, outer: Frame, names: tuple[str, str, tuple[str, str]]
+) -> PlacedLink:
+    name, drawn, joins = names
+    link, part = departed(mechanism, link, (drawn, name))
+    material = material_of(part)
+    frame = Frame(axes(link.along, link.bends), stack(link.at)).within(outer)
+    return PlacedLink(name, drawn, joins, link, part, mechanism.materials[material] if material else None, frame)
+
+
+def departed(mechanism: Mechanism, link: Link, owners: tuple[str, ...]) -> tuple[Link, Part]:
+    """A link and its part with the mechanism's `changes` for the owners' addresses applied, in the owners' order."""
+    part = mechanism.parts[link.part]
+    link_fields = {field.name for field in fields(Link)}
+    for owner in dict.fromkeys(owners):
+        for address, value in mechanism.changes.items():
+            if not address.startswith(f"{owner}."):
+                continue
+            path = tuple(address[len(owner) + 1 :].split("."))
+            if path[0] in link_fields:
+                link = replaced(link, complete(link, path), value)
+            else:
+                part = replaced(part, complete(part, path), value)
+    return link, part
+
+
+def _placed_body(
+    name: str, body: Body, frame: Frame, mechanism: Mechanism, links: Mapping[str, PlacedLink]
+) -> PlacedBody:
+    own = mass_properties(body, mechanism.materials)
+    mass = None if own is None else MassProperties(own.mass, frame.point(own.centre), _turned(frame, own.inertia))
+    if body.reference is not None:
+        reference = frame.point(stack(body.reference))
+    elif mass is not None:
+        reference = mass.centre
+    else:
+        joints = [link.frame.position for link in links.values() if name in link.joins]
+        reference = sum(joints, np.zeros(3)) / len(joints) if joints else frame.position
+    return PlacedBody(name, body, frame, reference, mass)
+
+
+def _turned(frame: Frame, inertia: Array) -> Array:
+    return frame.rotation @ inertia @ np.swapaxes(frame.rotation, -1, -2)
+
+
+def _actuators(links: Mapping[str, PlacedLink]) -> dict[str, str]:
+    """Name an input after its unit's copy where that copy has one actuator only, else after the link."""
+    drives = [name for name, link in links.items() if is_actuator(link.part)]
+    owners = [name.rpartition("/")[0] for name in drives]
+    return {
+        (owner if owner and owners.count(owner) == 1 else name): name for owner, name in zip(owners, drives, strict=True)
+    }
+
+
+def _gauges(mechanism: Mechanism) -> Iterator[tuple[str, PlacedGauge]]:
+    for key, probe in mechanism.gauges.items():
+        names = copy_names(key)
+        frames = copy_frames(probe.pattern, len(names))
+        for name, frame in zip(names, frames, strict=True):
+            yield name, _placed_gauge(mechanism, probe, name, frame)
+
+
+def _placed_gauge(mechanism: Mechanism, probe: Probe, name: str, frame: Frame) -> PlacedGauge:
+    sign = 1.0 if probe.positive is Positive.OPENS else -1.0
+    return PlacedGauge(name, mechanism.sensors[probe.gauge], probe.body, probe.base or GROUND, frame, sign)

@@ -1,0 +1,64 @@
+"""Kinematics of the graph: relative twists at links and at points as linear functions of the bodies' twists."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.base.number import Array
+from flexstage.mechanism.expand import Assembly, PlacedLink
+from flexstage.mechanism.mechanism import GROUND
+from flexstage.spatial.frame import COMPONENTS, Frame, seen_at, transport
+
+
+@dataclass(frozen=True, eq=False)
+class Layout:
+    """Where each body's twist stands in the coordinate vector: six coordinates a body, the platform's first."""
+
+    bodies: tuple[str, ...]
+
+    @property
+    def size(self) -> int:
+        """Number of coordinates."""
+        return 6 * len(self.bodies)
+
+    @property
+    def coordinates(self) -> tuple[str, ...]:
+        """Names of the coordinates, `platform.x` to `B6/pole.rz`."""
+        return tuple(f"{body}.{component}" for body in self.bodies for component in COMPONENTS)
+
+    def columns(self, body: str) -> slice:
+        """The coordinates of a body."""
+        start = 6 * self.bodies.index(body)
+        return slice(start, start + 6)
+
+
+def layout(assembly: Assembly) -> Layout:
+    """The coordinate layout of an expanded stage."""
+    names = tuple(assembly.bodies)
+    first = tuple(name for name in names if name == "platform")
+    return Layout(first + tuple(name for name in names if name != "platform"))
+
+
+def twist_at(assembly: Assembly, order: Layout, body: str, frame: Frame) -> Array:
+    """The (..., 6, n) matrix of a body's twist at a frame's origin, in the frame's axes; zero for the ground."""
+    if body == GROUND:
+        return np.zeros((6, order.size))
+    carry = seen_at(frame, assembly.bodies[body].reference)
+    result = np.zeros((*carry.shape[:-2], 6, order.size), dtype=carry.dtype)
+    result[..., order.columns(body)] = carry
+    return result
+
+
+def deformation(assembly: Assembly, order: Layout, link: PlacedLink) -> Array:
+    """The (..., 6, n) matrix of a link's relative twist: second body against first, at the link's centre, in its frame."""
+    first, second = link.joins
+    return twist_at(assembly, order, second, link.frame) - twist_at(assembly, order, first, link.frame)
+
+
+def with_ground(assembly: Assembly, order: Layout) -> Array:
+    """The (..., n, 6) rigid motion of all bodies moving with the ground, whose twist is given at the stage's origin."""
+    carries = [transport(assembly.bodies[body].reference) for body in order.bodies]
+    batch = np.broadcast_shapes(*(carry.shape[:-2] for carry in carries))
+    return np.concatenate([np.broadcast_to(carry, (*batch, 6, 6)) for carry in carries], axis=-2)

@@ -1,0 +1,115 @@
+"""Mass, centre of mass and inertia of rigid bodies from their outlines and density, or as stated."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.base.number import Array, Number, stack
+from flexstage.parts.body import Block, Body, Cylinder, Inertia, Solid
+from flexstage.parts.material import Material
+from flexstage.spatial.frame import axes
+
+
+@dataclass(frozen=True, eq=False)
+class MassProperties:
+    """Mass [kg], centre of mass (..., 3) [m] and inertia tensor about it (..., 3, 3) [kg m^2], in the frame the body stands in."""
+
+    mass: Array
+    centre: Array
+    inertia: Array
+
+
+def mass_properties(body: Body, materials: Mapping[str, Material]) -> MassProperties | None:
+    """Mass properties of a body, `None` if it states none and has no solids.
+
+    Solids add up by the parallel-axis theorem, J = sum J_i + m_i (|r|^2 I - r r^T).
+
+    >>> block = Block("steel", size=(0.1, 0.1, 0.01))
+    >>> steel = Material(young=200e9, poisson=0.3, density=7750.0)
+    >>> round(float(mass_properties(Body(solids={"plate": block}), {"steel": steel}).mass), 9)
+    0.775
+    """
+    if body.mass is not None:
+        centre = stack(body.centre or (0.0, 0.0, 0.0))
+        inertia = tensor(body.inertia) if body.inertia is not None else np.zeros((3, 3))
+        return MassProperties(np.asarray(body.mass), centre, inertia)
+    if not body.solids:
+        return None
+    return combined([solid_properties(solid, materials[solid.material].density) for solid in body.solids.values()])
+
+
+def combined(items: list[MassProperties]) -> MassProperties:
+    """Mass properties of several bodies moving as one.
+
+    >>> point = MassProperties(np.array(1.0), np.array([1.0, 0, 0]), np.zeros((3, 3)))
+    >>> other = MassProperties(np.array(1.0), np.array([-1.0, 0, 0]), np.zeros((3, 3)))
+    >>> combined([point, other]).inertia.diagonal().tolist()
+    [0.0, 2.0, 2.0]
+    """
+    mass = sum((item.mass for item in items), np.asarray(0.0))
+    moment = sum((item.mass[..., None] * item.centre for item in items), np.zeros(3))
+    safe = np.where(np.real(mass) > 0.0, mass, 1.0)
+    centre = moment / safe[..., None]
+    inertia = sum((item.inertia + _steiner(item.mass, item.centre - centre) for item in items), np.zeros((3, 3)))
+    return MassProperties(mass, centre, inertia)
+
+
+def _steiner(mass: Array, arm: Array) -> Array:
+    square = np.sum(arm * arm, axis=-1)[..., None, None]
+    return mass[..., None, None] * (square * np.eye(3) - arm[..., :, None] * arm[..., None, :])
+
+
+def tensor(inertia: Inertia) -> Array:
+    """The 3x3 inertia tensor of stated moments and products.
+
+    >>> tensor(Inertia(xx=1.0, yy=2.0, zz=3.0, xy=0.5)).tolist()
+    [[1.0, -0.5, -0.0], [-0.5, 2.0, -0.0], [-0.0, -0.0, 3.0]]
+    """
+    xy, xz, yz = -inertia.xy, -inertia.xz, -inertia.yz
+    return stack(((inertia.xx, xy, xz), (xy, inertia.yy, yz), (xz, yz, inertia.zz)))
+
+
+def solid_properties(solid: Solid, density: Number) -> MassProperties:
+    """Mass properties of one outline of uniform `density` [kg/m^3].
+
+    >>> float(solid_properties(Cylinder("steel", diameter=2.0, length=1.0), 1.0).mass.round(12))
+    3.14159265359
+    """
+    if isinstance(solid, Block):
+        return _block(solid, density)
+    return _cylinder(solid, density)
+
+
+def _block(solid: Block, density: Number) -> MassProperties:
+    length, width, height = solid.size
+    full = _cuboid(density, length, width, height)
+    mass, diagonal = full
+    if solid.hole is not None:
+        hole_mass, hole_diagonal = _cuboid(density, solid.hole[0], solid.hole[1], height)
+        mass, diagonal = mass - hole_mass, diagonal - hole_diagonal
+    return MassProperties(mass, stack(solid.at), diagonal[..., None] * np.eye(3))
+
+
+def _cuboid(density: Number, length: Number, width: Number, height: Number) -> tuple[Array, Array]:
+    mass = np.asarray(density * length * width * height)
+    squares = (width**2 + height**2, length**2 + height**2, length**2 + width**2)
+    return mass, mass[..., None] / 12.0 * stack(squares)
+
+
+def _cylinder(solid: Cylinder, density: Number) -> MassProperties:
+    mass, along, across = _round(density, solid.diameter, solid.length)
+    if solid.bore is not None:
+        less, less_along, less_across = _round(density, solid.bore, solid.length)
+        mass, along, across = mass - less, along - less_along, across - less_across
+    turn = axes(solid.along)
+    diagonal = stack((along, across, across))
+    inertia = turn @ (diagonal[..., None] * np.eye(3)) @ np.swapaxes(turn, -1, -2)
+    return MassProperties(np.asarray(mass), stack(solid.at), inertia)
+
+
+def _round(density: Number, diameter: Number, length: Number) -> tuple[Number, Number, Number]:
+    mass = density * np.pi / 4.0 * diameter**2 * length
+    return mass, mass * diameter**2 / 8.0, mass * (diameter**2 / 16.0 + length**2 / 12.0)

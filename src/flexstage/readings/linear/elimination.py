@@ -1,0 +1,102 @@
+"""Exact elimination of linear constraints by a pivoted partition of the coordinates.
+
+A z = 0 with rank r: r dependent coordinates follow from the independent ones, z_d = -A_d^-1 A_i z_i. Pivots are chosen on real parts of the
+first design only, so the result stays complex-analytic and broadcasts over batch axes.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import qr
+
+from flexstage.base.number import Array
+
+_RANK = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class Elimination:
+    """z = `basis` z_independent, basis (..., N, f); `independent` and `dependent` are coordinate indices, `rank` that of the constraints."""
+
+    basis: Array
+    independent: tuple[int, ...]
+    dependent: tuple[int, ...]
+
+    @property
+    def rank(self) -> int:
+        """Number of independent constraints."""
+        return len(self.dependent)
+
+
+def eliminate(constraints: Array, scale: Array, keep: tuple[int, ...] = ()) -> Elimination:
+    """Eliminate the constraints A z = 0, A (..., m, N); `scale` (N,) makes the coordinates comparable, `keep` are kept independent if possible.
+
+    >>> eliminate(np.array([[1.0, 2.0]]), np.ones(2), keep=(0,)).basis.ravel().tolist()
+    [1.0, -0.5]
+    """
+    first = np.real(constraints.reshape(-1, *constraints.shape[-2:])[0]) * scale
+    norms = np.linalg.norm(first, axis=1)
+    first = first / np.where(norms > 0.0, norms, 1.0)[:, None]
+    dependent = _pivot_columns(first, keep)
+    rows = _pivots(first[:, dependent].T)[: len(dependent)]
+    independent = [index for index in range(first.shape[1]) if index not in set(dependent)]
+    square = constraints[..., rows, :]
+    solved = -np.linalg.solve(square[..., dependent], square[..., independent])
+    basis = np.zeros((*constraints.shape[:-2], first.shape[1], len(independent)), dtype=constraints.dtype)
+    basis[..., dependent, :] = solved
+    basis[..., independent, :] = np.eye(len(independent))
+    return Elimination(basis, tuple(independent), tuple(dependent))
+
+
+def _pivot_columns(first: Array, keep: tuple[int, ...]) -> list[int]:
+    """Dependent columns: as many as possible outside `keep`, the rest inside."""
+    outside = [index for index in range(first.shape[1]) if index not in set(keep)]
+    if not first.size:
+        return []
+    orthogonal, triangle, order = qr(first[:, outside], pivoting=True)
+    rank = _rank(triangle)
+    dependent = [outside[index] for index in order[:rank]]
+    left = (orthogonal.T @ first[:, list(keep)])[rank:]
+    if left.size:
+        dependent += [keep[index] for index in _pivots(left)]
+    return dependent
+
+
+def _pivots(matrix: Array) -> list[int]:
+    """Indices of a maximal set of independent columns, best conditioned first."""
+    if not matrix.size:
+        return []
+    _, triangle, order = qr(matrix, mode="economic", pivoting=True)
+    return [int(index) for index in order[: _rank(triangle)]]
+
+
+def _rank(triangle: Array) -> int:
+    diagonal = np.abs(np.diag(triangle))
+    return int(np.sum(diagonal > _RANK))
+
+
+def echelon(basis: Array) -> Array:
+    """The same row space with a unit in a pivot column of each row and zeros in that column elsewhere: vectors with small support.
+
+    >>> echelon(np.array([[1.0, 1.0], [1.0, -1.0]])).tolist()
+    [[1.0, 0.0], [0.0, 1.0]]
+    """
+    if not basis.size:
+        return basis
+    columns = sorted(_pivots(basis))
+    return np.linalg.solve(basis[:, columns], basis)
+
+
+def null_space(matrix: Array) -> Array:
+    """Basis (columns) of the null space of one real matrix whose columns are comparable.
+
+    >>> null_space(np.array([[1.0, 0.0]])).round(12).ravel().tolist()
+    [0.0, 1.0]
+    """
+    if not matrix.size:
+        return np.eye(matrix.shape[1])
+    _, values, right = np.linalg.svd(matrix)
+    rank = int(np.sum(values > _RANK * max(values.max(initial=0.0), 1e-300)))
+    return right[rank:].T

@@ -1,0 +1,129 @@
+"""LinearModel: what every elastic reading ends in."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import numpy as np
+
+from flexstage.base.labelled import Matrix
+from flexstage.base.number import Array, Number
+from flexstage.mechanism.mechanism import Damping
+
+
+@dataclass(frozen=True, eq=False)
+class Contribution:
+    """One part's share of a matrix: `operator`^T `law` `operator`, operator (..., r, n), law (..., r, r)."""
+
+    operator: Array
+    law: Array
+    loss_factor: Number = 0.0
+
+
+@dataclass(frozen=True)
+class Channel:
+    """A named input or output with its unit."""
+
+    name: str
+    unit: str
+
+
+Contributions: TypeAlias = Mapping[str, Contribution]
+
+
+@dataclass(frozen=True, eq=False)
+class LinearModel:
+    """M q'' + D q' + K q = B u, y = C q + D u, with K and M as named sums of contributions.
+
+    `force` (..., n, m) are direct generalised forces of the inputs; `imposed` gives per stiffness contribution the deformation (..., r, m) an
+    input imposes (the free stroke of a stack): B = force + sum G^T k imposed. `output` (..., p, n) and `feedthrough` (..., p, m).
+    `rigid` (..., n, 6) is the motion of all coordinates with the ground, `rigid_output` (..., p, 6) that of the outputs, `base_inertia`
+    (..., n, 6) the inertial force per unit base acceleration. Batch axes lead.
+    """
+
+    coordinates: tuple[str, ...]
+    stiffness: Contributions
+    inertia: Contributions
+    inputs: tuple[Channel, ...]
+    force: Array
+    imposed: Mapping[str, Array]
+    outputs: tuple[Channel, ...]
+    output: Array
+    feedthrough: Array
+    rigid: Array
+    rigid_output: Array
+    base_inertia: Array
+    damping: Damping | None
+    idle: tuple[str, ...]
+    provenance: str
+
+    @property
+    def stiffness_matrix(self) -> Array:
+        """K (..., n, n)."""
+        return assembled(self.stiffness, len(self.coordinates))
+
+    @property
+    def inertia_matrix(self) -> Array:
+        """M (..., n, n)."""
+        return assembled(self.inertia, len(self.coordinates))
+
+    @property
+    def input_matrix(self) -> Array:
+        """B (..., n, m): direct forces and the forces of imposed deformations."""
+        total = self.force
+        for name, deformation in self.imposed.items():
+            part = self.stiffness[name]
+            total = total + _transposed(part.operator) @ (part.law @ deformation)
+        return total
+
+    def output_index(self, names: tuple[str, ...]) -> list[int]:
+        """Positions of outputs by name."""
+        known = {channel.name: index for index, channel in enumerate(self.outputs)}
+        return [known[name] for name in names]
+
+    def input_index(self, names: tuple[str, ...]) -> list[int]:
+        """Positions of inputs by name."""
+        known = {channel.name: index for index, channel in enumerate(self.inputs)}
+        return [known[name] for name in names]
+
+    @property
+    def strokes(self) -> tuple[str, ...]:
+        """Names of the stroke inputs."""
+        return tuple(channel.name for channel in self.inputs if channel.unit == "m")
+
+
+def assembled(contributions: Contributions, size: int) -> Array:
+    """Sum of contributions as one matrix (..., n, n), symmetric by construction.
+
+    >>> half = Contribution(np.array([[1.0, -1.0]]), np.array([[0.5]]))
+    >>> assembled({"a": half, "b": half}, 2).tolist()
+    [[1.0, -1.0], [-1.0, 1.0]]
+    """
+    if not contributions:
+        return np.zeros((size, size))
+    items = contributions.values()
+    batch = np.broadcast_shapes(*(item.operator.shape[:-2] for item in items), *(item.law.shape[:-2] for item in items))
+    left = np.concatenate([np.broadcast_to(item.operator, (*batch, *item.operator.shape[-2:])) for item in items], axis=-2)
+    right = np.concatenate([_weighted(item, batch) for item in items], axis=-2)
+    total = _transposed(left) @ right
+    return 0.5 * (total + _transposed(total))
+
+
+def _weighted(item: Contribution, batch: tuple[int, ...]) -> Array:
+    product = item.law @ item.operator
+    return np.broadcast_to(product, (*batch, *product.shape[-2:]))
+
+
+def _transposed(matrix: Array) -> Array:
+    return np.swapaxes(matrix, -1, -2)
+
+
+def labelled(model: LinearModel, values: Array, rows: tuple[str, ...], columns: tuple[str, ...]) -> Matrix:
+    """A matrix from the model's inputs to outputs, with units from its channels."""
+    from flexstage.base.labelled import ratio_units
+
+    row_units = tuple(model.outputs[index].unit for index in model.output_index(rows))
+    column_units = tuple(model.inputs[index].unit for index in model.input_index(columns))
+    return Matrix(values, rows, columns, ratio_units(row_units, column_units))

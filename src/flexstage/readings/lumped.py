@@ -1,0 +1,283 @@
+"""Lumped reading: rigid bodies of six freedoms each, joined by 6x6 links.
+
+K = sum H^T k H with H the relative twist at each link; M from bodies and parts; strokes are imposed deformations of the stacks.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from enum import Enum
+
+import numpy as np
+
+from flexstage.base.digest import digest
+from flexstage.base.finding import refuse
+from flexstage.base.number import Array, Number
+from flexstage.beams.compliance import law
+from flexstage.beams.mass import mass
+from flexstage.mechanism.expand import Assembly, PlacedLink, expand
+from flexstage.mechanism.incidence import Layout, deformation, layout, twist_at, with_ground
+from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
+from flexstage.parts.mass import MassProperties, tensor
+from flexstage.parts.part import Restricted
+from flexstage.readings.linear.elimination import eliminate, null_space
+from flexstage.readings.linear.model import Channel, Contribution, LinearModel, assembled
+from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS, WRENCH_UNITS, Frame, rigid_inertia, seen_at
+from flexstage.base.number import stack
+
+_SINGULAR = 1e-11
+_FORCES = ("fx", "fy", "fz", "mx", "my", "mz")
+
+
+class Masses(Enum):
+    """Which masses count: all bodies and links, or the platform with its payloads only (the paper's model)."""
+
+    ALL = "all"
+    PLATFORM = "platform"
+
+
+@dataclass(frozen=True, eq=False)
+class _Stage:
+    assembly: Assembly
+    order: Layout
+    strains: Mapping[str, Contribution]
+    locked: tuple[Array, ...]
+
+
+def lumped(mechanism: Mechanism, masses: Masses = Masses.ALL) -> LinearModel:
+    """Read a stage as rigid bodies on 6x6 links.
+
+    Valid for small displacements about the drawn position and frequencies below the first resonance of the parts themselves. Locked
+    freedoms of `Restricted` and `Joint` parts are eliminated exactly; freedoms without stiffness that nothing feels are pinned and
+    listed in `idle`. Raises `DesignError` for a mechanism (K singular), naming the bodies that can move freely.
+    """
+    stage = _stage(mechanism)
+    size = stage.order.size
+    basis, coordinates, idle = _reduced(stage, size)
+    inertia = _inertia(mechanism, stage, masses)
+    channels, output, feedthrough = _outputs(stage)
+    inputs, force, imposed = _inputs(stage)
+    carried = {name: _transposed(item.operator) @ item.law @ _rigid_strain(stage, name, item) for name, item in inertia.items()}
+    return LinearModel(
+        coordinates=coordinates,
+        stiffness={name: _through(item, basis) for name, item in stage.strains.items()},
+        inertia={name: _through(item, basis) for name, item in inertia.items()},
+        inputs=inputs,
+        force=_project(force, basis),
+        imposed=imposed,
+        outputs=channels,
+        output=output if basis is None else output @ basis,
+        feedthrough=feedthrough,
+        rigid=_rigid_coordinates(stage, coordinates),
+        rigid_output=output @ with_ground(stage.assembly, stage.order),
+        base_inertia=_project(sum(carried.values(), np.zeros((size, 6))), basis),
+        damping=mechanism.damping,
+        idle=idle,
+        provenance=f"lumped reading of {digest(mechanism, physics=True)[:16]}",
+    )
+
+
+def _stage(mechanism: Mechanism) -> _Stage:
+    assembly = expand(mechanism)
+    order = layout(assembly)
+    strains: dict[str, Contribution] = {}
+    locked: list[Array] = []
+    laws: dict[tuple[int, int], object] = {}
+    for name, link in assembly.links.items():
+        key = (id(link.part), id(link.material))
+        part_law = laws.setdefault(key, law(link.part, link.material))
+        operator = deformation(assembly, order, link)
+        strains[name] = Contribution(operator, part_law.stiffness, _loss_factor(link))
+        if part_law.locked:
+            locked.append(operator[..., [freedom.index for freedom in part_law.locked], :])
+    return _Stage(assembly, order, strains, tuple(locked))
+
+
+def _loss_factor(link: PlacedLink) -> Number:
+    inner = link.part.part if isinstance(link.part, Restricted) else link.part
+    holder = link.material if link.material is not None else inner
+    value = getattr(holder, "loss_factor", None)
+    return 0.0 if value is None else value
+
+
+def _reduced(stage: _Stage, size: int) -> tuple[Array | None, tuple[str, ...], tuple[str, ...]]:
+    """Basis that satisfies the locked freedoms and pins idle ones; `None` when there is nothing to eliminate."""
+    names = stage.order.coordinates
+    scale = np.array([10.0 if name.rpartition(".")[2].startswith("r") else 1.0 for name in names])
+    basis: Array | None = None
+    independent = tuple(range(size))
+    if stage.locked:
+        rows = np.concatenate(np.broadcast_arrays(*stage.locked) if _same(stage.locked) else _spread(stage.locked), axis=-2)
+        solution = eliminate(rows, scale, keep=tuple(range(6)))
+        basis, independent = solution.basis, solution.independent
+    loose = _loose(stage, basis, scale)
+    if loose.shape[1] == 0:
+        return basis, tuple(names[index] for index in independent), ()
+    pinned = _pinned(stage, loose, independent)
+    left = [index for index in range(len(independent)) if index not in pinned]
+    full = np.eye(size) if basis is None else basis
+    return full[..., left], tuple(names[independent[index]] for index in left), tuple(names[independent[index]] for index in pinned)
+
+
+def _same(arrays: tuple[Array, ...]) -> bool:
+    return len({array.shape for array in arrays}) == 1
+
+
+def _spread(arrays: tuple[Array, ...]) -> list[Array]:
+    batch = np.broadcast_shapes(*(array.shape[:-2] for array in arrays))
+    return [np.broadcast_to(array, (*batch, *array.shape[-2:])) for array in arrays]
+
+
+def _loose(stage: _Stage, basis: Array | None, scale: Array) -> Array:
+    """Null space (n, k) of the first design's stiffness in the independent coordinates."""
+    stiffness = np.real(_first(assembled(stage.strains, stage.order.size)))
+    if basis is not None:
+        first = np.real(_first(basis))
+        stiffness = first.T @ stiffness @ first
+    diagonal = np.sqrt(np.where(np.diag(stiffness) > 0.0, np.diag(stiffness), 1.0))
+    scaled = stiffness / diagonal / diagonal[:, None]
+    try:
+        pivots = np.diag(np.linalg.cholesky(scaled))
+        if np.min(pivots) ** 2 > _SINGULAR:
+            return np.zeros((len(diagonal), 0))
+    except np.linalg.LinAlgError:
+        pass
+    values, vectors = np.linalg.eigh(scaled)
+    return vectors[:, values < _SINGULAR] / diagonal[:, None]
+
+
+def _pinned(stage: _Stage, loose: Array, independent: tuple[int, ...]) -> list[int]:
+    """Coordinates that pin the loose motions; a loose motion that moves the platform makes the stage a mechanism."""
+    platform = [position for position, index in enumerate(independent) if index < 6]
+    moved = np.max(np.abs(loose), axis=0, initial=0.0)
+    if np.any(np.abs(loose[platform]) > 1e-6 * moved):
+        raise refuse(
+            "stage",
+            f"the stiffness matrix is singular: {loose.shape[1]} motion(s) without any stiffness move the platform, and with it "
+            f"{', '.join(_moving(stage, loose, independent))}",
+            "Add a link that holds this motion, or check which freedoms the links leave free",
+        )
+    from scipy.linalg import qr
+
+    _, _, order = qr((loose / moved).T, pivoting=True)
+    return sorted(int(index) for index in order[: loose.shape[1]])
+
+
+def _moving(stage: _Stage, loose: Array, independent: tuple[int, ...]) -> list[str]:
+    size = np.max(np.abs(loose), axis=1)
+    names = [stage.order.coordinates[independent[index]].rpartition(".")[0] for index in np.flatnonzero(size > 0.1 * size.max())]
+    return list(dict.fromkeys(names))[:6]
+
+
+def _through(item: Contribution, basis: Array | None) -> Contribution:
+    return item if basis is None else Contribution(item.operator @ basis, item.law, item.loss_factor)
+
+
+def _project(force: Array, basis: Array | None) -> Array:
+    return force if basis is None else _transposed(basis) @ force
+
+
+def _inertia(mechanism: Mechanism, stage: _Stage, masses: Masses) -> dict[str, Contribution]:
+    result: dict[str, Contribution] = {}
+    for name, placed in stage.assembly.bodies.items():
+        if masses is Masses.PLATFORM and name != PLATFORM:
+            continue
+        matrices = [_body_inertia(item, placed.reference) for item in _carried(mechanism, name, placed.mass)]
+        if matrices:
+            selector = np.zeros((6, stage.order.size))
+            selector[:, stage.order.columns(name)] = np.eye(6)
+            result[name] = Contribution(selector, sum(matrices, np.zeros((6, 6))))
+    if masses is Masses.ALL:
+        for name, link in stage.assembly.links.items():
+            ends = [twist_at(stage.assembly, stage.order, body, link.frame) for body in link.joins]
+            operator = np.concatenate(_spread(tuple(ends)), axis=-2)
+            result[f"{name} (link)"] = Contribution(operator, mass(link.part, link.material))
+    return result
+
+
+def _carried(mechanism: Mechanism, name: str, own: MassProperties | None) -> list[MassProperties]:
+    loads = [
+        MassProperties(np.asarray(load.mass), stack(load.at), np.zeros((3, 3)) if load.inertia is None else tensor(load.inertia))
+        for load in mechanism.payloads.values()
+        if load.body == name
+    ]
+    return loads if own is None else [own, *loads]
+
+
+def _body_inertia(item: MassProperties, reference: Array) -> Array:
+    return rigid_inertia(item.mass, item.inertia, item.centre, reference)
+
+
+def _rigid_strain(stage: _Stage, name: str, item: Contribution) -> Array:
+    """What an inertia contribution sees when everything, the ground included, moves rigidly with the stage's origin."""
+    link = stage.assembly.links.get(name.removesuffix(" (link)"))
+    if link is None:
+        return item.operator @ with_ground(stage.assembly, stage.order)
+    carry = seen_at(link.frame, np.zeros(3))
+    return np.concatenate([carry, carry], axis=-2)
+
+
+def _inputs(stage: _Stage) -> tuple[tuple[Channel, ...], Array, dict[str, Array]]:
+    drives = stage.assembly.actuators
+    places = [("platform", twist_at(stage.assembly, stage.order, PLATFORM, _at(stage.assembly.bodies[PLATFORM].reference)))]
+    places += [(name, twist_at(stage.assembly, stage.order, body, _at(point))) for name, (body, point) in stage.assembly.points.items()]
+    channels = [Channel(name, "m") for name in drives]
+    channels += [
+        Channel(f"{name}.{force}", unit) for name, _ in places for force, unit in zip(_FORCES, WRENCH_UNITS, strict=True)
+    ]
+    columns = _spread((np.zeros((stage.order.size, len(drives))), *(_transposed(rows) for _, rows in places)))
+    imposed: dict[str, Array] = {}
+    for number, link in enumerate(drives.values()):
+        imposed[link] = np.zeros((6, len(channels)))
+        imposed[link][0, number] = 1.0
+    return tuple(channels), np.concatenate(columns, axis=-1), imposed
+
+
+def _at(point: Array) -> Frame:
+    return Frame(np.eye(3), point)
+
+
+def _outputs(stage: _Stage) -> tuple[tuple[Channel, ...], Array, Array]:
+    """Twists of platform, points and all bodies, gauge readings, and stress resultants at every link's centre in its frame."""
+    assembly, order = stage.assembly, stage.order
+    seen = {PLATFORM: twist_at(assembly, order, PLATFORM, _at(assembly.bodies[PLATFORM].reference))}
+    seen |= {name: twist_at(assembly, order, body, _at(point)) for name, (body, point) in assembly.points.items()}
+    seen |= {name: twist_at(assembly, order, name, _at(body.reference)) for name, body in assembly.bodies.items() if name != PLATFORM}
+    channels = [Channel(f"{name}.{part}", unit) for name in seen for part, unit in zip(COMPONENTS, TWIST_UNITS, strict=True)]
+    rows = list(seen.values())
+    for name, gauge in assembly.gauges.items():
+        ends = [twist_at(assembly, order, body, gauge.frame)[..., :1, :] for body in (gauge.body, gauge.base)]
+        rows.append(gauge.sign * (ends[0] - ends[1]))
+        channels.append(Channel(name, "m"))
+    passed = [np.zeros((len(channels), _input_count(assembly)))]
+    for name, item in stage.strains.items():
+        rows.append(item.law @ item.operator)
+        passed.append(_own_force(assembly, name, item))
+        channels += [Channel(f"{name}.{force}", unit) for force, unit in zip(_FORCES, WRENCH_UNITS, strict=True)]
+    return tuple(channels), np.concatenate(_spread(tuple(rows)), axis=-2), np.concatenate(_spread(tuple(passed)), axis=-2)
+
+
+def _input_count(assembly: Assembly) -> int:
+    return len(assembly.actuators) + 6 * (1 + len(assembly.points))
+
+
+def _own_force(assembly: Assembly, name: str, item: Contribution) -> Array:
+    imposed = np.zeros((6, _input_count(assembly)))
+    drives = list(assembly.actuators.values())
+    if name in drives:
+        imposed[0, drives.index(name)] = 1.0
+    return -item.law @ imposed
+
+
+def _rigid_coordinates(stage: _Stage, coordinates: tuple[str, ...]) -> Array:
+    rows = [stage.order.coordinates.index(name) for name in coordinates]
+    return with_ground(stage.assembly, stage.order)[..., rows, :]
+
+
+def _first(matrix: Array) -> Array:
+    return matrix.reshape(-1, *matrix.shape[-2:])[0]
+
+
+def _transposed(matrix: Array) -> Array:
+    return np.swapaxes(matrix, -1, -2)
