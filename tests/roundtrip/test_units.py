@@ -1,0 +1,124 @@
+"""Units at the border: what is written is read back bit for bit, and what does not fit is refused by name."""
+
+from __future__ import annotations
+
+import math
+import struct
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from flexstage.base import quantity
+from flexstage.base.finding import DesignError
+from flexstage.base.quantity import (
+    ANGLE,
+    COUPLING,
+    EXPANSION,
+    FREQUENCY,
+    INERTIA,
+    LENGTH,
+    NOISE_DENSITY,
+    RATIO,
+    STIFFNESS,
+    TEMPERATURE,
+    Quantity,
+)
+from flexstage.base.unit import convert, parse, show
+
+MEASURABLE = [
+    value
+    for value in vars(quantity).values()
+    if isinstance(value, Quantity) and value not in (quantity.DIRECTION, quantity.COMPLIANCE_MATRIX)
+]
+
+
+@given(st.floats(allow_nan=False, allow_infinity=False), st.sampled_from(MEASURABLE))
+def test_shown_values_parse_to_the_same_bits(value: float, kind: Quantity) -> None:
+    assert struct.pack("<d", parse(show(value, kind), kind)) == struct.pack("<d", value)
+
+
+@pytest.mark.parametrize("kind", MEASURABLE, ids=lambda kind: kind.name)
+def test_every_example_is_the_shortest_text_of_its_value_or_another_unit(kind: Quantity) -> None:
+    assert parse(show(parse(kind.example, kind), kind), kind) == parse(kind.example, kind)
+
+
+@pytest.mark.parametrize(
+    ("text", "kind", "expected"),
+    [
+        ("1.54 mm", LENGTH, 1.54e-3),
+        ("1.54mm", LENGTH, 1.54e-3),
+        ("3 µm", LENGTH, 3e-6),
+        ("1 in", LENGTH, 0.0254),
+        ("17 N/um", STIFFNESS, 17e6),
+        ("0.05 nm/Hz^0.5", NOISE_DENSITY, 0.05e-9),
+        ("0.13 kg m^2", INERTIA, 0.13),
+        ("1300 kg cm²", INERTIA, 0.13),
+        ("10.3e-6 1/K", EXPANSION, 10.3e-6),
+        ("10.3 um/m/K", EXPANSION, 10.3e-6),
+        ("4 urad/N", COUPLING, 4e-6),
+        ("4 um/(N m)", COUPLING, 4e-6),
+        ("90 deg", ANGLE, math.pi / 2),
+        ("60 arcsec", ANGLE, math.pi / 10800),
+        ("0.3", RATIO, 0.3),
+        ("5 %", RATIO, 0.05),
+    ],
+)
+def test_reads(text: str, kind: Quantity, expected: float) -> None:
+    assert parse(text, kind) == expected
+
+
+@pytest.mark.parametrize(
+    ("text", "kind", "words"),
+    [
+        ("1.54", LENGTH, ['found "1.54" without a unit', '"1.54 mm"']),
+        ("5 kg", LENGTH, ["a mass", "a length"]),
+        ("30", ANGLE, ["without a unit", "30 deg"]),
+        ("0.3 mm", RATIO, ["a length", "a ratio"]),
+        ("0.3 rad", RATIO, ["an angle", "a ratio"]),
+        ("100 rad/s", FREQUENCY, ["rad/s", "a frequency"]),
+        ("20 degC", TEMPERATURE, ["offset", "K"]),
+        ("1e-5 1/degC", EXPANSION, ["offset", "K"]),
+        ("nan mm", LENGTH, ["not finite"]),
+        ("-inf mm", LENGTH, ["not finite"]),
+        ("1e400 mm", LENGTH, ["no double-precision number"]),
+        ("1e-400 mm", LENGTH, ["no double-precision number"]),
+        ("1e999999999999 mm", LENGTH, ["a length is expected"]),
+        ("1,54 mm", LENGTH, ["comma", "point"]),
+        ("1.54 mmm", LENGTH, ['"mmm" is not a known unit']),
+        ("1 m^9^9^9^9", LENGTH, ["cannot be read"]),
+        ("1 (m^9)^9", LENGTH, ["cannot be read"]),
+        ("1 1e9 m", LENGTH, ["a length is expected"]),
+        ("1 " + "m" * 1000, LENGTH, ["cannot be read"]),
+        ("", LENGTH, ["a length is expected"]),
+    ],
+)
+def test_refuses(text: str, kind: Quantity, words: list[str]) -> None:
+    with pytest.raises(DesignError) as caught:
+        parse(text, kind, where="parts.neck.thickness")
+    message = str(caught.value)
+    assert message.startswith("parts.neck.thickness: ")
+    assert [word for word in words if word not in message] == []
+
+
+@given(st.text(max_size=40), st.sampled_from(MEASURABLE))
+def test_any_text_is_a_number_or_a_design_error(text: str, kind: Quantity) -> None:
+    for candidate in (text, f"1 {text}", f"1.5 m{text}"):
+        try:
+            assert math.isfinite(parse(candidate, kind))
+        except DesignError:
+            continue
+
+
+def test_arrays_convert_and_show_their_range() -> None:
+    values = np.array([1e-3, 2e-3, 1.5e-3])
+    np.testing.assert_array_equal(convert(values, LENGTH), values * 1000.0)
+    assert show(values, LENGTH) == "1 mm to 2 mm (3 values)"
+
+
+def test_importing_the_package_and_this_module_leaves_pint_alone() -> None:
+    code = "import sys, flexstage, flexstage.base.unit; sys.exit('pint' in sys.modules)"
+    subprocess.run([sys.executable, "-c", code], check=True)
