@@ -8,7 +8,7 @@ import numpy as np
 
 from flexstage.base.number import Array
 from flexstage.mechanism.expand import Assembly, PlacedLink
-from flexstage.mechanism.mechanism import GROUND
+from flexstage.mechanism.mechanism import GROUND, PLATFORM
 from flexstage.spatial.frame import COMPONENTS, Frame, seen_at, transport
 
 
@@ -58,7 +58,8 @@ def deformation(assembly: Assembly, order: Layout, link: PlacedLink) -> Array:
 
 
 def with_ground(assembly: Assembly, order: Layout) -> Array:
-    """The (..., n, 6) rigid motion of all bodies moving with the ground, whose twist is given at the stage's origin."""
-    carries = [transport(assembly.bodies[body].reference) for body in order.bodies]
+    """The (..., n, 6) rigid motion of all bodies moving with the ground, whose twist is given at the platform's reference point."""
+    centre = assembly.bodies[PLATFORM].reference
+    carries = [transport(assembly.bodies[body].reference - centre) for body in order.bodies]
     batch = np.broadcast_shapes(*(carry.shape[:-2] for carry in carries))
     return np.concatenate([np.broadcast_to(carry, (*batch, 6, 6)) for carry in carries], axis=-2)

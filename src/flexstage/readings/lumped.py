@@ -70,7 +70,7 @@ def lumped(mechanism: Mechanism, masses: Masses = Masses.ALL) -> LinearModel:
         output=output if basis is None else output @ basis,
         feedthrough=feedthrough,
         rigid=_rigid_coordinates(stage, coordinates),
-        rigid_output=output @ with_ground(stage.assembly, stage.order),
+        rigid_output=_rigid_output(stage, channels, output),
         base_inertia=_project(sum(carried.values(), np.zeros((size, 6))), basis),
         damping=mechanism.damping,
         idle=idle,
@@ -210,11 +210,11 @@ def _body_inertia(item: MassProperties, reference: Array) -> Array:
 
 
 def _rigid_strain(stage: _Stage, name: str, item: Contribution) -> Array:
-    """What an inertia contribution sees when everything, the ground included, moves rigidly with the stage's origin."""
+    """What an inertia contribution sees when everything, the ground included, moves rigidly."""
     link = stage.assembly.links.get(name.removesuffix(" (link)"))
     if link is None:
         return item.operator @ with_ground(stage.assembly, stage.order)
-    carry = seen_at(link.frame, np.zeros(3))
+    carry = seen_at(link.frame, stage.assembly.bodies[PLATFORM].reference)
     return np.concatenate([carry, carry], axis=-2)
 
 
@@ -273,6 +273,12 @@ def _own_force(assembly: Assembly, name: str, item: Contribution) -> Array:
 def _rigid_coordinates(stage: _Stage, coordinates: tuple[str, ...]) -> Array:
     rows = [stage.order.coordinates.index(name) for name in coordinates]
     return with_ground(stage.assembly, stage.order)[..., rows, :]
+
+
+def _rigid_output(stage: _Stage, channels: tuple[Channel, ...], output: Array) -> Array:
+    """Outputs when everything moves with the ground: absolute twists do, gauges and links do not feel it."""
+    absolute = np.array([channel.name.rpartition(".")[2] in COMPONENTS for channel in channels])
+    return np.where(absolute[:, None], output @ with_ground(stage.assembly, stage.order), 0.0)
 
 
 def _first(matrix: Array) -> Array:

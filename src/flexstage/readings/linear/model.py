@@ -8,7 +8,7 @@ from typing import TypeAlias
 
 import numpy as np
 
-from flexstage.base.labelled import Matrix
+from flexstage.base.labelled import Matrix, ratio_units
 from flexstage.base.number import Array, Number
 from flexstage.mechanism.mechanism import Damping
 
@@ -39,7 +39,7 @@ class LinearModel:
 
     `force` (..., n, m) are direct generalised forces of the inputs; `imposed` gives per stiffness contribution the deformation (..., r, m) an
     input imposes (the free stroke of a stack): B = force + sum G^T k imposed. `output` (..., p, n) and `feedthrough` (..., p, m).
-    `rigid` (..., n, 6) is the motion of all coordinates with the ground, `rigid_output` (..., p, 6) that of the outputs, `base_inertia`
+    `rigid` (..., n, 6) is the motion of all coordinates with the ground (its twist given at the platform's reference), `rigid_output` (..., p, 6) that of the outputs, `base_inertia`
     (..., n, 6) the inertial force per unit base acceleration. Batch axes lead.
     """
 
@@ -122,8 +122,6 @@ def _transposed(matrix: Array) -> Array:
 
 def labelled(model: LinearModel, values: Array, rows: tuple[str, ...], columns: tuple[str, ...]) -> Matrix:
     """A matrix from the model's inputs to outputs, with units from its channels."""
-    from flexstage.base.labelled import ratio_units
-
     row_units = tuple(model.outputs[index].unit for index in model.output_index(rows))
     column_units = tuple(model.inputs[index].unit for index in model.input_index(columns))
     return Matrix(values, rows, columns, ratio_units(row_units, column_units))

@@ -1,0 +1,28 @@
+"""Unit factors for descriptions written in Python: `1.54 * mm`. Multiply to enter SI, divide to show."""
+
+from __future__ import annotations
+
+import math
+
+m = 1.0
+mm = 1e-3
+um = 1e-6
+nm = 1e-9
+rad = 1.0
+mrad = 1e-3
+urad = 1e-6
+nrad = 1e-9
+deg = math.pi / 180.0
+kg = 1.0
+N = 1.0
+kN = 1e3
+N_per_um = 1e6
+N_per_m = 1.0
+Pa = 1.0
+MPa = 1e6
+GPa = 1e9
+Hz = 1.0
+kHz = 1e3
+V = 1.0
+uF = 1e-6
+K = 1.0
