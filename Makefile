@@ -1,0 +1,66 @@
+# Needed beforehand: make, Python 3.11 or newer with venv, and a package registry that pip can reach.
+.DEFAULT_GOAL := help
+SHELL := /bin/sh
+
+PYTHON ?= $(shell for each in python3.11 python3 python3.12 python3.13 python; do \
+	$$each -c 'import sys, venv; sys.exit(sys.version_info < (3, 11))' >/dev/null 2>&1 && echo $$each && break; done)
+BIN := .venv/bin
+JOBS ?= 2
+
+# Many small matrices: a second BLAS thread costs far more than it gives, and tests already run side by side.
+export OPENBLAS_NUM_THREADS := 1
+export OMP_NUM_THREADS := 1
+export MKL_NUM_THREADS := 1
+export PYTHONNOUSERSITE := 1
+unexport PYTHONPATH PYTHONHOME
+
+COMPILE := $(BIN)/uv pip compile -q --universal --python-version 3.11 --generate-hashes --no-header --no-annotate --no-emit-index-url
+
+.PHONY: help demo test check-all bench lint style format types contracts docs examples lock setup-runtime setup-dev
+
+help: ## list the targets
+	@sed -n 's/^\([a-z-]*\):.*## /  make \1\t/p' $(MAKEFILE_LIST) | expand -t 20
+
+setup-runtime setup-dev: setup-%:
+	@test -n "$(PYTHON)" || { echo "flexstage needs Python 3.11 or newer with venv; none was found on the PATH." >&2; exit 1; }
+	@$(PYTHON) tools/setup.py $*
+
+demo: setup-runtime ## analyse the shipped stage: tables here, the report in demo/report.html
+	@mkdir -p demo
+	@test -f demo/stage.toml || $(BIN)/flexstage new demo/stage.toml
+	$(BIN)/flexstage analyse demo/stage.toml --report demo/report.html
+
+test: setup-dev ## the tests
+	$(BIN)/python -m pytest -n $(JOBS)
+
+check-all: setup-dev ## the tests with full counts and sizes
+	FLEXSTAGE_TESTS=full $(BIN)/python -m pytest -n $(JOBS)
+
+bench: setup-dev ## times and ratios, one process each
+	@for each in $(wildcard benchmarks/*.py); do echo "== $$each" && $(BIN)/python $$each || exit 1; done
+
+lint: style types contracts ## style, types and import contracts
+
+style: setup-dev
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+
+format: setup-dev ## put the code into the common form
+	$(BIN)/ruff check --fix .
+	$(BIN)/ruff format .
+
+types: setup-dev
+	$(BIN)/basedpyright
+
+contracts: setup-dev
+	$(BIN)/lint-imports --no-logo
+
+docs: setup-dev ## build the documentation into docs/_build/html; warnings are errors
+	$(BIN)/sphinx-build -q -W --keep-going -b html docs docs/_build/html
+
+examples: setup-dev ## run every example
+	@for each in $(wildcard examples/*.py); do echo "== $$each" && MPLBACKEND=Agg $(BIN)/python $$each >/dev/null || exit 1; done
+
+lock: setup-dev ## pin the requirements anew (newer versions: make lock UPGRADE=--upgrade)
+	$(COMPILE) $(UPGRADE) pyproject.toml requirements/build.in --extra dev -o requirements/dev.txt
+	$(COMPILE) pyproject.toml requirements/build.in --extra tables -c requirements/dev.txt -o requirements/runtime.txt
