@@ -8,7 +8,7 @@ from typing import Any
 
 from flexstage.base.number import Table
 
-_INDEX = {"x": 0, "y": 1, "z": 2, "0": 0, "1": 1, "2": 2}
+_INDEX = {"x": 0, "y": 1, "z": 2, "rx": 3, "ry": 4, "rz": 5} | {str(index): index for index in range(6)}
 
 
 def member(value: Any, name: str) -> Any:
@@ -20,7 +20,7 @@ def member(value: Any, name: str) -> Any:
     if isinstance(value, Mapping):
         return value[name]
     if isinstance(value, tuple):
-        return value[int(name) if name.isdigit() else _INDEX[name]]
+        return value[_INDEX[name]]
     return getattr(value, name)
 
 
@@ -33,28 +33,42 @@ def has_member(value: Any, name: str) -> bool:
     if isinstance(value, Mapping):
         return name in value
     if isinstance(value, tuple):
-        return (int(name) if name.isdigit() else _INDEX.get(name, len(value))) < len(value)
+        return _INDEX.get(name, len(value)) < len(value)
     return is_dataclass(value) and any(field.name == name for field in fields(value))
 
 
-def complete(value: Any, path: tuple[str, ...]) -> tuple[str, ...]:
-    """Return the full path, filling in one skipped level (`radius` for `profile.radius`) where that is unique.
+def completions(value: Any, name: str) -> tuple[tuple[str, ...], ...]:
+    """Return the paths to every member of that name: the value's own, else those inside its nested descriptions and its tables.
 
-    Raises `KeyError` with the name that was not found.
+    >>> completions((1.0, 2.0), "y")
+    (('y',),)
+    """
+    if has_member(value, name):
+        return ((name,),)
+    if not is_dataclass(value):
+        return ()
+    found: list[tuple[str, ...]] = []
+    for field in fields(value):
+        inner = getattr(value, field.name)
+        if isinstance(inner, Mapping) or is_dataclass(inner):
+            found += [(field.name, *rest) for rest in completions(inner, name)]
+    return tuple(found)
+
+
+def complete(value: Any, path: tuple[str, ...]) -> tuple[str, ...]:
+    """Return the full path, filling in skipped levels (`radius` for `profile.radius`) where that is unique.
+
+    Raises `KeyError` with the name that was not found or that has several places.
     """
     if not path:
         return ()
-    if has_member(value, path[0]):
-        return path[:1] + complete(member(value, path[0]), path[1:])
-    inner = [field.name for field in fields(value) if _holds(value, field.name, path[0])] if is_dataclass(value) else []
-    if len(inner) != 1:
+    found = completions(value, path[0])
+    if len(found) != 1:
         raise KeyError(path[0])
-    return (inner[0], *complete(getattr(value, inner[0]), path))
-
-
-def _holds(value: Any, name: str, wanted: str) -> bool:
-    inner = getattr(value, name)
-    return is_dataclass(inner) and has_member(inner, wanted)
+    inner = value
+    for name in found[0]:
+        inner = member(inner, name)
+    return found[0] + complete(inner, path[1:])
 
 
 def replaced(value: Any, path: tuple[str, ...], new: Any) -> Any:
@@ -69,6 +83,6 @@ def replaced(value: Any, path: tuple[str, ...], new: Any) -> Any:
     if isinstance(value, Mapping):
         return Table({**value, path[0]: inner})
     if isinstance(value, tuple):
-        index = int(path[0]) if path[0].isdigit() else _INDEX[path[0]]
+        index = _INDEX[path[0]]
         return (*value[:index], inner, *value[index + 1 :])
     return replace(value, **{path[0]: inner})
