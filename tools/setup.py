@@ -14,6 +14,7 @@ import shutil
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT / "src"))
@@ -91,7 +92,7 @@ def is_usable() -> bool:
     if not stamps or not interpreter_runs():
         return False
     present = installed()
-    return all(set(stamp.get("installed", ["nothing"])) <= present for stamp in stamps)
+    return all(present.issuperset(stamp.get("installed", ["nothing"])) for stamp in stamps)
 
 
 def installed() -> set[str]:
@@ -124,7 +125,7 @@ def stamp_path(wanted: str) -> Path:
     return VENV / f"{wanted}.stamp"
 
 
-def read_stamp(path: Path) -> dict[str, object]:
+def read_stamp(path: Path) -> dict[str, Any]:
     """A stamp's content; empty if there is none or it is damaged."""
     try:
         return dict(json.loads(path.read_text()))

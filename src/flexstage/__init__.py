@@ -1,3 +1,41 @@
-"""flexstage: design and proof of flexure-based ultra-precision positioning stages."""
+"""flexstage: design and proof of flexure-based ultra-precision positioning stages.
+
+The public surface, name by name. A name is imported from its room at first use (PEP 562), so `import flexstage` itself loads nothing;
+type checkers and editors read the same table from `__init__.pyi`.
+"""
+
+from importlib import import_module
 
 __version__ = "0.1.0"
+
+_ROOMS = {
+    "base.finding": "DesignError Finding",
+    "base.scale": "X Y Z m mm um nm rad mrad urad nrad deg kg N kN N_per_m N_per_um Pa MPa GPa Hz kHz V uF K",
+    "parts.material": "Material",
+    "parts.profile": "Circular Elliptic Filleted Straight",
+    "parts.notch": "Notch",
+    "parts.neck": "Neck",
+    "parts.leaf": "Leaf",
+    "parts.rod": "Rod",
+    "parts.given": "Given Joint Origin",
+    "parts.part": "Restricted",
+    "parts.piezo": "Piezo",
+    "parts.gauge": "Gauge Positive",
+    "parts.body": "Body Block Cylinder Inertia Payload",
+    "parts.freedom": "Freedom",
+    "mechanism.pattern": "Polar Pose Facing",
+    "mechanism.mechanism": ("Mechanism Link Unit Placement Probe Force Opening ModalDamping StructuralDamping RayleighDamping"),
+}
+_HOME = {name: room for room, names in _ROOMS.items() for name in names.split()}
+
+
+def __getattr__(name: str) -> object:
+    if name not in _HOME:
+        raise AttributeError(f"module 'flexstage' has no attribute {name!r}")
+    value = getattr(import_module(f"flexstage.{_HOME[name]}"), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({"__version__", *_HOME})

@@ -70,30 +70,30 @@ def digest(value: Any, *, physics: bool = False) -> str:
     (True, False)
     """
     state = hashlib.sha256()
-    _feed(state, value, physics)
+    _feed(state, value, physics=physics)
     return state.hexdigest()
 
 
-def _feed(state: Any, value: Any, physics: bool) -> None:
+def _feed(state: Any, value: Any, *, physics: bool) -> None:
     if isinstance(value, Description):
         state.update(b"D" + type(value).__name__.encode())
         for field in fields(value):  # type: ignore[arg-type]
             if not (physics and field.metadata.get("physics") is False):
-                _feed(state, field.name, physics)
-                _feed(state, getattr(value, field.name), physics)
+                _feed(state, field.name, physics=physics)
+                _feed(state, getattr(value, field.name), physics=physics)
         state.update(b"d")
     elif isinstance(value, Enum):
         state.update(b"E" + str(value.value).encode())
     elif isinstance(value, Mapping):
         state.update(b"M")
         for key in sorted(value):
-            _feed(state, key, physics)
-            _feed(state, value[key], physics)
+            _feed(state, key, physics=physics)
+            _feed(state, value[key], physics=physics)
         state.update(b"m")
     elif isinstance(value, (tuple, list)):
         state.update(b"T")
         for item in value:
-            _feed(state, item, physics)
+            _feed(state, item, physics=physics)
         state.update(b"t")
     else:
         _feed_scalar(state, value)

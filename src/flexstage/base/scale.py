@@ -1,8 +1,12 @@
-"""Unit factors for descriptions written in Python: `1.54 * mm`. Multiply to enter SI, divide to show."""
+"""Unit factors and directions for descriptions written in Python: `1.54 * mm`, `along=X`. Multiply to enter SI, divide to show."""
 
 from __future__ import annotations
 
 import math
+
+X = (1.0, 0.0, 0.0)
+Y = (0.0, 1.0, 0.0)
+Z = (0.0, 0.0, 1.0)
 
 m = 1.0
 mm = 1e-3

@@ -1,0 +1,55 @@
+from flexstage.base.finding import DesignError as DesignError, Finding as Finding
+from flexstage.base.scale import (
+    GPa as GPa,
+    Hz as Hz,
+    K as K,
+    MPa as MPa,
+    N as N,
+    N_per_m as N_per_m,
+    N_per_um as N_per_um,
+    Pa as Pa,
+    V as V,
+    X as X,
+    Y as Y,
+    Z as Z,
+    deg as deg,
+    kg as kg,
+    kHz as kHz,
+    kN as kN,
+    m as m,
+    mm as mm,
+    mrad as mrad,
+    nm as nm,
+    nrad as nrad,
+    rad as rad,
+    uF as uF,
+    um as um,
+    urad as urad,
+)
+from flexstage.mechanism.mechanism import (
+    Force as Force,
+    Link as Link,
+    Mechanism as Mechanism,
+    ModalDamping as ModalDamping,
+    Opening as Opening,
+    Placement as Placement,
+    Probe as Probe,
+    RayleighDamping as RayleighDamping,
+    StructuralDamping as StructuralDamping,
+    Unit as Unit,
+)
+from flexstage.mechanism.pattern import Facing as Facing, Polar as Polar, Pose as Pose
+from flexstage.parts.body import Block as Block, Body as Body, Cylinder as Cylinder, Inertia as Inertia, Payload as Payload
+from flexstage.parts.freedom import Freedom as Freedom
+from flexstage.parts.gauge import Gauge as Gauge, Positive as Positive
+from flexstage.parts.given import Given as Given, Joint as Joint, Origin as Origin
+from flexstage.parts.leaf import Leaf as Leaf
+from flexstage.parts.material import Material as Material
+from flexstage.parts.neck import Neck as Neck
+from flexstage.parts.notch import Notch as Notch
+from flexstage.parts.part import Restricted as Restricted
+from flexstage.parts.piezo import Piezo as Piezo
+from flexstage.parts.profile import Circular as Circular, Elliptic as Elliptic, Filleted as Filleted, Straight as Straight
+from flexstage.parts.rod import Rod as Rod
+
+__version__: str

@@ -1,0 +1,35 @@
+"""What holds for every test: one BLAS thread, and how many examples a law is tried on."""
+
+from __future__ import annotations
+
+import os
+
+# Before numpy is imported; the limit below catches libraries that were loaded earlier all the same.
+for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
+    os.environ[name] = "1"
+
+import pytest
+from hypothesis import HealthCheck, settings
+from threadpoolctl import threadpool_limits
+
+FULL = os.environ.get("FLEXSTAGE_TESTS") == "full"
+
+# Laws build whole mechanisms: drawing one is slow by nature, and no test has a time limit.
+_SLOW = [HealthCheck.too_slow, HealthCheck.data_too_large]
+settings.register_profile("default", max_examples=200, deadline=None, derandomize=True, suppress_health_check=_SLOW)
+settings.register_profile("full", max_examples=2000, deadline=None, derandomize=True, suppress_health_check=_SLOW)
+settings.load_profile("full" if FULL else "default")
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _one_blas_thread():
+    with threadpool_limits(limits=1):
+        yield
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Skip the full tests unless asked for: `make check-all`."""
+    if not FULL:
+        for item in items:
+            if item.get_closest_marker("full"):
+                item.add_marker(pytest.mark.skip(reason="full counts: make check-all"))

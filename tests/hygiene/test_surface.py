@@ -1,0 +1,70 @@
+"""The public surface: the lazy table, its stub and the modules agree; importing flexstage loads nothing heavy."""
+
+from __future__ import annotations
+
+import ast
+import importlib
+import subprocess
+import sys
+from pathlib import Path
+
+import flexstage
+import pytest
+
+PACKAGE = Path(flexstage.__file__).parent
+HEAVY = {"numpy", "scipy", "pydantic", "pint", "matplotlib", "pandas", "xarray"}
+
+
+def table() -> dict[str, str]:
+    return {name: f"flexstage.{room}" for name, room in flexstage._HOME.items()}
+
+
+def stub() -> dict[str, str]:
+    tree = ast.parse((PACKAGE / "__init__.pyi").read_text())
+    imports = [node for node in tree.body if isinstance(node, ast.ImportFrom)]
+    assert all(alias.asname == alias.name for node in imports for alias in node.names), "re-export as `name as name`"
+    return {alias.name: str(node.module) for node in imports for alias in node.names}
+
+
+def loaded_by(code: str) -> set[str]:
+    code += "; import sys; print(*{name.partition('.')[0] for name in sys.modules})"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    return set(done.stdout.splitlines()[-1].split())
+
+
+def test_table_and_stub_agree() -> None:
+    assert table() == stub()
+
+
+def test_no_name_has_two_rooms() -> None:
+    names = " ".join(flexstage._ROOMS.values()).split()
+    assert len(names) == len(set(names))
+
+
+@pytest.mark.parametrize("name", sorted(table()))
+def test_every_name_is_the_one_of_its_room(name: str) -> None:
+    assert getattr(flexstage, name) is getattr(importlib.import_module(table()[name]), name)
+
+
+def test_dir_lists_the_table() -> None:
+    assert {*table(), "__version__"} == set(dir(flexstage))
+
+
+def test_unknown_names_are_refused() -> None:
+    with pytest.raises(AttributeError, match="no attribute 'nonsense'"):
+        _ = flexstage.nonsense
+
+
+def test_import_loads_nothing_heavy() -> None:
+    assert not HEAVY & loaded_by("import flexstage")
+
+
+def test_units_and_directions_load_nothing_heavy() -> None:
+    assert not HEAVY & loaded_by("import flexstage as fs; fs.mm, fs.X")
+
+
+def test_help_loads_nothing_heavy() -> None:
+    if not (PACKAGE / "apps" / "cli.py").exists():
+        pytest.skip("the command line is not there yet")
+    code = "import sys; sys.argv = ['flexstage', '--help']\ntry:\n from flexstage.apps.cli import main; main()\nexcept SystemExit as end:\n assert not end.code\n0"
+    assert not HEAVY & loaded_by(code)
