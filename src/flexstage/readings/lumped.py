@@ -18,13 +18,12 @@ from flexstage.beams.compliance import law
 from flexstage.beams.mass import mass
 from flexstage.mechanism.expand import Assembly, PlacedLink, expand
 from flexstage.mechanism.incidence import Layout, deformation, layout, twist_at, with_ground
-from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
-from flexstage.parts.mass import MassProperties, tensor
+from flexstage.mechanism.mechanism import PLATFORM, Mechanism
+from flexstage.mechanism.moving_mass import moving_inertia
 from flexstage.parts.part import Restricted
 from flexstage.readings.linear.elimination import eliminate, null_space
 from flexstage.readings.linear.model import Channel, Contribution, LinearModel, assembled
-from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS, WRENCH_UNITS, Frame, rigid_inertia, seen_at
-from flexstage.base.number import stack
+from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS, WRENCH_UNITS, Frame, seen_at
 
 _SINGULAR = 1e-11
 _FORCES = ("fx", "fy", "fz", "mx", "my", "mz")
@@ -183,30 +182,17 @@ def _inertia(mechanism: Mechanism, stage: _Stage, masses: Masses) -> dict[str, C
     for name, placed in stage.assembly.bodies.items():
         if masses is Masses.PLATFORM and name != PLATFORM:
             continue
-        matrices = [_body_inertia(item, placed.reference) for item in _carried(mechanism, name, placed.mass)]
-        if matrices:
+        matrix = moving_inertia(mechanism, placed)
+        if matrix is not None:
             selector = np.zeros((6, stage.order.size))
             selector[:, stage.order.columns(name)] = np.eye(6)
-            result[name] = Contribution(selector, sum(matrices, np.zeros((6, 6))))
+            result[name] = Contribution(selector, matrix)
     if masses is Masses.ALL:
         for name, link in stage.assembly.links.items():
             ends = [twist_at(stage.assembly, stage.order, body, link.frame) for body in link.joins]
             operator = np.concatenate(_spread(tuple(ends)), axis=-2)
             result[f"{name} (link)"] = Contribution(operator, mass(link.part, link.material))
     return result
-
-
-def _carried(mechanism: Mechanism, name: str, own: MassProperties | None) -> list[MassProperties]:
-    loads = [
-        MassProperties(np.asarray(load.mass), stack(load.at), np.zeros((3, 3)) if load.inertia is None else tensor(load.inertia))
-        for load in mechanism.payloads.values()
-        if load.body == name
-    ]
-    return loads if own is None else [own, *loads]
-
-
-def _body_inertia(item: MassProperties, reference: Array) -> Array:
-    return rigid_inertia(item.mass, item.inertia, item.centre, reference)
 
 
 def _rigid_strain(stage: _Stage, name: str, item: Contribution) -> Array:

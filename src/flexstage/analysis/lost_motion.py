@@ -1,0 +1,136 @@
+"""Lost motion: what elasticity takes from the ideal motion, its budget by part, and the gains that correct it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.base.labelled import Matrix, ratio_units
+from flexstage.base.number import Array
+from flexstage.readings.linear.kinematics import Kinematics
+from flexstage.readings.linear.model import LinearModel
+from flexstage.readings.linear.static import displacement, part_deformation, static_gain
+from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
+
+_PLATFORM_TWIST = tuple(f"platform.{name}" for name in COMPONENTS)
+INTERNAL = "internal stress"
+
+
+@dataclass(frozen=True, eq=False)
+class LostMotion:
+    """Lost motion of a stage with n strokes and f ideal motions.
+
+    `gain` T = dx/da elastic (..., 6, n); `transfer` R_a V^+ T (..., n, n), its diagonal the gain of each actuator; `loss` Lambda = I - transfer;
+    `parasitic` the part of T outside the ideal motions; `budget` every link's and axis' share of each entry of Lambda (they add up to it);
+    `correction` the gains a = (R_a V^+ T)^-1 R_a xi; `energy` the strain energy by part per squared unit stroke.
+    """
+
+    gain: Matrix
+    transfer: Matrix
+    loss: Matrix
+    parasitic: Matrix
+    budget: Mapping[str, Matrix]
+    correction: Matrix
+    energy: Matrix
+    length: float
+    provenance: str
+
+    def of(self, actuator: str) -> dict[str, Array]:
+        """Budget of an actuator's own loss by part: shares that add up to the loss."""
+        index = self.loss.rows.index(actuator)
+        return {name: share.values[..., index, index] for name, share in self.budget.items()}
+
+
+def lost_motion(kinematics: Kinematics, model: LinearModel) -> LostMotion:
+    """Compare an elastic model with the ideal kinematics of the same stage.
+
+    Lambda = I - R_a V^+ T. Its budget is exact for any graph: let f_e^(i) be link e's force under the platform wrench (R_a V^+)^T e_i with all
+    strokes zero, gamma_e^(j) its deformation in the ideal motion of stroke j; by virtual work and reciprocity Lambda_ij = sum_e f_e^(i) .
+    gamma_e^(j). For one unloaded lever the diagonal is eps / (1 + eps), eps = K_theta2 / (r_1^2 K_1) (Eq. 11 of Shin & Moon). Small motions.
+    """
+    names = kinematics.actuators
+    gain = static_gain(model, _PLATFORM_TWIST, names)
+    sense = kinematics.actuation @ kinematics.projection
+    transfer = sense @ gain.values
+    loss = np.eye(len(names)) - transfer
+    ideal_part = kinematics.motion @ (kinematics.projection @ gain.values)
+    correction = np.linalg.solve(transfer, kinematics.actuation) if kinematics.mobility == len(names) else _least(transfer, kinematics)
+    return LostMotion(
+        gain=gain,
+        transfer=Matrix(transfer, names, names, "1"),
+        loss=Matrix(loss, names, names, "1"),
+        parasitic=Matrix(gain.values - ideal_part, _PLATFORM_TWIST, names, gain.unit),
+        budget=_budget(kinematics, model, sense),
+        correction=Matrix(correction, names, kinematics.coordinates, _stroke_units(kinematics)),
+        energy=_energy(kinematics, model),
+        length=kinematics.length,
+        provenance=f"{kinematics.provenance}; {model.provenance}",
+    )
+
+
+def _least(transfer: Array, kinematics: Kinematics) -> Array:
+    """Correction for redundant strokes: the commands of R_a's range whose elastic motion is the wanted one."""
+    inner = kinematics.inverse @ transfer @ kinematics.actuation
+    return kinematics.actuation @ np.linalg.inv(inner)
+
+
+def _stroke_units(kinematics: Kinematics) -> tuple[tuple[str, ...], ...]:
+    units = tuple(TWIST_UNITS[COMPONENTS.index(name)] for name in kinematics.coordinates)
+    return ratio_units(("m",) * len(kinematics.actuators), units)
+
+
+def _budget(kinematics: Kinematics, model: LinearModel, sense: Array) -> dict[str, Matrix]:
+    """Link forces under the platform wrenches times the links' ideal deformations, axis by axis."""
+    names = kinematics.actuators
+    rows = model.output_index(_PLATFORM_TWIST)
+    loads = np.swapaxes(model.output[..., rows, :], -1, -2) @ np.swapaxes(sense, -1, -2)
+    strains = part_deformation(model, displacement(model, loads))
+    inverse = kinematics.inverse
+    shares: dict[str, Array] = {}
+    for link, strain in strains.items():
+        if link in kinematics.strains:
+            force = model.stiffness[link].law @ strain
+            ideal = kinematics.strains[link] @ inverse
+            shares |= {
+                f"{link}.{freedom.value}": _product(force, ideal, freedom.index) for freedom in kinematics.free[link]
+            }
+    if kinematics.mobility < len(names):
+        shares[INTERNAL] = _internal(kinematics, model, strains)
+    return {name: Matrix(share, names, names, "1") for name, share in shares.items()}
+
+
+def _product(force: Array, motion: Array, axis: int) -> Array:
+    return force[..., axis, :, None] * motion[..., axis, None, :]
+
+
+def _internal(kinematics: Kinematics, model: LinearModel, strains: Mapping[str, Array]) -> Array:
+    """What redundant strokes lose because single strokes are no ideal motion: the misfit and the work of the other actuators."""
+    feasible = kinematics.actuation @ kinematics.inverse
+    total = np.eye(len(kinematics.actuators)) - feasible
+    for link, strain in strains.items():
+        drive = _drive(model, link, kinematics.actuators)
+        if drive is not None:
+            force = (model.stiffness[link].law @ strain)[..., 0, :]
+            total = total + force[..., :, None] * (feasible - np.eye(len(kinematics.actuators)))[..., drive, None, :]
+    return total
+
+
+def _drive(model: LinearModel, link: str, names: tuple[str, ...]) -> int | None:
+    """Which stroke the link imposes, if any."""
+    if link not in model.imposed:
+        return None
+    columns = np.flatnonzero(np.any(np.abs(np.real(model.imposed[link])) > 0.0, axis=tuple(range(model.imposed[link].ndim - 1))))
+    return names.index(model.inputs[int(columns[0])].name)
+
+
+def _energy(kinematics: Kinematics, model: LinearModel) -> Matrix:
+    """Strain energy in each part when one actuator strokes by a unit and nothing else acts [J/m^2]."""
+    columns = model.input_index(kinematics.actuators)
+    motion = displacement(model, model.input_matrix[..., columns])
+    selector = np.zeros((len(model.inputs), len(columns)))
+    selector[columns, range(len(columns))] = 1.0
+    strains = part_deformation(model, motion, selector)
+    rows = [0.5 * np.sum(strain * (model.stiffness[name].law @ strain), axis=-2) for name, strain in strains.items()]
+    return Matrix(np.stack(np.broadcast_arrays(*rows), axis=-2), tuple(strains), kinematics.actuators, "J/m^2")

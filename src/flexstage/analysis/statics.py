@@ -1,0 +1,126 @@
+"""Statics of the platform: compliance and stiffness, directional stiffness, centre of stiffness, dead load."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.base.labelled import Matrix, ratio_units
+from flexstage.base.number import Array, Number
+from flexstage.readings.linear.model import LinearModel
+from flexstage.readings.linear.static import displacement
+from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS, WRENCH_UNITS
+
+_FORCES = ("fx", "fy", "fz", "mx", "my", "mz")
+
+
+@dataclass(frozen=True, eq=False)
+class DirectionalStiffness:
+    """A symmetric in-plane stiffness tensor (..., 2, 2) [N/m] with its principal values and the angle of the stiffest direction [rad]."""
+
+    tensor: Matrix
+    principal: Array
+    angle: Array
+
+    def along(self, angle: Number) -> Array:
+        """Stiffness along directions at `angle` [rad] from x: force over displacement in the same direction, 1 / (n^T K^-1 n)."""
+        direction = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+        compliance = np.linalg.inv(self.tensor.values)
+        return 1.0 / np.einsum("...i,...ij,...j->...", direction, compliance, direction)
+
+
+@dataclass(frozen=True, eq=False)
+class Statics:
+    """Static behaviour of the platform at a point.
+
+    `compliance` (..., 6, 6) from a wrench at `load_point` to the twist at `read_point`; `stiffness` its inverse; `held` the in-plane tensor with all
+    other freedoms held, `free` the one with all others free (what a push test measures); `centre` (..., 3) the centre of stiffness
+    relative to the load point [m].
+    """
+
+    load_point: str
+    read_point: str
+    compliance: Matrix
+    stiffness: Matrix
+    held: DirectionalStiffness
+    free: DirectionalStiffness
+    centre: Array
+    provenance: str
+
+
+def statics(model: LinearModel, *, load_point: str = "platform", read_point: str = "platform") -> Statics:
+    """Platform compliance and stiffness with load and read-out points chosen by name (`platform` is its reference point).
+
+    C = C_read K^-1 C_load^T, strokes held. Small displacements.
+    """
+    read = tuple(f"{read_point}.{name}" for name in COMPONENTS)
+    load = tuple(f"{load_point}.{name}" for name in COMPONENTS)
+    force = np.swapaxes(model.output[..., model.output_index(load), :], -1, -2)
+    values = model.output[..., model.output_index(read), :] @ displacement(model, force)
+    wrench = tuple(f"{load_point}.{name}" for name in _FORCES)
+    inverse = np.linalg.inv(values)
+    return Statics(
+        load_point,
+        read_point,
+        Matrix(values, read, wrench, ratio_units(TWIST_UNITS, WRENCH_UNITS)),
+        Matrix(inverse, wrench, read, ratio_units(WRENCH_UNITS, TWIST_UNITS)),
+        held=directional(inverse[..., :2, :2]),
+        free=directional(np.linalg.inv(values[..., :2, :2])),
+        centre=centre_of_stiffness(inverse),
+        provenance=model.provenance,
+    )
+
+
+def directional(tensor: Array) -> DirectionalStiffness:
+    """Principal values and axes of an in-plane stiffness tensor (..., 2, 2) [N/m], largest first.
+
+    >>> directional(np.diag([1.0, 4.0])).principal.tolist()
+    [4.0, 1.0]
+    """
+    symmetric = 0.5 * (tensor + np.swapaxes(tensor, -1, -2))
+    values, vectors = np.linalg.eigh(np.real(symmetric))
+    stiffest = vectors[..., :, 1]
+    angle = np.mod(np.arctan2(stiffest[..., 1], stiffest[..., 0]), np.pi)
+    return DirectionalStiffness(Matrix(symmetric, ("x", "y"), ("x", "y"), "N/m"), values[..., ::-1], angle)
+
+
+def centre_of_stiffness(stiffness: Array) -> Array:
+    """Point (..., 3) relative to the reference at which forces and rotations uncouple best: the antisymmetric part of K_tt^-1 K_tr.
+
+    With a fully uncoupled centre c, K_tr = -K_tt [c]x (Loncaric 1987 calls the symmetric remainder zero at the centre of stiffness).
+
+    >>> from flexstage.spatial.frame import transport
+    >>> carry = transport(np.array([0.0, 0.0, -0.025]))
+    >>> centre_of_stiffness(carry.T @ np.eye(6) @ carry).round(12).tolist()
+    [0.0, 0.0, -0.025]
+    """
+    coupling = -np.linalg.solve(stiffness[..., :3, :3], stiffness[..., :3, 3:])
+    return 0.5 * np.stack(
+        [
+            coupling[..., 2, 1] - coupling[..., 1, 2],
+            coupling[..., 0, 2] - coupling[..., 2, 0],
+            coupling[..., 1, 0] - coupling[..., 0, 1],
+        ],
+        axis=-1,
+    )
+
+
+def equivalent_stiffness(axial: Number, lateral: Number, angles: Array) -> Array:
+    """In-plane stiffness tensor (2, 2) of units pushing at `angles` [rad], each with axial and lateral stiffness (Eq. 1 of Shin & Moon).
+
+    For three units 120 degrees apart it is 1.5 (K_a + K_l) in every direction (Eq. 2).
+
+    >>> third = 2 * np.pi / 3
+    >>> equivalent_stiffness(10.30, 0.0012, np.array([0, third, -third])).diagonal().round(6).tolist()
+    [15.4518, 15.4518]
+    """
+    along = np.stack([np.cos(angles), np.sin(angles)], axis=-1)
+    across = np.stack([-np.sin(angles), np.cos(angles)], axis=-1)
+    return axial * np.einsum("ki,kj->ij", along, along) + lateral * np.einsum("ki,kj->ij", across, across)
+
+
+def dead_load(model: LinearModel, gravity: Array) -> Array:
+    """Coordinates (..., n) of the deflection under gravity (3,) [m/s^2], strokes held: K q = M Phi g."""
+    weight = model.base_inertia[..., :3] @ np.asarray(gravity)
+    return displacement(model, weight[..., None])[..., 0]

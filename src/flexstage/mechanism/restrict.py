@@ -1,0 +1,77 @@
+"""Description transforms that connect the readings: restrict parts to some freedoms, take one unit alone."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+from flexstage.base.finding import refuse
+from flexstage.base.number import Vector
+from flexstage.mechanism.expand import copies
+from flexstage.mechanism.mechanism import GROUND, PLATFORM, Link, Mechanism, Placement
+from flexstage.mechanism.pattern import Pose
+from flexstage.parts.body import Body
+from flexstage.parts.freedom import Freedom
+from flexstage.parts.given import Joint
+from flexstage.parts.part import Part, Restricted
+
+Freedoms = tuple[Freedom, ...]
+
+
+def restrict(mechanism: Mechanism, kept: Mapping[str, tuple[Freedoms, Freedoms]]) -> Mechanism:
+    """Restrict parts to (elastic, free) freedoms, by part name or by the address of a drawn link (`vertical/lower`); the rest is locked.
+
+    Restricted parts have no mass. Raises `DesignError` for a name that is neither.
+    """
+    result = mechanism
+    for name, (elastic, free) in kept.items():
+        if name in mechanism.parts:
+            result = replace(result, parts={**result.parts, name: _restricted(mechanism.parts[name], elastic, free)})
+        else:
+            result = _restrict_link(result, mechanism, name, (elastic, free))
+    return result
+
+
+def _restricted(part: Part, elastic: Freedoms, free: Freedoms) -> Part:
+    inner = part.part if isinstance(part, Restricted) else part
+    return Joint(free) if isinstance(inner, Joint) else Restricted(inner, elastic, free)
+
+
+def _restrict_link(result: Mechanism, original: Mechanism, address: str, freedoms: tuple[Freedoms, Freedoms]) -> Mechanism:
+    unit, _, link = address.partition("/")
+    if unit not in result.units or link not in result.units[unit].links:
+        raise refuse(address, "neither a part nor a link", f"Parts are {', '.join(original.parts)}")
+    drawn = result.units[unit]
+    own = f"{drawn.links[link].part} of {address}"
+    part = _restricted(original.parts[original.units[unit].links[link].part], *freedoms)
+    links = {**drawn.links, link: replace(drawn.links[link], part=own)}
+    return replace(result, parts={**result.parts, own: part}, units={**result.units, unit: replace(drawn, links=links)})
+
+
+def isolate(mechanism: Mechanism, copy: str, *, guide: Vector | None = None) -> Mechanism:
+    """One unit alone, in its own frame, its output a massless platform; with `guide` the output can only move along that direction.
+
+    The output's reference point is the joint with the platform. Departures of this copy are kept.
+    """
+    units = {name: unit for name, unit, _ in copies(mechanism)}
+    if copy not in units:
+        raise refuse(copy, "no unit is placed under this name", f"Placed are {', '.join(units)}")
+    unit = mechanism.units[units[copy]]
+    joint = next((link for link in unit.links.values() if PLATFORM in link.joins), None)
+    if joint is None:
+        raise refuse(copy, "its unit does not join the platform", "Only units with an output can be taken alone")
+    links = {} if guide is None else {"guide": Link((GROUND, PLATFORM), "guide", joint.at, guide)}
+    parts = dict(mechanism.parts) if guide is None else {**mechanism.parts, "guide": Joint((Freedom.X,))}
+    return replace(
+        mechanism,
+        parts=parts,
+        bodies={PLATFORM: Body(reference=joint.at)},
+        links=links,
+        place={copy: Placement(units[copy], Pose())},
+        gauges={},
+        payloads={},
+        forces={},
+        requirements={},
+        envelope=None,
+        opening=None,
+    )

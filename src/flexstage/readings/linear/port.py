@@ -1,0 +1,121 @@
+"""Ports: the inputs and outputs of a linear model picked by name, wrenches on any body and motion of the ground included."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.base.finding import Finding, require
+from flexstage.base.number import Array
+from flexstage.mechanism.mechanism import GROUND
+from flexstage.readings.linear.model import Channel, LinearModel
+from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS, WRENCH_UNITS
+
+WRENCH_COMPONENTS = ("fx", "fy", "fz", "mx", "my", "mz")
+
+
+@dataclass(frozen=True, eq=False)
+class Ports:
+    """Chosen inputs u and outputs y: M z'' + D z' + K z = `force` u - `inertial` u'', y = `output` z + `feedthrough` u.
+
+    `force` (..., n, m), `inertial` (..., n, m), `output` (..., p, n), `feedthrough` (..., p, m). For motions of the ground, z is relative to
+    the ground, y absolute; `inertial` is zero for all other inputs.
+    """
+
+    inputs: tuple[Channel, ...]
+    outputs: tuple[Channel, ...]
+    force: Array
+    inertial: Array
+    output: Array
+    feedthrough: Array
+
+
+def ports(model: LinearModel, outputs: Iterable[str], inputs: Iterable[str]) -> Ports:
+    """Pick outputs and inputs by name.
+
+    A name is that of a channel (`platform.x`, `S1`, `B4/pivot.mz`), or of a group: `platform` means its six components. Inputs are the
+    model's own (strokes; wrenches on platform and points), a wrench component on any body whose twist is an output (`B1/tip.fx`, at the
+    body's reference point, stage axes), and the ground's absolute motion `ground.x` ... `ground.rz` (m, rad; given at the platform's
+    reference point). Raises `DesignError` for every unknown name, with the nearest known ones.
+    """
+    known = {channel.name: number for number, channel in enumerate(model.outputs)}
+    rows = _expanded(outputs, tuple(known), "output")
+    sources = {channel.name: number for number, channel in enumerate(model.inputs)}
+    columns = _expanded(inputs, (*sources, *_further_inputs(model)), "input")
+    picked = [known[name] for name in rows]
+    parts = [_column(model, name, known, sources) for name in columns]
+    return Ports(
+        inputs=tuple(part[0] for part in parts),
+        outputs=tuple(model.outputs[number] for number in picked),
+        force=_side_by_side([part[1] for part in parts]),
+        inertial=_side_by_side([part[2] for part in parts]),
+        output=model.output[..., picked, :],
+        feedthrough=_side_by_side([part[3] for part in parts])[..., picked, :],
+    )
+
+
+def input_names(model: LinearModel) -> tuple[str, ...]:
+    """All names `ports` accepts as inputs, groups excluded."""
+    own = tuple(channel.name for channel in model.inputs)
+    return (*own, *(name for name in _further_inputs(model) if name not in own))
+
+
+def _further_inputs(model: LinearModel) -> tuple[str, ...]:
+    bodies = dict.fromkeys(name.rpartition(".")[0] for name in _twists(model))
+    wrenches = [f"{body}.{component}" for body in bodies for component in WRENCH_COMPONENTS]
+    return (*wrenches, *(f"{GROUND}.{component}" for component in COMPONENTS))
+
+
+def _twists(model: LinearModel) -> list[str]:
+    """Outputs that are components of a body's or point's twist."""
+    names = [channel.name for channel in model.outputs if channel.name.rpartition(".")[2] in COMPONENTS]
+    return [name for name in names if name.rpartition(".")[0]]
+
+
+def _expanded(names: Iterable[str], known: tuple[str, ...], kind: str) -> list[str]:
+    """Groups written out; unknown names refused together."""
+    result: list[str] = []
+    findings: list[Finding] = []
+    members: dict[str, list[str]] = {}
+    for name in known:
+        members.setdefault(name.rpartition(".")[0], []).append(name)
+    for name in (names,) if isinstance(names, str) else names:
+        if name in known:
+            result.append(name)
+        elif name in members and name:
+            result += dict.fromkeys(members[name])
+        else:
+            findings.append(_unknown(name, (*known, *members), kind))
+    require(findings)
+    return result
+
+
+def _unknown(name: str, known: tuple[str, ...], kind: str) -> Finding:
+    near = difflib.get_close_matches(name, [item for item in known if item], n=3)
+    advice = f"Did you mean {' or '.join(near)}?" if near else f"Known are {', '.join(known[:8])}, ..."
+    return Finding(name, f"the model has no {kind} of this name", advice.rstrip("."))
+
+
+def _column(model: LinearModel, name: str, known: dict[str, int], sources: dict[str, int]) -> tuple[Channel, Array, Array, Array]:
+    """Channel, force, inertial force and feed-through of one input, matrices of one column."""
+    if name in sources:
+        number = [sources[name]]
+        force = model.input_matrix[..., number]
+        return model.inputs[number[0]], force, np.zeros_like(force), model.feedthrough[..., number]
+    owner, _, component = name.rpartition(".")
+    if owner == GROUND:
+        axis = COMPONENTS.index(component)
+        inertial = model.base_inertia[..., [axis]]
+        return Channel(name, TWIST_UNITS[axis]), np.zeros_like(inertial), inertial, model.rigid_output[..., [axis]]
+    axis = WRENCH_COMPONENTS.index(component)
+    row = model.output[..., [known[f"{owner}.{COMPONENTS[axis]}"]], :]
+    force = np.swapaxes(row, -1, -2)
+    return Channel(name, WRENCH_UNITS[axis]), force, np.zeros_like(force), np.zeros((len(model.outputs), 1))
+
+
+def _side_by_side(columns: list[Array]) -> Array:
+    batch = np.broadcast_shapes(*(column.shape[:-2] for column in columns))
+    return np.concatenate([np.broadcast_to(column, (*batch, *column.shape[-2:])) for column in columns], axis=-1)
