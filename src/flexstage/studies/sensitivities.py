@@ -1,0 +1,136 @@
+"""Exact sensitivities of frequencies and gains to every number of a description.
+
+Derivatives of K, M and the gains are taken by complex step through the readings' own formulas, one batch axis a parameter; eigenvalue derivatives
+are analytic, d lambda = phi^T (dK - lambda dM) phi.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from flexstage.analysis.lost_motion import lost_motion
+from flexstage.analysis.modes import clusters
+from flexstage.base.labelled import Matrix
+from flexstage.base.number import Array
+from flexstage.mechanism.address import addresses, get, quantity_of, set_value
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.readings.ideal import ideal
+from flexstage.readings.linear.eigen import Eigen, eigen
+from flexstage.readings.linear.model import LinearModel
+from flexstage.readings.lumped import lumped
+
+_STEP = 1e-20
+_CHUNK = 24
+
+
+@dataclass(frozen=True, eq=False)
+class Sensitivities:
+    """Derivatives of modes and gains with respect to P parameters at one design.
+
+    `frequency` (P, k) [Hz per SI unit of the parameter]: for the modes of a cluster it is the derivative of the cluster's mean. `clusters`
+    lists the groups of modes; `one_sided` gives per cluster the eigenvalues (P, c) of Phi^T (dK - lambda dM) Phi as frequency slopes,
+    each parameter alone (not to be added up over parameters). `gain` and `loss` (P, n) are those of each actuator.
+    """
+
+    parameters: tuple[str, ...]
+    units: tuple[str, ...]
+    values: Array
+    frequencies: Array
+    frequency: Array
+    clusters: tuple[tuple[int, ...], ...]
+    one_sided: tuple[Array, ...]
+    actuators: tuple[str, ...]
+    gain: Array
+    loss: Array
+    provenance: str
+
+    @property
+    def relative_frequency(self) -> Matrix:
+        """Relative change of each frequency per relative change of each parameter (P, k)."""
+        values = self.frequency * self.values[:, None] / self.frequencies
+        modes = tuple(f"mode {index + 1}" for index in range(values.shape[1]))
+        return Matrix(values, self.parameters, modes, "1")
+
+    @property
+    def relative_loss(self) -> Matrix:
+        """Change of each actuator's loss per relative change of each parameter (P, n)."""
+        return Matrix(self.loss * self.values[:, None], self.parameters, self.actuators, "1")
+
+
+def sensitivities(
+    mechanism: Mechanism, parameters: tuple[str, ...] | None = None, *, modes: int = 12, cluster: float = 1e-6
+) -> Sensitivities:
+    """Derivatives of the lowest `modes` frequencies and of all gains with respect to the addressed numbers (default: every one).
+
+    Modes closer than `cluster` (relative gap) are repeated: for them only the derivative of the mean is smooth. Raises `DesignError` for unknown
+    addresses.
+    """
+    names = addresses(mechanism) if parameters is None else parameters
+    solved = eigen(lumped(mechanism))
+    solved = Eigen(solved.values[:modes], solved.shapes[:, :modes])
+    groups = clusters(solved.values, cluster)
+    pieces = [_piece(mechanism, chunk, solved, groups) for chunk in _chunks(names)]
+    slopes = [np.concatenate([piece[0][number] for piece in pieces]) for number in range(len(groups))]
+    losses = np.concatenate([piece[1] for piece in pieces])
+    frequencies = np.sqrt(solved.values) / (2.0 * np.pi)
+    scale = 1.0 / (8.0 * np.pi**2 * frequencies)
+    mean = np.concatenate([np.repeat(slope.mean(axis=1, keepdims=True), slope.shape[1], axis=1) for slope in slopes], axis=1)
+    return Sensitivities(
+        parameters=names,
+        units=tuple(quantity_of(mechanism, name).si for name in names),
+        values=np.array([get(mechanism, name) for name in names]),
+        frequencies=frequencies,
+        frequency=mean * scale,
+        clusters=tuple(tuple(group) for group in groups),
+        one_sided=tuple(slope * scale[group[0]] for slope, group in zip(slopes, groups, strict=True)),
+        actuators=ideal(mechanism).actuators,
+        gain=-losses,
+        loss=losses,
+        provenance=lumped(mechanism).provenance,
+    )
+
+
+def _chunks(names: tuple[str, ...]) -> Iterator[tuple[str, ...]]:
+    for start in range(0, len(names), _CHUNK):
+        yield names[start : start + _CHUNK]
+
+
+def stepped(mechanism: Mechanism, names: tuple[str, ...]) -> Mechanism:
+    """The description with one batch axis: design k has a tiny imaginary step in parameter k."""
+    result = mechanism
+    for number, name in enumerate(names):
+        values = np.full(len(names), get(mechanism, name), dtype=complex)
+        values[number] += 1j * _STEP
+        result = set_value(result, name, values)
+    return replace(result, requirements={})
+
+
+def _piece(
+    mechanism: Mechanism, names: tuple[str, ...], solved: Eigen, groups: list[list[int]]
+) -> tuple[list[Array], Array]:
+    """Per cluster the slopes of lambda (p, c), and the derivative of every actuator's loss (p, n)."""
+    batch = stepped(mechanism, names)
+    model = lumped(batch)
+    slopes = [_slopes(model, solved, group, len(names)) for group in groups]
+    loss = lost_motion(ideal(batch), model).loss.values
+    diagonal = np.imag(np.diagonal(loss, axis1=-2, axis2=-1)) / _STEP
+    return slopes, np.broadcast_to(diagonal, (len(names), diagonal.shape[-1]))
+
+
+def _slopes(model: LinearModel, solved: Eigen, group: list[int], count: int) -> Array:
+    shapes = solved.shapes[:, group]
+    value = solved.values[group].mean()
+    change = _projected(model.stiffness, shapes) - value * _projected(model.inertia, shapes)
+    return np.linalg.eigvalsh(np.broadcast_to(change, (count, len(group), len(group))))
+
+
+def _projected(contributions: object, shapes: Array) -> Array:
+    """Phi^T dA Phi of a matrix given as contributions, without forming it."""
+    total = np.zeros((shapes.shape[1], shapes.shape[1]))
+    for item in contributions.values():  # type: ignore[attr-defined]
+        seen = item.operator @ shapes
+        total = total + np.imag(np.swapaxes(seen, -1, -2) @ item.law @ seen) / _STEP
+    return total
