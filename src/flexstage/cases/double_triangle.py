@@ -15,6 +15,7 @@ from flexstage.base.scale import deg, kHz, mm, um
 from flexstage.mechanism.mechanism import Link, Mechanism, ModalDamping, Opening, Placement, Probe, Unit
 from flexstage.mechanism.pattern import Facing, Polar
 from flexstage.parts.body import Block, Body
+from flexstage.parts.freedom import ROTATIONS, Freedom
 from flexstage.parts.gauge import Gauge, Positive
 from flexstage.parts.material import Material
 from flexstage.parts.neck import Neck
@@ -280,6 +281,20 @@ def _vertical_blocks(p: DoubleTriangle, line: Number) -> dict[str, Body]:
         "pole": Body(solids=pole),
     }
 
+
+EQUATION_3: dict[str, tuple[tuple[Freedom, ...], tuple[Freedom, ...]]] = {
+    "foot_notch": ((Freedom.X,), (Freedom.RZ,)),
+    "lever_notch": ((Freedom.RZ,), ()),
+    "pole_neck": ((Freedom.X,), ROTATIONS),
+    "stack_vertical": ((Freedom.X,), ()),
+}
+"""What Eq. 3 of the paper knows of a vertical unit: (elastic, free) freedoms of each part, the rest locked."""
+
+TABLE_2_FEA = EQUATION_3 | {"foot_notch": ((Freedom.X, Freedom.RZ), ()), "pole_neck": ((Freedom.X, Freedom.RY, Freedom.RZ), (Freedom.RX,))}
+"""Eq. 3 with the bending of front and pole hinges added, which closes the gap to the FEA column of Table 2."""
+
+EQUATION_18 = EQUATION_3 | {"neck": ((Freedom.X,), ROTATIONS), "stack_horizontal": ((Freedom.X,), ())}
+"""What Eq. 18 of the paper knows of the whole stage: axial springs and lever pivots."""
 
 SOURCES = {
     "paper": "Shin & Moon, Static and Dynamic Analyses of a 6-DOF Ultra-Precision Parallel Mechanism",

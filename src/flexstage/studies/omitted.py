@@ -1,0 +1,68 @@
+"""What a simpler theory omits: the cost of every freedom of a part that it locks or frees."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.mechanism.restrict import restrict
+from flexstage.parts.freedom import ALL, Freedom
+from flexstage.parts.given import Joint
+from flexstage.readings.linear.static import static_gain
+from flexstage.readings.lumped import lumped
+
+Restrictions = Mapping[str, tuple[tuple[Freedom, ...], tuple[Freedom, ...]]]
+
+
+@dataclass(frozen=True)
+class Omitted:
+    """A response in the simple and in the full theory, and how each omitted freedom (`lever_notch.x`) changes the simple one when added alone.
+
+    `interaction` = full - simple - sum of changes: what only the freedoms' combinations explain.
+    """
+
+    output: str
+    input: str
+    simple: float
+    full: float
+    changes: Mapping[str, float]
+
+    @property
+    def interaction(self) -> float:
+        """The part of the difference that single freedoms do not explain."""
+        return self.full - self.simple - sum(self.changes.values())
+
+    @property
+    def unexplained(self) -> float:
+        """The interaction relative to the full response."""
+        return abs(self.interaction / self.full)
+
+
+def omitted(mechanism: Mechanism, simple: Restrictions, channel: tuple[str, str]) -> Omitted:
+    """Compare the static response of an output to an input, `channel` = (output, input), between restricted and full parts.
+
+    Each freedom that `simple` locks or frees is given its elasticity back alone, the others staying as they are. One design.
+    """
+    parts = {name for unit in mechanism.units.values() for link in unit.links.values() for name in (link.part,)}
+    known = {name: freedoms for name, freedoms in simple.items() if name in parts and not isinstance(mechanism.parts[name], Joint)}
+    base = _gain(mechanism, known, channel)
+    changes = {
+        f"{name}.{freedom.value}": _gain(mechanism, {**known, name: _with(known[name], freedom)}, channel) - base
+        for name in known
+        for freedom in ALL
+        if freedom not in known[name][0]
+    }
+    return Omitted(*channel, base, _gain(mechanism, {}, channel), changes)
+
+
+def _with(
+    kept: tuple[tuple[Freedom, ...], tuple[Freedom, ...]], freedom: Freedom
+) -> tuple[tuple[Freedom, ...], tuple[Freedom, ...]]:
+    elastic, free = kept
+    return (*elastic, freedom), tuple(item for item in free if item is not freedom)
+
+
+def _gain(mechanism: Mechanism, restrictions: Restrictions, channel: tuple[str, str]) -> float:
+    model = lumped(restrict(mechanism, restrictions))
+    return float(static_gain(model, channel[:1], channel[1:]).values[0, 0])
