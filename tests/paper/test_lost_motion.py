@@ -1,0 +1,90 @@
+"""Eq. 11 and Table 2 of the paper, from the lumped reading of one vertical unit restricted to what the equations know."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import flexstage as fs
+from flexstage.cases.double_triangle import EQUATION_3, SM_REF_A, SM_REF_B, TABLE_2_FEA, DoubleTriangle, double_triangle
+from flexstage.mechanism.expand import expand
+from flexstage.readings.linear.static import static_gain
+from flexstage.readings.mapped import LeverStiffness, lever_stiffness
+from flexstage.studies.omitted import Restrictions, omitted
+
+COMMANDS = np.array([0.0, 120.0, 240.0, 360.0, 480.0, 600.0])
+THEORY = np.array([0.0, 117.0, 234.0, 351.0, 468.0, 585.0])
+FEA = np.array([0.0, 116.3, 232.5, 348.8, 465.0, 581.3])
+UP = (0.0, 0.0, 1.0)
+BOTH = pytest.mark.parametrize("parameters", [SM_REF_A, SM_REF_B])
+
+
+def _springs(parameters: DoubleTriangle) -> LeverStiffness:
+    return lever_stiffness(expand(double_triangle(parameters)), "B4/pzt")
+
+
+def _unit(parameters: DoubleTriangle, known: Restrictions) -> fs.LinearModel:
+    unit = fs.isolate(double_triangle(parameters), "B4", guide=UP)
+    return fs.lumped(fs.restrict(unit, {name: kept for name, kept in known.items() if name in unit.parts}))
+
+
+@BOTH
+def test_first_term_of_equation_11(parameters: DoubleTriangle) -> None:
+    gain = static_gain(_unit(parameters, EQUATION_3), ("platform.z",), ("B4",)).values[0, 0]
+    assert gain == pytest.approx(_springs(parameters).gain, rel=1e-6)
+
+
+@BOTH
+def test_load_term_of_equation_11(parameters: DoubleTriangle) -> None:
+    compliance = static_gain(_unit(parameters, EQUATION_3), ("platform.z",), ("platform.fz",)).values[0, 0]
+    assert compliance == pytest.approx(_springs(parameters).tip_compliance, rel=1e-6)
+
+
+@BOTH
+def test_loss_is_eps_over_one_plus_eps(parameters: DoubleTriangle) -> None:
+    unit = fs.isolate(double_triangle(parameters), "B4", guide=UP)
+    restricted = fs.restrict(unit, EQUATION_3)
+    result = fs.lost_motion(fs.ideal(restricted), fs.lumped(restricted))
+    softness = _springs(parameters).softness
+    assert result.loss.at("B4", "B4") == pytest.approx(softness / (1.0 + softness), rel=1e-9)
+
+
+def test_theory_column_of_table_2_from_the_shipped_set() -> None:
+    gain = static_gain(_unit(SM_REF_B, EQUATION_3), ("platform.z",), ("B4",)).values[0, 0]
+    np.testing.assert_allclose(gain / 3.0 * COMMANDS, THEORY, atol=0.1)
+
+
+@BOTH
+def test_theory_column_of_table_2(parameters: DoubleTriangle) -> None:
+    gain = static_gain(_unit(parameters, EQUATION_3), ("platform.z",), ("B4",)).values[0, 0]
+    np.testing.assert_allclose(gain / 3.0 * COMMANDS, THEORY, atol=0.1)
+
+
+@BOTH
+def test_fea_column_of_table_2_with_front_and_pole_bending(parameters: DoubleTriangle) -> None:
+    gain = static_gain(_unit(parameters, TABLE_2_FEA), ("platform.z",), ("B4",)).values[0, 0]
+    np.testing.assert_allclose(gain / 3.0 * COMMANDS, FEA, atol=0.1)
+
+
+@BOTH
+@pytest.mark.parametrize("channel", [("platform.z", "B4"), ("platform.z", "platform.fz")])
+def test_omitted_freedoms_explain_the_full_gain(parameters: DoubleTriangle, channel: tuple[str, str]) -> None:
+    unit = fs.isolate(double_triangle(parameters), "B4", guide=UP)
+    assert omitted(unit, EQUATION_3, channel).unexplained < 1e-3
+
+
+@pytest.mark.parametrize("parameters", [SM_REF_B])
+def test_pivot_along_the_stack_softens_the_load_term(parameters: DoubleTriangle) -> None:
+    """Physics.md: the lever pivot's own 9 C_x + C_y is 2.7 % of the load term with its neck along the stack."""
+    unit = fs.isolate(double_triangle(parameters), "B4", guide=UP)
+    costs = omitted(unit, EQUATION_3, ("platform.z", "platform.fz"))
+    softening = costs.changes["lever_notch.x"] + costs.changes["lever_notch.y"]
+    assert softening / costs.simple == pytest.approx(0.027, abs=0.001)
+
+
+@BOTH
+def test_budget_adds_up(parameters: DoubleTriangle) -> None:
+    stage = double_triangle(parameters)
+    result = fs.lost_motion(fs.ideal(stage), fs.lumped(stage))
+    total = sum(share.values for share in result.budget.values())
+    assert np.max(np.abs(total - result.loss.values)) <= 1e-12 * max(1.0, np.linalg.norm(result.loss.values))
