@@ -5,6 +5,7 @@ A check returns findings (ask); `require` raises them together as one `DesignErr
 
 from __future__ import annotations
 
+import difflib
 from collections.abc import Iterable
 from dataclasses import dataclass
 
@@ -49,3 +50,18 @@ def refuse(where: str, what: str, advice: str) -> DesignError:
     'B4/pivot: thickness is -1 mm. give a positive thickness.'
     """
     return DesignError([Finding(where, what, advice)])
+
+
+def nearest(name: str, names: Iterable[str]) -> str:
+    """Advice that names what is near to a misspelt name, or what there is.
+
+    >>> nearest("plattform", ["ground", "platform"]), nearest("xyz", ["ground", "platform"])
+    ('The nearest name is platform', 'There are ground, platform')
+    """
+    known = sorted(set(names))
+    close = difflib.get_close_matches(name[:80], known, n=3, cutoff=0.6)
+    if close:
+        return f"The nearest name is {close[0]}" if len(close) == 1 else f"Near to it are {', '.join(close)}"
+    if not known:
+        return "There are none"
+    return f"There are {', '.join(known[:12])}{' and more' if len(known) > 12 else ''}"

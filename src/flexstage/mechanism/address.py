@@ -1,0 +1,248 @@
+"""Addresses of values: one scheme for files, `--set`, findings, studies and sensitivities.
+
+    parts.neck.thickness                     a shared part
+    bodies.platform.mass                     the tree of the description, name by name
+    units.horizontal.links.front.at.x        a link's placement in all copies of its unit; `horizontal/front.at.x` for short
+    horizontal/front.thickness               the part of one link of a unit, in all copies: a departure, kept in `changes`
+    B2/front.thickness                       in one copy: a departure that goes before that of all copies
+    links.strut.thickness                    the part of a link of the stage itself: a departure too
+
+Levels may be skipped where that is unique: `horizontal/front.radius` for `horizontal/front.profile.radius`, `neck.thickness` for
+`parts.neck.thickness`. An ambiguous or misspelt address is an error that lists the candidates.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from flexstage.base.finding import refuse
+from flexstage.base.number import Table, freeze
+from flexstage.base.quantity import DIRECTION, Quantity
+from flexstage.base.unit import parse
+from flexstage.mechanism.expand import departed
+from flexstage.mechanism.grammar import DIRECTIONS, ChoiceNode, DirectionNode, NumberNode, TextNode, VectorNode, node_of, numbers
+from flexstage.mechanism.locate import Place, canonical, locate
+from flexstage.mechanism.mechanism import Link, Mechanism
+from flexstage.mechanism.path import member, replaced
+from flexstage.parts.part import Part
+
+ASSUMED = "assumed"
+
+
+def get(mechanism: Mechanism, address: str) -> Any:
+    """Return the value at an address, departures applied.
+
+    >>> from flexstage.parts.rod import Rod
+    >>> get(Mechanism("", parts={"wire": Rod("steel", 0.03, 0.001)}), "parts.wire.length")
+    0.03
+    """
+    place = locate(mechanism, address)
+    value: Any = mechanism
+    if place.owners:
+        link, part = _departed(mechanism, place)
+        value = link if place.in_link else part
+    for name in place.path:
+        value = member(value, name)
+    return value
+
+
+def set_value(mechanism: Mechanism, address: str, value: Any) -> Mechanism:
+    """Return the mechanism with another value (SI number, array, or name) at an address; a tag of the old value is dropped.
+
+    A departure is written to `changes`. An entry of a compliance matrix is written with its mirror image.
+
+    >>> from flexstage.parts.rod import Rod
+    >>> stage = Mechanism("", parts={"wire": Rod("steel", 0.03, 0.001)})
+    >>> get(set_value(stage, "wire.length", 0.04), "wire.length")
+    0.04
+    """
+    place = locate(mechanism, address)
+    fitting = _fitting(place, value, address)
+    changed = mechanism
+    for path in _with_mirror(place.path):
+        changed = _written(changed, replace(place, path=path), fitting)
+    tags = {key: tag for key, tag in mechanism.tags.items() if canonical(mechanism, key) != place.address}
+    return changed if len(tags) == len(mechanism.tags) else replace(changed, tags=Table(tags))
+
+
+def assign(mechanism: Mechanism, assignment: str) -> Mechanism:
+    """Return the mechanism after an assignment such as `horizontal/front.thickness=1.4 mm`.
+
+    >>> from flexstage.parts.rod import Rod
+    >>> stage = Mechanism("", parts={"wire": Rod("steel", 0.03, 0.001)})
+    >>> get(assign(stage, "wire.length = 40mm"), "wire.length")
+    0.04
+    """
+    address, equals, text = assignment.partition("=")
+    if not equals:
+        raise refuse(f'"{assignment}"', "an assignment needs an equals sign", 'Write for example "parts.neck.thickness=1.4 mm"')
+    return set_value(mechanism, address.strip(), value_from_text(text.strip(), locate(mechanism, address), address.strip()))
+
+
+def addresses(mechanism: Mechanism) -> tuple[str, ...]:
+    """Return the address of every number of a description: shared parts, bodies, placements, and the departures that are made.
+
+    Directions and absent values are left out.
+
+    >>> from flexstage.parts.rod import Rod
+    >>> addresses(Mechanism("", parts={"wire": Rod("steel", 0.03, 0.001)}))[:2]
+    ('parts.wire.length', 'parts.wire.diameter')
+    """
+    found = [address for address, _, _ in numbers(node_of(Mechanism), mechanism)]
+    for key, value in mechanism.changes.items():
+        place = locate(mechanism, key)
+        found += [address for address, _, _ in numbers(place.node, value, place.address)]
+    return tuple(dict.fromkeys(found))
+
+
+def quantity_of(mechanism: Mechanism, address: str) -> Quantity:
+    """Return the quantity of the number, vector or direction at an address.
+
+    >>> from flexstage.parts.rod import Rod
+    >>> quantity_of(Mechanism("", parts={"wire": Rod("steel", 0.03, 0.001)}), "wire.length").shown
+    'mm'
+    """
+    node = locate(mechanism, address).node
+    if isinstance(node, NumberNode):
+        return node.quantity
+    if isinstance(node, VectorNode):
+        return node.items[0].quantity
+    if isinstance(node, DirectionNode):
+        return DIRECTION
+    raise refuse(address, "this is not a number", "Address one of its numbers")
+
+
+def tag_of(mechanism: Mechanism, address: str) -> str:
+    """Return the tag (`stated paper 2.2`) of the value at an address, of the vector it belongs to, or of the shared part it comes from.
+
+    Untagged values are `assumed`.
+
+    >>> from flexstage.parts.rod import Rod
+    >>> stage = Mechanism("", parts={"wire": Rod("steel", 0.03, 0.001)}, tags={"parts.wire.length": "stated paper 2.2"})
+    >>> tag_of(stage, "wire.length"), tag_of(stage, "wire.diameter")
+    ('stated paper 2.2', 'assumed')
+    """
+    return _tag(_canonical_tags(mechanism), _origin(mechanism, locate(mechanism, address)))
+
+
+def provenance(mechanism: Mechanism) -> Mapping[str, str]:
+    """Return the tag of every number by its address (see `addresses` and `tag_of`).
+
+    >>> from flexstage.parts.rod import Rod
+    >>> provenance(Mechanism("", parts={"wire": Rod("steel", 0.03, 0.001)}))["parts.wire.length"]
+    'assumed'
+    """
+    tags = _canonical_tags(mechanism)
+    return Table({address: _tag(tags, address) for address in addresses(mechanism)})
+
+
+def value_from_text(text: str, place: Place, where: str) -> Any:
+    """Return the value that a text (`1.4 mm`, `x`, `steel`) means at a place; raises `DesignError` at `where`.
+
+    >>> from flexstage.parts.rod import Rod
+    >>> value_from_text("2 mm", locate(Mechanism("", parts={"wire": Rod("steel", 0.03, 0.001)}), "wire.diameter"), "wire.diameter")
+    0.002
+    """
+    node = place.node
+    if isinstance(node, NumberNode):
+        return parse(text, node.quantity, where=where)
+    if isinstance(node, TextNode):
+        return text
+    if isinstance(node, DirectionNode) and text in DIRECTIONS:
+        return DIRECTIONS[text]
+    if isinstance(node, ChoiceNode) and text in [choice.value for choice in node.choices]:
+        return node.choices(text)
+    if isinstance(node, ChoiceNode):
+        raise refuse(where, f'found "{text}"', f"It is one of {', '.join(choice.value for choice in node.choices)}")
+    if isinstance(node, DirectionNode):
+        raise refuse(where, f'found "{text}"', f"Write one of {', '.join(DIRECTIONS)}, or set its components")
+    raise refuse(where, "it has several values", "Set one of them, for example its x")
+
+
+def _departed(mechanism: Mechanism, place: Place) -> tuple[Link, Part]:
+    link = _drawn(mechanism, place.owners)
+    try:
+        return departed(mechanism, link, place.owners)
+    except KeyError as error:
+        raise refuse(f"changes of {place.owners[-1]}", f"there is no {error}", "Check the description") from None
+
+
+def _drawn(mechanism: Mechanism, owners: tuple[str, ...]) -> Link:
+    owner, slash, name = owners[0].partition("/")
+    return mechanism.units[owner].links[name] if slash else mechanism.links[owner]
+
+
+def _with_mirror(path: tuple[str, ...]) -> tuple[tuple[str, ...], ...]:
+    """The path, and for an entry of a compliance matrix also that of its mirror image."""
+    if path[-3:-2] == ("compliance",) and path[-1] != path[-2]:
+        return path, (*path[:-2], path[-1], path[-2])
+    return (path,)
+
+
+def _written(mechanism: Mechanism, place: Place, value: Any) -> Mechanism:
+    if not place.owners:
+        return replaced(mechanism, place.path, value)
+    changes = dict(mechanism.changes)
+    for key, path in _made(mechanism, place.owners[-1]):
+        depth = len(path)
+        if place.path[:depth] == path:
+            changes[key] = replaced(changes[key], place.path[depth:], value)
+            return replace(mechanism, changes=Table(changes))
+        if path[: len(place.path)] == place.path:
+            del changes[key]
+    return replace(mechanism, changes=Table(changes | {place.address: value}))
+
+
+def _made(mechanism: Mechanism, owner: str) -> Iterator[tuple[str, tuple[str, ...]]]:
+    """The departures made of that owner: key and full path."""
+    for key in mechanism.changes:
+        place = locate(mechanism, key)
+        if place.owners[-1:] == (owner,):
+            yield key, place.path
+
+
+def _fitting(place: Place, value: Any, where: str) -> Any:
+    """The value as it is kept; raises `DesignError` if it is of another kind than what stands at the place."""
+    value = freeze(value)
+    if isinstance(place.node, NumberNode):
+        if isinstance(value, bool) or not isinstance(value, (int, float, complex, np.ndarray)):
+            raise refuse(where, f"found {value!r} where a number is expected", "Give a number or an array in SI units")
+        return float(value) if isinstance(value, int) else value
+    if isinstance(place.node, (VectorNode, DirectionNode)):
+        if not isinstance(value, tuple) or (isinstance(place.node, VectorNode) and len(value) != len(place.node.items)):
+            raise refuse(where, f"found {value!r} where components are expected", "Give one number for each component")
+        return tuple(float(item) if isinstance(item, int) else item for item in value)
+    if isinstance(place.node, TextNode) and not isinstance(value, str):
+        raise refuse(where, f"found {value!r} where a name is expected", "Give a text")
+    return value
+
+
+def _canonical_tags(mechanism: Mechanism) -> dict[str, str]:
+    return {canonical(mechanism, key): tag for key, tag in mechanism.tags.items()}
+
+
+def _origin(mechanism: Mechanism, place: Place) -> str:
+    """The address that a value comes from: the departure that is made, or the shared part or drawn link."""
+    for owner in reversed(place.owners):
+        for _, path in _made(mechanism, owner):
+            if path == place.path[: len(path)] or path[: len(place.path)] == place.path:
+                return ".".join((owner, *place.path))
+    if not place.owners:
+        return place.address
+    link = _drawn(mechanism, place.owners)
+    if not place.in_link:
+        return ".".join(("parts", link.part, *place.path))
+    owner, slash, name = place.owners[0].partition("/")
+    return ".".join((*(("units", owner, "links", name) if slash else ("links", owner)), *place.path))
+
+
+def _tag(tags: Mapping[str, str], address: str) -> str:
+    steps = address.split(".")
+    for depth in range(len(steps), 0, -1):
+        if (tag := tags.get(".".join(steps[:depth]))) is not None:
+            return tag
+    return ASSUMED

@@ -1,0 +1,168 @@
+"""Where an address points: the grammar of addresses, with skipped levels filled in and mistakes told with their candidates."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields, is_dataclass, replace
+from typing import Any
+
+from flexstage.base.finding import DesignError, nearest, refuse
+from flexstage.mechanism.expand import copy_names
+from flexstage.mechanism.grammar import DirectionNode, MatrixNode, Node, RecordNode, RowNode, UnionNode, VectorNode, child, node_of
+from flexstage.mechanism.mechanism import Link, Mechanism
+from flexstage.mechanism.path import completions, has_member, member
+from flexstage.spatial.frame import COMPONENTS
+
+_DOCUMENT = ("tags", "sources", "requirements", "changes")
+_TOPOLOGY = ("joins", "part")
+
+
+@dataclass(frozen=True, eq=False)
+class Place:
+    """Where an address points.
+
+    `path` is the full path from the description, and `owners` is empty; or a departure is meant: `owners` are those whose changes count,
+    the last one before the first (`horizontal/front`, `B2/front`), and `path` starts at the link (`at.x`) or at its part (`thickness`).
+    """
+
+    owners: tuple[str, ...]
+    path: tuple[str, ...]
+    node: Node
+
+    @property
+    def address(self) -> str:
+        """The address in full."""
+        return ".".join((*self.owners[-1:], *self.path))
+
+    @property
+    def in_link(self) -> bool:
+        """Whether a departure is one of the link itself, not of its part."""
+        return bool(self.owners) and self.path[0] in node_of(Link).fields
+
+
+def locate(mechanism: Mechanism, address: str) -> Place:
+    """Return where an address points; raises `DesignError` with the candidates if that is nowhere or ambiguous.
+
+    >>> from flexstage.parts.rod import Rod
+    >>> locate(Mechanism("", parts={"wire": Rod("steel", 0.03, 0.001)}), "wire.length").address
+    'parts.wire.length'
+    """
+    owner, slash, rest = address.strip().partition("/")
+    if slash:
+        return _in_unit(mechanism, address, owner.strip(), tuple(rest.strip().split(".")))
+    steps = tuple(owner.split("."))
+    if steps[0] in _DOCUMENT:
+        raise refuse(address, f'"{steps[0]}" holds no values of the stage', "Address the value itself")
+    return _descend(mechanism, address, Place((), (), RecordNode(Mechanism)), steps)
+
+
+def unit_of_copy(mechanism: Mechanism) -> dict[str, str]:
+    """Return the unit's name by name of each placed copy.
+
+    >>> unit_of_copy(Mechanism(""))
+    {}
+    """
+    return {copy: placement.unit for key, placement in mechanism.place.items() for copy in copy_names(key)}
+
+
+def _in_unit(mechanism: Mechanism, address: str, owner: str, steps: tuple[str, ...]) -> Place:
+    copies = unit_of_copy(mechanism)
+    name = owner if owner in mechanism.units else copies.get(owner, "")
+    if name not in mechanism.units:
+        raise refuse(address, f'"{owner}" is no unit and no copy of one', nearest(owner, [*mechanism.units, *copies]))
+    unit = mechanism.units[name]
+    if owner == name and steps[0] in unit.bodies:
+        return _descend(mechanism, address, Place((), (), RecordNode(Mechanism)), ("units", name, "bodies", *steps))
+    if steps[0] not in unit.links:
+        raise refuse(address, f'unit {name} has no link "{steps[0]}"', nearest(steps[0], unit.links))
+    drawn = f"{name}/{steps[0]}"
+    owners = (drawn,) if owner == name else (drawn, f"{owner}/{steps[0]}")
+    return _in_link(mechanism, address, ("units", name, "links", steps[0]), owners, steps[1:])
+
+
+def _in_link(mechanism: Mechanism, address: str, tree: tuple[str, ...], owners: tuple[str, ...], steps: tuple[str, ...]) -> Place:
+    """A place in the link at path `tree`: one of its own fields, or a departure of its part."""
+    link = _at(mechanism, tree)
+    if not steps or steps[0] in _TOPOLOGY:
+        raise refuse(address, "what a link joins and its part are no departures", "Address a value of the link or of its part")
+    if has_member(link, steps[0]):
+        departed = len(owners) > 1 or any(key.startswith(f"{drawn}.{steps[0]}") for drawn in owners for key in mechanism.changes)
+        start = Place(owners, (), RecordNode(Link)) if departed else Place((), tree, RecordNode(Link))
+        return _descend(link, address, start, steps)
+    if link.part not in mechanism.parts:
+        raise refuse(address, f'there is no part "{link.part}"', nearest(link.part, mechanism.parts))
+    parts = node_of(Mechanism).fields["parts"].node
+    start = Place(owners, (), child(parts, mechanism.parts, link.part))
+    return _descend(mechanism.parts[link.part], address, start, steps)
+
+
+def _descend(value: Any, address: str, start: Place, steps: tuple[str, ...]) -> Place:
+    """Follow the steps from a value that stands at `start`."""
+    mechanism, path, node = value, start.path, start.node
+    for number, step in enumerate(steps):
+        if isinstance(value, Link) and not has_member(value, step):
+            return _in_link(mechanism, address, path, _owners(path), steps[number:])
+        for name in _completed(value, address, node, step):
+            node, value = child(node, value, name), member(value, name)
+            path += (name,)
+    return replace(start, path=path, node=node)
+
+
+def _owners(tree: tuple[str, ...]) -> tuple[str, ...]:
+    """Whose changes count for a link drawn at that path (those of a link of the stage may be written short)."""
+    return (tree[1], f"links.{tree[1]}") if tree[0] == "links" else (f"{tree[1]}/{tree[3]}",)
+
+
+def _completed(value: Any, address: str, node: Node, step: str) -> tuple[str, ...]:
+    if isinstance(value, tuple):
+        return (_component(value, address, node, step),)
+    step = _field_of_alternative(value, node, step)
+    found = [path for path in completions(value, step) if path[0] not in _DOCUMENT]
+    if len(found) == 1:
+        return found[0]
+    if found:
+        raise refuse(address, f'"{step}" may be {" or ".join(".".join(path) for path in found)}', "Write the one that is meant in full")
+    if value is None:
+        raise refuse(address, f'there is no "{step}": what holds it is not given', "Give it first")
+    raise refuse(address, f'there is no "{step}"', nearest(step, _names(value)))
+
+
+def _field_of_alternative(value: Any, node: Node, step: str) -> str:
+    """The field that a file calls by the name of what it holds: `polar` for `pattern`."""
+    if isinstance(node, RecordNode):
+        for name, slot in node.fields.items():
+            if isinstance(slot.node, UnionNode) and slot.node.key is None and slot.node.name_of(getattr(value, name)) == step:
+                return name
+    return step
+
+
+def _component(value: Any, address: str, node: Node, step: str) -> str:
+    if not isinstance(node, (VectorNode, DirectionNode, MatrixNode, RowNode)) or not has_member(value, step):
+        raise refuse(address, f'there is no component "{step}"', nearest(step, COMPONENTS[: len(value)]))
+    return COMPONENTS[int(step)] if step in "012345" else step
+
+
+def _names(value: Any) -> list[str]:
+    if not is_dataclass(value):
+        return list(value) if hasattr(value, "keys") else []
+    own = [field.name for field in fields(value) if field.name not in _DOCUMENT]
+    nested = [getattr(value, name) for name in own]
+    return own + [name for inner in nested if is_dataclass(inner) or hasattr(inner, "keys") for name in _names(inner)]
+
+
+def _at(mechanism: Mechanism, path: tuple[str, ...]) -> Any:
+    value: Any = mechanism
+    for name in path:
+        value = member(value, name)
+    return value
+
+
+def canonical(mechanism: Mechanism, address: str) -> str:
+    """The address in full, or as it is if it points nowhere.
+
+    >>> canonical(Mechanism(""), "nowhere")
+    'nowhere'
+    """
+    try:
+        return locate(mechanism, address).address
+    except DesignError:
+        return address
