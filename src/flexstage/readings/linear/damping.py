@@ -30,7 +30,8 @@ def modal_ratios(model: LinearModel, solved: Eigen, damping: Damping) -> Array:
     omega_r^2), the *equivalent* ratio by modal strain energy (Ungar and Kerwin 1962), right at the resonance for small loss factors.
     """
     if isinstance(damping, ModalDamping):
-        return np.broadcast_to(np.asarray(damping.ratio)[..., None], np.broadcast_shapes(np.shape(damping.ratio) + (1,), solved.values.shape))
+        ratio = np.asarray(damping.ratio)[..., None]
+        return np.broadcast_to(ratio, np.broadcast_shapes(ratio.shape, solved.values.shape))
     omega = np.sqrt(solved.values)
     if isinstance(damping, RayleighDamping):
         mass, stiffness = np.asarray(damping.mass_factor)[..., None], np.asarray(damping.stiffness_factor)[..., None]

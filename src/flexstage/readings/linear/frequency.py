@@ -59,8 +59,8 @@ class Response:
             "rows": [channel.name for channel in self.outputs],
             "columns": [channel.name for channel in self.inputs],
             "unit": [list(row) for row in self.units],
-            "real": self.values.real.tolist(),
-            "imaginary": self.values.imag.tolist(),
+            "real": np.real(self.values).tolist(),
+            "imaginary": np.imag(self.values).tolist(),
         }
 
     def to_xarray(self) -> Any:
@@ -75,8 +75,8 @@ class Response:
 def transfer(model: LinearModel, chosen: Ports, frequencies: Array, damping: Damping) -> Array:
     """H (..., f, p, m) at `frequencies` (f,) in Hz: y/u with M z'' + D z' + K z = B u - M_b u'', y = C z + D_f u.
 
-    Modal and Rayleigh damping by exact superposition of all modes, H = C Phi d(omega)^-1 Phi^T F + R F + D_f with F = B + omega^2 M_b; the
-    remainder R = C K^-1 - C Phi Lambda^-1 Phi^T makes the freedoms without inertia exact. Structural damping by direct
+    Modal and Rayleigh damping by exact superposition of all modes, H = C Phi d(omega)^-1 Phi^T (B + omega^2 M_b) + R B + D_f;
+    the remainder R = C K^-1 - C Phi Lambda^-1 Phi^T makes the freedoms without inertia exact. Structural damping by direct
     solves of K* - omega^2 M. The force of a stroke is taken as K_p u, without loss. A frequency of zero gives the static gain.
     """
     frequencies = np.asarray(frequencies, dtype=float)
@@ -111,8 +111,7 @@ def _superposed(model: LinearModel, chosen: Ports, frequencies: Array, damping: 
     force, inertial = modal_forces(solved, chosen)
     response = (seen * gains[..., None, :]) @ (force[..., None, :, :] + square * inertial[..., None, :, :])
     fast = 1.0 / (1.0 + 1j * omega * _stiffness_factor(damping))[..., None, None]
-    left = residual(model, solved, chosen)
-    remainder = left[0][..., None, :, :] + square * left[1][..., None, :, :]
+    remainder = residual(model, solved, chosen)[..., None, :, :]
     return response + fast * remainder + chosen.feedthrough[..., None, :, :]
 
 
@@ -122,17 +121,16 @@ def modal_forces(solved: Eigen, chosen: Ports) -> tuple[Array, Array]:
     return transposed @ chosen.force, transposed @ chosen.inertial
 
 
-def residual(model: LinearModel, solved: Eigen, chosen: Ports) -> tuple[Array, Array]:
-    """C (K^-1 - Phi Lambda^-1 Phi^T) times B and times M_b: what modes left out, or freedoms without inertia, add statically."""
+def residual(model: LinearModel, solved: Eigen, chosen: Ports) -> Array:
+    """C (K^-1 - Phi Lambda^-1 Phi^T) B (..., p, m): what modes left out, or freedoms without inertia, add statically.
+
+    Motions of the ground add nothing: M_b lies in the range of M, which the modes span.
+    """
     stiffness = model.stiffness_matrix
-    columns = np.concatenate(np.broadcast_arrays(chosen.force, chosen.inertial), axis=-1)
-    batch = np.broadcast_shapes(stiffness.shape[:-2], columns.shape[:-2])
-    broadcast = np.broadcast_to(columns, (*batch, *columns.shape[-2:]))
-    motion = np.linalg.solve(stiffness, broadcast)
-    modal = np.swapaxes(solved.shapes, -1, -2) @ columns / solved.values[..., :, None]
-    left = chosen.output @ (motion - solved.shapes @ modal)
-    count = chosen.force.shape[-1]
-    return left[..., :count], left[..., count:]
+    batch = np.broadcast_shapes(stiffness.shape[:-2], chosen.force.shape[:-2])
+    motion = np.linalg.solve(stiffness, np.broadcast_to(chosen.force, (*batch, *chosen.force.shape[-2:])))
+    modal = np.swapaxes(solved.shapes, -1, -2) @ chosen.force / solved.values[..., :, None]
+    return chosen.output @ (motion - solved.shapes @ modal)
 
 
 def _denominators(model: LinearModel, solved: Eigen, omega: Array, damping: Damping) -> Array:

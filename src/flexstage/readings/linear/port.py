@@ -21,8 +21,8 @@ WRENCH_COMPONENTS = ("fx", "fy", "fz", "mx", "my", "mz")
 class Ports:
     """Chosen inputs u and outputs y: M z'' + D z' + K z = `force` u - `inertial` u'', y = `output` z + `feedthrough` u.
 
-    `force` (..., n, m), `inertial` (..., n, m), `output` (..., p, n), `feedthrough` (..., p, m). For motions of the ground, z is relative to
-    the ground, y absolute; `inertial` is zero for all other inputs.
+    `force` (..., n, m), `inertial` (..., n, m), `output` (..., p, n), `feedthrough` (..., p, m). For motions of the ground, z is relative
+    to the ground, y absolute; `inertial` is zero for all other inputs.
     """
 
     inputs: tuple[Channel, ...]
