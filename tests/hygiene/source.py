@@ -16,6 +16,7 @@ SRC = ROOT / "src" / "flexstage"
 
 Function = ast.FunctionDef | ast.AsyncFunctionDef
 
+
 def expect_none(found: Iterable[str], advice: str) -> None:
     """Fail with every finding on its own line, and what to do."""
     listed = sorted(found)

@@ -9,7 +9,8 @@ import tomllib
 from pathlib import Path
 
 import pytest
-from hygiene.source import ROOT, SRC, modules
+
+from tests.hygiene.source import ROOT, SRC, modules
 
 
 def lint(root: Path) -> subprocess.CompletedProcess[str]:

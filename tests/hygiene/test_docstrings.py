@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator
 
-from hygiene.source import SRC, Defined, Function, defined, expect_none, modules, tree
+from tests.hygiene.source import SRC, Defined, Function, defined, expect_none, modules, tree
 
 WITHOUT_EXAMPLE: dict[str, str] = {
     "apps.cli": "commands: run by tests/apps and the manual",

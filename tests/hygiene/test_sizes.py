@@ -8,7 +8,7 @@ import tokenize
 from collections.abc import Iterator
 from pathlib import Path
 
-from hygiene.source import SRC, Defined, Function, code_files, defined, expect_none, tree
+from tests.hygiene.source import SRC, Defined, Function, code_files, defined, expect_none, tree
 
 FUNCTION_BODY, CLASS_BODY, FILE = 40, 200, 400
 POSITIONAL = 5

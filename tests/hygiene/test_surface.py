@@ -8,8 +8,9 @@ import subprocess
 import sys
 from pathlib import Path
 
-import flexstage
 import pytest
+
+import flexstage
 
 PACKAGE = Path(flexstage.__file__).parent
 HEAVY = {"numpy", "scipy", "pydantic", "pint", "matplotlib", "pandas", "xarray"}
@@ -66,5 +67,9 @@ def test_units_and_directions_load_nothing_heavy() -> None:
 def test_help_loads_nothing_heavy() -> None:
     if not (PACKAGE / "apps" / "cli.py").exists():
         pytest.skip("the command line is not there yet")
-    code = "import sys; sys.argv = ['flexstage', '--help']\ntry:\n from flexstage.apps.cli import main; main()\nexcept SystemExit as end:\n assert not end.code\n0"
+    code = (
+        "import sys; sys.argv = ['flexstage', '--help']\n"
+        "try:\n from flexstage.apps.cli import main; main()\n"
+        "except SystemExit as end:\n assert not end.code\n0"
+    )
     assert not HEAVY & loaded_by(code)

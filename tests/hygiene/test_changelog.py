@@ -1,0 +1,41 @@
+"""CHANGELOG.md keeps the form of Keep a Changelog 1.1, with one kind more: "Numbers changed"."""
+
+from __future__ import annotations
+
+import re
+
+import flexstage
+from tests.hygiene.source import ROOT, expect_none
+
+KINDS = {"Added", "Changed", "Deprecated", "Removed", "Fixed", "Security", "Numbers changed"}
+RELEASE = re.compile(r"\[Unreleased\]|\[(\d+\.\d+\.\d+)\] - \d{4}-\d{2}-\d{2}")
+
+
+def headings(level: int) -> list[str]:
+    text = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
+    return re.findall(rf"^{'#' * level} (.*)$", text, re.MULTILINE)
+
+
+def test_title() -> None:
+    assert headings(1) == ["Changelog"]
+
+
+def test_releases_have_a_version_and_a_date() -> None:
+    releases = headings(2)
+    expect_none((release for release in releases if not RELEASE.fullmatch(release)), "write [1.2.3] - 2026-01-31")
+    assert releases[0] == "[Unreleased]"
+
+
+def test_releases_descend() -> None:
+    versions = [tuple(map(int, found[1].split("."))) for release in headings(2) if (found := RELEASE.fullmatch(release)) and found[1]]
+    assert versions == sorted(set(versions), reverse=True)
+
+
+def test_kinds_are_known() -> None:
+    assert set(headings(3)) <= KINDS
+
+
+def test_the_package_is_not_behind() -> None:
+    released = [found[1] for release in headings(2) if (found := RELEASE.fullmatch(release)) and found[1]]
+    current = tuple(map(int, flexstage.__version__.split(".")[:3]))
+    assert all(tuple(map(int, version.split("."))) <= current for version in released)
