@@ -1,0 +1,91 @@
+"""A part as a straight Timoshenko beam: flexibility and inertia along its axis, and the integrals of them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.base.number import Array, Number, stack
+from flexstage.beams.quadrature import Stations
+from flexstage.beams.section import Section
+from flexstage.beams.torsion import Twisting, constrained_twist, free_twist
+from flexstage.parts.material import Material
+
+
+@dataclass(frozen=True, eq=False)
+class Beam:
+    """A beam symmetric about its centre: at each station (..., m, 6), order (x, y, z, rx, ry, rz), `flexibility` and `inertia` per length.
+
+    Flexibility: 1/(E A), k/(G A) twice, twist rate per torque, 1/(E I_y), 1/(E I_z). Inertia: rho A three times, rho I_p, rho I_y, rho I_z.
+    """
+
+    points: Stations
+    section: Section
+    flexibility: Array
+    inertia: Array
+    twisting: Twisting
+
+    def diagonal(self) -> Array:
+        """The diagonal (..., 6) of the compliance about the centre.
+
+        C_x, C_rx, C_ry, C_rz are integrals of the flexibility; C_y = integral of f_y + x^2 f_rz, C_z = integral of f_z + x^2 f_ry.
+        """
+        weight = 2.0 * self.points.rule.weights * self.points.rate
+        plain = (weight[..., None, :] @ self.flexibility)[..., 0, :]
+        bent = ((weight * self.points.position**2)[..., None, :] @ self.flexibility[..., 4:])[..., 0, :]
+        arm = np.zeros_like(plain)
+        arm[..., 1], arm[..., 2] = bent[..., 1], bent[..., 0]
+        return plain + arm
+
+
+def beam(points: Stations, section: Section, material: Material) -> Beam:
+    """The beam of a section given at stations, its ends kept from warping.
+
+    >>> from flexstage.beams.quadrature import stations
+    >>> from flexstage.beams.section import rectangle
+    >>> from flexstage.parts.profile import Straight
+    >>> steel = Material(young=200e9, poisson=0.25, density=7750.0)
+    >>> bar = beam(stations(Straight(0.1), 0.01), rectangle(np.full(25, 0.01), np.full(25, 0.01)), steel)
+    >>> round(float(bar.diagonal()[0] * 200e9 * 1e-4), 12)
+    0.1
+    """
+    young, shear = _column(material.young), _column(material.shear)
+    twisting = free_twist(section, shear) if section.is_round else constrained_twist(section, points, young, shear)
+    return Beam(points, section, flexibility(section, young, shear, twisting), inertia(section, _column(material.density)), twisting)
+
+
+def flexibility(section: Section, young: Array, shear: Array, twisting: Twisting) -> Array:
+    """Flexibility per length (..., m, 6) of a section; moduli of shape (..., 1).
+
+    >>> from flexstage.beams.section import circle
+    >>> section = circle(np.ones(1), 1.0)
+    >>> flexibility(section, np.ones(1), np.ones(1), free_twist(section, np.ones(1))).round(4).tolist()
+    [[1.2732, 1.2732, 1.2732, 10.1859, 20.3718, 20.3718]]
+    """
+    lateral = section.shear / (shear * section.area)
+    return stack(
+        [
+            1.0 / (young * section.area),
+            lateral,
+            lateral,
+            twisting.rate,
+            1.0 / (young * section.inertia_y),
+            1.0 / (young * section.inertia_z),
+        ]
+    )
+
+
+def inertia(section: Section, density: Array) -> Array:
+    """Inertia per length (..., m, 6) of a section, rotary inertia included; density of shape (..., 1).
+
+    >>> from flexstage.beams.section import rectangle
+    >>> inertia(rectangle(np.ones(1), np.ones(1)), np.array([12.0])).tolist()
+    [[12.0, 12.0, 12.0, 2.0, 1.0, 1.0]]
+    """
+    along = density * section.area
+    return stack([along, along, along, density * section.polar, density * section.inertia_y, density * section.inertia_z])
+
+
+def _column(number: Number) -> Array:
+    return np.asarray(number)[..., None]

@@ -1,0 +1,47 @@
+"""Piezo stacks as uniform round rods."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from flexstage.base.number import Number
+from flexstage.beams.beam import Beam, flexibility, inertia
+from flexstage.beams.quadrature import stations
+from flexstage.beams.section import circle, cowper_circle
+from flexstage.beams.torsion import free_twist
+from flexstage.parts.piezo import Piezo
+from flexstage.parts.profile import Straight
+
+
+def piezo_beam(part: Piezo) -> Beam:
+    """The stack at constant stroke as a uniform round rod of modulus E = k L / A, with its stated mass.
+
+    With a stated `bending_rigidity` EI, bending takes it and torsion G J = EI / (1 + nu), as in a round section; shear stays the
+    ceramic's.
+
+    >>> stack = Piezo(stroke=150e-6, stiffness=17e6, length=0.162, diameter=0.01)
+    >>> round(float(1e-6 / piezo_beam(stack).diagonal()[0]), 9)
+    17.0
+    """
+    points = stations(Straight(part.length), part.diameter)
+    ceramic = circle(np.asarray(part.diameter)[..., None] + points.growth, np.asarray(cowper_circle(part.poisson))[..., None])
+    young = np.asarray(effective_modulus(part))[..., None]
+    shear = young / (2.0 * (1.0 + np.asarray(part.poisson)[..., None]))
+    density = np.asarray(part.mass / part.length)[..., None] / ceramic.area
+    cased = ceramic
+    if part.bending_rigidity is not None:
+        moment = np.asarray(part.bending_rigidity)[..., None] / young
+        cased = replace(ceramic, inertia_y=moment, inertia_z=moment, torsion=2.0 * moment)
+    twisting = free_twist(cased, shear)
+    return Beam(points, cased, flexibility(cased, young, shear, twisting), inertia(ceramic, density), twisting)
+
+
+def effective_modulus(part: Piezo) -> Number:
+    """Modulus of a uniform rod of the ceramic's diameter and the stack's axial stiffness, E = k L / A [Pa].
+
+    >>> round(effective_modulus(Piezo(stroke=150e-6, stiffness=17e6, length=0.162, diameter=0.01)) / 1e9, 2)
+    35.07
+    """
+    return part.stiffness * part.length / (0.25 * np.pi * part.diameter * part.diameter)

@@ -1,0 +1,78 @@
+"""Torsion of hinges whose ends cannot warp.
+
+A section that twists also warps along x, and the rigid bodies at the ends of a hinge forbid it. With twist phi(x) and warping
+u = theta(x) y z,
+
+    2 U = integral of G J phi'^2 + G S (r phi' - theta)^2 + E C_w theta'^2 dx,    theta = 0 at both ends,
+
+J Saint-Venant's constant, S = I_p / k the shear stiffness (k the shear factor), r = (b^2 - t^2) / (b^2 + t^2), C_w = b^3 t^3 / 144. For
+the shape y z this is the exact energy of the displacement field, but for J, put in place of b^3 t^3 / (3 (b^2 + t^2)), and for k.
+
+Limits: a slender hinge, C = integral of dx / (G J) (Saint-Venant); a wide one, C = 12 C_y / b^2 (every strip dz bends as the hinge itself
+does); a square section does not warp. Between them no blend is needed. Against 3-D finite elements of circular notches with rigid
+arc ends (tests/elsewhere) the error is below 1 % at t/R = 0.2 for widths from 2 t to 10 t, 2 % at 30 t, +4 % at t/R = 0.5, +7 % at t/R = 1,
+and -6 % where the throat is square. Saint-Venant is up to 25 times, 12 C_y / b^2 up to 10 times too soft. With the root compliance of
+full-height blocks a wide notch is up to 20 % softer still, as it is in tension.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.base.number import Array
+from flexstage.beams.quadrature import Stations
+from flexstage.beams.section import Section
+
+
+@dataclass(frozen=True, eq=False)
+class Twisting:
+    """Response to a unit torque at the stations (..., m): twist `rate` phi' [rad/(N m^2)] and `bimoment` E C_w theta' [m]."""
+
+    rate: Array
+    bimoment: Array
+
+
+def free_twist(section: Section, shear: Array) -> Twisting:
+    """Twist of a part free to warp, phi' = 1 / (G J) (Saint-Venant): circles.
+
+    >>> from flexstage.beams.section import circle
+    >>> bool(abs(free_twist(circle(np.ones(1), 1.0), np.ones(1)).rate[0] - 32 / np.pi) < 1e-12)
+    True
+    """
+    rate = 1.0 / (shear * section.torsion)
+    return Twisting(rate, np.zeros_like(rate))
+
+
+def constrained_twist(section: Section, points: Stations, young: Array, shear: Array) -> Twisting:
+    """Twist of a hinge whose ends cannot warp; moduli `young` E and `shear` G [Pa], shape (..., 1).
+
+    Eliminating phi' leaves (E C_w theta')' - g theta + f = 0, f = S r / (J + S r^2), g = G S J / (J + S r^2); it is solved as
+    theta = A (f - g theta) with A the twofold integral by the rule of the stations.
+
+    >>> from flexstage.beams.quadrature import stations
+    >>> from flexstage.beams.section import rectangle
+    >>> from flexstage.parts.profile import Straight
+    >>> points = stations(Straight(0.1), 0.001)
+    >>> section = rectangle(np.full(25, 0.001), np.full(25, 0.01))
+    >>> one = np.ones(1)
+    >>> ratio = points.whole(constrained_twist(section, points, 2.6 * one, one).rate) / points.whole(free_twist(section, one).rate)
+    >>> round(float(ratio), 3)  # 1 - tanh(lam) / lam, lam = (L/b) sqrt(6 / (1 + nu)) = 21.5
+    0.954
+    """
+    if section.warping is None:
+        return free_twist(section, shear)
+    square_y, square_z = section.thickness * section.thickness, section.width * section.width
+    skew = (square_z - square_y) / (square_z + square_y)
+    stiffness = section.polar / section.shear
+    whole = section.torsion + stiffness * skew * skew
+    load = stiffness * skew / whole
+    spring = shear * stiffness * section.torsion / whole
+    inner = points.rule.running * points.rate[..., None, :]
+    to_end = (points.rule.weights - points.rule.running) * (points.rate / (young * section.warping))[..., None, :]
+    integral = to_end @ inner
+    system = np.eye(integral.shape[-1]) + integral * spring[..., None, :]
+    theta = np.linalg.solve(system, integral @ np.asarray(load)[..., None])[..., 0]
+    bimoment = -points.running(load - spring * theta)
+    return Twisting(1.0 / (shear * whole) + load * theta, bimoment)
