@@ -11,6 +11,9 @@ __version__ = "0.1.0"
 _ROOMS = {
     "base.finding": "DesignError Finding",
     "base.scale": "X Y Z m mm um nm rad mrad urad nrad deg kg N kN N_per_m N_per_um Pa MPa GPa Hz kHz V uF K",
+    "base.labelled": "Matrix",
+    "base.number": "Number Table",
+    "base.digest": "digest",
     "parts.material": "Material",
     "parts.profile": "Circular Elliptic Filleted Straight",
     "parts.notch": "Notch",
@@ -24,7 +27,20 @@ _ROOMS = {
     "parts.body": "Body Block Cylinder Inertia Payload",
     "parts.freedom": "Freedom",
     "mechanism.pattern": "Polar Pose Facing",
-    "mechanism.mechanism": ("Mechanism Link Unit Placement Probe Force Opening ModalDamping StructuralDamping RayleighDamping"),
+    "mechanism.mechanism": "Mechanism Link Unit Placement Probe Force Opening ModalDamping StructuralDamping RayleighDamping",
+    "mechanism.expand": "expand",
+    "mechanism.restrict": "isolate restrict",
+    "readings.ideal": "ideal",
+    "readings.lumped": "Masses lumped",
+    "readings.mapped": "mapped",
+    "readings.linear.kinematics": "Kinematics",
+    "readings.linear.model": "LinearModel",
+    "readings.linear.static": "static_gain",
+    "analysis.statics": "Statics equivalent_stiffness statics",
+    "analysis.lost_motion": "LostMotion lost_motion",
+    "analysis.modes": "Modes modal_assurance modes subspace_angle",
+    "studies.sensitivities": "Sensitivities sensitivities",
+    "studies.omitted": "Omitted omitted",
 }
 _HOME = {name: room for room, names in _ROOMS.items() for name in names.split()}
 

@@ -1,4 +1,32 @@
-from flexstage.base.finding import DesignError as DesignError, Finding as Finding
+from flexstage.analysis.lost_motion import (
+    LostMotion as LostMotion,
+    lost_motion as lost_motion,
+)
+from flexstage.analysis.modes import (
+    Modes as Modes,
+    modal_assurance as modal_assurance,
+    modes as modes,
+    subspace_angle as subspace_angle,
+)
+from flexstage.analysis.statics import (
+    Statics as Statics,
+    equivalent_stiffness as equivalent_stiffness,
+    statics as statics,
+)
+from flexstage.base.digest import (
+    digest as digest,
+)
+from flexstage.base.finding import (
+    DesignError as DesignError,
+    Finding as Finding,
+)
+from flexstage.base.labelled import (
+    Matrix as Matrix,
+)
+from flexstage.base.number import (
+    Number as Number,
+    Table as Table,
+)
 from flexstage.base.scale import (
     GPa as GPa,
     Hz as Hz,
@@ -13,9 +41,9 @@ from flexstage.base.scale import (
     Y as Y,
     Z as Z,
     deg as deg,
-    kg as kg,
     kHz as kHz,
     kN as kN,
+    kg as kg,
     m as m,
     mm as mm,
     mrad as mrad,
@@ -25,6 +53,9 @@ from flexstage.base.scale import (
     uF as uF,
     um as um,
     urad as urad,
+)
+from flexstage.mechanism.expand import (
+    expand as expand,
 )
 from flexstage.mechanism.mechanism import (
     Force as Force,
@@ -38,18 +69,87 @@ from flexstage.mechanism.mechanism import (
     StructuralDamping as StructuralDamping,
     Unit as Unit,
 )
-from flexstage.mechanism.pattern import Facing as Facing, Polar as Polar, Pose as Pose
-from flexstage.parts.body import Block as Block, Body as Body, Cylinder as Cylinder, Inertia as Inertia, Payload as Payload
-from flexstage.parts.freedom import Freedom as Freedom
-from flexstage.parts.gauge import Gauge as Gauge, Positive as Positive
-from flexstage.parts.given import Given as Given, Joint as Joint, Origin as Origin
-from flexstage.parts.leaf import Leaf as Leaf
-from flexstage.parts.material import Material as Material
-from flexstage.parts.neck import Neck as Neck
-from flexstage.parts.notch import Notch as Notch
-from flexstage.parts.part import Restricted as Restricted
-from flexstage.parts.piezo import Piezo as Piezo
-from flexstage.parts.profile import Circular as Circular, Elliptic as Elliptic, Filleted as Filleted, Straight as Straight
-from flexstage.parts.rod import Rod as Rod
+from flexstage.mechanism.pattern import (
+    Facing as Facing,
+    Polar as Polar,
+    Pose as Pose,
+)
+from flexstage.mechanism.restrict import (
+    isolate as isolate,
+    restrict as restrict,
+)
+from flexstage.parts.body import (
+    Block as Block,
+    Body as Body,
+    Cylinder as Cylinder,
+    Inertia as Inertia,
+    Payload as Payload,
+)
+from flexstage.parts.freedom import (
+    Freedom as Freedom,
+)
+from flexstage.parts.gauge import (
+    Gauge as Gauge,
+    Positive as Positive,
+)
+from flexstage.parts.given import (
+    Given as Given,
+    Joint as Joint,
+    Origin as Origin,
+)
+from flexstage.parts.leaf import (
+    Leaf as Leaf,
+)
+from flexstage.parts.material import (
+    Material as Material,
+)
+from flexstage.parts.neck import (
+    Neck as Neck,
+)
+from flexstage.parts.notch import (
+    Notch as Notch,
+)
+from flexstage.parts.part import (
+    Restricted as Restricted,
+)
+from flexstage.parts.piezo import (
+    Piezo as Piezo,
+)
+from flexstage.parts.profile import (
+    Circular as Circular,
+    Elliptic as Elliptic,
+    Filleted as Filleted,
+    Straight as Straight,
+)
+from flexstage.parts.rod import (
+    Rod as Rod,
+)
+from flexstage.readings.ideal import (
+    ideal as ideal,
+)
+from flexstage.readings.linear.kinematics import (
+    Kinematics as Kinematics,
+)
+from flexstage.readings.linear.model import (
+    LinearModel as LinearModel,
+)
+from flexstage.readings.linear.static import (
+    static_gain as static_gain,
+)
+from flexstage.readings.lumped import (
+    Masses as Masses,
+    lumped as lumped,
+)
+from flexstage.readings.mapped import (
+    mapped as mapped,
+)
+from flexstage.studies.omitted import (
+    Omitted as Omitted,
+    omitted as omitted,
+)
+from flexstage.studies.sensitivities import (
+    Sensitivities as Sensitivities,
+    sensitivities as sensitivities,
+)
 
 __version__: str

@@ -38,9 +38,7 @@ A_STIFFNESS = [15.4501e6, 15.4501e6, 9.54559e6, 80660.3, 80660.3, 223254.0]
 B_STIFFNESS = [15.4499e6, 15.4499e6, 10.09255e6, 82322.5, 82322.5, 223250.0]
 
 
-@pytest.mark.parametrize(
-    ("parameters", "mapping", "determinant"), [(SM_REF_A, A_MAPPING, -3.59125e-4), (SM_REF_B, B_MAPPING, -3.0600e-4)]
-)
+@pytest.mark.parametrize(("parameters", "mapping", "determinant"), [(SM_REF_A, A_MAPPING, -3.59125e-4), (SM_REF_B, B_MAPPING, -3.0600e-4)])
 def test_actuator_mapping(parameters: DoubleTriangle, mapping: np.ndarray, determinant: float) -> None:
     found = fs.ideal(double_triangle(parameters)).mapping.values
     np.testing.assert_allclose(found, mapping, atol=1e-7)
