@@ -1,0 +1,1 @@
+"""What a stage can reach and bear: strokes, forces, stress, buckling, loads, gauges, room and volts."""

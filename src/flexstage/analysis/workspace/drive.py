@@ -1,0 +1,89 @@
+"""Volts: strokes to voltages and back, and the currents that charge the stacks."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.analysis.workspace.stroke import stacks
+from flexstage.base.finding import Finding, require
+from flexstage.base.number import Array, Number, stack
+from flexstage.mechanism.mechanism import Mechanism
+
+
+@dataclass(frozen=True, eq=False)
+class Drive:
+    """The electrical side of the actuators: `gain` (..., n) [m/V], `low`, `high`, `bias` [V], `capacitance` [F] (NaN where not stated).
+
+    Linear: the free stroke is proportional to the voltage; hysteresis and creep are left to the loop.
+    """
+
+    actuators: tuple[str, ...]
+    gain: Array
+    low: Array
+    high: Array
+    bias: Array
+    capacitance: Array
+
+    def volts(self, strokes: Array) -> Array:
+        """Voltages (..., n) [V] for strokes (..., n) [m] counted from the bias."""
+        return self.bias + strokes / self.gain
+
+    def strokes(self, volts: Array) -> Array:
+        """Strokes (..., n) [m] counted from the bias for voltages (..., n) [V]."""
+        return (volts - self.bias) * self.gain
+
+    def within(self, volts: Array) -> Array:
+        """Whether each voltage (..., n) is in its range; rounding counts as within."""
+        slack = 1e-9 * (self.high - self.low)
+        return (volts >= self.low - slack) & (volts <= self.high + slack)
+
+    def current(self, rate: Array) -> Array:
+        """Charging current i = C da/dt / gain (..., n) [A] at stroke rates (..., n) [m/s].
+
+        Small-signal capacitance; driven over the full range it grows up to twofold. Raises `DesignError` where no capacitance is stated.
+        """
+        self._require_capacitance()
+        return self.capacitance * rate / self.gain
+
+    def sine_current(self, frequency: Number, amplitude: Array) -> Array:
+        """Peak current 2 pi f C a / gain (..., n) [A] of sines of `frequency` [Hz] and stroke amplitude (..., n) [m]."""
+        return self.current(2.0 * np.pi * frequency * amplitude)
+
+    def _require_capacitance(self) -> None:
+        missing = np.isnan(np.real(self.capacitance)).reshape(-1, len(self.actuators)).any(axis=0)
+        require(
+            Finding(name, "its stack states no capacitance, and a charging current needs one", 'Add for example capacitance = "0.5 uF"')
+            for name, gone in zip(self.actuators, missing, strict=True)
+            if gone
+        )
+
+
+def drive(mechanism: Mechanism) -> Drive:
+    """The electrical side of a stage. Bias absent: the middle of the range. Raises `DesignError` for stacks without a voltage range.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> electric = drive(double_triangle())
+    >>> (1e6 * electric.gain).round(3).tolist(), electric.volts(np.zeros(6)).tolist()[0]
+    ([0.15, 0.15, 0.15, 0.2, 0.2, 0.2], 500.0)
+    """
+    piezos = stacks(mechanism)
+    require(
+        Finding(name, "its stack states no voltage range", 'Add for example voltage_low = "0 V" and voltage_high = "1000 V"')
+        for name, piezo in piezos.items()
+        if piezo.voltage_low is None or piezo.voltage_high is None
+    )
+    low = stack([piezo.voltage_low for piezo in piezos.values()])
+    high = stack([piezo.voltage_high for piezo in piezos.values()])
+    stroke = stack([piezo.stroke for piezo in piezos.values()])
+    middle = [np.nan if piezo.bias is None else piezo.bias for piezo in piezos.values()]
+    bias = stack(middle)
+    return Drive(
+        actuators=tuple(piezos),
+        gain=stroke / (high - low),
+        low=low,
+        high=high,
+        bias=np.where(np.isnan(np.real(bias)), 0.5 * (low + high), bias),
+        capacitance=stack([np.nan if piezo.capacitance is None else piezo.capacitance for piezo in piezos.values()]),
+    )

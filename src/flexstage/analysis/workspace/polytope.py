@@ -1,0 +1,112 @@
+"""The polytope of all poses the strokes can reach."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import combinations
+
+import numpy as np
+
+from flexstage.analysis.workspace.stroke import StrokeLimits
+from flexstage.base.finding import refuse
+from flexstage.base.labelled import Matrix
+from flexstage.base.number import Array
+from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
+
+_MOST_VERTEX_CANDIDATES = 20_000
+_TOLERANCE = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class Polytope:
+    """Reachable poses {xi : `normals` xi <= `offsets`}: normals (..., 2 n, f), offsets (..., 2 n) [m].
+
+    `vertices` (..., v, f) [m, rad] (padded with NaN where redundant strokes leave designs with fewer), `volume` (...) in `volume_unit`.
+    """
+
+    coordinates: tuple[str, ...]
+    normals: Array
+    offsets: Array
+    vertices: Array
+    volume: Array
+    volume_unit: str
+    provenance: str
+
+    def contains(self, pose: Array) -> Array:
+        """Whether poses (..., f) [m, rad] can be reached; the boundary counts as reachable."""
+        used = (self.normals @ pose[..., None])[..., 0]
+        return np.all(used <= self.offsets + _TOLERANCE * np.abs(self.offsets), axis=-1)
+
+    @property
+    def extent(self) -> Matrix:
+        """The least and largest value of each coordinate when the others are free to follow (rows: coordinates)."""
+        values = np.stack([np.nanmin(self.vertices, axis=-2), np.nanmax(self.vertices, axis=-2)], axis=-1)
+        units = tuple((TWIST_UNITS[COMPONENTS.index(name)],) * 2 for name in self.coordinates)
+        return Matrix(values, self.coordinates, ("least", "largest"), units)
+
+
+def reachable(mapping: Matrix, limits: StrokeLimits, *, provenance: str = "") -> Polytope:
+    """The poses with low <= R_a xi <= high. `mapping` as for `single_axis`.
+
+    With as many strokes as coordinates it is a parallelotope: vertices R_a^-1 a over all corners a, volume prod(full strokes) / |det R_a|.
+
+    >>> square = reachable(Matrix(np.diag([1.0, 2.0]), ("A", "B"), ("x", "y"), "1"), StrokeLimits(("A", "B"), -np.ones(2), np.ones(2)))
+    >>> float(square.volume), bool(square.contains(np.array([1.0, 0.5]))), bool(square.contains(np.array([1.0, 0.6])))
+    (2.0, True, False)
+    """
+    normals = np.concatenate([mapping.values, -mapping.values], axis=-2)
+    offsets = np.concatenate([limits.high, -limits.low], axis=-1)
+    if len(mapping.rows) == len(mapping.columns):
+        inverse = np.linalg.inv(mapping.values)
+        vertices = limits.corners @ np.swapaxes(inverse, -1, -2)
+        volume = np.prod(limits.full, axis=-1) * np.abs(np.linalg.det(inverse))
+    else:
+        vertices, volume = _redundant(normals, np.broadcast_to(offsets, normals.shape[:-1]))
+    return Polytope(mapping.columns, normals, offsets, vertices, volume, _volume_unit(mapping.columns), provenance)
+
+
+def _volume_unit(coordinates: tuple[str, ...]) -> str:
+    turns = sum(name.startswith("r") for name in coordinates)
+    powers = [f"{unit}^{power}" for unit, power in (("m", len(coordinates) - turns), ("rad", turns)) if power]
+    return " ".join(powers)
+
+
+def _redundant(normals: Array, offsets: Array) -> tuple[Array, Array]:
+    """Vertices and volumes where there are more strokes than coordinates: every feasible crossing of f faces, design by design."""
+    flat = [
+        _crossings(*design) for design in zip(normals.reshape(-1, *normals.shape[-2:]), offsets.reshape(-1, offsets.shape[-1]), strict=True)
+    ]
+    most = max(len(vertices) for vertices in flat)
+    padded = [np.concatenate([item, np.full((most - len(item), item.shape[1]), np.nan)]) for item in flat]
+    volumes = np.array([_hull_volume(item) for item in flat])
+    lead = normals.shape[:-2]
+    return np.stack(padded).reshape(*lead, most, normals.shape[-1]), volumes.reshape(lead)
+
+
+def _crossings(normals: Array, offsets: Array) -> Array:
+    count, size = normals.shape
+    half = count // 2
+    choices = [choice for choice in combinations(range(count), size) if len({index % half for index in choice}) == size]
+    if len(choices) > _MOST_VERTEX_CANDIDATES:
+        raise refuse(
+            "reachable polytope", f"{half} strokes give {len(choices)} candidate vertices", "Ask for half-spaces and membership only"
+        )
+    picked = np.array(choices)
+    square = normals[picked]
+    scale = np.linalg.norm(normals, axis=0)
+    regular = np.abs(np.linalg.det(square / scale)) > _TOLERANCE
+    points = np.linalg.solve(square[regular], offsets[picked][regular][..., None])[..., 0]
+    inside = np.all(points @ normals.T <= offsets + _TOLERANCE * np.abs(offsets), axis=-1)
+    found = points[inside]
+    size_of = np.max(np.abs(found), axis=0)
+    _, first = np.unique(np.round(found / size_of, 8) + 0.0, axis=0, return_index=True)
+    return found[np.sort(first)]
+
+
+def _hull_volume(vertices: Array) -> float:
+    if vertices.shape[1] == 1:
+        return float(np.ptp(vertices))
+    from scipy.spatial import ConvexHull
+
+    scale = np.max(np.abs(vertices), axis=0)
+    return float(ConvexHull(vertices / scale).volume * np.prod(scale))

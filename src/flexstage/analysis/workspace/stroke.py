@@ -1,0 +1,216 @@
+"""Strokes of the platform from those of the actuators: one axis at a time, and several at once."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.base.finding import Finding, nearest, refuse, require
+from flexstage.base.labelled import Matrix
+from flexstage.base.number import Array, Number, stack
+from flexstage.mechanism.expand import expand
+from flexstage.mechanism.incidence import layout, twist_at
+from flexstage.mechanism.mechanism import PLATFORM, Mechanism
+from flexstage.parts.part import Restricted
+from flexstage.parts.piezo import Piezo
+from flexstage.readings.linear.kinematics import Kinematics
+from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS, Frame
+
+
+@dataclass(frozen=True, eq=False)
+class StrokeLimits:
+    """The interval `low` to `high` (..., n) [m] each actuator's stroke may take, counted from its bias (or middle)."""
+
+    actuators: tuple[str, ...]
+    low: Array
+    high: Array
+
+    @property
+    def full(self) -> Array:
+        """The full stroke (..., n) [m]."""
+        return self.high - self.low
+
+    @property
+    def from_zero(self) -> StrokeLimits:
+        """The same strokes counted from no voltage, as a stage assembled without voltage feels them: 0 to the full stroke."""
+        return StrokeLimits(self.actuators, np.zeros_like(self.full), self.full)
+
+    @property
+    def corners(self) -> Array:
+        """All 2^n combinations of least and largest strokes (..., 2^n, n) [m]; refused for more than 12 actuators."""
+        count = len(self.actuators)
+        if count > 12:
+            raise refuse("stroke corners", f"{count} actuators have {2**count} corners", "Ask for single strokes instead")
+        high = (np.arange(2**count)[:, None] >> np.arange(count)) & 1 == 1
+        return np.where(high, self.high[..., None, :], self.low[..., None, :])
+
+
+@dataclass(frozen=True, eq=False)
+class SingleAxis:
+    """Strokes of the platform along one coordinate at a time, the others held at zero: from `low` to `high` (..., f) [m, rad].
+
+    `limiting` names the actuator that ends each stroke (first design, `high` side).
+    """
+
+    coordinates: tuple[str, ...]
+    low: Array
+    high: Array
+    limiting: tuple[str, ...]
+    at: str
+    provenance: str
+
+    @property
+    def symmetric(self) -> Array:
+        """The stroke available both ways (..., f): the lesser of -low and high."""
+        return np.minimum(-self.low, self.high)
+
+    @property
+    def table(self) -> Matrix:
+        """Rows are the coordinates, columns low, high, symmetric and full."""
+        values = np.stack([self.low, self.high, self.symmetric, self.high - self.low], axis=-1)
+        units = tuple((_unit(name),) * 4 for name in self.coordinates)
+        return Matrix(values, self.coordinates, ("low", "high", "symmetric", "full"), units)
+
+
+@dataclass(frozen=True, eq=False)
+class Utilisation:
+    """What a box of commands, all coordinates at once, asks of the actuators.
+
+    `demand` (..., n) [m] is the largest stroke either way over the box' corners, `available` (..., n) the stroke available both ways.
+    """
+
+    actuators: tuple[str, ...]
+    command: Mapping[str, Number]
+    demand: Array
+    available: Array
+    provenance: str
+
+    @property
+    def ratio(self) -> Array:
+        """Demand over what is available (..., n); above 1 the corner cannot be reached."""
+        return self.demand / self.available
+
+    @property
+    def reachable(self) -> Array:
+        """Whether every corner of the box can be reached (...)."""
+        return np.max(self.ratio, axis=-1) <= 1.0
+
+    @property
+    def scale(self) -> Array:
+        """Factor (...) by which the whole box could grow (below 1: must shrink) to use the strokes fully."""
+        return 1.0 / np.max(self.ratio, axis=-1)
+
+
+def stacks(mechanism: Mechanism) -> dict[str, Piezo]:
+    """The piezo stack of every actuator, by input name, with departures applied.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> stacks(double_triangle())["B4"].length
+    0.201
+    """
+    assembly = expand(mechanism)
+    parts = {name: assembly.links[link].part for name, link in assembly.actuators.items()}
+    inner = {name: part.part if isinstance(part, Restricted) else part for name, part in parts.items()}
+    return {name: part for name, part in inner.items() if isinstance(part, Piezo)}
+
+
+def stroke_limits(mechanism: Mechanism) -> StrokeLimits:
+    """Strokes around the bias voltage, or around the middle of the range where none is stated.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> limits = stroke_limits(double_triangle())
+    >>> (1e6 * limits.low).round(6).tolist(), (1e6 * limits.high).round(6).tolist()
+    ([-75.0, -75.0, -75.0, -100.0, -100.0, -100.0], [75.0, 75.0, 75.0, 100.0, 100.0, 100.0])
+    """
+    piezos = stacks(mechanism)
+    low = stack([-piezo.stroke * _below_bias(piezo) for piezo in piezos.values()])
+    full = stack([piezo.stroke for piezo in piezos.values()])
+    return StrokeLimits(tuple(piezos), *np.broadcast_arrays(low, low + full))
+
+
+def _below_bias(piezo: Piezo) -> Number:
+    if piezo.bias is None or piezo.voltage_low is None or piezo.voltage_high is None:
+        return 0.5
+    return (piezo.bias - piezo.voltage_low) / (piezo.voltage_high - piezo.voltage_low)
+
+
+def mapping_at(mechanism: Mechanism, kinematics: Kinematics, point: str = PLATFORM) -> Matrix:
+    """R_a for the motion of a named point: strokes per coordinate of that point, the other coordinates of the point held.
+
+    Translations of a rigid platform are the same everywhere; rotations turn about the point. With fewer than six ideal motions the
+    coordinates keep their names; refused where the point cannot follow them independently.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.readings.ideal import ideal
+    >>> stage = double_triangle()
+    >>> round(float(mapping_at(stage, ideal(stage)).at("B4", "rx")), 6)
+    0.04
+    """
+    mapping = kinematics.mapping
+    motion = point_motion(mechanism, kinematics, point)[..., [COMPONENTS.index(name) for name in mapping.columns], :]
+    first = np.real(motion.reshape(-1, *motion.shape[-2:])[0])
+    if np.linalg.cond(first) > 1e9:
+        raise refuse(point, f"its motions along {', '.join(mapping.columns)} are not independent", "Choose another point")
+    return Matrix(mapping.values @ np.linalg.inv(motion), mapping.rows, mapping.columns, mapping.unit)
+
+
+def point_motion(mechanism: Mechanism, kinematics: Kinematics, point: str) -> Array:
+    """Twist of a named point per ideal motion, (..., 6, f): `platform` (its reference), a point of the platform, or `body.point`.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.readings.ideal import ideal
+    >>> stage = double_triangle()
+    >>> point_motion(stage, ideal(stage), "platform").tolist() == np.eye(6).tolist()
+    True
+    """
+    assembly = expand(mechanism)
+    if point == PLATFORM:
+        return kinematics.motion
+    if point not in assembly.points:
+        raise refuse(point, "no point of this name is in the description", nearest(point, (PLATFORM, *assembly.points)))
+    body, position = assembly.points[point]
+    return twist_at(assembly, layout(assembly), body, Frame(np.eye(3), position)) @ kinematics.bodies
+
+
+def single_axis(mapping: Matrix, limits: StrokeLimits, *, at: str = PLATFORM, provenance: str = "") -> SingleAxis:
+    """Strokes along single coordinates, within low <= R_a x <= high.
+
+    `mapping` is `kinematics.mapping`, `mapping_at` of a point, or the correction gains of lost motion. For one actuator alone:
+
+    >>> lever = Matrix(np.array([[0.5]]), ("B1",), ("z",), "1")
+    >>> stroke = single_axis(lever, StrokeLimits(("B1",), np.array([-1e-4]), np.array([1e-4])))
+    >>> stroke.symmetric.tolist(), stroke.limiting
+    ([0.0002], ('B1',))
+    """
+    gain = np.where(np.abs(mapping.values) > 1e-12 * np.max(np.abs(mapping.values), axis=-2, keepdims=True), mapping.values, np.nan)
+    ends = np.stack([limits.low[..., :, None] / gain, limits.high[..., :, None] / gain])
+    above = np.nan_to_num(np.max(ends, axis=0), nan=np.inf)
+    below = np.nan_to_num(np.min(ends, axis=0), nan=-np.inf)
+    first = above.reshape(-1, *above.shape[-2:])[0]
+    limiting = tuple(mapping.rows[index] for index in np.argmin(np.round(first / np.min(first, axis=0), 9), axis=0))
+    return SingleAxis(mapping.columns, np.max(below, axis=-2), np.min(above, axis=-2), limiting, at, provenance)
+
+
+def utilisation(mapping: Matrix, limits: StrokeLimits, command: Mapping[str, Number], *, provenance: str = "") -> Utilisation:
+    """What the corners of a box of commands (half widths by coordinate [m, rad]) ask of each actuator: sum_j |R_ij| c_j.
+
+    >>> pair = Matrix(np.array([[1.0, 0.085]]), ("B1",), ("x", "rz"), "1")
+    >>> asked = utilisation(pair, StrokeLimits(("B1",), np.array([-75e-6]), np.array([75e-6])), {"x": 50e-6, "rz": 244e-6})
+    >>> (1e6 * asked.demand).round(2).tolist()
+    [70.74]
+    """
+    require(
+        Finding(f"command {name}", f"the stage's coordinates are {', '.join(mapping.columns)}", nearest(name, mapping.columns))
+        for name in command
+        if name not in mapping.columns
+    )
+    half = stack([command.get(name, 0.0) for name in mapping.columns])
+    demand = (np.abs(mapping.values) @ np.abs(half)[..., None])[..., 0]
+    available = np.minimum(-limits.low, limits.high)
+    return Utilisation(mapping.rows, dict(command), demand, available, provenance)
+
+
+def _unit(coordinate: str) -> str:
+    return TWIST_UNITS[COMPONENTS.index(coordinate)]

@@ -1,0 +1,111 @@
+"""Outlines of everything that takes up room: the bodies' solids and the links' parts as boxes and cylinders in the stage's frame."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.base.number import Array, Number, stack
+from flexstage.mechanism.expand import Assembly, PlacedBody, PlacedLink
+from flexstage.parts.body import Block, Cylinder
+from flexstage.parts.leaf import Leaf
+from flexstage.parts.neck import Neck
+from flexstage.parts.notch import Notch
+from flexstage.parts.part import Part, Restricted
+from flexstage.parts.piezo import Piezo
+from flexstage.parts.profile import Circular, Elliptic, Filleted, Profile, length
+from flexstage.parts.rod import Rod
+from flexstage.spatial.frame import Frame, axes
+
+
+@dataclass(frozen=True, eq=False)
+class Outline:
+    """A box (`size` along the axes of `frame`, (..., 3) [m]) or, with `is_round`, a cylinder of size (length, diameter, diameter) along x.
+
+    `name` is the address of what it outlines (`platform.plate`, `B1/front`). `hole` (..., 2): sides of a rectangular through hole along z.
+    """
+
+    name: str
+    frame: Frame
+    size: Array
+    is_round: bool = False
+    hole: Array | None = None
+
+    def reach(self, direction: Array) -> Array:
+        """Support function h(n) = max over the outline of n . r (...) [m], for a unit direction (..., 3) of the stage; holes do not count.
+
+        >>> box = Outline("box", Frame(np.eye(3), np.zeros(3)), np.array([2.0, 4.0, 6.0]))
+        >>> float(box.reach(np.array([0.0, 1.0, 0.0])))
+        2.0
+        """
+        middle = np.sum(self.frame.position * direction, axis=-1)
+        own = np.abs((np.swapaxes(self.frame.rotation, -1, -2) @ direction[..., None])[..., 0])
+        if not self.is_round:
+            return middle + 0.5 * np.sum(self.size * own, axis=-1)
+        across = np.sqrt(np.maximum(0.0, 1.0 - own[..., 0] ** 2))
+        return middle + 0.5 * (self.size[..., 0] * own[..., 0] + self.size[..., 1] * across)
+
+
+def outlines(assembly: Assembly) -> tuple[Outline, ...]:
+    """Outlines of all solids and of all parts with dimensions; given 6x6 parts and ideal joints have none.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.mechanism.expand import expand
+    >>> [outline.name for outline in outlines(expand(double_triangle()))][:2]
+    ['platform.plate', 'B1/base.block']
+    """
+    solids = [outline for body in assembly.bodies.values() for outline in _solids(body)]
+    return (*solids, *(outline for link in assembly.links.values() for outline in _part(link)))
+
+
+def _solids(placed: PlacedBody) -> Iterator[Outline]:
+    for name, solid in placed.body.solids.items():
+        place = placed.frame.point(stack(solid.at))
+        address = f"{placed.name}.{name}"
+        if isinstance(solid, Block):
+            hole = None if solid.hole is None else stack(solid.hole)
+            yield Outline(address, Frame(placed.frame.rotation, place), stack(solid.size), hole=hole)
+        else:
+            yield Outline(address, Frame(_axis(placed, solid), place), _cylinder(solid.length, solid.diameter), is_round=True)
+
+
+def _axis(placed: PlacedBody, solid: Cylinder) -> Array:
+    return placed.frame.rotation @ axes(solid.along)
+
+
+def _part(link: PlacedLink) -> Iterator[Outline]:
+    part: Part = link.part.part if isinstance(link.part, Restricted) else link.part
+    if isinstance(part, Notch):
+        yield Outline(link.name, link.frame, stack((length(part.profile), part.thickness + 2.0 * rise(part.profile), part.width)))
+    elif isinstance(part, Leaf):
+        yield Outline(link.name, link.frame, stack((part.length, part.thickness, part.width)))
+    elif isinstance(part, (Rod, Piezo)):
+        yield Outline(link.name, link.frame, _cylinder(part.length, part.diameter), is_round=True)
+    elif isinstance(part, Neck):
+        yield _neck(link, part)
+
+
+def _neck(link: PlacedLink, part: Neck) -> Outline:
+    grown = 2.0 * rise(part.profile)
+    if part.width is None:
+        return Outline(link.name, link.frame, _cylinder(length(part.profile), part.thickness + grown), is_round=True)
+    return Outline(link.name, link.frame, stack((length(part.profile), part.thickness + grown, part.width + grown)))
+
+
+def rise(profile: Profile) -> Number:
+    """How far the profile's cuts rise above the neck at its ends, w(+-1) [m].
+
+    >>> rise(Circular(0.005))
+    0.005
+    """
+    if isinstance(profile, Circular):
+        return profile.radius
+    if isinstance(profile, Elliptic):
+        return profile.across
+    return profile.radius if isinstance(profile, Filleted) else 0.0
+
+
+def _cylinder(length_: Number, diameter: Number) -> Array:
+    return stack((length_, diameter, diameter))
