@@ -1,0 +1,212 @@
+"""Display units and numbers: how an SI value is shown to people. Documents for machines stay in SI and never pass here.
+
+A unit's preferred display form is left only where the numbers would become unreadable (all below 0.01, or above 100 000). Noise of rounding is
+shown as 0; the rule is `NOISE_RULE`, and tables that use it say so.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.base.number import Array
+from flexstage.base.quantity import Quantity
+
+NOISE = 1e-9
+NOISE_RULE = "0 stands for rounding noise: entries below 1e-9 of the geometric mean of the largest entries (SI) in their row and column."
+DIGITS = 5
+NO_VALUE = "-"
+
+_TOO_SMALL, _TOO_LARGE = 0.01, 1e5
+
+
+@dataclass(frozen=True)
+class Shown:
+    """A display unit: its text and the factor from SI values to shown numbers."""
+
+    unit: str
+    factor: float
+
+
+# Per SI unit its display units, smallest first; the preferred one stands again in _PREFERRED.
+_LADDERS: dict[str, tuple[tuple[str, float], ...]] = {
+    "m": (("pm", 1e12), ("nm", 1e9), ("um", 1e6), ("mm", 1e3), ("m", 1.0)),
+    "rad": (("nrad", 1e9), ("urad", 1e6), ("mrad", 1e3), ("rad", 1.0)),
+    "N": (("mN", 1e3), ("N", 1.0), ("kN", 1e-3), ("MN", 1e-6)),
+    "N m": (("mN m", 1e3), ("N m", 1.0), ("kN m", 1e-3)),
+    "Pa": (("kPa", 1e-3), ("MPa", 1e-6), ("GPa", 1e-9)),
+    "Hz": (("Hz", 1.0), ("kHz", 1e-3)),
+    "J": (("uJ", 1e6), ("mJ", 1e3), ("J", 1.0)),
+    "kg": (("g", 1e3), ("kg", 1.0)),
+    "N/m": (("N/m", 1.0), ("N/mm", 1e-3), ("N/um", 1e-6), ("N/nm", 1e-9)),
+    "N/rad": (("N/rad", 1.0), ("N/mrad", 1e-3), ("N/urad", 1e-6)),
+    "N m/m": (("N m/m", 1.0), ("N m/mm", 1e-3), ("N m/um", 1e-6)),
+    "N m/rad": (("N m/rad", 1.0), ("N m/mrad", 1e-3), ("N m/urad", 1e-6)),
+    "m/N": (("nm/N", 1e9), ("um/N", 1e6), ("mm/N", 1e3)),
+    "rad/N": (("nrad/N", 1e9), ("urad/N", 1e6), ("mrad/N", 1e3)),
+    "m/(N m)": (("nm/(N m)", 1e9), ("um/(N m)", 1e6), ("mm/(N m)", 1e3)),
+    "rad/(N m)": (("nrad/(N m)", 1e9), ("urad/(N m)", 1e6), ("mrad/(N m)", 1e3)),
+    "m/rad": (("mm/rad", 1e3),),
+    "rad/m": (("urad/um", 1.0),),
+    "m/K": (("nm/K", 1e9), ("um/K", 1e6), ("mm/K", 1e3)),
+    "rad/K": (("nrad/K", 1e9), ("urad/K", 1e6), ("mrad/K", 1e3)),
+    "m/V": (("nm/V", 1e9), ("um/V", 1e6), ("mm/V", 1e3)),
+    "V/m": (("V/um", 1e-6),),
+    "J/m^2": (("uJ/um^2", 1e-6),),
+    "N/Hz^0.5": (("N/Hz^0.5", 1.0),),
+    "m/Hz^0.5": (("nm/Hz^0.5", 1e9),),
+    "rad/Hz^0.5": (("nrad/Hz^0.5", 1e9),),
+}
+_PREFERRED = {
+    "m": "um",
+    "rad": "urad",
+    "N": "N",
+    "N m": "N m",
+    "Pa": "MPa",
+    "Hz": "Hz",
+    "J": "mJ",
+    "kg": "kg",
+    "N/m": "N/um",
+    "N/rad": "N/mrad",
+    "N m/m": "N m/mm",
+    "N m/rad": "N m/mrad",
+    "m/N": "um/N",
+    "rad/N": "urad/N",
+    "m/(N m)": "um/(N m)",
+    "rad/(N m)": "urad/(N m)",
+    "m/K": "nm/K",
+    "rad/K": "nrad/K",
+    "m/V": "um/V",
+}
+_FIELD_UNITS = {"1": 1.0, "mm": 1e3, "um": 1e6, "deg": 180.0 / math.pi, "kg": 1.0, "MPa": 1e-6, "GPa": 1e-9, "N/um": 1e-6, "uF": 1e6}
+_FIELD_UNITS |= {"nm/Hz^0.5": 1e9, "um/N": 1e6, "urad/N": 1e6, "urad/(N m)": 1e6}
+
+
+def shown(unit: str, largest: float = 1.0) -> Shown:
+    """The display unit of an SI unit for values up to `largest` [SI].
+
+    >>> shown("N/m", 15e6).unit, shown("m", 5e-9).unit, shown("rad/m").unit
+    ('N/um', 'nm', 'urad/um')
+    """
+    ladder = _LADDERS.get(unit)
+    if ladder is None:
+        return Shown(unit, 1.0)
+    factors = dict(ladder)
+    preferred = _PREFERRED.get(unit, ladder[0][0])
+    if largest == 0.0 or not math.isfinite(largest) or _TOO_SMALL <= largest * factors[preferred] < _TOO_LARGE:
+        return Shown(preferred, factors[preferred])
+    fitting = [name for name, factor in ladder if largest * factor >= 1.0]
+    chosen = fitting[-1] if fitting else ladder[0][0]
+    return Shown(chosen, factors[chosen])
+
+
+def preferred(unit: str) -> Shown:
+    """The preferred display unit of an SI unit, whatever the values.
+
+    >>> preferred("m/N")
+    Shown(unit='um/N', factor=1000000.0)
+    """
+    return shown(unit, 0.0)
+
+
+def field_unit(quantity: Quantity) -> Shown:
+    """The unit a description's field is shown in.
+
+    >>> from flexstage.base.quantity import ANGLE, LENGTH
+    >>> field_unit(LENGTH), round(field_unit(ANGLE).factor, 6)
+    (Shown(unit='mm', factor=1000.0), 57.29578)
+    """
+    return Shown(quantity.shown, 1.0 if quantity.shown == quantity.si else _FIELD_UNITS[quantity.shown])
+
+
+def number(value: float, digits: int = DIGITS) -> str:
+    """A number to `digits` significant digits, without trailing zeros; an exponent only outside 1e-4 ... 1e6.
+
+    >>> number(15.4499), number(-0.0000123456), number(2e9), number(float("nan"))
+    ('15.45', '-1.2346e-5', '2e9', '-')
+    """
+    if not math.isfinite(value):
+        return NO_VALUE if math.isnan(value) else ("inf" if value > 0 else "-inf")
+    if value == 0.0:
+        return "0"
+    text = f"{value:.{digits}g}"
+    if "e" in text or not 1e-4 <= abs(value) < 1e6:
+        mantissa, _, exponent = f"{value:.{digits - 1}e}".partition("e")
+        mantissa = mantissa.rstrip("0").rstrip(".") if "." in mantissa else mantissa
+        return f"{mantissa}e{int(exponent)}" if not 1e-4 <= abs(value) < 1e6 else f"{value:.0f}"
+    return text
+
+
+def aligned(values: Iterable[float], digits: int = DIGITS) -> list[str]:
+    """Numbers of one column with the same decimals: `digits` significant ones for the largest, one more where the smallest needs it.
+
+    A column that spans more than four decades keeps significant digits instead.
+
+    >>> aligned([110.9101, 1690.27]), aligned([0.0, 0.5]), aligned([1.0, 2.0])
+    (['110.91', '1690.27'], ['0', '0.5'], ['1', '2'])
+    """
+    items = [float(value) for value in values]
+    sizes = [abs(value) for value in items if math.isfinite(value) and value != 0.0]
+    if not sizes or max(sizes) / min(sizes) > 1e4 or not 1e-4 <= max(sizes) < 1e6:
+        return [number(value, digits) for value in items]
+    wanted = digits + (1 if max(sizes) / min(sizes) > 10.0 else 0)
+    decimals = max(0, wanted - 1 - math.floor(math.log10(max(sizes))))
+    decimals = min(decimals, max(_decimals(number(value, wanted)) for value in items))
+    return [f"{value:.{decimals}f}" if math.isfinite(value) and value != 0.0 else number(value) for value in items]
+
+
+def _decimals(text: str) -> int:
+    return len(text.partition(".")[2])
+
+
+def quiet(values: Array) -> Array:
+    """A copy of a matrix (rows, columns) in which rounding noise is 0 (`NOISE_RULE`); the argument is not changed.
+
+    >>> quiet(np.array([[1.0, 1e-15], [1e-15, 2.0]])).tolist()
+    [[1.0, 0.0], [0.0, 2.0]]
+    """
+    sizes = np.where(np.isfinite(values), np.abs(values), 0.0)
+    if not sizes.size:
+        return np.array(values)
+    scale = np.sqrt(sizes.max(axis=1, keepdims=True) * sizes.max(axis=0, keepdims=True))
+    return np.where(sizes < NOISE * scale, 0.0, values)
+
+
+def percent(share: float, digits: int = 4) -> str:
+    """A ratio as per cent.
+
+    >>> percent(0.031251), percent(1.0)
+    ('3.125 %', '100 %')
+    """
+    return f"{number(100.0 * share, digits)} %"
+
+
+def value_with_unit(value: float, unit: str, digits: int = DIGITS) -> str:
+    """An SI value with its display unit.
+
+    >>> value_with_unit(15.45e6, "N/m"), value_with_unit(2e-9, "m"), value_with_unit(0.5, "1")
+    ('15.45 N/um', '2 nm', '0.5')
+    """
+    form = shown(unit, abs(value) if math.isfinite(value) else 0.0)
+    text = number(value * form.factor, digits)
+    return text if form.unit == "1" else f"{text} {form.unit}"
+
+
+_SUPERSCRIPT = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
+
+
+def typeset(text: str) -> str:
+    """Text with units and numbers as a printer sets them: micro sign, true minus, powers; for HTML and figures.
+
+    >>> typeset("-1.2e-5 N/um"), typeset("J/m^2"), typeset("nm/Hz^0.5")
+    ('−1.2·10⁻⁵ N/µm', 'J/m²', 'nm/√Hz')
+    """
+    text = re.sub(r"(?<![A-Za-z0-9])u(?=(?:m|rad|J|F|s|V)\b)", "µ", text)
+    text = re.sub(r"(?<=\d)e(-?\d+)\b", lambda found: f"·10{found[1].translate(_SUPERSCRIPT)}", text)
+    text = re.sub(r"(\w+)\^0\.5\b", r"√\1", text)
+    text = re.sub(r"\^(-?\d+)", lambda found: found[1].translate(_SUPERSCRIPT), text)
+    return re.sub(r"(?<![\w.)])-(?=\d|inf)", "−", text)
