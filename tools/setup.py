@@ -38,7 +38,7 @@ def main(wanted: str) -> int:
         try:
             set_up(wanted)
         except (subprocess.CalledProcessError, OSError) as error:
-            print(f"Setting up .venv failed: {error}. Its cause stands above; mend it and run the same command again.", file=sys.stderr)
+            print(f"Setting up .venv failed ({error}). Mend the cause told above and run the same command again.", file=sys.stderr)
             return 1
     return 0
 
@@ -53,8 +53,9 @@ def set_up(wanted: str) -> None:
     print(f"Installing the packages of requirements/{wanted}.txt ...", flush=True)
     pip("--require-hashes", "-r", str(ROOT / "requirements" / f"{wanted}.txt"))
     pip("--no-deps", "--no-build-isolation", "-e", str(ROOT))
+    present = sorted(installed())
     for covered in COVERS[wanted]:
-        stamp_path(covered).write_text(json.dumps({"digest": digest(covered), "installed": sorted(installed())}, indent=1))
+        stamp_path(covered).write_text(json.dumps({"digest": digest(covered), "root": str(ROOT), "installed": present}, indent=1))
 
 
 def make_venv() -> None:
@@ -87,9 +88,9 @@ def is_current(wanted: str) -> bool:
 
 
 def is_usable() -> bool:
-    """Whether .venv was once completed and is still whole: its interpreter runs and no package has lost a file."""
+    """Whether .venv was once completed here (its scripts name their place) and is still whole: it runs and no package has lost a file."""
     stamps = [read_stamp(path) for path in VENV.glob("*.stamp")]
-    if not stamps or not interpreter_runs():
+    if not stamps or any(stamp.get("root") != str(ROOT) for stamp in stamps) or not interpreter_runs():
         return False
     present = installed()
     return all(present.issuperset(stamp.get("installed", ["nothing"])) for stamp in stamps)
@@ -112,11 +113,11 @@ def interpreter_runs() -> bool:
 
 
 def digest(wanted: str) -> str:
-    """What .venv depends on: the lock file, the package's metadata, where it stands, and the interpreter."""
+    """What .venv depends on: the lock file, the package's metadata and the interpreter."""
     state = hashlib.sha256()
     for path in (ROOT / "requirements" / f"{wanted}.txt", ROOT / "pyproject.toml"):
         state.update(path.read_bytes())
-    state.update(f"{ROOT} {sys.version_info[:2]}".encode())
+    state.update(str(sys.version_info[:2]).encode())
     return state.hexdigest()
 
 
