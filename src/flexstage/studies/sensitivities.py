@@ -72,9 +72,11 @@ def sensitivities(
     solved = eigen(lumped(mechanism))
     solved = Eigen(solved.values[:modes], solved.shapes[:, :modes])
     groups = clusters(solved.values, cluster)
-    pieces = [_piece(mechanism, chunk, solved, groups) for chunk in _chunks(names)]
-    slopes = [np.concatenate([piece[0][number] for piece in pieces]) for number in range(len(groups))]
-    losses = np.concatenate([piece[1] for piece in pieces])
+    chunks = list(_chunks(mechanism, names))
+    pieces = [_piece(mechanism, tuple(names[position] for position in chunk), solved, groups) for chunk in chunks]
+    back = np.argsort([position for chunk in chunks for position in chunk])
+    slopes = [np.concatenate([piece[0][number] for piece in pieces])[back] for number in range(len(groups))]
+    losses = np.concatenate([piece[1] for piece in pieces])[back]
     frequencies = np.sqrt(solved.values) / (2.0 * np.pi)
     scale = 1.0 / (8.0 * np.pi**2 * frequencies)
     mean = np.concatenate([np.repeat(slope.mean(axis=1, keepdims=True), slope.shape[1], axis=1) for slope in slopes], axis=1)
@@ -93,9 +95,13 @@ def sensitivities(
     )
 
 
-def _chunks(names: tuple[str, ...]) -> Iterator[tuple[str, ...]]:
-    for start in range(0, len(names), _CHUNK):
-        yield names[start : start + _CHUNK]
+def _chunks(mechanism: Mechanism, names: tuple[str, ...]) -> Iterator[list[int]]:
+    """Positions of parameters that can be stepped together: a departure hides the number it departs from, so each level goes alone."""
+    level = [0 if "/" not in name else 1 if name.partition("/")[0] in mechanism.units else 2 for name in names]
+    for wanted in range(3):
+        members = [position for position, found in enumerate(level) if found == wanted]
+        for start in range(0, len(members), _CHUNK):
+            yield members[start : start + _CHUNK]
 
 
 def stepped(mechanism: Mechanism, names: tuple[str, ...]) -> Mechanism:
@@ -108,9 +114,7 @@ def stepped(mechanism: Mechanism, names: tuple[str, ...]) -> Mechanism:
     return replace(result, requirements={})
 
 
-def _piece(
-    mechanism: Mechanism, names: tuple[str, ...], solved: Eigen, groups: list[list[int]]
-) -> tuple[list[Array], Array]:
+def _piece(mechanism: Mechanism, names: tuple[str, ...], solved: Eigen, groups: list[list[int]]) -> tuple[list[Array], Array]:
     """Per cluster the slopes of lambda (p, c), and the derivative of every actuator's loss (p, n)."""
     batch = stepped(mechanism, names)
     model = lumped(batch)

@@ -1,0 +1,88 @@
+"""Complex-step sensitivities against central finite differences; cluster means at repeated modes."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import flexstage as fs
+from flexstage.cases.double_triangle import SM_REF_A, SM_REF_B, double_triangle
+from flexstage.mechanism.address import addresses, get, set_value
+
+MODES = 6
+
+
+def _frequencies_and_loss(stage: fs.Mechanism) -> tuple[np.ndarray, np.ndarray]:
+    model = fs.lumped(stage)
+    frequencies = fs.modes(model).frequencies[:MODES]
+    return frequencies, np.diag(fs.lost_motion(fs.ideal(stage), model).loss.values)
+
+
+def _differences(stage: fs.Mechanism, address: str, step: float) -> tuple[np.ndarray, np.ndarray]:
+    value = get(stage, address)
+    high = _frequencies_and_loss(set_value(stage, address, value + step))
+    low = _frequencies_and_loss(set_value(stage, address, value - step))
+    return (high[0] - low[0]) / (2 * step), (high[1] - low[1]) / (2 * step)
+
+
+def _means(values: np.ndarray, groups: tuple[tuple[int, ...], ...]) -> np.ndarray:
+    return np.concatenate([np.full(len(group), values[list(group)].mean()) for group in groups])
+
+
+ADDRESSES = [
+    "horizontal/front.thickness",
+    "B2/front.thickness",
+    "parts.neck.profile.length",
+    "parts.lever_notch.profile.radius",
+    "parts.pole_neck.thickness",
+    "parts.stack_vertical.stiffness",
+    "parts.stack_horizontal.diameter",
+    "materials.steel.young",
+    "materials.steel.poisson",
+    "materials.steel.density",
+    "bodies.platform.solids.plate.size.x",
+    "units.vertical.links.pivot.at.z",
+    "units.vertical.links.front.at.x",
+    "units.vertical.bodies.lever.solids.left.at.y",
+    "place.B4-B6.pattern.radius",
+    "place.B4-B6.pattern.turn",
+    "place.B1-B3.pattern.height",
+    "B5/pivot.at.z",
+]
+
+
+@pytest.mark.parametrize("address", ADDRESSES)
+def test_against_finite_differences(address: str) -> None:
+    stage = double_triangle(SM_REF_B)
+    exact = fs.sensitivities(stage, (address,), modes=MODES)
+    value = abs(get(stage, address)) or 0.1
+    slope, loss = _differences(stage, address, 1e-5 * value)
+    found = _means(slope, exact.clusters)
+    np.testing.assert_allclose(exact.frequency[0] * value, found * value, atol=2e-6 * exact.frequencies.max())
+    np.testing.assert_allclose(exact.loss[0] * value, loss * value, atol=2e-8)
+    assert np.max(np.abs(exact.frequency[0] * value)) > 1e-6
+
+
+def test_a_symmetric_change_keeps_clusters_and_a_single_one_splits_them() -> None:
+    stage = double_triangle(SM_REF_B)
+    exact = fs.sensitivities(stage, ("horizontal/front.thickness", "B2/front.thickness"), modes=MODES)
+    pairs = [slopes for slopes in exact.one_sided if slopes.shape[1] == 2]
+    assert len(pairs) == 2
+    for slopes in pairs:
+        np.testing.assert_allclose(slopes[0, 0], slopes[0, 1], rtol=1e-6)
+    assert abs(pairs[1][1, 0] - pairs[1][1, 1]) > 1e-3 * abs(pairs[1][1, 1])
+
+
+def test_copies_add_up_to_the_shared_part() -> None:
+    stage = double_triangle(SM_REF_A)
+    copies = fs.sensitivities(stage, tuple(f"B{number}/front.thickness" for number in (1, 2, 3)), modes=MODES)
+    shared = fs.sensitivities(stage, ("horizontal/front.thickness",), modes=MODES)
+    np.testing.assert_allclose(copies.frequency.sum(axis=0), shared.frequency[0], rtol=1e-7, atol=1e-6)
+
+
+def test_every_number_of_the_stage_has_a_finite_sensitivity() -> None:
+    stage = double_triangle(SM_REF_B)
+    exact = fs.sensitivities(stage, modes=MODES)
+    assert exact.parameters == addresses(stage)
+    assert np.all(np.isfinite(exact.frequency))
+    assert np.all(np.isfinite(exact.loss))
