@@ -9,7 +9,7 @@ import zipfile
 from collections.abc import Iterator
 from pathlib import Path
 
-from tests.hygiene.source import ROOT, SRC, expect_none, tracked
+from tests.hygiene.source import ROOT, SRC, expect_none, modules, tracked
 
 # Put together from pieces, so that this file does not find itself.
 ABSOLUTE = re.compile(r"(?<![\w./-])/(?:work|root|farm|home|Users|opt)/\w|\b[A-Z]:\\" + r"Users\\")
@@ -52,6 +52,12 @@ def test_locks_name_no_index_and_pin_by_hash() -> None:
 
 def test_nothing_unfinished() -> None:
     expect_none((f"{name}: {found[0]}" for name, text in texts() if (found := UNFINISHED.search(text))), "finish it, or file an issue")
+
+
+def test_every_folder_of_modules_is_a_package() -> None:
+    # Without __init__.py pytest and import-linter take the modules for others of the same name.
+    folders = {path.parent for path in modules()}
+    expect_none((str(folder.relative_to(ROOT)) for folder in folders if not (folder / "__init__.py").exists()), "add __init__.py")
 
 
 def test_no_file_is_large() -> None:

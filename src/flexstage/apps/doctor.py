@@ -193,5 +193,5 @@ def figure_cache() -> Path:
 def _tested(self_test: Callable[[], Row] | None) -> Row:
     try:
         return self_test() if self_test else Row("self-test", "none", "none", Verdict.NOTE)
-    except Exception as error:  # the doctor reports whatever is wrong
+    except Exception as error:  # noqa: BLE001 (the doctor reports whatever is wrong)
         return Row("self-test", f"{type(error).__name__}: {error}", "passes", Verdict.BAD, "mend the rows above; else report this as a bug")
