@@ -41,6 +41,7 @@ _ROOMS = {
     "analysis.modes": "Modes modal_assurance modes subspace_angle",
     "studies.sensitivities": "Sensitivities sensitivities",
     "studies.omitted": "Omitted omitted",
+    "studies.units": "UnitResult units",
 }
 _HOME = {name: room for room, names in _ROOMS.items() for name in names.split()}
 

@@ -151,5 +151,9 @@ from flexstage.studies.sensitivities import (
     Sensitivities as Sensitivities,
     sensitivities as sensitivities,
 )
+from flexstage.studies.units import (
+    UnitResult as UnitResult,
+    units as units,
+)
 
 __version__: str

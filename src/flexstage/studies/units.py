@@ -1,0 +1,110 @@
+"""Each distinct unit alone: its stiffness at the output, its gain and loss, and what simpler theories omit."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.analysis.lost_motion import lost_motion
+from flexstage.analysis.statics import statics
+from flexstage.base.finding import DesignError
+from flexstage.base.labelled import Matrix
+from flexstage.base.number import Array, Vector
+from flexstage.mechanism.expand import copies, expand
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.mechanism.restrict import isolate
+from flexstage.readings.ideal import ideal
+from flexstage.readings.linear.static import static_gain
+from flexstage.readings.lumped import lumped
+from flexstage.readings.mapped import LeverStiffness, computed_stiffness, lever_stiffness
+
+_DISPLACEMENTS = ("platform.x", "platform.y", "platform.z")
+_FORCES = ("platform.fx", "platform.fy", "platform.fz")
+
+
+@dataclass(frozen=True, eq=False)
+class UnitResult:
+    """One unit alone, in its own frame, by the lumped reading.
+
+    `direction` (3,) is that of its output; `stiffness` 6x6 at the output, all other freedoms held, strokes held; `axial` and `lateral` [N/m] its
+    translations along and across the direction (lateral: softest, stiffest). With the output guided along the direction: `gain`
+    output per stroke, `ideal_gain`, `loss`, `load_compliance` [m/N]. `series` is its stiffness in actuator coordinates for the mapped reading
+    (`None` where that reading refuses) and `lever` its springs if it is a lever unit.
+    """
+
+    unit: str
+    copy: str
+    direction: Array
+    stiffness: Matrix
+    axial: float
+    lateral: tuple[float, float]
+    gain: float
+    ideal_gain: float
+    loss: float
+    load_compliance: float
+    series: float | None
+    lever: LeverStiffness | None
+
+
+def units(mechanism: Mechanism) -> dict[str, UnitResult]:
+    """Analyse the first copy of every placed unit that has exactly one actuator. One design."""
+    actuators = expand(mechanism).actuators
+    mapping = ideal(mechanism).mapping
+    first: dict[str, UnitResult] = {}
+    for copy, unit, frame in copies(mechanism):
+        if copy in actuators and unit not in first:
+            row = mapping.values[mapping.rows.index(copy)]
+            pushed = np.zeros(3)
+            for value, name in zip(row, mapping.columns, strict=True):
+                if name in ("x", "y", "z"):
+                    pushed["xyz".index(name)] = value
+            if np.linalg.norm(pushed) > 0.0:
+                first[unit] = _unit(mechanism, copy, unit, frame.rotation.T @ pushed / np.linalg.norm(pushed))
+    return first
+
+
+def _unit(mechanism: Mechanism, copy: str, unit: str, direction: Array) -> UnitResult:
+    alone = statics(lumped(isolate(mechanism, copy))).stiffness
+    block = alone.values[:3, :3]
+    across = np.linalg.svd(direction[None, :])[2][1:]
+    lateral = np.linalg.eigvalsh(across @ block @ across.T)
+    guided = isolate(mechanism, copy, guide=_vector(direction))
+    model, kinematics = lumped(guided), ideal(guided)
+    gain = direction @ static_gain(model, _DISPLACEMENTS, (copy,)).values[:, 0]
+    load = direction @ static_gain(model, _DISPLACEMENTS, _FORCES).values @ direction
+    ideal_gain = direction @ kinematics.jacobian[:3, 0]
+    return UnitResult(
+        unit=unit,
+        copy=copy,
+        direction=direction,
+        stiffness=alone,
+        axial=float(direction @ block @ direction),
+        lateral=(float(lateral[0]), float(lateral[1])),
+        gain=float(gain),
+        ideal_gain=float(ideal_gain),
+        loss=float(lost_motion(kinematics, model).loss.values[0, 0]),
+        load_compliance=float(load),
+        series=_series(mechanism, copy),
+        lever=_lever(mechanism, copy),
+    )
+
+
+def _vector(direction: Array) -> Vector:
+    return (float(direction[0]), float(direction[1]), float(direction[2]))
+
+
+def _series(mechanism: Mechanism, copy: str) -> float | None:
+    assembly = expand(mechanism)
+    try:
+        return float(computed_stiffness(assembly, assembly.actuators[copy]))
+    except DesignError:
+        return None
+
+
+def _lever(mechanism: Mechanism, copy: str) -> LeverStiffness | None:
+    assembly = expand(mechanism)
+    try:
+        return lever_stiffness(assembly, assembly.actuators[copy])
+    except DesignError:
+        return None
