@@ -104,6 +104,13 @@ def random_response(
     high) in Hz, low > 0. Integrated by Gauss's rule, 8 nodes a panel; panels end at multiples of each resonance's half width, at the
     tables' points and six a decade, so that the rule resolves every peak (tested against the Lyapunov equation to 1e-8). Raises
     `DesignError` for unknown names, an empty band, or densities that are not positive.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.readings.lumped import lumped
+    >>> floor = {"ground.x": Spectrum(1e-18, rate=Rate.VALUE)}  # 1 nm per root hertz
+    >>> found = random_response(lumped(parallelogram()), ["platform.x"], floor, (1.0, 101.0))
+    >>> round(float(found.rms[0]) * 1e9, 1)  # far below the resonance the platform follows: 1 nm (100 Hz)^(1/2)
+    10.0
     """
     require(_findings(spectra, band))
     law = damping_law(model, damping)

@@ -28,6 +28,12 @@ def response(
     motion (`ground.x` ... `ground.rz`, absolute displacement) or groups (`platform`, `ground`: six components). `frequencies` (f,) in Hz;
     absent: `default_frequencies`. `damping` replaces the law the design states. Raises `DesignError` for unknown names and where no
     damping is stated. Structural damping costs one solve a frequency, the other laws one eigenvalue problem in all.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.readings.lumped import lumped
+    >>> found = response(lumped(parallelogram()), ["S"], ["B"], np.array([0.0, 100.0]))
+    >>> found.values.shape, found.units
+    ((2, 1, 1), (('1',),))
     """
     law = damping_law(model, damping)
     chosen = ports(model, outputs, inputs)
@@ -42,6 +48,12 @@ def transmissibility(
 
     T = C_r + omega^2 C (K + j omega D - omega^2 M)^-1 M_b: damping acts on motion relative to the ground, and T of the platform's twist
     tends to the unit matrix at low frequency. Gauges and stress resultants feel relative motion only and tend to zero.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.readings.lumped import lumped
+    >>> found = transmissibility(lumped(parallelogram()), frequencies=np.array([0.01]))
+    >>> bool(np.allclose(found.values[0], np.eye(6), atol=1e-6))
+    True
     """
     return response(model, outputs, (GROUND,), frequencies, damping=damping)
 
@@ -50,6 +62,12 @@ def default_frequencies(model: LinearModel, band: tuple[float, float] | None = N
     """A frequency grid (f,) in Hz: 40 points a decade, and 25 across every resonance f_r (1 + zeta_r tan theta), |theta| < 83 degrees.
 
     `band` absent: from f_1/50 to twice the twelfth natural frequency. Resonances are those of the first design of a batch.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.readings.lumped import lumped
+    >>> grid = default_frequencies(lumped(parallelogram()), (10.0, 1000.0))
+    >>> float(grid[0]), float(grid[-1])
+    (10.0, 1000.0)
     """
     solved = eigen(model)
     natural = np.sqrt(solved.values.reshape(-1, solved.values.shape[-1])[0]) / (2.0 * np.pi)

@@ -78,6 +78,15 @@ def transfer(model: LinearModel, chosen: Ports, frequencies: Array, damping: Dam
     Modal and Rayleigh damping by exact superposition of all modes, H = C Phi d(omega)^-1 Phi^T (B + omega^2 M_b) + R B + D_f;
     the remainder R = C K^-1 - C Phi Lambda^-1 Phi^T makes the freedoms without inertia exact. Structural damping by direct
     solves of K* - omega^2 M. The force of a stroke is taken as K_p u, without loss. A frequency of zero gives the static gain.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.readings.linear.port import ports
+    >>> from flexstage.readings.linear.static import static_gain
+    >>> from flexstage.readings.lumped import lumped
+    >>> model = lumped(parallelogram())
+    >>> still = transfer(model, ports(model, ["platform.x"], ["B"]), np.array([0.0]), model.damping)
+    >>> bool(np.allclose(still[0], static_gain(model, ("platform.x",), ("B",)).values))
+    True
     """
     frequencies = np.asarray(frequencies, dtype=float)
     if isinstance(damping, StructuralDamping):
@@ -86,7 +95,13 @@ def transfer(model: LinearModel, chosen: Ports, frequencies: Array, damping: Dam
 
 
 def direct(stiffness: Array, inertia: Array, chosen: Ports, frequencies: Array) -> Array:
-    """H (..., f, p, m) by solving (K - omega^2 M) z = (B + omega^2 M_b) u at each frequency; K may be complex."""
+    """H (..., f, p, m) by solving (K - omega^2 M) z = (B + omega^2 M_b) u at each frequency; K may be complex.
+
+    >>> one, none = np.ones((1, 1)), np.zeros((1, 1))
+    >>> force = Ports((Channel("fx", "N"),), (Channel("x", "m"),), one, none, one, none)
+    >>> direct(4.0 * one, one, force, np.array([0.0])).tolist()
+    [[[0.25]]]
+    """
     omega = 2.0 * np.pi * frequencies
     size = max(1, int(_CHUNK / max(1, stiffness.size)))
     pieces = [_direct(stiffness, inertia, chosen, omega[start : start + size]) for start in range(0, len(omega), size)]
@@ -116,7 +131,13 @@ def _superposed(model: LinearModel, chosen: Ports, frequencies: Array, damping: 
 
 
 def modal_forces(solved: Eigen, chosen: Ports) -> tuple[Array, Array]:
-    """Phi^T B and Phi^T M_b (..., k, m): modal forces per input and per input acceleration (to be taken with the opposite sign)."""
+    """Phi^T B and Phi^T M_b (..., k, m): modal forces per input and per input acceleration (to be taken with the opposite sign).
+
+    >>> one = np.ones((1, 1))
+    >>> force = Ports((Channel("fx", "N"),), (Channel("x", "m"),), 3.0 * one, 0.0 * one, one, 0.0 * one)
+    >>> modal_forces(Eigen(np.array([4.0]), one), force)[0].tolist()
+    [[3.0]]
+    """
     transposed = np.swapaxes(solved.shapes, -1, -2)
     return transposed @ chosen.force, transposed @ chosen.inertial
 
@@ -125,6 +146,13 @@ def residual(model: LinearModel, solved: Eigen, chosen: Ports) -> Array:
     """C (K^-1 - Phi Lambda^-1 Phi^T) B (..., p, m): what modes left out, or freedoms without inertia, add statically.
 
     Motions of the ground add nothing: M_b lies in the range of M, which the modes span.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.readings.linear.port import ports
+    >>> from flexstage.readings.lumped import lumped
+    >>> model = lumped(parallelogram())
+    >>> bool(np.abs(residual(model, eigen(model), ports(model, ["platform.x"], ["B"]))) < 1e-9)  # every freedom has inertia
+    True
     """
     stiffness = model.stiffness_matrix
     batch = np.broadcast_shapes(stiffness.shape[:-2], chosen.force.shape[:-2])

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
 
-from flexstage.base.finding import Finding, require
+from flexstage.base.finding import Finding, nearest, require
 from flexstage.base.number import Array
 from flexstage.mechanism.mechanism import GROUND
 from flexstage.readings.linear.model import Channel, LinearModel
@@ -40,6 +39,12 @@ def ports(model: LinearModel, outputs: Iterable[str], inputs: Iterable[str]) -> 
     model's own (strokes; wrenches on platform and points), a wrench component on any body whose twist is an output (`B1/tip.fx`, at the
     body's reference point, stage axes), and the ground's absolute motion `ground.x` ... `ground.rz` (m, rad; given at the platform's
     reference point). Raises `DesignError` for every unknown name, with the nearest known ones.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.readings.lumped import lumped
+    >>> model = lumped(parallelogram())
+    >>> [channel.name for channel in ports(model, ["S"], ["B", "B/tip.fz", "ground.x"]).inputs]
+    ['B', 'B/tip.fz', 'ground.x']
     """
     known = {channel.name: number for number, channel in enumerate(model.outputs)}
     rows = _expanded(outputs, tuple(known), "output")
@@ -58,7 +63,14 @@ def ports(model: LinearModel, outputs: Iterable[str], inputs: Iterable[str]) -> 
 
 
 def input_names(model: LinearModel) -> tuple[str, ...]:
-    """All names `ports` accepts as inputs, groups excluded."""
+    """All names `ports` accepts as inputs, groups excluded.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.readings.lumped import lumped
+    >>> model = lumped(parallelogram())
+    >>> input_names(model)[0], input_names(model)[-1]
+    ('B', 'ground.rz')
+    """
     own = tuple(channel.name for channel in model.inputs)
     return (*own, *(name for name in _further_inputs(model) if name not in own))
 
@@ -88,15 +100,9 @@ def _expanded(names: Iterable[str], known: tuple[str, ...], kind: str) -> list[s
         elif name in members and name:
             result += dict.fromkeys(members[name])
         else:
-            findings.append(_unknown(name, (*known, *members), kind))
+            findings.append(Finding(name, f"the model has no {kind} of this name", nearest(name, [*known, *filter(None, members)])))
     require(findings)
     return result
-
-
-def _unknown(name: str, known: tuple[str, ...], kind: str) -> Finding:
-    near = difflib.get_close_matches(name, [item for item in known if item], n=3)
-    advice = f"Did you mean {' or '.join(near)}?" if near else f"Known are {', '.join(known[:8])}, ..."
-    return Finding(name, f"the model has no {kind} of this name", advice.rstrip("."))
 
 
 def _column(model: LinearModel, name: str, known: dict[str, int], sources: dict[str, int]) -> tuple[Channel, Array, Array, Array]:

@@ -54,6 +54,14 @@ def state_space(model: LinearModel, chosen: Ports, damping: Damping, modes: int 
     eta'' + 2 zeta omega eta' + omega^2 eta = Phi^T B u - Phi^T M_b u''. A ground displacement as input is absorbed into the states, eta +
     Phi^T M_b u, so that no input is differentiated. Modal damping is exact; Rayleigh damping is exact but for the freedoms left
     out; structural damping has no time-domain form: each mode takes its equivalent ratio, and `note` says so.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.readings.linear.port import ports
+    >>> from flexstage.readings.lumped import lumped
+    >>> model = lumped(parallelogram())
+    >>> space = state_space(model, ports(model, ["S"], ["B"]), model.damping, modes=6)
+    >>> space.A.shape, space.note
+    ((12, 12), 'modal damping, exact; modes above the first 6 as a static term')
     """
     solved = _lowest(eigen(model), modes)
     ratios = modal_ratios(model, solved, damping)

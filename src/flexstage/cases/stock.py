@@ -1,0 +1,101 @@
+"""Materials, stacks and gauges that several shipped cases are made of."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from flexstage.base.scale import GPa, MPa, N_per_um, kHz, mm, nm, uF, um
+from flexstage.parts.gauge import Gauge
+from flexstage.parts.material import Material
+from flexstage.parts.piezo import Piezo
+
+ALUMINIUM = Material(
+    young=71.7 * GPa,
+    poisson=0.33,
+    density=2810.0,
+    yield_stress=503 * MPa,
+    expansion=23.6e-6,
+    loss_factor=0.001,
+    source="EN AW-7075-T6, typical; loss factor assumed",
+)
+
+STEEL = Material(
+    young=196 * GPa,
+    poisson=0.27,
+    density=7800.0,
+    yield_stress=1170 * MPa,
+    expansion=10.8e-6,
+    loss_factor=0.002,
+    source="17-4 PH, H900, typical; loss factor assumed",
+)
+
+GLASS_CERAMIC = Material(
+    young=90.3 * GPa,
+    poisson=0.24,
+    density=2530.0,
+    expansion=0.02e-6,
+    loss_factor=0.001,
+    source="low-expansion glass ceramic, typical; loss factor assumed",
+)
+
+SLIM_STACK = Piezo(
+    stroke=38 * um,
+    stiffness=25 * N_per_um,
+    length=36 * mm,
+    diameter=5.642 * mm,
+    mass=7.0e-3,
+    maximum_load=950.0,
+    tensile_limit=50.0,
+    preload=200.0,
+    resonance=40 * kHz,
+    voltage_low=-20.0,
+    voltage_high=120.0,
+    bias=50.0,
+    capacitance=3.1 * uF,
+    expansion=-3e-6,
+    loss_factor=0.02,
+    source="multilayer stack 5 x 5 x 36 mm (diameter of equal area), typical",
+)
+
+STRONG_STACK = Piezo(
+    stroke=38 * um,
+    stiffness=100 * N_per_um,
+    length=36 * mm,
+    diameter=11.284 * mm,
+    mass=28.1e-3,
+    maximum_load=3800.0,
+    tensile_limit=200.0,
+    preload=800.0,
+    resonance=40 * kHz,
+    voltage_low=-20.0,
+    voltage_high=120.0,
+    bias=50.0,
+    capacitance=13 * uF,
+    expansion=-3e-6,
+    loss_factor=0.02,
+    source="multilayer stack 10 x 10 x 36 mm (diameter of equal area), typical",
+)
+
+GAUGE = Gauge(
+    range=200 * um, resolution=0.5 * nm, noise_density=0.01 * nm, bandwidth=3 * kHz, source="capacitive gauge of 200 um range, typical"
+)
+
+SOURCES: Mapping[str, str] = {
+    "handbook": "typical handbook value of the alloy",
+    "typical": "typical of the maker's class of part; put the data sheet of the part you buy in its place",
+    "layout": "a layout that fits, chosen here",
+}
+
+MATERIAL_FIELDS = ("young", "poisson", "density", "expansion")
+STACK_FIELDS = ("stroke", "stiffness", "length", "mass", "maximum_load", "resonance", "voltage_low", "voltage_high", "capacitance")
+
+
+def stock_tags(materials: tuple[str, ...], stacks: tuple[str, ...], gauges: tuple[str, ...]) -> dict[str, str]:
+    """Provenance of stock entries under the names a case gives them.
+
+    >>> stock_tags((), (), ("probe",))
+    {'sensors.probe.range': 'assumed typical', 'sensors.probe.resolution': 'assumed typical'}
+    """
+    tags = {f"materials.{name}.{key}": "stated handbook" for name in materials for key in MATERIAL_FIELDS}
+    tags |= {f"parts.{name}.{key}": "assumed typical" for name in stacks for key in STACK_FIELDS}
+    return tags | {f"sensors.{name}.{key}": "assumed typical" for name in gauges for key in ("range", "resolution")}

@@ -1,0 +1,92 @@
+"""A tip-tilt-piston mirror mount: a mirror on vertical stacks around its axis, centred by three flat leaf springs.
+
+The leaves lie in one plane along tangents: together they hold the mirror sideways and in yaw, and let it tip, tilt and rise. Each stack
+stands between two necks, so the mirror tilts without bending it. Three stacks determine the motion; four (parameter `posts`) are
+redundant: a command in which opposite pairs work against one another is internal stress and moves nothing.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from flexstage.base.number import Number
+from flexstage.base.scale import X, Y, Z, deg, kHz, mm
+from flexstage.cases.stock import ALUMINIUM, GAUGE, GLASS_CERAMIC, SLIM_STACK, SOURCES, STEEL, stock_tags
+from flexstage.cases.strut import Strut
+from flexstage.mechanism.mechanism import Link, Mechanism, ModalDamping, Placement, Probe, Unit
+from flexstage.mechanism.pattern import Facing, Polar
+from flexstage.parts.body import Body, Cylinder
+from flexstage.parts.gauge import Positive
+from flexstage.parts.leaf import Leaf
+from flexstage.parts.neck import Neck
+from flexstage.parts.piezo import Piezo
+from flexstage.parts.profile import Circular
+from flexstage.parts.profile import length as hinge_length
+
+
+@dataclass(frozen=True)
+class TipTilt:
+    """Parameters of a tip-tilt-piston mount, SI.
+
+    `posts` stacks stand at `post_radius` around z. The holder is a disc of diameter `holder` and thickness `holder_thickness` centred at
+    the origin, where also the three leaves lie, their middles at `leaf_radius`; the mirror, `mirror` = (diameter, thickness), is bonded
+    on top.
+    """
+
+    posts: int = 3
+    neck: Neck = Neck("steel", thickness=1.5 * mm, profile=Circular(4 * mm))
+    stack: Piezo = SLIM_STACK
+    leaf: Leaf = Leaf("steel", length=24 * mm, thickness=0.3 * mm, width=8 * mm)
+    post_radius: Number = 20 * mm
+    leaf_radius: Number = 36 * mm
+    holder: Number = 60 * mm
+    holder_thickness: Number = 6 * mm
+    mirror: tuple[Number, Number] = (60 * mm, 10 * mm)
+
+
+def tip_tilt(parameters: TipTilt | None = None) -> Mechanism:
+    """The mirror mount as a description.
+
+    Mobility 3 (z, rx, ry); a post at position angle n has the row (1, rho sin n, -rho cos n) of R_a. The leaves hold the other three
+    freedoms three times each: six redundant constraints.
+
+    >>> sorted(tip_tilt(TipTilt(posts=4)).place)
+    ['L1-L3', 'P1-P4']
+    """
+    p = TipTilt() if parameters is None else parameters
+    head = -0.5 * (p.holder_thickness + hinge_length(p.neck.profile))
+    strut = Strut((0.0, 0.0, head), Z, p.neck, p.stack, "steel", 9 * mm)
+    return Mechanism(
+        name="tip-tilt mount" if p.posts == 3 else f"tip-tilt mount on {p.posts} posts",
+        materials={"aluminium": ALUMINIUM, "steel": STEEL, "glass": GLASS_CERAMIC},
+        parts={"neck": p.neck, "stack": p.stack, "leaf": p.leaf},
+        bodies={"platform": _platform(p)},
+        units={"post": strut.unit(), "leaf": Unit({}, {"leaf": Link(("ground", "platform"), "leaf", (0.0, 0.0, 0.0), X, bends=Y)})},
+        place={
+            f"P1-P{p.posts}": Placement("post", Polar(p.post_radius, 90 * deg, Facing.OUTWARD)),
+            "L1-L3": Placement("leaf", Polar(p.leaf_radius, 30 * deg, Facing.TANGENT)),
+        },
+        sensors={"probe": GAUGE},
+        gauges={
+            "S1-S3": Probe("probe", "platform", Polar(0.45 * p.holder, 90 * deg, Facing.AXIS, -0.5 * p.holder_thickness), Positive.OPENS)
+        },
+        damping=ModalDamping(0.01),
+        envelope=(100 * mm, 100 * mm, 75 * mm),
+        mode_limit=20 * kHz,
+        requirements={
+            "stroke.z": "at least 35 um",
+            "stroke.rx": "at least 1 mrad",
+            "frequency.platform.1": "at least 500 Hz",
+            "safety": "at least 2",
+        },
+        tags=stock_tags(("aluminium", "steel", "glass"), ("stack",), ("probe",)),
+        sources=SOURCES,
+    )
+
+
+def _platform(p: TipTilt) -> Body:
+    diameter, thickness = p.mirror
+    face = 0.5 * p.holder_thickness + thickness
+    holder = Cylinder("aluminium", p.holder, p.holder_thickness)
+    mirror = Cylinder("glass", diameter, thickness, (0.0, 0.0, face - 0.5 * thickness))
+    return Body(solids={"holder": holder, "mirror": mirror}, points={"vertex": (0.0, 0.0, face)})

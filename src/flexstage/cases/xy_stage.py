@@ -1,0 +1,117 @@
+"""A parallel-kinematic XY stage: four carriages around a platform, each on its own parallelogram, two of them pushed by stacks.
+
+A carriage slides along its own axis on two leaves and takes the platform along by two further leaves, which are stiff along that axis and
+yield across it: x and y do not disturb one another, and both stacks stand on the ground. Opposite carriages make the stage symmetric, so
+that heat expands it about its centre. The price is redundancy: out of the plane, and in yaw, the platform is held many times over.
+Those constraints are listed by name; they must be met by accuracy of manufacture (one piece, cut by wire), else they show as stress.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from flexstage.base.number import Number
+from flexstage.base.scale import X, Y, Z, deg, kHz, mm
+from flexstage.cases.stock import ALUMINIUM, GAUGE, SLIM_STACK, SOURCES, STEEL, stock_tags
+from flexstage.cases.strut import Strut
+from flexstage.mechanism.mechanism import Link, Mechanism, ModalDamping, Placement, Probe, Unit
+from flexstage.mechanism.pattern import Facing, Polar, Pose
+from flexstage.parts.body import Block, Body
+from flexstage.parts.gauge import Positive
+from flexstage.parts.leaf import Leaf
+from flexstage.parts.neck import Neck
+from flexstage.parts.piezo import Piezo
+from flexstage.parts.profile import Circular
+from flexstage.parts.profile import length as hinge_length
+
+
+@dataclass(frozen=True)
+class XYStage:
+    """Parameters of an XY stage, SI.
+
+    The platform is a square block of edge `edge` and height `height`. In every carriage's own frame x points inward, towards the
+    platform: two `coupling` leaves along x at y = +- `coupling_offset`, then the carriage, `carriage` = (along x, along y), held by two
+    `guide` leaves along y at its two ends. `driven` says how many axes have stacks: 2, or 1 for a stage whose y axis floats
+    (under-actuated).
+    """
+
+    coupling: Leaf = Leaf("aluminium", length=20 * mm, thickness=0.6 * mm, width=15 * mm)
+    guide: Leaf = Leaf("aluminium", length=25 * mm, thickness=0.6 * mm, width=15 * mm)
+    neck: Neck = Neck("steel", thickness=2 * mm, profile=Circular(4 * mm))
+    stack: Piezo = SLIM_STACK
+    edge: Number = 50 * mm
+    height: Number = 15 * mm
+    coupling_offset: Number = 20 * mm
+    carriage: tuple[Number, Number] = (12 * mm, 60 * mm)
+    driven: int = 2
+
+
+def xy_stage(parameters: XYStage | None = None) -> Mechanism:
+    """The XY stage as a description.
+
+    Mobility 2 (x, y), R_a = da/d(x, y) = the unit matrix; the platform's other four freedoms are held four times over.
+
+    >>> sorted(xy_stage().place)
+    ['A1-A2', 'P1-P2']
+    """
+    p = XYStage() if parameters is None else parameters
+    pushed = Polar(0.0, 180 * deg, Facing.INWARD, step=90 * deg)
+    first = Placement("pushed", pushed) if p.driven == 2 else Placement("pushed", Pose())
+    placed = {"A1-A2" if p.driven == 2 else "A1": first}
+    free = Polar(0.0, 0.0 if p.driven == 2 else -90 * deg, Facing.INWARD, step=90 * deg)
+    placed["P1-P2" if p.driven == 2 else "P1-P3"] = Placement("following", free)
+    return Mechanism(
+        name="xy stage" if p.driven == 2 else "xy stage, y floating",
+        materials={"aluminium": ALUMINIUM, "steel": STEEL},
+        parts={"coupling": p.coupling, "guide": p.guide, "neck": p.neck, "stack": p.stack},
+        bodies={"platform": _platform(p)},
+        units={"pushed": _pushed(p), "following": _following(p)},
+        place=placed,
+        sensors={"probe": GAUGE},
+        gauges={"S1-S2": Probe("probe", "platform", Polar(0.5 * p.edge, 0.0, Facing.OUTWARD, step=90 * deg), Positive.OPENS)},
+        damping=ModalDamping(0.01),
+        envelope=(280 * mm, 280 * mm, 15 * mm),
+        mode_limit=5 * kHz,
+        requirements=_requirements(p),
+        tags=stock_tags(("aluminium", "steel"), ("stack",), ("probe",)),
+        sources=SOURCES,
+    )
+
+
+def _requirements(p: XYStage) -> dict[str, str]:
+    strokes = {f"stroke.{axis}": "at least 33 um" for axis in ("x", "y")[: p.driven]}
+    return strokes | {"frequency.platform.1": "at least 150 Hz", "safety": "at least 2"}
+
+
+def _platform(p: XYStage) -> Body:
+    block = Block("aluminium", (p.edge, p.edge, p.height))
+    return Body(solids={"block": block}, points={"sample": (0.0, 0.0, 0.5 * p.height)})
+
+
+def _following(p: XYStage) -> Unit:
+    """A carriage with its four leaves; x points from the carriage to the platform, the origin is the platform's centre."""
+    middle = _middle(p)
+    near = -0.5 * (p.edge + p.coupling.length)
+    side = 0.5 * (p.carriage[1] + p.guide.length)
+    ends = 0.5 * (p.carriage[0] - p.guide.thickness)
+    links = {
+        "left": Link(("carriage", "platform"), "coupling", (near, p.coupling_offset, 0.0), X, bends=Z),
+        "right": Link(("carriage", "platform"), "coupling", (near, -p.coupling_offset, 0.0), X, bends=Z),
+    }
+    for name, y, x in (("guide1", side, -ends), ("guide2", side, ends), ("guide3", -side, -ends), ("guide4", -side, ends)):
+        links[name] = Link(("ground", "carriage"), "guide", (middle + x, y, 0.0), Y, bends=Z)
+    block = Block("aluminium", (*p.carriage, p.height), (middle, 0.0, 0.0))
+    return Unit(bodies={"carriage": Body(solids={"block": block})}, links=links)
+
+
+def _pushed(p: XYStage) -> Unit:
+    """The same with a strut that pushes on the outer face of the carriage."""
+    carriage = _following(p)
+    head = (_middle(p) - 0.5 * (p.carriage[0] + hinge_length(p.neck.profile)), 0.0, 0.0)
+    strut = Strut(head, X, p.neck, p.stack, "steel", 10 * mm)
+    return Unit(bodies={**carriage.bodies, **strut.bodies()}, links={**carriage.links, **strut.links(("ground", "carriage"))})
+
+
+def _middle(p: XYStage) -> Number:
+    """Place of the carriage's centre along x."""
+    return -0.5 * (p.edge + p.carriage[0]) - p.coupling.length
