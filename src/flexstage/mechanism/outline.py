@@ -24,7 +24,8 @@ from flexstage.spatial.frame import Frame, axes
 class Outline:
     """A box (`size` along the axes of `frame`, (..., 3) [m]) or, with `is_round`, a cylinder of size (length, diameter, diameter) along x.
 
-    `name` is the address of what it outlines (`platform.plate`, `B1/front`). `hole` (..., 2): sides of a rectangular through hole along z.
+    `name` is the address of what it outlines (`platform.plate`, `B1/front`). `hole` (..., 2): sides of a box' rectangular through hole along z;
+    `bore`: diameter of a cylinder's hole along x.
     """
 
     name: str
@@ -32,6 +33,7 @@ class Outline:
     size: Array
     is_round: bool = False
     hole: Array | None = None
+    bore: Array | None = None
 
     def reach(self, direction: Array) -> Array:
         """Support function h(n) = max over the outline of n . r (...) [m], for a unit direction (..., 3) of the stage; holes do not count.
@@ -68,7 +70,9 @@ def _solids(placed: PlacedBody) -> Iterator[Outline]:
             hole = None if solid.hole is None else stack(solid.hole)
             yield Outline(address, Frame(placed.frame.rotation, place), stack(solid.size), hole=hole)
         else:
-            yield Outline(address, Frame(_axis(placed, solid), place), _cylinder(solid.length, solid.diameter), is_round=True)
+            bore = None if solid.bore is None else np.asarray(solid.bore)
+            size = _cylinder(solid.length, solid.diameter)
+            yield Outline(address, Frame(_axis(placed, solid), place), size, is_round=True, bore=bore)
 
 
 def _axis(placed: PlacedBody, solid: Cylinder) -> Array:

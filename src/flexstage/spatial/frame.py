@@ -13,8 +13,12 @@ import numpy as np
 from flexstage.base.number import Array, Number, Vector, stack
 
 COMPONENTS = ("x", "y", "z", "rx", "ry", "rz")
+FORCES = ("fx", "fy", "fz", "mx", "my", "mz")
 TWIST_UNITS = ("m", "m", "m", "rad", "rad", "rad")
 WRENCH_UNITS = ("N", "N", "N", "N m", "N m", "N m")
+
+_UNIT = np.eye(6)
+_NEXT, _AFTER_NEXT = [1, 2, 0], [2, 0, 1]
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,11 +61,11 @@ def cross_matrix(vector: Array) -> Array:
     >>> (cross_matrix(np.array([0.0, 0.0, 1.0])) @ np.array([1.0, 0.0, 0.0])).tolist()
     [0.0, 1.0, 0.0]
     """
-    x, y, z = vector[..., 0], vector[..., 1], vector[..., 2]
-    zero = np.zeros_like(x)
-    return np.stack(
-        [np.stack([zero, -z, y], -1), np.stack([z, zero, -x], -1), np.stack([-y, x, zero], -1)], -2
-    )
+    vector = np.asarray(vector)
+    result = np.zeros((*vector.shape, 3), dtype=vector.dtype)
+    result[..., _NEXT, _AFTER_NEXT] = -vector
+    result[..., _AFTER_NEXT, _NEXT] = vector
+    return result
 
 
 def transport(arm: Array) -> Array:
@@ -74,8 +78,8 @@ def transport(arm: Array) -> Array:
     """
     arm = np.asarray(arm)
     result = np.zeros((*arm.shape[:-1], 6, 6), dtype=arm.dtype)
-    result[..., :, :] = np.eye(6)
-    result[..., :3, 3:] = -cross_matrix(arm)
+    result[...] = _UNIT
+    result[..., :3, 3:] = cross_matrix(-arm)
     return result
 
 
@@ -97,7 +101,13 @@ def seen_at(frame: Frame, reference: Array) -> Array:
     >>> seen_at(identity(), np.zeros(3)).tolist() == np.eye(6).tolist()
     True
     """
-    return np.swapaxes(turned(frame.rotation), -1, -2) @ transport(frame.position - reference)
+    back = np.swapaxes(frame.rotation, -1, -2)
+    lever = back @ cross_matrix(reference - frame.position)
+    result = np.zeros((*lever.shape[:-2], 6, 6), dtype=lever.dtype)
+    result[..., :3, :3] = back
+    result[..., 3:, 3:] = back
+    result[..., :3, 3:] = lever
+    return result
 
 
 def turn_z(angle: Number) -> Array:
@@ -108,9 +118,7 @@ def turn_z(angle: Number) -> Array:
     """
     cosine, sine = np.cos(angle), np.sin(angle)
     zero, one = np.zeros_like(cosine), np.ones_like(cosine)
-    return np.stack(
-        [np.stack([cosine, -sine, zero], -1), np.stack([sine, cosine, zero], -1), np.stack([zero, zero, one], -1)], -2
-    )
+    return np.stack([np.stack([cosine, -sine, zero], -1), np.stack([sine, cosine, zero], -1), np.stack([zero, zero, one], -1)], -2)
 
 
 def normalised(vector: Array) -> Array:
@@ -138,7 +146,7 @@ def axes(along: Vector | Array, up: Vector | Array | None = None) -> Array:
         z = stack(up) if isinstance(up, tuple) else up
     z = normalised(z - np.sum(z * x, axis=-1, keepdims=True) * x)
     x, z = np.broadcast_arrays(x, z)
-    return np.stack([x, np.cross(z, x), z], axis=-1)
+    return np.stack([x, (cross_matrix(z) @ x[..., None])[..., 0], z], axis=-1)
 
 
 def rigid_inertia(mass: Number, inertia: Array, centre: Array, reference: Array) -> Array:

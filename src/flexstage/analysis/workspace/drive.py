@@ -52,11 +52,11 @@ class Drive:
         return self.current(2.0 * np.pi * frequency * amplitude)
 
     def _require_capacitance(self) -> None:
-        missing = np.isnan(np.real(self.capacitance)).reshape(-1, len(self.actuators)).any(axis=0)
+        stated = np.atleast_2d(self.capacitance)
         require(
             Finding(name, "its stack states no capacitance, and a charging current needs one", 'Add for example capacitance = "0.5 uF"')
-            for name, gone in zip(self.actuators, missing, strict=True)
-            if gone
+            for index, name in enumerate(self.actuators)
+            if np.any(np.isnan(stated[..., index]))
         )
 
 

@@ -1,0 +1,122 @@
+"""Blocking forces: the force-stroke lines of the stacks against the stage's stiffness, and of the platform against the outside."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.analysis.workspace.stroke import StrokeLimits, stacks
+from flexstage.base.labelled import Matrix, ratio_units
+from flexstage.base.number import Array, Number, stack
+from flexstage.mechanism.expand import expand
+from flexstage.mechanism.mechanism import PLATFORM, Mechanism
+from flexstage.readings.linear.model import LinearModel
+from flexstage.readings.linear.static import static_gain
+from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNITS
+
+
+@dataclass(frozen=True, eq=False)
+class StackLine:
+    """Each stack driven alone over its full stroke against the stage, (..., n) each.
+
+    `free` stroke [m] and `blocking` force [N] end the stack's own line; `stiffness` [N/m] is its own, `against` [N/m] that of the stage at
+    its ends, other strokes held; `travel` [m] and `force` [N] (compression) the crossing of both lines.
+    """
+
+    actuators: tuple[str, ...]
+    free: Array
+    blocking: Array
+    stiffness: Array
+    against: Array
+    travel: Array
+    force: Array
+    provenance: str
+
+
+@dataclass(frozen=True, eq=False)
+class PlatformLine:
+    """The platform's force-stroke line along each coordinate, commanded by the ideal mapping, (..., f) each.
+
+    `travel` [m, rad] without load (both ways), `stiffness` [N/m, N m/rad] of the platform against a load along this coordinate alone,
+    `blocking` [N, N m] the load that brings it back to zero.
+    """
+
+    coordinates: tuple[str, ...]
+    travel: Array
+    stiffness: Array
+    blocking: Array
+    provenance: str
+
+    def against(self, stiffness: Number) -> Array:
+        """Travel (..., f) left when each coordinate works against a spring [N/m, N m/rad] fixed to the ground."""
+        return self.blocking / (self.stiffness + stiffness)
+
+    @property
+    def table(self) -> Matrix:
+        """Rows are the coordinates, columns travel, stiffness and blocking."""
+        moves = [TWIST_UNITS[COMPONENTS.index(name)] for name in self.coordinates]
+        loads = [WRENCH_UNITS[COMPONENTS.index(name)] for name in self.coordinates]
+        slopes = ratio_units(tuple(loads), tuple(moves))
+        units = tuple((move, slopes[index][index], load) for index, (move, load) in enumerate(zip(moves, loads, strict=True)))
+        values = np.stack([self.travel, self.stiffness, self.blocking], axis=-1)
+        return Matrix(values, self.coordinates, ("travel", "stiffness", "blocking"), units)
+
+
+def stack_lines(mechanism: Mechanism, model: LinearModel) -> StackLine:
+    """Where each stack's line F = k (u - s) meets the stage's line F = k_s s.
+
+    The stack's force per stroke, k k_s / (k + k_s), is read from the model; k_s follows.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.readings.lumped import lumped
+    >>> stage = double_triangle()
+    >>> line = stack_lines(stage, lumped(stage))
+    >>> bool(np.allclose(line.force / line.blocking + line.travel / line.free, 1.0))
+    True
+    """
+    assembly = expand(mechanism)
+    links = tuple(assembly.actuators.values())
+    names = tuple(assembly.actuators)
+    forces = static_gain(model, tuple(f"{link}.fx" for link in links), names).values
+    slope = -np.diagonal(forces, axis1=-2, axis2=-1)
+    own = np.stack(np.broadcast_arrays(*(model.stiffness[link].law[..., 0, 0] for link in links)), axis=-1)
+    free = stack([piezo.stroke for piezo in stacks(mechanism).values()])
+    against = slope * own / (own - slope)
+    return StackLine(
+        actuators=names,
+        free=np.broadcast_to(free, slope.shape),
+        blocking=own * free,
+        stiffness=own,
+        against=against,
+        travel=free * own / (own + against),
+        force=free * slope,
+        provenance=model.provenance,
+    )
+
+
+def platform_lines(mapping: Matrix, model: LinearModel, limits: StrokeLimits) -> PlatformLine:
+    """Force-stroke lines of the platform at its reference point; `mapping` as for `single_axis`.
+
+    The command along coordinate j ends where the first actuator does; travel is the elastic motion there (lost motion counted); the load
+    acts along j alone, the other coordinates give way: stiffness 1 / C_jj.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.readings.ideal import ideal
+    >>> from flexstage.readings.lumped import lumped
+    >>> from flexstage.analysis.workspace.stroke import stroke_limits
+    >>> stage = double_triangle()
+    >>> line = platform_lines(ideal(stage).mapping, lumped(stage), stroke_limits(stage))
+    >>> bool(np.allclose(line.against(0.0), line.travel))
+    True
+    """
+    twist = tuple(f"{PLATFORM}.{name}" for name in mapping.columns)
+    wrench = tuple(f"{PLATFORM}.{FORCES[COMPONENTS.index(name)]}" for name in mapping.columns)
+    gain = static_gain(model, twist, mapping.rows).values @ mapping.values
+    compliance = static_gain(model, twist, wrench).values
+    available = np.minimum(-limits.low, limits.high)
+    with np.errstate(divide="ignore"):
+        reach = np.min(available[..., :, None] / np.abs(mapping.values), axis=-2)
+    travel = reach * np.diagonal(gain, axis1=-2, axis2=-1)
+    stiffness = 1.0 / np.diagonal(compliance, axis1=-2, axis2=-1)
+    return PlatformLine(mapping.columns, travel, stiffness, travel * stiffness, model.provenance)

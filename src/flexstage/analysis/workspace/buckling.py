@@ -1,0 +1,160 @@
+"""Buckling: Euler's load of every slender part against the axial force it carries at the worst corner of the strokes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+
+import numpy as np
+
+from flexstage.analysis.workspace.stroke import StrokeLimits
+from flexstage.analysis.workspace.wrench import corner_wrenches
+from flexstage.base.labelled import Matrix
+from flexstage.base.number import Array, Number
+from flexstage.mechanism.expand import Assembly, PlacedLink, expand
+from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
+from flexstage.parts.leaf import Leaf
+from flexstage.parts.neck import Neck
+from flexstage.parts.notch import Notch
+from flexstage.parts.part import Part
+from flexstage.parts.piezo import Piezo
+from flexstage.parts.profile import length
+from flexstage.parts.rod import Rod
+from flexstage.readings.linear.model import LinearModel
+
+_ALIKE = 1.0 + 1e-9
+
+
+class Ends(Enum):
+    """How the ends of a column are held, which sets its effective length: P = pi^2 E I / (effective length)^2."""
+
+    GUIDED = "guided"
+    """Both ends clamped, one free to move sideways (a flexure between blocks): effective length L."""
+    PINNED = "pinned"
+    """Both ends hinged and held sideways (a stack between two hinges): effective length L, from hinge to hinge."""
+    FREE = "free"
+    """One end clamped, the other held by nothing else (a body on a single flexure): effective length 2 L."""
+
+
+@dataclass(frozen=True, eq=False)
+class Buckling:
+    """Euler loads, (..., L) each: `critical` [N], `compression` [N] at the worst corner (negative: tension throughout), `length` [m].
+
+    `ends` says how each column was taken as held.
+    """
+
+    links: tuple[str, ...]
+    critical: Array
+    compression: Array
+    length: Array
+    ends: tuple[Ends, ...]
+    provenance: str
+
+    @property
+    def factor(self) -> Array:
+        """By how much the compression could grow (..., L); infinite for parts in tension."""
+        pressed = self.compression > 0.0
+        return np.where(pressed, self.critical / np.where(pressed, self.compression, 1.0), np.inf)
+
+    @property
+    def least(self) -> Array:
+        """The least load factor of the stage (...)."""
+        return np.min(self.factor, axis=-1, initial=np.inf)
+
+    @property
+    def weakest(self) -> str:
+        """The link with the least load factor on the first design."""
+        first = self.factor.reshape(-1, len(self.links))[0]
+        return self.links[int(np.argmin(first > np.min(first) * _ALIKE))]
+
+    @property
+    def table(self) -> Matrix:
+        """Rows are the links, columns compression, critical load and load factor."""
+        values = np.stack([self.compression, self.critical, self.factor], axis=-1)
+        return Matrix(values, self.links, ("compression", "critical", "factor"), (("N", "N", "1"),) * len(self.links))
+
+
+def buckling(mechanism: Mechanism, model: LinearModel, limits: StrokeLimits) -> Buckling:
+    """Euler's loads of leaves, rods, notches, necks and stacks against their compression over the corners of the strokes and dead load.
+
+    P = pi^2 E I / L_e^2 with the least second moment of the thinnest section over the whole length, so hinges are underestimated.
+    Instability of several parts at once is not covered.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.readings.lumped import lumped
+    >>> from flexstage.analysis.workspace.stroke import stroke_limits
+    >>> stage = double_triangle()
+    >>> bool(buckling(stage, lumped(stage), stroke_limits(stage)).least > 10.0)
+    True
+    """
+    assembly = expand(mechanism)
+    columns = {name: _column(assembly, link) for name, link in assembly.links.items() if _is_column(link)}
+    wrenches = corner_wrenches(mechanism, model, limits, tuple(columns))
+    rigidity = _joined([column[0] for column in columns.values()])
+    length_ = _joined([column[1] for column in columns.values()])
+    ends = tuple(column[2] for column in columns.values())
+    effective = length_ * np.array([2.0 if end is Ends.FREE else 1.0 for end in ends])
+    compression = np.max(-wrenches[..., 0], axis=0)
+    critical = np.broadcast_to(np.pi**2 * rigidity / effective**2, compression.shape)
+    return Buckling(tuple(columns), critical, compression, np.broadcast_to(length_, compression.shape), ends, model.provenance)
+
+
+def _joined(values: list[Number]) -> Array:
+    return np.stack(np.broadcast_arrays(*(np.asarray(value) for value in values)), axis=-1)
+
+
+def _is_column(link: PlacedLink) -> bool:
+    return isinstance(link.part, (Notch, Neck, Leaf, Rod, Piezo))
+
+
+def _column(assembly: Assembly, link: PlacedLink) -> tuple[Number, Number, Ends]:
+    """Least bending rigidity [N m^2], length [m] and ends of a part as a column."""
+    part = link.part
+    if isinstance(part, Piezo):
+        return stack_rigidity(part), _strut_length(assembly, link, part), Ends.PINNED
+    alone = any(body != GROUND and len(_links_at(assembly, body)) == 1 for body in link.joins)
+    young = np.nan if link.material is None else link.material.young
+    return young * _least_second_moment(part), _span(part), Ends.FREE if alone else Ends.GUIDED
+
+
+def _span(part: Part) -> Number:
+    if isinstance(part, (Leaf, Rod)):
+        return part.length
+    return length(part.profile) if isinstance(part, (Notch, Neck)) else np.nan
+
+
+def _least_second_moment(part: Part) -> Number:
+    """Least second moment of area [m^4] of the thinnest section."""
+    if isinstance(part, Rod):
+        return np.pi * part.diameter**4 / 64.0
+    if isinstance(part, Neck) and part.width is None:
+        return np.pi * part.thickness**4 / 64.0
+    if isinstance(part, (Neck, Notch, Leaf)) and part.width is not None:
+        return part.thickness * part.width * np.minimum(part.thickness, part.width) ** 2 / 12.0
+    return np.nan
+
+
+def stack_rigidity(piezo: Piezo) -> Number:
+    """Bending rigidity of a stack [N m^2]: as stated, else that of its ceramic, E I = k L d^2 / 16 (E = k L / A).
+
+    >>> round(stack_rigidity(Piezo(stroke=1e-4, stiffness=16e6, length=0.1, diameter=0.01)), 9)
+    10.0
+    """
+    if piezo.bending_rigidity is not None:
+        return piezo.bending_rigidity
+    return piezo.stiffness * piezo.length * piezo.diameter**2 / 16.0
+
+
+def _strut_length(assembly: Assembly, link: PlacedLink, piezo: Piezo) -> Array:
+    """From the hinge before the stack to the hinge behind it; a stack whose neighbour has several links ends there itself."""
+    axis = link.frame.rotation[..., :, 0] * 0.5 * np.asarray(piezo.length)[..., None]
+    ends: list[Array] = []
+    for body, own in zip(link.joins, (link.frame.position - axis, link.frame.position + axis), strict=True):
+        others = [other for other in _links_at(assembly, body) if other.name != link.name]
+        inner = body not in {GROUND, PLATFORM} and len(others) == 1
+        ends.append(others[0].frame.position if inner else own)
+    return np.sqrt(np.sum((ends[1] - ends[0]) ** 2, axis=-1))
+
+
+def _links_at(assembly: Assembly, body: str) -> list[PlacedLink]:
+    return [link for link in assembly.links.values() if body in link.joins]

@@ -1,0 +1,213 @@
+"""Gauges: whether their ranges hold the commanded corner, how far out they could sit, and what pose their resolution resolves."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.base.finding import refuse
+from flexstage.base.labelled import Matrix
+from flexstage.base.number import Array, Number, stack
+from flexstage.mechanism.expand import Assembly, expand
+from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
+from flexstage.readings.linear.kinematics import Kinematics
+from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
+
+_HALVINGS = 60
+_FAR = 1e3
+
+
+@dataclass(frozen=True, eq=False)
+class GaugeRange:
+    """Gauge readings at the worst corner of a box of commands, against half the measuring range (gauges set to mid-range), (..., g) each.
+
+    `swing` [m] the largest reading, `limit` [m] half the range. `radius` [m] is each gauge's distance from the platform's axis,
+    `largest_here` [m] the largest that fits at its own angle, `largest_anywhere` [m] at any angle (infinite: the range holds everywhere;
+    NaN: it does not even hold on the axis).
+    """
+
+    gauges: tuple[str, ...]
+    command: Mapping[str, Number]
+    swing: Array
+    limit: Array
+    radius: Array
+    largest_here: Array
+    largest_anywhere: Array
+    provenance: str
+
+    @property
+    def fits(self) -> Array:
+        """Whether each gauge's range holds the corner (..., g)."""
+        return self.swing <= self.limit * (1.0 + 1e-12)
+
+    @property
+    def table(self) -> Matrix:
+        """Rows are the gauges."""
+        columns = ("swing", "limit", "radius", "largest_here", "largest_anywhere")
+        values = np.stack([getattr(self, name) for name in columns], axis=-1)
+        return Matrix(values, self.gauges, columns, "m")
+
+
+@dataclass(frozen=True, eq=False)
+class PoseResolution:
+    """Platform motion that one resolution step of every gauge amounts to, through S = V (R_s V)^+, (..., 6) [m, rad].
+
+    `worst`: all gauges off by one step with the worst signs, sum |S_ij| r_j; `rms`: independently, (sum S_ij^2 r_j^2)^(1/2); `noise` the
+    rms of the stated noise densities over the gauges' bandwidths (NaN where none is stated).
+    """
+
+    coordinates: tuple[str, ...]
+    inverse: Matrix
+    worst: Array
+    rms: Array
+    noise: Array
+    provenance: str
+
+    @property
+    def table(self) -> Matrix:
+        """Rows are the six components of the platform's motion."""
+        units = tuple((unit,) * 3 for unit in TWIST_UNITS)
+        return Matrix(np.stack([self.worst, self.rms, self.noise], axis=-1), COMPONENTS, ("worst", "rms", "noise"), units)
+
+
+def gauge_inverse(kinematics: Kinematics) -> Matrix:
+    """S (..., 6, g): platform motion per gauge reading, R_s^-1 for six gauges, its least-squares inverse on the ideal motions otherwise.
+
+    Raises `DesignError` where the gauges do not see every ideal motion.
+
+    >>> from flexstage.cases.double_triangle import SM_REF_A, double_triangle
+    >>> from flexstage.readings.ideal import ideal
+    >>> gauge_inverse(ideal(double_triangle(SM_REF_A))).values[2, 3:].round(6).tolist()
+    [0.333333, 0.333333, 0.333333]
+    """
+    seen = kinematics.sensing @ kinematics.motion
+    scale = np.array([1.0 / kinematics.length if name.startswith("r") else 1.0 for name in kinematics.coordinates])
+    first = np.real(seen.reshape(-1, *seen.shape[-2:])[0]) * scale
+    rank = int(np.linalg.matrix_rank(first, tol=1e-9)) if first.size else 0
+    if rank < kinematics.mobility:
+        raise refuse(
+            "gauges",
+            f"{len(kinematics.gauges)} gauges see {rank} of the platform's {kinematics.mobility} ideal motions",
+            "Add gauges, or turn them so that every motion changes a reading",
+        )
+    transposed = np.swapaxes(seen * scale, -1, -2)
+    back = np.linalg.solve(transposed @ (seen * scale), transposed)
+    values = kinematics.motion @ (scale[:, None] * back)
+    return Matrix(values, COMPONENTS, kinematics.gauges, tuple((f"{unit}/m",) * len(kinematics.gauges) for unit in TWIST_UNITS))
+
+
+def pose_resolution(mechanism: Mechanism, kinematics: Kinematics) -> PoseResolution:
+    """Pose resolution from the gauges' resolution and noise.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.readings.ideal import ideal
+    >>> stage = double_triangle()
+    >>> (1e9 * pose_resolution(stage, ideal(stage)).worst[2]).round(6).item()
+    10.0
+    """
+    inverse = gauge_inverse(kinematics)
+    gauges = [placed.gauge for placed in expand(mechanism).gauges.values()]
+    steps = stack([gauge.resolution for gauge in gauges])
+    noises = stack(
+        [
+            np.nan if gauge.noise_density is None or gauge.bandwidth is None else gauge.noise_density * gauge.bandwidth**0.5
+            for gauge in gauges
+        ]
+    )
+    squares = inverse.values**2
+    return PoseResolution(
+        coordinates=COMPONENTS,
+        inverse=inverse,
+        worst=(np.abs(inverse.values) @ steps[..., None])[..., 0],
+        rms=np.sqrt((squares @ (steps**2)[..., None])[..., 0]),
+        noise=np.sqrt((squares @ (noises**2)[..., None])[..., 0]),
+        provenance=kinematics.provenance,
+    )
+
+
+def gauge_range(mechanism: Mechanism, kinematics: Kinematics, command: Mapping[str, Number]) -> GaugeRange:
+    """Swing of every gauge over the corners of a box of commands (half widths by coordinate [m, rad]), against half its range.
+
+    The platform's axis is the line along z through its reference point; gauges not between platform and ground have no `largest` radius.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.readings.ideal import ideal
+    >>> stage = double_triangle()
+    >>> held = gauge_range(stage, ideal(stage), {"z": 150e-6, "rx": 733e-6, "ry": 733e-6})
+    >>> (1e3 * held.largest_anywhere[3:]).round(2).tolist()
+    [96.47, 96.47, 96.47]
+    """
+    names = kinematics.coordinates
+    for name in command:
+        if name not in names:
+            raise refuse(f"command {name}", "is not one of the stage's ideal motions", f"These are {', '.join(names)}")
+    half = np.abs(stack([command.get(name, 0.0) for name in names]))
+    swing = (np.abs(kinematics.sensing @ kinematics.motion) @ half[..., None])[..., 0]
+    assembly = expand(mechanism)
+    limit = stack([0.5 * placed.gauge.range for placed in assembly.gauges.values()])
+    box = kinematics.motion * half[..., None, :]
+    places = [_places(assembly, name, box, limit[..., number]) for number, name in enumerate(assembly.gauges)]
+    columns = [np.stack(np.broadcast_arrays(*values), axis=-1) for values in zip(*places, strict=True)]
+    radius, here, anywhere = columns or [np.zeros(0)] * 3
+    return GaugeRange(
+        gauges=kinematics.gauges,
+        command=dict(command),
+        swing=swing,
+        limit=np.broadcast_to(limit, swing.shape),
+        radius=np.broadcast_to(radius, swing.shape),
+        largest_here=np.broadcast_to(here, swing.shape),
+        largest_anywhere=np.broadcast_to(anywhere, swing.shape),
+        provenance=kinematics.provenance,
+    )
+
+
+def _places(assembly: Assembly, name: str, box: Array, limit: Array) -> tuple[Array, Array, Array]:
+    """Radius of a gauge, the largest radius at its own angle, and the largest at any angle."""
+    placed = assembly.gauges[name]
+    arm = placed.frame.position - assembly.bodies[PLATFORM].reference
+    radius = np.sqrt(arm[..., 0] ** 2 + arm[..., 1] ** 2)
+    if {placed.body, placed.base} != {PLATFORM, GROUND}:
+        return radius, np.full_like(radius, np.nan), np.full_like(radius, np.nan)
+    outward = np.where(radius[..., None] > 0.0, arm[..., :2] / np.where(radius > 0.0, radius, 1.0)[..., None], np.array([1.0, 0.0]))
+    direction = placed.frame.rotation[..., :, 0]
+    angles = np.linspace(0.0, 2.0 * np.pi, 720, endpoint=False)
+    return (
+        radius,
+        _largest_radius(box, (direction, outward, arm[..., 2]), limit, np.zeros(1)),
+        _largest_radius(box, (direction, outward, arm[..., 2]), limit, angles),
+    )
+
+
+def _largest_radius(box: Array, gauge: tuple[Array, Array, Array], limit: Array, angles: Array) -> Array:
+    """Bisect for the largest radius at which the swing stays within the limit, the gauge carried around the axis by each angle."""
+
+    def excess(radius: Array) -> Array:
+        return np.max(_swing(box, gauge, radius, angles), axis=-1) - limit * (1.0 + 1e-12)
+
+    shape = excess(np.zeros(())).shape
+    low, high = np.zeros(shape), np.full(shape, _FAR)
+    for _ in range(_HALVINGS):
+        middle = 0.5 * (low + high)
+        inside = excess(middle) <= 0.0
+        low, high = np.where(inside, middle, low), np.where(inside, high, middle)
+    return np.where(excess(np.zeros(shape)) > 0.0, np.nan, np.where(low > 0.999 * _FAR, np.inf, low))
+
+
+def _swing(box: Array, gauge: tuple[Array, Array, Array], radius: Array, angles: Array) -> Array:
+    """Swing (..., angles) of a gauge moved to a radius and carried around the axis."""
+    direction, outward, height = gauge
+    turned = _around(direction, angles)
+    out = _around(np.concatenate([outward, np.zeros_like(outward[..., :1])], axis=-1), angles)
+    arm = np.asarray(radius)[..., None, None] * out
+    arm[..., 2] = np.asarray(height)[..., None]
+    row = np.concatenate([turned, np.cross(arm, turned)], axis=-1)
+    return np.sum(np.abs(row @ box), axis=-1)
+
+
+def _around(vector: Array, angles: Array) -> Array:
+    """A vector (..., 3) turned about z by each angle, (..., angles, 3)."""
+    x, y, z = (vector[..., None, index] for index in range(3))
+    cosine, sine = np.cos(angles), np.sin(angles)
+    return np.stack(np.broadcast_arrays(x * cosine - y * sine, x * sine + y * cosine, z), axis=-1)

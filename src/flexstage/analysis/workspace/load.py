@@ -1,0 +1,134 @@
+"""Loads: how weight, payload and bonding forces, also eccentric ones, are shared among the actuators, against what their stacks bear."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.analysis.workspace.stroke import StrokeLimits, stacks
+from flexstage.base.labelled import Matrix, ratio_units
+from flexstage.base.number import Array, Number, stack
+from flexstage.mechanism.expand import expand
+from flexstage.mechanism.mechanism import GROUND, PLATFORM, Force, Mechanism
+from flexstage.readings.linear.model import LinearModel
+from flexstage.readings.linear.static import displacement, static_gain
+from flexstage.spatial.frame import COMPONENTS, FORCES, WRENCH_UNITS, transport
+
+
+@dataclass(frozen=True, eq=False)
+class LoadShare:
+    """Axial forces of the stacks under dead load, positive in compression.
+
+    `loads` (actuators x gravity and named forces) [N]; `share` (actuators x wrench at the platform's reference) per unit wrench; `stroke`
+    (actuators x strokes) [N/m]. `maximum`, `preload` and `tensile` (..., n) [N] are the stacks' limits (NaN: not stated); `reference`
+    (..., 3) the platform's reference point [m].
+    """
+
+    actuators: tuple[str, ...]
+    loads: Matrix
+    share: Matrix
+    stroke: Matrix
+    maximum: Array
+    preload: Array
+    tensile: Array
+    reference: Array
+    provenance: str
+
+    @property
+    def compression(self) -> Array:
+        """Compression (..., n) [N] under gravity and all forces, strokes at rest, preload not counted."""
+        return np.sum(self.loads.values, axis=-1)
+
+    def under(self, force: Array, at: Array) -> Array:
+        """Compression (..., n) [N] that a force (..., 3) [N] on the platform at a point (..., 3) [m] adds, both in the stage's frame."""
+        moment = np.cross(at - self.reference, force)
+        wrench = np.concatenate(np.broadcast_arrays(force, moment), axis=-1)
+        return (self.share.values @ wrench[..., None])[..., 0]
+
+    def range(self, limits: StrokeLimits) -> tuple[Array, Array]:
+        """Least and largest compression (..., n) [N] over the box of strokes, dead load included: the ends of intervals, exactly."""
+        ends = np.stack([self.stroke.values * limits.low[..., None, :], self.stroke.values * limits.high[..., None, :]])
+        return (
+            self.compression + np.sum(np.min(ends, axis=0), axis=-1),
+            self.compression + np.sum(np.max(ends, axis=0), axis=-1),
+        )
+
+    def usage(self, compression: Array) -> Array:
+        """The stack's compression with its preload over its maximum load (..., n); NaN where none is stated."""
+        return (compression + np.nan_to_num(self.preload)) / self.maximum
+
+    def pull(self, compression: Array) -> Array:
+        """Tension over what preload and tensile limit allow (..., n): above 1 the stack lifts off or tears; infinite without either."""
+        allowed = np.nan_to_num(self.preload) + np.nan_to_num(self.tensile)
+        tension = np.maximum(0.0, -compression)
+        safe = np.where(allowed > 0.0, allowed, 1.0)
+        return np.where(tension <= 0.0, 0.0, np.where(allowed > 0.0, tension / safe, np.inf))
+
+    def capacity(self, direction: Array, at: Array) -> Array:
+        """Largest force (...) [N] along a unit direction at a point of the platform that no stack refuses, on top of the dead load."""
+        added = self.under(direction, at)
+        room = np.where(added > 0.0, self.maximum - np.nan_to_num(self.preload) - self.compression, self._pull_room)
+        scale = np.where(np.abs(added) > 1e-12, np.abs(added), np.nan)
+        return np.maximum(0.0, np.nanmin(np.where(np.isnan(room), np.inf, room) / scale, axis=-1))
+
+    @property
+    def _pull_room(self) -> Array:
+        return np.nan_to_num(self.preload) + np.nan_to_num(self.tensile) + self.compression
+
+
+def load_share(mechanism: Mechanism, model: LinearModel) -> LoadShare:
+    """Share of weight (bodies, links, payloads) and of the description's forces among the stacks, strokes held.
+
+    Every force f at a point acts on its body's coordinates; f_stack = C K^-1 f. Small displacements; a stack that only pushes (no tensile
+    limit, no preload) is still taken as tied: `pull` says where that is not so.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.readings.lumped import lumped
+    >>> stage = double_triangle()
+    >>> shared = load_share(stage, lumped(stage))
+    >>> round(float(shared.share.values[3:, 2].sum()), 1)  # levers 3 : 1, and lifting relieves
+    -2.9
+    """
+    assembly = expand(mechanism)
+    names = tuple(assembly.actuators)
+    axial = tuple(f"{link}.fx" for link in assembly.actuators.values())
+    columns = [model.base_inertia[..., :3] @ stack(mechanism.gravity)]
+    columns += [applied(mechanism, model, force) for force in mechanism.forces.values()]
+    motion = displacement(model, np.stack(np.broadcast_arrays(*columns), axis=-1))
+    loads = -(model.output[..., model.output_index(axial), :] @ motion)
+    wrench = static_gain(model, axial, tuple(f"{PLATFORM}.{name}" for name in FORCES)).values
+    piezos = stacks(mechanism).values()
+    return LoadShare(
+        actuators=names,
+        loads=Matrix(loads, names, ("gravity", *mechanism.forces), "N"),
+        share=Matrix(-wrench, names, FORCES, ratio_units(("N",) * len(names), WRENCH_UNITS)),
+        stroke=Matrix(-static_gain(model, axial, names).values, names, names, "N/m"),
+        maximum=_stated([piezo.maximum_load for piezo in piezos]),
+        preload=_stated([piezo.preload for piezo in piezos]),
+        tensile=_stated([piezo.tensile_limit for piezo in piezos]),
+        reference=assembly.bodies[PLATFORM].reference,
+        provenance=model.provenance,
+    )
+
+
+def applied(mechanism: Mechanism, model: LinearModel, force: Force) -> Array:
+    """Generalised forces (..., n) of a force on a body at a point, stage's frame; none for a force on the ground.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.readings.lumped import lumped
+    >>> stage = double_triangle()
+    >>> applied(stage, lumped(stage), Force("platform", (0.0, 0.0, 0.105), (0.0, 0.0, -10.0))).sum().round(6).item()
+    -10.0
+    """
+    if force.body == GROUND:
+        return np.zeros(len(model.coordinates))
+    arm = stack(force.at) - expand(mechanism).bodies[force.body].reference
+    push = stack((*force.force, 0.0, 0.0, 0.0))
+    wrench = np.swapaxes(transport(arm), -1, -2) @ push[..., None]
+    rows = model.output[..., model.output_index(tuple(f"{force.body}.{name}" for name in COMPONENTS)), :]
+    return (np.swapaxes(rows, -1, -2) @ wrench)[..., 0]
+
+
+def _stated(values: list[Number | None]) -> Array:
+    return stack([np.nan if value is None else value for value in values])

@@ -1,0 +1,128 @@
+"""Error of the linear map x = J a against finite kinematics, over the whole workspace."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.analysis.workspace.polytope import reachable
+from flexstage.analysis.workspace.stroke import StrokeLimits
+from flexstage.base.finding import refuse
+from flexstage.base.labelled import Matrix
+from flexstage.base.number import Array
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.readings.finite import forward
+from flexstage.readings.linear.kinematics import Kinematics
+from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
+
+
+@dataclass(frozen=True, eq=False)
+class MapError:
+    """Error of the linear map, finite pose less J a, at every point tried.
+
+    `strokes` (k, ..., n) [m] tried, `errors` (k, ..., 6) [m, rad] there; `worst` (..., 6) the largest by axis, `worst_strokes` (..., 6, n)
+    where; `residual` (...) [m] how far redundant constraints disagree at worst.
+    """
+
+    actuators: tuple[str, ...]
+    strokes: Array
+    errors: Array
+    worst: Array
+    worst_strokes: Array
+    residual: Array
+    provenance: str
+
+    @property
+    def table(self) -> Matrix:
+        """Rows are the six components; columns the worst error and the strokes at which it occurs."""
+        values = np.concatenate([self.worst[..., None], self.worst_strokes], axis=-1)
+        units = tuple((unit, *("m",) * len(self.actuators)) for unit in TWIST_UNITS)
+        return Matrix(values, COMPONENTS, ("worst", *self.actuators), units)
+
+
+def linear_map_error(mechanism: Mechanism, kinematics: Kinematics, limits: StrokeLimits, *, inside: int = 64) -> MapError:
+    """Error of x = J a over the box of strokes: its corners, the centres of its faces and `inside` points of a Halton sequence.
+
+    Redundant strokes strain the links unless they belong to a pose: there the vertices of the reachable polytope are tried, and halfway to
+    them. Raises `DesignError` for more than 12 actuators.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.readings.ideal import ideal
+    >>> from flexstage.analysis.workspace.stroke import stroke_limits
+    >>> stage = double_triangle()
+    >>> error = linear_map_error(stage, ideal(stage), stroke_limits(stage), inside=4)
+    >>> error.strokes.shape, bool(error.worst[5] < 4e-6)
+    ((80, 6), True)
+    """
+    if len(kinematics.actuators) > kinematics.mobility:
+        vertices = np.moveaxis(reachable(kinematics.mapping, limits).vertices, -2, 0)
+        corners = (kinematics.mapping.values @ np.nan_to_num(vertices)[..., None])[..., 0]
+        return map_error_at(mechanism, kinematics, np.concatenate([corners, 0.5 * corners]))
+    points = np.concatenate([np.moveaxis(limits.corners, -2, 0), _faces(limits), _interior(limits, inside)])
+    return map_error_at(mechanism, kinematics, points)
+
+
+def map_error_at(mechanism: Mechanism, kinematics: Kinematics, strokes: Array) -> MapError:
+    """Error of x = J a at given strokes (k, ..., n) [m].
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.readings.ideal import ideal
+    >>> stage = double_triangle()
+    >>> bool(np.max(map_error_at(stage, ideal(stage), np.full((1, 6), 1e-9)).worst) < 1e-14)
+    True
+    """
+    count = len(kinematics.actuators)
+    if strokes.shape[-1] != count:
+        raise refuse("linear map error", f"{strokes.shape[-1]} strokes are given for {count} actuators", "Give one stroke an actuator")
+    moved = forward(mechanism, kinematics, strokes)
+    linear = (kinematics.jacobian @ strokes[..., None])[..., 0]
+    errors = moved.pose.vector - linear
+    place = np.argmax(np.abs(errors), axis=0)
+    return MapError(
+        actuators=kinematics.actuators,
+        strokes=strokes,
+        errors=errors,
+        worst=np.max(np.abs(errors), axis=0),
+        worst_strokes=_picked(np.broadcast_to(strokes, (*errors.shape[:-1], count)), place),
+        residual=np.max(moved.residual, axis=0),
+        provenance=moved.provenance,
+    )
+
+
+def _picked(strokes: Array, place: Array) -> Array:
+    """Strokes (..., 6, n) of the points (k, ..., n) numbered by `place` (..., 6)."""
+    return np.take_along_axis(strokes[..., None, :], place[None, ..., None], axis=0)[0]
+
+
+def _faces(limits: StrokeLimits) -> Array:
+    count = len(limits.actuators)
+    middle = 0.5 * (limits.low + limits.high)
+    high = [np.where(np.arange(count) == index, limits.high, middle) for index in range(count)]
+    low = [np.where(np.arange(count) == index, limits.low, middle) for index in range(count)]
+    return np.stack(high + low)
+
+
+def _interior(limits: StrokeLimits, count: int) -> Array:
+    fractions = np.stack([_radical_inverse(np.arange(1, count + 1), base) for base in _primes(len(limits.actuators))], axis=-1)
+    fractions = fractions.reshape(count, *(1,) * (limits.low.ndim - 1), -1)
+    return limits.low + fractions * limits.full
+
+
+def _radical_inverse(numbers: Array, base: int) -> Array:
+    """Halton's sequence: the digits of a number mirrored at the point."""
+    result, weight, left = np.zeros(numbers.shape), 1.0 / base, numbers.copy()
+    while np.any(left > 0):
+        result += weight * (left % base)
+        left, weight = left // base, weight / base
+    return result
+
+
+def _primes(count: int) -> list[int]:
+    found: list[int] = []
+    number = 2
+    while len(found) < count:
+        if all(number % prime for prime in found):
+            found.append(number)
+        number += 1
+    return found

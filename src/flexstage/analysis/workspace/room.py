@@ -1,0 +1,155 @@
+"""Room: the clear opening as a keep-out in plan, and the envelope."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.base.finding import Finding
+from flexstage.base.labelled import Matrix
+from flexstage.base.number import Array, stack
+from flexstage.base.quantity import LENGTH
+from flexstage.base.unit import show
+from flexstage.mechanism.expand import expand
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.mechanism.outline import Outline, outlines
+
+_TOUCHING = 1e-9
+_AXES = ("x", "y", "z")
+
+
+@dataclass(frozen=True, eq=False)
+class Intrusion:
+    """An outline that enters the opening, and by how much it would have to move in plan (...) [m] to leave it."""
+
+    name: str
+    depth: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Room:
+    """What the stage occupies.
+
+    `intrusions` into the opening (none described: none found); `low` and `high` corners (..., 3) [m] of the bounding box; `envelope`
+    (..., 3) [m] or `None`; `extreme` names the outlines that reach farthest (low x, y, z, high x, y, z; first design).
+    """
+
+    intrusions: tuple[Intrusion, ...]
+    low: Array
+    high: Array
+    envelope: Array | None
+    extreme: tuple[str, ...]
+
+    @property
+    def size(self) -> Array:
+        """Edges of the bounding box (..., 3) [m]."""
+        return self.high - self.low
+
+    @property
+    def table(self) -> Matrix:
+        """Rows are the axes; columns low, high, size (and envelope)."""
+        columns = [self.low, self.high, self.size]
+        names = ["low", "high", "size"]
+        if self.envelope is not None:
+            columns, names = [*columns, np.broadcast_to(self.envelope, self.low.shape)], [*names, "envelope"]
+        return Matrix(np.stack(columns, axis=-1), _AXES, tuple(names), "m")
+
+    @property
+    def findings(self) -> tuple[Finding, ...]:
+        """What does not fit: outlines in the opening, edges beyond the envelope."""
+        return (*self._blocked(), *self._beyond())
+
+    def _blocked(self) -> Iterator[Finding]:
+        for item in self.intrusions:
+            depth = show(float(np.max(item.depth)), LENGTH, digits=3)
+            yield Finding(item.name, f"enters the clear opening by {depth}", "Move it outward, trim its outline or reduce the opening")
+
+    def _beyond(self) -> Iterator[Finding]:
+        for index, axis in enumerate(_AXES):
+            size = float(np.max(self.size[..., index]))
+            limit = np.inf if self.envelope is None else float(np.min(self.envelope[..., index]))
+            if size > limit + _TOUCHING:
+                shown = (show(size, LENGTH, digits=4), show(limit, LENGTH, digits=4))
+                ends = f"{self.extreme[index]} and {self.extreme[3 + index]}"
+                yield Finding(f"envelope.{axis}", f"the stage is {shown[0]} wide, the envelope {shown[1]}", f"Look at {ends}")
+
+
+def room(mechanism: Mechanism) -> Room:
+    """The bounding box of all outlines against the envelope, and the outlines that enter the opening (a rectangle about the z axis).
+
+    Convex outlines in plan, found by separating directions: exact for boxes and round discs, an upper bound of the depth for tilted
+    cylinders. What has an upright hole that holds the opening stays clear. Parts without dimensions (given matrices, joints) take no room.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> room(double_triangle()).size[2].round(6).item()
+    0.1125
+    """
+    found = outlines(expand(mechanism))
+    if not found:
+        return Room((), np.zeros(3), np.zeros(3), None if mechanism.envelope is None else stack(mechanism.envelope), ())
+    high = [_joined([outline.reach(axis) for outline in found]) for axis in np.eye(3)]
+    low = [_joined([-outline.reach(-axis) for outline in found]) for axis in np.eye(3)]
+    ends = [np.argmin(_first(values)) for values in low] + [np.argmax(_first(values)) for values in high]
+    return Room(
+        intrusions=() if mechanism.opening is None else tuple(_intrusions(found, stack(mechanism.opening.size))),
+        low=_joined([np.min(values, axis=-1) for values in low]),
+        high=_joined([np.max(values, axis=-1) for values in high]),
+        envelope=None if mechanism.envelope is None else stack(mechanism.envelope),
+        extreme=tuple(found[int(index)].name for index in ends),
+    )
+
+
+def _joined(values: list[Array]) -> Array:
+    return np.stack(np.broadcast_arrays(*values), axis=-1)
+
+
+def _first(values: Array) -> Array:
+    return values.reshape(-1, values.shape[-1])[0]
+
+
+def _intrusions(found: tuple[Outline, ...], opening: Array) -> Iterator[Intrusion]:
+    for outline in found:
+        depth = np.where(_surrounds(outline, opening), -np.inf, _depth(outline, opening))
+        if np.any(depth > _TOUCHING):
+            yield Intrusion(outline.name, depth)
+
+
+def _surrounds(outline: Outline, opening: Array) -> Array:
+    """Whether the outline's own through hole, upright, holds the whole opening."""
+    turn = outline.frame.rotation
+    corners = 0.5 * opening[..., None, :] * np.array([[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]])
+    arms = corners - outline.frame.position[..., None, :2]
+    if outline.hole is not None:
+        inside = np.all(np.abs(arms @ turn[..., :2, :2]) <= 0.5 * outline.hole[..., None, :] + _TOUCHING, axis=(-2, -1))
+        return inside & (np.abs(turn[..., 2, 2]) > 1.0 - _TOUCHING)
+    if outline.bore is not None:
+        inside = np.all(np.sum(arms * arms, axis=-1) <= (0.5 * outline.bore[..., None] + _TOUCHING) ** 2, axis=-1)
+        return inside & (np.abs(turn[..., 2, 0]) > 1.0 - _TOUCHING)
+    return np.zeros((), dtype=bool)
+
+
+def _depth(outline: Outline, opening: Array) -> Array:
+    """Least overlap in plan over candidate directions; negative or zero: apart."""
+    overlaps = [
+        outline.reach(direction) + 0.5 * (opening[..., 0] * np.abs(direction[..., 0]) + opening[..., 1] * np.abs(direction[..., 1]))
+        for direction in _directions(outline, opening)
+    ]
+    return np.min(_joined(overlaps), axis=-1)
+
+
+def _directions(outline: Outline, opening: Array) -> Iterator[Array]:
+    """Outward normals of both shapes in plan, and directions from the opening's corners to a round outline's middle."""
+    normals = [np.array([1.0, 0.0]), np.array([0.0, 1.0])]
+    edges = outline.frame.rotation[..., :2, :]
+    normals += [np.stack([-edges[..., 1, index], edges[..., 0, index]], axis=-1) for index in range(3)]
+    if outline.is_round:
+        corners = (np.array([sx, sy]) * 0.5 * opening for sx in (1.0, -1.0) for sy in (1.0, -1.0))
+        normals += [outline.frame.position[..., :2] - corner for corner in corners]
+        normals += [np.array([np.cos(angle), np.sin(angle)]) for angle in np.linspace(0.0, np.pi, 180, endpoint=False)]
+    for normal in normals:
+        length = np.sqrt(np.sum(normal * normal, axis=-1, keepdims=True))
+        unit = np.where(length > _TOUCHING, normal / np.where(length > _TOUCHING, length, 1.0), np.array([1.0, 0.0]))
+        for sign in (1.0, -1.0):
+            yield np.concatenate([sign * unit, np.zeros_like(unit[..., :1])], axis=-1)

@@ -1,0 +1,112 @@
+"""Stress at every hinge at the worst corner of the strokes, against yield."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.analysis.workspace.stroke import StrokeLimits
+from flexstage.analysis.workspace.wrench import corner_wrenches
+from flexstage.base.labelled import Matrix
+from flexstage.base.number import Array
+from flexstage.beams.stress import stress
+from flexstage.mechanism.expand import PlacedLink, expand
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.parts.part import Restricted
+from flexstage.readings.linear.model import LinearModel
+
+_ALIKE = 1.0 + 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class HingeStress:
+    """Largest stress in every hinge over the corners of the strokes, (..., L) each.
+
+    `nominal` and `peak` (with the notch factor) von Mises stress [Pa]; `yield_stress` [Pa] (NaN where the material states none); `strokes`
+    (..., L, n) [m] at the worst corner. `unchecked` names links without a section to check (stacks, given matrices, restricted parts).
+    """
+
+    links: tuple[str, ...]
+    actuators: tuple[str, ...]
+    nominal: Array
+    peak: Array
+    yield_stress: Array
+    strokes: Array
+    unchecked: tuple[str, ...]
+    provenance: str
+
+    @property
+    def safety(self) -> Array:
+        """Yield stress over peak stress (..., L)."""
+        return self.yield_stress / self.peak
+
+    @property
+    def least(self) -> Array:
+        """The least safety factor of the stage (...); NaN where any hinge's yield stress is unknown."""
+        return np.min(self.safety, axis=-1)
+
+    @property
+    def weakest(self) -> str:
+        """The link with the least safety factor among those that are known, on the first design."""
+        first = np.nan_to_num(self.safety.reshape(-1, len(self.links))[0], nan=np.inf)
+        return self.links[int(np.argmin(first > np.min(first) * _ALIKE))]
+
+    @property
+    def unknown(self) -> tuple[str, ...]:
+        """Links whose material states no yield stress."""
+        gone = np.isnan(np.atleast_2d(self.yield_stress)).reshape(-1, len(self.links)).any(axis=0)
+        return tuple(link for link, missing in zip(self.links, np.asarray(gone), strict=True) if missing)
+
+    @property
+    def table(self) -> Matrix:
+        """Rows are the links, columns nominal, peak, yield and safety."""
+        values = np.stack(np.broadcast_arrays(self.nominal, self.peak, self.yield_stress, self.safety), axis=-1)
+        return Matrix(values, self.links, ("nominal", "peak", "yield", "safety"), (("Pa", "Pa", "Pa", "1"),) * len(self.links))
+
+
+def hinge_stress(mechanism: Mechanism, model: LinearModel, limits: StrokeLimits) -> HingeStress:
+    """Stress of every hinge from the link wrenches of an elastic model, dead load included.
+
+    `limits`: `stroke_limits(mechanism).from_zero` for a stage assembled without voltage (its hinges are bent by the bias too), or
+    `stroke_limits(mechanism)` for one that is relaxed at its bias. Linear beam theory, section maxima added (see `beams.stress`).
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.readings.lumped import lumped
+    >>> from flexstage.analysis.workspace.stroke import stroke_limits
+    >>> stage = double_triangle()
+    >>> hinge_stress(stage, lumped(stage), stroke_limits(stage).from_zero).weakest
+    'B4/pivot'
+    """
+    assembly = expand(mechanism)
+    sized = {name: link for name, link in assembly.links.items() if _has_section(link)}
+    wrenches = corner_wrenches(mechanism, model, limits, tuple(sized))
+    rows = [_worst(link, wrenches[..., index, :], np.moveaxis(limits.corners, -2, 0)) for index, link in enumerate(sized.values())]
+    nominal, peak, known = (np.stack(np.broadcast_arrays(*(row[item] for row in rows)), axis=-1) for item in range(3))
+    return HingeStress(
+        links=tuple(sized),
+        actuators=limits.actuators,
+        nominal=nominal,
+        peak=peak,
+        yield_stress=known,
+        strokes=np.stack(np.broadcast_arrays(*(row[3] for row in rows)), axis=-2),
+        unchecked=tuple(name for name in assembly.links if name not in sized),
+        provenance=model.provenance,
+    )
+
+
+def _has_section(link: PlacedLink) -> bool:
+    """Whether beam theory knows a section and the model the whole wrench (locked freedoms pass forces that no spring feels)."""
+    return not isinstance(link.part, Restricted) and stress(link.part, link.material, np.zeros(6)) is not None
+
+
+def _worst(link: PlacedLink, wrenches: Array, corners: Array) -> tuple[Array, Array, Array, Array]:
+    """Nominal and peak stress, yield stress and strokes of the worst corner of a link."""
+    found = stress(link.part, link.material, wrenches)
+    assert found is not None  # noqa: S101  _has_section has asked
+    where = np.argmax(found.peak, axis=0)[None]
+    spread = np.broadcast_to(corners, (*found.peak.shape, corners.shape[-1]))
+    strokes = np.take_along_axis(spread, where[..., None], axis=0)[0]
+    limit = None if link.material is None else link.material.yield_stress
+    nominal, peak = (np.take_along_axis(np.broadcast_to(item, found.peak.shape), where, axis=0)[0] for item in (found.nominal, found.peak))
+    return nominal, peak, np.broadcast_to(np.nan if limit is None else np.asarray(limit), peak.shape), strokes

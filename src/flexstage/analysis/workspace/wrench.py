@@ -1,0 +1,48 @@
+"""Stress resultants at the links over a box of strokes, dead load included."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from flexstage.analysis.workspace.load import applied
+from flexstage.analysis.workspace.stroke import StrokeLimits
+from flexstage.base.number import Array, stack
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.readings.linear.model import LinearModel
+from flexstage.readings.linear.static import displacement, static_gain
+from flexstage.spatial.frame import FORCES
+
+
+def corner_wrenches(mechanism: Mechanism, model: LinearModel, limits: StrokeLimits, links: tuple[str, ...]) -> Array:
+    """Wrenches (k, ..., L, 6) [N, N m] at the centres of links, in their frames on the second body, at all k = 2^n corners of the strokes.
+
+    The wrench is linear in the strokes, so convex measures of it (stress, force) are largest at a corner. Weight and forces are included.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.readings.lumped import lumped
+    >>> from flexstage.analysis.workspace.stroke import stroke_limits
+    >>> stage = double_triangle()
+    >>> corner_wrenches(stage, lumped(stage), stroke_limits(stage), ("B1/front",)).shape
+    (64, 1, 6)
+    """
+    names = tuple(f"{link}.{force}" for link in links for force in FORCES)
+    gain = static_gain(model, names, limits.actuators).values
+    corners = np.moveaxis(limits.corners, -2, 0)
+    total = (gain @ corners[..., None])[..., 0] + dead_wrenches(mechanism, model, names)
+    return total.reshape(*total.shape[:-1], len(links), len(FORCES))
+
+
+def dead_wrenches(mechanism: Mechanism, model: LinearModel, outputs: tuple[str, ...]) -> Array:
+    """Values (..., p) of outputs under weight and forces, strokes held.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.readings.lumped import lumped
+    >>> stage = double_triangle()
+    >>> bool(dead_wrenches(stage, lumped(stage), ("platform.z",)) < 0)
+    True
+    """
+    load = model.base_inertia[..., :3] @ stack(mechanism.gravity)
+    for force in mechanism.forces.values():
+        load = load + applied(mechanism, model, force)
+    motion = displacement(model, load[..., None])
+    return (model.output[..., model.output_index(outputs), :] @ motion)[..., 0]
