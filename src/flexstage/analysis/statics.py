@@ -12,6 +12,7 @@ from flexstage.readings.linear.model import LinearModel
 from flexstage.readings.linear.static import displacement
 from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS, WRENCH_UNITS
 
+_SINGULAR = 1e-11
 _FORCES = ("fx", "fy", "fz", "mx", "my", "mz")
 
 
@@ -34,8 +35,8 @@ class DirectionalStiffness:
 class Statics:
     """Static behaviour of the platform at a point.
 
-    `compliance` (..., 6, 6) from a wrench at `load_point` to the twist at `read_point`; `stiffness` its inverse; `held` the in-plane tensor with all
-    other freedoms held, `free` the one with all others free (what a push test measures); `centre` (..., 3) the centre of stiffness
+    `compliance` (..., 6, 6) from a wrench at `load_point` to the twist at `read_point`; `stiffness` its inverse; `held` the in-plane tensor
+    with all other freedoms held, `free` the one with all others free (what a push test measures); `centre` (..., 3) the centre of stiffness
     relative to the load point [m].
     """
 
@@ -52,24 +53,35 @@ class Statics:
 def statics(model: LinearModel, *, load_point: str = "platform", read_point: str = "platform") -> Statics:
     """Platform compliance and stiffness with load and read-out points chosen by name (`platform` is its reference point).
 
-    C = C_read K^-1 C_load^T, strokes held. Small displacements.
+    C = C_read K^-1 C_load^T, strokes held. Small displacements. Where the model leaves the platform fewer than six freedoms (the mapped
+    reading of a guide), the stiffness is infinite along the others: then it and the tensors that need it are NaN (first design decides).
     """
     read = tuple(f"{read_point}.{name}" for name in COMPONENTS)
     load = tuple(f"{load_point}.{name}" for name in COMPONENTS)
     force = np.swapaxes(model.output[..., model.output_index(load), :], -1, -2)
     values = model.output[..., model.output_index(read), :] @ displacement(model, force)
     wrench = tuple(f"{load_point}.{name}" for name in _FORCES)
-    inverse = np.linalg.inv(values)
+    inverse = _inverse(values)
     return Statics(
         load_point,
         read_point,
         Matrix(values, read, wrench, ratio_units(TWIST_UNITS, WRENCH_UNITS)),
         Matrix(inverse, wrench, read, ratio_units(WRENCH_UNITS, TWIST_UNITS)),
         held=directional(inverse[..., :2, :2]),
-        free=directional(np.linalg.inv(values[..., :2, :2])),
+        free=directional(_inverse(values[..., :2, :2])),
         centre=centre_of_stiffness(inverse),
         provenance=model.provenance,
     )
+
+
+def _inverse(compliance: Array) -> Array:
+    """The stiffness, NaN where a compliance of lower rank has none."""
+    first = np.real(compliance.reshape(-1, *compliance.shape[-2:])[0])
+    diagonal = np.diag(first)
+    scale = np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0))
+    if np.linalg.matrix_rank(first / scale / scale[:, None], tol=_SINGULAR) < len(first):
+        return np.full(compliance.shape, np.nan)
+    return np.linalg.inv(compliance)
 
 
 def directional(tensor: Array) -> DirectionalStiffness:
@@ -79,7 +91,9 @@ def directional(tensor: Array) -> DirectionalStiffness:
     [4.0, 1.0]
     """
     symmetric = 0.5 * (tensor + np.swapaxes(tensor, -1, -2))
-    values, vectors = np.linalg.eigh(np.real(symmetric))
+    failed = np.any(np.isnan(symmetric), axis=(-2, -1), keepdims=True)
+    values, vectors = np.linalg.eigh(np.where(failed, 0.0, np.real(symmetric)))
+    values, vectors = np.where(failed[..., 0], np.nan, values), np.where(failed, np.nan, vectors)
     stiffest = vectors[..., :, 1]
     angle = np.mod(np.arctan2(stiffest[..., 1], stiffest[..., 0]), np.pi)
     return DirectionalStiffness(Matrix(symmetric, ("x", "y"), ("x", "y"), "N/m"), values[..., ::-1], angle)

@@ -2,31 +2,37 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from enum import Enum
+from typing import TypeVar
 
 from flexstage.analysis.lost_motion import LostMotion, lost_motion
 from flexstage.analysis.modes import Modes, modes
+from flexstage.analysis.response import response, transmissibility
 from flexstage.analysis.statics import Statics, statics
-from flexstage.mechanism.mechanism import Mechanism
+from flexstage.base.finding import DesignError
+from flexstage.base.number import Table
+from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.readings.ideal import ideal
+from flexstage.readings.linear.frequency import Response
 from flexstage.readings.linear.kinematics import Kinematics
 from flexstage.readings.linear.model import LinearModel
 from flexstage.readings.lumped import lumped
 from flexstage.readings.mapped import mapped
+from flexstage.studies.reading import Reading
 
+__all__ = ["Analysis", "Reading", "analyse", "platform_modes", "read"]
 
-class Reading(Enum):
-    """The theories a stage can be read by."""
-
-    IDEAL = "ideal"
-    MAPPED = "mapped"
-    LUMPED = "lumped"
+_MODE_LIMIT = 1000.0
+_Result = TypeVar("_Result")
 
 
 @dataclass(frozen=True, eq=False)
 class Analysis:
-    """All results of one reading of a stage; `None` where a reading does not give them (an ideal reading has no stiffness)."""
+    """All results of one reading of a stage; `None` where a reading or a stage does not give them, and `missing` says why, by field name.
+
+    `response` is that of the platform's twist and all gauges to the strokes, `transmissibility` that of the platform to the ground.
+    """
 
     mechanism: Mechanism
     reading: Reading
@@ -35,32 +41,72 @@ class Analysis:
     statics: Statics | None
     lost_motion: LostMotion | None
     modes: Modes | None
+    response: Response | None
+    transmissibility: Response | None
+    missing: Mapping[str, str]
 
 
 def read(mechanism: Mechanism, reading: Reading) -> LinearModel | None:
-    """The linear model of an elastic reading; `None` for the ideal one."""
+    """The linear model of an elastic reading; `None` for the ideal one.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> len(read(double_triangle(), Reading.MAPPED).coordinates)
+    6
+    """
     if reading is Reading.IDEAL:
         return None
     return mapped(mechanism) if reading is Reading.MAPPED else lumped(mechanism)
 
 
 def analyse(mechanism: Mechanism, reading: Reading = Reading.LUMPED) -> Analysis:
-    """Every analysis of one reading. Under-actuated stages have no lost motion (their mapping does not exist)."""
+    """Every analysis of one reading.
+
+    What a stage cannot give (an under-actuated one has no lost motion) is `None`, its reason in `missing`. Raises `DesignError` where the reading itself is refused.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> round(float(analyse(double_triangle(), Reading.MAPPED).modes.frequencies[0]), 2)
+    110.91
+    """
     kinematics = ideal(mechanism)
     model = read(mechanism, reading)
-    if model is None:
-        return Analysis(mechanism, reading, kinematics, None, None, None, None)
+    attempt = _Attempts()
     return Analysis(
-        mechanism,
-        reading,
-        kinematics,
-        model,
-        statics(model),
-        lost_motion(kinematics, model) if kinematics.actuated else None,
-        _modes(mechanism, model),
+        mechanism=mechanism,
+        reading=reading,
+        kinematics=kinematics,
+        model=model,
+        statics=attempt.of("statics", model, statics),
+        lost_motion=attempt.of("lost_motion", model, lambda known: lost_motion(kinematics, known)),
+        modes=attempt.of("modes", model, lambda known: platform_modes(mechanism, known)),
+        response=attempt.of("response", model, lambda known: response(known, (PLATFORM, *kinematics.gauges), kinematics.actuators)),
+        transmissibility=attempt.of("transmissibility", model, transmissibility),
+        missing=Table(attempt.missing),
     )
 
 
-def _modes(mechanism: Mechanism, model: LinearModel) -> Modes:
-    limit = mechanism.mode_limit if isinstance(mechanism.mode_limit, float) else 1000.0
+def platform_modes(mechanism: Mechanism, model: LinearModel) -> Modes:
+    """Modes with the description's frequency limit for the platform's modes, or 1 kHz.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> platform_modes(double_triangle(), mapped(double_triangle())).limit
+    1000.0
+    """
+    limit = mechanism.mode_limit if isinstance(mechanism.mode_limit, float) else _MODE_LIMIT
     return modes(model, limit=limit, count=min(6, len(model.coordinates)))
+
+
+class _Attempts:
+    """Analyses that a stage may refuse: the reasons are kept, the others go on."""
+
+    def __init__(self) -> None:
+        self.missing: dict[str, str] = {}
+
+    def of(self, name: str, model: LinearModel | None, analysis: Callable[[LinearModel], _Result]) -> _Result | None:
+        if model is None:
+            self.missing[name] = "the ideal reading has no elasticity"
+            return None
+        try:
+            return analysis(model)
+        except DesignError as error:
+            self.missing[name] = str(error)
+            return None
