@@ -10,8 +10,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from flexstage.base.number import Number, Vector
-from flexstage.base.scale import deg, kHz, mm, um
+from flexstage.base.number import Number
+from flexstage.base.scale import X, Y, Z, deg, kHz, mm, um
+from flexstage.cases.tidy import tidy
 from flexstage.mechanism.mechanism import Link, Mechanism, ModalDamping, Opening, Placement, Probe, Unit
 from flexstage.mechanism.pattern import Facing, Polar
 from flexstage.parts.body import Block, Body
@@ -22,11 +23,6 @@ from flexstage.parts.neck import Neck
 from flexstage.parts.notch import Notch
 from flexstage.parts.piezo import Piezo
 from flexstage.parts.profile import Circular, Straight
-
-X: Vector = (1.0, 0.0, 0.0)
-Y: Vector = (0.0, 1.0, 0.0)
-Z: Vector = (0.0, 0.0, 1.0)
-
 
 @dataclass(frozen=True)
 class DoubleTriangle:
@@ -185,7 +181,7 @@ def double_triangle(parameters: DoubleTriangle = SM_REF_B) -> Mechanism:
     plate = Block("steel", size=(320 * mm, 320 * mm, 20 * mm), at=(0.0, 0.0, p.platform_height), hole=(110 * mm, 110 * mm))
     tangent = Polar(p.horizontal_radius, -90 * deg, Facing.TANGENT, p.horizontal_height)
     poles = Polar(p.pole_radius, 90 * deg, Facing.TANGENT, p.pole_height, turn=p.vertical_turn)
-    return Mechanism(
+    stage = Mechanism(
         name=p.name,
         materials={"steel": STEEL},
         parts={
@@ -209,6 +205,7 @@ def double_triangle(parameters: DoubleTriangle = SM_REF_B) -> Mechanism:
         tags=_tags(p),
         sources=SOURCES,
     )
+    return tidy(stage)
 
 
 def _gauges(p: DoubleTriangle) -> dict[str, Probe]:
