@@ -1,0 +1,56 @@
+"""Checks of a description: everything that is wrong with it, told so that it can be mended.
+
+`check` asks, `checked` throws. Checks are vectorised: of a batch they name the first failing index. What needs the elastic model (a
+mechanism that gives way) is found by the readings.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from flexstage.base.finding import Finding, require
+from flexstage.base.number import Table
+from flexstage.mechanism.checks.geometry import geometry_findings
+from flexstage.mechanism.checks.graph import graph_findings
+from flexstage.mechanism.checks.kind import kind_findings
+from flexstage.mechanism.checks.name import copy_findings, name_findings
+from flexstage.mechanism.checks.orientation import orientation_findings
+from flexstage.mechanism.checks.provenance import change_findings, tag_findings
+from flexstage.mechanism.checks.value import value_findings
+from flexstage.mechanism.mechanism import Mechanism
+
+__all__ = ["check", "checked", "copy_findings"]
+
+
+def check(mechanism: Mechanism) -> tuple[Finding, ...]:
+    """Return all findings about a description, none if it can be read.
+
+    A check is left out where its ground is not sound: numbers are not compared before they are finite, the graph is not followed before its
+    names exist.
+
+    >>> [str(finding) for finding in check(Mechanism("empty"))]
+    ['bodies: there is no body "platform". Declare the moving part under bodies.platform.']
+    """
+    for ground in (kind_findings, copy_findings):
+        if findings := tuple(ground(mechanism)):
+            return findings
+    names = tuple(name_findings(mechanism))
+    changes = tuple(change_findings(mechanism))
+    sound = mechanism if not changes else replace(mechanism, changes=Table({}))
+    values = tuple(value_findings(sound))
+    findings = (*names, *changes, *tag_findings(mechanism), *values)
+    if not values:
+        findings += (*geometry_findings(sound, departures=not findings), *orientation_findings(sound))
+    return findings if names else (*findings, *graph_findings(mechanism))
+
+
+def checked(mechanism: Mechanism) -> Mechanism:
+    """Return the description if there are no findings about it, else raise them together as `DesignError`.
+
+    >>> checked(Mechanism("empty"))
+    Traceback (most recent call last):
+        ...
+    flexstage.base.finding.DesignError: bodies: there is no body "platform". Declare the moving part under bodies.platform.
+    """
+    require(check(mechanism))
+    return mechanism

@@ -1,0 +1,167 @@
+"""Geometry of single parts and bodies: what cannot be made, and what is no mass."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from flexstage.base.finding import Finding
+from flexstage.base.number import Number, stack
+from flexstage.base.quantity import FORCE, LENGTH, VOLTAGE, Quantity
+from flexstage.base.unit import show
+from flexstage.mechanism.checks.value import first_failing
+from flexstage.mechanism.expand import departed
+from flexstage.mechanism.locate import locate
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.parts.body import Block, Body, Cylinder, Inertia
+from flexstage.parts.given import Given
+from flexstage.parts.leaf import Leaf
+from flexstage.parts.mass import tensor
+from flexstage.parts.neck import Neck
+from flexstage.parts.notch import Notch
+from flexstage.parts.part import Part, Restricted
+from flexstage.parts.piezo import Piezo
+from flexstage.parts.profile import Filleted
+
+_SLACK = 1e-9
+"""Relative slack of comparisons that rounding may spoil: a thin plate has xx + yy = zz."""
+
+
+def geometry_findings(mechanism: Mechanism, *, departures: bool = True) -> Iterator[Finding]:
+    """Findings about parts, solids, stated masses and payloads; with `departures` also about parts of single copies.
+
+    >>> from flexstage.parts.leaf import Leaf
+    >>> leaf = Leaf("steel", length=0.03, thickness=0.012, width=0.01)
+    >>> print(*geometry_findings(Mechanism("", parts={"blade": leaf})))
+    parts.blade.thickness: found 12 mm, which is not below the width, 10 mm. Exchange them, or turn the link's bends.
+    """
+    for name, part in mechanism.parts.items():
+        yield from _part(f"parts.{name}", part)
+    if departures:
+        for owner, part in _departed_parts(mechanism):
+            yield from _part(owner, part)
+    for name, body in mechanism.bodies.items():
+        yield from _body(f"bodies.{name}", body)
+    for unit, drawn in mechanism.units.items():
+        for name, body in drawn.bodies.items():
+            yield from _body(f"units.{unit}.bodies.{name}", body)
+    for name, payload in mechanism.payloads.items():
+        if payload.inertia is not None:
+            yield from _inertia(f"payloads.{name}.inertia", payload.inertia)
+
+
+def _departed_parts(mechanism: Mechanism) -> Iterator[tuple[str, Part]]:
+    """The parts as they are after the departures, by the link or the copy that departs."""
+    for owners in dict.fromkeys(locate(mechanism, key).owners for key in mechanism.changes):
+        owner, slash, name = owners[0].partition("/")
+        link = mechanism.units[owner].links[name] if slash else mechanism.links[owner]
+        yield owners[-1], departed(mechanism, link, owners)[1]
+
+
+def _part(where: str, part: Part) -> Iterator[Finding]:
+    if isinstance(part, Restricted):
+        yield from _part(f"{where}.part", part.part)
+        for freedom in set(part.elastic) & set(part.free):
+            yield Finding(where, f"freedom {freedom.value} is both elastic and free", "Name it once")
+    if isinstance(part, (Notch, Leaf)):
+        below = _Order(f"{where}.thickness", LENGTH, "the width", "Exchange them, or turn the link's bends")
+        yield from below.strict(part.thickness, part.width)
+    if isinstance(part, (Notch, Neck)) and isinstance(part.profile, Filleted):
+        advice = "Two fillets take 2 r of the length: make it longer or the radius smaller"
+        half = _Order(f"{where}.profile.radius", LENGTH, "half the length", advice)
+        yield from half.loose(part.profile.radius, 0.5 * part.profile.length)
+    if isinstance(part, Given):
+        yield from _given(where, part)
+    if isinstance(part, Piezo):
+        yield from _piezo(where, part)
+
+
+@dataclass(frozen=True)
+class _Order:
+    """A comparison of two numbers of a description, and how it is told."""
+
+    where: str
+    quantity: Quantity
+    other: str
+    advice: str
+
+    def strict(self, small: Number | None, large: Number | None) -> Iterator[Finding]:
+        """The first must be below the second."""
+        return self._told(small, large, "below", lambda low, high: low >= high)
+
+    def loose(self, small: Number | None, large: Number | None) -> Iterator[Finding]:
+        """The first must not be above the second."""
+        return self._told(small, large, "at most", lambda low, high: low > high * (1.0 + _SLACK))
+
+    def _told(self, small: Number | None, large: Number | None, word: str, fails: Callable[[Any, Any], Any]) -> Iterator[Finding]:
+        if small is None or large is None:
+            return
+        failing = fails(np.real(small), np.real(large))
+        if np.any(failing):
+            at, values = first_failing(failing, small, large)
+            low, high = (show(value, self.quantity, digits=6) for value in values)
+            yield Finding(f"{self.where}{at}", f"found {low}, which is not {word} {self.other}, {high}", self.advice)
+
+
+def _piezo(where: str, part: Piezo) -> Iterator[Finding]:
+    load = _Order(f"{where}.preload", FORCE, "the maximum load", "Give a smaller preload")
+    yield from load.loose(part.preload, part.maximum_load)
+    volts = _Order(f"{where}.voltage_low", VOLTAGE, "voltage_high", "Exchange them")
+    yield from volts.strict(part.voltage_low, part.voltage_high)
+    bias = _Order(f"{where}.bias", VOLTAGE, "voltage_high", "Give a bias within the range of the stack")
+    yield from bias.loose(part.bias, part.voltage_high)
+
+
+def _given(where: str, part: Given) -> Iterator[Finding]:
+    matrix = np.real(stack(part.compliance))
+    mirrored = np.swapaxes(matrix, -1, -2)
+    scale = np.sqrt(np.abs(np.einsum("...ii->...i", matrix)))
+    unequal = np.abs(matrix - mirrored) > _SLACK * scale[..., :, None] * scale[..., None, :]
+    if np.any(unequal):
+        at, (one, other) = first_failing(unequal, matrix, mirrored)
+        yield Finding(f"{where}.compliance{at}", f"it is not symmetric: {one:.6g} and {other:.6g} SI", "Give equal entries on both sides")
+        return
+    safe = np.where(scale > 0.0, scale, 1.0)
+    lowest = np.linalg.eigvalsh(matrix / safe[..., :, None] / safe[..., None, :])[..., 0]
+    if np.any(lowest <= 0.0):
+        at, (value,) = first_failing(lowest <= 0.0, lowest)
+        what = f"it is not positive definite: the lowest eigenvalue of its scaled form is {value:.3g}"
+        yield Finding(f"{where}.compliance{at}", what, "Check signs and units of its entries; a locked freedom is Restricted, not zero")
+
+
+def _body(where: str, body: Body) -> Iterator[Finding]:
+    stated = [name for name in ("mass", "centre", "inertia") if getattr(body, name) is not None]
+    if stated and body.solids:
+        yield Finding(where, f"it has solids and states its {', '.join(stated)}", "Leave one of them: mass comes from either")
+    elif stated and body.mass is None:
+        yield Finding(where, f"it states its {', '.join(stated)} without a mass", "State the mass too")
+    if body.inertia is not None:
+        yield from _inertia(f"{where}.inertia", body.inertia)
+    for name, solid in body.solids.items():
+        yield from _solid(f"{where}.solids.{name}", solid)
+
+
+def _solid(where: str, solid: Block | Cylinder) -> Iterator[Finding]:
+    if isinstance(solid, Cylinder):
+        yield from _Order(f"{where}.bore", LENGTH, "the diameter", "Make the bore smaller").strict(solid.bore, solid.diameter)
+    elif solid.hole is not None:
+        for name, hole, size in zip("xy", solid.hole, solid.size, strict=False):
+            yield from _Order(f"{where}.hole.{name}", LENGTH, "the size of the block", "Make the hole smaller").strict(hole, size)
+
+
+def _inertia(where: str, inertia: Inertia) -> Iterator[Finding]:
+    """No mass has a principal moment above the sum of the other two, or a negative one."""
+    principal = np.linalg.eigvalsh(np.real(tensor(inertia)))
+    total = functools.reduce(np.add, np.moveaxis(principal, -1, 0))
+    lacking = total - 2.0 * principal[..., 2] < -_SLACK * np.abs(total)
+    negative = principal[..., 0] < -_SLACK * np.abs(total)
+    failing = lacking | negative
+    if np.any(failing):
+        at, values = first_failing(failing, *np.moveaxis(principal, -1, 0))
+        told = ", ".join(f"{value:.6g}" for value in values)
+        what = f"its principal moments are {told} kg m^2: none may be negative or above the sum of the other two"
+        yield Finding(f"{where}{at}", what, "Check the moments and the signs of the products")

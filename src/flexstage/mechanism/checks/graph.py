@@ -1,0 +1,79 @@
+"""The graph of bodies and links: everything hangs together, and no actuator pushes into the void."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+
+from flexstage.base.finding import Finding
+from flexstage.mechanism.expand import copy_names
+from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
+from flexstage.parts.part import is_actuator
+
+
+@dataclass(frozen=True)
+class _Edge:
+    """A link of the expanded stage: its name, the bodies it joins, its part's name."""
+
+    name: str
+    joins: tuple[str, str]
+    part: str
+
+
+def graph_findings(mechanism: Mechanism) -> Iterator[Finding]:
+    """Findings about the expanded graph; presupposes that its names exist.
+
+    >>> from flexstage.parts.body import Body
+    >>> print(*graph_findings(Mechanism("", bodies={"platform": Body(mass=1.0)})))
+    platform: no chain of links leads from it to the ground. Join it by a link, or remove it.
+    """
+    bodies, edges = _expanded(mechanism)
+    reached = _reached(edges)
+    for body in bodies:
+        if body not in reached:
+            yield Finding(body, "no chain of links leads from it to the ground", "Join it by a link, or remove it")
+    used = {edge.name for edge in _without_dead_ends(edges)}
+    for edge in edges:
+        if is_actuator(mechanism.parts[edge.part]) and edge.name not in used and set(edge.joins) <= reached:
+            what = f"the actuator joins {edge.joins[0]} and {edge.joins[1]}, on no path between ground and platform"
+            yield Finding(edge.name, what, "Join its dangling end on, or remove it")
+
+
+def _expanded(mechanism: Mechanism) -> tuple[list[str], list[_Edge]]:
+    bodies = list(mechanism.bodies)
+    edges = [_Edge(name, link.joins, link.part) for name, link in mechanism.links.items()]
+    for key, placement in mechanism.place.items():
+        unit = mechanism.units[placement.unit]
+        for copy in copy_names(key):
+            own = {body: f"{copy}/{body}" for body in unit.bodies}
+            bodies += own.values()
+            for name, link in unit.links.items():
+                first, second = (own.get(body, body) for body in link.joins)
+                edges.append(_Edge(f"{copy}/{name}", (first, second), link.part))
+    return bodies, edges
+
+
+def _reached(edges: Iterable[_Edge]) -> set[str]:
+    """Bodies that hang together with the ground."""
+    neighbours: dict[str, set[str]] = {}
+    for edge in edges:
+        first, second = edge.joins
+        neighbours.setdefault(first, set()).add(second)
+        neighbours.setdefault(second, set()).add(first)
+    reached, front = {GROUND}, [GROUND]
+    while front:
+        new = neighbours.get(front.pop(), set()) - reached
+        reached |= new
+        front += new
+    return reached
+
+
+def _without_dead_ends(edges: list[_Edge]) -> list[_Edge]:
+    """The links left after those that hang by one end are taken away, again and again."""
+    while True:
+        ends = Counter(body for edge in edges for body in edge.joins)
+        left = [edge for edge in edges if all(ends[body] > 1 or body in (GROUND, PLATFORM) for body in edge.joins)]
+        if len(left) == len(edges):
+            return left
+        edges = left

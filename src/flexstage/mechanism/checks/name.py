@@ -1,0 +1,160 @@
+"""Names: legal, unique, and naming something that exists."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Iterable, Iterator
+
+from flexstage.base.finding import Finding, nearest
+from flexstage.mechanism.expand import copy_names
+from flexstage.mechanism.grammar import RESERVED
+from flexstage.mechanism.mechanism import GROUND, PLATFORM, Link, Mechanism, Unit
+from flexstage.parts.body import Body
+from flexstage.parts.part import material_of
+
+MOST_COPIES = 360
+_LONGEST = 60
+_RANGE = re.compile(r"(.*?)(\d+)-(?:\1)?(\d+)")
+_NAMED = ("materials", "parts", "bodies", "links", "units", "place", "sensors", "gauges", "payloads", "forces")
+
+
+def name_findings(mechanism: Mechanism) -> Iterator[Finding]:
+    """Findings about names; presupposes those about copies.
+
+    >>> print(*name_findings(Mechanism("", bodies={"ground": Body(), "platform": Body()})))
+    bodies.ground: "ground" is implied and cannot be a body of the stage. Give the body another name.
+    """
+    yield from _spelling(mechanism)
+    yield from _bodies(mechanism)
+    yield from _materials(mechanism)
+    yield from _placed(mechanism)
+    yield from _clashes(mechanism)
+    for where, link, bodies in _links(mechanism):
+        yield from _link(mechanism, where, link, bodies)
+
+
+def copy_findings(mechanism: Mechanism) -> Iterator[Finding]:
+    """Findings about placement keys that name copies (`B1-B3`): reversed, too many, or a copy named twice.
+
+    >>> from flexstage.mechanism.mechanism import Placement
+    >>> from flexstage.mechanism.pattern import Pose
+    >>> print(*copy_findings(Mechanism("", place={"B3-B1": Placement("leg", Pose())})))
+    place.B3-B1: the first number, 3, is above the last, 1. Write them in rising order.
+    """
+    for section in ("place", "gauges"):
+        keys = getattr(mechanism, section)
+        faults = [fault for key in keys if (fault := _range_fault(f"{section}.{key}", key))]
+        yield from faults
+        if not faults:
+            names = Counter(name for key in keys for name in copy_names(key))
+            for name in [name for name, count in names.items() if count > 1]:
+                holders = ", ".join(key for key in keys if name in copy_names(key))
+                yield Finding(f"{section}.{name}", f"{holders} name it {names[name]} times", "Give every copy a name of its own")
+
+
+def _range_fault(where: str, key: str) -> Finding | None:
+    if len(key) > _LONGEST:
+        return Finding(f"{where[:_LONGEST]}...", f"the name has {len(key)} characters", f"At most {_LONGEST} are allowed")
+    match = _RANGE.fullmatch(key)
+    if match is None:
+        return None
+    if max(len(match[2]), len(match[3])) > 9:
+        return Finding(where, "its numbers have too many digits", "Write for example B1-B3")
+    first, last = int(match[2]), int(match[3])
+    if first > last:
+        return Finding(where, f"the first number, {first}, is above the last, {last}", "Write them in rising order")
+    if last - first >= MOST_COPIES:
+        return Finding(where, f"it names {last - first + 1} copies", f"At most {MOST_COPIES} are allowed")
+    return None
+
+
+def _spelling(mechanism: Mechanism) -> Iterator[Finding]:
+    tables: dict[str, Iterable[str]] = {section: getattr(mechanism, section) for section in _NAMED}
+    for name, unit in mechanism.units.items():
+        tables[f"units.{name}.bodies"], tables[f"units.{name}.links"] = unit.bodies, unit.links
+    for where, body in _all_bodies(mechanism):
+        tables[f"{where}.solids"], tables[f"{where}.points"] = body.solids, body.points
+    for where, names in tables.items():
+        for name in names:
+            if name in RESERVED or len(name) > _LONGEST or not re.fullmatch(r"\w[\w-]*", name):
+                yield Finding(
+                    f'{where}."{name[:_LONGEST]}"', "this is no legal name", "Use letters, digits, _ and -; tags and like are reserved"
+                )
+
+
+def _all_bodies(mechanism: Mechanism) -> Iterator[tuple[str, Body]]:
+    for name, body in mechanism.bodies.items():
+        yield f"bodies.{name}", body
+    for unit, drawn in mechanism.units.items():
+        for name, body in drawn.bodies.items():
+            yield f"units.{unit}.bodies.{name}", body
+
+
+def _links(mechanism: Mechanism) -> Iterator[tuple[str, Link, set[str]]]:
+    """Every drawn link, where it stands, and the bodies it may join."""
+    stage = {GROUND, *mechanism.bodies}
+    for name, link in mechanism.links.items():
+        yield f"links.{name}", link, stage
+    for unit, drawn in mechanism.units.items():
+        for name, link in drawn.links.items():
+            yield f"units.{unit}.links.{name}", link, stage | set(drawn.bodies)
+
+
+def _bodies(mechanism: Mechanism) -> Iterator[Finding]:
+    if PLATFORM not in mechanism.bodies:
+        yield Finding("bodies", f'there is no body "{PLATFORM}"', f"Declare the moving part under bodies.{PLATFORM}")
+    if GROUND in mechanism.bodies:
+        yield Finding(f"bodies.{GROUND}", f'"{GROUND}" is implied and cannot be a body of the stage', "Give the body another name")
+    for unit, drawn in mechanism.units.items():
+        for name in drawn.bodies:
+            if name == GROUND or name in mechanism.bodies:
+                yield Finding(f"units.{unit}.bodies.{name}", f'the stage itself has a body "{name}"', "Give the unit's body another name")
+
+
+def _materials(mechanism: Mechanism) -> Iterator[Finding]:
+    for name, part in mechanism.parts.items():
+        yield from _known(f"parts.{name}.material", "material", material_of(part), mechanism.materials)
+    for where, body in _all_bodies(mechanism):
+        for name, solid in body.solids.items():
+            yield from _known(f"{where}.solids.{name}.material", "material", solid.material, mechanism.materials)
+
+
+def _known(where: str, kind: str, name: str | None, names: Iterable[str]) -> Iterator[Finding]:
+    if name is not None and name not in names:
+        yield Finding(where, f'there is no {kind} "{name}"', nearest(name, names))
+
+
+def _placed(mechanism: Mechanism) -> Iterator[Finding]:
+    bodies = {GROUND, *mechanism.bodies}
+    for name, placement in mechanism.place.items():
+        yield from _known(f"place.{name}.unit", "unit", placement.unit, mechanism.units)
+    gauged = bodies | {f"{copy}/{body}" for copy, unit in _copies(mechanism) for body in unit.bodies}
+    for name, probe in mechanism.gauges.items():
+        yield from _known(f"gauges.{name}.gauge", "sensor", probe.gauge, mechanism.sensors)
+        yield from _known(f"gauges.{name}.body", "body", probe.body, gauged)
+        yield from _known(f"gauges.{name}.base", "body", probe.base, gauged)
+    for section, items in (("payloads", mechanism.payloads), ("forces", mechanism.forces)):
+        for name, item in items.items():
+            yield from _known(f"{section}.{name}.body", "body", item.body, gauged - {GROUND})
+
+
+def _copies(mechanism: Mechanism) -> Iterator[tuple[str, Unit]]:
+    for key, placement in mechanism.place.items():
+        if placement.unit in mechanism.units:
+            for name in copy_names(key):
+                yield name, mechanism.units[placement.unit]
+
+
+def _clashes(mechanism: Mechanism) -> Iterator[Finding]:
+    copies = {name for key in mechanism.place for name in copy_names(key)}
+    for name in sorted(copies & set(mechanism.units)):
+        yield Finding(f"place.{name}", "a unit and a copy have this name", "Give one of them another name: addresses could mean either")
+
+
+def _link(mechanism: Mechanism, where: str, link: Link, bodies: set[str]) -> Iterator[Finding]:
+    for body in link.joins:
+        yield from _known(f"{where}.joins", "body", body, bodies)
+    if link.joins[0] == link.joins[1]:
+        yield Finding(f"{where}.joins", f'both ends join "{link.joins[0]}"', "Name two different bodies")
+    yield from _known(f"{where}.part", "part", link.part, mechanism.parts)

@@ -1,0 +1,119 @@
+"""Directions: not zero, perpendicular where two make a frame, and given where a part is not round."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+import numpy as np
+
+from flexstage.base.finding import Finding
+from flexstage.base.number import Vector, stack
+from flexstage.mechanism.checks.value import first_failing
+from flexstage.mechanism.mechanism import Link, Mechanism
+from flexstage.mechanism.pattern import Pattern, Pose
+from flexstage.parts.body import Body, Cylinder
+from flexstage.parts.freedom import Freedom
+from flexstage.parts.given import Given, Joint
+from flexstage.parts.leaf import Leaf
+from flexstage.parts.neck import Neck
+from flexstage.parts.notch import Notch
+from flexstage.parts.part import Part, Restricted
+
+_TOLERANCE = np.deg2rad(0.1)
+"""Directions written with three digits are perpendicular to this; frames are then made exactly so."""
+
+
+def orientation_findings(mechanism: Mechanism) -> Iterator[Finding]:
+    """Findings about directions of links, patterns and cylinders.
+
+    >>> link = Link(("ground", "platform"), "wire", at=(0.0, 0.0, 0.0), along=(0.0, 0.0, 0.0))
+    >>> print(*orientation_findings(Mechanism("", links={"strut": link})))
+    links.strut.along: the direction is zero. Give one of x, -x, y, -y, z, -z, or three numbers.
+    """
+    yield from _links(mechanism, "", mechanism.links.items())
+    for unit, drawn in mechanism.units.items():
+        yield from _links(mechanism, f"units.{unit}.", drawn.links.items())
+        yield from _cylinders(f"units.{unit}.bodies", drawn.bodies.items())
+    yield from _cylinders("bodies", mechanism.bodies.items())
+    for name, placement in mechanism.place.items():
+        yield from _pattern(f"place.{name}", placement.pattern)
+    for name, probe in mechanism.gauges.items():
+        yield from _pattern(f"gauges.{name}", probe.pattern)
+
+
+def _links(mechanism: Mechanism, prefix: str, links: Iterable[tuple[str, Link]]) -> Iterator[Finding]:
+    for name, link in links:
+        where = f"{prefix}links.{name}"
+        yield from _pair(f"{where}.along", link.along, f"{where}.bends", link.bends)
+        part = mechanism.parts.get(link.part)
+        if part is not None and link.bends is None and not is_round(part, link.free):
+            what = f'part "{link.part}" is not round, and the link does not say which way it bends'
+            yield Finding(where, what, 'Write for example bends = "y": the axis of its compliant rotation')
+
+
+def is_round(part: Part, free: tuple[Freedom, ...] | None = None) -> bool:
+    """Whether a part behaves alike in all directions across its axis, so that its link needs no `bends`.
+
+    >>> is_round(Joint((Freedom.RZ,))), is_round(Joint((Freedom.RY, Freedom.RZ)))
+    (False, True)
+    """
+    if free is not None and not _even(free):
+        return False
+    if isinstance(part, Restricted):
+        return _even(part.elastic) and _even(part.free) and is_round(part.part)
+    if isinstance(part, Joint):
+        return _even(part.free)
+    if isinstance(part, Given):
+        return _even(part.free) and _turns_into_itself(part)
+    return not isinstance(part, (Notch, Leaf)) and not (isinstance(part, Neck) and part.width is not None)
+
+
+def _even(freedoms: tuple[Freedom, ...]) -> bool:
+    pairs = ((Freedom.Y, Freedom.Z), (Freedom.RY, Freedom.RZ))
+    return all((one in freedoms) == (other in freedoms) for one, other in pairs)
+
+
+def _turns_into_itself(part: Given) -> bool:
+    """Whether a quarter turn about x leaves the compliance as it is."""
+    matrix = stack(part.compliance)
+    quarter = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
+    turn = np.kron(np.eye(2), quarter)
+    return bool(np.allclose(turn @ matrix @ turn.T, matrix, rtol=1e-9, atol=0.0))
+
+
+def _cylinders(where: str, bodies: Iterable[tuple[str, Body]]) -> Iterator[Finding]:
+    for name, body in bodies:
+        for solid_name, solid in body.solids.items():
+            if isinstance(solid, Cylinder):
+                yield from _zero(f"{where}.{name}.solids.{solid_name}.along", solid.along)
+
+
+def _pattern(where: str, pattern: Pattern) -> Iterator[Finding]:
+    if isinstance(pattern, Pose):
+        yield from _pair(f"{where}.pose.along", pattern.along, f"{where}.pose.up", pattern.up)
+
+
+def _pair(where: str, along: Vector, other_where: str, other: Vector | None) -> Iterator[Finding]:
+    """Both directions exist, and the second is perpendicular to the first."""
+    zeros = [*_zero(where, along), *(_zero(other_where, other) if other is not None else ())]
+    yield from zeros
+    if zeros or other is None:
+        return
+    one, two = np.broadcast_arrays(np.real(stack(along)), np.real(stack(other)))
+    lengths = np.sqrt(np.sum(one * one, -1) * np.sum(two * two, -1))
+    angle = np.arccos(np.clip(np.sum(one * two, -1) / lengths, -1.0, 1.0))
+    skew = np.abs(angle - 0.5 * np.pi) > _TOLERANCE
+    if np.any(skew):
+        at, (found,) = first_failing(skew, angle)
+        what = f"it stands at {np.rad2deg(found):.4g} deg to {where.rpartition('.')[2]}, not at 90 deg"
+        yield Finding(f"{other_where}{at}", what, "Give two perpendicular directions")
+
+
+def _zero(where: str, direction: Vector) -> Iterator[Finding]:
+    components = stack(direction)
+    finite = np.isfinite(components).all(axis=-1)
+    nothing = (np.abs(components) == 0.0).all(axis=-1) | ~finite
+    if np.any(nothing):
+        at, _ = first_failing(nothing)
+        what = "the direction is not finite" if not np.all(finite) else "the direction is zero"
+        yield Finding(f"{where}{at}", what, "Give one of x, -x, y, -y, z, -z, or three numbers")

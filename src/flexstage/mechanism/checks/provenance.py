@@ -1,0 +1,73 @@
+"""Departures and tags: they point somewhere, and say what they mean."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import Any
+
+from flexstage.base.finding import DesignError, Finding, nearest
+from flexstage.base.number import Table
+from flexstage.mechanism.address import ASSUMED
+from flexstage.mechanism.checks.kind import wanted
+from flexstage.mechanism.locate import Place, locate
+from flexstage.mechanism.mechanism import Mechanism
+
+STATED = "stated"
+DERIVED = "derived"
+_WORDS = (STATED, DERIVED, ASSUMED)
+
+
+def change_findings(mechanism: Mechanism) -> Iterator[Finding]:
+    """Findings about departures: each must address a link's value, be of its kind, and stand alone.
+
+    >>> print(*change_findings(Mechanism("", changes={"parts.neck.thickness": 0.001})))
+    changes."parts.neck.thickness": there is no "neck". There are none.
+    """
+    made: dict[str, str] = {}
+    inside: dict[str, str] = {}
+    for key, value in mechanism.changes.items():
+        where = f'changes."{key}"'
+        try:
+            place = locate(mechanism, key)
+        except DesignError as error:
+            yield from (replace(finding, where=where) for finding in error.findings)
+            continue
+        yield from _departure(where, key, place, value)
+        prefixes = [".".join((*place.owners[-1:], *place.path[:depth])) for depth in range(1, len(place.path) + 1)]
+        other = inside.get(place.address) or next((made[prefix] for prefix in prefixes if prefix in made), None)
+        if other is not None:
+            yield Finding(where, f'it departs in the same as "{other}"', "Keep one of them")
+        made[place.address] = key
+        inside.update(dict.fromkeys(prefixes, key))
+
+
+def _departure(where: str, key: str, place: Place, value: Any) -> Iterator[Finding]:
+    if not any(key.startswith(f"{owner}.") for owner in place.owners):
+        advice = "Set that value itself; departures are written unit/link.field or copy/link.field"
+        yield Finding(where, f"it addresses {place.address}, which is no departure of a link", advice)
+    elif expected := wanted(place.node, value):
+        yield Finding(where, f"found {value!r} where {expected[0]} is expected", expected[1])
+
+
+def tag_findings(mechanism: Mechanism) -> Iterator[Finding]:
+    """Findings about tags: each must stand at a value, and begin with stated, derived or assumed.
+
+    >>> print(*tag_findings(Mechanism("", tags={"gravity": "published"})))
+    tags."gravity": found "published", which does not begin with stated, derived or assumed. Write for example "stated paper 2.2".
+    """
+    without = replace(mechanism, changes=Table({}))
+    for address, tag in mechanism.tags.items():
+        where = f'tags."{address}"'
+        try:
+            locate(without, address)
+        except DesignError as error:
+            yield from (replace(finding, where=where, what=f"it points nowhere: {finding.what}") for finding in error.findings)
+        words = tag.split()
+        if words[:1] not in [[word] for word in _WORDS]:
+            what = f'found "{tag}", which does not begin with stated, derived or assumed'
+            yield Finding(where, what, 'Write for example "stated paper 2.2"')
+        elif words[0] == STATED and (len(words) < 2 or words[1] not in mechanism.sources):
+            source = words[1] if len(words) > 1 else ""
+            what = f'it is stated by "{source}", which is none of the sources' if source else "it is stated by no source"
+            yield Finding(where, what, nearest(source, mechanism.sources))

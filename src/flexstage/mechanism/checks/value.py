@@ -1,0 +1,78 @@
+"""Numbers: finite, within their bounds, batches that fit together."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from flexstage.base.finding import Finding
+from flexstage.base.unit import show
+from flexstage.mechanism.grammar import NumberNode, node_of, numbers
+from flexstage.mechanism.locate import locate
+from flexstage.mechanism.mechanism import Mechanism
+
+
+def value_findings(mechanism: Mechanism) -> Iterator[Finding]:
+    """Findings about single numbers.
+
+    >>> from flexstage.parts.rod import Rod
+    >>> print(*value_findings(Mechanism("", parts={"wire": Rod("steel", length=0.03, diameter=-0.001)})))
+    parts.wire.diameter: found -1 mm, which is not greater than 0 mm. Write for example "1.54 mm".
+    """
+    shapes: dict[tuple[int, ...], str] = {}
+    for address, value, node in _all_numbers(mechanism):
+        yield from _number(address, value, node)
+        shapes.setdefault(np.shape(value), address)
+    try:
+        np.broadcast_shapes(*shapes)
+    except ValueError:
+        told = ", ".join(f"{address} {shape}" for shape, address in shapes.items() if shape)
+        yield Finding("batch", f"the shapes of its arrays do not fit together: {told}", "Give arrays that broadcast")
+
+
+def first_failing(failing: Any, *values: Any) -> tuple[str, tuple[Any, ...]]:
+    """Where the first failure of a batch is (`" at index 3"`, empty for one design), and the values there.
+
+    >>> first_failing(np.array([False, True]), np.array([1.0, 2.0]), 3.0)
+    (' at index 1', (2.0, 3.0))
+    """
+    shape = np.shape(failing)
+    index = tuple(int(axis) for axis in np.argwhere(failing)[0]) if shape else ()
+    picked = tuple(float(np.broadcast_to(np.real(value), shape)[index]) for value in values)
+    return (f" at index {', '.join(map(str, index))}" if shape else ""), picked
+
+
+def _all_numbers(mechanism: Mechanism) -> Iterator[tuple[str, Any, NumberNode]]:
+    yield from numbers(node_of(Mechanism), mechanism)
+    for key, value in mechanism.changes.items():
+        yield from numbers(locate(mechanism, key).node, value, f'changes."{key}"')
+
+
+def _number(where: str, value: Any, node: NumberNode) -> Iterator[Finding]:
+    example = f'Write for example "{node.quantity.example}"'
+    real = np.real(value)
+    endless = ~np.isfinite(value)
+    if np.any(endless):
+        at, (found,) = first_failing(endless, real)
+        yield Finding(f"{where}{at}", f"found {found}, which is not finite", example)
+        return
+    outside = _outside(real, node)
+    if node.bound is not None and np.any(outside):
+        at, (found,) = first_failing(outside, real)
+        yield Finding(f"{where}{at}", f"found {show(found, node.quantity, digits=6)}, which is not {_bound_text(node)}", example)
+
+
+def _outside(real: Any, node: NumberNode) -> Any:
+    bound = node.bound
+    if bound is None:
+        return np.zeros(np.shape(real), dtype=bool)
+    low = real <= bound.low if bound.open_low else real < bound.low
+    high = real >= bound.high if bound.open_high else real > bound.high
+    return low | high
+
+
+def _bound_text(node: NumberNode) -> str:
+    text = node.bound.text() if node.bound else ""
+    return text if node.quantity.shown == "1" else f"{text} {node.quantity.shown}"

@@ -1,0 +1,75 @@
+"""The design file: the serial form of a description, `load(dump(mechanism, path)) == mechanism`."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+
+from flexstage.base.finding import DesignError
+from flexstage.mechanism.checks import checked as _checked
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.mechanism.store.catalogue import shipped
+from flexstage.mechanism.store.decode import mechanism_from
+from flexstage.mechanism.store.encode import tree_of
+from flexstage.mechanism.store.file import parse_toml, read_text, write
+from flexstage.mechanism.store.patch import patch
+from flexstage.mechanism.store.schema import schema
+from flexstage.mechanism.store.tidy import tidied
+from flexstage.mechanism.store.toml import text_of
+
+__all__ = ["dump", "dumps", "load", "loads", "patch", "schema", "shipped", "tidied", "write"]
+
+
+def load(path: str | os.PathLike[str], *, checked: bool = True) -> Mechanism:
+    """Return the description in a design file.
+
+    Raises `DesignError` with everything that is wrong with the file; with `checked` also with the description (see `checks.check`).
+
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     load(dump(Mechanism("empty"), f"{folder}/stage.toml"), checked=False) == Mechanism("empty")
+    True
+    """
+    return loads(read_text(path), where=os.fspath(path), checked=checked)
+
+
+def loads(text: str, *, where: str = "text", checked: bool = True) -> Mechanism:
+    """Return the description in a design file's text; `where` names it in findings.
+
+    >>> loads("format = 'flexstage 1'; name = 'empty'".replace("; ", chr(10)), checked=False).name
+    'empty'
+    """
+    raw = parse_toml(text, where)
+    try:
+        mechanism = mechanism_from(raw, shipped())
+        return _checked(mechanism) if checked else mechanism
+    except DesignError as error:
+        raise DesignError(replace(finding, where=f"{where}: {finding.where}") for finding in error.findings) from None
+
+
+def dump(mechanism: Mechanism, path: str | os.PathLike[str], comments: Mapping[str, str] | None = None) -> Path:
+    """Write a description as a design file and return its path; see `dumps`.
+
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     dump(Mechanism("empty"), f"{folder}/stage.toml").name
+    'stage.toml'
+    """
+    return write(path, dumps(mechanism, comments))
+
+
+def dumps(mechanism: Mechanism, comments: Mapping[str, str] | None = None) -> str:
+    """Return the text of a description's design file.
+
+    Numbers are the shortest texts in the shown units that are read back to the same bits. `comments` stand above tables and values, by
+    address (`parts.neck`, `require`, "" for the whole file). Raises `DesignError` for what a file cannot hold: a batch, a complex number.
+
+    >>> print(dumps(Mechanism("empty"), {"": "Nothing yet."}), end="")
+    # Nothing yet.
+    format = "flexstage 1"
+    name = "empty"
+    gravity = ["0 m/s^2", "0 m/s^2", "-9.80665 m/s^2"]
+    """
+    return text_of(tree_of(mechanism), comments or {})

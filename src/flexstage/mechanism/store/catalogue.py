@@ -1,0 +1,65 @@
+"""The shipped catalogue: materials, piezo stacks and gauges, each number with its source."""
+
+from __future__ import annotations
+
+import functools
+import tomllib
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from importlib import resources
+from typing import Any
+
+from flexstage.parts.gauge import Gauge
+from flexstage.parts.material import Material
+from flexstage.parts.piezo import Piezo
+
+
+@dataclass(frozen=True)
+class Section:
+    """Entries of one class by name, as tables of a design file; `kind` tells the class apart where the file needs that."""
+
+    record: type
+    kind: str | None
+    entries: Mapping[str, Mapping[str, Any]]
+
+
+@dataclass(frozen=True)
+class Catalogue:
+    """Sections of entries that `like` may start from, and the sources that their tags name."""
+
+    sections: tuple[Section, ...]
+    sources: Mapping[str, str]
+
+    def section(self, *records: type) -> Section | None:
+        """The section of one of the classes, if there is any."""
+        return next((section for section in self.sections if section.record in records), None)
+
+    def sources_of(self, tags: Iterable[str]) -> dict[str, str]:
+        """The sources that tags (`stated key place`) name."""
+        keys = {word for tag in tags for word in tag.split()[1:2]}
+        return {key: text for key, text in self.sources.items() if key in keys}
+
+
+@functools.cache
+def shipped() -> Catalogue:
+    """The catalogue that comes with the package.
+
+    >>> "SUS420" in shipped().section(Material).entries
+    True
+    """
+    text = resources.files("flexstage.mechanism.store").joinpath("catalogue.toml").read_text(encoding="utf-8")
+    return catalogue_from(tomllib.loads(text))
+
+
+def catalogue_from(raw: Mapping[str, Any]) -> Catalogue:
+    """A catalogue from its tree: tables `materials`, `stacks`, `gauges` and `sources`.
+
+    >>> catalogue_from({"materials": {"steel": {"young": "200 GPa"}}}).section(Material).entries["steel"]["young"]
+    '200 GPa'
+    """
+    sections = (
+        Section(Material, None, raw.get("materials", {})),
+        Section(Piezo, "piezo", raw.get("stacks", {})),
+        Section(Gauge, None, raw.get("gauges", {})),
+    )
+    return Catalogue(sections, raw.get("sources", {}))

@@ -1,0 +1,128 @@
+"""Files at the border: read with a guard on size and form, written aside and then renamed."""
+
+from __future__ import annotations
+
+import errno
+import os
+import re
+import secrets
+import tomllib
+from pathlib import Path
+from typing import Any
+
+from flexstage.base.finding import DesignError, refuse
+
+LARGEST = 5_000_000
+"""Bytes of the largest file that is read: a thousand times a usual design."""
+LONGEST_LINE = 4_000
+
+
+def read_text(path: str | os.PathLike[str]) -> str:
+    """Return the text of a design file; raises `DesignError` if it is missing, a directory, too large or not UTF-8.
+
+    >>> read_text("nowhere/stage.toml")
+    Traceback (most recent call last):
+        ...
+    flexstage.base.finding.DesignError: nowhere/stage.toml: there is no such file. Check the path, or write one with "flexstage new".
+    """
+    where = os.fspath(path)
+    try:
+        with Path(path).open("rb") as stream:
+            raw = stream.read(LARGEST + 1)
+    except (OSError, ValueError) as error:
+        raise _unreadable(where, error) from None
+    if len(raw) > LARGEST:
+        raise _too_large(where)
+    try:
+        return raw.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = raw[: error.start].count(b"\n") + 1
+        raise refuse(f"{where}: line {line}", f"byte {error.start} is not UTF-8", "Save the file as UTF-8 text") from None
+
+
+def parse_toml(text: str, where: str) -> dict[str, Any]:
+    """Return the tree of a TOML text; raises `DesignError` with line and column if it is none.
+
+    >>> parse_toml('name = "a"', "stage.toml")
+    {'name': 'a'}
+    """
+    if len(text) > LARGEST:
+        raise _too_large(where)
+    for number, line in enumerate(text.split("\n"), start=1):
+        if len(line) > LONGEST_LINE:
+            what = f"it has {len(line)} characters, at most {LONGEST_LINE} are allowed"
+            raise refuse(f"{where}: line {number}", what, "Break it into several lines")
+    try:
+        return tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise _not_toml(where, str(error)) from None
+    except (RecursionError, ValueError) as error:
+        reason = "it nests too deeply" if isinstance(error, RecursionError) else "a number in it has too many digits"
+        raise refuse(where, reason, "Check that this is a design file") from None
+
+
+def write(path: str | os.PathLike[str], content: str | bytes) -> Path:
+    """Write aside, then rename onto `path`, so that no half-written file is ever there; raises `DesignError` if that cannot be.
+
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     write(f"{folder}/stage.toml", "name = 'a'").read_text()
+    "name = 'a'"
+    """
+    where = os.fspath(path)
+    try:
+        target = Path(path).resolve()
+        if target.is_dir():
+            raise refuse(where, "this is a directory", "Name a file in it")
+        if target.exists() and not target.is_file():
+            raise refuse(where, "this is no regular file", "Name a file")
+        _replace(target, content.encode() if isinstance(content, str) else content)
+    except (OSError, ValueError) as error:
+        if isinstance(error, DesignError):
+            raise
+        raise refuse(where, f"it cannot be written: {_reason(error)}", "Check the directory and its permissions") from None
+    return target
+
+
+def _replace(target: Path, content: bytes) -> None:
+    mode = target.stat().st_mode & 0o777 if target.exists() else None
+    if mode is not None and not os.access(target, os.W_OK):
+        raise PermissionError(errno.EACCES, "the file is write-protected")
+    aside = target.with_name(f".{target.name[:40]}.{secrets.token_hex(4)}.part")
+    try:
+        with aside.open("xb") as stream:
+            stream.write(content)
+            stream.flush()
+            os.fsync(stream.fileno())
+        if mode is not None:
+            aside.chmod(mode)
+        aside.replace(target)
+    except BaseException:
+        aside.unlink(missing_ok=True)
+        raise
+
+
+def _reason(error: OSError | ValueError) -> str:
+    return (error.strerror if isinstance(error, OSError) else None) or str(error)
+
+
+def _unreadable(where: str, error: OSError | ValueError) -> DesignError:
+    if isinstance(error, FileNotFoundError):
+        return refuse(where, "there is no such file", 'Check the path, or write one with "flexstage new"')
+    if isinstance(error, IsADirectoryError):
+        return refuse(where, "this is a directory", "Name the design file in it")
+    return refuse(where, f"it cannot be read: {_reason(error)}", "Check the path and its permissions")
+
+
+def _too_large(where: str) -> DesignError:
+    what = f"it is larger than {LARGEST / 1e6:g} MB, which no design is"
+    return refuse(where, what, "Check that this is a design file")
+
+
+def _not_toml(where: str, message: str) -> DesignError:
+    match = re.fullmatch(r"(.*) \(at (line \d+, column \d+|end of document)\)", message, re.DOTALL)
+    reason, place = (match[1], match[2]) if match else (message, "")
+    at = f"{where}: {place}" if place else where
+    if reason.startswith(("Cannot overwrite", "Cannot declare", "Cannot mutate", "Duplicate")):
+        return refuse(at, f"a name stands twice ({reason})", "Every key and every table stands once; rename or remove one")
+    return refuse(at, f"this is not TOML: {reason}", "Mend that line; texts stand in quotes, tables on one line in braces")

@@ -1,0 +1,116 @@
+"""Changing single values in a design file's text: comments, order and everything else stay as they are."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import tomlkit
+
+from flexstage.base.finding import refuse
+from flexstage.mechanism.address import set_value, value_from_text
+from flexstage.mechanism.grammar import TAGS, Node, RecordNode, UnionNode, child, node_of
+from flexstage.mechanism.locate import canonical, locate
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.mechanism.path import member
+from flexstage.mechanism.store.catalogue import shipped
+from flexstage.mechanism.store.decode import mechanism_from
+from flexstage.mechanism.store.encode import plain
+from flexstage.mechanism.store.file import parse_toml
+from flexstage.spatial.frame import COMPONENTS
+
+
+def patch(text: str, values: Mapping[str, Any], *, where: str = "text") -> str:
+    """Return a design file's text with other values at some addresses, given as texts with units or as SI numbers.
+
+    Comments stay. The tags of the old values are taken out: what was stated of them is not true of the new ones.
+
+    >>> text = 'format = "flexstage 1"' + chr(10) + 'name = "a"  # a stage' + chr(10) + 'mode_limit = "1 kHz"  # enough'
+    >>> print(patch(text, {"mode_limit": "800 Hz"}))
+    format = "flexstage 1"
+    name = "a"  # a stage
+    mode_limit = "800 Hz"  # enough
+    """
+    mechanism = mechanism_from(parse_toml(text, where), shipped())
+    document = tomlkit.parse(text)
+    for address, value in values.items():
+        place = locate(mechanism, address)
+        kept = value_from_text(value, place, address) if isinstance(value, str) else value
+        changed = set_value(mechanism, address, kept)
+        _untag(document, mechanism, changed)
+        _set(document, mechanism, changed, address)
+        mechanism = changed
+    result = tomlkit.dumps(document)
+    if mechanism_from(parse_toml(result, where), shipped()) != mechanism:
+        raise refuse(where, "its tables are laid out so that single values cannot be changed", "Write it anew with dump")
+    return result
+
+
+def _set(document: Any, mechanism: Mechanism, changed: Mechanism, address: str) -> None:
+    place = locate(mechanism, address)
+    if place.owners:
+        _set_changes(document, mechanism, changed)
+        return
+    paths = {place.path} | ({(*place.path[:-2], place.path[-1], place.path[-2])} if place.path[-3:-2] == ("compliance",) else set())
+    for path in paths:
+        _set_at(document, changed, path)
+
+
+def _set_changes(document: Any, mechanism: Mechanism, changed: Mechanism) -> None:
+    if "change" not in document:
+        document.append("change", tomlkit.table())
+    table = document["change"]
+    for key in mechanism.changes.keys() - changed.changes.keys():
+        del table[key]
+    for key, value in changed.changes.items():
+        if key not in mechanism.changes or mechanism.changes[key] is not value:
+            table[key] = plain(locate(changed, key).node, value, key)
+
+
+def _set_at(document: Any, changed: Mechanism, path: tuple[str, ...]) -> None:
+    """Write the changed value at a path, or, where the file does not go that deep, what holds it."""
+    table: Any = document
+    node: Node = node_of(Mechanism)
+    value: Any = changed
+    for number, name in enumerate(path):
+        key = _key(node, value, name)
+        node, value = child(node, value, name), member(value, name)
+        last = number == len(path) - 1
+        if last or not _holds(table, key) or isinstance(table[key], str):
+            table[key] = plain(node, value, ".".join(path))
+            return
+        table = table[key]
+
+
+def _key(node: Node, value: Any, name: str) -> Any:
+    """The key of a member in the file: that of its alternative for patterns, a number for components."""
+    if isinstance(value, tuple):
+        return COMPONENTS.index(name)
+    if isinstance(node, UnionNode):
+        node = dict(node.options)[node.name_of(value)]
+    if isinstance(node, RecordNode):
+        inner = node.fields[name].node
+        return inner.name_of(getattr(value, name)) if isinstance(inner, UnionNode) and inner.key is None else node.fields[name].key
+    return name
+
+
+def _holds(table: Any, key: Any) -> bool:
+    return isinstance(key, int) or key in table
+
+
+def _untag(document: Any, mechanism: Mechanism, changed: Mechanism) -> None:
+    lost = {canonical(mechanism, key) for key in mechanism.tags.keys() - changed.tags.keys()}
+    for table, prefix in list(_tagged(document, "")):
+        for key in [key for key in table[TAGS] if canonical(mechanism, prefix + key) in lost]:
+            del table[TAGS][key]
+        if not table[TAGS]:
+            del table[TAGS]
+
+
+def _tagged(table: Any, prefix: str) -> Iterator[tuple[Any, str]]:
+    """The tables that have tags, with the beginning of their addresses."""
+    if TAGS in table:
+        yield table, prefix
+    for key, value in table.items():
+        if isinstance(value, Mapping) and key != TAGS:
+            yield from _tagged(value, f"{prefix}{key}.")
