@@ -69,42 +69,47 @@ def digest(value: Any, *, physics: bool = False) -> str:
     >>> digest(1.0) == digest(1.0), digest(1.0) == digest(1)
     (True, False)
     """
-    state = hashlib.sha256()
-    _feed(state, value, physics=physics)
-    return state.hexdigest()
+    pieces: list[bytes] = []
+    _feed(pieces, value, physics=physics)
+    return hashlib.sha256(b"".join(pieces)).hexdigest()
 
 
-def _feed(state: Any, value: Any, *, physics: bool) -> None:
+def _feed(pieces: list[bytes], value: Any, *, physics: bool) -> None:
     if isinstance(value, Description):
-        state.update(b"D" + type(value).__name__.encode())
-        for field in fields(value):  # type: ignore[arg-type]
-            if not (physics and field.metadata.get("physics") is False):
-                _feed(state, field.name, physics=physics)
-                _feed(state, getattr(value, field.name), physics=physics)
-        state.update(b"d")
-    elif isinstance(value, Enum):
-        state.update(b"E" + str(value.value).encode())
+        pieces.append(b"D" + type(value).__name__.encode())
+        for name, piece in _counted_fields(type(value), physics=physics):
+            pieces.append(piece)
+            _feed(pieces, getattr(value, name), physics=physics)
+        pieces.append(b"d")
     elif isinstance(value, Mapping):
-        state.update(b"M")
+        pieces.append(b"M")
         for key in sorted(value):
-            _feed(state, key, physics=physics)
-            _feed(state, value[key], physics=physics)
-        state.update(b"m")
+            pieces.append(_scalar(key))
+            _feed(pieces, value[key], physics=physics)
+        pieces.append(b"m")
     elif isinstance(value, (tuple, list)):
-        state.update(b"T")
+        pieces.append(b"T")
         for item in value:
-            _feed(state, item, physics=physics)
-        state.update(b"t")
+            _feed(pieces, item, physics=physics)
+        pieces.append(b"t")
     else:
-        _feed_scalar(state, value)
+        pieces.append(_scalar(value))
 
 
-def _feed_scalar(state: Any, value: Any) -> None:
+def _scalar(value: Any) -> bytes:
     if isinstance(value, float):
-        state.update(b"F" + struct.pack("<d", value))
-    elif isinstance(value, np.ndarray):
-        state.update(b"A" + str((value.shape, value.dtype)).encode() + value.tobytes())
-    elif isinstance(value, str):
-        state.update(b"S" + str(len(value)).encode() + value.encode())
-    else:
-        state.update(b"O" + repr(value).encode() + b";")
+        return b"F" + struct.pack("<d", value)
+    if isinstance(value, str):
+        return b"S" + str(len(value)).encode() + value.encode()
+    if isinstance(value, Enum):
+        return b"E" + str(value.value).encode()
+    if isinstance(value, np.ndarray):
+        return b"A" + str((value.shape, value.dtype)).encode() + value.tobytes()
+    return b"O" + repr(value).encode() + b";"
+
+
+@functools.cache
+def _counted_fields(cls: type, *, physics: bool) -> tuple[tuple[str, bytes], ...]:
+    """Names of the fields that count, with what they feed."""
+    counted = [field for field in fields(cls) if not (physics and field.metadata.get("physics") is False)]  # type: ignore[arg-type]
+    return tuple((field.name, _scalar(field.name)) for field in counted)

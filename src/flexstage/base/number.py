@@ -78,6 +78,8 @@ def stack(values: Any) -> Array:
     """
     if not isinstance(values, (list, tuple)):
         return np.asarray(values)
+    if all(isinstance(value, (float, int, complex)) for value in values):
+        return np.array(values)
     inner = [stack(value) for value in values]
     if all(item.shape == inner[0].shape for item in inner):
         depth = _depth(values)
@@ -85,9 +87,7 @@ def stack(values: Any) -> Array:
     depth = _depth(values)
     tails = [item.shape[item.ndim - depth + 1 :] if depth > 1 else () for item in inner]
     batch = np.broadcast_shapes(*(item.shape[: item.ndim - depth + 1] for item in inner))
-    return np.stack(
-        [np.broadcast_to(item, batch + tail) for item, tail in zip(inner, tails, strict=True)], axis=-depth
-    )
+    return np.stack([np.broadcast_to(item, batch + tail) for item, tail in zip(inner, tails, strict=True)], axis=-depth)
 
 
 def _depth(values: Any) -> int:
