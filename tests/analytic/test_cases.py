@@ -1,0 +1,185 @@
+"""The shipped cases' kinematics and simple stiffnesses by hand."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from flexstage.base.finding import DesignError
+from flexstage.base.scale import GPa, X, deg, mm
+from flexstage.beams.compliance import compliance
+from flexstage.cases.bridge import Bridge, bridge
+from flexstage.cases.hexapod import Hexapod, hexapod
+from flexstage.cases.parallelogram import Parallelogram, parallelogram
+from flexstage.cases.stock import ALUMINIUM, STEEL
+from flexstage.cases.strut import Strut
+from flexstage.cases.tip_tilt import TipTilt, tip_tilt
+from flexstage.cases.xy_stage import XYStage, xy_stage
+from flexstage.parts.freedom import Freedom
+from flexstage.parts.given import Joint
+from flexstage.parts.leaf import Leaf
+from flexstage.readings.ideal import ideal
+from flexstage.readings.linear.eigen import eigen
+from flexstage.readings.linear.static import static_gain
+from flexstage.readings.lumped import lumped
+
+
+def test_parallelogram_moves_along_x_as_its_stack_does():
+    found = ideal(parallelogram())
+    assert found.coordinates == ("x",)
+    np.testing.assert_allclose(found.actuation, [[1.0]], atol=1e-12)
+    np.testing.assert_allclose(found.motion[:, 0], [1.0, 0, 0, 0, 0, 0], atol=1e-12)
+    np.testing.assert_allclose(found.sensing, [[1.0, 0, 0, 0, 0, 0]], atol=1e-12)
+    assert [set(item.constraints) for item in found.redundant] == [{"left.ry", "right.ry"}]
+    assert [item.bodies for item in found.idle] == [("B/base", "B/tip")]
+
+
+def _strut_stiffness(neck, stack):
+    """A stack between two necks in series [N/m]."""
+    return 1.0 / (1.0 / stack.stiffness + 2.0 * compliance(neck, STEEL)[0, 0])
+
+
+def test_parallelogram_gain_is_that_of_two_springs_in_series():
+    """1 - gain = k_g / (k + k_g), k that of the strut, k_g that of two leaves; yaw and the necks' bending add less than 5 % to it."""
+    p = Parallelogram()
+    found = static_gain(lumped(parallelogram(p)), ("platform.x",), ("B",)).values[0, 0]
+    guide = 2.0 / compliance(p.leaf, ALUMINIUM)[1, 1]
+    expected = guide / (_strut_stiffness(p.neck, p.stack) + guide)
+    assert expected < 1.0 - found < 1.05 * expected
+
+
+@pytest.mark.parametrize("driven", [1, 2])
+def test_xy_stage_axes_are_independent(driven):
+    found = ideal(xy_stage(XYStage(driven=driven)))
+    assert found.coordinates == ("x", "y")
+    np.testing.assert_allclose(found.actuation, np.eye(2)[:driven], atol=1e-12)
+    np.testing.assert_allclose(found.motion, np.eye(6)[:, :2], atol=1e-12)
+    assert found.actuated is (driven == 2)
+
+
+def test_xy_stage_is_held_four_times():
+    """A carriage on 4 leaves: 12 constraints for 5 freedoms; 2 coupling leaves: 6 for 5; the platform: 4 freedoms by 4 carriages."""
+    assert len(ideal(xy_stage()).redundant) == 4 * (12 - 5) + 4 * (6 - 5) + 4 * 4 - 4
+
+
+def test_an_under_actuated_stage_has_no_mapping():
+    with pytest.raises(DesignError, match="1 strokes do not determine the platform's 2 ideal motions"):
+        _ = ideal(xy_stage(XYStage(driven=1))).mapping
+
+
+def test_bridge_amplifies_by_the_cotangent():
+    for angle in (2.0, 6.0, 10.0):
+        found = ideal(bridge(Bridge(angle=angle * deg)))
+        assert found.coordinates == ("y",)
+        np.testing.assert_allclose(found.actuation, [[-math.tan(math.radians(angle))]], rtol=1e-9)
+        np.testing.assert_allclose(found.motion[:, 0], [0, 1.0, 0, 0, 0, 0], atol=1e-9)
+
+
+def bridge_gain(across, axial, angle):
+    """R = s c (c_t - c_a)/(c^2 c_a + s^2 c_t) of a quarter link between guided ends (Lobontiu & Garcia 2003; Ling et al. 2016)."""
+    sine, cosine = math.sin(angle), math.cos(angle)
+    return sine * cosine * (across - axial) / (cosine**2 * axial + sine**2 * across)
+
+
+def _free_bridge(angle):
+    """The worked example of reference B11: E = 70 GPa, leaves 5 x 0.5 x 10 mm, bars of 20 mm, and no guide stiffness."""
+    p = Bridge(leaf=Leaf("aluminium", length=5 * mm, thickness=0.5 * mm, width=10 * mm), bar=20 * mm, angle=angle, half_span=40 * mm)
+    material = replace(ALUMINIUM, young=70 * GPa)
+    stage = bridge(p)
+    parts = {**stage.parts, "guide": Joint((Freedom.Y,))}
+    return p, material, replace(stage, parts=parts, materials={"aluminium": material})
+
+
+def _measured_gain(stage):
+    """Platform motion over the spread of the two ends."""
+    moved = static_gain(lumped(stage), ("platform.y", "left.x", "right.x"), ("pzt",)).values[:, 0]
+    return -moved[0] / (moved[2] - moved[1])
+
+
+@pytest.mark.parametrize("angle", [1.0, 3.0, 6.0, 10.0])
+def test_bridge_gain_is_the_closed_form_with_the_leaves_own_compliances(angle):
+    p, material, stage = _free_bridge(angle * deg)
+    leaf = compliance(p.leaf, material)
+    arm = 0.5 * (p.bar + p.leaf.length)
+    across, axial = 2.0 * (leaf[1, 1] + arm**2 * leaf[5, 5]), 2.0 * leaf[0, 0]
+    assert _measured_gain(stage) == pytest.approx(bridge_gain(across, axial, angle * deg), rel=1e-7)
+
+
+@pytest.mark.parametrize(("angle", "published"), [(1.0, 40.0056), (3.0, 18.2064), (6.0, 9.401136), (10.0, 5.6466)])
+def test_bridge_gain_of_reference_b11(angle, published):
+    """The published values are Euler-Bernoulli; leaves here have shear and plate action, which makes them up to 10 % stiffer across."""
+    _, _, stage = _free_bridge(angle * deg)
+    ideal_gain = 1.0 / math.tan(math.radians(angle))
+    assert _measured_gain(stage) == pytest.approx(published, rel=0.1 * (ideal_gain - published) / published)
+
+
+def test_hexapod_rows_are_direction_and_moment():
+    p = Hexapod()
+    found = ideal(hexapod(p))
+    assert found.coordinates == ("x", "y", "z", "rx", "ry", "rz")
+    centre = np.array([0.0, 0.0, p.rise + 0.5 * p.thickness])
+    expected = []
+    for side in (1.0, -1.0):
+        for place in (90.0, 210.0, 330.0):
+            turn = math.radians(place)
+            outward, tangent = np.array([math.cos(turn), math.sin(turn), 0]), np.array([-math.sin(turn), math.cos(turn), 0])
+            direction = -side * math.cos(p.slope) * tangent + np.array([0, 0, math.sin(p.slope)])
+            head = p.head_radius * outward + 0.5 * side * p.gap * tangent
+            expected.append([*direction, *np.cross(head - centre, direction)])
+    np.testing.assert_allclose(found.mapping.values, expected, atol=1e-12)
+    assert found.redundant == ()
+    assert [item.bodies for item in found.idle] == [(f"{name}/base", f"{name}/tip") for name in found.actuators]
+
+
+def test_hexapod_stiffness_is_that_of_its_struts():
+    """K = R_a^T k R_a, axial springs; the necks' bending adds less than 2 %."""
+    p = Hexapod()
+    rows = ideal(hexapod(p)).mapping.values
+    axial = _strut_stiffness(p.neck, p.stack) * rows.T @ rows
+    model = lumped(hexapod(p))
+    wrench = tuple(f"platform.{name}" for name in ("fx", "fy", "fz", "mx", "my", "mz"))
+    full = np.linalg.inv(static_gain(model, tuple(f"platform.{name}" for name in ("x", "y", "z", "rx", "ry", "rz")), wrench).values)
+    ratio = np.diag(full) / np.diag(axial)
+    assert np.all((ratio > 1.0) & (ratio < 1.02))
+
+
+@pytest.mark.parametrize("posts", [3, 4])
+def test_tip_tilt_rows_are_lever_arms(posts):
+    p = TipTilt(posts=posts)
+    found = ideal(tip_tilt(p))
+    assert found.coordinates == ("z", "rx", "ry")
+    places = np.radians(90.0 + 360.0 / posts * np.arange(posts))
+    expected = np.stack([np.ones(posts), p.post_radius * np.sin(places), -p.post_radius * np.cos(places)], axis=1)
+    np.testing.assert_allclose(found.mapping.values, expected, atol=1e-12)
+    assert len(found.redundant) == 6
+    assert len(found.idle) == posts
+
+
+def test_redundant_posts_share_a_command():
+    """Four strokes for three freedoms: da = R_a dx is reached exactly, opposite pairs against one another not at all."""
+    found = ideal(tip_tilt(TipTilt(posts=4)))
+    np.testing.assert_allclose(found.inverse @ found.actuation, np.eye(3), atol=1e-12)
+    np.testing.assert_allclose(found.inverse @ np.array([1.0, -1.0, 1.0, -1.0]), 0.0, atol=1e-12)
+
+
+def test_piston_frequency_is_that_of_three_struts():
+    """f = (3 k / m)^(1/2) / 2 pi without the struts' own masses; with them at most 10 % lower, leaves and necks add less than 2 %."""
+    p = TipTilt()
+    mass = math.pi / 4.0 * (p.holder**2 * p.holder_thickness * ALUMINIUM.density + p.mirror[0] ** 2 * p.mirror[1] * 2530.0)
+    simple = math.sqrt(3.0 * _strut_stiffness(p.neck, p.stack) / mass) / (2.0 * math.pi)
+    model = lumped(tip_tilt(p))
+    solved = eigen(model)
+    row = model.output_index(("platform.z",))
+    share = (model.output[row] @ solved.shapes)[0] ** 2
+    piston = math.sqrt(solved.values[int(np.argmax(share))]) / (2.0 * math.pi)
+    assert 0.9 * simple < piston < 1.02 * simple
+
+
+def test_strut_reaches_from_neck_to_neck():
+    p = Parallelogram()
+    strut = Strut((0.0, 0.0, 0.0), X, p.neck, p.stack, "steel", 10 * mm)
+    assert strut.length == pytest.approx(8 * mm + 10 * mm + 36 * mm)
+    assert strut.foot == pytest.approx((-54 * mm, 0.0, 0.0))
