@@ -93,9 +93,7 @@ def _budget(kinematics: Kinematics, model: LinearModel, sense: Array) -> dict[st
         if link in kinematics.strains:
             force = model.stiffness[link].law @ strain
             ideal = kinematics.strains[link] @ inverse
-            shares |= {
-                f"{link}.{freedom.value}": _product(force, ideal, freedom.index) for freedom in kinematics.free[link]
-            }
+            shares |= {f"{link}.{freedom.value}": _product(force, ideal, freedom.index) for freedom in kinematics.free[link]}
     if kinematics.mobility < len(names):
         shares[INTERNAL] = _internal(kinematics, model, strains)
     return {name: Matrix(share, names, names, "1") for name, share in shares.items()}

@@ -149,9 +149,9 @@ class Mechanism(Description):
     forces: Mapping[str, Force] = _empty()
     gravity: Annotated[Vector, ACCELERATION] = (0.0, 0.0, -9.80665)
     damping: Damping | None = None
-    envelope: tuple[
-        Annotated[Number, LENGTH, POSITIVE], Annotated[Number, LENGTH, POSITIVE], Annotated[Number, LENGTH, POSITIVE]
-    ] | None = None
+    envelope: (
+        tuple[Annotated[Number, LENGTH, POSITIVE], Annotated[Number, LENGTH, POSITIVE], Annotated[Number, LENGTH, POSITIVE]] | None
+    ) = None
     opening: Opening | None = None
     mode_limit: Annotated[Number, FREQUENCY, POSITIVE] | None = None
     changes: Mapping[str, Any] = _empty()

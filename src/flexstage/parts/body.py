@@ -19,9 +19,7 @@ class Block(Description):
     """
 
     material: str
-    size: tuple[
-        Annotated[Number, LENGTH, POSITIVE], Annotated[Number, LENGTH, POSITIVE], Annotated[Number, LENGTH, POSITIVE]
-    ]
+    size: tuple[Annotated[Number, LENGTH, POSITIVE], Annotated[Number, LENGTH, POSITIVE], Annotated[Number, LENGTH, POSITIVE]]
     at: Annotated[Vector, LENGTH] = (0.0, 0.0, 0.0)
     hole: tuple[Annotated[Number, LENGTH, POSITIVE], Annotated[Number, LENGTH, POSITIVE]] | None = None
 

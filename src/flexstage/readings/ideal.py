@@ -183,6 +183,5 @@ def _redundant(graph: _Graph) -> tuple[Redundant, ...]:
     first = first / np.where(norms > 0.0, norms, 1.0)[:, None]
     states = echelon(null_space(first.T).T)
     return tuple(
-        Redundant(tuple(name for name, force in zip(graph.names, state, strict=True) if abs(force) > _NEGLIGIBLE))
-        for state in states
+        Redundant(tuple(name for name, force in zip(graph.names, state, strict=True) if abs(force) > _NEGLIGIBLE)) for state in states
     )

@@ -209,9 +209,7 @@ def _inputs(stage: _Stage) -> tuple[tuple[Channel, ...], Array, dict[str, Array]
     places = [("platform", twist_at(stage.assembly, stage.order, PLATFORM, _at(stage.assembly.bodies[PLATFORM].reference)))]
     places += [(name, twist_at(stage.assembly, stage.order, body, _at(point))) for name, (body, point) in stage.assembly.points.items()]
     channels = [Channel(name, "m") for name in drives]
-    channels += [
-        Channel(f"{name}.{force}", unit) for name, _ in places for force, unit in zip(_FORCES, WRENCH_UNITS, strict=True)
-    ]
+    channels += [Channel(f"{name}.{force}", unit) for name, _ in places for force, unit in zip(_FORCES, WRENCH_UNITS, strict=True)]
     columns = _spread((np.zeros((stage.order.size, len(drives))), *(_transposed(rows) for _, rows in places)))
     imposed: dict[str, Array] = {}
     for number, link in enumerate(drives.values()):

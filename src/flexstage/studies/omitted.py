@@ -56,9 +56,7 @@ def omitted(mechanism: Mechanism, simple: Restrictions, channel: tuple[str, str]
     return Omitted(*channel, base, _gain(mechanism, {}, channel), changes)
 
 
-def _with(
-    kept: tuple[tuple[Freedom, ...], tuple[Freedom, ...]], freedom: Freedom
-) -> tuple[tuple[Freedom, ...], tuple[Freedom, ...]]:
+def _with(kept: tuple[tuple[Freedom, ...], tuple[Freedom, ...]], freedom: Freedom) -> tuple[tuple[Freedom, ...], tuple[Freedom, ...]]:
     elastic, free = kept
     return (*elastic, freedom), tuple(item for item in free if item is not freedom)
 
