@@ -19,6 +19,8 @@ from flexstage.parts.material import Material
 from flexstage.parts.part import Part, is_actuator, material_of
 from flexstage.spatial.frame import Frame, axes, identity, turn_z
 
+_LINK_FIELDS = frozenset(field.name for field in fields(Link))
+
 
 @dataclass(frozen=True, eq=False)
 class PlacedBody:
@@ -111,7 +113,7 @@ def expand(mechanism: Mechanism) -> Assembly:
     The description must have passed its checks. Without platform reference the platform's twist is given at its own centre of mass.
     """
     links = {link.name: link for link in _links(mechanism)}
-    bodies = {name: _placed_body(name, body, frame, mechanism, links) for name, body, frame in _bodies(mechanism)}
+    bodies = {name: _placed_body(name, drawn, frame, links) for name, drawn, frame in _bodies(mechanism)}
     points = {
         (point if name == "platform" else f"{name}.{point}"): (name, placed.frame.point(stack(at)))
         for name, placed in bodies.items()
@@ -129,54 +131,80 @@ def copies(mechanism: Mechanism) -> Iterator[tuple[str, str, Frame]]:
             yield name, placement.unit, frame
 
 
-def _bodies(mechanism: Mechanism) -> Iterator[tuple[str, Body, Frame]]:
-    for name, body in mechanism.bodies.items():
-        yield name, body, identity()
+@dataclass(frozen=True, eq=False)
+class _DrawnBody:
+    """A body with its own mass properties, both in the frame it is drawn in."""
+
+    body: Body
+    mass: MassProperties | None
+
+
+@dataclass(frozen=True, eq=False)
+class _DrawnLink:
+    """A link with its own address and frame in the frame it is drawn in."""
+
+    address: str
+    link: Link
+    frame: Frame
+
+
+def _bodies(mechanism: Mechanism) -> Iterator[tuple[str, _DrawnBody, Frame]]:
+    for name, drawn in _drawn_bodies(mechanism, mechanism.bodies).items():
+        yield name, drawn, identity()
+    units = {name: _drawn_bodies(mechanism, unit.bodies) for name, unit in mechanism.units.items()}
     for copy, unit, frame in copies(mechanism):
-        for name, body in mechanism.units[unit].bodies.items():
-            yield f"{copy}/{name}", body, frame
+        for name, drawn in units[unit].items():
+            yield f"{copy}/{name}", drawn, frame
+
+
+def _drawn_bodies(mechanism: Mechanism, bodies: Mapping[str, Body]) -> dict[str, _DrawnBody]:
+    return {name: _DrawnBody(body, mass_properties(body, mechanism.materials)) for name, body in bodies.items()}
 
 
 def _links(mechanism: Mechanism) -> Iterator[PlacedLink]:
-    for name, link in mechanism.links.items():
-        yield _placed_link(mechanism, link, identity(), (name, f"links.{name}", link.joins))
+    for name, drawn in _drawn_links("links.", mechanism.links).items():
+        yield _placed_link(mechanism, drawn, identity(), (name, drawn.link.joins))
+    units = {name: _drawn_links(f"{name}/", unit.links) for name, unit in mechanism.units.items()}
     for copy, unit, frame in copies(mechanism):
         own = mechanism.units[unit].bodies
-        for name, link in mechanism.units[unit].links.items():
-            first, second = (f"{copy}/{body}" if body in own else body for body in link.joins)
-            yield _placed_link(mechanism, link, frame, (f"{copy}/{name}", f"{unit}/{name}", (first, second)))
+        for name, drawn in units[unit].items():
+            first, second = (f"{copy}/{body}" if body in own else body for body in drawn.link.joins)
+            yield _placed_link(mechanism, drawn, frame, (f"{copy}/{name}", (first, second)))
 
 
-def _placed_link(
-    mechanism: Mechanism, link: Link, outer: Frame, names: tuple[str, str, tuple[str, str]]
-) -> PlacedLink:
-    name, drawn, joins = names
-    link, part = departed(mechanism, link, (drawn, name))
+def _drawn_links(owner: str, links: Mapping[str, Link]) -> dict[str, _DrawnLink]:
+    return {name: _DrawnLink(f"{owner}{name}", link, _link_frame(link)) for name, link in links.items()}
+
+
+def _link_frame(link: Link) -> Frame:
+    return Frame(axes(link.along, link.bends), stack(link.at))
+
+
+def _placed_link(mechanism: Mechanism, drawn: _DrawnLink, outer: Frame, names: tuple[str, tuple[str, str]]) -> PlacedLink:
+    name, joins = names
+    link, part = departed(mechanism, drawn.link, (drawn.address, name))
     material = material_of(part)
-    frame = Frame(axes(link.along, link.bends), stack(link.at)).within(outer)
-    return PlacedLink(name, drawn, joins, link, part, mechanism.materials[material] if material else None, frame)
+    frame = drawn.frame if link is drawn.link else _link_frame(link)
+    return PlacedLink(name, drawn.address, joins, link, part, mechanism.materials[material] if material else None, frame.within(outer))
 
 
 def departed(mechanism: Mechanism, link: Link, owners: tuple[str, ...]) -> tuple[Link, Part]:
     """A link and its part with the mechanism's `changes` for the owners' addresses applied, in the owners' order."""
     part = mechanism.parts[link.part]
-    link_fields = {field.name for field in fields(Link)}
     for owner in dict.fromkeys(owners):
         for address, value in mechanism.changes.items():
             if not address.startswith(f"{owner}."):
                 continue
             path = tuple(address[len(owner) + 1 :].split("."))
-            if path[0] in link_fields:
+            if path[0] in _LINK_FIELDS:
                 link = replaced(link, complete(link, path), value)
             else:
                 part = replaced(part, complete(part, path), value)
     return link, part
 
 
-def _placed_body(
-    name: str, body: Body, frame: Frame, mechanism: Mechanism, links: Mapping[str, PlacedLink]
-) -> PlacedBody:
-    own = mass_properties(body, mechanism.materials)
+def _placed_body(name: str, drawn: _DrawnBody, frame: Frame, links: Mapping[str, PlacedLink]) -> PlacedBody:
+    body, own = drawn.body, drawn.mass
     mass = None if own is None else MassProperties(own.mass, frame.point(own.centre), _turned(frame, own.inertia))
     if body.reference is not None:
         reference = frame.point(stack(body.reference))
@@ -196,9 +224,7 @@ def _actuators(links: Mapping[str, PlacedLink]) -> dict[str, str]:
     """Name an input after its unit's copy where that copy has one actuator only, else after the link."""
     drives = [name for name, link in links.items() if is_actuator(link.part)]
     owners = [name.rpartition("/")[0] for name in drives]
-    return {
-        (owner if owner and owners.count(owner) == 1 else name): name for owner, name in zip(owners, drives, strict=True)
-    }
+    return {(owner if owner and owners.count(owner) == 1 else name): name for owner, name in zip(owners, drives, strict=True)}
 
 
 def _gauges(mechanism: Mechanism) -> Iterator[tuple[str, PlacedGauge]]:
