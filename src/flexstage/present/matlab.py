@@ -36,7 +36,8 @@ def as_mat(analysis: Analysis) -> bytes:
 def mat_variables(analysis: Analysis) -> dict[str, Any]:
     """Variables of the MATLAB file: R_a, R_s, and of elastic readings K, M, B, C, D, frequencies and state space.
 
-    M q'' + K q = B u, y = C q + D u. What a reading or a stage does not have is left out, and `notes` says why. SI units; names and units of rows and columns in cell arrays.
+    M q'' + K q = B u, y = C q + D u. What a reading or a stage does not have is left out, and `notes` says why. SI units; names and
+    units of rows and columns in cell arrays.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.studies.complete import Reading, analyse

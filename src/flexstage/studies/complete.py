@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TypeVar
 
 from flexstage.analysis.lost_motion import LostMotion, lost_motion
 from flexstage.analysis.modes import Modes, modes
 from flexstage.analysis.response import response, transmissibility
 from flexstage.analysis.statics import Statics, statics
-from flexstage.base.finding import DesignError
 from flexstage.base.number import Table
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.readings.ideal import ideal
@@ -19,12 +17,14 @@ from flexstage.readings.linear.kinematics import Kinematics
 from flexstage.readings.linear.model import LinearModel
 from flexstage.readings.lumped import lumped
 from flexstage.readings.mapped import mapped
+from flexstage.studies.attempt import Attempts
 from flexstage.studies.reading import Reading
+from flexstage.studies.workspace import Workspace, workspace
 
 __all__ = ["Analysis", "Reading", "analyse", "platform_modes", "read"]
 
 _MODE_LIMIT = 1000.0
-_Result = TypeVar("_Result")
+_RIGID = "the ideal reading has no elasticity"
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,6 +43,7 @@ class Analysis:
     modes: Modes | None
     response: Response | None
     transmissibility: Response | None
+    workspace: Workspace | None
     missing: Mapping[str, str]
 
 
@@ -61,7 +62,8 @@ def read(mechanism: Mechanism, reading: Reading) -> LinearModel | None:
 def analyse(mechanism: Mechanism, reading: Reading = Reading.LUMPED) -> Analysis:
     """Every analysis of one reading.
 
-    What a stage cannot give (an under-actuated one has no lost motion) is `None`, its reason in `missing`. Raises `DesignError` where the reading itself is refused.
+    What a stage cannot give (an under-actuated one has no lost motion) is `None`, its reason in `missing`. Raises `DesignError` where
+    the reading itself is refused.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> round(float(analyse(double_triangle(), Reading.MAPPED).modes.frequencies[0]), 2)
@@ -69,17 +71,20 @@ def analyse(mechanism: Mechanism, reading: Reading = Reading.LUMPED) -> Analysis
     """
     kinematics = ideal(mechanism)
     model = read(mechanism, reading)
-    attempt = _Attempts()
+    attempt = Attempts()
+    lost = attempt.given("lost_motion", model, _RIGID, lambda known: lost_motion(kinematics, known))
+    seen = (PLATFORM, *kinematics.gauges)
     return Analysis(
         mechanism=mechanism,
         reading=reading,
         kinematics=kinematics,
         model=model,
-        statics=attempt.of("statics", model, statics),
-        lost_motion=attempt.of("lost_motion", model, lambda known: lost_motion(kinematics, known)),
-        modes=attempt.of("modes", model, lambda known: platform_modes(mechanism, known)),
-        response=attempt.of("response", model, lambda known: response(known, (PLATFORM, *kinematics.gauges), kinematics.actuators)),
-        transmissibility=attempt.of("transmissibility", model, transmissibility),
+        statics=attempt.given("statics", model, _RIGID, statics),
+        lost_motion=lost,
+        modes=attempt.given("modes", model, _RIGID, lambda known: platform_modes(mechanism, known)),
+        response=attempt.given("response", model, _RIGID, lambda known: response(known, seen, kinematics.actuators)),
+        transmissibility=attempt.given("transmissibility", model, _RIGID, transmissibility),
+        workspace=attempt.of("workspace", lambda: workspace(mechanism, kinematics, model, lost=lost)),
         missing=Table(attempt.missing),
     )
 
@@ -93,20 +98,3 @@ def platform_modes(mechanism: Mechanism, model: LinearModel) -> Modes:
     """
     limit = mechanism.mode_limit if isinstance(mechanism.mode_limit, float) else _MODE_LIMIT
     return modes(model, limit=limit, count=min(6, len(model.coordinates)))
-
-
-class _Attempts:
-    """Analyses that a stage may refuse: the reasons are kept, the others go on."""
-
-    def __init__(self) -> None:
-        self.missing: dict[str, str] = {}
-
-    def of(self, name: str, model: LinearModel | None, analysis: Callable[[LinearModel], _Result]) -> _Result | None:
-        if model is None:
-            self.missing[name] = "the ideal reading has no elasticity"
-            return None
-        try:
-            return analysis(model)
-        except DesignError as error:
-            self.missing[name] = str(error)
-            return None

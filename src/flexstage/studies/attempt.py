@@ -1,0 +1,41 @@
+"""Attempts: results that a stage may refuse to give, each on its own."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TypeVar
+
+from flexstage.base.finding import DesignError
+
+_Ground = TypeVar("_Ground")
+_Result = TypeVar("_Result")
+
+
+class Attempts:
+    """Gathers the reasons of results that are refused, by name, while the others go on.
+
+    >>> from flexstage.base.finding import refuse
+    >>> attempts = Attempts()
+    >>> def nothing() -> None:
+    ...     raise refuse("gauges", "there are none", "Add some")
+    >>> attempts.of("sum", lambda: 1 + 1), attempts.of("range", nothing), attempts.missing
+    (2, None, {'range': 'gauges: there are none. Add some.'})
+    """
+
+    def __init__(self) -> None:
+        self.missing: dict[str, str] = {}
+
+    def of(self, name: str, result: Callable[[], _Result]) -> _Result | None:
+        """The result, or `None` with its reason noted."""
+        try:
+            return result()
+        except DesignError as error:
+            self.missing[name] = str(error)
+            return None
+
+    def given(self, name: str, ground: _Ground | None, reason: str, result: Callable[[_Ground], _Result]) -> _Result | None:
+        """The result of its `ground` where that is there; else `None`, noted with the reason."""
+        if ground is None:
+            self.missing[name] = reason
+            return None
+        return self.of(name, lambda: result(ground))
