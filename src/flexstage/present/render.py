@@ -94,7 +94,7 @@ def escaped(text: str) -> str:
 
 def _html_head(column: Column) -> str:
     unit = f' <span class="unit">{escaped(column.unit)}</span>' if column.unit else ""
-    return f'<th{_class("number" if column.numeric else "")}>{escaped(column.head)}{unit}</th>'
+    return f"<th{_class('number' if column.numeric else '')}>{escaped(column.head)}{unit}</th>"
 
 
 def _html_row(row: tuple[Cell, ...], columns: tuple[Column, ...]) -> str:

@@ -121,7 +121,9 @@ def matrix_table(title: str, matrix: Matrix, *, corner: str = "", digits: int = 
         cells = [[_entry(value * forms[index][0].factor, digits) for index, value in enumerate(row)] for row in kept]
     else:
         heads = [Column(name) for name in matrix.columns]
-        cells = [[_with_unit(value, unit, digits) for value, unit in zip(row, line, strict=True)] for row, line in zip(kept, units, strict=True)]
+        cells = [
+            [_with_unit(value, unit, digits) for value, unit in zip(row, line, strict=True)] for row, line in zip(kept, units, strict=True)
+        ]
     rows = [[Cell(name, Mark.STRONG), *line] for name, line in zip(matrix.rows, cells, strict=True)]
     return build(title, [Column(corner, numeric=False), *heads], rows, notes=[*notes, *said, *batch_note(matrix.values, 2)])
 

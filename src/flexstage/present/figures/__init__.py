@@ -1,0 +1,1 @@
+"""Figures: results drawn with matplotlib's Figure objects (no pyplot, no state), written as compact SVG or as PNG."""

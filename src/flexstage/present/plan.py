@@ -1,0 +1,242 @@
+"""The dimensioned plan: the stage from above as a workshop would draw it, with radii, angles, names and sizes in mm."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from flexstage.base.number import Array
+from flexstage.mechanism.expand import copy_names
+from flexstage.mechanism.mechanism import PLATFORM, Mechanism
+from flexstage.mechanism.pattern import Polar
+from flexstage.parts.body import Block
+from flexstage.present.display import number
+from flexstage.present.figures.style import FULL, INK, MUTED, PAPER, SERIES, canvas, styled
+from flexstage.present.scene.facet import Kind
+from flexstage.present.scene.primitives import plain
+from flexstage.present.scene.stage import Scene
+from flexstage.present.scene.view import Side, view, write
+
+_FILLS = {Kind.BODY: "#8d99a6", Kind.HINGE: "#0f8a7e", Kind.DRIVE: "#f2a33c", Kind.GAUGE: "#c2395a", Kind.GROUND: "#56606b"}
+_LAYERS = (Kind.GROUND, Kind.BODY, Kind.DRIVE, Kind.HINGE, Kind.GAUGE)
+
+
+@dataclass(frozen=True)
+class Ring:
+    """Copies on a circle: their names, radius [mm], position angle of the first [deg] and angular step [deg]."""
+
+    names: tuple[str, ...]
+    radius: float
+    first: float
+    step: float
+
+
+def rings(mechanism: Mechanism) -> tuple[Ring, ...]:
+    """The circles on which units and gauges stand.
+
+    >>> rings(Mechanism(""))
+    ()
+    """
+    placed = [(key, placement.pattern) for key, placement in mechanism.place.items()]
+    placed += [(key, probe.pattern) for key, probe in mechanism.gauges.items()]
+    return tuple(_ring(copy_names(key), pattern) for key, pattern in placed if isinstance(pattern, Polar) and plain(pattern.radius) > 0.0)
+
+
+def _ring(names: tuple[str, ...], pattern: Polar) -> Ring:
+    step = 360.0 / len(names) if pattern.step is None else float(np.rad2deg(plain(pattern.step)))
+    return Ring(names, 1e3 * plain(pattern.radius), float(np.rad2deg(plain(pattern.first))), step)
+
+
+def plan_figure(mechanism: Mechanism, scene: Scene) -> Any:
+    """The stage from above with dimensions in mm, as a matplotlib Figure.
+
+    Drawn are outlines of bodies and parts, the circles units and gauges stand on with radius and position angles, envelope and clear opening.
+
+    >>> from flexstage.present.scene.stage import scene
+    >>> len(plan_figure(Mechanism(""), scene(Mechanism(""))).axes)
+    1
+    """
+    with styled():
+        reach = _reach(mechanism, scene)
+        low, high = _limits(reach)
+        figure = canvas(FULL, min(1.1, float((high - low)[1] / (high - low)[0])) * FULL, fitted=False)
+        axes = figure.add_axes((0.0, 0.0, 1.0, 1.0), xlim=(low[0], high[0]), ylim=(low[1], high[1]), aspect="equal")
+        axes.set_axis_off()
+        _outlines(axes, scene)
+        _platform(axes, mechanism)
+        _axes_of_symmetry(axes, reach)
+        _rings(axes, rings(mechanism), [1e3 * np.array(label.point[:2]) for label in scene.labels])
+        _rectangles(axes, mechanism)
+        write(axes, scene.labels, view(Side.TOP))
+        _sizes(axes, mechanism, reach)
+    return figure
+
+
+def _reach(mechanism: Mechanism, scene: Scene) -> Array:
+    """Half sizes (x, y) [mm] of the drawing about the stage's z axis."""
+    points = [1e3 * facet.points[:, :2] for facet in scene.facets] or [np.full((1, 2), 50.0)]
+    reach = np.abs(np.concatenate(points)).max(axis=0)
+    if mechanism.envelope is not None:
+        reach = np.maximum(reach, [500.0 * plain(size) for size in mechanism.envelope[:2]])
+    return np.maximum(reach, 0.2 * reach.max())
+
+
+def _limits(reach: Array) -> tuple[Array, Array]:
+    """Lower left and upper right corner [mm], with room for dimensions on the left and below."""
+    margin = 0.2 * float(reach.max())
+    return -reach - margin, reach + 0.65 * margin
+
+
+def _outlines(axes: Any, scene: Scene) -> None:
+    """Every solid but the platform as the convex outline of its plan."""
+    from matplotlib.collections import PolyCollection
+
+    for kind in _LAYERS:
+        hulls = [hull(points) for points in _plans(scene, kind)]
+        colours = {"facecolors": _FILLS[kind], "edgecolors": INK}
+        axes.add_collection(PolyCollection(hulls, linewidths=0.45, alpha=0.55, clip_on=False, **colours))
+
+
+def _plans(scene: Scene, kind: Kind) -> Iterator[Array]:
+    by_name: dict[str, list[Array]] = {}
+    for facet in scene.facets:
+        if facet.paint.kind is kind and len(facet.points) > 2:
+            by_name.setdefault(facet.paint.name, []).append(1e3 * facet.points[:, :2])
+    return (np.concatenate(points) for points in by_name.values())
+
+
+def hull(points: Array) -> Array:
+    """Convex outline (k, 2) of points (n, 2), counter-clockwise (Andrew's monotone chain).
+
+    >>> hull(np.array([[0.0, 0.0], [1.0, 0.0], [0.2, 0.2], [0.0, 1.0]])).tolist()
+    [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]
+    """
+    ordered = sorted({(round(float(x), 6), round(float(y), 6)) for x, y in points})
+    if len(ordered) < 3:
+        return np.array(ordered)
+    return np.array(_chain(ordered)[:-1] + _chain(ordered[::-1])[:-1])
+
+
+def _chain(points: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
+    chain: list[tuple[float, float]] = []
+    for x, y in points:
+        while len(chain) > 1 and _turn(chain[-2], chain[-1], (x, y)) <= 0.0:
+            chain.pop()
+        chain.append((x, y))
+    return chain
+
+
+def _turn(first: tuple[float, float], second: tuple[float, float], third: tuple[float, float]) -> float:
+    return (second[0] - first[0]) * (third[1] - first[1]) - (second[1] - first[1]) * (third[0] - first[0])
+
+
+def _platform(axes: Any, mechanism: Mechanism) -> None:
+    for block in _platform_blocks(mechanism):
+        centre = [1e3 * plain(value) for value in block.at[:2]]
+        _rectangle(axes, [1e3 * plain(value) for value in block.size[:2]], "-", SERIES[0], centre)
+        if block.hole is not None:
+            _rectangle(axes, [1e3 * plain(value) for value in block.hole], "-", SERIES[0], centre)
+
+
+def _platform_blocks(mechanism: Mechanism) -> list[Block]:
+    platform = mechanism.bodies.get(PLATFORM)
+    return [solid for solid in platform.solids.values() if isinstance(solid, Block)] if platform is not None else []
+
+
+def _rectangle(axes: Any, size: Sequence[float], style: str, colour: str, centre: Sequence[float] = (0.0, 0.0)) -> None:
+    x, y = centre[0] + 0.5 * size[0] * np.array([-1, 1, 1, -1, -1]), centre[1] + 0.5 * size[1] * np.array([-1, -1, 1, 1, -1])
+    axes.plot(x, y, linestyle=style, color=colour, linewidth=1.0)
+
+
+def _rectangles(axes: Any, mechanism: Mechanism) -> None:
+    """Envelope and clear opening, with their names."""
+    named = [("envelope", mechanism.envelope, MUTED)]
+    named += [("clear opening", mechanism.opening.size, SERIES[3])] if mechanism.opening is not None else []
+    for name, extents, colour in named:
+        if extents is not None:
+            size = [1e3 * plain(value) for value in extents[:2]]
+            _rectangle(axes, size, "--", colour)
+            text = f"{name} {number(size[0])} x {number(size[1])}".replace(" x ", " × ")
+            inside = name == "clear opening"
+            place = (0.0, -0.48 * size[1]) if inside else (0.495 * size[0], 0.5 * size[1] + 1.0)
+            axes.text(*place, text, ha="center" if inside else "right", va="bottom", fontsize=6.5, color=colour)
+
+
+def _axes_of_symmetry(axes: Any, reach: Array) -> None:
+    for x, y in ((1.06 * reach[0], 0.0), (0.0, 1.06 * reach[1])):
+        axes.plot([-x, x], [-y, y], color=MUTED, linewidth=0.5, linestyle=(0, (10, 3, 2, 3)))
+    axes.text(1.07 * reach[0], 0.0, "x", ha="left", va="center", color=MUTED, style="italic")
+    axes.text(0.0, 1.07 * reach[1], "y", ha="center", va="bottom", color=MUTED, style="italic")
+
+
+def _rings(axes: Any, found: tuple[Ring, ...], taken: list[Array]) -> None:
+    """Circles with their radii, and a ray to each first copy with its position angle; `taken` are places of other texts."""
+    circle = np.linspace(0.0, 2.0 * np.pi, 121)
+    for angle in sorted({round(ring.first % 360.0, 6) for ring in found}):
+        _ray(axes, np.deg2rad(angle), max(ring.radius for ring in found if round(ring.first % 360.0, 6) == angle))
+    for radius in sorted({round(ring.radius, 6) for ring in found}):
+        axes.plot(radius * np.cos(circle), radius * np.sin(circle), color=MUTED, linewidth=0.5, linestyle=(0, (8, 3, 1.5, 3)))
+        place = _free_place(radius, taken)
+        taken = [*taken, place]
+        axes.text(*place, f"R {number(radius)}", ha="center", va="center", fontsize=7, bbox=_PLATE)
+
+
+def _free_place(radius: float, taken: list[Array]) -> Array:
+    """The point of a circle, off the axes, that is farthest from what is written already."""
+    angles = np.deg2rad(np.arange(2.5, 360.0, 5.0))
+    points = radius * np.stack([np.cos(angles), np.sin(angles)], axis=-1)
+    room = np.abs(points).min(axis=1)
+    if taken:
+        room = np.minimum(1.5 * room, np.sqrt(np.sum((points[:, None] - np.array(taken)[None]) ** 2, axis=-1)).min(axis=1))
+    return points[int(np.argmax(np.round(room, 6)))]
+
+
+def _ray(axes: Any, angle: float, radius: float) -> None:
+    """A ray from the centre at a position angle, its arc from x and its value."""
+    axes.plot([0.0, radius * np.cos(angle)], [0.0, radius * np.sin(angle)], color=INK, linewidth=0.5)
+    turned = angle if angle <= np.pi else angle - 2.0 * np.pi
+    arc = np.linspace(0.0, turned, 31)
+    inner = 0.2 * radius
+    axes.plot(inner * np.cos(arc), inner * np.sin(arc), color=INK, linewidth=0.5)
+    middle = 0.5 * turned
+    text = f"{number(float(np.rad2deg(turned)))}°".replace("-", "−")
+    axes.text(1.35 * inner * np.cos(middle), 1.35 * inner * np.sin(middle), text, ha="center", va="center", fontsize=7, bbox=_PLATE)
+
+
+_PLATE = {"boxstyle": "round,pad=0.15", "facecolor": PAPER, "edgecolor": "none", "alpha": 0.85}
+
+
+def _arrow(style: str) -> dict[str, Any]:
+    return {"arrowstyle": style, "color": INK, "lw": 0.5, "mutation_scale": 5, "shrinkA": 0.0, "shrinkB": 0.0}
+
+
+def _sizes(axes: Any, mechanism: Mechanism, reach: Array) -> None:
+    """Dimension lines of the platform: its width below, its depth on the left."""
+    blocks = _platform_blocks(mechanism)
+    if not blocks:
+        return
+    size = [1e3 * plain(value) for value in blocks[0].size[:2]]
+    centre = [1e3 * plain(value) for value in blocks[0].at[:2]]
+    gap = 0.1 * float(reach.max())
+    low = np.array(centre) - 0.5 * np.array(size)
+    _dimension(axes, np.array([low[0], low[1]]), np.array([low[0] + size[0], low[1]]), -reach[1] - gap)
+    _upright(axes, low, size[1], -reach[0] - gap)
+
+
+def _dimension(axes: Any, first: Array, second: Array, level: float) -> None:
+    for x, y in (first, second):
+        axes.plot([x, x], [y, level - 4.0], color=INK, linewidth=0.4)
+    axes.annotate("", xy=(first[0], level), xytext=(second[0], level), arrowprops=_arrow("<|-|>"))
+    text = number(float(second[0] - first[0]))
+    axes.text(0.5 * (first[0] + second[0]), level, text, ha="center", va="center", fontsize=7.5, bbox=_PLATE)
+
+
+def _upright(axes: Any, low: Array, height: float, level: float) -> None:
+    for y in (low[1], low[1] + height):
+        axes.plot([low[0], level - 4.0], [y, y], color=INK, linewidth=0.4)
+    axes.annotate("", xy=(level, low[1]), xytext=(level, low[1] + height), arrowprops=_arrow("<|-|>"))
+    text = number(height)
+    axes.text(level, low[1] + 0.5 * height, text, ha="center", va="center", fontsize=7.5, rotation=90, bbox=_PLATE)

@@ -1,0 +1,156 @@
+"""Facets: the flat convex polygons a picture is made of, and the primitives that are built of them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from enum import Enum
+from typing import TypeAlias
+
+import numpy as np
+
+from flexstage.base.number import Array
+
+
+class Kind(Enum):
+    """What a facet shows; a style gives each kind its colour."""
+
+    PLATFORM = "platform"
+    BODY = "body"
+    HINGE = "hinge"
+    DRIVE = "drive"
+    GAUGE = "gauge"
+    GROUND = "ground"
+
+
+Edge: TypeAlias = Array | None
+"""How the edge that starts at a point is drawn: never (None), or where the neighbouring facet, whose normal this is, faces away.
+
+The zero vector stands for a sharp edge, which is always drawn.
+"""
+
+SHARP: Array = np.zeros(3)
+SHARP.flags.writeable = False
+
+
+@dataclass(frozen=True)
+class Paint:
+    """What the facets of one solid have in common: its kind, the bodies that carry it, its name (`B1/front`, `platform/plate`)."""
+
+    kind: Kind
+    carriers: tuple[str, str]
+    name: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class Facet:
+    """A convex polygon (or, with two points, a line) in the stage's frame; seen from outside its points run counter-clockwise.
+
+    `points` (n, 3) [m]; `edges` one a point; `paint` says what it belongs to: point k follows the first of its carriers by 1 - `share`[k],
+    the second by `share`[k].
+    """
+
+    points: Array
+    edges: tuple[Edge, ...]
+    paint: Paint
+    share: Array
+
+    @property
+    def normal(self) -> Array:
+        """Outward normal (not of unit length; zero for a line): Newell's sum of cross products."""
+        if len(self.points) < 3:
+            return SHARP
+        arms = self.points - self.points[0]
+        return np.cross(arms[1:-1], arms[2:]).sum(axis=0)
+
+    def moved(self, displacement: Array) -> Facet:
+        """The facet with its points displaced (n, 3)."""
+        return replace(self, points=self.points + displacement)
+
+
+def loft(rings: Array, paint: Paint, *, round_section: bool = False, closed: bool = True) -> list[Facet]:
+    """The skin through rings (s, k, 3) of points, counter-clockwise seen from the last ring towards the first; end faces where `closed`.
+
+    The bodies' shares run from 0 at the first ring to 1 at the last. With `round_section` edges along the skin show as outlines only.
+
+    >>> square = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0.0]])
+    >>> len(loft(np.stack([square, square + [0, 0, 1.0]]), Paint(Kind.BODY, ("a", "a"))))
+    6
+    """
+    count, sides = rings.shape[:2]
+    share = np.linspace(0.0, 1.0, count)
+    facets: list[Facet] = []
+    for level in range(count - 1):
+        quads = [_quad(rings, level, side) for side in range(sides)]
+        normals = [np.cross(quad[2] - quad[0], quad[3] - quad[1]) for quad in quads]
+        for side, quad in enumerate(quads):
+            ends = (SHARP if level == 0 else None, SHARP if level == count - 2 else None)
+            after, before = (normals[(side + step) % sides] if round_section else SHARP for step in (1, -1))
+            weights = share[[level, level, level + 1, level + 1]]
+            facets.append(Facet(quad, (ends[0], after, ends[1], before), paint, weights))
+    if closed:
+        facets.append(Facet(rings[0, ::-1], (SHARP,) * sides, paint, np.zeros(sides)))
+        facets.append(Facet(rings[-1], (SHARP,) * sides, paint, np.ones(sides)))
+    return facets
+
+
+def _quad(rings: Array, level: int, side: int) -> Array:
+    after = (side + 1) % rings.shape[1]
+    return np.stack([rings[level, side], rings[level, after], rings[level + 1, after], rings[level + 1, side]])
+
+
+def pierced(outer: Array, inner: Array, paint: Paint, *, round_section: bool = False) -> list[Facet]:
+    """A prism with a through hole: `outer` and `inner` rings (2, k, 3), first the bottom, then the top, points facing one another.
+
+    >>> square = np.array([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0.0]])
+    >>> both = np.stack([square, square + [0, 0, 1.0]])
+    >>> len(pierced(2.0 * both, both, Paint(Kind.BODY, ("a", "a"))))
+    16
+    """
+    facets = loft(outer, paint, round_section=round_section, closed=False)
+    facets += loft(inner[:, ::-1], paint, round_section=round_section, closed=False)
+    sides = outer.shape[1]
+    for side in range(sides):
+        after = (side + 1) % sides
+        top = np.stack([outer[1, side], outer[1, after], inner[1, after], inner[1, side]])
+        bottom = np.stack([outer[0, after], outer[0, side], inner[0, side], inner[0, after]])
+        facets += [Facet(face, (SHARP, None, SHARP, None), paint, np.zeros(4)) for face in (top, bottom)]
+    return facets
+
+
+def rectangle(height: float, width: float) -> Array:
+    """Corners (4, 2) of a centred rectangle, counter-clockwise.
+
+    >>> rectangle(2.0, 4.0).tolist()
+    [[-1.0, -2.0], [1.0, -2.0], [1.0, 2.0], [-1.0, 2.0]]
+    """
+    return 0.5 * np.array([[-height, -width], [height, -width], [height, width], [-height, width]])
+
+
+def circle(diameter: float, sides: int = 16) -> Array:
+    """Corners (k, 2) of a circle's polygon, counter-clockwise.
+
+    >>> circle(2.0, 4).round(3).tolist()
+    [[0.707, 0.707], [-0.707, 0.707], [-0.707, -0.707], [0.707, -0.707]]
+    """
+    angles = 2.0 * np.pi * (np.arange(sides) + 0.5) / sides
+    return 0.5 * diameter * np.stack([np.cos(angles), np.sin(angles)], axis=-1)
+
+
+def extruded(stations: Array, sections: list[Array]) -> Array:
+    """Rings (s, k, 3) along x: section (k, 2) in y and z at each station.
+
+    >>> extruded(np.array([0.0, 1.0]), [rectangle(1.0, 1.0)] * 2).shape
+    (2, 4, 3)
+    """
+    return np.stack(
+        [np.column_stack([np.full(len(section), station), section]) for station, section in zip(stations, sections, strict=True)]
+    )
+
+
+def line(points: Array, paint: Paint) -> Facet:
+    """A line between two points (2, 3), each following its body.
+
+    >>> line(np.zeros((2, 3)), Paint(Kind.BODY, ("a", "b"))).share.tolist()
+    [0.0, 1.0]
+    """
+    return Facet(points, (SHARP, None), paint, np.array([0.0, 1.0]))
