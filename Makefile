@@ -16,7 +16,7 @@ unexport PYTHONPATH PYTHONHOME
 
 COMPILE := $(BIN)/uv pip compile -q --universal --python-version 3.11 --generate-hashes --no-header --no-annotate --no-emit-index-url
 
-.PHONY: help demo test check-all bench lint style format types contracts docs examples lock setup-runtime setup-dev
+.PHONY: help demo test check-all bench lint style format types contracts docs examples validation pictures lock setup-runtime setup-dev
 
 help: ## list the targets
 	@sed -n 's/^\([a-z-]*\):.*## /  make \1\t/p' $(MAKEFILE_LIST) | expand -t 20
@@ -33,8 +33,15 @@ demo: setup-runtime ## analyse the shipped stage: tables here, the report in dem
 test: setup-dev ## the tests
 	$(BIN)/python -m pytest -n $(JOBS)
 
-check-all: setup-dev ## the tests with full counts and sizes
+check-all: setup-dev ## the tests with full counts and sizes; writes docs/validation
 	FLEXSTAGE_TESTS=full $(BIN)/python -m pytest -n $(JOBS)
+	$(BIN)/python -m tools.validation
+
+validation: setup-dev ## compute docs/validation anew: every number against its authority
+	$(BIN)/python -m tools.validation
+
+pictures: setup-dev ## draw the pictures of the documentation anew
+	$(BIN)/python -m tools.pictures
 
 bench: setup-dev ## times and ratios, one process each
 	@for each in $(wildcard benchmarks/*.py); do echo "== $$each" && $(BIN)/python $$each || exit 1; done
@@ -58,8 +65,8 @@ contracts: setup-dev
 docs: setup-dev ## build the documentation into docs/_build/html; warnings are errors
 	$(BIN)/sphinx-build -q -W --keep-going -b html docs docs/_build/html
 
-examples: setup-dev ## run every example
-	@for each in $(wildcard examples/*.py); do echo "== $$each" && MPLBACKEND=Agg $(BIN)/python $$each >/dev/null || exit 1; done
+examples: setup-dev ## run every example of README.md and docs
+	$(BIN)/python -m pytest -n $(JOBS) tests/docs
 
 lock: setup-dev ## pin the requirements anew (newer versions: make lock UPGRADE=--upgrade)
 	$(COMPILE) $(UPGRADE) pyproject.toml requirements/build.in --extra dev -o requirements/dev.txt

@@ -1,0 +1,129 @@
+"""Runs the blocks of a page (see `pages`), as a reader would: in order, in a folder of their own."""
+
+from __future__ import annotations
+
+import contextlib
+import doctest
+import io
+import os
+import re
+import subprocess
+import sys
+import tomllib
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import pytest
+import tomlkit
+
+from flexstage.mechanism.store import load
+from tests.docs.pages import Block, commands, path_of
+from tests.hygiene.source import ROOT
+
+_SHELLS = ("sh", "bash", "console", "shell")
+_PROGRAM = re.compile(r"(\.venv/bin/)?flexstage( |$)")
+_LOOSELY = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
+_UNCHECKED = ("", "text", "json", "html", "matlab", "make")
+
+
+class Runner:
+    """A reader of one page: its folder, its Python names, and what the last block printed."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self.names: dict[str, Any] = {"__name__": "__main__"}
+        self.printed = ""
+
+    def run(self, block: Block) -> None:
+        """Do what a block says; fails with the page and line."""
+        if block.language == "python":
+            self._python(block)
+        elif block.language in _SHELLS or (not block.language and _PROGRAM.match(block.text)):
+            self._shell(block)
+        elif block.language == "toml":
+            self._toml(block)
+        elif "output" in block.words:
+            _compare(block, self.printed)
+        else:
+            assert block.language in _UNCHECKED, f"{block.where}: what is to be done with a block of {block.language}?"
+
+    def _python(self, block: Block) -> None:
+        code = compile("\n" * block.line + block.text, str(ROOT / block.page), "exec")
+        with contextlib.redirect_stdout(io.StringIO()) as printed:
+            exec(code, self.names)  # noqa: S102 (the examples of our own pages)
+        self.printed = printed.getvalue()
+
+    def _shell(self, block: Block) -> None:
+        self.printed = ""
+        for line in commands(block.text):
+            if _PROGRAM.match(line):
+                self.printed += self._flexstage(block, line)
+            else:
+                _known(block, line)
+
+    def _flexstage(self, block: Block, line: str) -> str:
+        expected = int(block.word("exit") or 0)
+        done = subprocess.run(
+            ["bash", "-o", "pipefail", "-c", line.removeprefix(".venv/bin/")],
+            cwd=self.folder,
+            env=_environment(),
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            check=False,
+        )
+        if done.returncode != expected:
+            pytest.fail(f"{block.where}: exit code {done.returncode}, expected {expected}\n$ {line}\n{done.stdout}", pytrace=False)
+        return done.stdout
+
+    def _toml(self, block: Block) -> None:
+        if (name := block.word("file")) is not None:
+            path_of(self.folder, name).write_text(block.text, encoding="utf-8")
+            return
+        base, wrong = block.word("into"), block.word("mistake")
+        name = base or wrong
+        assert name is not None, f"{block.where}: say what the file is: file=..., into=... or mistake=..."
+        self._laid_over(block, name, wrong=wrong is not None)
+
+    def _laid_over(self, block: Block, name: str, *, wrong: bool) -> None:
+        """Lay a piece over a file of the page, then load it, or show what the command says of it; the file itself stays."""
+        path = self.folder / name
+        whole = path.read_text(encoding="utf-8")
+        try:
+            path.write_text(tomlkit.dumps(_merged(tomllib.loads(whole), tomllib.loads(block.text))), encoding="utf-8")
+            if wrong:
+                self._shell(Block(block.page, block.line, "sh", ("exit=2",), f"flexstage check {name}"))
+            else:
+                load(path)
+        finally:
+            path.write_text(whole, encoding="utf-8")
+
+
+def _environment() -> dict[str, str]:
+    """That of the tests, with this interpreter's programs first, warnings as errors and no terminal."""
+    programs = str(Path(sys.executable).parent)
+    path = os.pathsep.join((programs, os.environ.get("PATH", "")))
+    return {**os.environ, "PATH": path, "PYTHONWARNINGS": "error", "MPLBACKEND": "Agg", "COLUMNS": "140", "TERM": "dumb"}
+
+
+def _known(block: Block, line: str) -> None:
+    """What is not ours is not run, but a target of make must exist."""
+    words = line.split()
+    assert words[0] in ("make", "cd", "pip", ".venv/bin/pip"), f"{block.where}: a test cannot know whether this works: {line}"
+    if words[0] == "make":
+        makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
+        assert re.search(rf"^{re.escape(words[1])}:", makefile, re.MULTILINE), f"{block.where}: there is no target {words[1]}"
+
+
+def _merged(below: Mapping[str, Any], above: Mapping[str, Any]) -> dict[str, Any]:
+    result = dict(below)
+    for key, value in above.items():
+        inner = result.get(key)
+        result[key] = _merged(inner, value) if isinstance(inner, dict) and isinstance(value, dict) else value
+    return result
+
+
+def _compare(block: Block, printed: str) -> None:
+    if not doctest.OutputChecker().check_output(block.text, printed, _LOOSELY):
+        pytest.fail(f"{block.where}: the page says\n{block.text}\nbut this is printed\n{printed}", pytrace=False)
