@@ -24,7 +24,7 @@ from flexstage.spatial.frame import Frame, axes
 class Outline:
     """A box (`size` along the axes of `frame`, (..., 3) [m]) or, with `is_round`, a cylinder of size (length, diameter, diameter) along x.
 
-    `name` is the address of what it outlines (`platform.plate`, `B1/front`). `hole` (..., 2): sides of a box' rectangular through hole along z;
+    `name` is the address of what it outlines (`platform.plate`, `B1/front`). `hole` (..., 2): sides of a box' rectangular hole along z;
     `bore`: diameter of a cylinder's hole along x.
     """
 

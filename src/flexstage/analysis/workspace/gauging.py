@@ -54,12 +54,14 @@ class GaugeRange:
 class PoseResolution:
     """Platform motion that one resolution step of every gauge amounts to, through S = V (R_s V)^+, (..., 6) [m, rad].
 
-    `worst`: all gauges off by one step with the worst signs, sum |S_ij| r_j; `rms`: independently, (sum S_ij^2 r_j^2)^(1/2); `noise` the
-    rms of the stated noise densities over the gauges' bandwidths (NaN where none is stated).
+    `gauge_steps` and `gauge_noise` (..., g) [m] are what each gauge has. `worst`: all gauges off by one step with the worst signs,
+    sum |S_ij| r_j; `rms`: independently, (sum S_ij^2 r_j^2)^(1/2); `noise` the rms of the stated noise densities over the gauges'
+    bandwidths (NaN where none is stated).
     """
 
-    coordinates: tuple[str, ...]
     inverse: Matrix
+    gauge_steps: Array
+    gauge_noise: Array
     worst: Array
     rms: Array
     noise: Array
@@ -118,8 +120,9 @@ def pose_resolution(mechanism: Mechanism, kinematics: Kinematics) -> PoseResolut
     )
     squares = inverse.values**2
     return PoseResolution(
-        coordinates=COMPONENTS,
         inverse=inverse,
+        gauge_steps=steps,
+        gauge_noise=noises,
         worst=(np.abs(inverse.values) @ steps[..., None])[..., 0],
         rms=np.sqrt((squares @ (steps**2)[..., None])[..., 0]),
         noise=np.sqrt((squares @ (noises**2)[..., None])[..., 0]),

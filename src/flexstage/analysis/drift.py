@@ -1,0 +1,216 @@
+"""Drift: what uniform and linear changes of temperature move, per kelvin.
+
+Every body and part would grow freely with the field T(r); a linear field leaves a free body unstressed, with the displacement
+u = alpha [T r + (g . r) r - g r^2 / 2] and the rotation alpha g x r at r from its reference. What does not fit is imposed on the links.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.base.finding import refuse
+from flexstage.base.labelled import Matrix, ratio_units
+from flexstage.base.number import Array, Vector, stack
+from flexstage.beams.compliance import law
+from flexstage.mechanism.expand import Assembly, PlacedLink, expand
+from flexstage.mechanism.expansion import Expansion, expansion
+from flexstage.mechanism.incidence import deformation, layout
+from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
+from flexstage.parts.given import Joint
+from flexstage.parts.part import Restricted
+from flexstage.readings.linear.model import LinearModel
+from flexstage.readings.linear.static import displacement
+from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNITS, transport, turned
+
+FIELDS = ("uniform", "gradient.x", "gradient.y", "gradient.z")
+_FIELD_UNITS = ("K", "K/m", "K/m", "K/m")
+_FITS = 1e-7
+
+
+@dataclass(frozen=True, eq=False)
+class Drift:
+    """Motion and forces per unit of a temperature field: uniform [per K], linear along x, y and z [per K/m].
+
+    `motion` (platform and named points, six components each), `gauges` the readings, `forces` (six an elastic link). `ground` is the
+    material the ground was taken to be of (`None`: it does not grow), `datum` (..., 3) [m] the point of the ground that stays and where
+    gradients are zero, `taken` each body's material.
+    """
+
+    motion: Matrix
+    gauges: Matrix
+    forces: Matrix
+    ground: str | None
+    datum: Array
+    taken: Mapping[str, str]
+    provenance: str
+
+    def of(self, point: str = PLATFORM) -> Matrix:
+        """The six rows of one point."""
+        return self.motion.part(tuple(f"{point}.{name}" for name in COMPONENTS), FIELDS)
+
+
+@dataclass(frozen=True, eq=False)
+class _Thermal:
+    """Expansion of everything in the four fields, counted from a datum."""
+
+    assembly: Assembly
+    expansion: Expansion
+    datum: Array
+
+    def growth(self, body: str, point: Array) -> Array:
+        """Growth twist (..., 6, 4) of a body at a point, from its reference, in stage axes."""
+        reference = self.datum if body == GROUND else self.assembly.bodies[body].reference
+        return np.asarray(self.expansion.bodies[body])[..., None, None] * _grown(point - reference, reference - self.datum)
+
+    def misfit(self, link: PlacedLink) -> Array:
+        """Deformation (..., 6, 4) of a link, in its frame, if no body moved."""
+        first, second = (self.growth(body, link.frame.position) + self._half(link, end) for end, body in enumerate(link.joins))
+        return np.swapaxes(turned(link.frame.rotation), -1, -2) @ (second - first)
+
+    def _half(self, link: PlacedLink, end: int) -> Array:
+        """What the part's half next to a body grows more than that body would: seen at the part's centre from that end."""
+        if link.name not in self.expansion.parts:
+            return np.zeros((6, 4))
+        own, length = self.expansion.parts[link.name]
+        more = own - self.expansion.bodies[link.joins[end]]
+        arm = (0.5 if end == 0 else -0.5) * np.asarray(length)[..., None] * link.frame.rotation[..., :, 0]
+        return np.asarray(more)[..., None, None] * _grown(arm, link.frame.position - arm - self.datum)
+
+
+def drift(mechanism: Mechanism, model: LinearModel, *, ground: str | None = None, datum: Vector = (0.0, 0.0, 0.0)) -> Drift:
+    """Thermal drift of a stage: free growth of all bodies and parts, elastically redistributed by the model's links, strokes held.
+
+    `ground` names the ground's material (`None`: it does not grow; see `ground_material`). Motions are counted from the ground's `datum`.
+    A stage of one material, its ground included, scales without stress. Raises `DesignError` naming what states no expansion, and where
+    locked freedoms cannot follow the growth.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.readings.lumped import lumped
+    >>> stage = double_triangle()
+    >>> drifted = drift(stage, lumped(stage), ground="steel")
+    >>> bool(abs(drifted.motion.at("platform.x", "uniform")) < 1e-15)
+    True
+    """
+    thermal = _Thermal(expand(mechanism), expansion(mechanism, ground), stack(datum))
+    misfits = {name: thermal.misfit(link) for name, link in thermal.assembly.links.items()}
+    fitted = _fitted(thermal.assembly, misfits)
+    strains = {name: misfits[name] + fitted.strains.get(name, 0.0) for name in misfits}
+    size = len(model.coordinates)
+    load = sum((_transposed(part.operator) @ (part.law @ strains[name]) for name, part in model.stiffness.items()), np.zeros((size, 4)))
+    motion = displacement(model, -load)
+    twists = {body: _twist(model, body, motion) + fitted.twists.get(body, 0.0) for body in thermal.assembly.bodies}
+    forces = {name: part.law @ (part.operator @ motion + strains[name]) for name, part in model.stiffness.items()}
+    return Drift(
+        motion=_motions(thermal, twists),
+        gauges=_gauges(thermal, twists),
+        forces=_labelled(forces, FORCES, WRENCH_UNITS),
+        ground=ground,
+        datum=thermal.datum,
+        taken=thermal.expansion.taken,
+        provenance=f"{model.provenance}, ground {thermal.expansion.taken[GROUND]}",
+    )
+
+
+def held_by_gauges(drifted: Drift, gauge_inverse: Matrix) -> Matrix:
+    """Platform motion (6 x fields) when a control loop holds all gauge readings: x - S s, with S of `gauge_inverse`.
+
+    >>> zero = Matrix(np.zeros((1, 4)), ("S1",), FIELDS, "m/K")
+    >>> moved = Matrix(np.eye(6)[:, :4], tuple(f"platform.{name}" for name in COMPONENTS), FIELDS, "m/K")
+    >>> free = Drift(moved, zero, zero, None, np.zeros(3), {}, "")
+    >>> held_by_gauges(free, Matrix(np.ones((6, 1)), COMPONENTS, ("S1",), "1")).values[0].tolist()
+    [1.0, 0.0, 0.0, 0.0]
+    """
+    moved = drifted.of(PLATFORM)
+    return Matrix(moved.values - gauge_inverse.values @ drifted.gauges.values, moved.rows, moved.columns, moved.unit)
+
+
+def _grown(arm: Array, origin: Array) -> Array:
+    """Free growth (..., 6, 4) over `arm` from a point at `origin` from the datum, for a unit coefficient and the four fields."""
+    arm, origin = np.broadcast_arrays(arm, origin)
+    square = np.sum(arm * arm, axis=-1)
+    columns = [np.concatenate([arm, np.zeros_like(arm)], axis=-1)]
+    for axis in range(3):
+        slope = np.eye(3)[axis]
+        shift = (origin[..., axis, None] + arm[..., axis, None]) * arm - 0.5 * square[..., None] * slope
+        columns.append(np.concatenate([shift, np.cross(slope, arm)], axis=-1))
+    return np.stack(columns, axis=-1)
+
+
+@dataclass(frozen=True, eq=False)
+class _Fitted:
+    """Body motions that let locked freedoms follow the growth, and the link deformations they cause."""
+
+    twists: Mapping[str, Array]
+    strains: Mapping[str, Array]
+
+
+def _fitted(assembly: Assembly, misfits: Mapping[str, Array]) -> _Fitted:
+    """Locked freedoms leave no room for misfits: find body motions of least norm that close them."""
+    bound = {
+        name: law(link.part, link.material).locked for name, link in assembly.links.items() if isinstance(link.part, (Joint, Restricted))
+    }
+    if not any(bound.values()):
+        return _Fitted({}, {})
+    order = layout(assembly)
+    operators = {name: deformation(assembly, order, link) for name, link in assembly.links.items()}
+    picked = {name: [freedom.index for freedom in locked] for name, locked in bound.items() if locked}
+    rows = np.concatenate(_spread([operators[name][..., index, :] for name, index in picked.items()]), axis=-2)
+    gaps = np.concatenate(_spread([misfits[name][..., index, :] for name, index in picked.items()]), axis=-2)
+    motion = -np.linalg.pinv(rows, rcond=1e-10) @ gaps
+    left = np.max(np.abs(rows @ motion + gaps))
+    if left > _FITS * np.max(np.abs(gaps)):
+        raise refuse(
+            "drift",
+            f"locked freedoms cannot follow the growth: {float(left):.3g} m per K is left between them",
+            "Give the restricted parts elasticity in the directions that grow",
+        )
+    return _Fitted(
+        {body: motion[..., order.columns(body), :] for body in order.bodies}, {name: item @ motion for name, item in operators.items()}
+    )
+
+
+def _twist(model: LinearModel, body: str, motion: Array) -> Array:
+    return model.output[..., model.output_index(tuple(f"{body}.{name}" for name in COMPONENTS)), :] @ motion
+
+
+def _motions(thermal: _Thermal, twists: Mapping[str, Array]) -> Matrix:
+    found = {PLATFORM: twists[PLATFORM]}
+    for name, (body, point) in thermal.assembly.points.items():
+        carry = transport(point - thermal.assembly.bodies[body].reference)
+        found[name] = carry @ twists[body] + thermal.growth(body, point)
+    return _labelled(found, COMPONENTS, TWIST_UNITS)
+
+
+def _gauges(thermal: _Thermal, twists: Mapping[str, Array]) -> Matrix:
+    names = tuple(thermal.assembly.gauges)
+    rows: list[Array] = []
+    for gauge in thermal.assembly.gauges.values():
+        ends = [_seen(thermal, twists, body, gauge.frame.position) for body in (gauge.body, gauge.base)]
+        direction = gauge.sign * gauge.frame.rotation[..., :, 0]
+        rows.append((direction[..., None, :] @ (ends[0] - ends[1])[..., :3, :])[..., 0, :])
+    values = np.stack(np.broadcast_arrays(*rows), axis=-2) if rows else np.zeros((0, 4))
+    return Matrix(values, names, FIELDS, ratio_units(("m",) * len(names), _FIELD_UNITS))
+
+
+def _seen(thermal: _Thermal, twists: Mapping[str, Array], body: str, point: Array) -> Array:
+    """Motion (..., 6, 4) of a body's material at a point."""
+    grown = thermal.growth(body, point)
+    return grown if body == GROUND else transport(point - thermal.assembly.bodies[body].reference) @ twists[body] + grown
+
+
+def _labelled(blocks: Mapping[str, Array], components: tuple[str, ...], units: tuple[str, ...]) -> Matrix:
+    rows = tuple(f"{name}.{component}" for name in blocks for component in components)
+    values = np.concatenate(_spread(list(blocks.values())), axis=-2)
+    return Matrix(values, rows, FIELDS, ratio_units(units * len(blocks), _FIELD_UNITS))
+
+
+def _spread(arrays: list[Array]) -> list[Array]:
+    batch = np.broadcast_shapes(*(array.shape[:-2] for array in arrays))
+    return [np.broadcast_to(array, (*batch, *array.shape[-2:])) for array in arrays]
+
+
+def _transposed(matrix: Array) -> Array:
+    return np.swapaxes(matrix, -1, -2)

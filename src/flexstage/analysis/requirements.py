@@ -1,0 +1,235 @@
+"""The `[require]` lines of a design file: what may be required, how a line is read, and the verdict on a value."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from enum import Enum
+
+import numpy as np
+
+from flexstage.base.finding import DesignError, Finding, nearest
+from flexstage.base.number import Array
+from flexstage.base.quantity import (
+    ANGLE,
+    DISPLACEMENT,
+    FORCE,
+    FREQUENCY,
+    LENGTH,
+    MASS,
+    MOMENT,
+    RATIO,
+    STIFFNESS,
+    Quantity,
+)
+from flexstage.base.unit import parse
+from flexstage.mechanism.expand import expand
+from flexstage.mechanism.mechanism import PLATFORM, Mechanism
+from flexstage.spatial.frame import COMPONENTS
+
+_LINE = re.compile(r"\s*(?P<sense>at least|at most)\s+(?P<value>.+?)(?:\s+at\s+(?P<point>[^\s].*?))?\s*")
+_SLACK = 1e-9
+
+ROTATION = Quantity("rotation", ANGLE.si, "urad", "244 urad")
+TWISTING = Quantity("rotational stiffness", "N m/rad", "N m/rad", "8e4 N m/rad")
+DRIFT = Quantity("drift", "m/K", "nm/K", "5 nm/K")
+TILT_DRIFT = Quantity("rotational drift", "rad/K", "nrad/K", "50 nrad/K")
+FINE = Quantity("displacement", DISPLACEMENT.si, "nm", "10 nm")
+FINE_ROTATION = Quantity("rotation", ANGLE.si, "nrad", "50 nrad")
+
+
+class Sense(Enum):
+    """Which side of the limit is good."""
+
+    AT_LEAST = "at least"
+    AT_MOST = "at most"
+
+
+class Subject(Enum):
+    """What a requirement is about; the value is the form of its key."""
+
+    STROKE = "stroke.<axis>"
+    CORNER = "corner"
+    FREQUENCY = "frequency.<n>"
+    PLATFORM_FREQUENCY = "frequency.platform.<n>"
+    SAFETY = "safety"
+    BUCKLING = "buckling"
+    STIFFNESS = "stiffness.<axis>"
+    FORCE = "force.<axis>"
+    LOSS = "loss"
+    OWN_LOSS = "loss.<actuator>"
+    CROSSTALK = "crosstalk"
+    MAP_ERROR = "map_error.<axis>"
+    DRIFT = "drift.<axis>"
+    MASS = "mass"
+    SIZE = "envelope.<dimension>"
+    HEIGHT = "height"
+    OPENING = "opening"
+    RESOLUTION = "resolution.<axis>"
+    GAUGE_RANGE = "gauge.range"
+    OWN_GAUGE_RANGE = "gauge.range.<gauge>"
+    LOAD = "load"
+    OWN_LOAD = "load.<actuator>"
+
+
+@dataclass(frozen=True)
+class Kind:
+    """What a subject means, its quantities along and about an axis, and whether a point may be named."""
+
+    meaning: str
+    quantity: Quantity
+    about: Quantity | None = None
+    pointed: bool = False
+
+
+KINDS: Mapping[Subject, Kind] = {
+    Subject.STROKE: Kind("stroke both ways along one axis, lost motion made up by command", DISPLACEMENT, ROTATION, pointed=True),
+    Subject.CORNER: Kind("share of the actuators' strokes that all required strokes at once ask for", RATIO),
+    Subject.FREQUENCY: Kind("n-th natural frequency, any body", FREQUENCY),
+    Subject.PLATFORM_FREQUENCY: Kind("n-th natural frequency of the platform", FREQUENCY),
+    Subject.SAFETY: Kind("yield over peak stress in the worst hinge at the worst corner of the strokes, from no voltage", RATIO),
+    Subject.BUCKLING: Kind("critical load over compression in the worst part at the worst corner of the strokes", RATIO),
+    Subject.STIFFNESS: Kind(
+        "stiffness of the platform against a load along one axis, the others giving way", STIFFNESS, TWISTING, pointed=True
+    ),
+    Subject.FORCE: Kind("blocking force of the platform along one axis", FORCE, MOMENT),
+    Subject.LOSS: Kind("largest share of its stroke an actuator loses", RATIO),
+    Subject.OWN_LOSS: Kind("share of its stroke the actuator loses", RATIO),
+    Subject.CROSSTALK: Kind("largest stroke one actuator appears to make when another does", RATIO),
+    Subject.MAP_ERROR: Kind("largest error of the linear map over the workspace", FINE, FINE_ROTATION),
+    Subject.DRIFT: Kind(
+        "motion per kelvin of uniform temperature, strokes held, the ground of the material of its links", DRIFT, TILT_DRIFT, pointed=True
+    ),
+    Subject.MASS: Kind("mass of the platform without payload", MASS),
+    Subject.SIZE: Kind("edge of the bounding box", LENGTH),
+    Subject.HEIGHT: Kind("edge of the bounding box along z", LENGTH),
+    Subject.OPENING: Kind("how far anything stands into the clear opening", LENGTH),
+    Subject.RESOLUTION: Kind("pose error of one resolution step of every gauge, worst signs", FINE, FINE_ROTATION, pointed=True),
+    Subject.GAUGE_RANGE: Kind("share of half the gauges' range that all required strokes at once ask for, worst gauge", RATIO),
+    Subject.OWN_GAUGE_RANGE: Kind("share of half the gauge's range that all required strokes at once ask for", RATIO),
+    Subject.LOAD: Kind("share of its maximum load the most loaded stack bears at the worst corner of the strokes", RATIO),
+    Subject.OWN_LOAD: Kind("largest compression of the stack at the worst corner of the strokes, dead load included", FORCE),
+}
+
+
+@dataclass(frozen=True)
+class Requirement:
+    """One line: its `key`, the `subject` with its `name` (an axis, actuator, gauge or number), the limit in SI and the point it holds at."""
+
+    key: str
+    text: str
+    subject: Subject
+    name: str
+    sense: Sense
+    limit: float
+    quantity: Quantity
+    point: str = PLATFORM
+
+
+@dataclass(frozen=True, eq=False)
+class Verdict:
+    """A requirement against the design's `value` (...) in SI; `None` with the `reason` where it could not be found out."""
+
+    requirement: Requirement
+    value: Array | None
+    reason: str = ""
+
+    @property
+    def margin(self) -> Array:
+        """Distance to the limit on the good side over the limit (...): 0.1 is 10 % to spare, negative fails; NaN without a value.
+
+        For a limit of zero the distance itself, in SI.
+        """
+        if self.value is None:
+            return np.asarray(np.nan)
+        spare = self.value - self.requirement.limit
+        scale = abs(self.requirement.limit) or 1.0
+        return (spare if self.requirement.sense is Sense.AT_LEAST else -spare) / scale
+
+    @property
+    def passed(self) -> Array:
+        """Whether the requirement is met (...); rounding to a billionth counts as met, a missing value as not."""
+        return np.nan_to_num(self.margin, nan=-np.inf) >= -_SLACK
+
+
+def known_keys(mechanism: Mechanism) -> tuple[str, ...]:
+    """Every key that may be required of this stage (frequencies up to the sixth; higher numbers are read too).
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> [key for key in known_keys(double_triangle()) if key.startswith("loss")][:3]
+    ['loss', 'loss.B1', 'loss.B2']
+    """
+    assembly = expand(mechanism)
+    names = {
+        "axis": COMPONENTS,
+        "dimension": COMPONENTS[:3],
+        "n": tuple(str(number) for number in range(1, 7)),
+        "actuator": tuple(assembly.actuators),
+        "gauge": tuple(assembly.gauges),
+    }
+    return tuple(key for subject in Subject for key in _spelt(subject.value, names))
+
+
+def requirements(mechanism: Mechanism) -> tuple[Requirement, ...]:
+    """Read all `[require]` lines of a description.
+
+    A line is `at least` or `at most`, a value with its unit, and for some keys `at` a named point. Raises `DesignError` with every unknown key (and
+    the nearest ones), unreadable line, wrong unit and unknown point.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> read = requirements(double_triangle())[0]
+    >>> read.subject, read.name, read.sense.value, read.limit
+    (<Subject.STROKE: 'stroke.<axis>'>, 'x', 'at least', 5e-05)
+    """
+    points = (PLATFORM, *expand(mechanism).points)
+    found: list[Requirement] = []
+    findings: list[Finding] = []
+    for key, text in mechanism.requirements.items():
+        try:
+            found.append(_read(key, text, known_keys(mechanism), points))
+        except DesignError as error:
+            findings += error.findings
+    if findings:
+        raise DesignError(findings)
+    return tuple(found)
+
+
+def _spelt(form: str, names: Mapping[str, tuple[str, ...]]) -> Iterator[str]:
+    match = re.search(r"<(\w+)>", form)
+    if match is None:
+        yield form
+        return
+    for name in names[match[1]]:
+        yield form.replace(match[0], name)
+
+
+def _read(key: str, text: str, known: tuple[str, ...], points: tuple[str, ...]) -> Requirement:
+    where = f"require.{key}"
+    subject, name = _subject(key, known)
+    match = _LINE.fullmatch(text)
+    if match is None:
+        raise DesignError(
+            [Finding(where, f'found "{text}"', 'Write "at least" or "at most" and a value, for example "at least 50 um at chuck"')]
+        )
+    kind = KINDS[subject]
+    point = match["point"] or PLATFORM
+    if match["point"] and not kind.pointed:
+        raise DesignError([Finding(where, f"is not asked at a point, found at {point}", f'Leave out "at {point}"')])
+    if point not in points:
+        raise DesignError([Finding(where, f"found at {point}, and no point has this name", nearest(point, points))])
+    quantity = kind.about if kind.about is not None and name.startswith("r") else kind.quantity
+    limit = parse(match["value"], quantity, where=where)
+    return Requirement(key, text, subject, name, Sense(match["sense"]), limit, quantity, point)
+
+
+def _subject(key: str, known: tuple[str, ...]) -> tuple[Subject, str]:
+    """The subject of a key and the name in it."""
+    for subject in Subject:
+        stem, _, placeholder = subject.value.partition("<")
+        name = key.removeprefix(stem)
+        if not placeholder and key == subject.value:
+            return subject, ""
+        if placeholder and key.startswith(stem) and (key in known or (placeholder == "n>" and re.fullmatch(r"[1-9]\d{0,2}", name))):
+            return subject, name
+    raise DesignError([Finding(f"require.{key}", "nothing of this name can be required", nearest(key, known))])

@@ -1,0 +1,148 @@
+"""Which expansion coefficient every body and part of a stage has."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.base.digest import digest
+from flexstage.base.finding import Finding, nearest, require
+from flexstage.base.number import Number
+from flexstage.mechanism.expand import Assembly, PlacedLink, expand
+from flexstage.mechanism.mechanism import GROUND, Mechanism
+from flexstage.parts.given import Given, Joint
+from flexstage.parts.leaf import Leaf
+from flexstage.parts.neck import Neck
+from flexstage.parts.notch import Notch
+from flexstage.parts.part import Part, Restricted, material_of
+from flexstage.parts.piezo import Piezo
+from flexstage.parts.profile import length
+from flexstage.parts.rod import Rod
+
+
+@dataclass(frozen=True, eq=False)
+class Expansion:
+    """Expansion coefficients [1/K] of the `bodies` (the ground's too) and of the `parts` with a length [m].
+
+    `taken` says for each body which material was taken, and from where (its solids, its links, or as asked for the ground).
+    """
+
+    bodies: Mapping[str, Number]
+    parts: Mapping[str, tuple[Number, Number]]
+    taken: Mapping[str, str]
+
+
+def expansion(mechanism: Mechanism, ground: str | None = None) -> Expansion:
+    """Expansion coefficients of everything; `ground` names the ground's material (`None`: it does not grow).
+
+    A body takes the material of its solids; without solids that of its links, where they agree. Given matrices and ideal joints have no
+    length and do not grow. Raises `DesignError` with all materials and stacks that state no expansion, and all bodies of unknown material.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> found = expansion(double_triangle(), ground="steel")
+    >>> found.bodies["platform"], found.taken["platform"]
+    (1.03e-05, 'steel, of its solids')
+    """
+    assembly = expand(mechanism)
+    choices = {name: _body_material(mechanism, assembly, name) for name in assembly.bodies}
+    if ground is not None:
+        choices[GROUND] = (ground, "as asked")
+    require([*_unknown(mechanism, choices), *_unstated(mechanism, assembly, choices)])
+    bodies = {name: _stated(mechanism, material) for name, (material, _) in choices.items()}
+    parts = {name: (coefficient(link), span(link.part)) for name, link in assembly.links.items() if _grows(link)}
+    taken = {name: f"{material}, {source}" for name, (material, source) in choices.items()}
+    return Expansion({GROUND: 0.0, **bodies}, parts, {GROUND: "does not grow", **taken})
+
+
+def _stated(mechanism: Mechanism, material: str) -> Number:
+    value = mechanism.materials[material].expansion
+    return np.nan if value is None else value
+
+
+def ground_material(mechanism: Mechanism) -> str | None:
+    """The one material of the links that stand on the ground, `None` where they have several or none: a frame of the same block.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> ground_material(double_triangle())
+    'steel'
+    """
+    found = _link_materials(expand(mechanism), GROUND)
+    return found[0] if len(found) == 1 else None
+
+
+def coefficient(link: PlacedLink) -> Number:
+    """The expansion coefficient of a link's part [1/K], NaN where it is not stated.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> coefficient(expand(double_triangle()).links["B1/pzt"])
+    -3e-06
+    """
+    inner = link.part.part if isinstance(link.part, Restricted) else link.part
+    holder = inner if isinstance(inner, Piezo) else link.material
+    value = None if holder is None else holder.expansion
+    return np.nan if value is None else value
+
+
+def span(part: Part) -> Number:
+    """Length of a part along its x axis [m], zero for given matrices and joints.
+
+    >>> span(Leaf("steel", length=0.05, thickness=0.001, width=0.01))
+    0.05
+    """
+    inner = part.part if isinstance(part, Restricted) else part
+    if isinstance(inner, (Leaf, Rod, Piezo)):
+        return inner.length
+    return length(inner.profile) if isinstance(inner, (Notch, Neck)) else 0.0
+
+
+def _grows(link: PlacedLink) -> bool:
+    inner = link.part.part if isinstance(link.part, Restricted) else link.part
+    return not isinstance(inner, (Given, Joint))
+
+
+def _body_material(mechanism: Mechanism, assembly: Assembly, name: str) -> tuple[str, str]:
+    """The material a body grows with and its source; an empty name where it is not known."""
+    solids = {solid.material for solid in assembly.bodies[name].body.solids.values()}
+    values = {digest(mechanism.materials[material].expansion) for material in solids}
+    if len(values) == 1:
+        return min(solids), "of its solids"
+    if solids:
+        return "", f"its solids ({', '.join(sorted(solids))}) expand differently"
+    found = _link_materials(assembly, name)
+    if len(found) == 1:
+        return found[0], "of its links"
+    return "", f"it has no solids, and its links are of {', '.join(found) or 'no material'}"
+
+
+def _link_materials(assembly: Assembly, body: str) -> list[str]:
+    names = [material_of(link.part) for link in assembly.links.values() if body in link.joins]
+    return sorted({name for name in names if name is not None})
+
+
+def _unknown(mechanism: Mechanism, choices: Mapping[str, tuple[str, str]]) -> list[Finding]:
+    found: list[Finding] = []
+    for name, (material, source) in choices.items():
+        if not material:
+            found.append(Finding(name, f"how it grows with temperature is not known: {source}", "Give the body one solid of its material"))
+        elif material not in mechanism.materials:
+            found.append(Finding(name, f"material {material} is not described", nearest(material, mechanism.materials)))
+    return found
+
+
+def _unstated(mechanism: Mechanism, assembly: Assembly, choices: Mapping[str, tuple[str, str]]) -> list[Finding]:
+    used = {material for material, _ in choices.values()}
+    used |= {name for name in (material_of(link.part) for link in assembly.links.values()) if name is not None}
+    missing = [
+        Finding(f"materials.{name}", "states no thermal expansion, and drift needs it", 'Add for example expansion = "10.3e-6 1/K"')
+        for name in sorted(used)
+        if name in mechanism.materials and mechanism.materials[name].expansion is None
+    ]
+    stacks = [
+        link.link.part for link in assembly.links.values() if _grows(link) and link.material is None and np.isnan(coefficient(link)).any()
+    ]
+    return missing + [
+        Finding(f"parts.{name}", "states no thermal expansion, and drift needs it", 'Add for example expansion = "-3e-6 1/K"')
+        for name in dict.fromkeys(stacks)
+    ]
