@@ -24,11 +24,12 @@ from flexstage.base.quantity import (
     Quantity,
 )
 from flexstage.base.unit import parse
-from flexstage.mechanism.expand import expand
+from flexstage.mechanism.expand import Assembly, expand
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.spatial.frame import COMPONENTS
 
 _LINE = re.compile(r"\s*(?P<sense>at least|at most)\s+(?P<value>.+?)(?:\s+at\s+(?P<point>[^\s].*?))?\s*")
+_COUNT = re.compile(r"[1-9]\d{0,2}")
 _SLACK = 1e-9
 
 ROTATION = Quantity("rotation", ANGLE.si, "urad", "244 urad")
@@ -115,7 +116,7 @@ KINDS: Mapping[Subject, Kind] = {
 
 @dataclass(frozen=True)
 class Requirement:
-    """One line: its `key`, the `subject` with its `name` (an axis, actuator, gauge or number), the limit in SI and the point it holds at."""
+    """One line: its `key`, the `subject` with its `name` (an axis, actuator, gauge, number), the limit in SI and the point it holds at."""
 
     key: str
     text: str
@@ -160,39 +161,44 @@ def known_keys(mechanism: Mechanism) -> tuple[str, ...]:
     >>> [key for key in known_keys(double_triangle()) if key.startswith("loss")][:3]
     ['loss', 'loss.B1', 'loss.B2']
     """
-    assembly = expand(mechanism)
-    names = {
-        "axis": COMPONENTS,
-        "dimension": COMPONENTS[:3],
-        "n": tuple(str(number) for number in range(1, 7)),
-        "actuator": tuple(assembly.actuators),
-        "gauge": tuple(assembly.gauges),
-    }
+    names = _names(expand(mechanism))
     return tuple(key for subject in Subject for key in _spelt(subject.value, names))
 
 
 def requirements(mechanism: Mechanism) -> tuple[Requirement, ...]:
     """Read all `[require]` lines of a description.
 
-    A line is `at least` or `at most`, a value with its unit, and for some keys `at` a named point. Raises `DesignError` with every unknown key (and
-    the nearest ones), unreadable line, wrong unit and unknown point.
+    A line is `at least` or `at most`, a value with its unit, and for some keys `at` a named point. Raises `DesignError` with every unknown
+    key (and the nearest ones), unreadable line, wrong unit and unknown point.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> read = requirements(double_triangle())[0]
     >>> read.subject, read.name, read.sense.value, read.limit
     (<Subject.STROKE: 'stroke.<axis>'>, 'x', 'at least', 5e-05)
     """
-    points = (PLATFORM, *expand(mechanism).points)
+    assembly = expand(mechanism)
+    names, points = _names(assembly), (PLATFORM, *assembly.points)
     found: list[Requirement] = []
     findings: list[Finding] = []
     for key, text in mechanism.requirements.items():
         try:
-            found.append(_read(key, text, known_keys(mechanism), points))
+            found.append(_read(key, text, names, points))
         except DesignError as error:
             findings += error.findings
     if findings:
         raise DesignError(findings)
     return tuple(found)
+
+
+def _names(assembly: Assembly) -> dict[str, tuple[str, ...]]:
+    """What may stand in the place of each placeholder."""
+    return {
+        "axis": COMPONENTS,
+        "dimension": COMPONENTS[:3],
+        "n": tuple(str(number) for number in range(1, 7)),
+        "actuator": tuple(assembly.actuators),
+        "gauge": tuple(assembly.gauges),
+    }
 
 
 def _spelt(form: str, names: Mapping[str, tuple[str, ...]]) -> Iterator[str]:
@@ -204,9 +210,9 @@ def _spelt(form: str, names: Mapping[str, tuple[str, ...]]) -> Iterator[str]:
         yield form.replace(match[0], name)
 
 
-def _read(key: str, text: str, known: tuple[str, ...], points: tuple[str, ...]) -> Requirement:
+def _read(key: str, text: str, names: Mapping[str, tuple[str, ...]], points: tuple[str, ...]) -> Requirement:
     where = f"require.{key}"
-    subject, name = _subject(key, known)
+    subject, name = _subject(key, names)
     match = _LINE.fullmatch(text)
     if match is None:
         raise DesignError(
@@ -223,13 +229,14 @@ def _read(key: str, text: str, known: tuple[str, ...], points: tuple[str, ...]) 
     return Requirement(key, text, subject, name, Sense(match["sense"]), limit, quantity, point)
 
 
-def _subject(key: str, known: tuple[str, ...]) -> tuple[Subject, str]:
+def _subject(key: str, names: Mapping[str, tuple[str, ...]]) -> tuple[Subject, str]:
     """The subject of a key and the name in it."""
     for subject in Subject:
-        stem, _, placeholder = subject.value.partition("<")
+        stem, _, placeholder = subject.value.rstrip(">").partition("<")
         name = key.removeprefix(stem)
-        if not placeholder and key == subject.value:
+        if key == stem and not placeholder:
             return subject, ""
-        if placeholder and key.startswith(stem) and (key in known or (placeholder == "n>" and re.fullmatch(r"[1-9]\d{0,2}", name))):
+        if placeholder and key.startswith(stem) and (name in names[placeholder] or (placeholder == "n" and _COUNT.fullmatch(name))):
             return subject, name
+    known = [spelt for subject in Subject for spelt in _spelt(subject.value, names)]
     raise DesignError([Finding(f"require.{key}", "nothing of this name can be required", nearest(key, known))])

@@ -136,8 +136,10 @@ def _below_bias(piezo: Piezo) -> Number:
     return (piezo.bias - piezo.voltage_low) / (piezo.voltage_high - piezo.voltage_low)
 
 
-def mapping_at(mechanism: Mechanism, kinematics: Kinematics, point: str = PLATFORM) -> Matrix:
+def mapping_at(mechanism: Mechanism, kinematics: Kinematics, point: str = PLATFORM, *, mapping: Matrix | None = None) -> Matrix:
     """R_a for the motion of a named point: strokes per coordinate of that point, the other coordinates of the point held.
+
+    `mapping` instead of R_a: the correction gains of lost motion, also strokes per platform coordinate.
 
     Translations of a rigid platform are the same everywhere; rotations turn about the point. With fewer than six ideal motions the
     coordinates keep their names; refused where the point cannot follow them independently.
@@ -148,7 +150,7 @@ def mapping_at(mechanism: Mechanism, kinematics: Kinematics, point: str = PLATFO
     >>> round(float(mapping_at(stage, ideal(stage)).at("B4", "rx")), 6)
     0.04
     """
-    mapping = kinematics.mapping
+    mapping = kinematics.mapping if mapping is None else mapping
     motion = point_motion(mechanism, kinematics, point)[..., [COMPONENTS.index(name) for name in mapping.columns], :]
     first = np.real(motion.reshape(-1, *motion.shape[-2:])[0])
     if np.linalg.cond(first) > 1e9:

@@ -1,0 +1,258 @@
+"""The requirements of a design file judged: each value is worked out only if a line asks for it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from functools import cached_property
+
+import numpy as np
+
+from flexstage.analysis.drift import Drift, drift
+from flexstage.analysis.lost_motion import LostMotion, lost_motion
+from flexstage.analysis.modes import Modes, modes
+from flexstage.analysis.requirements import Requirement, Subject, Verdict, requirements
+from flexstage.analysis.statics import statics
+from flexstage.analysis.workspace.blocking import platform_lines
+from flexstage.analysis.workspace.buckling import buckling
+from flexstage.analysis.workspace.gauging import gauge_range, pose_resolution
+from flexstage.analysis.workspace.load import load_share
+from flexstage.analysis.workspace.map_error import linear_map_error
+from flexstage.analysis.workspace.room import Room, room
+from flexstage.analysis.workspace.strength import HingeStress, hinge_stress
+from flexstage.analysis.workspace.stroke import StrokeLimits, mapping_at, single_axis, stroke_limits, utilisation
+from flexstage.base.finding import DesignError, refuse
+from flexstage.base.number import Array
+from flexstage.mechanism.expand import Assembly, expand
+from flexstage.mechanism.expansion import ground_material
+from flexstage.mechanism.mechanism import PLATFORM, Mechanism
+from flexstage.readings.ideal import ideal
+from flexstage.readings.linear.kinematics import Kinematics
+from flexstage.readings.linear.model import LinearModel
+from flexstage.readings.lumped import lumped
+from flexstage.spatial.frame import COMPONENTS, transport
+
+_MODE_LIMIT = 1000.0
+
+
+def judge(mechanism: Mechanism) -> tuple[Verdict, ...]:
+    """Judge every `[require]` line of a description by the lumped reading.
+
+    What the stage cannot answer (a safety factor without yield stress) is a failed verdict with its reason. Raises `DesignError` for lines
+    that cannot be read.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> [bool(verdict.passed) for verdict in judge(double_triangle())]
+    [True, True, True, True, True, True, True, True]
+    """
+    lines = requirements(mechanism)
+    bench = _Bench(mechanism, {line.name: line.limit for line in lines if line.subject is Subject.STROKE})
+    return tuple(_judged(bench, line) for line in lines)
+
+
+def _judged(bench: _Bench, line: Requirement) -> Verdict:
+    try:
+        return Verdict(line, np.asarray(_MEASURES[line.subject](bench, line)))
+    except DesignError as error:
+        return Verdict(line, None, str(error))
+
+
+class _Bench:
+    """Readings and results of one stage, each worked out when first asked for. `command`: the required strokes as a box."""
+
+    def __init__(self, mechanism: Mechanism, command: Mapping[str, float]) -> None:
+        self.mechanism = mechanism
+        self.command = command
+
+    @cached_property
+    def assembly(self) -> Assembly:
+        return expand(self.mechanism)
+
+    @cached_property
+    def kinematics(self) -> Kinematics:
+        return ideal(self.mechanism)
+
+    @cached_property
+    def model(self) -> LinearModel:
+        return lumped(self.mechanism)
+
+    @cached_property
+    def limits(self) -> StrokeLimits:
+        return stroke_limits(self.mechanism)
+
+    @cached_property
+    def lost(self) -> LostMotion:
+        return lost_motion(self.kinematics, self.model)
+
+    @cached_property
+    def modes(self) -> Modes:
+        limit = self.mechanism.mode_limit
+        return modes(self.model, limit=_MODE_LIMIT if limit is None else float(np.max(limit)))
+
+    @cached_property
+    def stress(self) -> HingeStress:
+        return hinge_stress(self.mechanism, self.model, self.limits.from_zero)
+
+    @cached_property
+    def drift(self) -> Drift:
+        return drift(self.mechanism, self.model, ground=ground_material(self.mechanism))
+
+    @cached_property
+    def room(self) -> Room:
+        return room(self.mechanism)
+
+    @cached_property
+    def map_error(self) -> Array:
+        return linear_map_error(self.mechanism, self.kinematics, self.limits).worst
+
+    def arm(self, point: str) -> Array:
+        """From the platform's reference to a point of the platform; refused for points of other bodies."""
+        if point == PLATFORM:
+            return np.zeros(3)
+        body, position = self.assembly.points[point]
+        if body != PLATFORM:
+            raise refuse(point, f"is a point of {body}", "Name a point of the platform")
+        return position - self.assembly.bodies[PLATFORM].reference
+
+    def box(self) -> Mapping[str, float]:
+        """The box of all required strokes."""
+        if not self.command:
+            raise refuse(
+                "require", "no stroke is required, so there is no corner to reach", 'Add for example "stroke.x" = "at least 50 um"'
+            )
+        return self.command
+
+
+def _stroke(bench: _Bench, line: Requirement) -> Array:
+    mapping = mapping_at(bench.mechanism, bench.kinematics, line.point, mapping=bench.lost.correction)
+    if line.name not in mapping.columns:
+        raise refuse(f"stroke.{line.name}", "is no ideal motion of this stage", f"Its ideal motions are {', '.join(mapping.columns)}")
+    return single_axis(mapping, bench.limits).symmetric[..., mapping.columns.index(line.name)]
+
+
+def _corner(bench: _Bench, _: Requirement) -> Array:
+    return np.max(utilisation(bench.lost.correction, bench.limits, bench.box()).ratio, axis=-1)
+
+
+def _frequency(bench: _Bench, line: Requirement) -> Array:
+    return _numbered(bench.modes.frequencies, line)
+
+
+def _platform_frequency(bench: _Bench, line: Requirement) -> Array:
+    return _numbered(bench.modes.platform_frequencies, line)
+
+
+def _numbered(frequencies: Array, line: Requirement) -> Array:
+    count = frequencies.shape[-1]
+    if int(line.name) > count:
+        raise refuse(f"require.{line.key}", f"there are {count} such modes", "Ask for a lower number")
+    return frequencies[..., int(line.name) - 1]
+
+
+def _safety(bench: _Bench, _: Requirement) -> Array:
+    if bench.stress.unknown:
+        links = ", ".join(bench.stress.unknown[:3])
+        raise refuse(
+            "safety", f"the material of {links} states no yield stress", 'Add for example yield_stress = "1360 MPa" to the material'
+        )
+    return bench.stress.least
+
+
+def _buckling(bench: _Bench, _: Requirement) -> Array:
+    return buckling(bench.mechanism, bench.model, bench.limits.from_zero).least
+
+
+def _stiffness(bench: _Bench, line: Requirement) -> Array:
+    index = COMPONENTS.index(line.name)
+    return 1.0 / statics(bench.model, load_point=line.point, read_point=line.point).compliance.values[..., index, index]
+
+
+def _force(bench: _Bench, line: Requirement) -> Array:
+    lines = platform_lines(bench.kinematics.mapping, bench.model, bench.limits)
+    if line.name not in lines.coordinates:
+        raise refuse(f"force.{line.name}", "is no ideal motion of this stage", f"Its ideal motions are {', '.join(lines.coordinates)}")
+    return lines.blocking[..., lines.coordinates.index(line.name)]
+
+
+def _loss(bench: _Bench, line: Requirement) -> Array:
+    own = np.abs(np.diagonal(bench.lost.loss.values, axis1=-2, axis2=-1))
+    return own[..., bench.lost.loss.rows.index(line.name)] if line.name else np.max(own, axis=-1)
+
+
+def _crosstalk(bench: _Bench, _: Requirement) -> Array:
+    values = bench.lost.loss.values
+    return np.max(np.abs(values * (1.0 - np.eye(values.shape[-1]))), axis=(-2, -1))
+
+
+def _map_error(bench: _Bench, line: Requirement) -> Array:
+    return bench.map_error[..., COMPONENTS.index(line.name)]
+
+
+def _drift(bench: _Bench, line: Requirement) -> Array:
+    return np.abs(bench.drift.motion.at(f"{line.point}.{line.name}", "uniform"))
+
+
+def _mass(bench: _Bench, _: Requirement) -> Array:
+    own = bench.assembly.bodies[PLATFORM].mass
+    if own is None:
+        raise refuse("platform", "has neither solids nor a stated mass", "Give it a solid of a material with a density, or its mass")
+    return own.mass
+
+
+def _size(bench: _Bench, line: Requirement) -> Array:
+    return bench.room.size[..., COMPONENTS.index(line.name or "z")]
+
+
+def _opening(bench: _Bench, _: Requirement) -> Array:
+    if bench.mechanism.opening is None:
+        raise refuse("opening", "the description has no clear opening", 'Add for example opening = { size = ["110 mm", "110 mm"] }')
+    depths = [item.depth for item in bench.room.intrusions]
+    return np.max(np.stack(np.broadcast_arrays(*depths)), axis=0) if depths else np.asarray(0.0)
+
+
+def _resolution(bench: _Bench, line: Requirement) -> Array:
+    seen = pose_resolution(bench.mechanism, bench.kinematics)
+    inverse = transport(bench.arm(line.point)) @ seen.inverse.values
+    return (np.abs(inverse) @ seen.gauge_steps[..., None])[..., COMPONENTS.index(line.name), 0]
+
+
+def _gauge_range(bench: _Bench, line: Requirement) -> Array:
+    held = gauge_range(bench.mechanism, bench.kinematics, bench.box())
+    ratio = held.swing / held.limit
+    return ratio[..., held.gauges.index(line.name)] if line.name else np.max(ratio, axis=-1)
+
+
+def _load(bench: _Bench, line: Requirement) -> Array:
+    share = load_share(bench.mechanism, bench.model)
+    compression = share.range(bench.limits.from_zero)[1]
+    if line.name:
+        return compression[..., share.actuators.index(line.name)]
+    usage = share.usage(compression)
+    if np.any(np.isnan(usage)):
+        raise refuse("load", "not every stack states its maximum load", 'Add for example maximum_load = "5000 N" to the stack')
+    return np.max(usage, axis=-1)
+
+
+_MEASURES: Mapping[Subject, Callable[[_Bench, Requirement], Array]] = {
+    Subject.STROKE: _stroke,
+    Subject.CORNER: _corner,
+    Subject.FREQUENCY: _frequency,
+    Subject.PLATFORM_FREQUENCY: _platform_frequency,
+    Subject.SAFETY: _safety,
+    Subject.BUCKLING: _buckling,
+    Subject.STIFFNESS: _stiffness,
+    Subject.FORCE: _force,
+    Subject.LOSS: _loss,
+    Subject.OWN_LOSS: _loss,
+    Subject.CROSSTALK: _crosstalk,
+    Subject.MAP_ERROR: _map_error,
+    Subject.DRIFT: _drift,
+    Subject.MASS: _mass,
+    Subject.SIZE: _size,
+    Subject.HEIGHT: _size,
+    Subject.OPENING: _opening,
+    Subject.RESOLUTION: _resolution,
+    Subject.GAUGE_RANGE: _gauge_range,
+    Subject.OWN_GAUGE_RANGE: _gauge_range,
+    Subject.LOAD: _load,
+    Subject.OWN_LOAD: _load,
+}
