@@ -1,96 +1,40 @@
-"""Documents: results as plain JSON values for machines, one document a command (described in `docs/json.md`).
-
-Matrices are {rows, columns, unit, values}; a scalar's unit stands in its key (`frequency_hz`). Numbers that are not finite become null,
-with the reason under `reasons`.
-"""
+"""Bodies of documents about one analysis each: mapping, stiffness, lost motion, modes, response, drift."""
 
 from __future__ import annotations
 
-import json
-import math
-from collections.abc import Iterator, Mapping
-from enum import Enum
-from typing import Any, TypeAlias
+from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 
-import flexstage
+from flexstage.analysis.drift import Drift
 from flexstage.analysis.lost_motion import LostMotion
 from flexstage.analysis.modes import Modes
 from flexstage.analysis.statics import DirectionalStiffness, Statics
-from flexstage.base.digest import digest
 from flexstage.base.finding import DesignError
 from flexstage.base.labelled import Matrix, ratio_units
 from flexstage.base.number import Array
-from flexstage.mechanism.mechanism import Mechanism
+from flexstage.mechanism.mechanism import Damping, ModalDamping, RayleighDamping
+from flexstage.present.documents.envelope import Document
+from flexstage.readings.linear.frequency import Response
 from flexstage.readings.linear.kinematics import Kinematics
+from flexstage.readings.linear.model import LinearModel
+from flexstage.readings.linear.static import static_gain
 from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
-from flexstage.studies.reading import Reading
 
-FORMAT = "flexstage result 1"
 LISTED_MODES = 24
 _LOCKED = "this reading locks freedoms of the platform: its stiffness is infinite along them"
-
-Document: TypeAlias = dict[str, Any]
-
-
-def enveloped(kind: str, mechanism: Mechanism, reading: Reading | None, body: Mapping[str, Any]) -> Document:
-    """A document: what it is, of which description, by which reading and version, then its `body`.
-
-    >>> enveloped("mapping", Mechanism("stage"), None, {"mobility": 6})["name"]
-    'stage'
-    """
-    return {
-        "format": FORMAT,
-        "kind": kind,
-        "version": flexstage.__version__,
-        "name": mechanism.name,
-        "reading": None if reading is None else reading.value,
-        "physics_digest": digest(mechanism, physics=True),
-        **body,
-    }
-
-
-def as_text(document: Mapping[str, Any]) -> str:
-    """The document as JSON text: finite numbers only, every other one null with its reason under `reasons`.
-
-    >>> print(as_text({"gain": float("nan")}))
-    {
-     "gain": null,
-     "reasons": {
-      "gain": "not a number"
-     }
-    }
-    """
-    reasons: dict[str, str] = dict(document.get("reasons") or {})
-    plain = _plain({key: value for key, value in document.items() if key != "reasons"}, "", reasons)
-    if reasons:
-        plain["reasons"] = reasons
-    return json.dumps(plain, indent=1, ensure_ascii=False, allow_nan=False)
-
-
-def _plain(value: Any, where: str, reasons: dict[str, str]) -> Any:
-    """Plain JSON values; what is not finite is noted in `reasons` under its path (`modes.3.frequency_hz`)."""
-    if isinstance(value, Mapping):
-        return {str(key): _plain(item, f"{where}.{key}" if where else str(key), reasons) for key, item in value.items()}
-    if isinstance(value, np.ndarray):
-        return _plain(value.tolist(), where, reasons)
-    if isinstance(value, (list, tuple)):
-        return [_plain(item, f"{where}.{number}", reasons) for number, item in enumerate(value)]
-    if isinstance(value, Enum):
-        return value.value
-    if isinstance(value, np.generic):
-        return _plain(value.item(), where, reasons)
-    if isinstance(value, float) and not math.isfinite(value):
-        reasons[where] = "not a number" if math.isnan(value) else "infinite"
-        return None
-    return value + 0.0 if isinstance(value, float) else value  # no -0.0
 
 
 def mapping_body(kinematics: Kinematics) -> Document:
     """R_a, R_s and what else the ideal kinematics say; `R_a` is null with its reason where strokes do not determine the platform.
 
     Raises nothing: an under-actuated stage is a result here.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.readings.ideal import ideal
+    >>> mapping_body(ideal(double_triangle()))["R_a"]["values"][0][:3]
+    [1.0, 0.0, 0.0]
     """
     body: Document = {
         "R_a": None,
@@ -127,6 +71,12 @@ def stiffness_body(statics: Statics) -> Document:
     """Compliance and stiffness of the platform, the in-plane tensors (others held, others free), their axes, the centre of stiffness.
 
     What does not exist because the reading locks freedoms of the platform is null, with the reason.
+
+    >>> from flexstage.analysis.statics import statics
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.readings.mapped import mapped
+    >>> stiffness_body(statics(mapped(double_triangle())))["in_plane_tensor"]["unit"]
+    'N/m'
     """
     values = {
         "stiffness": statics.stiffness.to_json(),
@@ -153,7 +103,17 @@ def _principal(tensor: DirectionalStiffness) -> Document:
 
 
 def lost_motion_body(lost: LostMotion) -> Document:
-    """Per actuator gain, loss and budget (shares by link and axis that add up to the loss), and the matrices they come from."""
+    """Per actuator gain, loss and budget (shares by link and axis that add up to the loss), and the matrices they come from.
+
+    >>> from flexstage.analysis.lost_motion import lost_motion
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.readings.ideal import ideal
+    >>> from flexstage.readings.lumped import lumped
+    >>> body = lost_motion_body(lost_motion(ideal(double_triangle()), lumped(double_triangle())))
+    >>> one = body["actuators"]["B4"]
+    >>> bool(abs(sum(one["budget"].values()) - one["loss"]) < 1e-12)
+    True
+    """
     names = lost.loss.rows
     return {
         "actuators": {name: _actuator(lost, name) for name in names},
@@ -190,7 +150,14 @@ def _crosstalk(lost: LostMotion) -> Document:
 
 
 def modes_body(modes: Modes) -> Document:
-    """Frequencies ascending, names, shares and shapes; all modes below the limit, at least the first 24; which are the platform's."""
+    """Frequencies ascending, names, shares and shapes; all modes below the limit, at least the first 24; which are the platform's.
+
+    >>> from flexstage.analysis.modes import modes
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.readings.mapped import mapped
+    >>> [mode["name"] for mode in modes_body(modes(mapped(double_triangle())))["modes"]]
+    ['tilt', 'tilt', 'z', 'yaw', 'x', 'y']
+    """
     listed = _listed(modes)
     columns = tuple(str(number + 1) for number in range(listed))
     units = tuple((f"{unit}/kg^0.5",) * listed for unit in TWIST_UNITS)
@@ -232,3 +199,56 @@ def _largest(names: tuple[str, ...], shares: Array) -> Document:
     """Kinetic-energy shares of one per cent and more, largest first."""
     order = np.argsort(-shares, kind="stable")
     return {names[index]: shares[index] for index in order if shares[index] >= 0.01}
+
+
+def response_body(response: Response, damping: Damping | None) -> Document:
+    """A frequency response as {frequency_hz, rows, columns, unit, real, imaginary}, H_ij = output i over input j, and its damping.
+
+    >>> from flexstage.readings.linear.model import Channel
+    >>> one = Response(np.array([1.0]), (Channel("x", "m"),), (Channel("fx", "N"),), np.array([[[2j]]]), "")
+    >>> response_body(one, ModalDamping(0.01))["damping"]
+    {'law': 'modal', 'ratio': 0.01}
+    """
+    return {**response.to_json(), "damping": _damping(damping), "method": response.provenance}
+
+
+def _damping(damping: Damping | None) -> Document | None:
+    if damping is None:
+        return None
+    if isinstance(damping, ModalDamping):
+        return {"law": "modal", "ratio": damping.ratio}
+    if isinstance(damping, RayleighDamping):
+        return {"law": "rayleigh", "mass_factor_per_s": damping.mass_factor, "stiffness_factor_s": damping.stiffness_factor}
+    return {"law": "structural"}
+
+
+def elastic_jacobian(kinematics: Kinematics, model: LinearModel) -> Document:
+    """T = dx/da by an elastic reading, beside the ideal one of `mapping_body`.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.readings.ideal import ideal
+    >>> from flexstage.readings.lumped import lumped
+    >>> elastic_jacobian(ideal(double_triangle()), lumped(double_triangle()))["columns"][:2]
+    ['B1', 'B2']
+    """
+    return static_gain(model, tuple(f"platform.{name}" for name in COMPONENTS), kinematics.actuators).to_json()
+
+
+def drift_body(drift: Drift) -> Document:
+    """Motion, gauge readings and link forces per unit of uniform and linear temperature fields, and what was assumed.
+
+    >>> from flexstage.analysis.drift import drift
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.readings.lumped import lumped
+    >>> drift_body(drift(double_triangle(), lumped(double_triangle())))["motion"]["columns"][0]
+    'uniform'
+    """
+    return {
+        "motion": drift.motion.to_json(),
+        "gauges": drift.gauges.to_json(),
+        "forces": drift.forces.to_json(),
+        "ground": drift.ground,
+        "datum_m": drift.datum,
+        "taken": dict(drift.taken),
+        "method": drift.provenance,
+    }

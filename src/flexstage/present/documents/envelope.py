@@ -1,0 +1,73 @@
+"""The envelope of every document, and its text: plain JSON, finite numbers only."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping
+from enum import Enum
+from typing import Any, TypeAlias
+
+import numpy as np
+
+import flexstage
+from flexstage.base.digest import digest
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.studies.reading import Reading
+
+FORMAT = "flexstage result 1"
+
+Document: TypeAlias = dict[str, Any]
+
+
+def enveloped(kind: str, mechanism: Mechanism, reading: Reading | None, body: Mapping[str, Any]) -> Document:
+    """A document: what it is, of which description, by which reading and version, then its `body`.
+
+    >>> enveloped("mapping", Mechanism("stage"), None, {"mobility": 6})["name"]
+    'stage'
+    """
+    return {
+        "format": FORMAT,
+        "kind": kind,
+        "version": flexstage.__version__,
+        "name": mechanism.name,
+        "reading": None if reading is None else reading.value,
+        "physics_digest": digest(mechanism, physics=True),
+        **body,
+    }
+
+
+def as_text(document: Mapping[str, Any]) -> str:
+    """The document as JSON text: finite numbers only, every other one null with its reason under `reasons`.
+
+    >>> print(as_text({"gain": float("nan")}))
+    {
+     "gain": null,
+     "reasons": {
+      "gain": "not a number"
+     }
+    }
+    """
+    reasons: dict[str, str] = dict(document.get("reasons") or {})
+    plain = _plain({key: value for key, value in document.items() if key != "reasons"}, "", reasons)
+    if reasons:
+        plain["reasons"] = reasons
+    return json.dumps(plain, indent=1, ensure_ascii=False, allow_nan=False)
+
+
+def _plain(value: Any, where: str, reasons: dict[str, str]) -> Any:
+    """Plain JSON values; what is not finite is noted in `reasons` under its path (`modes.3.frequency_hz`)."""
+    if isinstance(value, Mapping):
+        return {str(key): _plain(item, f"{where}.{key}" if where else str(key), reasons) for key, item in value.items()}
+    if isinstance(value, np.ndarray):
+        return _plain(value.tolist(), where, reasons)
+    if isinstance(value, (list, tuple)):
+        return [_plain(item, f"{where}.{number}", reasons) for number, item in enumerate(value)]
+    if isinstance(value, Enum):
+        return value.value
+    if isinstance(value, np.generic):
+        return _plain(value.item(), where, reasons)
+    if isinstance(value, float) and not math.isfinite(value):
+        reasons[where] = "not a number" if math.isnan(value) else "infinite"
+        return None
+    return value + 0.0 if isinstance(value, float) else value  # no -0.0

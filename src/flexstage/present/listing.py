@@ -1,0 +1,63 @@
+"""Listings: the shipped cases, the catalogue and findings as tables."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from flexstage.base.finding import Finding
+from flexstage.cases.registry import CASES
+from flexstage.mechanism.grammar import TAGS
+from flexstage.mechanism.store.catalogue import Catalogue, Section
+from flexstage.parts.gauge import Gauge
+from flexstage.parts.material import Material
+from flexstage.parts.piezo import Piezo
+from flexstage.present.table import Cell, Mark, Table, build
+
+_TITLES = {Material: "Materials", Piezo: "Piezo stacks", Gauge: "Gauges"}
+
+
+def case_table() -> Table:
+    """The shipped cases by name.
+
+    >>> case_table().rows[0][0].text
+    'double-triangle'
+    """
+    rows = [(Cell(name, Mark.STRONG), case.summary) for name, case in CASES.items()]
+    return build("Cases", ["name", "what it is"], rows, notes=["flexstage new stage.toml --case NAME"])
+
+
+def finding_table(title: str, findings: Iterable[Finding]) -> Table:
+    """Findings: where, what, what to do.
+
+    >>> finding_table("Findings", [Finding("B4/pivot", "it is thin", "Thicken it")]).texts()[1]
+    ['B4/pivot', 'it is thin', 'Thicken it']
+    """
+    return build(title, ["where", "what", "what to do"], [(Cell(each.where, Mark.STRONG), each.what, each.advice) for each in findings])
+
+
+def catalogue_tables(catalogue: Catalogue) -> tuple[Table, ...]:
+    """Materials, stacks and gauges: every number as it would stand in a design file, with its source.
+
+    >>> from flexstage.mechanism.store.catalogue import catalogue_from
+    >>> catalogue_tables(catalogue_from({"materials": {"steel": {"young": "200 GPa"}}}))[0].texts()[1]
+    ['steel', '200 GPa']
+    """
+    return tuple(_section_table(section, catalogue.sources) for section in catalogue.sections if section.entries)
+
+
+def _section_table(section: Section, sources: Mapping[str, str]) -> Table:
+    keys = list(dict.fromkeys(key for entry in section.entries.values() for key in entry if key not in (TAGS, "source")))
+    rows = [[Cell(name, Mark.STRONG), *(_entry_cell(entry, key) for key in keys)] for name, entry in section.entries.items()]
+    tags = [tag for entry in section.entries.values() for tag in entry.get(TAGS, {}).values()]
+    used = {word for tag in tags for word in tag.split()[1:2]}
+    notes = [f"{key}: {text}" for key, text in sources.items() if key in used]
+    return build(_TITLES[section.record], ["name", *keys], rows, notes=notes)
+
+
+def _entry_cell(entry: Mapping[str, Any], key: str) -> Cell:
+    if key not in entry:
+        return Cell("", Mark.FAINT)
+    tag = str(entry.get(TAGS, {}).get(key, "")).partition(" ")[0]
+    marks = {"stated": Mark.STATED, "derived": Mark.DERIVED, "assumed": Mark.ASSUMED}
+    return Cell(str(entry[key]), marks.get(tag, Mark.PLAIN))
