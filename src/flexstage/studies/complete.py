@@ -5,11 +5,15 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from flexstage.analysis.drift import Drift, drift
+from flexstage.analysis.error_budget import ErrorBudget
 from flexstage.analysis.lost_motion import LostMotion, lost_motion
 from flexstage.analysis.modes import Modes, modes
+from flexstage.analysis.requirements import Sense, Subject, Verdict, requirements
 from flexstage.analysis.response import response, transmissibility
 from flexstage.analysis.statics import Statics, statics
 from flexstage.base.number import Table
+from flexstage.mechanism.expansion import ground_material
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.readings.ideal import ideal
 from flexstage.readings.linear.frequency import Response
@@ -18,13 +22,17 @@ from flexstage.readings.linear.model import LinearModel
 from flexstage.readings.lumped import lumped
 from flexstage.readings.mapped import mapped
 from flexstage.studies.attempt import Attempts
+from flexstage.studies.budget import budget
+from flexstage.studies.judge import judge
 from flexstage.studies.reading import Reading
 from flexstage.studies.workspace import Workspace, workspace
 
-__all__ = ["Analysis", "Reading", "analyse", "platform_modes", "read"]
+__all__ = ["Analysis", "Reading", "analyse", "grounded_drift", "platform_modes", "read", "required_command"]
 
 _MODE_LIMIT = 1000.0
 _RIGID = "the ideal reading has no elasticity"
+_UNLUMPED = "drift needs the lumped reading"
+_DRIFTLESS = "the error budget needs the drift"
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,6 +40,8 @@ class Analysis:
     """All results of one reading of a stage; `None` where a reading or a stage does not give them, and `missing` says why, by field name.
 
     `response` is that of the platform's twist and all gauges to the strokes, `transmissibility` that of the platform to the ground.
+    Drift, error budget and the `verdicts` on the requirements are those of the lumped reading; drift is missing for the others.
+    The error budget is that of the required strokes, or of all single-axis strokes at once, and of one kelvin.
     """
 
     mechanism: Mechanism
@@ -44,6 +54,9 @@ class Analysis:
     response: Response | None
     transmissibility: Response | None
     workspace: Workspace | None
+    drift: Drift | None
+    error_budget: ErrorBudget | None
+    verdicts: tuple[Verdict, ...]
     missing: Mapping[str, str]
 
 
@@ -69,11 +82,17 @@ def analyse(mechanism: Mechanism, reading: Reading = Reading.LUMPED) -> Analysis
     >>> round(float(analyse(double_triangle(), Reading.MAPPED).modes.frequencies[0]), 2)
     110.91
     """
+    verdicts = judge(mechanism)
     kinematics = ideal(mechanism)
     model = read(mechanism, reading)
     attempt = Attempts()
     lost = attempt.given("lost_motion", model, _RIGID, lambda known: lost_motion(kinematics, known))
     seen = (PLATFORM, *kinematics.gauges)
+    command = required_command(mechanism)
+    reach = attempt.of("workspace", lambda: workspace(mechanism, kinematics, model, lost=lost, command=command))
+    drifted = attempt.given(
+        "drift", model if reading is Reading.LUMPED else None, _UNLUMPED, lambda known: grounded_drift(mechanism, known)
+    )
     return Analysis(
         mechanism=mechanism,
         reading=reading,
@@ -84,9 +103,39 @@ def analyse(mechanism: Mechanism, reading: Reading = Reading.LUMPED) -> Analysis
         modes=attempt.given("modes", model, _RIGID, lambda known: platform_modes(mechanism, known)),
         response=attempt.given("response", model, _RIGID, lambda known: response(known, seen, kinematics.actuators)),
         transmissibility=attempt.given("transmissibility", model, _RIGID, transmissibility),
-        workspace=attempt.of("workspace", lambda: workspace(mechanism, kinematics, model, lost=lost)),
+        workspace=reach,
+        drift=drifted,
+        error_budget=attempt.given("error_budget", drifted, _DRIFTLESS, lambda known: _errors(mechanism, command, reach, known)),
+        verdicts=verdicts,
         missing=Table(attempt.missing),
     )
+
+
+def _errors(mechanism: Mechanism, command: Mapping[str, float] | None, reach: Workspace | None, drifted: Drift) -> ErrorBudget:
+    asked = command if command is not None or reach is None else reach.command
+    return budget(mechanism, asked or {}, temperature=1.0, drifted=drifted)
+
+
+def required_command(mechanism: Mechanism) -> Mapping[str, float] | None:
+    """The strokes that are required of the platform, as a box of commands by coordinate [m, rad]; `None` where none is.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> required_command(double_triangle())["z"]
+    0.00015
+    """
+    lines = (line for line in requirements(mechanism) if line.subject is Subject.STROKE and line.sense is Sense.AT_LEAST)
+    found = {line.name: line.limit for line in lines if line.point == PLATFORM}
+    return found or None
+
+
+def grounded_drift(mechanism: Mechanism, model: LinearModel) -> Drift:
+    """Drift on a ground of the material of the links that stand on it; where they are of several, on one that does not grow.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> grounded_drift(double_triangle(), lumped(double_triangle())).ground
+    'steel'
+    """
+    return drift(mechanism, model, ground=ground_material(mechanism))
 
 
 def platform_modes(mechanism: Mechanism, model: LinearModel) -> Modes:
