@@ -7,14 +7,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from flexstage.base.digest import digest
 from flexstage.base.finding import Finding, nearest, require
 from flexstage.base.number import Number
 from flexstage.mechanism.expand import Assembly, PlacedLink, expand
 from flexstage.mechanism.mechanism import GROUND, Mechanism
+from flexstage.parts.body import Solid
 from flexstage.parts.given import Given, Joint
 from flexstage.parts.leaf import Leaf
 from flexstage.parts.neck import Neck
+from flexstage.parts.mass import solid_properties
 from flexstage.parts.notch import Notch
 from flexstage.parts.part import Part, Restricted, material_of
 from flexstage.parts.piezo import Piezo
@@ -37,8 +38,9 @@ class Expansion:
 def expansion(mechanism: Mechanism, ground: str | None = None) -> Expansion:
     """Expansion coefficients of everything; `ground` names the ground's material (`None`: it does not grow).
 
-    A body takes the material of its solids; without solids that of its links, where they agree. Given matrices and ideal joints have no
-    length and do not grow. Raises `DesignError` with all materials and stacks that state no expansion, and all bodies of unknown material.
+    A body takes the material of its solids, of several the heaviest solid's; without solids that of its links, where they agree. Given
+    matrices and ideal joints have no length and do not grow. Raises `DesignError` with all materials and stacks that state no expansion,
+    and all bodies of unknown material.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> found = expansion(double_triangle(), ground="steel")
@@ -62,14 +64,15 @@ def _stated(mechanism: Mechanism, material: str) -> Number:
 
 
 def ground_material(mechanism: Mechanism) -> str | None:
-    """The one material of the links that stand on the ground, `None` where they have several or none: a frame of the same block.
+    """The material of most links that stand on the ground, as a frame of the same block has; `None` where no link has a material.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> ground_material(double_triangle())
     'steel'
     """
-    found = _link_materials(expand(mechanism), GROUND)
-    return found[0] if len(found) == 1 else None
+    names = [material_of(link.part) for link in expand(mechanism).links.values() if GROUND in link.joins]
+    found = [name for name in names if name is not None]
+    return max(found, key=found.count) if found else None
 
 
 def coefficient(link: PlacedLink) -> Number:
@@ -104,16 +107,21 @@ def _grows(link: PlacedLink) -> bool:
 
 def _body_material(mechanism: Mechanism, assembly: Assembly, name: str) -> tuple[str, str]:
     """The material a body grows with and its source; an empty name where it is not known."""
-    solids = {solid.material for solid in assembly.bodies[name].body.solids.values()}
-    values = {digest(mechanism.materials[material].expansion) for material in solids}
-    if len(values) == 1:
-        return min(solids), "of its solids"
+    solids = assembly.bodies[name].body.solids
+    if len({solid.material for solid in solids.values()}) == 1:
+        return next(iter(solids.values())).material, "of its solids"
     if solids:
-        return "", f"its solids ({', '.join(sorted(solids))}) expand differently"
+        heaviest = max(solids, key=lambda solid: _weight(mechanism, solids[solid]))
+        return solids[heaviest].material, f"of its heaviest solid, {heaviest}"
     found = _link_materials(assembly, name)
     if len(found) == 1:
         return found[0], "of its links"
     return "", f"it has no solids, and its links are of {', '.join(found) or 'no material'}"
+
+
+def _weight(mechanism: Mechanism, solid: Solid) -> float:
+    """Mass of a solid on the first design."""
+    return float(np.real(np.ravel(solid_properties(solid, mechanism.materials[solid.material].density).mass)[0]))
 
 
 def _link_materials(assembly: Assembly, body: str) -> list[str]:

@@ -172,10 +172,10 @@ def _solved(mechanism: Mechanism, kinematics: Kinematics, strokes: Array, wanted
 def _newton(links: _Links, state: _State) -> tuple[_State, int]:
     """Newton steps; the pseudo-inverse of the drawn position serves as long as it converges fast."""
     relative = _relative(links, state)
-    slope = _pseudo_inverse(links, state, relative)
+    slope = _first_slope(links, state)
     before = np.inf
     for iteration in range(1, _STEPS + 1):
-        step = -(slope @ _residual(links, state, relative)[..., None])[..., 0]
+        step = -_times(slope, _residual(links, state, relative))
         state = _moved(links, state, step)
         relative = _relative(links, state)
         size = float(np.max(np.abs(step) * _step_weights(links, state), initial=0.0))
@@ -285,6 +285,17 @@ def _shortening(links: _Links, relative: _Relative) -> Array:
 
 def _bent(deflection: Array, slope: Array, span: Array) -> Array:
     return 0.6 * deflection**2 / span - 0.1 * deflection * slope + span * slope**2 / 15.0
+
+
+def _first_slope(links: _Links, state: _State) -> Array:
+    """The pseudo-inverse at the drawn position, one for all points."""
+    drawn = _drawn(links, np.zeros(state.strokes.shape[-1]), np.zeros(state.wanted.shape[-1]))
+    return _pseudo_inverse(links, drawn, _relative(links, drawn))
+
+
+def _times(matrix: Array, vectors: Array) -> Array:
+    """Matrix times vectors (..., m): one product for all where the matrix is one."""
+    return vectors @ matrix.T if matrix.ndim == 2 else (matrix @ vectors[..., None])[..., 0]
 
 
 def _pseudo_inverse(links: _Links, state: _State, relative: _Relative) -> Array:

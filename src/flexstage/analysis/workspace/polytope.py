@@ -67,8 +67,8 @@ def reachable(mapping: Matrix, limits: StrokeLimits, *, provenance: str = "") ->
 
 def _volume_unit(coordinates: tuple[str, ...]) -> str:
     turns = sum(name.startswith("r") for name in coordinates)
-    powers = [f"{unit}^{power}" for unit, power in (("m", len(coordinates) - turns), ("rad", turns)) if power]
-    return " ".join(powers)
+    powers = (("m", len(coordinates) - turns), ("rad", turns))
+    return " ".join(unit if power == 1 else f"{unit}^{power}" for unit, power in powers if power)
 
 
 def _redundant(normals: Array, offsets: Array) -> tuple[Array, Array]:
