@@ -39,6 +39,7 @@ _ROOMS = {
     "analysis.statics": "Statics equivalent_stiffness statics",
     "analysis.lost_motion": "LostMotion lost_motion",
     "analysis.modes": "Modes modal_assurance modes subspace_angle",
+    "analysis.deflection": "Deflection deflection",
     "studies.sensitivities": "Sensitivities sensitivities",
     "studies.omitted": "Omitted omitted",
     "studies.units": "UnitResult units",

@@ -1,3 +1,7 @@
+from flexstage.analysis.deflection import (
+    Deflection as Deflection,
+    deflection as deflection,
+)
 from flexstage.analysis.lost_motion import (
     LostMotion as LostMotion,
     lost_motion as lost_motion,
