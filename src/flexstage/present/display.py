@@ -1,7 +1,7 @@
 """Display units and numbers: how an SI value is shown to people. Documents for machines stay in SI and never pass here.
 
-A unit's preferred display form is left only where the numbers would become unreadable (all below 0.01, or above 100 000). Noise of rounding is
-shown as 0; the rule is `NOISE_RULE`, and tables that use it say so.
+A unit's preferred display form is left only where the numbers would become unreadable (all below 0.01, or above 100 000). Noise of
+rounding is shown as 0; the rule is `NOISE_RULE`, and tables that use it say so.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from flexstage.base.number import Array
 from flexstage.base.quantity import Quantity
 
 NOISE = 1e-9
-NOISE_RULE = "0 stands for rounding noise: entries below 1e-9 of the geometric mean of the largest entries (SI) in their row and column."
+NOISE_RULE = "0 stands for rounding noise: below 1e-9 of the geometric mean of the largest entries (SI) in the row and the column."
 DIGITS = 5
 NO_VALUE = "-"
 
@@ -82,8 +82,19 @@ _PREFERRED = {
     "rad/K": "nrad/K",
     "m/V": "um/V",
 }
-_FIELD_UNITS = {"1": 1.0, "mm": 1e3, "um": 1e6, "deg": 180.0 / math.pi, "kg": 1.0, "MPa": 1e-6, "GPa": 1e-9, "N/um": 1e-6, "uF": 1e6}
-_FIELD_UNITS |= {"nm/Hz^0.5": 1e9, "um/N": 1e6, "urad/N": 1e6, "urad/(N m)": 1e6}
+_FIELD_UNITS = {
+    "mm": 1e3,
+    "um": 1e6,
+    "deg": 180.0 / math.pi,
+    "MPa": 1e-6,
+    "GPa": 1e-9,
+    "N/um": 1e-6,
+    "uF": 1e6,
+    "nm/Hz^0.5": 1e9,
+    "um/N": 1e6,
+    "urad/N": 1e6,
+    "urad/(N m)": 1e6,
+}
 
 
 def shown(unit: str, largest: float = 1.0) -> Shown:
@@ -163,17 +174,19 @@ def _decimals(text: str) -> int:
     return len(text.partition(".")[2])
 
 
-def quiet(values: Array) -> Array:
+def quiet(values: Array, against: Array | None = None) -> Array:
     """A copy of a matrix (rows, columns) in which rounding noise is 0 (`NOISE_RULE`); the argument is not changed.
+
+    `against` is the matrix of the same shape whose rows and columns set the scale (absent: the matrix itself).
 
     >>> quiet(np.array([[1.0, 1e-15], [1e-15, 2.0]])).tolist()
     [[1.0, 0.0], [0.0, 2.0]]
     """
-    sizes = np.where(np.isfinite(values), np.abs(values), 0.0)
-    if not sizes.size:
+    if not np.size(values):
         return np.array(values)
+    sizes = np.nan_to_num(np.abs(values if against is None else against), nan=0.0, posinf=0.0)
     scale = np.sqrt(sizes.max(axis=1, keepdims=True) * sizes.max(axis=0, keepdims=True))
-    return np.where(sizes < NOISE * scale, 0.0, values)
+    return np.where(np.abs(values) < NOISE * scale, 0.0, values)
 
 
 def percent(share: float, digits: int = 4) -> str:

@@ -53,7 +53,7 @@ def _ring(names: tuple[str, ...], pattern: Polar) -> Ring:
 def plan_figure(mechanism: Mechanism, scene: Scene) -> Any:
     """The stage from above with dimensions in mm, as a matplotlib Figure.
 
-    Drawn are outlines of bodies and parts, the circles units and gauges stand on with radius and position angles, envelope and clear opening.
+    Drawn are outlines of bodies and parts, the circles units and gauges stand on with radius and position angles, envelope and opening.
 
     >>> from flexstage.present.scene.stage import scene
     >>> len(plan_figure(Mechanism(""), scene(Mechanism(""))).axes)
@@ -96,8 +96,7 @@ def _outlines(axes: Any, scene: Scene) -> None:
 
     for kind in _LAYERS:
         hulls = [hull(points) for points in _plans(scene, kind)]
-        colours = {"facecolors": _FILLS[kind], "edgecolors": INK}
-        axes.add_collection(PolyCollection(hulls, linewidths=0.45, alpha=0.55, clip_on=False, **colours))
+        axes.add_collection(PolyCollection(hulls, facecolors=_FILLS[kind], edgecolors=INK, linewidths=0.45, alpha=0.55, clip_on=False))
 
 
 def _plans(scene: Scene, kind: Kind) -> Iterator[Array]:

@@ -46,7 +46,7 @@ def _line(cells: list[str], widths: list[int], columns: tuple[Column, ...]) -> s
 
 
 def to_markdown(table: Table) -> str:
-    """The table in GitHub's Markdown.
+    r"""The table in GitHub's Markdown.
 
     >>> from flexstage.present.table import build
     >>> print(to_markdown(build("Masses", ["body", Column("mass", "kg")], [("a|b", "14")])))
@@ -54,7 +54,7 @@ def to_markdown(table: Table) -> str:
     <BLANKLINE>
     | body | mass [kg] |
     | :-- | --: |
-    | a\\|b | 14 |
+    | a\|b | 14 |
     """
     lines = [[_markdown(cell) for cell in line] for line in table.texts()]
     rule = ["--:" if column.numeric else ":--" for column in table.columns]

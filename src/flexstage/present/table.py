@@ -9,9 +9,9 @@ from typing import TypeAlias
 
 import numpy as np
 
-from flexstage.base.labelled import Matrix
+from flexstage.base.labelled import Matrix, ratio_units
 from flexstage.base.number import Array
-from flexstage.present.display import NO_VALUE, NOISE_RULE, Shown, aligned, number, preferred, quiet, shown
+from flexstage.present.display import NO_VALUE, NOISE, NOISE_RULE, Shown, aligned, number, preferred, quiet, value_with_unit
 
 
 class Mark(Enum):
@@ -96,36 +96,88 @@ def figures(values: Iterable[float], form: Shown, digits: int = 5) -> list[Cell]
     """
     items = np.array([float(value) for value in values])
     largest = np.max(np.abs(items[np.isfinite(items)]), initial=0.0)
-    silent = np.isfinite(items) & (np.abs(items) < 1e-9 * largest)
+    silent = np.isfinite(items) & (np.abs(items) < NOISE * largest)
     texts = aligned(np.where(silent, 0.0, items * form.factor), digits)
     return [Cell(text, _faint(text)) for text in texts]
 
 
-def matrix_table(title: str, matrix: Matrix, *, corner: str = "", digits: int = 5, notes: Iterable[str] = ()) -> Table:
+def matrix_table(title: str, matrix: Matrix, *, against: Matrix | None = None, fine: bool = True, notes: Iterable[str] = ()) -> Table:
     """A labelled matrix (first design of a batch) in display units.
 
-    Where the entries' units differ, one unit a column is used if that is possible, else each entry carries its own.
+    Rows and columns carry units and an entry is in row unit per column unit; where the entries' units are no such ratios, each entry
+    carries its own. `against` sets the scale of rounding noise; `fine`: angles in urad, else in mrad (lever arms come out in mm).
 
-    >>> table = matrix_table("K", Matrix(np.array([[2e6]]), ("fx",), ("x",), "N/m"))
+    >>> table = matrix_table("K", Matrix(np.array([[2e6]]), ("fx",), ("x",), (("N/m",),)))
     >>> table.texts()
-    [['', 'x [N/um]'], ['fx', '2']]
+    [['', 'x [um]'], ['fx [N]', '2']]
     """
     values = first_design(matrix.values, 2)
-    kept = quiet(values)
+    kept = quiet(values, None if against is None else first_design(against.values, 2))
+    said = [NOISE_RULE] if np.any((kept == 0.0) & (values != 0.0)) else []
+    said += batch_note(matrix.values, 2)
+    ends = _ends(matrix)
+    if ends is None:
+        return _entries_with_units(title, matrix, kept, (*notes, *said))
+    rows, columns = (tuple(_form(unit, fine=fine) for unit in units) for units in ends)
+    heads = [Column(name, _unit(form)) for name, form in zip(short_names(matrix.columns), columns, strict=True)]
+    lines = [
+        [_row_head(name, form), *(_entry(value * form.factor / column.factor) for value, column in zip(line, columns, strict=True))]
+        for name, form, line in zip(short_names(matrix.rows), rows, kept, strict=True)
+    ]
+    ratio = ["Entries: row unit per column unit."] if any(_unit(form) for form in (*rows, *columns)) else []
+    return build(title, [Column("", numeric=False), *heads], lines, notes=[*notes, *ratio, *said])
+
+
+def short_names(names: tuple[str, ...]) -> tuple[str, ...]:
+    """Names without the owner that all of them have in common.
+
+    >>> short_names(("platform.x", "platform.y")), short_names(("platform.x", "chuck.x")), short_names(("B1", "B2"))
+    (('x', 'y'), ('platform.x', 'chuck.x'), ('B1', 'B2'))
+    """
+    owners = {name.rpartition(".")[0] for name in names}
+    return tuple(name.rpartition(".")[2] for name in names) if len(owners) == 1 else names
+
+
+def _row_head(name: str, form: Shown) -> Cell:
+    unit = _unit(form)
+    return Cell(f"{name} [{unit}]" if unit else name, Mark.STRONG)
+
+
+def _entries_with_units(title: str, matrix: Matrix, kept: Array, notes: tuple[str, ...]) -> Table:
     units = _entry_units(matrix)
-    said = [NOISE_RULE] if np.any(kept != np.where(np.isnan(values), kept, values)) else []
-    by_column = [{row[index] for row in units} for index in range(len(matrix.columns))]
-    if all(len(column) == 1 for column in by_column):
-        forms = [[_form(column.pop(), kept[:, index])] * len(units) for index, column in enumerate(by_column)]
-        heads = [Column(name, _unit(forms[index][0])) for index, name in enumerate(matrix.columns)]
-        cells = [[_entry(value * forms[index][0].factor, digits) for index, value in enumerate(row)] for row in kept]
-    else:
-        heads = [Column(name) for name in matrix.columns]
-        cells = [
-            [_with_unit(value, unit, digits) for value, unit in zip(row, line, strict=True)] for row, line in zip(kept, units, strict=True)
-        ]
-    rows = [[Cell(name, Mark.STRONG), *line] for name, line in zip(matrix.rows, cells, strict=True)]
-    return build(title, [Column(corner, numeric=False), *heads], rows, notes=[*notes, *said, *batch_note(matrix.values, 2)])
+    lines = [
+        [Cell(name, Mark.STRONG), *(_with_unit(value, unit) for value, unit in zip(row, line, strict=True))]
+        for name, row, line in zip(matrix.rows, kept, units, strict=True)
+    ]
+    return build(title, [Column("", numeric=False), *(Column(name) for name in matrix.columns)], lines, notes=notes)
+
+
+_ENDS = ("m", "rad", "N", "N m", "K", "K/m", "V", "1")
+
+
+def _ends(matrix: Matrix) -> tuple[tuple[str, ...], tuple[str, ...]] | None:
+    """Units of rows and columns of which every entry's unit is the ratio; `None` if there are none."""
+    units = _entry_units(matrix)
+    if isinstance(matrix.unit, str):
+        return None if matrix.unit != "1" else (("1",) * len(matrix.rows), ("1",) * len(matrix.columns))
+    for start in _ENDS:
+        columns = _known(_denominator(start, unit) for unit in units[0])
+        rows = _known(_numerator(line[0], columns[0]) for line in units) if columns else ()
+        if (len(rows), len(columns)) == (len(matrix.rows), len(matrix.columns)) and ratio_units(rows, columns) == units:
+            return rows, columns
+    return None
+
+
+def _denominator(top: str, unit: str) -> str | None:
+    return next((bottom for bottom in _ENDS if ratio_units((top,), (bottom,))[0][0] == unit), None)
+
+
+def _numerator(unit: str, bottom: str) -> str | None:
+    return next((top for top in _ENDS if ratio_units((top,), (bottom,))[0][0] == unit), None)
+
+
+def _known(units: Iterable[str | None]) -> tuple[str, ...]:
+    return tuple(unit for unit in units if unit is not None)
 
 
 def _entry_units(matrix: Matrix) -> tuple[tuple[str, ...], ...]:
@@ -134,23 +186,22 @@ def _entry_units(matrix: Matrix) -> tuple[tuple[str, ...], ...]:
     return matrix.unit
 
 
-def _form(unit: str, column: Array) -> Shown:
-    return shown(unit, float(np.max(np.abs(column[np.isfinite(column)]), initial=0.0)))
+def _form(unit: str, *, fine: bool) -> Shown:
+    return Shown("mrad", 1e3) if unit == "rad" and not fine else preferred(unit)
 
 
 def _unit(form: Shown) -> str:
     return "" if form.unit == "1" else form.unit
 
 
-def _entry(value: float, digits: int) -> Cell:
-    text = number(float(value), digits)
+def _entry(value: float) -> Cell:
+    text = number(float(value))
     return Cell(text, _faint(text))
 
 
-def _with_unit(value: float, unit: str, digits: int) -> Cell:
-    form = preferred(unit)
-    text = number(float(value) * form.factor, digits)
-    return Cell(text if text in ("0", NO_VALUE) or form.unit == "1" else f"{text} {form.unit}", _faint(text))
+def _with_unit(value: float, unit: str) -> Cell:
+    text = value_with_unit(float(value), unit)
+    return Cell(text.split()[0] if text[0] in "0-" and value == 0.0 else text, _faint(text.split()[0]))
 
 
 def _faint(text: str) -> Mark:

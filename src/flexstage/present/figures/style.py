@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Generator
 from contextlib import contextmanager
 from typing import Any
 
@@ -17,7 +17,7 @@ PASS, FAIL, WARN = "#2e8540", "#cc3311", "#b7791f"
 FULL, HALF, THIRD = 7.2, 3.5, 2.3
 """Widths of figures in inches."""
 
-_RC = {
+_RC: dict[Any, Any] = {
     "font.family": ["DejaVu Sans"],
     "font.size": 8.0,
     "text.color": INK,
@@ -54,7 +54,7 @@ _RC = {
 
 
 @contextmanager
-def styled() -> Iterator[None]:
+def styled() -> Generator[None]:
     """The style, while a figure is drawn and written; matplotlib's settings are as before afterwards.
 
     >>> with styled():
@@ -76,4 +76,4 @@ def canvas(width: float, height: float, *, fitted: bool = True) -> Any:
     """
     from matplotlib.figure import Figure
 
-    return Figure(figsize=(width, height), layout="constrained" if fitted else "none")
+    return Figure(figsize=(width, height), layout="constrained" if fitted else None)

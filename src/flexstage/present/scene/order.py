@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 
@@ -55,12 +56,11 @@ def _best(facets: Sequence[Facet], tolerance: float) -> tuple[Array, list[int], 
     points = np.concatenate([facet.points for facet in facets])
     starts = np.concatenate([[0], np.cumsum([len(facet.points) for facet in facets])])
     flat = [index for index, facet in enumerate(facets) if len(facet.points) > 2]
-    trials = [
-        (*_trial(facets[index], points, starts, tolerance), index) for index in flat[:: max(1, len(flat) // _CANDIDATES)][:_CANDIDATES]
-    ]
+    tried = flat[:: max(1, len(flat) // _CANDIDATES)][:_CANDIDATES]
+    trials = [(*_trial(facets[index], points, starts, tolerance), index) for index in tried]
     _, normal, sides, distance, chosen = min(trials, key=lambda trial: trial[0])
     sides[chosen] = 0  # also where rounding says otherwise: every step takes at least one facet away
-    return normal, sides.tolist(), [distance[start:end] for start, end in zip(starts[:-1], starts[1:], strict=True)]
+    return normal, sides.tolist(), [distance[start:end] for start, end in pairwise(starts)]
 
 
 def _trial(divider: Facet, points: Array, starts: Array, tolerance: float) -> tuple[float, Array, Array, Array]:
