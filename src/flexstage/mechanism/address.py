@@ -230,7 +230,7 @@ def _origin(mechanism: Mechanism, place: Place) -> str:
     for owner in reversed(place.owners):
         for _, path in _made(mechanism, owner):
             if path == place.path[: len(path)] or path[: len(place.path)] == place.path:
-                return ".".join((owner, *place.path))
+                return replace(place, owners=(owner,)).address
     if not place.owners:
         return place.address
     link = _drawn(mechanism, place.owners)

@@ -16,6 +16,7 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import Annotated, Any, TypeAlias
 
+from flexstage.base.number import Table
 from flexstage.base.quantity import (
     COMPLIANCE,
     COMPLIANCE_MATRIX,
@@ -184,7 +185,7 @@ Node: TypeAlias = (
 
 @dataclass(frozen=True)
 class Slot:
-    """A field: its key in a file, what it holds, whether it may be absent, and its default (`dataclasses.MISSING`: none)."""
+    """A field: its key in a file, what it holds, whether it may be `None`, and its default (`dataclasses.MISSING`: none; tables: empty)."""
 
     key: str
     node: Node
@@ -215,9 +216,11 @@ def _slots(record: type) -> Mapping[str, Slot]:
 
 def _slot(record: type, field: dataclasses.Field[Any], hint: Any) -> Slot:
     inner, optional = _without_none(hint)
-    default = field.default if field.default_factory is dataclasses.MISSING else field.default_factory()
     key = _FILE_KEYS.get((record, field.name), field.name)
     node = ChangesNode() if (record, field.name) == (Mechanism, "changes") else _node(inner)
+    default = field.default if field.default_factory is dataclasses.MISSING else field.default_factory()
+    if default is dataclasses.MISSING and isinstance(node, TableNode):
+        default = Table({})
     return Slot(key, node, optional, default)
 
 

@@ -21,22 +21,19 @@ class Place:
     """Where an address points.
 
     `path` is the full path from the description, and `owners` is empty; or a departure is meant: `owners` are those whose changes count,
-    the last one before the first (`horizontal/front`, `B2/front`), and `path` starts at the link (`at.x`) or at its part (`thickness`).
+    the last one before the first (`horizontal/front`, `B2/front`), and `path` starts at the link (`at.x`, `in_link`) or at its part.
     """
 
     owners: tuple[str, ...]
     path: tuple[str, ...]
     node: Node
+    in_link: bool = False
 
     @property
     def address(self) -> str:
-        """The address in full."""
-        return ".".join((*self.owners[-1:], *self.path))
-
-    @property
-    def in_link(self) -> bool:
-        """Whether a departure is one of the link itself, not of its part."""
-        return bool(self.owners) and self.path[0] in node_of(Link).fields
+        """The address in full; the part within a restricted part is not named, `part` being the link's own."""
+        inside = bool(self.owners) and not self.in_link and self.path[:1] == ("part",)
+        return ".".join((*self.owners[-1:], *self.path[inside:]))
 
 
 def locate(mechanism: Mechanism, address: str) -> Place:
@@ -86,7 +83,7 @@ def _in_link(mechanism: Mechanism, address: str, tree: tuple[str, ...], owners: 
         raise refuse(address, "what a link joins and its part are no departures", "Address a value of the link or of its part")
     if has_member(link, steps[0]):
         departed = len(owners) > 1 or any(key.startswith(f"{drawn}.{steps[0]}") for drawn in owners for key in mechanism.changes)
-        start = Place(owners, (), RecordNode(Link)) if departed else Place((), tree, RecordNode(Link))
+        start = Place(owners, (), RecordNode(Link), in_link=True) if departed else Place((), tree, RecordNode(Link))
         return _descend(link, address, start, steps)
     if link.part not in mechanism.parts:
         raise refuse(address, f'there is no part "{link.part}"', nearest(link.part, mechanism.parts))

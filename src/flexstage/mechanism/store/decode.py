@@ -178,6 +178,8 @@ class Reader:
                 values[name] = self.read(inner, raw[key], _join(where, key))
             elif slot.required:
                 values[name] = self.refuse(where, f"it has no {_wanted(slot)}", f"Write for example {_example_of(slot)}")
+            else:
+                values[name] = slot.default
         known = [key for slot in node.fields.values() for key in _keys(slot)]
         for key in [key for key in raw if key not in used]:
             self.refuse(_join(where, key), "this key is not known here", nearest(key, set(known) - used or known))

@@ -1,0 +1,106 @@
+"""Random descriptions grown from the grammar itself, so that no field is forgotten."""
+
+from __future__ import annotations
+
+import dataclasses
+import re
+from typing import Any
+
+from hypothesis import strategies as st
+
+from flexstage.base.number import Table
+from flexstage.mechanism.address import addresses
+from flexstage.mechanism.grammar import (
+    RESERVED,
+    ChoiceNode,
+    DirectionNode,
+    ListNode,
+    MatrixNode,
+    Node,
+    NumberNode,
+    RecordNode,
+    TableNode,
+    TextNode,
+    UnionNode,
+    VectorNode,
+    entry,
+)
+from flexstage.mechanism.locate import locate
+from flexstage.mechanism.mechanism import Link, Mechanism, Placement, Unit
+
+FINITE = st.one_of(
+    st.floats(allow_nan=False, allow_infinity=False),
+    st.floats(min_value=-10.0, max_value=10.0).map(lambda value: round(value, 4)),
+    st.sampled_from([0.0, -0.0, 1e-3, 1.54e-3, 0.1, 200e9]),
+)
+NAMES = st.from_regex(r"[A-Za-z_äΔ][A-Za-z0-9_\-äΔ]{0,8}", fullmatch=True).filter(
+    lambda name: name not in RESERVED and not re.search(r"\d-", name)
+)
+TEXTS = st.text(st.characters(exclude_categories=["Cs"]), max_size=20)
+DIRECTIONS = st.one_of(st.sampled_from([(1.0, 0.0, 0.0), (0.0, -1.0, 0.0), (-0.0, 0.0, 1.0)]), st.tuples(FINITE, FINITE, FINITE))
+
+
+def values(node: Node) -> st.SearchStrategy[Any]:
+    """Any value of a node."""
+    if isinstance(node, NumberNode):
+        return FINITE
+    if isinstance(node, VectorNode):
+        return st.tuples(*(values(item) for item in node.items))
+    if isinstance(node, DirectionNode):
+        return DIRECTIONS
+    if isinstance(node, MatrixNode):
+        return st.tuples(*(st.tuples(*(values(entry(row, column)) for column in range(6))) for row in range(6)))
+    if isinstance(node, TextNode):
+        return TEXTS
+    if isinstance(node, ChoiceNode):
+        return st.sampled_from(list(node.choices))
+    if isinstance(node, ListNode):
+        length = {"min_size": node.length, "max_size": node.length} if node.length is not None else {"max_size": 3}
+        return st.lists(values(node.item), **length).map(tuple)
+    if isinstance(node, TableNode):
+        return st.dictionaries(NAMES, values(node.item), max_size=2)
+    if isinstance(node, UnionNode):
+        return st.one_of(*(values(option) for _, option in node.options))
+    return records(node) if isinstance(node, RecordNode) else st.just({})
+
+
+def records(node: RecordNode) -> st.SearchStrategy[Any]:
+    """Any value of a description class."""
+    fields = {}
+    for name, slot in node.fields.items():
+        strategy = values(slot.node)
+        strategy = st.one_of(st.none(), strategy) if slot.optional else strategy
+        fields[name] = strategy if slot.required else st.one_of(st.just(slot.default), strategy)
+    return st.builds(node.record, **fields)
+
+
+@st.composite
+def mechanisms(draw: st.DrawFn) -> Mechanism:
+    """Any description whose addresses are sound; it need not make sense."""
+    stage = draw(values(RecordNode(Mechanism)))
+    stage = dataclasses.replace(stage, changes={}, tags={}, place={})
+    if stage.parts:
+        stage = _with_departures(draw, stage)
+    numbers = addresses(stage)
+    tagged = draw(st.lists(st.sampled_from(numbers), max_size=4, unique=True)) if numbers else []
+    return dataclasses.replace(stage, tags={address: f"stated {draw(TEXTS)}" for address in tagged})
+
+
+def _with_departures(draw: st.DrawFn, stage: Mechanism) -> Mechanism:
+    part = draw(st.sampled_from(sorted(stage.parts)))
+    link = dataclasses.replace(draw(values(RecordNode(Link))), part=part)
+    stage = dataclasses.replace(stage, units={"zz": Unit({}, {"link": link})}, place=draw(_placements()))
+    wanted = draw(st.lists(st.sampled_from(_departures(stage)), max_size=3, unique=True))
+    return dataclasses.replace(stage, changes=Table({key: draw(values(locate(stage, key).node)) for key in wanted}))
+
+
+def _placements() -> st.SearchStrategy[Any]:
+    return values(RecordNode(Placement)).map(lambda placement: {"Z1-Z2": dataclasses.replace(placement, unit="zz")})
+
+
+def _departures(stage: Mechanism) -> list[str]:
+    """Addresses of numbers that may depart: those of the link's part, and its place, in all copies or in the second."""
+    link = stage.units["zz"].links["link"]
+    inside = f"parts.{link.part}."
+    own = [address.removeprefix(inside).removeprefix("part.") for address in addresses(stage) if address.startswith(inside)]
+    return [f"{owner}/link.{path}" for owner in ("zz", "Z2") for path in ("at", "at.x", "along", *own)]
