@@ -33,6 +33,12 @@ class Layout:
         start = 6 * self.bodies.index(body)
         return slice(start, start + 6)
 
+    def selector(self, body: str) -> Array:
+        """The (6, n) matrix that picks a body's twist, at its own reference point in the stage's axes."""
+        result = np.zeros((6, self.size))
+        result[:, self.columns(body)] = np.eye(6)
+        return result
+
 
 def layout(assembly: Assembly) -> Layout:
     """The coordinate layout of an expanded stage."""
@@ -51,10 +57,16 @@ def twist_at(assembly: Assembly, order: Layout, body: str, frame: Frame) -> Arra
     return result
 
 
+def end_twists(assembly: Assembly, order: Layout, link: PlacedLink) -> tuple[Array, Array]:
+    """The (..., 6, n) matrices of the twists of a link's first and second body, at the link's centre, in its frame."""
+    first, second = link.joins
+    return twist_at(assembly, order, first, link.frame), twist_at(assembly, order, second, link.frame)
+
+
 def deformation(assembly: Assembly, order: Layout, link: PlacedLink) -> Array:
     """The (..., 6, n) matrix of a link's relative twist: second body against first, at the link's centre, in its frame."""
-    first, second = link.joins
-    return twist_at(assembly, order, second, link.frame) - twist_at(assembly, order, first, link.frame)
+    first, second = end_twists(assembly, order, link)
+    return second - first
 
 
 def with_ground(assembly: Assembly, order: Layout) -> Array:

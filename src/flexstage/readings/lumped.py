@@ -5,9 +5,10 @@ K = sum H^T k H with H the relative twist at each link; M from bodies and parts;
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from enum import Enum
+from typing import TypeVar
 
 import numpy as np
 
@@ -17,16 +18,19 @@ from flexstage.base.number import Array, Number
 from flexstage.beams.compliance import law
 from flexstage.beams.mass import mass
 from flexstage.mechanism.expand import Assembly, PlacedLink, expand
-from flexstage.mechanism.incidence import Layout, deformation, layout, twist_at, with_ground
+from flexstage.mechanism.incidence import Layout, end_twists, layout, twist_at, with_ground
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.mechanism.moving_mass import moving_inertia
-from flexstage.parts.part import Restricted
-from flexstage.readings.linear.elimination import eliminate, null_space
-from flexstage.readings.linear.model import Channel, Contribution, LinearModel, assembled
+from flexstage.parts.material import Material
+from flexstage.parts.part import Part, Restricted
+from flexstage.readings.linear.elimination import eliminate
+from flexstage.readings.linear.model import Channel, Contribution, LinearModel, assembled, gathered
 from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS, WRENCH_UNITS, Frame, seen_at
 
 _SINGULAR = 1e-11
 _FORCES = ("fx", "fy", "fz", "mx", "my", "mz")
+
+_Value = TypeVar("_Value")
 
 
 class Masses(Enum):
@@ -38,10 +42,14 @@ class Masses(Enum):
 
 @dataclass(frozen=True, eq=False)
 class _Stage:
+    """The stage as operators: twists of every link's `ends`, `strains`, rows of `locked` freedoms, `rigid` motion with the ground."""
+
     assembly: Assembly
     order: Layout
+    ends: Mapping[str, tuple[Array, Array]]
     strains: Mapping[str, Contribution]
     locked: tuple[Array, ...]
+    rigid: Array
 
 
 def lumped(mechanism: Mechanism, masses: Masses = Masses.ALL) -> LinearModel:
@@ -57,7 +65,6 @@ def lumped(mechanism: Mechanism, masses: Masses = Masses.ALL) -> LinearModel:
     inertia = _inertia(mechanism, stage, masses)
     channels, output, feedthrough = _outputs(stage)
     inputs, force, imposed = _inputs(stage)
-    carried = {name: _transposed(item.operator) @ item.law @ _rigid_strain(stage, name, item) for name, item in inertia.items()}
     return LinearModel(
         coordinates=coordinates,
         stiffness={name: _through(item, basis) for name, item in stage.strains.items()},
@@ -70,7 +77,7 @@ def lumped(mechanism: Mechanism, masses: Masses = Masses.ALL) -> LinearModel:
         feedthrough=feedthrough,
         rigid=_rigid_coordinates(stage, coordinates),
         rigid_output=_rigid_output(stage, channels, output),
-        base_inertia=_project(sum(carried.values(), np.zeros((size, 6))), basis),
+        base_inertia=_project(_carried(stage, inertia), basis),
         damping=mechanism.damping,
         idle=idle,
         provenance=f"lumped reading of {digest(mechanism, physics=True)[:16]}",
@@ -80,17 +87,24 @@ def lumped(mechanism: Mechanism, masses: Masses = Masses.ALL) -> LinearModel:
 def _stage(mechanism: Mechanism) -> _Stage:
     assembly = expand(mechanism)
     order = layout(assembly)
+    laws = _by_part(law, assembly)
+    ends = {name: end_twists(assembly, order, link) for name, link in assembly.links.items()}
     strains: dict[str, Contribution] = {}
     locked: list[Array] = []
-    laws: dict[tuple[int, int], object] = {}
     for name, link in assembly.links.items():
-        key = (id(link.part), id(link.material))
-        part_law = laws.setdefault(key, law(link.part, link.material))
-        operator = deformation(assembly, order, link)
-        strains[name] = Contribution(operator, part_law.stiffness, _loss_factor(link))
-        if part_law.locked:
-            locked.append(operator[..., [freedom.index for freedom in part_law.locked], :])
-    return _Stage(assembly, order, strains, tuple(locked))
+        operator = ends[name][1] - ends[name][0]
+        strains[name] = Contribution(operator, laws[name].stiffness, _loss_factor(link))
+        if laws[name].locked:
+            locked.append(operator[..., [freedom.index for freedom in laws[name].locked], :])
+    return _Stage(assembly, order, ends, strains, tuple(locked), with_ground(assembly, order))
+
+
+def _by_part(function: Callable[[Part, Material | None], _Value], assembly: Assembly) -> dict[str, _Value]:
+    """A value for every link, computed once for all links of one part and material."""
+    keys = {name: (id(link.part), id(link.material)) for name, link in assembly.links.items()}
+    distinct = {keys[name]: link for name, link in assembly.links.items()}
+    values = {key: function(link.part, link.material) for key, link in distinct.items()}
+    return {name: values[key] for name, key in keys.items()}
 
 
 def _loss_factor(link: PlacedLink) -> Number:
@@ -110,7 +124,7 @@ def _reduced(stage: _Stage, size: int) -> tuple[Array | None, tuple[str, ...], t
         rows = np.concatenate(np.broadcast_arrays(*stage.locked) if _same(stage.locked) else _spread(stage.locked), axis=-2)
         solution = eliminate(rows, scale, keep=tuple(range(6)))
         basis, independent = solution.basis, solution.independent
-    loose = _loose(stage, basis, scale)
+    loose = _loose(stage, basis)
     if loose.shape[1] == 0:
         return basis, tuple(names[index] for index in independent), ()
     pinned = _pinned(stage, loose, independent)
@@ -128,9 +142,10 @@ def _spread(arrays: tuple[Array, ...]) -> list[Array]:
     return [np.broadcast_to(array, (*batch, *array.shape[-2:])) for array in arrays]
 
 
-def _loose(stage: _Stage, basis: Array | None, scale: Array) -> Array:
+def _loose(stage: _Stage, basis: Array | None) -> Array:
     """Null space (n, k) of the first design's stiffness in the independent coordinates."""
-    stiffness = np.real(_first(assembled(stage.strains, stage.order.size)))
+    strains = {name: Contribution(_first(item.operator), _first(item.law)) for name, item in stage.strains.items()}
+    stiffness = np.real(assembled(strains, stage.order.size))
     if basis is not None:
         first = np.real(_first(basis))
         stiffness = first.T @ stiffness @ first
@@ -184,29 +199,30 @@ def _inertia(mechanism: Mechanism, stage: _Stage, masses: Masses) -> dict[str, C
             continue
         matrix = moving_inertia(mechanism, placed)
         if matrix is not None:
-            selector = np.zeros((6, stage.order.size))
-            selector[:, stage.order.columns(name)] = np.eye(6)
-            result[name] = Contribution(selector, matrix)
+            result[name] = Contribution(stage.order.selector(name), matrix)
     if masses is Masses.ALL:
-        for name, link in stage.assembly.links.items():
-            ends = [twist_at(stage.assembly, stage.order, body, link.frame) for body in link.joins]
-            operator = np.concatenate(_spread(tuple(ends)), axis=-2)
-            result[f"{name} (link)"] = Contribution(operator, mass(link.part, link.material))
+        for name, matrix in _by_part(mass, stage.assembly).items():
+            result[_of_link(name)] = Contribution(np.concatenate(_spread(stage.ends[name]), axis=-2), matrix)
     return result
 
 
-def _rigid_strain(stage: _Stage, name: str, item: Contribution) -> Array:
-    """What an inertia contribution sees when everything, the ground included, moves rigidly."""
-    link = stage.assembly.links.get(name.removesuffix(" (link)"))
-    if link is None:
-        return item.operator @ with_ground(stage.assembly, stage.order)
-    carry = seen_at(link.frame, stage.assembly.bodies[PLATFORM].reference)
-    return np.concatenate([carry, carry], axis=-2)
+def _of_link(name: str) -> str:
+    return f"{name} (link)"
+
+
+def _carried(stage: _Stage, inertia: Mapping[str, Contribution]) -> Array:
+    """Inertial forces (..., n, 6) on the coordinates when everything, the ground included, is accelerated rigidly."""
+    centre = stage.assembly.bodies[PLATFORM].reference
+    seen = {name: stage.rigid[..., stage.order.columns(name), :] for name in stage.order.bodies}
+    for name, link in stage.assembly.links.items():
+        carry = seen_at(link.frame, centre)
+        seen[_of_link(name)] = np.concatenate([carry, carry], axis=-2)
+    return gathered(inertia, seen) if inertia else np.zeros((stage.order.size, 6))
 
 
 def _inputs(stage: _Stage) -> tuple[tuple[Channel, ...], Array, dict[str, Array]]:
     drives = stage.assembly.actuators
-    places = [("platform", twist_at(stage.assembly, stage.order, PLATFORM, _at(stage.assembly.bodies[PLATFORM].reference)))]
+    places = [(PLATFORM, stage.order.selector(PLATFORM))]
     places += [(name, twist_at(stage.assembly, stage.order, body, _at(point))) for name, (body, point) in stage.assembly.points.items()]
     channels = [Channel(name, "m") for name in drives]
     channels += [Channel(f"{name}.{force}", unit) for name, _ in places for force, unit in zip(_FORCES, WRENCH_UNITS, strict=True)]
@@ -225,9 +241,9 @@ def _at(point: Array) -> Frame:
 def _outputs(stage: _Stage) -> tuple[tuple[Channel, ...], Array, Array]:
     """Twists of platform, points and all bodies, gauge readings, and stress resultants at every link's centre in its frame."""
     assembly, order = stage.assembly, stage.order
-    seen = {PLATFORM: twist_at(assembly, order, PLATFORM, _at(assembly.bodies[PLATFORM].reference))}
+    seen = {PLATFORM: order.selector(PLATFORM)}
     seen |= {name: twist_at(assembly, order, body, _at(point)) for name, (body, point) in assembly.points.items()}
-    seen |= {name: twist_at(assembly, order, name, _at(body.reference)) for name, body in assembly.bodies.items() if name != PLATFORM}
+    seen |= {name: order.selector(name) for name in assembly.bodies if name != PLATFORM}
     channels = [Channel(f"{name}.{part}", unit) for name in seen for part, unit in zip(COMPONENTS, TWIST_UNITS, strict=True)]
     rows = list(seen.values())
     for name, gauge in assembly.gauges.items():
@@ -235,9 +251,10 @@ def _outputs(stage: _Stage) -> tuple[tuple[Channel, ...], Array, Array]:
         rows.append(gauge.sign * (ends[0] - ends[1]))
         channels.append(Channel(name, "m"))
     passed = [np.zeros((len(channels), _input_count(assembly)))]
+    drives = {link: number for number, link in enumerate(assembly.actuators.values())}
     for name, item in stage.strains.items():
         rows.append(item.law @ item.operator)
-        passed.append(_own_force(assembly, name, item))
+        passed.append(np.zeros((6, _input_count(assembly))) if name not in drives else _own_force(assembly, item, drives[name]))
         channels += [Channel(f"{name}.{force}", unit) for force, unit in zip(_FORCES, WRENCH_UNITS, strict=True)]
     return tuple(channels), np.concatenate(_spread(tuple(rows)), axis=-2), np.concatenate(_spread(tuple(passed)), axis=-2)
 
@@ -246,23 +263,21 @@ def _input_count(assembly: Assembly) -> int:
     return len(assembly.actuators) + 6 * (1 + len(assembly.points))
 
 
-def _own_force(assembly: Assembly, name: str, item: Contribution) -> Array:
+def _own_force(assembly: Assembly, item: Contribution, drive: int) -> Array:
     imposed = np.zeros((6, _input_count(assembly)))
-    drives = list(assembly.actuators.values())
-    if name in drives:
-        imposed[0, drives.index(name)] = 1.0
+    imposed[0, drive] = 1.0
     return -item.law @ imposed
 
 
 def _rigid_coordinates(stage: _Stage, coordinates: tuple[str, ...]) -> Array:
-    rows = [stage.order.coordinates.index(name) for name in coordinates]
-    return with_ground(stage.assembly, stage.order)[..., rows, :]
+    places = {name: number for number, name in enumerate(stage.order.coordinates)}
+    return stage.rigid[..., [places[name] for name in coordinates], :]
 
 
 def _rigid_output(stage: _Stage, channels: tuple[Channel, ...], output: Array) -> Array:
     """Outputs when everything moves with the ground: absolute twists do, gauges and links do not feel it."""
     absolute = np.array([channel.name.rpartition(".")[2] in COMPONENTS for channel in channels])
-    return np.where(absolute[:, None], output @ with_ground(stage.assembly, stage.order), 0.0)
+    return np.where(absolute[:, None], output @ stage.rigid, 0.0)
 
 
 def _first(matrix: Array) -> Array:

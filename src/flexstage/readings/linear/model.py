@@ -37,10 +37,11 @@ Contributions: TypeAlias = Mapping[str, Contribution]
 class LinearModel:
     """M q'' + D q' + K q = B u, y = C q + D u, with K and M as named sums of contributions.
 
-    `force` (..., n, m) are direct generalised forces of the inputs; `imposed` gives per stiffness contribution the deformation (..., r, m) an
-    input imposes (the free stroke of a stack): B = force + sum G^T k imposed. `output` (..., p, n) and `feedthrough` (..., p, m).
-    `rigid` (..., n, 6) is the motion of all coordinates with the ground (its twist given at the platform's reference), `rigid_output` (..., p, 6) that of the outputs, `base_inertia`
-    (..., n, 6) the inertial force per unit base acceleration. Batch axes lead.
+    `force` (..., n, m) are direct generalised forces of the inputs; `imposed` gives per stiffness contribution the deformation (..., r, m)
+    an input imposes (the free stroke of a stack): B = force + sum G^T k imposed. `output` (..., p, n) and `feedthrough` (..., p, m).
+    `rigid` (..., n, 6) is the motion of all coordinates with the ground (its twist given at the platform's reference), `rigid_output`
+    (..., p, 6) that of the outputs, `base_inertia` (..., n, 6) the inertial force per unit base acceleration. Batch axes lead, and only
+    where something varies: an array without them holds for every design.
     """
 
     coordinates: tuple[str, ...]
@@ -103,17 +104,25 @@ def assembled(contributions: Contributions, size: int) -> Array:
     """
     if not contributions:
         return np.zeros((size, size))
-    items = contributions.values()
-    batch = np.broadcast_shapes(*(item.operator.shape[:-2] for item in items), *(item.law.shape[:-2] for item in items))
-    left = np.concatenate([np.broadcast_to(item.operator, (*batch, *item.operator.shape[-2:])) for item in items], axis=-2)
-    right = np.concatenate([_weighted(item, batch) for item in items], axis=-2)
-    total = _transposed(left) @ right
+    total = gathered(contributions, {name: item.operator for name, item in contributions.items()})
     return 0.5 * (total + _transposed(total))
 
 
-def _weighted(item: Contribution, batch: tuple[int, ...]) -> Array:
-    product = item.law @ item.operator
-    return np.broadcast_to(product, (*batch, *product.shape[-2:]))
+def gathered(contributions: Contributions, strains: Mapping[str, Array]) -> Array:
+    """Generalised forces (..., n, k) of given strains (..., r, k): sum of operator^T law strain over the contributions.
+
+    >>> half = Contribution(np.array([[1.0, -1.0]]), np.array([[0.5]]))
+    >>> gathered({"a": half, "b": half}, {"a": np.array([[2.0]]), "b": np.array([[4.0]])}).tolist()
+    [[3.0], [-3.0]]
+    """
+    operators = [item.operator for item in contributions.values()]
+    forces = [item.law @ strains[name] for name, item in contributions.items()]
+    return _transposed(_stacked(operators)) @ _stacked(forces)
+
+
+def _stacked(matrices: list[Array]) -> Array:
+    batch = np.broadcast_shapes(*{matrix.shape[:-2] for matrix in matrices})
+    return np.concatenate([np.broadcast_to(matrix, (*batch, *matrix.shape[-2:])) if batch else matrix for matrix in matrices], axis=-2)
 
 
 def _transposed(matrix: Array) -> Array:
