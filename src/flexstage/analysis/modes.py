@@ -22,9 +22,10 @@ _LOCAL_WINDOW = 1.5
 class Modes:
     """Undamped modes of a stage, ascending.
 
-    `frequencies` (..., k) [Hz]; `shapes` (..., n, k) mass-normalised; `platform_shapes` (..., 6, k) the platform's twist; `share` (..., k) kinetic
-    energy of the platform body over the total; `bodies` names the rows of `energies` (..., b, k), the share of every body and link. `names`,
-    `in_plane` and `platform` (indices of the platform's modes) are those of the first design. `margin` is the largest share not chosen.
+    `frequencies` (..., k) [Hz]; `shapes` (..., n, k) mass-normalised; `platform_shapes` (..., 6, k) the platform's twist; `share` (..., k)
+    kinetic energy of the platform body over the total; `bodies` names the rows of `energies` (..., b, k), the share of every body and
+    link. `names`, `in_plane` and `platform` (indices of the platform's modes) are those of the first design. `margin` is the largest share
+    not chosen.
     """
 
     frequencies: Array
@@ -59,20 +60,20 @@ class Modes:
 def modes(model: LinearModel, *, limit: float = 1000.0, count: int = 6, cluster: float = 1e-6) -> Modes:
     """Modes of the undamped model (Eq. 28 of Shin & Moon).
 
-    The platform's modes are the `count` largest platform shares below `limit` [Hz]; modes closer than `cluster` (relative) are kept together, and
-    within such a cluster the basis is turned so that shapes follow the platform's axes. Small motions.
+    The platform's modes are the `count` largest platform shares below `limit` [Hz]; modes closer than `cluster` (relative) are kept
+    together, and within such a cluster the basis is turned so that shapes follow the platform's axes. Small motions.
     """
-    solved = _aligned(model, eigen(model), cluster)
+    platform = model.output[..., model.output_index(tuple(f"{_PLATFORM}.{name}" for name in COMPONENTS)), :]
+    solved = _aligned(platform, eigen(model), cluster)
     frequencies = np.sqrt(solved.values) / (2.0 * np.pi)
-    bodies, energies = _energies(model, solved)
+    bodies, energies, components = _energies(model, solved)
     share = energies[..., bodies.index(_PLATFORM), :] if _PLATFORM in bodies else np.zeros_like(frequencies)
-    rows = model.output_index(tuple(f"{_PLATFORM}.{name}" for name in COMPONENTS))
     chosen, margin = _chosen(_first(share, 1), _first(frequencies, 1), limit, count, cluster)
-    named = [_named(model, solved, index, bodies, energies) for index in range(frequencies.shape[-1])]
+    named = [_named(bodies, _first(energies, 2)[:, index], components[..., index]) for index in range(frequencies.shape[-1])]
     return Modes(
         frequencies=frequencies,
         shapes=solved.shapes,
-        platform_shapes=model.output[..., rows, :] @ solved.shapes,
+        platform_shapes=platform @ solved.shapes,
         share=share,
         bodies=bodies,
         energies=energies,
@@ -105,30 +106,32 @@ def clusters(values: Array, gap: float) -> list[list[int]]:
     return groups
 
 
-def _aligned(model: LinearModel, solved: Eigen, gap: float) -> Eigen:
+def _aligned(platform: Array, solved: Eigen, gap: float) -> Eigen:
     """Turn the basis of repeated modes so that their platform shapes separate along the axes (first design's clusters)."""
-    rows = model.output_index(tuple(f"{_PLATFORM}.{name}" for name in COMPONENTS))
     shapes = np.array(solved.shapes)
+    weighted = (platform @ shapes) * np.array([1.0, 1.0, 1.0, 0.1, 0.1, 0.1])[:, None]
     for group in clusters(_first(solved.values, 1), 2.0 * gap):
         if len(group) == 1:
             continue
-        seen = (model.output[..., rows, :] @ shapes[..., group]) * np.array([1.0, 1.0, 1.0, 0.1, 0.1, 0.1])[:, None]
-        leading = np.argsort(-np.round(np.sum(_first(seen, 2) ** 2, axis=1), 9), kind="stable")[: len(group)]
-        turn, _ = np.linalg.qr(np.swapaxes(seen[..., np.sort(leading), :], -1, -2))
-        turned = shapes[..., group] @ turn
-        sign = np.sign(np.sum((model.output[..., rows, :] @ turned)[..., np.sort(leading), :] * np.eye(len(group)), axis=-2, keepdims=True))
-        shapes[..., group] = turned * np.where(sign == 0.0, 1.0, sign)
+        seen = weighted[..., group]
+        leading = np.sort(np.argsort(-np.round(np.sum(_first(seen, 2) ** 2, axis=1), 9), kind="stable")[: len(group)])
+        turn, _ = np.linalg.qr(np.swapaxes(seen[..., leading, :], -1, -2))
+        sign = np.sign(np.sum((seen @ turn)[..., leading, :] * np.eye(len(group)), axis=-2, keepdims=True))
+        shapes[..., group] = shapes[..., group] @ turn * np.where(sign == 0.0, 1.0, sign)
     return Eigen(solved.values, shapes)
 
 
-def _energies(model: LinearModel, solved: Eigen) -> tuple[tuple[str, ...], Array]:
-    names = tuple(model.inertia)
-    rows = []
+def _energies(model: LinearModel, solved: Eigen) -> tuple[tuple[str, ...], Array, Array]:
+    """Names of bodies and links, their energy shares (..., b, k), and by component (b, 6, k) for the first design."""
+    rows, components = [], []
     for item in model.inertia.values():
         seen = item.operator @ solved.shapes
-        rows.append(np.sum(seen * (item.law @ seen), axis=-2))
+        products = seen * (item.law @ seen)
+        rows.append(np.sum(products, axis=-2))
+        first = _first(products, 2)
+        components.append(first.reshape(-1, 6, first.shape[-1]).sum(axis=0))
     values = np.stack(np.broadcast_arrays(*rows), axis=-2)
-    return names, values / np.sum(values, axis=-2, keepdims=True)
+    return tuple(model.inertia), values / np.sum(values, axis=-2, keepdims=True), np.stack(components)
 
 
 def _chosen(share: Array, frequencies: Array, limit: float, count: int, gap: float) -> tuple[tuple[int, ...], float]:
@@ -144,20 +147,15 @@ def _chosen(share: Array, frequencies: Array, limit: float, count: int, gap: flo
     return tuple(sorted(chosen)), float(max(left, default=0.0))
 
 
-def _named(model: LinearModel, solved: Eigen, index: int, bodies: tuple[str, ...], energies: Array) -> tuple[str, bool]:
+def _named(bodies: tuple[str, ...], energies: Array, components: Array) -> tuple[str, bool]:
     """Name of a mode by the component that carries most of its main body's energy, and whether that motion is in plane."""
-    by_body = _first(energies, 2)[:, index]
-    main = bodies[int(np.argmax(by_body))]
-    if _PLATFORM in bodies and by_body[bodies.index(_PLATFORM)] >= 0.5 * by_body.max():
-        main = _PLATFORM
-    item = model.inertia[main]
-    operator, law = (np.real(_first(matrix, 2)) for matrix in (item.operator, item.law))
-    seen = operator @ _first(solved.shapes, 2)[:, index]
-    parts = seen * (law @ seen)
-    parts = parts.reshape(-1, 6).sum(axis=0)
+    main = int(np.argmax(energies))
+    if _PLATFORM in bodies and energies[bodies.index(_PLATFORM)] >= 0.5 * energies[main]:
+        main = bodies.index(_PLATFORM)
+    parts = components[main]
     in_plane = bool(np.sum(parts[_IN_PLANE]) > 0.5 * np.sum(parts))
-    if main != _PLATFORM:
-        return f"{main} local", in_plane
+    if bodies[main] != _PLATFORM:
+        return f"{bodies[main]} local", in_plane
     return _NAMES[int(np.argmax(parts))], in_plane
 
 
