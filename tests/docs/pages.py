@@ -3,7 +3,7 @@
 The first word behind a fence is the language; the words after it, which no renderer shows, say what a test does with the block:
 
     python                  run; the blocks of a page share one namespace
-    sh                      lines that start with `flexstage` are run and must leave with exit code 0; `make` lines name a target that exists
+    sh                      lines that start with `flexstage` are run and must leave with exit code 0; `make` lines name an existing target
     sh exit=2               they must leave with that exit code
     toml file=guide.toml    a whole file: written into the page's folder
     toml into=guide.toml    a piece of a file: that file with the piece laid over it must load

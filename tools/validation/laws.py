@@ -1,0 +1,62 @@
+"""The laws that tests try on random parts, models and mechanisms, read from tests/laws."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+from pathlib import Path
+
+from hypothesis import settings
+
+from tests import conftest
+from tools.validation.row import Section, table
+
+LAWS = Path(conftest.__file__).parent / "laws"
+PROFILES = ("default", "full")
+"""Of Hypothesis, registered by tests/conftest.py."""
+
+
+def sections() -> list[Section]:
+    """One section a file of laws."""
+    return [section for path in sorted(LAWS.glob("test_*.py")) if (section := _section(path))]
+
+
+def _section(path: Path) -> Section | None:
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    tests = list(_tests(tree))
+    lines = [(_words(each), examples) for each in tests if (examples := _examples(each))]
+    if not tests:
+        return None
+    stated = [_words(each).partition(":")[0] for each in tests if not _examples(each)]
+    about = (ast.get_docstring(tree) or "").partition("\n\n")[0].replace("\n", " ")
+    more = [f"On stated cases: {'; '.join(stated)}."] if stated else []
+    return Section(f"`{path.name}`", about, (), (*([table(("law", "examples"), lines)] if lines else []), *more))
+
+
+def _tests(tree: ast.Module) -> Iterator[ast.FunctionDef]:
+    for node in tree.body:
+        if isinstance(node, ast.FunctionDef) and node.name.startswith("test_"):
+            yield node
+
+
+def _words(test: ast.FunctionDef) -> str:
+    said = (ast.get_docstring(test) or "").partition("\n\n")[0].replace("\n", " ")
+    name = test.name.removeprefix("test_").replace("_", " ")
+    return f"{name}: {said}".replace("|", "\\|") if said else name
+
+
+def _examples(test: ast.FunctionDef) -> str:
+    """How many random examples, as configured for `make test` and `make check-all`; empty: the law is tried on stated cases."""
+    calls = {_name(each.func): each for each in test.decorator_list if isinstance(each, ast.Call)}
+    if "given" not in calls:
+        return ""
+    decorator = calls.get("settings")
+    own = next((word.value for word in decorator.keywords if word.arg == "max_examples"), None) if decorator else None
+    if isinstance(own, ast.Constant):
+        return str(own.value)
+    usual, full = (settings.get_profile(name).max_examples for name in PROFILES)
+    return f"{usual} (`make check-all`: {full})"
+
+
+def _name(node: ast.expr) -> str:
+    return node.attr if isinstance(node, ast.Attribute) else node.id if isinstance(node, ast.Name) else ""
