@@ -14,8 +14,8 @@ from flexstage.mechanism.mechanism import GROUND, Mechanism
 from flexstage.parts.body import Solid
 from flexstage.parts.given import Given, Joint
 from flexstage.parts.leaf import Leaf
-from flexstage.parts.neck import Neck
 from flexstage.parts.mass import solid_properties
+from flexstage.parts.neck import Neck
 from flexstage.parts.notch import Notch
 from flexstage.parts.part import Part, Restricted, material_of
 from flexstage.parts.piezo import Piezo

@@ -337,7 +337,8 @@ def _end_slopes(links: _Links, state: _State, relative: _Relative) -> tuple[Arra
 
 
 def _block(shift: Array, lever: Array, turn: Array) -> Array:
-    result = np.zeros((*turn.shape[:-2], 6, 6), dtype=turn.dtype)
+    lead = np.broadcast_shapes(shift.shape[:-2], lever.shape[:-2], turn.shape[:-2])
+    result = np.zeros((*lead, 6, 6), dtype=np.result_type(shift, lever, turn))
     result[..., :3, :3], result[..., :3, 3:], result[..., 3:, 3:] = shift, lever, turn
     return result
 

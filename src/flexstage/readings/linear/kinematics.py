@@ -62,7 +62,7 @@ class Kinematics:
     @property
     def actuated(self) -> bool:
         """Whether the strokes determine the platform: R_a has full column rank (on the first design)."""
-        actuation = np.real(self.actuation.reshape(-1, *self.actuation.shape[-2:])[0])
+        actuation = np.real(self.actuation[(0,) * (self.actuation.ndim - 2)])
         scaled = actuation * _scales(self.coordinates, 1.0 / self.length)
         return self.mobility > 0 and bool(np.linalg.matrix_rank(scaled, tol=1e-9) == self.mobility)
 
