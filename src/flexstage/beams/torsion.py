@@ -9,9 +9,9 @@ J Saint-Venant's constant, S = I_p / k the shear stiffness (k the shear factor),
 the shape y z this is the exact energy of the displacement field, but for J, put in place of b^3 t^3 / (3 (b^2 + t^2)), and for k.
 
 Limits: a slender hinge, C = integral of dx / (G J) (Saint-Venant); a wide one, C = 12 C_y / b^2 (every strip dz bends as the hinge itself
-does); a square section does not warp. Between them no blend is needed. Against 3-D finite elements of circular notches with rigid
-arc ends (tests/elsewhere) the error is below 1 % at t/R = 0.2 for widths from 2 t to 10 t, 2 % at 30 t, +4 % at t/R = 0.5, +7 % at t/R = 1,
-and -6 % where the throat is square. Saint-Venant is up to 25 times, 12 C_y / b^2 up to 10 times too soft. With the root compliance of
+does); a square section does not warp. Between them no blend is needed. Against 3-D finite elements of circular notches with rigid arc
+ends (tests/elsewhere) the error is below 1 % at t/R = 0.2 for widths from 2 t to 10 t, 2 % at 30 t, +3 to +8 % for t/R from 0.5 to 1, and
+-6 % where the throat is square. Saint-Venant is up to 25 times, 12 C_y / b^2 up to 10 times too soft. With the root compliance of
 full-height blocks a wide notch is up to 20 % softer still, as it is in tension.
 """
 
