@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from typing import Any
 
-from flexstage.base.finding import Finding
+from flexstage.base.finding import Finding, nearest, refuse
 from flexstage.cases.registry import CASES
 from flexstage.mechanism.grammar import TAGS
 from flexstage.mechanism.store.catalogue import Catalogue, Section
@@ -14,7 +15,8 @@ from flexstage.parts.material import Material
 from flexstage.parts.piezo import Piezo
 from flexstage.present.table import Cell, Mark, Table, build
 
-_TITLES = {Material: "Materials", Piezo: "Piezo stacks", Gauge: "Gauges"}
+_SECTIONS: Mapping[type, str] = {Material: "materials", Piezo: "stacks", Gauge: "gauges"}
+_TITLES: Mapping[type, str] = {Material: "Materials", Piezo: "Piezo stacks", Gauge: "Gauges"}
 
 
 def case_table() -> Table:
@@ -44,6 +46,28 @@ def catalogue_tables(catalogue: Catalogue) -> tuple[Table, ...]:
     ['steel', '200 GPa']
     """
     return tuple(_section_table(section, catalogue.sources) for section in catalogue.sections if section.entries)
+
+
+def section_named(catalogue: Catalogue, name: str) -> Catalogue:
+    """The catalogue with one section only: `materials`, `stacks` or `gauges`. Raises `DesignError` for another name.
+
+    >>> from flexstage.mechanism.store.catalogue import shipped
+    >>> [section.record.__name__ for section in section_named(shipped(), "gauges").sections]
+    ['Gauge']
+    """
+    if name not in _SECTIONS.values():
+        raise refuse(name, "the catalogue has no such section", nearest(name, _SECTIONS.values()))
+    return replace(catalogue, sections=tuple(section for section in catalogue.sections if _SECTIONS[section.record] == name))
+
+
+def catalogue_body(catalogue: Catalogue) -> dict[str, Any]:
+    """The catalogue as plain values: section, entry, and its values as they would stand in a design file; and the sources.
+
+    >>> from flexstage.mechanism.store.catalogue import catalogue_from
+    >>> catalogue_body(catalogue_from({"materials": {"steel": {"young": "200 GPa"}}}))["materials"]
+    {'steel': {'young': '200 GPa'}}
+    """
+    return {**{_SECTIONS[section.record]: dict(section.entries) for section in catalogue.sections}, "sources": dict(catalogue.sources)}
 
 
 def _section_table(section: Section, sources: Mapping[str, str]) -> Table:

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from flexstage.analysis.requirements import requirements
 from flexstage.analysis.workspace.room import room
 from flexstage.base.finding import DesignError, Finding
 from flexstage.beams.validity import validity
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
+from flexstage.readings.ideal import ideal
+from flexstage.readings.lumped import lumped
 
 
 def cautions(mechanism: Mechanism) -> tuple[Finding, ...]:
@@ -21,6 +24,22 @@ def cautions(mechanism: Mechanism) -> tuple[Finding, ...]:
     ()
     """
     return (*part_cautions(mechanism), *_room(mechanism))
+
+
+def reading_findings(mechanism: Mechanism) -> tuple[Finding, ...]:
+    """What keeps a sound description from being read: actuators without a path, a mechanism that gives way, unreadable requirements.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> reading_findings(double_triangle())
+    ()
+    """
+    found: list[Finding] = []
+    for read in (requirements, ideal, lumped):
+        try:
+            read(mechanism)
+        except DesignError as error:
+            found += error.findings
+    return tuple(found)
 
 
 def part_cautions(mechanism: Mechanism) -> tuple[Finding, ...]:

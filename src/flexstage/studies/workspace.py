@@ -19,6 +19,7 @@ from flexstage.analysis.workspace.stroke import SingleAxis, StrokeLimits, Utilis
 from flexstage.base.number import Number, Table
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
+from flexstage.readings.ideal import ideal
 from flexstage.readings.linear.kinematics import Kinematics
 from flexstage.readings.linear.model import LinearModel
 from flexstage.studies.attempt import Attempts
@@ -101,3 +102,17 @@ def workspace(
         loads=attempt.given("loads", hinged, _HINGELESS, lambda known: load_share(mechanism, known)),
         missing=Table(attempt.missing),
     )
+
+
+def all_strokes(mechanism: Mechanism) -> Mapping[str, float]:
+    """The ideal single-axis strokes as a box of commands by coordinate [m, rad].
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> round(1e6 * all_strokes(double_triangle())["z"], 6)
+    300.0
+    """
+    return _symmetric(single_axis(ideal(mechanism).mapping, stroke_limits(mechanism)))
+
+
+def _symmetric(single: SingleAxis) -> dict[str, float]:
+    return {name: float(value) for name, value in zip(single.coordinates, single.symmetric, strict=True)}

@@ -7,6 +7,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
+import flexstage
 from flexstage.analysis.error_budget import ErrorBudget
 from flexstage.analysis.requirements import Verdict
 from flexstage.analysis.workspace.blocking import StackLine
@@ -22,7 +23,8 @@ from flexstage.analysis.workspace.stroke import SingleAxis, StrokeLimits, Utilis
 from flexstage.base.finding import Finding
 from flexstage.base.labelled import Matrix
 from flexstage.base.number import Array, Number
-from flexstage.present.documents.envelope import Document
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.present.documents.envelope import FORMAT, Document, enveloped
 from flexstage.spatial.frame import COMPONENTS
 from flexstage.studies.sensitivities import Sensitivities
 from flexstage.studies.workspace import Workspace
@@ -237,6 +239,19 @@ def findings(found: Iterable[Finding]) -> list[Document]:
     [{'where': 'B4/pivot', 'what': 'it is thin', 'advice': 'Thicken it'}]
     """
     return [{"where": each.where, "what": each.what, "advice": each.advice} for each in found]
+
+
+def check_document(mechanism: Mechanism | None, errors: Iterable[Finding], warnings: Iterable[Finding]) -> Document:
+    """The document of a check: whether the design is sound, its findings and its warnings; without envelope's digest if it is not.
+
+    >>> check_document(None, [Finding("B4/pivot", "it is thin", "Thicken it")], ())["sound"]
+    False
+    """
+    body: Document = {"findings": findings(errors), "warnings": findings(warnings)}
+    body = {"sound": not body["findings"], **body}
+    if mechanism is None:
+        return {"format": FORMAT, "kind": "check", "version": flexstage.__version__, **body}
+    return enveloped("check", mechanism, None, body)
 
 
 def requirements_body(verdicts: Iterable[Verdict]) -> list[Document]:

@@ -1,0 +1,64 @@
+"""Answers: one result as a JSON document, as tables, or both."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from flexstage.apps.cli.output import STDOUT, write
+from flexstage.apps.cli.speech import tell
+from flexstage.base.finding import refuse
+from flexstage.studies.reading import Reading
+
+if TYPE_CHECKING:
+    from flexstage.mechanism.mechanism import Mechanism
+    from flexstage.present.documents.envelope import Document
+    from flexstage.present.table import Table
+    from flexstage.readings.linear.model import LinearModel
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What was asked: the kind of document, of which description, by which reading, and where JSON goes (`None`: nowhere)."""
+
+    kind: str
+    mechanism: Mechanism
+    reading: Reading | None
+    json: str | None
+
+
+def answer(asked: Asked, body: Callable[[], Document], tables: Callable[[], Iterable[Table | None]]) -> None:
+    """Write the JSON document where one was asked for, and show the tables unless stdout is the document's."""
+    if asked.json is not None:
+        from flexstage.present.documents.envelope import as_text, enveloped
+
+        write(asked.json, as_text(enveloped(asked.kind, asked.mechanism, asked.reading, body())) + "\n", "--json")
+        if asked.json == STDOUT:
+            return
+        tell(f"Wrote {asked.json}")
+    from flexstage.apps.cli.show import show
+
+    show(table for table in tables() if table is not None)
+
+
+def elastic_model(mechanism: Mechanism, reading: Reading) -> LinearModel:
+    """The linear model of a reading; the ideal one is refused."""
+    from flexstage.studies.complete import read
+
+    model = read(mechanism, reading)
+    if model is None:
+        raise refuse("--reading ideal", "rigid bodies have no stiffness, no lost motion and no modes", "Use --reading lumped or mapped")
+    return model
+
+
+def known_point(model: LinearModel, name: str) -> str:
+    """The name, if it is one of a body or point whose twist the model gives; else refused with the nearest ones."""
+    from flexstage.base.finding import nearest
+    from flexstage.spatial.frame import COMPONENTS
+
+    outputs = {channel.name for channel in model.outputs}
+    places = {each.rpartition(".")[0] for each in outputs if each.rpartition(".")[2] in COMPONENTS}
+    if name not in places:
+        raise refuse("--at", f"there is no body or point {name}", nearest(name, places))
+    return name

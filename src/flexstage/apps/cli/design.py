@@ -1,0 +1,152 @@
+"""Commands about design files: `new`, `check`, `schema`, `plan`, `catalogue`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+import flexstage
+from flexstage.apps.cli.options import Changes, Design, Json
+from flexstage.apps.cli.speech import say, tell, warn
+
+if TYPE_CHECKING:
+    from flexstage.base.finding import Finding
+    from flexstage.mechanism.mechanism import Mechanism
+
+DEFAULT_CASE = "double-triangle"
+
+
+def new(
+    target: Annotated[Path | None, typer.Argument(metavar="STAGE.TOML", help="File to write.", show_default=False)] = None,
+    *,
+    case: Annotated[str, typer.Option(metavar="NAME", help="Shipped case to start from; --list shows them.")] = DEFAULT_CASE,
+    listed: Annotated[bool, typer.Option("--list", help="List the shipped cases and stop.")] = False,
+    force: Annotated[bool, typer.Option("--force", help="Overwrite the file if it exists.")] = False,
+) -> None:
+    """Write a shipped case as a commented design file."""
+    from flexstage.apps.cli.output import output_findings, write
+    from flexstage.apps.cli.show import show
+    from flexstage.base.finding import Finding, require
+    from flexstage.cases.registry import CASES
+    from flexstage.cases.registry import case as shipped_case
+    from flexstage.mechanism.store import dumps
+    from flexstage.present.listing import case_table
+
+    if listed:
+        show([case_table()])
+        return
+    if target is None:
+        raise typer.BadParameter("name the file to write, e.g. stage.toml", param_hint="STAGE.TOML")
+    mechanism = shipped_case(case)
+    require(output_findings([(str(target), target)]))
+    if target.exists() and not force:
+        require([Finding(str(target), "the file exists already", "Choose another name, or overwrite it with --force")])
+    write(target, dumps(mechanism, {"": _heading(case, CASES[case].summary, str(target))}), str(target))
+    tell(f"Wrote {target} ({case}: {CASES[case].summary}). Next: flexstage analyse {target}")
+
+
+def _heading(case: str, summary: str, target: str) -> str:
+    return (
+        f"{case}: {summary}.\n"
+        f"flexstage check {target}     flexstage analyse {target} --report report.html\n"
+        "Every physical value carries a unit. tags say where a value comes from: stated, derived or assumed (untagged), and the source."
+    )
+
+
+def check(design: Design, *, changes: Changes = None, json: Json = None) -> None:
+    """Check a design file.
+
+    Every finding is told with the object, the numbers and what to do. Exit code 2 if there is any.
+    """
+    from flexstage.apps.cli.opening import changed
+    from flexstage.apps.cli.output import STDOUT, output_findings, write
+    from flexstage.base.finding import DesignError, require
+    from flexstage.mechanism.store import load
+    from flexstage.present.documents.envelope import as_text
+    from flexstage.present.documents.reach import check_document
+    from flexstage.studies.cautions import cautions, reading_findings
+
+    require(output_findings([("--json", json)], design))
+    try:
+        mechanism = changed(load(design), changes or ())
+        require(reading_findings(mechanism))
+    except DesignError as error:
+        if json is not None:
+            write(json, as_text(check_document(None, error.findings, ())) + "\n", "--json")
+        raise
+    warnings = cautions(mechanism)
+    if json is not None:
+        write(json, as_text(check_document(mechanism, (), warnings)) + "\n", "--json")
+    if json != STDOUT:
+        _tell_sound(design, mechanism, warnings)
+
+
+def _tell_sound(design: Path, mechanism: Mechanism, warnings: tuple[Finding, ...]) -> None:
+    from flexstage.apps.cli.show import show
+    from flexstage.present.tables.description import composition_table
+
+    show([composition_table(mechanism)])
+    for warning in warnings:
+        warn(str(warning))
+    say(f"{design}: no findings{f', {len(warnings)} warnings' if warnings else ''}.")
+
+
+def schema() -> None:
+    """Print the JSON Schema of design files, for editors."""
+    from json import dumps
+
+    from flexstage.mechanism.store import schema as design_schema
+
+    say(dumps(design_schema(), indent=1, ensure_ascii=False))
+
+
+def plan(
+    design: Design,
+    *,
+    output: Annotated[Path, typer.Option("--output", "-o", metavar="PLAN.SVG", help="SVG file to write.", show_default=False)],
+    changes: Changes = None,
+) -> None:
+    """Draw the dimensioned plan.
+
+    The stage from above with radii, angles, names and sizes in mm, as SVG, PDF or PNG.
+    """
+    from flexstage.apps.cli.opening import opened
+    from flexstage.apps.cli.output import write
+    from flexstage.present.figures.drawing import drawing, format_of
+
+    ending = format_of(str(output))
+    mechanism = opened(design, changes, [("--output", output)])
+    from flexstage.present.plan import plan_figure
+    from flexstage.present.scene.stage import scene
+
+    write(output, drawing(plan_figure(mechanism, scene(mechanism)), ending), "--output")
+    tell(f"Wrote {output}")
+
+
+def catalogue(
+    section: Annotated[
+        str | None, typer.Argument(metavar="[SECTION]", help="materials, stacks or gauges. Default: all.", show_default=False)
+    ] = None,
+    *,
+    json: Json = None,
+) -> None:
+    """List the shipped materials, piezo stacks and gauges.
+
+    Each number has its source. In a design file, like = "NAME" starts from an entry.
+    """
+    from flexstage.apps.cli.output import STDOUT, output_findings, write
+    from flexstage.apps.cli.show import show
+    from flexstage.base.finding import require
+    from flexstage.mechanism.store import shipped
+    from flexstage.present.documents.envelope import FORMAT, as_text
+    from flexstage.present.listing import catalogue_body, catalogue_tables, section_named
+
+    require(output_findings([("--json", json)]))
+    known = shipped() if section is None else section_named(shipped(), section)
+    if json is not None:
+        body = {"format": FORMAT, "kind": "catalogue", "version": flexstage.__version__, **catalogue_body(known)}
+        write(json, as_text(body) + "\n", "--json")
+    if json != STDOUT:
+        show(catalogue_tables(known))

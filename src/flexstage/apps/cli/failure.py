@@ -1,0 +1,74 @@
+"""What becomes of failures: bad input is told finding by finding, a fault of flexstage without a traceback unless it is asked for."""
+
+from __future__ import annotations
+
+import os
+import sys
+import warnings
+from collections.abc import Callable, Generator
+from contextlib import contextmanager
+
+from flexstage.apps.cli.speech import tell, warn
+from flexstage.base.finding import DesignError
+
+DONE, MISSED, BAD_INPUT, FAULT, INTERRUPTED = 0, 1, 2, 70, 130
+_DEBUG = "FLEXSTAGE_DEBUG"
+_THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
+
+
+def guarded(action: Callable[[], object]) -> int:
+    """Run an action and turn however it ends into an exit code; messages go to stderr."""
+    for name in _THREADS:  # many small matrices: a second thread costs more than it gives. Read when numpy is loaded.
+        os.environ.setdefault(name, "1")
+    try:
+        with _told_warnings():
+            action()
+            sys.stdout.flush()
+    except SystemExit as end:
+        return end.code if isinstance(end.code, int) else DONE if end.code is None else MISSED
+    except DesignError as error:
+        return _bad_input(error)
+    except ModuleNotFoundError as error:
+        return _missing(error)
+    except BrokenPipeError:
+        # The reader has gone (`| head`). Nothing may be written at the interpreter's end either.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return DONE
+    except KeyboardInterrupt:
+        tell("Interrupted; nothing was written.")
+        return INTERRUPTED
+    except Exception as error:  # noqa: BLE001 (the last resort: a message instead of a traceback)
+        return _fault(error)
+    return DONE
+
+
+def _bad_input(error: DesignError) -> int:
+    count = len(error.findings)
+    tell(f"error: {count} finding{'s' * (count > 1)}")
+    for finding in error.findings:
+        tell(f"  {finding}")
+    return BAD_INPUT
+
+
+def _fault(error: Exception) -> int:
+    if os.environ.get(_DEBUG):
+        raise error
+    tell(f"error: flexstage failed, and that is its fault, not your design's: {type(error).__name__}: {error}")
+    tell(f"Run the same command with {_DEBUG}=1 in the environment and report its output with the design file and `flexstage version`.")
+    tell("`flexstage doctor` says whether the installation is sound.")
+    return FAULT
+
+
+def _missing(error: ModuleNotFoundError) -> int:
+    if os.environ.get(_DEBUG) or (error.name or "").partition(".")[0] == "flexstage":
+        raise error
+    tell(f"error: the package {error.name} is missing. Run: flexstage doctor --mend")
+    return FAULT
+
+
+@contextmanager
+def _told_warnings() -> Generator[None]:
+    """Python's warnings as one line each, without file and line of code."""
+    with warnings.catch_warnings():
+        warnings.showwarning = lambda message, *_, **__: warn(str(message))
+        yield

@@ -1,0 +1,55 @@
+"""The doctor's consultation, in plain Python: it runs when typer itself is missing."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from flexstage.apps.cli.failure import BAD_INPUT, DONE
+from flexstage.apps.cli.speech import say
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from flexstage.apps.doctor import Row
+
+_FREQUENCIES = (110.910, 110.910, 135.148, 145.505, 176.690, 176.690)
+"""Eq. 28 of Shin & Moon for the shipped stage [Hz]."""
+_TOLERANCE = 1e-5
+
+
+def consult(*, mending: bool) -> int:
+    """Examine the installation, print the rows, mend what can be mended if asked; the exit code says whether all is good."""
+    from flexstage.apps.doctor import Verdict, examine, mend
+
+    rows = examine(Path.cwd(), self_test)
+    _print_rows(rows)
+    if mending and any(row.cure and row.verdict is Verdict.BAD for row in rows):
+        for outcome in mend(rows):
+            say(f"{'mended' if outcome.worked else 'not mended'}: {outcome.cure}{f': {outcome.said}' if outcome.said else ''}")
+        rows = examine(Path.cwd(), self_test)
+        _print_rows(rows)
+    bad = [row for row in rows if row.verdict is Verdict.BAD]
+    say("The installation is sound." if not bad else f"{len(bad)} thing{'s' * (len(bad) > 1)} to mend.")
+    return BAD_INPUT if bad else DONE
+
+
+def _print_rows(rows: Iterable[Row]) -> None:
+    for row in rows:
+        say(f"{row.verdict.value:5} {row.what:18} {row.found}{f' (wanted: {row.wanted})' if row.wanted else ''}")
+        if row.remedy:
+            say(f"      {'':18} {row.remedy}")
+
+
+def self_test() -> Row:
+    """Compute the paper's frequencies of the shipped stage and compare."""
+    from flexstage.analysis.modes import modes
+    from flexstage.apps.doctor import Row, Verdict
+    from flexstage.cases.double_triangle import double_triangle
+    from flexstage.readings.mapped import mapped
+
+    found = modes(mapped(double_triangle())).frequencies
+    worst = max(abs(have / want - 1.0) for have, want in zip(found, _FREQUENCIES, strict=True))
+    verdict = Verdict.GOOD if worst < _TOLERANCE else Verdict.BAD
+    remedy = "" if verdict is Verdict.GOOD else "reinstall numpy and scipy; else report this as a bug"
+    return Row("self-test", f"frequencies within {worst:.1e}", f"{_TOLERANCE:.0e}", verdict, remedy)

@@ -1,0 +1,55 @@
+"""Opening of a design for a command: outputs tried, file read and checked, `--set` applied."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from flexstage.apps.cli.output import output_findings
+from flexstage.apps.cli.speech import tell, warn
+from flexstage.base.finding import DesignError, Finding, require
+
+if TYPE_CHECKING:
+    from flexstage.mechanism.mechanism import Mechanism
+
+
+def opened(design: Path, changes: Sequence[str] | None, outputs: Sequence[tuple[str, str | Path | None]]) -> Mechanism:
+    """The description in a file, with changes, after the outputs (option and path) were found writable; warnings go to stderr.
+
+    Raises `DesignError` with all findings.
+    """
+    from flexstage.mechanism.store import load
+
+    require(output_findings(outputs, design))
+    mechanism = changed(load(design), changes or ())
+    for caution in _part_cautions(mechanism):
+        warn(str(caution))
+    return mechanism
+
+
+def changed(mechanism: Mechanism, changes: Sequence[str]) -> Mechanism:
+    """The description after all assignments, checked anew; each is told."""
+    from flexstage.mechanism.address import assign
+    from flexstage.mechanism.checks import checked
+
+    findings: list[Finding] = []
+    result = mechanism
+    for change in changes:
+        try:
+            result = assign(result, change)
+        except DesignError as error:
+            findings += [Finding(f"--set {change}: {each.where}", each.what, each.advice) for each in error.findings]
+    require(findings)
+    return checked(result) if changes else mechanism
+
+
+def _part_cautions(mechanism: Mechanism) -> tuple[Finding, ...]:
+    from flexstage.studies.cautions import part_cautions
+
+    return part_cautions(mechanism)
+
+
+def announce(target: str | Path) -> None:
+    """Say where an output went."""
+    tell(f"Wrote {target}")

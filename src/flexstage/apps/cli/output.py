@@ -1,0 +1,67 @@
+"""Output files: found unwritable before anything is computed, written aside and renamed, so that none is ever half-written."""
+
+from __future__ import annotations
+
+import os
+import sys
+import tempfile
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+
+from flexstage.base.finding import Finding, refuse
+
+STDOUT = "-"
+
+
+def output_findings(wanted: Iterable[tuple[str, str | Path | None]], design: Path | None = None) -> Iterator[Finding]:
+    """What keeps the outputs, pairs of an option and its path, from being written; `design` is the file that must not be overwritten."""
+    taken: dict[Path, str] = {} if design is None else {design.resolve(): "the design file"}
+    for option, target in wanted:
+        if target is None or str(target) == STDOUT:
+            continue
+        path = Path(target)
+        if (owner := taken.get(path.resolve())) is not None:
+            yield Finding(option, f"{path} is {owner} too", "Choose another file")
+        elif (problem := _problem(path)) is not None:
+            yield Finding(option, f"{path} cannot be written: {problem}", "Choose another file or folder")
+        else:
+            taken[path.resolve()] = f"the output of {option}"
+
+
+def _problem(path: Path) -> str | None:
+    """Why a file cannot be written; tried, not concluded from its mode."""
+    if path.is_dir():
+        return "it is a folder"
+    if path.exists() and not os.access(path, os.W_OK):
+        return "it is write-protected"
+    if _is_device(path):
+        return None
+    folder = path.resolve().parent
+    if not folder.is_dir():
+        return f"there is no folder {path.parent}"
+    try:
+        with tempfile.TemporaryFile(dir=folder):
+            return None
+    except OSError as error:
+        return error.strerror or str(error)
+
+
+def _is_device(path: Path) -> bool:
+    return path.exists() and not path.is_file()
+
+
+def write(target: str | Path, content: str | bytes, option: str) -> None:
+    """Write to a file (aside, then renamed), or to stdout for `-`. Raises `DesignError` where the disk refuses after all."""
+    from flexstage.mechanism.store.file import write as write_file
+
+    data = content.encode() if isinstance(content, str) else content
+    if str(target) == STDOUT:
+        sys.stdout.buffer.write(data)
+        return
+    if not _is_device(Path(target)):
+        write_file(target, data)
+        return
+    try:
+        Path(target).write_bytes(data)
+    except OSError as error:
+        raise refuse(option, f"{target} cannot be written: {error.strerror}", "Choose another file") from None

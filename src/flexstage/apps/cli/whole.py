@@ -1,0 +1,128 @@
+"""The command `analyse`: everything at once, with report, JSON, MATLAB file and the effect of changes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from flexstage.apps.cli.failure import MISSED
+from flexstage.apps.cli.options import Changes, Design, Json, Theory
+from flexstage.apps.cli.output import STDOUT, output_findings, write
+from flexstage.apps.cli.speech import tell, warn
+from flexstage.studies.reading import Reading
+
+if TYPE_CHECKING:
+    from flexstage.present.documents.envelope import Document
+    from flexstage.present.table import Table
+    from flexstage.studies.complete import Analysis
+    from flexstage.studies.difference import Change
+
+
+@dataclass(frozen=True)
+class Compared:
+    """The effect of `--set`: the values that were set, and the key figures before and after."""
+
+    values: tuple[Change, ...]
+    figures: tuple[Change, ...]
+
+
+def analyse(
+    design: Design,
+    *,
+    reading: Theory = Reading.LUMPED,
+    report: Annotated[Path | None, typer.Option(metavar="FILE", help="Write a self-contained HTML report.", show_default=False)] = None,
+    changes: Changes = None,
+    json: Json = None,
+    mat: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Write R_a, R_s, K, M, B, C, D and the state space for MATLAB.", show_default=False)
+    ] = None,
+    strict: Annotated[bool, typer.Option("--strict", help="Exit with code 1 if a requirement is missed.")] = False,
+) -> None:
+    """Analyse a stage: everything at once.
+
+    Requirements first, then kinematics, stiffness, lost motion, modes, response, workspace, drift, error budget.
+
+    With --set, the key figures are shown as old, new and change.
+    """
+    analysis, compared = _worked_out(design, reading, changes or [], [("--json", json), ("--report", report), ("--mat", mat)])
+    _write_files(analysis, report, mat)
+    if json is not None:
+        write(json, _json_text(analysis, compared), "--json")
+    if json != STDOUT:
+        _show(analysis, compared)
+    for target in (report, mat, json):
+        if target is not None and str(target) != STDOUT:
+            tell(f"Wrote {target}")
+    missed = [verdict for verdict in analysis.verdicts if not verdict.passed]
+    if strict and missed:
+        tell(f"{len(missed)} of {len(analysis.verdicts)} requirements are missed.")
+        raise typer.Exit(MISSED)
+
+
+def _worked_out(
+    design: Path, reading: Reading, changes: list[str], outputs: list[tuple[str, str | Path | None]]
+) -> tuple[Analysis, Compared | None]:
+    """The analysis of the design with its changes, and their effect if there are any; cautions go to stderr."""
+    from flexstage.base.finding import require
+
+    require(output_findings(outputs, design))
+    from flexstage.apps.cli.opening import changed
+    from flexstage.mechanism.store import load
+    from flexstage.studies.cautions import cautions
+    from flexstage.studies.complete import analyse as analysed
+    from flexstage.studies.difference import difference, set_values
+
+    stated = load(design)
+    mechanism = changed(stated, changes)
+    for caution in cautions(mechanism):
+        warn(str(caution))
+    analysis = analysed(mechanism, reading)
+    if not changes:
+        return analysis, None
+    addresses = [change.partition("=")[0].strip() for change in changes]
+    return analysis, Compared(set_values(stated, mechanism, addresses), difference(analysed(stated, reading), analysis))
+
+
+def _write_files(analysis: Analysis, report: Path | None, mat: Path | None) -> None:
+    if mat is not None:
+        from flexstage.present.matlab import as_mat
+
+        write(mat, as_mat(analysis), "--mat")
+    if report is not None:
+        from flexstage.present.report import report as composed
+
+        write(report, composed(analysis), "--report")
+
+
+def _json_text(analysis: Analysis, compared: Compared | None) -> str:
+    from flexstage.present.documents.envelope import as_text, enveloped
+    from flexstage.present.documents.whole import analysis_body, changes_body
+
+    body: Document = analysis_body(analysis)
+    if compared is not None:
+        body = {"changes": {"set": changes_body(compared.values), "figures": changes_body(compared.figures)}, **body}
+    return as_text(enveloped("analyse", analysis.mechanism, analysis.reading, body)) + "\n"
+
+
+def _show(analysis: Analysis, compared: Compared | None) -> None:
+    from flexstage.apps.cli.show import show
+
+    show(table for table in _tables(analysis, compared) if table is not None)
+    for name, reason in analysis.missing.items():
+        tell(f"not given: {name.replace('_', ' ')}: {reason}")
+
+
+def _tables(analysis: Analysis, compared: Compared | None) -> Iterator[Table | None]:
+    from flexstage.apps.cli.grouped import analysis_tables
+    from flexstage.present.tables.change import change_table
+    from flexstage.present.tables.requirements import verdict_table
+
+    yield verdict_table(analysis.verdicts)
+    if compared is not None:
+        yield change_table("Values set", compared.values)
+        yield change_table("What the change does", compared.figures)
+    yield from analysis_tables(analysis)

@@ -1,0 +1,34 @@
+"""Tables of changes: what was set, and what it did."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from flexstage.present.display import NO_VALUE, number, percent, shown
+from flexstage.present.table import Cell, Column, Mark, Table, build
+from flexstage.studies.difference import Change
+
+_SILENT = 1e-9
+
+
+def change_table(title: str, changes: Iterable[Change]) -> Table:
+    """Old, new and change of every figure; what stays within a billionth is faint.
+
+    >>> change_table("What it does", [Change("platform mode 1", "Hz", 100.0, 90.0)]).texts()[1]
+    ['platform mode 1', '100', '90', '-10', '-10 %', 'Hz']
+    """
+    heads = ["figure", Column("old"), Column("new"), Column("change"), Column("relative"), "unit"]
+    return build(title, heads, [_row(change) for change in changes])
+
+
+def _row(change: Change) -> tuple[Cell, ...]:
+    known = [value for value in (change.old, change.new) if value is not None]
+    form = shown(change.unit, max((abs(value) for value in known), default=0.0))
+    still = change.old is not None and abs(change.relative) < _SILENT
+    mark = Mark.FAINT if still else Mark.PLAIN
+    difference = None if change.old is None or change.new is None else change.new - change.old
+    texts = [NO_VALUE if value is None else number(value * form.factor) for value in (change.old, change.new)]
+    moved = NO_VALUE if difference is None else "0" if still else number(difference * form.factor, 4)
+    relative = "0" if still else NO_VALUE if change.relative != change.relative else percent(change.relative, 3)
+    unit = "" if form.unit == "1" else form.unit
+    return Cell(change.name, Mark.STRONG), *(Cell(text, mark) for text in (*texts, moved, relative)), Cell(unit, mark)
