@@ -6,7 +6,7 @@ R_a = da/dx and R_s = ds/dx (Eqs. 13 and 14 of Shin & Moon), the platform's mobi
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import itertools
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,7 +18,6 @@ from flexstage.mechanism.expand import Assembly, PlacedLink, expand
 from flexstage.mechanism.incidence import Layout, deformation, layout, twist_at
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.parts.freedom import ALL, Freedom
-from flexstage.parts.part import is_actuator
 from flexstage.readings.linear.elimination import Elimination, echelon, eliminate, null_space
 from flexstage.readings.linear.kinematics import Idle, Kinematics, Redundant
 from flexstage.spatial.frame import COMPONENTS
@@ -28,11 +27,11 @@ _NEGLIGIBLE = 1e-7
 
 @dataclass(frozen=True, eq=False)
 class _Graph:
-    """The stage as constraints: deformation operators per link, constraint rows (..., m, N + n) and their names."""
+    """The stage as constraints: `strain` of all links (..., 6 L, N), constraint rows (..., m, N + n) and their names."""
 
     assembly: Assembly
     order: Layout
-    operators: Mapping[str, Array]
+    strain: Array
     constraints: Array
     names: tuple[str, ...]
     scale: Array
@@ -69,7 +68,7 @@ def ideal(mechanism: Mechanism) -> Kinematics:
         motion=bodies[..., :6, :],
         body_coordinates=graph.order.coordinates,
         bodies=bodies,
-        strains={name: operator @ bodies for name, operator in graph.operators.items()},
+        strains=dict(zip(graph.assembly.links, _by_link(graph.strain @ bodies), strict=True)),
         free={name: free_freedoms(link) for name, link in graph.assembly.links.items()},
         idle=_idle(graph, idle[:size]),
         redundant=_redundant(graph),
@@ -81,28 +80,37 @@ def ideal(mechanism: Mechanism) -> Kinematics:
 def _graph(mechanism: Mechanism) -> _Graph:
     assembly = expand(mechanism)
     order = layout(assembly)
-    operators = {name: deformation(assembly, order, link) for name, link in assembly.links.items()}
-    drives = {link: number for number, link in enumerate(assembly.actuators.values())}
-    rows: list[Array] = []
-    names: list[str] = []
-    for name, link in assembly.links.items():
-        locked = [freedom for freedom in ALL if freedom not in free_freedoms(link)]
-        rows.append(_rows(operators[name], locked, len(drives), drives.get(name)))
-        names += [f"{name}.{freedom.value}" for freedom in locked]
-    batch = np.broadcast_shapes(*(row.shape[:-2] for row in rows))
-    constraints = np.concatenate([np.broadcast_to(row, (*batch, *row.shape[-2:])) for row in rows], axis=-2)
+    operators = [deformation(assembly, order, link) for link in assembly.links.values()]
+    batch = np.broadcast_shapes(*{operator.shape[:-2] for operator in operators})
+    strain = np.concatenate([np.broadcast_to(operator, (*batch, *operator.shape[-2:])) for operator in operators], axis=-2)
     length = _length(assembly)
-    scale = np.concatenate([np.tile([1.0, 1.0, 1.0, *[1.0 / length] * 3], len(order.bodies)), np.ones(len(drives))])
-    return _Graph(assembly, order, operators, constraints, tuple(names), scale, length)
+    scale = np.concatenate([np.tile(_weights(1.0 / length), len(order.bodies)), np.ones(len(assembly.actuators))])
+    constraints, names = _constraints(assembly, strain)
+    return _Graph(assembly, order, strain, constraints, names, scale, length)
 
 
-def _rows(operator: Array, locked: list[Freedom], strokes: int, drive: int | None) -> Array:
-    """Constraint rows of one link: locked deformations vanish; an actuator's axial one equals its stroke."""
-    rows = operator[..., [freedom.index for freedom in locked], :]
-    extra = np.zeros((*rows.shape[:-1], strokes), dtype=rows.dtype)
-    if drive is not None:
-        extra[..., locked.index(Freedom.X), drive] = -1.0
-    return np.concatenate([rows, extra], axis=-1)
+def _constraints(assembly: Assembly, strain: Array) -> tuple[Array, tuple[str, ...]]:
+    """Constraint rows and their names: locked deformations vanish; an actuator's axial one equals its stroke."""
+    drives = {f"{link}.{Freedom.X.value}": number for number, link in enumerate(assembly.actuators.values())}
+    locked: dict[str, int] = {}
+    for place, (name, link) in enumerate(assembly.links.items()):
+        free = free_freedoms(link)
+        locked |= {f"{name}.{freedom.value}": 6 * place + index for index, freedom in enumerate(ALL) if freedom not in free}
+    strokes = np.zeros((len(locked), len(drives)))
+    for row, name in enumerate(locked):
+        if name in drives:
+            strokes[row, drives[name]] = -1.0
+    rows = strain[..., list(locked.values()), :]
+    return np.concatenate([rows, np.broadcast_to(strokes, (*rows.shape[:-1], len(drives)))], axis=-1), tuple(locked)
+
+
+def _by_link(strains: Array) -> Array:
+    """Strains (..., 6 L, k) with the links leading, (L, ..., 6, k); twists of bodies alike."""
+    return np.moveaxis(strains.reshape(*strains.shape[:-2], strains.shape[-2] // 6, 6, strains.shape[-1]), -3, 0)
+
+
+def _weights(rotation: float) -> Array:
+    return np.array([1.0, 1.0, 1.0, *[rotation] * 3])
 
 
 def _length(assembly: Assembly) -> float:
@@ -132,10 +140,8 @@ def _without_idle(graph: _Graph, solution: Elimination, columns: list[int], rest
     if not rest:
         return wanted
     size = graph.order.size
-    weight = np.array([1.0, 1.0, 1.0, *[graph.length] * 3])[:, None]
-    stacked = [weight * operator for operator in graph.operators.values()]
-    before = np.concatenate(np.broadcast_arrays(*(item @ wanted[..., :size, :] for item in stacked)), axis=-2)
-    spun = np.concatenate(np.broadcast_arrays(*(item @ idle[..., :size, :] for item in stacked)), axis=-2)
+    weighted = np.tile(_weights(graph.length), len(graph.assembly.links))[:, None] * graph.strain
+    before, spun = (weighted @ motion[..., :size, :] for motion in (wanted, idle))
     transposed = np.swapaxes(spun, -1, -2)
     return wanted - idle @ np.linalg.solve(transposed @ spun, transposed @ before)
 
@@ -155,25 +161,20 @@ def _gauge_row(graph: _Graph, name: str, bodies: Array, motion: Array) -> Array:
     row = gauge.sign * (seen[0] - seen[1])
     if {gauge.body, gauge.base} <= {PLATFORM, "ground"}:
         return row[..., :6]
-    weight = np.array([1.0, 1.0, 1.0, *[graph.length] * 3]) ** 2
-    weighted = np.swapaxes(motion, -1, -2) * weight
+    weighted = np.swapaxes(motion, -1, -2) * _weights(graph.length) ** 2
     return row @ bodies @ np.linalg.solve(weighted @ motion, weighted)
 
 
 def _idle(graph: _Graph, motions: Array) -> tuple[Idle, ...]:
-    scaled = echelon((motions / graph.scale[: graph.order.size, None]).T)
-    return tuple(_named_idle(graph, vector * graph.scale[: graph.order.size]) for vector in scaled)
-
-
-def _named_idle(graph: _Graph, motion: Array) -> Idle:
-    threshold = _NEGLIGIBLE * np.max(np.abs(motion))
-    bodies = tuple(body for body in graph.order.bodies if np.max(np.abs(motion[graph.order.columns(body)])) > threshold)
-    links = tuple(
-        name
-        for name, operator in graph.operators.items()
-        if np.max(np.abs(np.real(operator.reshape(-1, *operator.shape[-2:])[0]) @ motion)) > threshold
+    scale = graph.scale[: graph.order.size, None]
+    vectors = echelon((motions / scale).T).T * scale
+    strains = np.real(graph.strain.reshape(-1, *graph.strain.shape[-2:])[0]) @ vectors
+    threshold = _NEGLIGIBLE * np.max(np.abs(vectors), axis=0, initial=0.0)
+    moving, deforming = (np.max(np.abs(_by_link(parts)), axis=1) > threshold for parts in (vectors, strains))
+    return tuple(
+        Idle(tuple(itertools.compress(graph.order.bodies, moved)), tuple(itertools.compress(graph.assembly.links, strained)))
+        for moved, strained in zip(moving.T, deforming.T, strict=True)
     )
-    return Idle(bodies, links)
 
 
 def _redundant(graph: _Graph) -> tuple[Redundant, ...]:

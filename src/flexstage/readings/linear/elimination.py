@@ -6,6 +6,7 @@ first design only, so the result stays complex-analytic and broadcasts over batc
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,11 +15,13 @@ from scipy.linalg import qr
 from flexstage.base.number import Array
 
 _RANK = 1e-9
+_PREFERENCE = 1e-6
+"""Symmetric stages tie in pivots: each column counts this much less than the one before it, so that rounding does not choose."""
 
 
 @dataclass(frozen=True, eq=False)
 class Elimination:
-    """z = `basis` z_independent, basis (..., N, f); `independent` and `dependent` are coordinate indices, `rank` that of the constraints."""
+    """z = `basis` z_independent, basis (..., N, f); `independent` and `dependent` are indices of coordinates."""
 
     basis: Array
     independent: tuple[int, ...]
@@ -31,7 +34,9 @@ class Elimination:
 
 
 def eliminate(constraints: Array, scale: Array, keep: tuple[int, ...] = ()) -> Elimination:
-    """Eliminate the constraints A z = 0, A (..., m, N); `scale` (N,) makes the coordinates comparable, `keep` are kept independent if possible.
+    """Eliminate the constraints A z = 0, A (..., m, N).
+
+    `scale` (N,) makes the coordinates comparable; `keep` are kept independent if possible.
 
     >>> eliminate(np.array([[1.0, 2.0]]), np.ones(2), keep=(0,)).basis.ravel().tolist()
     [1.0, -0.5]
@@ -41,7 +46,7 @@ def eliminate(constraints: Array, scale: Array, keep: tuple[int, ...] = ()) -> E
     first = first / np.where(norms > 0.0, norms, 1.0)[:, None]
     dependent = _pivot_columns(first, keep)
     rows = _pivots(first[:, dependent].T)[: len(dependent)]
-    independent = [index for index in range(first.shape[1]) if index not in set(dependent)]
+    independent = _without(first.shape[1], dependent)
     square = constraints[..., rows, :]
     solved = -np.linalg.solve(square[..., dependent], square[..., independent])
     basis = np.zeros((*constraints.shape[:-2], first.shape[1], len(independent)), dtype=constraints.dtype)
@@ -52,10 +57,10 @@ def eliminate(constraints: Array, scale: Array, keep: tuple[int, ...] = ()) -> E
 
 def _pivot_columns(first: Array, keep: tuple[int, ...]) -> list[int]:
     """Dependent columns: as many as possible outside `keep`, the rest inside."""
-    outside = [index for index in range(first.shape[1]) if index not in set(keep)]
+    outside = _without(first.shape[1], keep)
     if not first.size:
         return []
-    orthogonal, triangle, order = qr(first[:, outside], pivoting=True)
+    orthogonal, triangle, order = qr(_preferred(first[:, outside]), pivoting=True)
     rank = _rank(triangle)
     dependent = [outside[index] for index in order[:rank]]
     left = (orthogonal.T @ first[:, list(keep)])[rank:]
@@ -68,8 +73,17 @@ def _pivots(matrix: Array) -> list[int]:
     """Indices of a maximal set of independent columns, best conditioned first."""
     if not matrix.size:
         return []
-    _, triangle, order = qr(matrix, mode="economic", pivoting=True)
+    triangle, order = qr(_preferred(matrix), mode="r", pivoting=True)
     return [int(index) for index in order[: _rank(triangle)]]
+
+
+def _preferred(matrix: Array) -> Array:
+    return matrix * (1.0 - _PREFERENCE * np.arange(matrix.shape[1]))
+
+
+def _without(size: int, left_out: Sequence[int]) -> list[int]:
+    unwanted = set(left_out)
+    return [index for index in range(size) if index not in unwanted]
 
 
 def _rank(triangle: Array) -> int:
@@ -80,7 +94,7 @@ def _rank(triangle: Array) -> int:
 def echelon(basis: Array) -> Array:
     """The same row space with a unit in a pivot column of each row and zeros in that column elsewhere: vectors with small support.
 
-    >>> echelon(np.array([[1.0, 1.0], [1.0, -1.0]])).tolist()
+    >>> (echelon(np.array([[1.0, 1.0], [1.0, -1.0]])) + 0.0).tolist()
     [[1.0, 0.0], [0.0, 1.0]]
     """
     if not basis.size:
@@ -90,13 +104,13 @@ def echelon(basis: Array) -> Array:
 
 
 def null_space(matrix: Array) -> Array:
-    """Basis (columns) of the null space of one real matrix whose columns are comparable.
+    """Orthonormal basis (columns) of the null space of one real matrix whose columns are comparable, by pivoted QR of its transpose.
 
-    >>> null_space(np.array([[1.0, 0.0]])).round(12).ravel().tolist()
+    >>> np.abs(null_space(np.array([[1.0, 0.0]]))).round(12).ravel().tolist()
     [0.0, 1.0]
     """
     if not matrix.size:
         return np.eye(matrix.shape[1])
-    _, values, right = np.linalg.svd(matrix)
-    rank = int(np.sum(values > _RANK * max(values.max(initial=0.0), 1e-300)))
-    return right[rank:].T
+    orthogonal, triangle, _ = qr(_preferred(matrix.T), pivoting=True)
+    diagonal = np.abs(np.diag(triangle))
+    return orthogonal[:, int(np.sum(diagonal > _RANK * diagonal[0])) :]
