@@ -69,7 +69,7 @@ def modes(model: LinearModel, *, limit: float = 1000.0, count: int = 6, cluster:
     bodies, energies, components = _energies(model, solved)
     share = energies[..., bodies.index(_PLATFORM), :] if _PLATFORM in bodies else np.zeros_like(frequencies)
     chosen, margin = _chosen(_first(share, 1), _first(frequencies, 1), limit, count, cluster)
-    named = [_named(bodies, _first(energies, 2)[:, index], components[..., index]) for index in range(frequencies.shape[-1])]
+    names, in_plane = _named(bodies, _first(energies, 2), components)
     return Modes(
         frequencies=frequencies,
         shapes=solved.shapes,
@@ -77,8 +77,8 @@ def modes(model: LinearModel, *, limit: float = 1000.0, count: int = 6, cluster:
         share=share,
         bodies=bodies,
         energies=energies,
-        names=tuple(name for name, _ in named),
-        in_plane=tuple(flag for _, flag in named),
+        names=names,
+        in_plane=in_plane,
         platform=chosen,
         margin=margin,
         limit=limit,
@@ -147,16 +147,19 @@ def _chosen(share: Array, frequencies: Array, limit: float, count: int, gap: flo
     return tuple(sorted(chosen)), float(max(left, default=0.0))
 
 
-def _named(bodies: tuple[str, ...], energies: Array, components: Array) -> tuple[str, bool]:
-    """Name of a mode by the component that carries most of its main body's energy, and whether that motion is in plane."""
-    main = int(np.argmax(energies))
-    if _PLATFORM in bodies and energies[bodies.index(_PLATFORM)] >= 0.5 * energies[main]:
-        main = bodies.index(_PLATFORM)
-    parts = components[main]
-    in_plane = bool(np.sum(parts[_IN_PLANE]) > 0.5 * np.sum(parts))
-    if bodies[main] != _PLATFORM:
-        return f"{bodies[main]} local", in_plane
-    return _NAMES[int(np.argmax(parts))], in_plane
+def _named(bodies: tuple[str, ...], energies: Array, components: Array) -> tuple[tuple[str, ...], tuple[bool, ...]]:
+    """Names of modes by the component that carries most of their main body's energy, and whether that motion is in plane."""
+    main = np.argmax(energies, axis=0)
+    if _PLATFORM in bodies:
+        platform = bodies.index(_PLATFORM)
+        main = np.where(energies[platform] >= 0.5 * np.max(energies, axis=0), platform, main)
+    parts = components[main, :, np.arange(len(main))]
+    in_plane = np.sum(parts[:, _IN_PLANE], axis=1) > 0.5 * np.sum(parts, axis=1)
+    names = (
+        _NAMES[component] if bodies[body] == _PLATFORM else f"{bodies[body]} local"
+        for body, component in zip(main, np.argmax(parts, axis=1), strict=True)
+    )
+    return tuple(names), tuple(in_plane.tolist())
 
 
 def modal_assurance(first: Array, second: Array, weight: Array | None = None) -> Matrix:

@@ -18,7 +18,6 @@ from flexstage.beams.compliance import compliance
 from flexstage.mechanism.expand import Assembly, PlacedLink, copies, expand
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
 from flexstage.mechanism.moving_mass import moving_inertia
-from flexstage.parts.part import is_actuator
 from flexstage.readings.ideal import ideal
 from flexstage.readings.linear.kinematics import Kinematics
 from flexstage.readings.linear.model import Channel, Contribution, LinearModel

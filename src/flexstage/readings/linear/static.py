@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from flexstage.base.labelled import Matrix
 from flexstage.base.number import Array
 from flexstage.readings.linear.model import LinearModel, labelled
-from flexstage.base.labelled import Matrix
 
 
 def displacement(model: LinearModel, load: Array) -> Array:
