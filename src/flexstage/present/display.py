@@ -1,6 +1,6 @@
 """Display units and numbers: how an SI value is shown to people. Documents for machines stay in SI and never pass here.
 
-A unit's preferred display form is left only where the numbers would become unreadable (all below 0.01, or above 100 000). Noise of
+A unit's preferred display form is left only where the numbers would become unreadable (all below 0.1, or above 100 000). Noise of
 rounding is shown as 0; the rule is `NOISE_RULE`, and tables that use it say so.
 """
 
@@ -21,7 +21,7 @@ NOISE_RULE = "0 stands for rounding noise: below 1e-9 of the geometric mean of t
 DIGITS = 5
 NO_VALUE = "-"
 
-_TOO_SMALL, _TOO_LARGE = 0.01, 1e5
+_TOO_SMALL, _TOO_LARGE = 0.1, 1e5
 
 
 @dataclass(frozen=True)

@@ -215,7 +215,7 @@ def first_design(values: Array, axes: int) -> Array:
     (2, 2)
     """
     values = np.asarray(values)
-    return np.real(values.reshape(-1, *values.shape[values.ndim - axes :])[0])
+    return np.real(values[(0,) * (values.ndim - axes)])
 
 
 def batch_note(values: Array, axes: int) -> tuple[str, ...]:

@@ -200,9 +200,7 @@ def energy_shares(lost: LostMotion) -> dict[str, dict[str, float]]:
     1.0
     """
     values = first_design(lost.energy.values, 2)
-    return {
-        name: gathered_by_unit(_shares(lost.energy, values[:, column]), name) for column, name in enumerate(lost.energy.columns)
-    }
+    return {name: gathered_by_unit(_shares(lost.energy, values[:, column]), name) for column, name in enumerate(lost.energy.columns)}
 
 
 def _shares(energy: Matrix, column: np.ndarray) -> dict[str, float]:

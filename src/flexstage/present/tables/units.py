@@ -1,0 +1,54 @@
+"""Tables of single units and of what simpler theories omit."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from flexstage.present.display import NO_VALUE, number, percent, value_with_unit
+from flexstage.present.table import Cell, Column, Mark, Table, build
+from flexstage.studies.omitted import Omitted
+from flexstage.studies.units import UnitResult
+
+
+def unit_table(found: Mapping[str, UnitResult]) -> Table:
+    """Every distinct unit alone: stiffness at its output, gain, loss.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.studies.units import units
+    >>> unit_table(units(double_triangle())).texts()[1][:2]
+    ['horizontal', 'B1']
+    """
+    rows = [
+        (
+            Cell(name, Mark.STRONG),
+            unit.copy,
+            value_with_unit(unit.axial, "N/m"),
+            " to ".join(value_with_unit(value, "N/m", 4) for value in unit.lateral),
+            number(unit.ideal_gain),
+            number(unit.gain),
+            percent(unit.loss),
+            NO_VALUE if unit.series is None else value_with_unit(unit.series, "N/m"),
+        )
+        for name, unit in found.items()
+    ]
+    heads = ["unit", "copy", Column("axial stiffness"), Column("lateral stiffness"), Column("ideal gain"), Column("gain")]
+    heads += [Column("loss"), Column("stiffness for the mapped reading")]
+    note = "Each unit alone, strokes held, its output guided along its direction; the last column is in actuator coordinates."
+    return build("Units alone", heads, rows, notes=[note])
+
+
+def omitted_table(found: Omitted, *, top: int = 12) -> Table:
+    """What each freedom that a simpler theory leaves out costs.
+
+    >>> omitted_table(Omitted("platform.z", "B1", 2.0, 1.9, {"lever.rz": -0.1})).texts()[1]
+    ['simple theory', '2', '']
+    """
+    ranked = sorted(found.changes.items(), key=lambda item: -abs(round(item[1] / found.full, 9)))
+    rows: list[tuple[Cell | str, ...]] = [(Cell("simple theory", Mark.STRONG), number(found.simple), "")]
+    rows += [(Cell(name), f"{change:+.4g}", percent(change / found.full, 3)) for name, change in ranked[:top]]
+    rest = sum(change for _, change in ranked[top:])
+    rows += [(Cell("further freedoms"), f"{rest:+.4g}", percent(rest / found.full, 3))] if ranked[top:] else []
+    rows += [(Cell("their interaction"), f"{found.interaction:+.4g}", percent(found.interaction / found.full, 3))]
+    rows += [(Cell("full theory", Mark.STRONG), Cell(number(found.full), Mark.STRONG), "")]
+    title = f"What the simple theory omits: {found.output} over {found.input}"
+    return build(title, ["freedom given back", Column("value"), Column("of the full")], rows)
