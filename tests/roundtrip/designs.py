@@ -1,4 +1,4 @@
-"""Random descriptions grown from the grammar itself, so that no field is forgotten."""
+"""Random descriptions grown from the grammar itself, so that no field is forgotten, and a small stage as text."""
 
 from __future__ import annotations
 
@@ -27,6 +27,34 @@ from flexstage.mechanism.grammar import (
 )
 from flexstage.mechanism.locate import locate
 from flexstage.mechanism.mechanism import Link, Mechanism, Placement, Unit
+
+TEXT = """# A stage of one wire.
+format = "flexstage 1"   # always
+name = "wire"
+
+[sources]
+paper = "a paper"
+
+[materials.steel]
+like = "SUS420"          # from the catalogue
+
+[parts.wire]
+kind = "rod"
+material = "steel"
+length = "30 mm"         # as drawn
+diameter = "1 mm"
+tags = { length = "stated paper 2", diameter = "stated paper 3" }
+
+[bodies.platform]
+mass = "1 kg"
+
+[units.leg.links]
+front = { joins = ["ground", "platform"], part = "wire", at = ["1 mm", "0 mm", "0 mm"], along = "z" }  # upright
+
+[place]
+L1-L3 = { unit = "leg", polar = { radius = "50 mm", first = "0 deg", facing = "tangent" } }
+"""
+"""A small stage as a person writes it; it passes the checks."""
 
 FINITE = st.one_of(
     st.floats(allow_nan=False, allow_infinity=False),

@@ -140,7 +140,8 @@ def test_tags_stand_in_any_table() -> None:
         '[parts.wire]\nkind = "rod"\nmaterial = "steel"\nlength = "3 mm"\ndiameter = "1 mm"\ntags = { length = "stated paper 2" }\n'
         '[units.leg.links.front]\njoins = ["ground", "platform"]\npart = "wire"\nat = ["0 m", "0 m", "0 m"]\nalong = "x"\n'
         'tags = { "at.x" = "derived paper" }\n'
-        '[place]\nL = { unit = "leg", polar = { radius = "1 mm", first = "0 deg", facing = "axis", tags = { radius = "stated paper 3" } } }\n'
+        '[place.L]\nunit = "leg"\n'
+        'polar = { radius = "1 mm", first = "0 deg", facing = "axis", tags = { radius = "stated paper 3" } }\n'
     )
     read = loads(text, checked=False)
     told = [tag_of(read, address) for address in ("mode_limit", "wire.length", "leg/front.at.x", "leg/front.at.y", "L.radius")]

@@ -22,6 +22,15 @@ class Quantity:
     example: str
     also: tuple[str, ...] = ()
 
+    @property
+    def noun(self) -> str:
+        """The name with its article.
+
+        >>> ANGLE.noun, LENGTH.noun
+        ('an angle', 'a length')
+        """
+        return f"{'an' if self.name[0] in 'aeiou' else 'a'} {self.name}"
+
 
 @dataclass(frozen=True)
 class Bound:

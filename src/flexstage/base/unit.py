@@ -1,72 +1,26 @@
 """Units at the border: text with units to SI numbers and back. Inside the package every number is SI.
 
-Units are pint's, from a short list of definitions in which the angle is a dimension of its own, so that degrees are never taken for
-ratios and rad/s never for Hz. All arithmetic is exact (fractions); a text is rounded once, to the float nearest to what it says, so that
-"1.54 mm" is the float 0.00154.
+The angle is a dimension of its own, so that degrees are never taken for ratios and rad/s never for Hz. All arithmetic is exact (fractions);
+a text is rounded once, to the float nearest to what it says, so that "1.54 mm" is the float 0.00154.
 """
 
 from __future__ import annotations
 
-import functools
-import importlib
 import re
 from decimal import Decimal, localcontext
 from fractions import Fraction
-from typing import Any, TypeAlias
+from typing import Any
 
 import numpy as np
 
 from flexstage.base import quantity as quantities
+from flexstage.base.dimension import Dimension, dimension_of
 from flexstage.base.finding import DesignError, refuse
 from flexstage.base.number import Number
 from flexstage.base.quantity import RATIO, Quantity
 
-_DEFINITIONS = """
-nano- = 1e-9 = n-
-micro- = 1e-6 = u- = µ- = μ-
-milli- = 1e-3 = m-
-centi- = 1e-2 = c-
-kilo- = 1e3 = k-
-mega- = 1e6 = M-
-giga- = 1e9 = G-
-pico- = 1e-12 = p-
-meter = [length] = m = metre
-gram = [mass] = g
-second = [time] = s
-kelvin = [temperature] = K
-radian = [angle] = rad
-ampere = [current] = A
-pi = 3.1415926535897932384626433832795028841971693993751
-degree = pi / 180 * radian = deg = °
-arcminute = degree / 60 = arcmin
-arcsecond = degree / 3600 = arcsec
-newton = kilogram * meter / second ** 2 = N
-pascal = newton / meter ** 2 = Pa
-joule = newton * meter = J
-watt = joule / second = W
-hertz = 1 / second = Hz
-coulomb = ampere * second = C
-volt = watt / ampere = V
-farad = coulomb / volt = F
-bar = 1e5 * pascal
-minute = 60 * second = min
-hour = 3600 * second = h
-tonne = 1000 * kilogram = t
-inch = 25.4 * millimeter = in
-pound = 0.45359237 * kilogram = lb
-pound_force = 4.4482216152605 * newton = lbf
-psi = pound_force / inch ** 2
-standard_gravity = 9.80665 * meter / second ** 2 = g0
-percent = 0.01 = %
-ppm = 1e-6
-"""
-_OFFSET_SCALE = re.compile(r"deg(?:ree)?_?[CF]|celsius|fahrenheit", re.IGNORECASE)
 _NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,3})?")
-_SIGNS = re.compile(r"[A-Za-zµμ°%_0-9^*/(). \-]+")
-_POWERS_AND_ONES = re.compile(r"(?<=[A-Za-z0%°])\^-?[0-9](?:\.[0-9])?(?![0-9.^])|(?<![A-Za-z0-9_.^-])1(?=\s*/)|\bg0\b")
 _LONGEST = 60
-
-_Scale: TypeAlias = tuple[Fraction, frozenset[tuple[str, Fraction]]]
 
 
 def parse(text: str, quantity: Quantity, *, where: str = "value") -> float:
@@ -152,7 +106,7 @@ def _no_number(text: str, quantity: Quantity, where: str) -> DesignError:
         return refuse(where, f'found "{shown}", which is not finite', example)
     if re.match(r"[+-]?\d+,\d", text):
         return refuse(where, f'found "{shown}" with a comma', f"The decimal sign is a point. {example}")
-    return refuse(where, f'found "{shown}" where a {quantity.name} is expected', example)
+    return refuse(where, f'found "{shown}" where {quantity.noun} is expected', example)
 
 
 def _rounded(exact: Fraction, text: str, where: str) -> float:
@@ -175,65 +129,21 @@ def _relative(unit: str, quantity: Quantity, where: str, text: str) -> Fraction:
     if unit == quantity.si:
         return Fraction(1)
     try:
-        size, dimension = _scale(unit)
+        dimension = dimension_of(unit)
     except ValueError as error:
         raise refuse(where, f'found "{text}": {error}', example) from None
     for form in (quantity.si, *quantity.also):
-        base, expected = _scale(form)
-        if dimension == expected:
-            return size / base
-    raise refuse(where, f'found "{text}", {_dimension_name(unit, dimension)}, where a {quantity.name} is expected', example)
+        expected = dimension_of(form)
+        if dimension.powers == expected.powers:
+            return dimension.size / expected.size
+    raise refuse(where, f'found "{text}", {_dimension_name(unit, dimension)}, where {quantity.noun} is expected', example)
 
 
-def _dimension_name(unit: str, dimension: frozenset[tuple[str, Fraction]]) -> str:
+def _dimension_name(unit: str, dimension: Dimension) -> str:
     for known in vars(quantities).values():
-        if isinstance(known, Quantity) and known.si != "mixed" and _scale(known.si)[1] == dimension:
-            return f"{'an' if known.name[0] in 'aeiou' else 'a'} {known.name}"
+        if isinstance(known, Quantity) and known.si != "mixed" and dimension_of(known.si).powers == dimension.powers:
+            return known.noun
     return f"a quantity in {unit}"
-
-
-@functools.lru_cache(maxsize=512)
-def _scale(unit: str) -> _Scale:
-    """Size in kilogram-metre-second base units and dimension; raises `ValueError` with what is wrong with the unit."""
-    plain = _plain(unit)
-    if plain == "1":
-        return Fraction(1), frozenset()
-    if _OFFSET_SCALE.search(plain):
-        raise ValueError("degC and degF have an offset; a difference of temperature is given in K")
-    registry = _registry()
-    try:
-        parsed = registry.Unit(plain)
-        size, _ = registry.get_root_units(parsed)
-        dimension = frozenset((name, Fraction(power)) for name, power in parsed.dimensionality.items())
-    except Exception as error:  # pint and the tokenizer under it raise many kinds; every one means the same to the user
-        raise ValueError(_unit_problem(plain, error)) from None
-    return Fraction(size), dimension
-
-
-def _plain(unit: str) -> str:
-    """The unit in the few signs that are allowed: names, products, quotients and small powers of names; no arithmetic reaches pint."""
-    plain = unit[: _LONGEST + 1]
-    for sign, meaning in (("**", "^"), ("·", " "), ("²", "^2"), ("³", "^3"), ("°C", "degC"), ("°F", "degF")):
-        plain = plain.replace(sign, meaning)
-    plain = f"1{plain}" if plain.startswith("/") else plain
-    stray = re.search(r"[0-9^.\-]", _POWERS_AND_ONES.sub("", plain))
-    if plain != "1" and (stray or len(plain) > _LONGEST or not _SIGNS.fullmatch(plain)):
-        raise ValueError("the unit cannot be read")
-    return plain
-
-
-def _unit_problem(unit: str, error: Exception) -> str:
-    names = getattr(error, "unit_names", None)
-    name = names if isinstance(names, str) else (names[0] if names else unit)
-    return f'"{name}" is not a known unit'
-
-
-@functools.cache
-def _registry() -> Any:
-    pint = importlib.import_module("pint")  # 0.3 s, spent only where texts are read or written
-    registry = pint.UnitRegistry(None, non_int_type=Fraction)
-    registry.load_definitions(_DEFINITIONS.splitlines())
-    return registry
 
 
 def _show_range(value: Any, quantity: Quantity, unit: str | None, digits: int | None) -> str:

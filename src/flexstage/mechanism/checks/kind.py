@@ -54,8 +54,7 @@ def wanted(node: Node, value: Any) -> tuple[str, str] | None:
     ('a text', 'Give a str')
     """
     if isinstance(node, NumberNode):
-        article = "an" if node.quantity.name[0] in "aeiou" else "a"
-        return None if _is_number(value) else (f"{article} {node.quantity.name}", "Give a number or an array in SI units")
+        return None if _is_number(value) else (node.quantity.noun, "Give a number or an array in SI units")
     if isinstance(node, (VectorNode, DirectionNode)):
         count = len(node.items) if isinstance(node, VectorNode) else 3
         fits = _is_row(value, count) and (isinstance(node, VectorNode) or all(_is_number(item) for item in value))

@@ -265,7 +265,7 @@ def _number(node: NumberNode, raw: Any, where: str) -> float:
     if isinstance(raw, str):
         return parse(raw, node.quantity, where=where)
     if not _is_number(raw):
-        raise DesignError([Finding(where, f"found {_kind(raw)} where a {node.quantity.name} is expected", example)])
+        raise DesignError([Finding(where, f"found {_kind(raw)} where {node.quantity.noun} is expected", example)])
     if node.quantity is not RATIO:
         raise DesignError([Finding(where, f"found {_kind(raw)} without a unit", example)])
     return _float(raw, where)

@@ -1,0 +1,338 @@
+"""Bad input: each class of mistake is a message with the object, the numbers compared and the remedy; never a traceback, never a hang."""
+
+from __future__ import annotations
+
+import dataclasses
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from flexstage.base.finding import DesignError
+from flexstage.mechanism.checks import check, checked
+from flexstage.mechanism.mechanism import Link, Mechanism, Placement
+from flexstage.mechanism.pattern import Facing, Polar, Pose
+from flexstage.mechanism.store import load, loads
+from flexstage.mechanism.store.file import LARGEST
+from flexstage.parts.body import Block, Body, Cylinder, Inertia, Payload
+from flexstage.parts.freedom import Freedom
+from flexstage.parts.given import Given, Joint
+from flexstage.parts.neck import Neck
+from flexstage.parts.notch import Notch
+from flexstage.parts.part import Restricted
+from flexstage.parts.piezo import Piezo
+from flexstage.parts.profile import Circular, Filleted, Straight
+from flexstage.parts.rod import Rod
+from tests.roundtrip.designs import TEXT
+
+
+def told(text: str) -> list[str]:
+    """What is said about a text, in order."""
+    with pytest.raises(DesignError) as caught:
+        loads(text, where="stage.toml")
+    lines = [str(finding) for finding in caught.value.findings]
+    assert all(line.startswith("stage.toml: ") for line in lines)
+    assert all(finding.advice for finding in caught.value.findings)
+    return lines
+
+
+def test_the_small_stage_is_sound() -> None:
+    assert check(loads(TEXT)) == ()
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        # keys and names
+        ("diameter =", "diametre =", ["parts.wire.diametre", "not known", "diameter"]),
+        ("diameter =", "diametre =", ["parts.wire", "no diameter", '"1.54 mm"']),
+        ("[parts.wire]", "[part.wire]", ["part:", "not known", "parts"]),
+        ('kind = "rod"', 'kind = "rodd"', ["parts.wire.kind", '"rodd"', "rod"]),
+        ('kind = "rod"\n', "", ["parts.wire", "no kind", "notch"]),
+        ('like = "SUS420"', 'like = "SUS430"', ["materials.steel.like", '"SUS430"', "SUS420"]),
+        ('part = "wire"', 'part = "wier"', ["units.leg.links.front.part", '"wier"', "wire"]),
+        ('"platform"]', '"plattform"]', ["units.leg.links.front.joins", '"plattform"', "platform"]),
+        ('"ground", "platform"', '"platform", "platform"', ["joins", 'both ends join "platform"']),
+        ('material = "steel"', 'material = "steal"', ["parts.wire.material", '"steal"', "steel"]),
+        ('unit = "leg"', 'unit = "legs"', ["place.L1-L3.unit", '"legs"', "leg"]),
+        ("L1-L3 =", "L3-L1 =", ["place.L3-L1", "3", "1", "rising"]),
+        ("L1-L3 =", "L1-L9000 =", ["place.L1-L9000", "9000 copies", "360"]),
+        ("L1-L3 =", "L1-L99999999999999999999 =", ["place.L1-L9999", "too many digits"]),
+        ("L1-L3 =", '"L 1" =', ["place", '"L 1"', "no legal name"]),
+        ('name = "wire"', "", ["no name", 'name = "a name"']),
+        ("[bodies.platform]", "[bodies.plate]", ["bodies", 'no body "platform"']),
+        # units and numbers
+        ('"30 mm"', "30", ["parts.wire.length", "found 30 without a unit", '"1.54 mm"']),
+        ('"30 mm"', '"30"', ["parts.wire.length", 'found "30" without a unit', '"1.54 mm"']),
+        ('"30 mm"', '"30 kg"', ["parts.wire.length", "a mass", "a length"]),
+        ('"30 mm"', '"30 mmm"', ["parts.wire.length", '"mmm"']),
+        ('"30 mm"', "true", ["parts.wire.length", "found true", "a length"]),
+        ('"30 mm"', '["30 mm"]', ["parts.wire.length", "1 values in brackets", "a length"]),
+        ('"30 mm"', "2026-11-20", ["parts.wire.length", "2026-11-20", "a length"]),
+        ('"30 mm"', "nan", ["parts.wire.length", "nan", "without a unit"]),
+        ('"30 mm"', '"nan mm"', ["parts.wire.length", "not finite"]),
+        ('"30 mm"', '"-30 mm"', ["parts.wire.length", "-30 mm", "greater than 0 mm"]),
+        ('"30 mm"', '"0 mm"', ["parts.wire.length", "0 mm", "greater than 0 mm"]),
+        ('"30 mm"', "0x" + "f" * 300, ["parts.wire.length", "many digits"]),
+        ('"0 deg"', '"0"', ["place.L1-L3.polar.first", "without a unit", "deg"]),
+        ('"0 deg"', '"0 mm"', ["place.L1-L3.polar.first", "a length", "an angle"]),
+        ('facing = "tangent"', 'facing = "tangential"', ["polar.facing", '"tangential"', "tangent, outward"]),
+        ('along = "z"', 'along = "up"', ["along", '"up"', "-z"]),
+        ('along = "z"', "along = [0, 0, 0]", ["units.leg.links.front.along", "zero"]),
+        ('along = "z"', "along = [0, 0, nan]", ["along", "not finite"]),
+        ('along = "z"', "along = [0, 0]", ["along", "2 values", "three numbers"]),
+        ('along = "z"', 'along = "z", bends = [1, 0, 1]', ["bends", "45 deg", "90 deg"]),
+        ('along = "z"', 'along = "z", free = ["x", "q"]', ["free", '"q"', "rx"]),
+        ('["1 mm", "0 mm", "0 mm"]', '["1 mm", "0 mm"]', ["front.at", "2 values", "3 values"]),
+        ('["1 mm", "0 mm", "0 mm"]', '["1 mm", "0 mm", 0]', ["front.at.z", "found 0 without a unit"]),
+        # provenance
+        ('"stated paper 2"', '"published"', ['tags."parts.wire.length"', '"published"', "stated, derived or assumed"]),
+        ('"stated paper 2"', '"stated papre 2"', ['tags."parts.wire.length"', '"papre"', "paper"]),
+        ("tags = { length =", "tags = { lenght =", ['tags."parts.wire.lenght"', "points nowhere", "length"]),
+        ("tags = { length =", "tags = { length = 1, x =", ["parts.wire.tags", "no tags"]),
+        # the file
+        ('format = "flexstage 1"', 'format = "flexstage 9"', ["format", '"flexstage 9"', '"flexstage 1"']),
+        ('format = "flexstage 1"', "", ["format", "does not say", '"flexstage 1"']),
+        ('name = "wire"', 'name = "wire', ["line 3, column", "not TOML"]),
+        ('mass = "1 kg"', 'mass = "1 kg"\nmass = "2 kg"', ["line 20", "stands twice"]),
+        ("[bodies.platform]", "[parts.wire]\n[bodies.platform]", ["line 18", "stands twice"]),
+        ("[place]", "x = " + "[" * 2000 + "]" * 2000 + "\n[place]", ["characters", "4000"]),
+        ("[place]", "x = " + "[" * 1500 + "]" * 1500 + "\n[place]", ["nests too deeply"]),
+        ("[place]", "x = " + "9" * 3990 + "\n[place]", ["links.x", "many digits", "a table"]),
+        ("[place]", "[links]\na.b.c.d = 1\n[place]", ["links.a", "not known"]),
+    ],
+)
+def test_each_mistake_is_told_with_its_object_and_remedy(old: str, new: str, words: list[str]) -> None:
+    assert old in TEXT
+    lines = told(TEXT.replace(old, new))
+    assert any(all(word in line for word in words) for line in lines), lines
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ('"L2/front.diametre" = "1 mm"', ['"diametre"', "diameter"]),
+        ('"L4/front.diameter" = "1 mm"', ['"L4"', "L1"]),
+        ('"leg/front.diameter" = "1 kg"', ["a mass", "a length"]),
+        ('"leg/front.diameter" = "-1 mm"', ["-1 mm", "greater than 0"]),
+        ('"leg/front.part" = "wire"', ["no departures"]),
+        ('"parts.wire.length" = "1 mm"', ["no departure of a link"]),
+        ('"leg/front.at" = ["1 mm", "2 mm"]', ["2 values", "3 values"]),
+        ('"leg/front.at" = ["1 mm", "2 mm", "3 mm"]\n"leg/front.at.x" = "1 mm"', ["departs in the same"]),
+        ('tags = "stated"', ["no address"]),
+    ],
+)
+def test_departures_are_checked_like_the_rest(text: str, words: list[str]) -> None:
+    lines = told(f"{TEXT}\n[change]\n{text}\n")
+    assert any(line.startswith("stage.toml: change") and all(word in line for word in words) for line in lines), lines
+
+
+def test_everything_wrong_is_told_at_once() -> None:
+    text = TEXT.replace('"30 mm"', "30").replace('"1 mm"\n', '"1 kg"\n').replace('"0 deg"', '"0"').replace("mass =", "mas =")
+    where = [line.split(": ")[1] for line in told(text)]
+    assert where == ["parts.wire.length", "parts.wire.diameter", "bodies.platform.mas", "place.L1-L3.polar.first"]
+
+
+def test_a_flood_of_mistakes_is_cut_short() -> None:
+    lines = told(TEXT + "".join(f"unknown{number} = 1\n" for number in range(10_000)))
+    assert len(lines) < 200
+    assert "mend these first" in lines[-1].lower()
+
+
+# --------------------------------------------------------------------------------------------------------------------------------- files
+
+
+def test_a_missing_file(tmp_path: Path) -> None:
+    with pytest.raises(DesignError, match="there is no such file"):
+        load(tmp_path / "stage.toml")
+
+
+def test_a_directory(tmp_path: Path) -> None:
+    with pytest.raises(DesignError, match="this is a directory"):
+        load(tmp_path)
+
+
+def test_a_path_with_a_null_byte() -> None:
+    with pytest.raises(DesignError, match="cannot be read"):
+        load("stage\0.toml")
+
+
+def test_a_file_of_100_mb_is_refused_before_it_is_read(tmp_path: Path) -> None:
+    path = tmp_path / "stage.toml"
+    with path.open("wb") as stream:
+        stream.truncate(100_000_000)
+    with pytest.raises(DesignError, match=r"larger than 5 MB"):
+        load(path)
+
+
+def test_an_endless_file_is_refused() -> None:
+    if not Path("/dev/zero").exists():
+        pytest.skip("no endless file here")
+    with pytest.raises(DesignError, match=r"larger than 5 MB"):
+        load("/dev/zero")
+
+
+def test_a_text_that_is_too_large() -> None:
+    with pytest.raises(DesignError, match=r"larger than 5 MB"):
+        loads("#" * (LARGEST + 1))
+
+
+def test_bytes_that_are_no_text(tmp_path: Path) -> None:
+    path = tmp_path / "stage.toml"
+    path.write_bytes(b'name = "a"\nx = "\xff"\n')
+    with pytest.raises(DesignError, match=r"line 2: byte 16 is not UTF-8"):
+        load(path)
+
+
+def test_a_byte_order_mark_does_no_harm(tmp_path: Path) -> None:
+    path = tmp_path / "stage.toml"
+    path.write_bytes(b"\xef\xbb\xbf" + TEXT.replace("\n", "\r\n").encode())
+    assert load(path) == loads(TEXT)
+
+
+# ------------------------------------------------------------------------------------------------------------ descriptions made in Python
+
+STAGE = loads(TEXT)
+STEEL = STAGE.materials["steel"]
+UNIT = STAGE.units["leg"]
+X, Y, Z, O = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0), (0.0, 0.0, 0.0)  # noqa: E741
+STACK = Piezo(stroke=1e-5, stiffness=1e7, length=0.02, diameter=0.005)
+
+
+def part(value: Any) -> Mechanism:
+    """The stage with another part."""
+    return dataclasses.replace(STAGE, parts={**STAGE.parts, "p": value})
+
+
+def linked(value: Any, **link: Any) -> Mechanism:
+    """The stage with a part in a link between ground and platform."""
+    return dataclasses.replace(part(value), links={"l": Link(**{"joins": ("ground", "platform"), "part": "p", "at": O, "along": X} | link)})
+
+
+def body(value: Body) -> Mechanism:
+    """The stage with another body, hung up by a wire."""
+    wire = Link(("ground", "b"), "wire", O, X)
+    return dataclasses.replace(STAGE, bodies={**STAGE.bodies, "b": value}, links={"w": wire})
+
+
+def matrix(**entries: float) -> tuple[tuple[float, ...], ...]:
+    """A 6x6 of ones on the diagonal, with other entries by row and column."""
+    rows = [[1e-6 * (row == column) for column in range(6)] for row in range(6)]
+    for name, value in entries.items():
+        rows[int(name[1])][int(name[2])] = value
+    return tuple(tuple(row) for row in rows)
+
+
+DANGLING = {"tip": Body(mass=1.0), **STAGE.bodies}
+
+
+@pytest.mark.parametrize(
+    ("mechanism", "words"),
+    [
+        (part(Notch("steel", thickness=0.012, width=0.01, profile=Circular(0.005))), ["parts.p.thickness", "12 mm", "width, 10 mm"]),
+        (part(Notch("steel", thickness=0.01, width=0.01, profile=Circular(0.005))), ["parts.p.thickness", "10 mm", "width, 10 mm"]),
+        (part(Notch("steel", 0.001, 0.01, Filleted(length=0.01, radius=0.006))), ["profile.radius", "6 mm", "half the length, 5 mm"]),
+        (part(Restricted(Notch("steel", 0.012, 0.01, Circular(0.005)), elastic=())), ["parts.p.part.thickness", "12 mm"]),
+        (part(Restricted(Rod("steel", 0.1, 0.01), (Freedom.X,), (Freedom.X,))), ["parts.p", "x is both elastic and free"]),
+        (part(Rod("steel", length=np.array([0.1, 0.2, -0.3]), diameter=0.01)), ["parts.p.length at index 2", "-300 mm"]),
+        (part(Rod("steel", length=np.array([0.1, np.inf]), diameter=0.01)), ["parts.p.length at index 1", "not finite"]),
+        (part(Notch("steel", np.array([[0.001], [0.02]]), np.array([0.01, 0.03]), Circular(1.0))), ["at index 1, 0", "20 mm", "10 mm"]),
+        (part(Rod("steel", length=np.ones(2), diameter=np.ones(3))), ["batch", "(2,)", "(3,)", "broadcast"]),
+        (part(Rod("steel", length="1 mm", diameter=0.1)), ["parts.p.length", "'1 mm'", "a length"]),
+        (part(Rod("steel", length=True, diameter=0.1)), ["parts.p.length", "True"]),
+        (part("wire"), ["parts.p", "'wire'", "Rod"]),
+        (part(Given(matrix(x05=1e-7), (Freedom.RZ,))), ["parts.p.compliance at index 0, 5", "not symmetric", "1e-07"]),
+        (part(Given(matrix(x05=2e-6, x50=2e-6), (Freedom.RZ,))), ["parts.p.compliance", "not positive definite"]),
+        (part(Given(matrix(x33=0.0), (Freedom.RZ,))), ["parts.p.compliance", "not positive definite", "Restricted"]),
+        (part(Given(np.eye(6), (Freedom.RZ,))), ["parts.p.compliance", "a 6x6", "tuples"]),
+        (part(dataclasses.replace(STACK, preload=20.0, maximum_load=10.0)), ["parts.p.preload", "20 N", "maximum load, 10 N"]),
+        (part(dataclasses.replace(STACK, voltage_low=100.0, voltage_high=-20.0)), ["parts.p.voltage_low", "100 V", "-20 V"]),
+        (linked(Notch("steel", 0.001, 0.01, Circular(0.005))), ["links.l", 'part "p" is not round', 'bends = "y"']),
+        (linked(Neck("steel", 0.001, Straight(0.005), width=0.002)), ["links.l", "not round"]),
+        (linked(Joint((Freedom.RZ,))), ["links.l", "not round"]),
+        (linked(Given(matrix(x11=2e-6), (Freedom.RX,))), ["links.l", "not round"]),
+        (linked(Rod("steel", 0.1, 0.01), free=(Freedom.RY,)), ["links.l", "not round"]),
+        (linked(Rod("steel", 0.1, 0.01), bends=(1.0, 0.0, 1.0)), ["links.l.bends", "45 deg", "90 deg"]),
+        (linked(Rod("steel", 0.1, 0.01), bends=X), ["links.l.bends", "0 deg", "90 deg"]),
+        (linked(Rod("steel", 0.1, 0.01), along=O), ["links.l.along", "zero"]),
+        (linked(Rod("steel", 0.1, 0.01), along=(np.array([1.0, 0.0]), 0.0, 0.0)), ["links.l.along at index 1", "zero"]),
+        (linked(Rod("steel", 0.1, 0.01), joins=("ground", "ground")), ["links.l.joins", "both ends"]),
+        (body(Body(mass=1.0, solids={"s": Block("steel", (1.0, 1.0, 1.0))})), ["bodies.b", "has solids and states its mass"]),
+        (body(Body(centre=O)), ["bodies.b", "states its centre without a mass"]),
+        (body(Body(mass=1.0, inertia=Inertia(1.0, 1.0, 3.0))), ["bodies.b.inertia", "1, 1, 3", "sum of the other two"]),
+        (body(Body(mass=1.0, inertia=Inertia(1.0, 1.0, 1.0, xy=2.0))), ["bodies.b.inertia", "-1", "negative"]),
+        (body(Body(solids={"s": Block("steel", (0.1, 0.2, 0.1), hole=(0.05, 0.2))})), ["solids.s.hole.y", "200 mm", "block, 200 mm"]),
+        (body(Body(solids={"s": Cylinder("steel", 0.1, 0.2, bore=0.1)})), ["solids.s.bore", "100 mm", "diameter, 100 mm"]),
+        (body(Body(solids={"s": Cylinder("steel", 0.1, 0.2, along=O)})), ["solids.s.along", "zero"]),
+        (body(Body(solids={"s": Cylinder("iron", 0.1, 0.2)})), ["solids.s.material", '"iron"', "steel"]),
+        (
+            dataclasses.replace(STAGE, payloads={"chuck": Payload("platform", 1.0, O, Inertia(0.0, 0.0, 1.0))}),
+            ["payloads.chuck.inertia", "0, 0, 1"],
+        ),
+        (dataclasses.replace(STAGE, payloads={"chuck": Payload("platfrom", 1.0, O)}), ["payloads.chuck.body", '"platfrom"', "platform"]),
+        (dataclasses.replace(STAGE, place={}), ["platform", "no chain of links"]),
+        (dataclasses.replace(STAGE, bodies={**STAGE.bodies, "loose": Body(mass=1.0)}), ["loose", "no chain of links"]),
+        (dataclasses.replace(STAGE, bodies={**STAGE.bodies, "ground": Body()}), ["bodies.ground", "implied"]),
+        (
+            dataclasses.replace(part(STACK), bodies=DANGLING, links={"pzt": Link(("ground", "tip"), "p", O, X)}),
+            ["pzt", "ground and tip", "no path between ground and platform"],
+        ),
+        (
+            dataclasses.replace(STAGE, place={**STAGE.place, "L2": Placement("leg", Pose())}),
+            ["place.L2", "L1-L3, L2 name it 2 times"],
+        ),
+        (
+            dataclasses.replace(STAGE, place={"leg": Placement("leg", Pose())}),
+            ["place.leg", "a unit and a copy have this name"],
+        ),
+        (
+            dataclasses.replace(STAGE, place={"L": Placement("leg", Pose(along=X, up=X))}),
+            ["place.L.pose.up", "0 deg to along"],
+        ),
+        (
+            dataclasses.replace(STAGE, units={"leg": dataclasses.replace(UNIT, bodies={"platform": Body()})}),
+            ["units.leg.bodies.platform", "the stage itself has a body"],
+        ),
+        (
+            dataclasses.replace(STAGE, place={"L" * 70: Placement("leg", Polar(0.1, 0.0, Facing.AXIS))}),
+            ["place.LLL", "70 characters"],
+        ),
+        (dataclasses.replace(STAGE, changes={"L2/front.diameter": -0.001}), ['changes."L2/front.diameter"', "-1 mm"]),
+        (dataclasses.replace(STAGE, changes={"L2/front.diameter": "1 mm"}), ['changes."L2/front.diameter"', "'1 mm'", "a length"]),
+        (dataclasses.replace(STAGE, changes={"L9/front.diameter": 0.001}), ['changes."L9/front.diameter"', '"L9"']),
+        (dataclasses.replace(STAGE, tags={"parts.wire.width": "assumed"}), ['tags."parts.wire.width"', "points nowhere"]),
+        (dataclasses.replace(STAGE, tags={"parts.wire.length": "stated"}), ["stated by no source", "paper"]),
+        (dataclasses.replace(STAGE, materials={"steel": dataclasses.replace(STEEL, poisson=0.5)}), ["poisson", "0.5", "less than 0.5"]),
+    ],
+)
+def test_each_fault_of_a_description_is_told(mechanism: Mechanism, words: list[str]) -> None:
+    lines = [str(finding) for finding in check(mechanism)]
+    assert any(all(word in line for word in words) for line in lines), lines
+    with pytest.raises(DesignError):
+        checked(mechanism)
+
+
+@pytest.mark.parametrize(
+    "mechanism",
+    [
+        linked(Notch("steel", 0.001, 0.01, Circular(0.005)), bends=Z),
+        linked(Neck("steel", 0.001, Circular(0.005))),
+        linked(Joint((Freedom.RX, Freedom.RY, Freedom.RZ))),
+        linked(Given(matrix(), (Freedom.RX,))),
+        linked(Rod("steel", 0.1, 0.01), bends=(0.0, 0.0008, 1.0)),
+        linked(STACK),
+        body(Body(mass=1.0, inertia=Inertia(1.0, 1.0, 2.0))),
+        body(Body()),
+        part(Notch("steel", np.array([0.001, 0.002]), np.array([[0.01], [0.03]]), Circular(1.0))),
+        dataclasses.replace(STAGE, changes={"L2/front.diameter": np.array([0.001, 0.002])}),
+    ],
+)
+def test_what_is_sound_is_let_through(mechanism: Mechanism) -> None:
+    assert check(mechanism) == ()
+
+
+def test_a_departed_part_is_checked_too() -> None:
+    notched = linked(Notch("steel", 0.001, 0.01, Circular(0.005)), bends=Z)
+    lines = [str(finding) for finding in check(dataclasses.replace(notched, changes={"links.l.thickness": 0.02}))]
+    assert any("links.l.thickness" in line and "20 mm" in line for line in lines), lines
