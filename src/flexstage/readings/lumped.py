@@ -28,6 +28,7 @@ from flexstage.readings.linear.model import Channel, Contribution, LinearModel, 
 from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS, WRENCH_UNITS, Frame, seen_at
 
 _SINGULAR = 1e-11
+_ROUNDING = 1e-12
 _FORCES = ("fx", "fy", "fz", "mx", "my", "mz")
 
 _Value = TypeVar("_Value")
@@ -144,11 +145,12 @@ def _spread(arrays: tuple[Array, ...]) -> list[Array]:
 
 def _loose(stage: _Stage, basis: Array | None) -> Array:
     """Null space (n, k) of the first design's stiffness in the independent coordinates."""
-    strains = {name: Contribution(_first(item.operator), _first(item.law)) for name, item in stage.strains.items()}
-    stiffness = np.real(assembled(strains, stage.order.size))
-    if basis is not None:
-        first = np.real(_first(basis))
-        stiffness = first.T @ stiffness @ first
+    first = None if basis is None else np.real(_first(basis))
+    strains = {
+        name: Contribution(_without_rounding(np.real(_first(item.operator)), first), np.real(_first(item.law)))
+        for name, item in stage.strains.items()
+    }
+    stiffness = assembled(strains, stage.order.size if first is None else first.shape[1])
     diagonal = np.sqrt(np.where(np.diag(stiffness) > 0.0, np.diag(stiffness), 1.0))
     scaled = stiffness / diagonal / diagonal[:, None]
     try:
@@ -159,6 +161,15 @@ def _loose(stage: _Stage, basis: Array | None) -> Array:
         pass
     values, vectors = np.linalg.eigh(scaled)
     return vectors[:, values < _SINGULAR] / diagonal[:, None]
+
+
+def _without_rounding(operator: Array, basis: Array | None) -> Array:
+    """The operator in the basis without entries that are only rounding: else an idle coordinate would seem to have some stiffness."""
+    if basis is None:
+        return operator
+    product = operator @ basis
+    largest = np.max(np.abs(operator), axis=1, keepdims=True) * np.max(np.abs(basis), axis=0)
+    return np.where(np.abs(product) > _ROUNDING * largest, product, 0.0)
 
 
 def _pinned(stage: _Stage, loose: Array, independent: tuple[int, ...]) -> list[int]:
