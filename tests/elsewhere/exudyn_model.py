@@ -57,7 +57,7 @@ class System:
 def system(mechanism: Mechanism, assembly: Assembly) -> System:
     """The stage in Exudyn, assembled; bodies in the order of our coordinates, the platform first."""
     container = exu.SystemContainer()
-    result = System(container, container.AddSystem(), _of_parts(law, assembly), _of_parts(mass, assembly))
+    result = System(container, container.AddSystem(), of_parts(law, assembly), of_parts(mass, assembly))
     result.bodies[GROUND] = result.mbs.AddObject(ObjectGround())
     result.references[GROUND] = np.zeros(3)
     for name in sorted(assembly.bodies, key=lambda name: name != PLATFORM):
@@ -68,7 +68,7 @@ def system(mechanism: Mechanism, assembly: Assembly) -> System:
     return result
 
 
-def _of_parts(function: Callable[..., Value], assembly: Assembly) -> dict[str, Value]:
+def of_parts(function: Callable[..., Value], assembly: Assembly) -> dict[str, Value]:
     """What a function gives for every link's part, computed once for links of one part."""
     links = assembly.links.items()
     found = {(id(link.part), id(link.material)): link for _, link in links}
