@@ -33,7 +33,7 @@ def headlines(analysis: Analysis) -> tuple[Headline, ...]:
     >>> headlines(analyse(double_triangle(), Reading.IDEAL))[0].name
     'stroke x'
     """
-    return tuple([*_modes(analysis), *_statics(analysis), *_losses(analysis), *_reach(analysis)])
+    return (*_modes(analysis), *_statics(analysis), *_losses(analysis), *_reach(analysis))
 
 
 def comparison_table(before: Analysis, after: Analysis) -> Table:

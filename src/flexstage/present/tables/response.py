@@ -36,7 +36,8 @@ def leading_curves(response: Response) -> tuple[Curve, ...]:
     result: list[Curve] = []
     for row, output in enumerate(response.outputs):
         sizes = np.round(np.abs(values[0, row]) / (np.max(np.abs(values[0, row])) or 1.0), 6)
-        column = int(np.argmax(sizes))
+        # Of inputs that move it alike, one that moves it forward.
+        column = int(np.argmax(sizes + 1e-7 * (values[0, row].real > 0.0)))
         result.append(Curve(output.name, response.inputs[column].name, response.units[row][column], values[:, row, column]))
     return tuple(result)
 

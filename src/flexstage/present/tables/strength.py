@@ -143,7 +143,8 @@ def load_table(loads: LoadShare, limits: StrokeLimits) -> Table:
     >>> import numpy as np
     >>> from flexstage.base.labelled import Matrix
     >>> one = Matrix(np.ones((1, 1)), ("B1",), ("gravity",), "N")
-    >>> share = LoadShare(("B1",), one, one, Matrix(np.array([[1e6]]), ("B1",), ("B1",), "N/m"), np.array([5e3]), *[np.full(1, np.nan)] * 2, np.zeros(3), "")
+    >>> per_stroke, unknown = Matrix(np.array([[1e6]]), ("B1",), ("B1",), "N/m"), np.full(1, np.nan)
+    >>> share = LoadShare(("B1",), one, one, per_stroke, np.array([5e3]), unknown, unknown, np.zeros(3), "")
     >>> load_table(share, StrokeLimits(("B1",), np.zeros(1), np.array([1e-4]))).texts()[1]
     ['B1', '1', '1', '101', '-', '5000', '2.02 %']
     """

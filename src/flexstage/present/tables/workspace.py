@@ -71,7 +71,7 @@ def corner_table(corner: Utilisation) -> Table:
     micro = Shown("um", 1e6)
     demand, available = (figures(first_design(values, 1), micro) for values in (corner.demand, corner.available))
     rows = [
-        (Cell(name, Mark.STRONG), need, have, Cell(percent(float(share)), _limit_mark(float(share)), bar=float(share)))
+        (Cell(name, Mark.STRONG), need, have, _used(float(share)))
         for name, need, have, share in zip(corner.actuators, demand, available, ratio, strict=True)
     ]
     scale = float(first_design(np.atleast_1d(corner.scale), 1)[0])
@@ -81,8 +81,9 @@ def corner_table(corner: Utilisation) -> Table:
     return build("Simultaneous strokes", heads, rows, notes=[note])
 
 
-def _limit_mark(share: float) -> Mark:
-    return Mark.FAIL if share > 1.0 + 1e-9 else Mark.PLAIN
+def _used(share: float) -> Cell:
+    """A share of a limit; more than the whole is marked."""
+    return Cell(percent(share), Mark.FAIL if share > 1.0 + 1e-9 else Mark.PLAIN, bar=share)
 
 
 def extent_table(polytope: Polytope) -> Table:
@@ -169,19 +170,14 @@ def gauge_range_table(gauges: GaugeRange) -> Table:
     ['S1', '100', '250', '40 %', '130', '300', 'any']
     """
     swing, limit = first_design(gauges.swing, 1), first_design(gauges.limit, 1)
-    radii = [
-        [_radius(float(value)) for value in first_design(each, 1)] for each in (gauges.radius, gauges.largest_here, gauges.largest_anywhere)
-    ]
+    places = (gauges.radius, gauges.largest_here, gauges.largest_anywhere)
+    radii = [[_radius(float(value)) for value in first_design(each, 1)] for each in places]
     rows = [
         (
             Cell(name, Mark.STRONG),
             number(1e6 * float(swing[index])),
             number(1e6 * float(limit[index])),
-            Cell(
-                percent(float(swing[index] / limit[index])),
-                _limit_mark(float(swing[index] / limit[index])),
-                bar=float(swing[index] / limit[index]),
-            ),
+            _used(float(swing[index] / limit[index])),
             *(column[index] for column in radii),
         )
         for index, name in enumerate(gauges.gauges)
