@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexstage.base.labelled import Matrix
-from flexstage.base.number import Array
+from flexstage.base.number import Array, first_design
 from flexstage.readings.linear.eigen import Eigen, eigen
 from flexstage.readings.linear.model import LinearModel
 from flexstage.spatial.frame import COMPONENTS
@@ -50,8 +50,8 @@ class Modes:
     @property
     def local(self) -> tuple[int, ...]:
         """Modes that are not the platform's, below 1.5 times its highest one."""
-        highest = _first(self.platform_frequencies, 1)[-1]
-        frequencies = _first(self.frequencies, 1)
+        highest = first_design(self.platform_frequencies, 1)[-1]
+        frequencies = first_design(self.frequencies, 1)
         return tuple(
             index for index in range(len(self.names)) if index not in self.platform and frequencies[index] < _LOCAL_WINDOW * highest
         )
@@ -68,8 +68,8 @@ def modes(model: LinearModel, *, limit: float = 1000.0, count: int = 6, cluster:
     frequencies = np.sqrt(solved.values) / (2.0 * np.pi)
     bodies, energies, components = _energies(model, solved)
     share = energies[..., bodies.index(_PLATFORM), :] if _PLATFORM in bodies else np.zeros_like(frequencies)
-    chosen, margin = _chosen(_first(share, 1), _first(frequencies, 1), limit, count, cluster)
-    names, in_plane = _named(bodies, _first(energies, 2), components)
+    chosen, margin = _chosen(first_design(share, 1), first_design(frequencies, 1), limit, count, cluster)
+    names, in_plane = _named(bodies, first_design(energies, 2), components)
     return Modes(
         frequencies=frequencies,
         shapes=solved.shapes,
@@ -85,10 +85,6 @@ def modes(model: LinearModel, *, limit: float = 1000.0, count: int = 6, cluster:
         coordinates=model.coordinates,
         provenance=model.provenance,
     )
-
-
-def _first(values: Array, axes: int) -> Array:
-    return values.reshape(-1, *values.shape[values.ndim - axes :])[0]
 
 
 def clusters(values: Array, gap: float) -> list[list[int]]:
@@ -110,11 +106,11 @@ def _aligned(platform: Array, solved: Eigen, gap: float) -> Eigen:
     """Turn the basis of repeated modes so that their platform shapes separate along the axes (first design's clusters)."""
     shapes = np.array(solved.shapes)
     weighted = (platform @ shapes) * np.array([1.0, 1.0, 1.0, 0.1, 0.1, 0.1])[:, None]
-    for group in clusters(_first(solved.values, 1), 2.0 * gap):
+    for group in clusters(first_design(solved.values, 1), 2.0 * gap):
         if len(group) == 1:
             continue
         seen = weighted[..., group]
-        leading = np.sort(np.argsort(-np.round(np.sum(_first(seen, 2) ** 2, axis=1), 9), kind="stable")[: len(group)])
+        leading = np.sort(np.argsort(-np.round(np.sum(first_design(seen, 2) ** 2, axis=1), 9), kind="stable")[: len(group)])
         turn, _ = np.linalg.qr(np.swapaxes(seen[..., leading, :], -1, -2))
         sign = np.sign(np.sum((seen @ turn)[..., leading, :] * np.eye(len(group)), axis=-2, keepdims=True))
         shapes[..., group] = shapes[..., group] @ turn * np.where(sign == 0.0, 1.0, sign)
@@ -128,7 +124,7 @@ def _energies(model: LinearModel, solved: Eigen) -> tuple[tuple[str, ...], Array
         seen = item.operator @ solved.shapes
         products = seen * (item.law @ seen)
         rows.append(np.sum(products, axis=-2))
-        first = _first(products, 2)
+        first = first_design(products, 2)
         components.append(first.reshape(-1, 6, first.shape[-1]).sum(axis=0))
     values = np.stack(np.broadcast_arrays(*rows), axis=-2)
     return tuple(model.inertia), values / np.sum(values, axis=-2, keepdims=True), np.stack(components)

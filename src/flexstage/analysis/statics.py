@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexstage.base.labelled import Matrix, ratio_units
-from flexstage.base.number import Array, Number
+from flexstage.base.number import Array, first_design, Number
 from flexstage.readings.linear.model import LinearModel
 from flexstage.readings.linear.static import displacement
 from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS, WRENCH_UNITS
@@ -76,7 +76,7 @@ def statics(model: LinearModel, *, load_point: str = "platform", read_point: str
 
 def _inverse(compliance: Array) -> Array:
     """The stiffness, NaN where a compliance of lower rank has none."""
-    first = np.real(compliance.reshape(-1, *compliance.shape[-2:])[0])
+    first = np.real(first_design(compliance, 2))
     diagonal = np.diag(first)
     scale = np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0))
     if np.linalg.matrix_rank(first / scale / scale[:, None], tol=_SINGULAR) < len(first):

@@ -5,8 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-
 from flexstage.base.number import Array
 
 
@@ -22,6 +20,7 @@ class Matrix:
     def at(self, row: str, column: str) -> Any:
         """The entry of that row and column name (an array over the batch axes).
 
+        >>> import numpy as np
         >>> Matrix(np.array([[2.0]]), ("a",), ("b",), "m").at("a", "b").item()
         2.0
         """
@@ -39,6 +38,7 @@ class Matrix:
     def to_json(self) -> dict[str, Any]:
         """The matrix as {rows, columns, unit, values}.
 
+        >>> import numpy as np
         >>> Matrix(np.array([[2.0]]), ("a",), ("b",), "m").to_json()
         {'rows': ['a'], 'columns': ['b'], 'unit': 'm', 'values': [[2.0]]}
         """

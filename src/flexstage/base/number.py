@@ -92,3 +92,12 @@ def stack(values: Any) -> Array:
 
 def _depth(values: Any) -> int:
     return 1 + _depth(values[0]) if isinstance(values, (list, tuple)) else 0
+
+
+def first_design(values: Array, axes: int) -> Array:
+    """The first design of a batch: the last `axes` axes at index 0 of all leading ones.
+
+    >>> first_design(np.array([[1.0, 2.0], [3.0, 4.0]]), 1).tolist()
+    [1.0, 2.0]
+    """
+    return values[(0,) * (values.ndim - axes)]

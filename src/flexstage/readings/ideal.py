@@ -13,7 +13,7 @@ import numpy as np
 
 from flexstage.base.digest import digest
 from flexstage.base.finding import Finding, require
-from flexstage.base.number import Array
+from flexstage.base.number import Array, first_design
 from flexstage.mechanism.expand import Assembly, PlacedLink, expand
 from flexstage.mechanism.incidence import Layout, deformation, layout, twist_at
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
@@ -55,7 +55,7 @@ def ideal(mechanism: Mechanism) -> Kinematics:
     columns = [solution.independent.index(index) for index in freedoms]
     rest = [index for index in range(len(solution.independent)) if index not in columns]
     size = graph.order.size
-    idle = np.real(solution.basis.reshape(-1, *solution.basis.shape[-2:])[0])[:, rest]
+    idle = np.real(first_design(solution.basis, 2))[:, rest]
     _require_paths(graph, idle[size:])
     motion = _without_idle(graph, solution, columns, rest)
     bodies, strokes = motion[..., :size, :], motion[..., size:, :]
@@ -168,7 +168,7 @@ def _gauge_row(graph: _Graph, name: str, bodies: Array, motion: Array) -> Array:
 def _idle(graph: _Graph, motions: Array) -> tuple[Idle, ...]:
     scale = graph.scale[: graph.order.size, None]
     vectors = echelon((motions / scale).T).T * scale
-    strains = np.real(graph.strain.reshape(-1, *graph.strain.shape[-2:])[0]) @ vectors
+    strains = np.real(first_design(graph.strain, 2)) @ vectors
     threshold = _NEGLIGIBLE * np.max(np.abs(vectors), axis=0, initial=0.0)
     moving, deforming = (np.max(np.abs(_by_link(parts)), axis=1) > threshold for parts in (vectors, strains))
     return tuple(
@@ -179,7 +179,7 @@ def _idle(graph: _Graph, motions: Array) -> tuple[Idle, ...]:
 
 def _redundant(graph: _Graph) -> tuple[Redundant, ...]:
     """Self-stress states of the locked freedoms: left null vectors of the constraints."""
-    first = np.real(graph.constraints.reshape(-1, *graph.constraints.shape[-2:])[0]) * graph.scale
+    first = np.real(first_design(graph.constraints, 2)) * graph.scale
     norms = np.linalg.norm(first, axis=1)
     first = first / np.where(norms > 0.0, norms, 1.0)[:, None]
     states = echelon(null_space(first.T).T)

@@ -14,7 +14,7 @@ import numpy as np
 
 from flexstage.base.digest import digest
 from flexstage.base.finding import refuse
-from flexstage.base.number import Array, Number
+from flexstage.base.number import Array, Number, first_design
 from flexstage.beams.compliance import law
 from flexstage.beams.mass import mass
 from flexstage.mechanism.expand import Assembly, PlacedLink, expand
@@ -145,9 +145,9 @@ def _spread(arrays: tuple[Array, ...]) -> list[Array]:
 
 def _loose(stage: _Stage, basis: Array | None) -> Array:
     """Null space (n, k) of the first design's stiffness in the independent coordinates."""
-    first = None if basis is None else np.real(_first(basis))
+    first = None if basis is None else np.real(first_design(basis, 2))
     strains = {
-        name: Contribution(_without_rounding(np.real(_first(item.operator)), first), np.real(_first(item.law)))
+        name: Contribution(_without_rounding(np.real(first_design(item.operator, 2)), first), np.real(first_design(item.law, 2)))
         for name, item in stage.strains.items()
     }
     stiffness = assembled(strains, stage.order.size if first is None else first.shape[1])
@@ -290,9 +290,6 @@ def _rigid_output(stage: _Stage, channels: tuple[Channel, ...], output: Array) -
     absolute = np.array([channel.name.rpartition(".")[2] in COMPONENTS for channel in channels])
     return np.where(absolute[:, None], output @ stage.rigid, 0.0)
 
-
-def _first(matrix: Array) -> Array:
-    return matrix.reshape(-1, *matrix.shape[-2:])[0]
 
 
 def _transposed(matrix: Array) -> Array:

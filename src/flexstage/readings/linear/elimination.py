@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import qr
 
-from flexstage.base.number import Array
+from flexstage.base.number import Array, first_design
 
 _RANK = 1e-9
 _PREFERENCE = 1e-6
@@ -41,7 +41,7 @@ def eliminate(constraints: Array, scale: Array, keep: tuple[int, ...] = ()) -> E
     >>> eliminate(np.array([[1.0, 2.0]]), np.ones(2), keep=(0,)).basis.ravel().tolist()
     [1.0, -0.5]
     """
-    first = np.real(constraints.reshape(-1, *constraints.shape[-2:])[0]) * scale
+    first = np.real(first_design(constraints, 2)) * scale
     norms = np.linalg.norm(first, axis=1)
     first = first / np.where(norms > 0.0, norms, 1.0)[:, None]
     dependent = _pivot_columns(first, keep)
