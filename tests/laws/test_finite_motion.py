@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from flexstage.cases.double_triangle import SM_REF_A, SM_REF_B, double_triangle
@@ -95,6 +95,7 @@ def test_moving_the_stage_only_turns_the_motion(mechanism, move, seed):
     np.testing.assert_allclose(there.pose.rotation_vector, turn @ here.pose.rotation_vector, rtol=0.0, atol=1e-11)
 
 
+@settings(max_examples=30)
 @given(actuated_platforms(), seeds)
 def test_a_batch_of_strokes_is_the_loop(mechanism, seed):
     kinematics = ideal(mechanism)

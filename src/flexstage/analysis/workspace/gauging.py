@@ -15,8 +15,9 @@ from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
 from flexstage.readings.linear.kinematics import Kinematics
 from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
 
-_HALVINGS = 60
-_FAR = 1e3
+_ANGLES = 720
+_LEVEL = 1e-9
+"""Swing per metre of radius over swing on the axis, below which a gauge counts as not feeling its radius."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -174,39 +175,34 @@ def _places(assembly: Assembly, name: str, box: Array, limit: Array) -> tuple[Ar
     if {placed.body, placed.base} != {PLATFORM, GROUND}:
         return radius, np.full_like(radius, np.nan), np.full_like(radius, np.nan)
     outward = np.where(radius[..., None] > 0.0, arm[..., :2] / np.where(radius > 0.0, radius, 1.0)[..., None], np.array([1.0, 0.0]))
-    direction = placed.frame.rotation[..., :, 0]
-    angles = np.linspace(0.0, 2.0 * np.pi, 720, endpoint=False)
-    return (
-        radius,
-        _largest_radius(box, (direction, outward, arm[..., 2]), limit, np.zeros(1)),
-        _largest_radius(box, (direction, outward, arm[..., 2]), limit, angles),
-    )
+    gauge = (placed.frame.rotation[..., :, 0], outward, arm[..., 2])
+    angles = np.linspace(0.0, 2.0 * np.pi, _ANGLES, endpoint=False)
+    largest = _largest_radius(box, gauge, limit, angles)
+    return radius, largest[..., 0], np.min(largest, axis=-1)
 
 
 def _largest_radius(box: Array, gauge: tuple[Array, Array, Array], limit: Array, angles: Array) -> Array:
-    """Bisect for the largest radius at which the swing stays within the limit, the gauge carried around the axis by each angle."""
+    """Largest radius (..., angles) at which the swing sum_j |A_j + r B_j| stays within the limit, the gauge carried around the axis.
 
-    def excess(radius: Array) -> Array:
-        return np.max(_swing(box, gauge, radius, angles), axis=-1) - limit * (1.0 + 1e-12)
-
-    shape = excess(np.zeros(())).shape
-    low, high = np.zeros(shape), np.full(shape, _FAR)
-    for _ in range(_HALVINGS):
-        middle = 0.5 * (low + high)
-        inside = excess(middle) <= 0.0
-        low, high = np.where(inside, middle, low), np.where(inside, high, middle)
-    return np.where(excess(np.zeros(shape)) > 0.0, np.nan, np.where(low > 0.999 * _FAR, np.inf, low))
-
-
-def _swing(box: Array, gauge: tuple[Array, Array, Array], radius: Array, angles: Array) -> Array:
-    """Swing (..., angles) of a gauge moved to a radius and carried around the axis."""
+    Convex and piecewise linear in r: Newton's steps from above end in as many steps as there are pieces.
+    """
     direction, outward, height = gauge
     turned = _around(direction, angles)
     out = _around(np.concatenate([outward, np.zeros_like(outward[..., :1])], axis=-1), angles)
-    arm = np.asarray(radius)[..., None, None] * out
-    arm[..., 2] = np.asarray(height)[..., None]
-    row = np.concatenate([turned, np.cross(arm, turned)], axis=-1)
-    return np.sum(np.abs(row @ box), axis=-1)
+    up = np.asarray(height)[..., None, None] * np.array([0.0, 0.0, 1.0])
+    fixed = np.concatenate([turned, np.cross(up, turned)], axis=-1) @ box
+    growing = np.concatenate([np.zeros_like(turned), np.cross(out, turned)], axis=-1) @ box
+    start, slope = np.sum(np.abs(fixed), axis=-1), np.sum(np.abs(growing), axis=-1)
+    bound = np.asarray(limit)[..., None] * (1.0 + 1e-12)
+    grows = slope > _LEVEL * start
+    radius = np.where(grows, (bound + start) / np.where(grows, slope, 1.0), 0.0)
+    for _ in range(box.shape[-1] + 2):
+        swing = fixed + radius[..., None] * growing
+        steep = np.sum(np.sign(swing) * growing, axis=-1)
+        excess = np.sum(np.abs(swing), axis=-1) - bound
+        steps = grows & (excess > 0.0) & (steep > 0.0)
+        radius = np.where(steps, radius - excess / np.where(steps, steep, 1.0), radius)
+    return np.where(start > bound, np.nan, np.where(grows, radius, np.inf))
 
 
 def _around(vector: Array, angles: Array) -> Array:

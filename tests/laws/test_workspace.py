@@ -1,0 +1,217 @@
+"""Workspace: strokes end where an actuator does, corners are worst, forces obey reciprocity."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from flexstage.analysis.workspace.blocking import platform_lines, stack_lines
+from flexstage.analysis.workspace.gauging import gauge_inverse, gauge_range, pose_resolution
+from flexstage.analysis.workspace.load import load_share
+from flexstage.analysis.workspace.polytope import reachable
+from flexstage.analysis.workspace.strength import hinge_stress
+from flexstage.analysis.workspace.stroke import StrokeLimits, mapping_at, single_axis, stroke_limits, utilisation
+from flexstage.base.finding import DesignError
+from flexstage.base.labelled import Matrix
+from flexstage.beams.stress import stress
+from flexstage.mechanism.expand import expand
+from flexstage.mechanism.mechanism import Force
+from flexstage.readings.ideal import ideal
+from flexstage.readings.linear.static import static_gain
+from flexstage.readings.lumped import lumped
+from flexstage.spatial.frame import COMPONENTS, FORCES
+from tests.laws.strategies import actuated_platforms, mechanisms, moved, turns
+
+seeds = st.integers(0, 2**32 - 1)
+names = tuple("abcdefgh")
+
+
+@st.composite
+def maps(draw, most=8):
+    """A random full-rank mapping from one to six coordinates to as many strokes or up to two more, and uneven limits."""
+    size = draw(st.integers(1, 6))
+    count = min(most, size + draw(st.integers(0, 2)))
+    random = np.random.default_rng(draw(seeds))
+    mapping = random.normal(size=(count, size)) + np.eye(count, size) * 3.0
+    limits = StrokeLimits(names[:count], -random.uniform(0.5, 1.0, count), random.uniform(0.5, 1.0, count))
+    return Matrix(mapping, names[:count], COMPONENTS[:size], "1"), limits
+
+
+@given(maps())
+def test_single_strokes_end_at_an_actuators_end(drawn):
+    mapping, limits = drawn
+    found = single_axis(mapping, limits)
+    for index, name in enumerate(mapping.columns):
+        for end in (found.low[index], found.high[index]):
+            strokes = mapping.values[:, index] * end
+            used = np.maximum(strokes / limits.high, strokes / limits.low)
+            np.testing.assert_allclose(np.max(used), 1.0, rtol=1e-12)
+        strokes = mapping.values[:, index] * found.high[index]
+        row = mapping.rows.index(found.limiting[index])
+        edge = limits.high[row] if strokes[row] > 0.0 else limits.low[row]
+        np.testing.assert_allclose(strokes[row], edge, rtol=1e-9), name
+
+
+@settings(max_examples=100)
+@given(maps(), seeds)
+def test_polytope_is_what_its_half_spaces_say(drawn, seed):
+    mapping, limits = drawn
+    found = reachable(mapping, limits)
+    strokes = found.vertices @ mapping.values.T
+    slack = np.minimum(limits.high - strokes, strokes - limits.low)
+    assert np.all(slack > -1e-9)
+    assert np.all(np.sum(slack < 1e-9, axis=1) >= len(mapping.columns))
+    assert np.all(found.contains(found.vertices))
+    random = np.random.default_rng(seed)
+    weights = random.dirichlet(np.ones(len(found.vertices)), 20)
+    assert np.all(found.contains(weights @ found.vertices))
+    far = found.vertices * 1.001
+    assert not np.any(found.contains(far))
+    poses = random.uniform(*found.extent.values.T, (50, len(mapping.columns)))
+    inside = [np.all(limits.low <= mapping.values @ pose) and np.all(mapping.values @ pose <= limits.high) for pose in poses]
+    np.testing.assert_array_equal(found.contains(poses), inside)
+
+
+@settings(max_examples=50)
+@given(maps(most=6))
+def test_polytope_volume_and_extent_by_both_methods(drawn):
+    """As many strokes as coordinates: the parallelotope's formula against crossings of faces with one stroke stated twice."""
+    mapping, limits = drawn
+    size = len(mapping.columns)
+    square = Matrix(mapping.values[:size], names[:size], mapping.columns, "1")
+    own = StrokeLimits(names[:size], limits.low[:size], limits.high[:size])
+    twice = Matrix(np.concatenate([square.values, square.values[:1]]), names[: size + 1], mapping.columns, "1")
+    wide = StrokeLimits(names[: size + 1], np.append(own.low, 2.0 * own.low[0]), np.append(own.high, 2.0 * own.high[0]))
+    first, second = reachable(square, own), reachable(twice, wide)
+    np.testing.assert_allclose(second.volume, first.volume, rtol=1e-9)
+    np.testing.assert_allclose(second.extent.values, first.extent.values, rtol=1e-9)
+
+
+@given(maps(), seeds)
+def test_utilisation_is_the_worst_corner(drawn, seed):
+    mapping, limits = drawn
+    half = np.random.default_rng(seed).uniform(0.0, 1.0, len(mapping.columns))
+    found = utilisation(mapping, limits, dict(zip(mapping.columns, half, strict=True)))
+    count = len(half)
+    signs = 2.0 * ((np.arange(2**count)[:, None] >> np.arange(count)) & 1) - 1.0
+    np.testing.assert_allclose(found.demand, np.max(np.abs(signs * half @ mapping.values.T), axis=0), rtol=1e-12)
+    polytope = reachable(mapping, limits)
+    corners = signs * half * found.scale
+    mirrored = replace_limits(limits)
+    assert np.all(reachable(mapping, mirrored).contains(corners * (1.0 - 1e-12)))
+    assert np.all(polytope.contains(corners * (1.0 - 1e-12)))
+
+
+def replace_limits(limits):
+    least = np.minimum(-limits.low, limits.high)
+    return StrokeLimits(limits.actuators, -least, least)
+
+
+@given(actuated_platforms())
+def test_stack_forces_under_load_are_the_gains_transposed(mechanism):
+    """Maxwell and Betti: the tension a unit wrench puts on a held stack is the motion its unit stroke gives, k e^T G K^-1 = (K^-1 B)^T."""
+    model = lumped(mechanism)
+    found = load_share(mechanism, model)
+    motion = static_gain(model, tuple(f"platform.{name}" for name in COMPONENTS), found.actuators).values
+    np.testing.assert_allclose(-found.share.values, motion.T, rtol=0.0, atol=1e-9 * np.max(np.abs(motion)))
+    stroke = found.stroke.values
+    np.testing.assert_allclose(stroke, stroke.T, rtol=0.0, atol=1e-8 * np.max(np.abs(stroke)))
+
+
+@given(actuated_platforms(), seeds)
+def test_forces_of_the_description_act_as_wrenches_do(mechanism, seed):
+    random = np.random.default_rng(seed)
+    force, at = tuple(random.normal(size=3)), tuple(0.1 * random.normal(size=3))
+    loaded = replace(mechanism, forces={"push": Force("platform", at, force)})
+    found = load_share(loaded, lumped(loaded))
+    push = found.loads.columns.index("push")
+    scale = np.max(np.abs(found.share.values))
+    np.testing.assert_allclose(found.loads.values[:, push], found.under(np.array(force), np.array(at)), rtol=0.0, atol=1e-9 * scale)
+
+
+@settings(max_examples=60)
+@given(actuated_platforms(), seeds)
+def test_no_stroke_inside_the_box_stresses_more_than_its_corners(mechanism, seed):
+    model, limits, assembly = lumped(mechanism), stroke_limits(mechanism), expand(mechanism)
+    found = hinge_stress(replace(mechanism, gravity=(0.0, 0.0, 0.0)), model, limits)
+    strokes = np.random.default_rng(seed).uniform(limits.low, limits.high, (8, len(limits.actuators)))
+    for link, nominal in zip(found.links, found.nominal, strict=True):
+        gain = static_gain(model, tuple(f"{link}.{name}" for name in FORCES), limits.actuators).values
+        inside = stress(assembly.links[link].part, assembly.links[link].material, strokes @ gain.T)
+        assert np.all(inside.nominal <= nominal * (1.0 + 1e-9))
+
+
+@given(actuated_platforms())
+def test_lines_of_force_and_stroke_cross(mechanism):
+    model, kinematics = lumped(mechanism), ideal(mechanism)
+    stacks = stack_lines(mechanism, model)
+    np.testing.assert_allclose(stacks.force, stacks.against * stacks.travel, rtol=1e-6, atol=1e-6 * np.max(stacks.blocking))
+    np.testing.assert_allclose(
+        stacks.force, stacks.stiffness * (stacks.free - stacks.travel), rtol=1e-6, atol=1e-6 * np.max(stacks.blocking)
+    )
+    assert np.all(stacks.against > -1e-6 * stacks.stiffness)
+    lines = platform_lines(kinematics.mapping, model, stroke_limits(mechanism))
+    np.testing.assert_allclose(lines.against(0.0), lines.travel)
+    np.testing.assert_allclose(lines.against(lines.stiffness), 0.5 * lines.travel)
+
+
+@given(actuated_platforms())
+def test_gauge_inverse_returns_the_motion(mechanism):
+    """S R_s V = V wherever the gauges see every motion; else it is refused."""
+    kinematics = ideal(mechanism)
+    try:
+        inverse = gauge_inverse(kinematics).values
+    except DesignError:
+        seen = kinematics.sensing @ kinematics.motion
+        scale = np.array([1.0 / kinematics.length if name.startswith("r") else 1.0 for name in kinematics.coordinates])
+        assert np.linalg.matrix_rank(seen * scale, tol=1e-9) < kinematics.mobility
+        return
+    back = inverse @ kinematics.sensing @ kinematics.motion
+    scale = np.max(np.abs(kinematics.motion)) * np.linalg.cond(inverse)
+    np.testing.assert_allclose(back, kinematics.motion, rtol=0.0, atol=1e-10 * scale)
+    found = pose_resolution(mechanism, kinematics)
+    assert np.all(found.rms <= found.worst * (1.0 + 1e-12))
+
+
+@settings(max_examples=60)
+@given(actuated_platforms(), seeds)
+def test_gauge_swing_is_the_worst_corner_and_the_radius_its_limit(mechanism, seed):
+    kinematics = ideal(mechanism)
+    command = dict(zip(kinematics.coordinates, np.random.default_rng(seed).uniform(1e-6, 1e-4, kinematics.mobility), strict=True))
+    found = gauge_range(mechanism, kinematics, command)
+    count = len(command)
+    signs = 2.0 * ((np.arange(2**count)[:, None] >> np.arange(count)) & 1) - 1.0
+    readings = (signs * np.array(list(command.values()))) @ (kinematics.sensing @ kinematics.motion).T
+    np.testing.assert_allclose(found.swing, np.max(np.abs(readings), axis=0), rtol=1e-9, atol=1e-18)
+    for swing, limit, radius, here in zip(found.swing, found.limit, found.radius, found.largest_here, strict=True):
+        if np.isfinite(here):
+            assert (radius <= here * (1.0 + 1e-9)) == (swing <= limit * (1.0 + 1e-9)) or here == 0.0
+        elif np.isinf(here):
+            assert swing <= limit * (1.0 + 1e-9)
+    worst, here = (np.nan_to_num(radii, nan=-1.0) for radii in (found.largest_anywhere, found.largest_here))
+    assert np.all(worst <= here + 1e-9 * np.abs(here))
+
+
+@given(actuated_platforms(), turns())
+def test_strokes_along_z_do_not_depend_on_where_the_stage_stands(mechanism, move):
+    """A stage shifted only: the same strokes per motion of the platform's reference, and of any point."""
+    _, shift = move
+    kinematics = ideal(mechanism)
+    there = moved(mechanism, np.eye(3), shift)
+    first = mapping_at(mechanism, kinematics)
+    second = mapping_at(there, ideal(there))
+    assert first.columns == second.columns
+    np.testing.assert_allclose(second.values, first.values, rtol=0.0, atol=1e-9 * np.max(np.abs(first.values)))
+
+
+@settings(max_examples=60)
+@given(mechanisms())
+def test_weight_is_carried(mechanism):
+    """Gravity turned round turns all dead loads round; twice the weight doubles them."""
+    model = lumped(mechanism)
+    found = load_share(mechanism, model).compression
+    upside = load_share(replace(mechanism, gravity=tuple(-2.0 * part for part in mechanism.gravity)), model).compression
+    np.testing.assert_allclose(upside, -2.0 * found, rtol=1e-9, atol=1e-9 * np.max(np.abs(found)))
