@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, fields
+from typing import TypeAlias
 
 import numpy as np
 
@@ -19,6 +20,7 @@ from flexstage.parts.material import Material
 from flexstage.parts.part import Part, is_actuator, material_of
 from flexstage.spatial.frame import Frame, axes, identity, turn_z
 
+_Copy: TypeAlias = tuple[str, str, Frame]
 _LINK_FIELDS = frozenset(field.name for field in fields(Link))
 
 
@@ -112,12 +114,13 @@ def expand(mechanism: Mechanism) -> Assembly:
 
     The description must have passed its checks. Without platform reference the platform's twist is given at its own centre of mass.
     """
-    links = {link.name: link for link in _links(mechanism)}
-    bodies = {name: _placed_body(name, drawn, frame, links) for name, drawn, frame in _bodies(mechanism)}
+    placed = tuple(copies(mechanism))
+    links = {link.name: link for link in _links(mechanism, placed)}
+    bodies = {name: _placed_body(name, drawn, frame, links) for name, drawn, frame in _bodies(mechanism, placed)}
     points = {
-        (point if name == "platform" else f"{name}.{point}"): (name, placed.frame.point(stack(at)))
-        for name, placed in bodies.items()
-        for point, at in placed.body.points.items()
+        (point if name == "platform" else f"{name}.{point}"): (name, body.frame.point(stack(at)))
+        for name, body in bodies.items()
+        for point, at in body.body.points.items()
     }
     return Assembly(bodies, links, dict(_gauges(mechanism)), _actuators(links), points)
 
@@ -148,11 +151,11 @@ class _DrawnLink:
     frame: Frame
 
 
-def _bodies(mechanism: Mechanism) -> Iterator[tuple[str, _DrawnBody, Frame]]:
+def _bodies(mechanism: Mechanism, placed: tuple[_Copy, ...]) -> Iterator[tuple[str, _DrawnBody, Frame]]:
     for name, drawn in _drawn_bodies(mechanism, mechanism.bodies).items():
         yield name, drawn, identity()
     units = {name: _drawn_bodies(mechanism, unit.bodies) for name, unit in mechanism.units.items()}
-    for copy, unit, frame in copies(mechanism):
+    for copy, unit, frame in placed:
         for name, drawn in units[unit].items():
             yield f"{copy}/{name}", drawn, frame
 
@@ -161,11 +164,11 @@ def _drawn_bodies(mechanism: Mechanism, bodies: Mapping[str, Body]) -> dict[str,
     return {name: _DrawnBody(body, mass_properties(body, mechanism.materials)) for name, body in bodies.items()}
 
 
-def _links(mechanism: Mechanism) -> Iterator[PlacedLink]:
+def _links(mechanism: Mechanism, placed: tuple[_Copy, ...]) -> Iterator[PlacedLink]:
     for name, drawn in _drawn_links("links.", mechanism.links).items():
         yield _placed_link(mechanism, drawn, identity(), (name, drawn.link.joins))
     units = {name: _drawn_links(f"{name}/", unit.links) for name, unit in mechanism.units.items()}
-    for copy, unit, frame in copies(mechanism):
+    for copy, unit, frame in placed:
         own = mechanism.units[unit].bodies
         for name, drawn in units[unit].items():
             first, second = (f"{copy}/{body}" if body in own else body for body in drawn.link.joins)

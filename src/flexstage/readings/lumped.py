@@ -140,7 +140,7 @@ def _same(arrays: tuple[Array, ...]) -> bool:
 
 def _spread(arrays: tuple[Array, ...]) -> list[Array]:
     batch = np.broadcast_shapes(*(array.shape[:-2] for array in arrays))
-    return [np.broadcast_to(array, (*batch, *array.shape[-2:])) for array in arrays]
+    return [np.broadcast_to(array, (*batch, *array.shape[-2:])) for array in arrays] if batch else list(arrays)
 
 
 def _loose(stage: _Stage, basis: Array | None) -> Array:
@@ -289,7 +289,6 @@ def _rigid_output(stage: _Stage, channels: tuple[Channel, ...], output: Array) -
     """Outputs when everything moves with the ground: absolute twists do, gauges and links do not feel it."""
     absolute = np.array([channel.name.rpartition(".")[2] in COMPONENTS for channel in channels])
     return np.where(absolute[:, None], output @ stage.rigid, 0.0)
-
 
 
 def _transposed(matrix: Array) -> Array:
