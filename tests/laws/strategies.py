@@ -1,11 +1,12 @@
 """Random stages for laws: parts, elastic graphs with closed loops, and platforms on struts and wires of any mobility.
 
-Everything drawn is valid by construction (`check` finds nothing), so that no example is thrown away, and moderately conditioned, so that laws
-can be tested tightly.
+Everything drawn is valid by construction (`check` finds nothing), so that no example is thrown away, and moderately conditioned, so that
+laws can be tested tightly.
 """
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import replace
 
 import numpy as np
@@ -133,7 +134,7 @@ def _ears(draw):
         inner = [f"b{count + step + 1}" for step in range(draw(st.integers(0, 2)))]
         count += len(inner)
         chain = [start, *inner, end]
-        pairs += zip(chain[:-1], chain[1:], strict=True)
+        pairs += itertools.pairwise(chain)
         known += inner
     return known[1:], pairs
 
@@ -229,8 +230,8 @@ def lever_units(draw):
 def platforms(draw, wires=None, struts=None):
     """A platform on `wires` rods and `struts` driven units along lines that hold it well; returns (mechanism, lines, ratios).
 
-    Each wire takes one freedom, so the mobility is 6 - wires; with as many struts as that or more the stage is actuated. `lines` are (point,
-    direction) of every strut, `ratios` its stroke per motion of the platform along its line.
+    Each wire takes one freedom, so the mobility is 6 - wires; with as many struts as that or more the stage is actuated. `lines` are
+    (point, direction) of every strut, `ratios` its stroke per motion of the platform along its line.
     """
     wires = draw(st.integers(0, 5)) if wires is None else wires
     struts = draw(st.integers(1, 8)) if struts is None else struts
