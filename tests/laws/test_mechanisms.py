@@ -8,11 +8,13 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
+from flexstage.analysis.response import transmissibility
 from flexstage.base.number import stack
 from flexstage.beams.compliance import law
+from flexstage.beams.mass import mass
 from flexstage.mechanism.expand import expand
-from flexstage.mechanism.incidence import deformation, layout
-from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
+from flexstage.mechanism.incidence import deformation, layout, twist_at
+from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism, ModalDamping
 from flexstage.mechanism.path import replaced
 from flexstage.parts.body import Body
 from flexstage.parts.freedom import Freedom, others
@@ -25,7 +27,7 @@ from flexstage.readings.linear.model import Contribution, assembled
 from flexstage.readings.linear.port import WRENCH_COMPONENTS, ports
 from flexstage.readings.linear.static import displacement, part_deformation, static_gain
 from flexstage.readings.lumped import lumped
-from flexstage.spatial.frame import COMPONENTS, transport, turned
+from flexstage.spatial.frame import COMPONENTS, rigid_inertia, transport, turned
 from tests.laws.strategies import actuated_platforms, mechanisms, moved, platforms, rosettes, turns
 
 TWIST = tuple(f"{PLATFORM}.{name}" for name in COMPONENTS)
@@ -92,6 +94,33 @@ def test_rigid_motion_strains_nothing(mechanism):
     model = lumped(mechanism)
     feels = [index for index, channel in enumerate(model.outputs) if channel.name in mechanism.gauges or channel.unit[0] == "N"]
     assert not model.rigid_output[feels].any()
+
+
+@given(mechanisms(), st.floats(0.05, 3.0))
+def test_transmissibility_is_that_of_a_moved_floor(mechanism, ratio):
+    """With the floor's motion prescribed: (K_qq - w^2 M_qq) q = -(K_qf - w^2 M_qf) x_f, all inertia of links included."""
+    stage = expand(floating(mechanism))
+    order = layout(stage)
+    parts, masses = {}, {}
+    for name, link in stage.links.items():
+        parts[name] = Contribution(deformation(stage, order, link), law(link.part, link.material).stiffness)
+        ends = np.concatenate([twist_at(stage, order, body, link.frame) for body in link.joins])
+        masses[name] = Contribution(ends, mass(link.part, link.material))
+    for name, placed in stage.bodies.items():
+        if placed.mass is not None:
+            inertia = rigid_inertia(placed.mass.mass, placed.mass.inertia, placed.mass.centre, placed.reference)
+            masses[f"body {name}"] = Contribution(np.eye(order.size)[order.columns(name)], inertia)
+    model = lumped(mechanism)
+    frequency = ratio * np.sqrt(eigen(model).values[0]) / (2.0 * np.pi)
+    dynamic = assembled(parts, order.size) - (2.0 * np.pi * frequency) ** 2 * assembled(masses, order.size)
+    floor = range(*order.columns("floor").indices(order.size))
+    free = [index for index in range(order.size) if index not in floor]
+    moved_ = -np.linalg.solve(dynamic[np.ix_(free, free)], dynamic[np.ix_(free, floor)])
+    carry = transport(stage.bodies["floor"].reference - stage.bodies[PLATFORM].reference)
+    expected = moved_[:6] @ carry * METRE[:, None] / METRE
+    found = transmissibility(model, frequencies=np.array([frequency]), damping=ModalDamping(0.0)).values[0] * METRE[:, None] / METRE
+    amplified = np.abs(expected).max()
+    assert np.abs(found - expected).max() < rounding(model) * (1.0 + amplified) * max(1.0, amplified)
 
 
 @given(mechanisms(), turns())
