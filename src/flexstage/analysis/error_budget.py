@@ -109,8 +109,8 @@ def command_columns(kinematics: Kinematics, command: Mapping[str, Number]) -> li
     return [known.index(name) for name in command]
 
 
-def command_strokes(kinematics: Kinematics, command: Mapping[str, Number]) -> Array:
-    """Strokes (2^c, ..., n) [m] at the corners of a box of commands over c coordinates, a = R_a xi.
+def command_strokes(kinematics: Kinematics, command: Mapping[str, Number], *, depth: int = 0) -> Array:
+    """Strokes (2^c, ..., n) [m] at the corners of a box of commands over c coordinates, a = R_a xi; `depth` least batch axes between.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.readings.ideal import ideal
@@ -121,7 +121,7 @@ def command_strokes(kinematics: Kinematics, command: Mapping[str, Number]) -> Ar
     half = stack([command[name] for name in command]) if command else np.zeros(0)
     signs = 2.0 * ((np.arange(2 ** len(columns))[:, None] >> np.arange(len(columns))) & 1) - 1.0
     mapping = kinematics.mapping.values[..., columns]
-    lead = (len(signs), *(1,) * (max(mapping.ndim - 2, half.ndim - 1)), len(columns))
+    lead = (len(signs), *(1,) * max(depth, mapping.ndim - 2, half.ndim - 1), len(columns))
     return (mapping @ (signs.reshape(lead) * half)[..., None])[..., 0]
 
 

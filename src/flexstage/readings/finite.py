@@ -90,6 +90,10 @@ class _Links:
     length: float
 
     @property
+    def shape(self) -> tuple[int, ...]:
+        return np.broadcast_shapes(self.first_arm.shape[:-2], self.second_arm.shape[:-2], self.axes.shape[:-3], self.spans.shape[:-1])
+
+    @property
     def row_weights(self) -> Array:
         weights = np.tile(_weights(self.length), len(self.first))[self.locked]
         return np.concatenate([weights, _weights(self.length)[list(self.posed)]])
@@ -149,6 +153,17 @@ def inverse(mechanism: Mechanism, kinematics: Kinematics, pose: FinitePose) -> F
     wanted = pose.vector[..., [COMPONENTS.index(name) for name in kinematics.coordinates]]
     strokes = np.zeros((*wanted.shape[:-1], len(kinematics.actuators)))
     return _solved(mechanism, kinematics, strokes, wanted)
+
+
+def design_shape(mechanism: Mechanism, kinematics: Kinematics) -> tuple[int, ...]:
+    """Batch shape of the designs as finite motion sees them: leading axes of strokes and poses broadcast against it.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.readings.ideal import ideal
+    >>> design_shape(double_triangle(), ideal(double_triangle()))
+    ()
+    """
+    return _links(mechanism, kinematics, posed=False).shape
 
 
 def _solved(mechanism: Mechanism, kinematics: Kinematics, strokes: Array, wanted: Array | None) -> FiniteMotion:
@@ -239,7 +254,7 @@ def _together(arrays: list[Array], depth: int) -> Array:
 
 
 def _drawn(links: _Links, strokes: Array, wanted: Array | None) -> _State:
-    lead = np.broadcast_shapes(strokes.shape[:-1], links.first_arm.shape[:-2], links.axes.shape[:-3])
+    lead = np.broadcast_shapes(strokes.shape[:-1], links.shape)
     kind = np.result_type(strokes, float if wanted is None else wanted, links.first_arm, links.axes)
     count = len(links.bodies) + 1
     return _State(

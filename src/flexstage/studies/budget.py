@@ -14,6 +14,7 @@ from flexstage.base.number import Number
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.expansion import ground_material
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
+from flexstage.readings.finite import design_shape
 from flexstage.readings.ideal import ideal
 from flexstage.readings.lumped import lumped
 
@@ -44,10 +45,11 @@ def budget(
         raise refuse(at, f"is a point of {body}", "An error budget is that of a point of the platform")
     kinematics, model = ideal(mechanism), lumped(mechanism)
     warmed = drift(mechanism, model, ground=ground_material(mechanism)) if drifted is None else drifted
+    corners = command_strokes(kinematics, command, depth=len(design_shape(mechanism, kinematics)))
     evidence = Evidence(
         kinematics=kinematics,
         lost_motion=lost_motion(kinematics, model),
-        map_error=map_error_at(mechanism, kinematics, command_strokes(kinematics, command)),
+        map_error=map_error_at(mechanism, kinematics, corners),
         resolution=pose_resolution(mechanism, kinematics),
         drift=warmed.of(at),
         arm=point - assembly.bodies[PLATFORM].reference,

@@ -7,12 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexstage.analysis.workspace.polytope import reachable
-from flexstage.analysis.workspace.stroke import StrokeLimits
+from flexstage.analysis.workspace.stroke import StrokeLimits, beside
 from flexstage.base.finding import refuse
 from flexstage.base.labelled import Matrix
 from flexstage.base.number import Array
 from flexstage.mechanism.mechanism import Mechanism
-from flexstage.readings.finite import forward
+from flexstage.readings.finite import design_shape, forward
 from flexstage.readings.linear.kinematics import Kinematics
 from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
 
@@ -55,16 +55,17 @@ def linear_map_error(mechanism: Mechanism, kinematics: Kinematics, limits: Strok
     >>> error.strokes.shape, bool(error.worst[5] < 4e-6)
     ((80, 6), True)
     """
+    depth = len(design_shape(mechanism, kinematics))
     if len(kinematics.actuators) > kinematics.mobility:
         vertices = np.moveaxis(reachable(kinematics.mapping, limits).vertices, -2, 0)
-        corners = (kinematics.mapping.values @ np.nan_to_num(vertices)[..., None])[..., 0]
+        corners = (kinematics.mapping.values @ np.nan_to_num(beside(vertices, depth))[..., None])[..., 0]
         return map_error_at(mechanism, kinematics, np.concatenate([corners, 0.5 * corners]))
-    points = np.concatenate([np.moveaxis(limits.corners, -2, 0), _faces(limits), _interior(limits, inside)])
-    return map_error_at(mechanism, kinematics, points)
+    points = np.concatenate([limits.points(0), _faces(limits), _interior(limits, inside)])
+    return map_error_at(mechanism, kinematics, beside(points, depth))
 
 
 def map_error_at(mechanism: Mechanism, kinematics: Kinematics, strokes: Array) -> MapError:
-    """Error of x = J a at given strokes (k, ..., n) [m].
+    """Error of x = J a at given strokes (k, ..., n) [m], batch axes between.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.readings.ideal import ideal

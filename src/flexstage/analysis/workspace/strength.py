@@ -81,7 +81,8 @@ def hinge_stress(mechanism: Mechanism, model: LinearModel, limits: StrokeLimits)
     assembly = expand(mechanism)
     sized = {name: link for name, link in assembly.links.items() if _has_section(link)}
     wrenches = corner_wrenches(mechanism, model, limits, tuple(sized))
-    rows = [_worst(link, wrenches[..., index, :], np.moveaxis(limits.corners, -2, 0)) for index, link in enumerate(sized.values())]
+    points = limits.points(wrenches.ndim - 3)
+    rows = [_worst(link, wrenches[..., index, :], points) for index, link in enumerate(sized.values())]
     nominal, peak, known = (np.stack(np.broadcast_arrays(*(row[item] for row in rows)), axis=-1) for item in range(3))
     return HingeStress(
         links=tuple(sized),

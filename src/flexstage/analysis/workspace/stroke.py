@@ -46,6 +46,10 @@ class StrokeLimits:
         high = (np.arange(2**count)[:, None] >> np.arange(count)) & 1 == 1
         return np.where(high, self.high[..., None, :], self.low[..., None, :])
 
+    def points(self, depth: int) -> Array:
+        """The corners as points (2^n, ..., n) with at least `depth` batch axes between, to stand beside a batch of designs."""
+        return beside(np.moveaxis(self.corners, -2, 0), depth)
+
 
 @dataclass(frozen=True, eq=False)
 class SingleAxis:
@@ -101,6 +105,16 @@ class Utilisation:
     def scale(self) -> Array:
         """Factor (...) by which the whole box could grow (below 1: must shrink) to use the strokes fully."""
         return 1.0 / np.max(self.ratio, axis=-1)
+
+
+def beside(points: Array, depth: int) -> Array:
+    """Points (k, ..., n) with at least `depth` batch axes between, so that they do not meet the designs' axes.
+
+    >>> beside(np.zeros((64, 6)), 1).shape
+    (64, 1, 6)
+    """
+    missing = max(0, depth - (points.ndim - 2))
+    return points.reshape(points.shape[0], *(1,) * missing, *points.shape[1:])
 
 
 def stacks(mechanism: Mechanism) -> dict[str, Piezo]:

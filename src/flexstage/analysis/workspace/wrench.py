@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from flexstage.analysis.workspace.load import applied
 from flexstage.analysis.workspace.stroke import StrokeLimits
 from flexstage.base.number import Array, stack
@@ -27,8 +25,7 @@ def corner_wrenches(mechanism: Mechanism, model: LinearModel, limits: StrokeLimi
     """
     names = tuple(f"{link}.{force}" for link in links for force in FORCES)
     gain = static_gain(model, names, limits.actuators).values
-    corners = np.moveaxis(limits.corners, -2, 0)
-    total = (gain @ corners[..., None])[..., 0] + dead_wrenches(mechanism, model, names)
+    total = (gain @ limits.points(gain.ndim - 2)[..., None])[..., 0] + dead_wrenches(mechanism, model, names)
     return total.reshape(*total.shape[:-1], len(links), len(FORCES))
 
 

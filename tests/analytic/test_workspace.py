@@ -1,0 +1,234 @@
+"""Workspace results that a hand can check: Euler's column, a guided leaf, a stack against a spring, discs and rectangles in plan."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import flexstage as fs
+from flexstage.analysis.workspace.blocking import platform_lines, stack_lines
+from flexstage.analysis.workspace.buckling import Ends, buckling
+from flexstage.analysis.workspace.drive import drive
+from flexstage.analysis.workspace.load import load_share
+from flexstage.analysis.workspace.map_error import linear_map_error
+from flexstage.analysis.workspace.room import room
+from flexstage.analysis.workspace.strength import hinge_stress
+from flexstage.analysis.workspace.stroke import StrokeLimits, mapping_at, single_axis, stroke_limits
+from flexstage.readings.ideal import ideal
+from flexstage.readings.lumped import lumped
+
+X, Y, Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
+STEEL = fs.Material(young=200e9, poisson=0.3, density=7750.0, yield_stress=1e9)
+STACK = fs.Piezo(
+    stroke=20e-6,
+    stiffness=50e6,
+    length=0.02,
+    diameter=0.01,
+    maximum_load=2000.0,
+    tensile_limit=100.0,
+    preload=200.0,
+    voltage_low=-30.0,
+    voltage_high=150.0,
+    bias=30.0,
+    capacitance=2e-6,
+)
+
+
+def guide(stack=STACK, leaf=None, **fields):
+    """A platform on two upright leaves, pushed along x by a stack with a rod as its coupling."""
+    leaf = leaf or fs.Leaf("steel", 0.05, 0.0005, 0.002)
+    return fs.Mechanism(
+        name="guide",
+        materials={"steel": STEEL},
+        parts={"leaf": leaf, "stack": stack, "rod": fs.Rod("steel", 0.02, 0.001)},
+        bodies={"platform": fs.Body(mass=1.0, centre=(0.0, 0.0, 0.0), points={"tip": (0.0, 0.0, 0.1)}), "tip": fs.Body()},
+        links={
+            "left": fs.Link(("ground", "platform"), "leaf", (-0.03, -0.025, 0.0), Y, bends=Z),
+            "right": fs.Link(("ground", "platform"), "leaf", (0.03, -0.025, 0.0), Y, bends=Z),
+            "pzt": fs.Link(("ground", "tip"), "stack", (-0.08, 0.0, 0.0), X),
+            "rod": fs.Link(("tip", "platform"), "rod", (-0.05, 0.0, 0.0), X),
+        },
+        **{"gravity": (0.0, 0.0, 0.0), **fields},
+    )
+
+
+def test_strokes_count_from_the_bias():
+    """Bias 30 V in -30 to 150 V: a third of the stroke below, two thirds above."""
+    limits = stroke_limits(guide())
+    np.testing.assert_allclose([limits.low[0], limits.high[0]], [-20e-6 / 3.0, 40e-6 / 3.0])
+    np.testing.assert_allclose([limits.from_zero.low[0], limits.from_zero.high[0]], [0.0, 20e-6])
+    found = single_axis(ideal(guide()).mapping, limits)
+    np.testing.assert_allclose(found.symmetric, 20e-6 / 3.0)
+    np.testing.assert_allclose(found.table.at("x", "full"), 20e-6)
+    middle = stroke_limits(guide(replace(STACK, bias=None)))
+    np.testing.assert_allclose([middle.low[0], middle.high[0]], [-10e-6, 10e-6])
+
+
+def test_volts_and_currents():
+    """20 um over 180 V; 2 uF driven by a sine of 5 um at 100 Hz takes 2 pi f C a / (um/V)."""
+    electric = drive(guide())
+    np.testing.assert_allclose(electric.gain, 20e-6 / 180.0)
+    strokes = np.array([5e-6])
+    np.testing.assert_allclose(electric.volts(strokes), 30.0 + 45.0)
+    np.testing.assert_allclose(electric.strokes(electric.volts(strokes)), strokes)
+    np.testing.assert_allclose(electric.sine_current(100.0, strokes), 2.0 * np.pi * 100.0 * 2e-6 * 45.0)
+    assert electric.within(np.array([150.0]))
+    assert not electric.within(np.array([151.0]))
+
+
+def test_volts_need_a_range_and_currents_a_capacitance():
+    with pytest.raises(fs.DesignError, match="pzt: its stack states no voltage range"):
+        drive(guide(replace(STACK, voltage_low=None)))
+    bare = drive(guide(replace(STACK, capacitance=None)))
+    with pytest.raises(fs.DesignError, match="pzt: its stack states no capacitance"):
+        bare.current(np.array([1e-3]))
+
+
+def test_leaf_stress_is_that_of_a_guided_beam():
+    """Guided deflection x: M = 6 E I x / L^2 at the ends, sigma = 3 E t x / L^2 (long thin leaf: shear below 1e-3)."""
+    stage = guide()
+    model = lumped(stage)
+    moved = 20e-6 * float(_gain(model))
+    found = hinge_stress(stage, model, stroke_limits(stage).from_zero)
+    nominal = found.nominal[found.links.index("left")]
+    assert nominal == pytest.approx(3.0 * 200e9 * 0.0005 * moved / 0.05**2, rel=0.015)
+    assert found.strokes[found.links.index("left")] == pytest.approx([20e-6])
+    np.testing.assert_allclose(found.safety, 1e9 / found.peak)
+    assert found.unchecked == ("pzt",)
+
+
+def _gain(model):
+    from flexstage.readings.linear.static import static_gain
+
+    return static_gain(model, ("platform.x",), ("pzt",)).values[0, 0]
+
+
+def test_a_stack_against_a_spring():
+    """Two leaves of 12 E I / L^3 each behind a rod E A / L: travel u k / (k + k_s), force k_s times that."""
+    stage = guide()
+    found = stack_lines(stage, lumped(stage))
+    leaves = 2.0 * 12.0 * 200e9 * 0.002 * 0.0005**3 / 12.0 / 0.05**3
+    rod = 200e9 * np.pi / 4.0 * 0.001**2 / 0.02
+    spring = 1.0 / (1.0 / leaves + 1.0 / rod)
+    assert found.against[0] == pytest.approx(spring, rel=0.01)
+    assert found.travel[0] == pytest.approx(20e-6 * 50e6 / (50e6 + found.against[0]), rel=1e-12)
+    assert found.blocking[0] == pytest.approx(1000.0)
+    line = platform_lines(ideal(stage).mapping, lumped(stage), stroke_limits(stage))
+    series = 1.0 / (1.0 / 50e6 + 1.0 / rod) + leaves
+    assert line.stiffness[0] == pytest.approx(series, rel=0.01)
+
+
+def test_euler_columns():
+    """A rod between two bodies: pi^2 E I / L^2; a stack without a hinge behind it: over its own length; a body on one rod: a quarter."""
+    stage = guide()
+    found = buckling(stage, lumped(stage), stroke_limits(stage).from_zero)
+    rod, stack = found.links.index("rod"), found.links.index("pzt")
+    assert found.critical[rod] == pytest.approx(np.pi**2 * 200e9 * np.pi * 0.001**4 / 64.0 / 0.02**2)
+    assert found.ends[rod] is Ends.GUIDED
+    assert found.ends[stack] is Ends.PINNED
+    assert found.length[stack] == pytest.approx(0.03 + 0.01)
+    rigidity = 50e6 * 0.02 * 0.01**2 / 16.0
+    assert found.critical[stack] == pytest.approx(np.pi**2 * rigidity / 0.04**2)
+    assert found.compression[rod] == pytest.approx(found.compression[stack], rel=1e-9)
+    post = replace(
+        stage, links={"only": fs.Link(("ground", "platform"), "rod", (0.0, 0.0, -0.01), Z)}, bodies={"platform": stage.bodies["platform"]}
+    )
+    alone = buckling(replace(post, gravity=(0.0, 0.0, -9.80665)), lumped(post), StrokeLimits((), np.zeros(0), np.zeros(0)))
+    assert alone.ends == (Ends.FREE,)
+    assert alone.critical[0] == pytest.approx(0.25 * found.critical[rod])
+    assert alone.compression[0] == pytest.approx(9.80665, rel=1e-3)
+
+
+def test_loads_against_limits():
+    """A push of 100 N along x: nearly all in the stack; preload counts towards the maximum load and against lift-off."""
+    stage = guide(forces={"push": fs.Force("platform", (0.0, 0.0, 0.0), (-100.0, 0.0, 0.0))})
+    found = load_share(stage, lumped(stage))
+    assert found.compression[0] == pytest.approx(100.0, rel=0.01)
+    np.testing.assert_allclose(found.usage(np.array([300.0])), 500.0 / 2000.0)
+    np.testing.assert_allclose(found.pull(np.array([-150.0])), 150.0 / 300.0)
+    np.testing.assert_allclose(found.pull(np.array([150.0])), 0.0)
+    room_left = found.capacity(np.array([-1.0, 0.0, 0.0]), np.zeros(3))
+    assert room_left == pytest.approx((2000.0 - 200.0 - found.compression[0]) / (found.compression[0] / 100.0), rel=1e-6)
+    lifting = found.capacity(np.array([1.0, 0.0, 0.0]), np.zeros(3))
+    assert lifting == pytest.approx((300.0 + found.compression[0]) / (found.compression[0] / 100.0), rel=1e-6)
+    loose = load_share(guide(replace(STACK, preload=None, tensile_limit=None)), lumped(guide()))
+    assert np.isinf(loose.pull(np.array([-1.0]))).all()
+
+
+def test_a_point_turns_about_itself():
+    """Tilting about a point 0.1 m above the reference: R_a there is R_a X^-1."""
+    from flexstage.cases.hexapod import hexapod
+
+    stage = hexapod()
+    kinematics = ideal(stage)
+    at = mapping_at(stage, kinematics, "sample")
+    height = stage.bodies["platform"].points["sample"][2] - 0.014
+    own = kinematics.mapping.values
+    np.testing.assert_allclose(at.values[:, :3], own[:, :3], atol=1e-12)
+    np.testing.assert_allclose(at.values[:, 3], own[:, 3] + height * own[:, 1], atol=1e-12)
+    np.testing.assert_allclose(at.values[:, 4], own[:, 4] - height * own[:, 0], atol=1e-12)
+    with pytest.raises(fs.DesignError, match="nearest name is sample"):
+        mapping_at(stage, kinematics, "sampel")
+
+
+def solids(*items, **fields):
+    """A stage of nothing but outlines."""
+    return fs.Mechanism(
+        name="outlines", materials={"steel": STEEL}, bodies={"platform": fs.Body(solids=dict(enumerate_names(items)))}, **fields
+    )
+
+
+def enumerate_names(items):
+    return ((f"s{number}", item) for number, item in enumerate(items))
+
+
+def test_discs_and_boxes_against_the_opening():
+    """A disc whose edge stands 1 mm into a corner's side, one that just touches, a turned box that reaches in by its corner."""
+    half = 0.055
+    disc = fs.Cylinder("steel", 0.02, 0.01, at=(half + 0.009, 0.0, 0.0))
+    clear = fs.Cylinder("steel", 0.02, 0.01, at=(half + 0.01, 0.0, 0.0))
+    corner = fs.Cylinder("steel", 0.02, 0.01, at=(half + 0.0095 * np.sqrt(0.5), half + 0.0095 * np.sqrt(0.5), 0.0))
+    lying = fs.Cylinder("steel", 0.02, 0.1, at=(0.0, half + 0.008, 0.0), along=X)
+    found = room(solids(disc, clear, corner, lying, opening=fs.Opening((0.11, 0.11))))
+    assert [item.name for item in found.intrusions] == ["platform.s0", "platform.s2", "platform.s3"]
+    np.testing.assert_allclose([item.depth for item in found.intrusions], [0.001, 0.0005, 0.002], rtol=1e-9)
+
+
+def test_holes_and_bores_leave_the_opening_clear():
+    """A plate with a hole and a ring with a bore around the opening are clear; one too small is not."""
+    plate = fs.Block("steel", (0.2, 0.2, 0.01), hole=(0.11, 0.11))
+    ring = fs.Cylinder("steel", 0.2, 0.01, bore=0.11 * np.sqrt(2.0) + 1e-6)
+    narrow = fs.Cylinder("steel", 0.2, 0.01, bore=0.15)
+    found = room(solids(plate, ring, narrow, opening=fs.Opening((0.11, 0.11))))
+    assert [item.name for item in found.intrusions] == ["platform.s2"]
+
+
+def test_bounding_box_and_envelope():
+    """A rod along (1, 1, 0) of length 0.1 and diameter 0.02: (0.1 + 0.02) / sqrt 2 along x and y, 0.02 along z."""
+    lying = fs.Cylinder("steel", 0.02, 0.1, along=(1.0, 1.0, 0.0))
+    found = room(solids(lying, envelope=(0.1, 0.08, 0.02)))
+    np.testing.assert_allclose(found.size, [0.12 / np.sqrt(2.0)] * 2 + [0.02], rtol=1e-12)
+    assert [finding.where for finding in found.findings] == ["envelope.y"]
+    assert "84.85 mm" in found.findings[0].what
+    assert "80 mm" in found.findings[0].what
+
+
+def test_a_batch_is_the_loop():
+    """Leaves of two lengths at once (as many as the stroke has corners): every workspace number as for each alone."""
+    length = np.array([0.04, 0.05])
+    together = guide(leaf=fs.Leaf("steel", length, 0.0005, 0.002))
+    model, limits = lumped(together), stroke_limits(together)
+    stress, lines, columns = hinge_stress(together, model, limits), stack_lines(together, model), buckling(together, model, limits)
+    errors = linear_map_error(together, ideal(together), limits)
+    for index, value in enumerate(length):
+        alone = guide(leaf=fs.Leaf("steel", float(value), 0.0005, 0.002))
+        single = lumped(alone)
+        np.testing.assert_allclose(stress.nominal[index], hinge_stress(alone, single, limits).nominal, rtol=1e-9)
+        np.testing.assert_allclose(lines.travel[index], stack_lines(alone, single).travel, rtol=1e-9)
+        np.testing.assert_allclose(errors.worst[index], linear_map_error(alone, ideal(alone), limits).worst, rtol=1e-9, atol=1e-18)
+        np.testing.assert_allclose(columns.critical[index], buckling(alone, single, limits).critical, rtol=1e-9)
+        np.testing.assert_allclose(
+            load_share(together, model).share.values[index], load_share(alone, single).share.values, rtol=1e-6, atol=1e-9
+        )
