@@ -34,7 +34,7 @@ _WITH_UNIT = rf"^(?![0-9.eE+-]*$){_NUMBER}(\s*[A-Za-zµμ°%/(].*|\s+1/.*)$"
 _TAGS: dict[str, Any] = {
     "type": "object",
     "description": "Provenance by field: stated, derived or assumed, then a source and a place in it.",
-    "additionalProperties": {"type": "string", "pattern": "^(stated|derived|assumed)( .+)?$", "examples": ["stated paper 2.2"]},
+    "additionalProperties": {"type": "string", "pattern": r"^(stated|derived|assumed)( |$)", "examples": ["stated paper 2.2"]},
 }
 
 

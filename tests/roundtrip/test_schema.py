@@ -1,0 +1,153 @@
+"""The JSON Schema says of a file what the loader says: shipped cases and random designs fit, mistakes do not."""
+
+from __future__ import annotations
+
+import json
+import re
+import tomllib
+from typing import Any
+
+import pytest
+from hypothesis import given
+
+from flexstage.base import quantity
+from flexstage.base.quantity import Quantity
+from flexstage.base.unit import parse
+from flexstage.cases.registry import CASES
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.mechanism.store import dumps, schema
+from tests.roundtrip.designs import TEXT, mechanisms
+
+SCHEMA = schema()
+KNOWN = {
+    "$ref", "$schema", "$defs", "title", "description", "examples", "type", "const", "enum", "pattern", "properties", "required", "oneOf",
+    "anyOf", "additionalProperties", "items", "prefixItems", "minItems", "maxItems", "minimum", "maximum", "exclusiveMinimum",
+    "exclusiveMaximum",
+}  # fmt: skip
+TYPES = {"object": dict, "array": list, "string": str, "number": (int, float)}
+
+
+class Rules:
+    """The part of JSON Schema 2020-12 that ours uses."""
+
+    def __init__(self, root: dict[str, Any]) -> None:
+        self.root = root
+
+    def fits(self, value: Any, rule: Any) -> bool:
+        if isinstance(rule, bool):
+            return rule
+        assert set(rule) <= KNOWN, set(rule) - KNOWN
+        if "$ref" in rule:
+            return self.fits(value, self.root["$defs"][rule["$ref"].removeprefix("#/$defs/")])
+        if "type" in rule and not isinstance(value, TYPES[rule["type"]]):
+            return False
+        return all(check(value, rule) for check in (self.alternative, self.text, self.number, self.list, self.table))
+
+    def alternative(self, value: Any, rule: dict[str, Any]) -> bool:
+        if "oneOf" in rule and sum(self.fits(value, option) for option in rule["oneOf"]) != 1:
+            return False
+        if "anyOf" in rule and not any(self.fits(value, option) for option in rule["anyOf"]):
+            return False
+        return value == rule.get("const", value) and value in rule.get("enum", [value])
+
+    def text(self, value: Any, rule: dict[str, Any]) -> bool:
+        return not isinstance(value, str) or "pattern" not in rule or re.search(rule["pattern"], value) is not None
+
+    def number(self, value: Any, rule: dict[str, Any]) -> bool:
+        if not isinstance(value, (int, float)):
+            return True
+        low = value >= rule.get("minimum", value) and ("exclusiveMinimum" not in rule or value > rule["exclusiveMinimum"])
+        return low and value <= rule.get("maximum", value) and ("exclusiveMaximum" not in rule or value < rule["exclusiveMaximum"])
+
+    def list(self, value: Any, rule: dict[str, Any]) -> bool:
+        if not isinstance(value, list):
+            return True
+        first = rule.get("prefixItems", [])
+        rest = all(self.fits(item, rule.get("items", True)) for item in value[len(first) :])
+        sized = rule.get("minItems", 0) <= len(value) <= rule.get("maxItems", len(value))
+        return rest and sized and all(self.fits(item, inner) for item, inner in zip(value, first, strict=False))
+
+    def table(self, value: Any, rule: dict[str, Any]) -> bool:
+        if not isinstance(value, dict):
+            return True
+        known, others = rule.get("properties", {}), rule.get("additionalProperties", True)
+        present = all(key in value for key in rule.get("required", []))
+        return present and all(self.fits(item, known.get(key, others)) for key, item in value.items())
+
+
+def fits(text: str, schema: dict[str, Any] = SCHEMA) -> bool:
+    """Whether a design file's text fits the schema."""
+    return Rules(schema).fits(tomllib.loads(text), schema)
+
+
+def test_the_schema_is_json_and_names_its_version() -> None:
+    assert json.loads(json.dumps(SCHEMA)) == SCHEMA
+    assert SCHEMA["$schema"] == "https://json-schema.org/draft/2020-12/schema"
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_shipped_cases_fit(name: str) -> None:
+    assert fits(dumps(CASES[name].build()))
+
+
+@given(mechanisms())
+def test_any_description_fits_but_for_its_bounds(mechanism: Mechanism) -> None:
+    assert fits(dumps(mechanism), UNBOUNDED)
+
+
+def without_bounds(rule: Any) -> Any:
+    """The schema without the bounds of bare numbers, which random designs do not keep."""
+    if isinstance(rule, dict):
+        return {key: without_bounds(item) for key, item in rule.items() if not key.lower().endswith(("minimum", "maximum"))}
+    return [without_bounds(item) for item in rule] if isinstance(rule, list) else rule
+
+
+UNBOUNDED = without_bounds(SCHEMA)
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ('"30 mm"', "30"),
+        ('"30 mm"', '"30"'),
+        ('"30 mm"', '"1e5"'),
+        ('"30 mm"', '"thirty mm"'),
+        ("diameter =", "diametre ="),
+        ('kind = "rod"\n', ""),
+        ('kind = "rod"', 'kind = "rodd"'),
+        ('like = "SUS420"', 'like = "SUS430"'),
+        ('facing = "tangent"', 'facing = "tangential"'),
+        ('along = "z"', 'along = "up"'),
+        ('along = "z"', "along = [0, 0]"),
+        ('["1 mm", "0 mm", "0 mm"]', '["1 mm", "0 mm"]'),
+        ('["ground", "platform"]', '["ground"]'),
+        ('"stated paper 2"', '"published"'),
+        ('format = "flexstage 1"', 'format = "flexstage 9"'),
+        ('name = "wire"', ""),
+        ("polar = { ", "polar = { diameter = 1, "),
+        ('unit = "leg", polar =', 'unit = "leg", polar2 ='),
+    ],
+)
+def test_mistakes_do_not_fit(old: str, new: str) -> None:
+    assert fits(TEXT)
+    assert old in TEXT
+    assert not fits(TEXT.replace(old, new))
+
+
+def test_every_class_is_described_and_every_example_parses() -> None:
+    assert all(definition["description"] for definition in SCHEMA["$defs"].values())
+    kinds = {value.name: value for value in vars(quantity).values() if isinstance(value, Quantity)}
+    found = list(examples(SCHEMA))
+    assert len(found) > 100
+    for name, example in found:
+        assert parse(str(example), kinds[name]) == parse(kinds[name].example, kinds[name])
+
+
+def examples(rule: Any) -> list[tuple[str, Any]]:
+    """Every quantity's name and example in a schema."""
+    if isinstance(rule, list):
+        return [found for item in rule for found in examples(item)]
+    if not isinstance(rule, dict):
+        return []
+    own = [(rule["description"].partition(",")[0], rule["examples"][0])] if "examples" in rule and "description" in rule else []
+    return own + [found for item in rule.values() for found in examples(item)]
