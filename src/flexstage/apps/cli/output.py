@@ -56,7 +56,9 @@ def write(target: str | Path, content: str | bytes, option: str) -> None:
 
     data = content.encode() if isinstance(content, str) else content
     if str(target) == STDOUT:
+        sys.stdout.flush()
         sys.stdout.buffer.write(data)
+        sys.stdout.buffer.flush()
         return
     if not _is_device(Path(target)):
         write_file(target, data)

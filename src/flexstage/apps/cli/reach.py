@@ -114,11 +114,15 @@ def sensitivities(
     """
     mechanism = opened(design, changes, [("--json", json)])
     from flexstage.present.documents.reach import sensitivities_body
-    from flexstage.present.tables.sensitivity import sensitivity_tables
+    from flexstage.present.tables.sensitivities import frequency_sensitivity_table, loss_sensitivity_table
     from flexstage.studies.sensitivities import sensitivities as derived
 
     found = derived(mechanism, tuple(parameters) if parameters else None, modes=count)
-    answer(Asked("sensitivities", mechanism, Reading.LUMPED, json), lambda: sensitivities_body(found), lambda: sensitivity_tables(found))
+    answer(
+        Asked("sensitivities", mechanism, Reading.LUMPED, json),
+        lambda: sensitivities_body(found),
+        lambda: [frequency_sensitivity_table(found), loss_sensitivity_table(found)],
+    )
 
 
 def budget(

@@ -16,6 +16,7 @@ from flexstage.apps.cli.speech import tell, warn
 from flexstage.studies.reading import Reading
 
 if TYPE_CHECKING:
+    from flexstage.mechanism.mechanism import Mechanism
     from flexstage.present.documents.envelope import Document
     from flexstage.present.table import Table
     from flexstage.studies.complete import Analysis
@@ -24,9 +25,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Compared:
-    """The effect of `--set`: the values that were set, and the key figures before and after."""
+    """The effect of `--set`: the description before, the addresses that were set, and the key figures before and after."""
 
-    values: tuple[Change, ...]
+    stated: Mechanism
+    addresses: tuple[str, ...]
     figures: tuple[Change, ...]
 
 
@@ -74,7 +76,7 @@ def _worked_out(
     from flexstage.mechanism.store import load
     from flexstage.studies.cautions import cautions
     from flexstage.studies.complete import analyse as analysed
-    from flexstage.studies.difference import difference, set_values
+    from flexstage.studies.difference import difference
 
     stated = load(design)
     mechanism = changed(stated, changes)
@@ -83,8 +85,8 @@ def _worked_out(
     analysis = analysed(mechanism, reading)
     if not changes:
         return analysis, None
-    addresses = [change.partition("=")[0].strip() for change in changes]
-    return analysis, Compared(set_values(stated, mechanism, addresses), difference(analysed(stated, reading), analysis))
+    addresses = tuple(change.partition("=")[0].strip() for change in changes)
+    return analysis, Compared(stated, addresses, difference(analysed(stated, reading), analysis))
 
 
 def _write_files(analysis: Analysis, report: Path | None, mat: Path | None) -> None:
@@ -101,10 +103,12 @@ def _write_files(analysis: Analysis, report: Path | None, mat: Path | None) -> N
 def _json_text(analysis: Analysis, compared: Compared | None) -> str:
     from flexstage.present.documents.envelope import as_text, enveloped
     from flexstage.present.documents.whole import analysis_body, changes_body
+    from flexstage.studies.difference import set_values
 
     body: Document = analysis_body(analysis)
     if compared is not None:
-        body = {"changes": {"set": changes_body(compared.values), "figures": changes_body(compared.figures)}, **body}
+        values = set_values(compared.stated, analysis.mechanism, compared.addresses)
+        body = {"changes": {"set": changes_body(values), "figures": changes_body(compared.figures)}, **body}
     return as_text(enveloped("analyse", analysis.mechanism, analysis.reading, body)) + "\n"
 
 
@@ -118,11 +122,11 @@ def _show(analysis: Analysis, compared: Compared | None) -> None:
 
 def _tables(analysis: Analysis, compared: Compared | None) -> Iterator[Table | None]:
     from flexstage.apps.cli.grouped import analysis_tables
-    from flexstage.present.tables.change import change_table
+    from flexstage.present.tables.change import change_table, set_table
     from flexstage.present.tables.requirements import verdict_table
 
     yield verdict_table(analysis.verdicts)
     if compared is not None:
-        yield change_table("Values set", compared.values)
+        yield set_table(compared.stated, analysis.mechanism, compared.addresses)
         yield change_table("What the change does", compared.figures)
     yield from analysis_tables(analysis)

@@ -37,6 +37,17 @@ def enveloped(kind: str, mechanism: Mechanism, reading: Reading | None, body: Ma
     }
 
 
+def plain(document: Mapping[str, Any]) -> Document:
+    """The document in plain values: numbers that are not finite are null, with their reasons by path under `reasons`.
+
+    >>> plain({"gain": float("inf")})
+    {'gain': None, 'reasons': {'gain': 'infinite'}}
+    """
+    reasons: dict[str, str] = dict(document.get("reasons") or {})
+    values = _plain({key: value for key, value in document.items() if key != "reasons"}, "", reasons)
+    return {**values, **({"reasons": reasons} if reasons else {})}
+
+
 def as_text(document: Mapping[str, Any]) -> str:
     """The document as JSON text: finite numbers only, every other one null with its reason under `reasons`.
 
@@ -48,11 +59,7 @@ def as_text(document: Mapping[str, Any]) -> str:
      }
     }
     """
-    reasons: dict[str, str] = dict(document.get("reasons") or {})
-    plain = _plain({key: value for key, value in document.items() if key != "reasons"}, "", reasons)
-    if reasons:
-        plain["reasons"] = reasons
-    return json.dumps(plain, indent=1, ensure_ascii=False, allow_nan=False)
+    return json.dumps(plain(document), indent=1, ensure_ascii=False, allow_nan=False)
 
 
 def _plain(value: Any, where: str, reasons: dict[str, str]) -> Any:

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Any
 
-from flexstage.present.documents.envelope import Document
+from flexstage.present.documents.envelope import Document, plain
 from flexstage.present.documents.reach import budget_body, requirements_body, workspace_body
 from flexstage.present.documents.results import drift_body, lost_motion_body, mapping_body, modes_body, response_body, stiffness_body
 from flexstage.studies.complete import Analysis
@@ -25,8 +24,7 @@ def analysis_body(analysis: Analysis) -> Document:
     (True, 'the ideal reading has no elasticity')
     """
     damping = None if analysis.model is None else analysis.model.damping
-    found: dict[str, Any] = {
-        "requirements": requirements_body(analysis.verdicts),
+    found: dict[str, Document | None] = {
         "mapping": mapping_body(analysis.kinematics),
         "stiffness": None if analysis.statics is None else stiffness_body(analysis.statics),
         "lost-motion": None if analysis.lost_motion is None else lost_motion_body(analysis.lost_motion),
@@ -38,7 +36,8 @@ def analysis_body(analysis: Analysis) -> Document:
         "budget": None if analysis.error_budget is None else budget_body(analysis.error_budget),
     }
     reasons = {_KEYS.get(name, name): reason for name, reason in analysis.missing.items()}
-    return {**found, **({"reasons": reasons} if reasons else {})}
+    documents = {name: None if document is None else plain(document) for name, document in found.items()}
+    return {"requirements": requirements_body(analysis.verdicts), **documents, **({"reasons": reasons} if reasons else {})}
 
 
 def changes_body(changes: Iterable[Change]) -> list[Document]:

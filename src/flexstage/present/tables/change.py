@@ -3,7 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from enum import Enum
 
+from flexstage.base.unit import show
+from flexstage.mechanism.address import get, quantity_of
+from flexstage.mechanism.mechanism import Mechanism
 from flexstage.present.display import NO_VALUE, number, percent, shown
 from flexstage.present.table import Cell, Column, Mark, Table, build
 from flexstage.studies.difference import Change
@@ -19,6 +23,33 @@ def change_table(title: str, changes: Iterable[Change]) -> Table:
     """
     heads = ["figure", Column("old"), Column("new"), Column("change"), Column("relative"), "unit"]
     return build(title, heads, [_row(change) for change in changes])
+
+
+def set_table(before: Mechanism, after: Mechanism, addresses: Iterable[str]) -> Table:
+    """What was set: every value before and after, in the unit a design file shows it in.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.mechanism.address import assign
+    >>> stage = double_triangle()
+    >>> set_table(stage, assign(stage, "parts.neck.thickness=1.4mm"), ["parts.neck.thickness"]).texts()[1]
+    ['parts.neck.thickness', '1.54 mm', '1.4 mm', '-0.14 mm', '-9.09 %']
+    """
+    heads = ["value", Column("old"), Column("new"), Column("change"), Column("relative")]
+    return build("Values set", heads, [_set_row(before, after, address) for address in dict.fromkeys(addresses)])
+
+
+def _set_row(before: Mechanism, after: Mechanism, address: str) -> tuple[Cell, ...]:
+    old, new = get(before, address), get(after, address)
+    if not isinstance(new, float) or not isinstance(old, float):
+        return Cell(address, Mark.STRONG), Cell(_text(old)), Cell(_text(new)), Cell(""), Cell("")
+    quantity = quantity_of(after, address)
+    texts = [show(value, quantity, digits=6) for value in (old, new, new - old)]
+    relative = percent(new / old - 1.0, 3) if old else NO_VALUE
+    return Cell(address, Mark.STRONG), *(Cell(text) for text in (*texts, relative))
+
+
+def _text(value: object) -> str:
+    return NO_VALUE if value is None else str(value.value if isinstance(value, Enum) else value)
 
 
 def _row(change: Change) -> tuple[Cell, ...]:

@@ -1,0 +1,54 @@
+"""Running the command line in this process, as its entry point does."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from flexstage.apps.cli import run
+from flexstage.cases.registry import case
+from flexstage.mechanism.store import dump
+
+
+@dataclass(frozen=True)
+class Ended:
+    """How a command ended: exit code, stdout, stderr."""
+
+    code: int
+    out: str
+    err: str
+
+    @property
+    def document(self) -> Any:
+        """Stdout as one JSON document; NaN and infinity are no JSON."""
+        return json.loads(self.out, parse_constant=_no_constant)
+
+
+def _no_constant(name: str) -> Any:
+    raise ValueError(f"{name} is no JSON")
+
+
+Command = Callable[..., Ended]
+
+
+def command_in(folder: Path, monkeypatch: pytest.MonkeyPatch, capfdbinary: Any) -> Command:
+    """A function that runs `flexstage ARGUMENTS...` in a folder."""
+
+    def ended(*arguments: str) -> Ended:
+        monkeypatch.chdir(folder)
+        capfdbinary.readouterr()
+        code = run(arguments)
+        captured = capfdbinary.readouterr()
+        return Ended(code, captured.out.decode(), captured.err.decode())
+
+    return ended
+
+
+def design_in(folder: Path, name: str = "double-triangle") -> Path:
+    """A shipped case as `stage.toml` in a folder."""
+    return dump(case(name), folder / "stage.toml")

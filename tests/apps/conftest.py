@@ -1,0 +1,17 @@
+"""Fixtures of the command line's tests: a folder with a design, and a function that runs commands in it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.apps.command import Command, command_in, design_in
+
+
+@pytest.fixture
+def flexstage(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfdbinary: Any) -> Command:
+    """Runs `flexstage ARGUMENTS...` in a folder that holds the shipped stage as stage.toml."""
+    design_in(tmp_path)
+    return command_in(tmp_path, monkeypatch, capfdbinary)

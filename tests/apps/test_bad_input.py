@@ -1,0 +1,163 @@
+"""Bad input: every class ends with exit code 2, its object, key, numbers and remedy; no traceback, no output, no half-written file."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from tests.apps.command import Command, Ended
+
+Broken = tuple[Callable[[str], str], tuple[str, ...]]
+
+NECK = 'thickness = "1.54 mm"'
+FRONT = 'front = { joins = ["tip", "platform"], part = "neck", at = ["75.6 mm", "0 mm", "0 mm"], along = "x", bends = "y" }'
+PIVOTED = """format = "flexstage 1"
+name = "pivoted"
+[parts.pin]
+kind = "joint"
+free = ["rz"]
+[bodies.platform]
+mass = "1 kg"
+centre = ["10 mm", "0 mm", "0 mm"]
+inertia = { xx = "1e-3 kg m^2", yy = "1e-3 kg m^2", zz = "1e-3 kg m^2" }
+[links]
+pin = { joins = ["ground", "platform"], part = "pin", at = ["0 mm", "0 mm", "0 mm"], along = "x", bends = "y" }
+"""
+
+
+def swapped(old: str, new: str) -> Callable[[str], str]:
+    def change(text: str) -> str:
+        assert old in text
+        return text.replace(old, new, 1)
+
+    return change
+
+
+BROKEN: dict[str, Broken] = {
+    "unknown key": (swapped(NECK, f'{NECK}\nthicknes = "1 mm"'), ("parts.neck.thicknes", "not known", "thickness")),
+    "missing unit": (swapped(NECK, "thickness = 1.54"), ("parts.neck.thickness", "1.54 without a unit", '"1.54 mm"')),
+    "wrong dimension": (swapped(NECK, 'thickness = "1.54 N"'), ("parts.neck.thickness", "a force", "a length is expected")),
+    "negative thickness": (swapped(NECK, 'thickness = "-1.54 mm"'), ("parts.neck.thickness", "-1.54 mm", "greater than 0")),
+    "thicker than wide": (swapped('width = "14.9 mm"', 'width = "0.5 mm"'), ("parts.foot_notch.thickness", "0.85 mm", "0.5 mm")),
+    "unconnected body": (
+        lambda text: text + '\n[bodies.loose]\nreference = ["0 mm", "0 mm", "0 mm"]\n',
+        ("loose", "no chain of links", "Join it"),
+    ),
+    "misspelt part": (swapped('part = "neck"', 'part = "nek"'), ("nek", "neck")),
+    "misspelt body": (swapped('joins = ["tip", "platform"]', 'joins = ["tip", "plattform"]'), ("plattform", "platform")),
+    "duplicate name": (swapped("[parts.foot_notch]", "[parts.neck]"), ("twice",)),
+    "not a number": (swapped(NECK, 'thickness = "nan mm"'), ("parts.neck.thickness", "not finite")),
+    "infinite": (swapped("poisson = 0.3", "poisson = inf"), ("poisson", "not finite")),
+    "not TOML": (lambda _: "stage = {", ("stage.toml", "not TOML")),
+    "other format": (swapped("flexstage 1", "flexstage 99"), ("format", "flexstage 99", "flexstage 1")),
+    "unreadable requirement": (swapped('"at least 100 Hz"', '"some 100 Hz"'), ("frequency.platform.1", "at least")),
+    "unknown requirement": (swapped('"stroke.x"', '"stroke.q"'), ("stroke.q", "stroke.x")),
+}
+
+
+def expect_refusal(ended: Ended, *texts: str) -> None:
+    assert ended.code == 2, ended.err
+    assert ended.out == ""
+    assert "Traceback" not in ended.err
+    for text in texts:
+        assert text in ended.err
+
+
+@pytest.mark.parametrize("command", ["check", "analyse"])
+@pytest.mark.parametrize("kind", sorted(BROKEN))
+def test_bad_designs_are_refused(flexstage: Command, tmp_path: Path, kind: str, command: str) -> None:
+    change, texts = BROKEN[kind]
+    design = tmp_path / "stage.toml"
+    design.write_text(change(design.read_text()))
+    outputs = ["--report", "report.html", "--mat", "out.mat", "--json", "out.json"] if command == "analyse" else []
+    expect_refusal(flexstage(command, "stage.toml", *outputs), *texts)
+    assert [path.name for path in tmp_path.iterdir()] == ["stage.toml"]
+
+
+@pytest.mark.parametrize("command", ["check", "modes", "analyse"])
+def test_mechanisms_are_refused(flexstage: Command, tmp_path: Path, command: str) -> None:
+    (tmp_path / "stage.toml").write_text(PIVOTED)
+    expect_refusal(flexstage(command, "stage.toml"), "singular", "platform")
+
+
+def test_actuators_without_a_path_are_refused(flexstage: Command, tmp_path: Path) -> None:
+    design = tmp_path / "stage.toml"
+    design.write_text(swapped(FRONT, "")(design.read_text()))
+    for command in ("check", "mapping", "analyse"):
+        expect_refusal(flexstage(command, "stage.toml"), "B1/pzt", "B1/tip", "on no path between ground and platform")
+
+
+def test_all_findings_are_told_at_once(flexstage: Command, tmp_path: Path) -> None:
+    design = tmp_path / "stage.toml"
+    text = swapped(NECK, "thickness = 1.54")(design.read_text())
+    design.write_text(swapped('part = "pole_neck"', 'part = "pole_nek"')(swapped("poisson = 0.3", "poisson = 0.7")(text)))
+    expect_refusal(flexstage("check", "stage.toml"), "parts.neck.thickness")
+    found = flexstage("check", "stage.toml", "--json", "-")
+    assert found.code == 2
+    assert found.document["sound"] is False
+    assert len(found.document["findings"]) == found.err.count("\n  ")
+
+
+def test_large_files_are_refused_at_once(flexstage: Command, tmp_path: Path) -> None:
+    with (tmp_path / "stage.toml").open("wb") as file:
+        file.truncate(100_000_000)
+    expect_refusal(flexstage("analyse", "stage.toml"), "stage.toml", "5 MB")
+
+
+def test_missing_files_are_refused(flexstage: Command) -> None:
+    expect_refusal(flexstage("analyse", "nowhere.toml"), "nowhere.toml", "no such file")
+
+
+def test_binary_files_are_refused(flexstage: Command, tmp_path: Path) -> None:
+    (tmp_path / "stage.toml").write_bytes(bytes(range(256)))
+    expect_refusal(flexstage("analyse", "stage.toml"), "stage.toml", "UTF-8")
+
+
+SETS = {
+    "horizontal/front.thicknes=1 mm": ("thicknes", "thickness"),
+    "horizontal/front.thickness": ("equals sign",),
+    "horizontal/front.thickness=1.4": ("without a unit",),
+    "horizontal/front.thickness=1.4 N": ("force",),
+    "horizontal/front.thickness=-1 mm": ("greater than 0",),
+    "horizontal/front.thickness=nan mm": ("not finite",),
+}
+
+
+@pytest.mark.parametrize("change", sorted(SETS))
+def test_bad_changes_are_refused(flexstage: Command, change: str) -> None:
+    expect_refusal(flexstage("analyse", "stage.toml", "--set", change), *SETS[change])
+
+
+@pytest.mark.parametrize(
+    ("arguments", "texts"),
+    [
+        (("response", "stage.toml", "--input", "B9"), ("B9",)),
+        (("response", "stage.toml", "--band", "1 Hz", "1 mm"), ("--band", "frequency")),
+        (("response", "stage.toml", "--band", "10 Hz", "1 Hz"), ("--band", "10 Hz")),
+        (("stiffness", "stage.toml", "--at", "chuk"), ("chuk",)),
+        (("workspace", "stage.toml", "--command", "x=50"), ("--command x=50", "without a unit")),
+        (("workspace", "stage.toml", "--command", "q=50um"), ("--command q=50um", "x, y, z")),
+        (("budget", "stage.toml", "--temperature", "1 mm"), ("--temperature", "length")),
+        (("budget", "stage.toml", "--at", "chuck"), ("chuck", "platform")),
+        (("drift", "stage.toml", "--ground", "stel"), ("stel", "steel")),
+        (("sensitivities", "stage.toml", "--parameter", "parts.nek.thickness"), ("nek", "neck")),
+        (("plan", "stage.toml", "-o", "plan.gif"), (".gif", ".svg")),
+        (("catalogue", "screws"), ("screws", "materials")),
+        (("new", "other.toml", "--case", "double-triangel"), ("double-triangel", "double-triangle")),
+        (("new", "stage.toml"), ("stage.toml", "--force")),
+    ],
+)
+def test_bad_options_are_refused(flexstage: Command, arguments: tuple[str, ...], texts: tuple[str, ...]) -> None:
+    expect_refusal(flexstage(*arguments), *texts)
+
+
+@pytest.mark.parametrize(
+    "arguments", [("analyze", "stage.toml"), ("modes",), ("modes", "stage.toml", "--reading", "solid"), ("new",), ("plan", "stage.toml")]
+)
+def test_wrong_usage_is_told(flexstage: Command, arguments: tuple[str, ...]) -> None:
+    ended = flexstage(*arguments)
+    assert ended.code == 2
+    assert "Usage: flexstage" in ended.err
+    assert "Traceback" not in ended.err

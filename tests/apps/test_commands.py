@@ -1,0 +1,172 @@
+"""The command line as people use it: help, examples, exit codes, failures, streams."""
+
+from __future__ import annotations
+
+import os
+import shlex
+import subprocess
+import sys
+import warnings
+from pathlib import Path
+
+import pytest
+
+from flexstage.apps.cli import run
+from flexstage.apps.cli.application import COMMANDS
+from flexstage.apps.cli.installation import self_test
+from flexstage.apps.doctor import Verdict
+from flexstage.studies import complete
+from tests.apps.command import Command, design_in
+
+PROCESS = [sys.executable, "-c", "from flexstage.apps.cli import main; main()"]
+NAMES = [name for _, name, _, _ in COMMANDS]
+EXAMPLES = [example for _, name, _, example in COMMANDS if name != "doctor"]
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_help_of_each_command_has_an_example(flexstage: Command, name: str) -> None:
+    ended = flexstage(name, "--help")
+    assert ended.code == 0
+    assert f"Example: flexstage {name}" in " ".join(ended.out.split())
+
+
+@pytest.mark.parametrize("example", EXAMPLES)
+def test_examples_run(flexstage: Command, tmp_path: Path, example: str) -> None:
+    words = shlex.split(example.partition(" > ")[0])
+    if words[1] == "new":
+        (tmp_path / "stage.toml").unlink()
+    ended = flexstage(*words[1:])
+    assert ended.code == 0, ended.err
+    assert ended.out or "Wrote" in ended.err
+
+
+def test_help_names_every_command(flexstage: Command) -> None:
+    out = flexstage("--help").out
+    assert all(f"\n  {name} " in out for name in NAMES)
+    assert "..." not in out.replace("[ARGS]...", "")
+
+
+def test_a_new_design_is_sound_and_commented(flexstage: Command, tmp_path: Path) -> None:
+    assert flexstage("new", "other.toml", "--case", "hexapod").code == 0
+    assert (tmp_path / "other.toml").read_text().startswith("# hexapod: six axes")
+    assert flexstage("check", "other.toml").code == 0
+    assert flexstage("new", "other.toml", "--force").code == 0
+    assert (tmp_path / "other.toml").read_text().startswith("# double-triangle:")
+
+
+def test_missed_requirements_change_the_exit_code_only_if_strict(flexstage: Command, tmp_path: Path) -> None:
+    design = tmp_path / "stage.toml"
+    design.write_text(design.read_text().replace('"at least 100 Hz"', '"at least 1000 Hz"'))
+    ended = flexstage("analyse", "stage.toml")
+    assert ended.code == 0
+    assert ended.out.splitlines()[0].startswith("Requirements")
+    strict = flexstage("analyse", "stage.toml", "--strict", "--json", "-")
+    assert strict.code == 1
+    assert [line["key"] for line in strict.document["requirements"] if not line["passed"]] == ["frequency.platform.1"]
+    assert "1 of 8 requirements" in strict.err
+
+
+def test_met_requirements_are_no_failure_if_strict(flexstage: Command) -> None:
+    assert flexstage("analyse", "stage.toml", "--strict", "--json", "out.json").code == 0
+
+
+def test_changes_are_shown_old_new_and_change(flexstage: Command) -> None:
+    out = flexstage("analyse", "stage.toml", "--set", "horizontal/front.thickness=1.4mm").out
+    heads = next(line for line in out.splitlines() if "old" in line)
+    assert heads.index("old") < heads.index("new") < heads.index("change")
+    (line,) = (line for line in out.splitlines() if line.strip().startswith("horizontal/front.thickness"))
+    assert "1.54" in line
+    assert "1.4" in line
+
+
+def test_faults_of_the_program_are_told_without_traceback(flexstage: Command, monkeypatch: pytest.MonkeyPatch) -> None:
+    def broken(*_: object) -> None:
+        raise RuntimeError("a gear fell out")
+
+    monkeypatch.setattr(complete, "platform_modes", broken)
+    monkeypatch.delenv("FLEXSTAGE_DEBUG", raising=False)
+    ended = flexstage("modes", "stage.toml")
+    assert ended.code == 70
+    assert "a gear fell out" in ended.err
+    assert "report" in ended.err
+    assert "Traceback" not in ended.err
+    monkeypatch.setenv("FLEXSTAGE_DEBUG", "1")
+    with pytest.raises(RuntimeError, match="a gear fell out"):
+        run(["modes", "stage.toml"])
+
+
+def test_warnings_of_libraries_are_one_line_each(flexstage: Command, monkeypatch: pytest.MonkeyPatch) -> None:
+    found = complete.platform_modes
+
+    def loud(*arguments: object) -> object:
+        warnings.warn("overflow somewhere", RuntimeWarning, stacklevel=1)
+        return found(*arguments)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(complete, "platform_modes", loud)
+    with warnings.catch_warnings():
+        warnings.simplefilter("default")
+        ended = flexstage("modes", "stage.toml")
+    assert "warning: overflow somewhere\n" in ended.err
+
+
+def test_interruption_is_told(flexstage: Command, monkeypatch: pytest.MonkeyPatch) -> None:
+    def interrupted(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(complete, "platform_modes", interrupted)
+    ended = flexstage("modes", "stage.toml")
+    assert ended.code == 130
+    assert "Traceback" not in ended.err
+
+
+def test_the_entry_point_exits_with_the_code(tmp_path: Path) -> None:
+    done = subprocess.run([*PROCESS, "modes", "nowhere.toml"], cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert done.returncode == 2
+    assert done.stdout == ""
+    assert done.stderr.startswith("error: 1 finding")
+
+
+def test_a_reader_that_leaves_is_no_failure(tmp_path: Path) -> None:
+    design_in(tmp_path)
+    with subprocess.Popen([*PROCESS, "schema"], cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
+        assert process.stdout is not None
+        assert process.stderr is not None
+        process.stdout.read(1)
+        process.stdout.close()
+        assert process.stderr.read() == b""
+        assert process.wait() == 0
+
+
+@pytest.mark.parametrize("encoding", ["ascii", "utf-8"])
+def test_tables_fit_the_encoding_of_the_terminal(tmp_path: Path, encoding: str) -> None:
+    design_in(tmp_path)
+    environment = os.environ | {"PYTHONIOENCODING": encoding}
+    done = subprocess.run([*PROCESS, "modes", "stage.toml"], cwd=tmp_path, capture_output=True, check=False, env=environment)
+    assert done.returncode == 0, done.stderr
+    assert b"107.17" in done.stdout
+
+
+def test_numpy_gets_one_thread_unless_told_otherwise(tmp_path: Path) -> None:
+    code = "import os; from flexstage.apps.cli import run; run(['version']); print(os.environ['OPENBLAS_NUM_THREADS'])"
+    free = {name: value for name, value in os.environ.items() if not name.endswith("_NUM_THREADS")}
+    for environment, expected in ((free, "1"), (free | {"OPENBLAS_NUM_THREADS": "2"}, "2")):
+        done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=True, env=environment)
+        assert done.stdout.splitlines()[-1] == expected
+
+
+def test_the_doctor_runs_without_typer(tmp_path: Path) -> None:
+    code = (
+        "import sys; sys.modules['typer'] = None\n"
+        "import flexstage.apps.cli.installation as installation\n"
+        "installation.consult = lambda *, mending: print('consulted', mending) or 0\n"
+        "from flexstage.apps.cli import run; print(run(['doctor', '--mend'])); print(run(['modes']))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=True)
+    assert done.stdout.splitlines() == ["consulted True", "0", "70"]
+    assert "flexstage doctor --mend" in done.stderr
+
+
+def test_the_doctors_self_test_is_good_and_notices_wrong_numbers(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert self_test().verdict is Verdict.GOOD
+    monkeypatch.setattr("flexstage.apps.cli.installation._FREQUENCIES", (110.9, 110.9, 135.1, 145.5, 176.7, 176.7))
+    assert self_test().verdict is Verdict.BAD

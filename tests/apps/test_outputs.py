@@ -1,0 +1,131 @@
+"""Output files: found unwritable before anything is computed, complete or not there, and what they hold."""
+
+from __future__ import annotations
+
+import json
+import os
+import stat
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.io import loadmat
+
+from flexstage.analysis.modes import modes
+from flexstage.mechanism.store import load
+from flexstage.readings.ideal import ideal
+from flexstage.readings.lumped import lumped
+from flexstage.studies import complete
+from tests.apps.command import Command
+
+BAD_TARGETS = {
+    ("--report", "nowhere/report.html"): "no folder nowhere",
+    ("--json", "folder"): "it is a folder",
+    ("--mat", "stage.toml"): "the design file",
+    ("--report", "stage.toml"): "the design file",
+}
+
+
+@pytest.mark.parametrize("option", sorted(BAD_TARGETS))
+def test_unwritable_outputs_are_found_before_anything_is_computed(
+    flexstage: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, option: tuple[str, str]
+) -> None:
+    (tmp_path / "folder").mkdir()
+    monkeypatch.setattr(complete, "analyse", lambda *_: pytest.fail("computed all the same"))
+    before = (tmp_path / "stage.toml").read_bytes()
+    ended = flexstage("analyse", "stage.toml", *option)
+    assert ended.code == 2
+    assert BAD_TARGETS[option] in ended.err
+    assert (tmp_path / "stage.toml").read_bytes() == before
+
+
+def test_two_outputs_need_two_files(flexstage: Command) -> None:
+    ended = flexstage("analyse", "stage.toml", "--json", "out", "--mat", "./out")
+    assert ended.code == 2
+    assert "the output of --json" in ended.err
+
+
+def test_write_protected_files_stay(flexstage: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "out.json").write_text("old")
+    allowed = os.access
+    monkeypatch.setattr(os, "access", lambda path, mode: Path(path).name != "out.json" and allowed(path, mode))
+    ended = flexstage("modes", "stage.toml", "--json", "out.json")
+    assert ended.code == 2
+    assert "write-protected" in ended.err
+    assert (tmp_path / "out.json").read_text() == "old"
+
+
+def test_a_full_disk_leaves_the_old_file_and_nothing_else(flexstage: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "out.json").write_text("old")
+
+    def full(*_: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(Path, "replace", full)
+    ended = flexstage("modes", "stage.toml", "--json", "out.json")
+    assert ended.code == 2
+    assert "No space left on device" in ended.err
+    assert (tmp_path / "out.json").read_text() == "old"
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["out.json", "stage.toml"]
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="this system has no /dev/full")
+def test_a_full_device_is_told(flexstage: Command) -> None:
+    ended = flexstage("modes", "stage.toml", "--json", "/dev/full")
+    assert ended.code == 2
+    assert "/dev/full" in ended.err
+
+
+def test_files_are_written_with_the_modes_of_files(flexstage: Command, tmp_path: Path) -> None:
+    flexstage("modes", "stage.toml", "--json", "new.json")
+    (tmp_path / "plain").touch()
+    assert stat.S_IMODE((tmp_path / "new.json").stat().st_mode) == stat.S_IMODE((tmp_path / "plain").stat().st_mode)
+    assert json.loads((tmp_path / "new.json").read_text())["kind"] == "modes"
+
+
+def test_stdout_holds_the_document_only(flexstage: Command) -> None:
+    ended = flexstage("analyse", "stage.toml", "--set", "parts.foot_notch.profile.radius=0.9 mm", "--mat", "out.mat", "--json", "-")
+    assert ended.code == 0, ended.err
+    assert ended.document["kind"] == "analyse"
+    assert "warning: parts.foot_notch: thickness over radius = 0.944 is above 0.8" in ended.err
+    assert "Wrote out.mat" in ended.err
+
+
+def test_json_to_a_file_leaves_the_tables_on_stdout(flexstage: Command, tmp_path: Path) -> None:
+    ended = flexstage("modes", "stage.toml", "--json", "out.json")
+    assert "Modes" in ended.out
+    assert "Wrote out.json" in ended.err
+    assert flexstage("modes", "stage.toml", "--json", "-").out == (tmp_path / "out.json").read_text()
+
+
+def test_mat_holds_what_the_library_computes(flexstage: Command, tmp_path: Path) -> None:
+    assert flexstage("analyse", "stage.toml", "--mat", "out.mat").code == 0
+    found = loadmat(tmp_path / "out.mat", simplify_cells=True)
+    stage = load(tmp_path / "stage.toml")
+    model = lumped(stage)
+    assert found["R_a"] == pytest.approx(ideal(stage).mapping.values)
+    assert found["R_s"] == pytest.approx(ideal(stage).gauge_mapping.values)
+    for name, matrix in {"K": model.stiffness_matrix, "M": model.inertia_matrix, "B": model.input_matrix, "C": model.output}.items():
+        assert np.array_equal(found[name], matrix), name
+    assert list(found["coordinates"]) == list(model.coordinates)
+    assert list(found["inputs"]) == [channel.name for channel in model.inputs]
+    assert list(found["output_units"]) == [channel.unit for channel in model.outputs]
+    assert found["frequencies_hz"] == pytest.approx(modes(model).frequencies)
+
+
+def test_state_space_in_mat_has_the_natural_frequencies_and_the_static_gain(flexstage: Command, tmp_path: Path) -> None:
+    flexstage("analyse", "stage.toml", "--mat", "out.mat", "--reading", "mapped")
+    found = loadmat(tmp_path / "out.mat", simplify_cells=True)
+    space = found["state_space"]
+    poles = np.abs(np.linalg.eigvals(space["A"])) / (2.0 * np.pi)
+    assert np.unique(np.sort(poles).round(6)) == pytest.approx(np.unique(found["frequencies_hz"].round(6)), rel=1e-6)
+    gain = space["D"] - space["C"] @ np.linalg.solve(space["A"], space["B"])
+    static = found["C"] @ np.linalg.solve(found["K"], found["B"]) + found["D"]
+    assert gain == pytest.approx(static, abs=1e-9 * np.abs(static).max())
+    assert space["inputs"][0] == "B1 [m]"
+
+
+def test_plan_is_drawn_in_every_format(flexstage: Command, tmp_path: Path) -> None:
+    for ending, start in {"svg": b"<?xml", "pdf": b"%PDF", "png": b"\x89PNG"}.items():
+        assert flexstage("plan", "stage.toml", "-o", f"plan.{ending}").code == 0
+        assert (tmp_path / f"plan.{ending}").read_bytes().startswith(start)
