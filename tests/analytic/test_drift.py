@@ -1,0 +1,146 @@
+"""Drift by hand: bars in a row, two posts of different materials, what is not stated."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import flexstage as fs
+from flexstage.analysis.drift import drift
+from flexstage.mechanism.expansion import expansion, ground_material
+from flexstage.readings.lumped import lumped
+
+X, Y, Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
+STEEL = fs.Material(young=200e9, poisson=0.3, density=7750.0, expansion=10e-6)
+ALUMINIUM = fs.Material(young=70e9, poisson=0.33, density=2700.0, expansion=23e-6)
+INVAR = fs.Material(young=140e9, poisson=0.3, density=8100.0, expansion=1e-6)
+
+
+def bar(**fields):
+    """Ground, 40 mm of rod (steel) from x = 10 to 50 mm, then a platform of aluminium whose reference is at x = 80 mm."""
+    block = fs.Block("aluminium", (0.06, 0.02, 0.02), (0.08, 0.0, 0.0))
+    return fs.Mechanism(
+        name="bar",
+        materials={"steel": STEEL, "aluminium": ALUMINIUM, "invar": INVAR},
+        parts={"rod": fs.Rod("steel", 0.04, 0.004)},
+        bodies={"platform": fs.Body(solids={"block": block}, points={"end": (0.11, 0.0, 0.0)})},
+        links={"rod": fs.Link(("ground", "platform"), "rod", (0.03, 0.0, 0.0), X)},
+        **fields,
+    )
+
+
+def test_a_bar_grows_piece_by_piece():
+    """10 mm of invar frame, 40 mm of steel, 30 mm of aluminium to the reference, 30 more to the end."""
+    found = drift(bar(), lumped(bar()), ground="invar")
+    reference = 0.01 * 1e-6 + 0.04 * 10e-6 + 0.03 * 23e-6
+    assert found.motion.at("platform.x", "uniform") == pytest.approx(reference, rel=1e-12)
+    assert found.motion.at("end.x", "uniform") == pytest.approx(reference + 0.03 * 23e-6, rel=1e-12)
+    np.testing.assert_allclose(found.forces.values, 0.0, atol=1e-9)
+    assert found.taken["platform"] == "aluminium, of its solids"
+
+
+def test_a_still_ground():
+    """Without a ground material only rod and platform grow, from the rod's own foot."""
+    found = drift(bar(), lumped(bar()))
+    assert found.motion.at("platform.x", "uniform") == pytest.approx(0.04 * 10e-6 + 0.03 * 23e-6, rel=1e-12)
+    assert found.taken["ground"] == "does not grow"
+
+
+def test_a_gradient_along_the_bar():
+    """T = x: each piece takes its own integral of alpha x dx."""
+    found = drift(bar(), lumped(bar()), ground="invar")
+    pieces = ((1e-6, 0.0, 0.01), (10e-6, 0.01, 0.05), (23e-6, 0.05, 0.08))
+    total = sum(0.5 * alpha * (end**2 - start**2) for alpha, start, end in pieces)
+    assert found.motion.at("platform.x", "gradient.x") == pytest.approx(total, rel=1e-12)
+
+
+def test_a_gradient_across_the_bar_bends_it():
+    """T = y: curvature alpha in every piece, so slope -sum alpha l (about z) and deflection by the arms to the reference."""
+    found = drift(bar(), lumped(bar()), ground="invar")
+    pieces = ((1e-6, 0.0, 0.01), (10e-6, 0.01, 0.05), (23e-6, 0.05, 0.08))
+    slope = -sum(alpha * (end - start) for alpha, start, end in pieces)
+    sag = -sum(alpha * (end - start) * (0.08 - 0.5 * (start + end)) for alpha, start, end in pieces)
+    assert found.motion.at("platform.rz", "gradient.y") == pytest.approx(slope, rel=1e-12)
+    assert found.motion.at("platform.y", "gradient.y") == pytest.approx(sag, rel=1e-12)
+
+
+def test_two_posts_of_different_materials_share():
+    """A stiff platform on two collinear rods between fixed grounds: the force is the misfit over the sum of compliances."""
+    stage = replace(
+        bar(),
+        parts={"rod": fs.Rod("steel", 0.04, 0.004), "other": fs.Rod("aluminium", 0.03, 0.004)},
+        bodies={"platform": fs.Body(solids={"grain": fs.Block("invar", (1e-3, 1e-3, 1e-3), (0.05, 0.0, 0.0))})},
+        links={
+            "rod": fs.Link(("ground", "platform"), "rod", (0.03, 0.0, 0.0), X),
+            "other": fs.Link(("platform", "ground"), "other", (0.065, 0.0, 0.0), X),
+        },
+    )
+    found = drift(stage, lumped(stage))
+    area = np.pi / 4.0 * 0.004**2
+    first, second = 200e9 * area / 0.04, 70e9 * area / 0.03
+    force = (0.04 * 10e-6 + 0.03 * 23e-6) / (1.0 / first + 1.0 / second)
+    assert found.forces.at("rod.fx", "uniform") == pytest.approx(-force, rel=1e-9)
+    assert found.motion.at("platform.x", "uniform") == pytest.approx(0.04 * 10e-6 - force / first, rel=1e-9)
+
+
+def test_what_is_not_stated_is_named():
+    stack = fs.Piezo(stroke=1e-5, stiffness=1e7, length=0.02, diameter=0.01)
+    stage = replace(
+        bar(),
+        materials={"steel": replace(STEEL, expansion=None), "aluminium": ALUMINIUM},
+        parts={"rod": fs.Rod("steel", 0.04, 0.004), "stack": stack},
+        links={**bar().links, "pzt": fs.Link(("ground", "platform"), "stack", (0.03, 0.02, 0.0), X)},
+    )
+    with pytest.raises(fs.DesignError) as told:
+        expansion(stage)
+    assert [finding.where for finding in told.value.findings] == ["materials.steel", "parts.stack"]
+    with pytest.raises(fs.DesignError, match="nearest name is steel"):
+        expansion(stage, ground="stele")
+
+
+def test_bodies_of_several_and_of_no_material():
+    """The heaviest solid leads; a body of nothing between two materials is not known."""
+    mirror = fs.Block("invar", (0.01, 0.01, 0.01), (0.08, 0.0, 0.02))
+    stage = replace(
+        bar(), bodies={"platform": replace(bar().bodies["platform"], solids={**bar().bodies["platform"].solids, "mirror": mirror})}
+    )
+    assert expansion(stage).taken["platform"] == "aluminium, of its heaviest solid, block"
+    bare = replace(
+        bar(),
+        bodies={"platform": fs.Body(reference=(0.08, 0.0, 0.0))},
+        parts={"rod": fs.Rod("steel", 0.04, 0.004), "other": fs.Rod("aluminium", 0.04, 0.004)},
+        links={**bar().links, "other": fs.Link(("ground", "platform"), "other", (0.03, 0.02, 0.0), X)},
+    )
+    with pytest.raises(fs.DesignError, match=r"platform: how it grows .* its links are of aluminium, steel"):
+        expansion(bare)
+
+
+def test_the_ground_is_of_most_of_its_links():
+    assert ground_material(bar()) == "steel"
+    joined = replace(bar(), parts={"rod": fs.Joint()})
+    assert ground_material(joined) is None
+
+
+def test_a_batch_of_expansions():
+    """An array of coefficients gives an array of drifts."""
+    values = np.array([10e-6, 12e-6])
+    stage = replace(bar(), materials={**bar().materials, "steel": replace(STEEL, expansion=values)})
+    found = drift(stage, lumped(stage)).motion.at("platform.x", "uniform")
+    np.testing.assert_allclose(found, 0.04 * values + 0.03 * 23e-6, rtol=1e-12)
+
+
+def test_locked_freedoms_that_cannot_follow_are_refused():
+    """Two welds between the ground and a platform of aluminium, 50 mm apart: no elasticity takes the growth."""
+    stage = replace(
+        bar(),
+        parts={"weld": fs.Joint()},
+        links={
+            "one": fs.Link(("ground", "platform"), "weld", (0.05, 0.0, 0.0), X),
+            "two": fs.Link(("ground", "platform"), "weld", (0.1, 0.0, 0.0), X),
+        },
+    )
+    loose = bar()
+    with pytest.raises(fs.DesignError, match="locked freedoms cannot follow the growth"):
+        drift(stage, lumped(loose))
