@@ -1,0 +1,160 @@
+"""Error budget: its sources are what they are called, add up to the whole static error, and the gains remove what they can."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import flexstage as fs
+from flexstage.analysis.drift import drift
+from flexstage.analysis.error_budget import SOURCES, command_strokes, error_budget
+from flexstage.analysis.lost_motion import lost_motion
+from flexstage.analysis.workspace.gauging import pose_resolution
+from flexstage.cases.hexapod import hexapod
+from flexstage.cases.registry import case
+from flexstage.readings.finite import forward
+from flexstage.readings.ideal import ideal
+from flexstage.readings.linear.static import static_gain
+from flexstage.readings.lumped import lumped
+from flexstage.spatial.frame import COMPONENTS
+from flexstage.studies.budget import budget
+
+NAMES = ("double-triangle", "parallelogram", "xy-stage", "bridge", "hexapod", "tip-tilt", "tip-tilt-four")
+
+
+def commanded(stage, size=5e-6):
+    kinematics = ideal(stage)
+    return {name: (size * 10.0 if name.startswith("r") else size) for name in kinematics.coordinates}
+
+
+def noisy(stage):
+    sensors = {name: replace(sensor, noise_density=0.1e-9, bandwidth=1000.0, resolution=2e-9) for name, sensor in stage.sensors.items()}
+    return replace(stage, sensors=sensors)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_every_corner_lies_within_the_budget(name):
+    """Elastic motion at any corner of the box, less what was asked, is at most lost motion plus crosstalk; with the gains, what is left."""
+    stage = case(name)
+    kinematics, model = ideal(stage), lumped(stage)
+    command = commanded(stage)
+    found = budget(stage, command)
+    strokes = command_strokes(kinematics, command)
+    gain = static_gain(model, tuple(f"platform.{part}" for part in COMPONENTS), kinematics.actuators).values
+    asked = strokes @ kinematics.jacobian.T
+    errors = np.abs(strokes @ gain.T - asked)
+    bound = found.ideal.values[:, 0] + found.ideal.values[:, 1]
+    assert np.all(errors <= bound * (1.0 + 1e-9) + 1e-18)
+    wanted = np.linalg.lstsq(kinematics.mapping.values, strokes.T, rcond=None)[0]
+    corrected = (gain @ lost_motion(kinematics, model).correction.values @ wanted).T
+    left = np.abs(corrected - asked)
+    np.testing.assert_allclose(np.max(left, axis=0), found.corrected.values[:, 1], rtol=1e-6, atol=1e-15)
+    np.testing.assert_array_equal(found.corrected.values[:, 0], 0.0)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_gains_leave_only_motion_outside_the_ideal(name):
+    """With six ideal motions nothing is left; with fewer, no more than before along the ideal coordinates."""
+    stage = case(name)
+    kinematics = ideal(stage)
+    found = budget(stage, commanded(stage))
+    if kinematics.mobility == 6:
+        np.testing.assert_allclose(found.corrected.values[:, 1], 0.0, atol=1e-15)
+    assert np.all(np.nansum(found.corrected.values[:, :2], axis=1) <= np.nansum(found.ideal.values[:, :2], axis=1) * 1.02 + 1e-12)
+
+
+@pytest.mark.parametrize("name", ["double-triangle", "hexapod", "bridge"])
+def test_linear_map_is_the_worst_of_the_corners(name):
+    stage = case(name)
+    kinematics, command = ideal(stage), commanded(stage)
+    strokes = command_strokes(kinematics, command)
+    errors = [forward(stage, kinematics, single).pose.vector - kinematics.jacobian @ single for single in strokes]
+    found = budget(stage, command).ideal.values[:, SOURCES.index("linear map")]
+    np.testing.assert_allclose(found, np.max(np.abs(errors), axis=0), rtol=1e-6, atol=1e-15)
+
+
+def test_noise_and_steps_of_the_gauges():
+    """Three standard deviations of the noise; half a step of every gauge with the worst signs."""
+    stage = noisy(case("double-triangle"))
+    found = budget(stage, {"z": 1e-6})
+    seen = pose_resolution(stage, ideal(stage))
+    np.testing.assert_allclose(found.ideal.values[:, 3], 3.0 * seen.noise, rtol=1e-9)
+    np.testing.assert_allclose(found.ideal.values[:, 4], 0.5 * seen.worst, rtol=1e-9)
+    assert found.missing == ()
+    assert budget(case("double-triangle"), {"z": 1e-6}).missing == ("gauge noise",)
+    wide = budget(stage, {"z": 1e-6}, coverage=1.0)
+    np.testing.assert_allclose(wide.ideal.values[:, 3], seen.noise, rtol=1e-9)
+
+
+def test_drift_and_sums():
+    """0.1 K of the uniform drift, and the sums of one line by hand."""
+    stage = noisy(case("hexapod"))
+    found = budget(stage, {"x": 5e-6, "z": 5e-6}, temperature=-0.1)
+    per_kelvin = drift(stage, lumped(stage), ground="steel").of("platform").values[:, 0]
+    np.testing.assert_allclose(found.ideal.values[:, 5], 0.1 * np.abs(per_kelvin), rtol=1e-9)
+    line = found.ideal.values[0]
+    np.testing.assert_allclose(found.sums.at("x", "linear"), np.sum(line), rtol=1e-12)
+    np.testing.assert_allclose(found.sums.at("x", "rss"), np.sqrt(np.sum(line**2)), rtol=1e-12)
+    np.testing.assert_allclose(found.sums.at("x", "linear corrected"), np.sum(found.corrected.values[0]), rtol=1e-12)
+    own = budget(stage, {"x": 5e-6}, temperature=0.1, drifted=drift(stage, lumped(stage)))
+    assert own.ideal.at("z", "drift") != pytest.approx(found.ideal.at("z", "drift"), rel=1e-3)
+
+
+def test_commands_scale_the_static_sources():
+    stage = case("double-triangle")
+    one, two = budget(stage, {"x": 5e-6, "rx": 1e-5}), budget(stage, {"x": 10e-6, "rx": 2e-5})
+    np.testing.assert_allclose(two.ideal.values[:, :2], 2.0 * one.ideal.values[:, :2], rtol=1e-9, atol=1e-18)
+    np.testing.assert_allclose(two.ideal.values[:, 2], 4.0 * one.ideal.values[:, 2], rtol=0.01, atol=1e-12)
+
+
+def test_a_point_above_feels_the_tilts():
+    """At a point h above the reference x errs by what tilting about y adds: within |ex| + h |ery|, source by source."""
+    stage = noisy(hexapod())
+    here = budget(stage, {"x": 5e-6, "ry": 50e-6}).ideal.values
+    there = budget(stage, {"x": 5e-6, "ry": 50e-6}, at="sample").ideal.values
+    arm = stage.bodies["platform"].points["sample"][2] - 0.014
+    assert np.all(there[0, :5] <= here[0, :5] + arm * here[4, :5] + 1e-15)
+    np.testing.assert_allclose(there[3:, :5], here[3:, :5], rtol=1e-9, atol=1e-18)
+    assert there[0, 0] != pytest.approx(here[0, 0], rel=1e-6)
+
+
+def test_what_cannot_be_commanded_is_named():
+    with pytest.raises(fs.DesignError, match=r"command w: the stage's ideal motions are x"):
+        budget(case("double-triangle"), {"w": 1e-6})
+    with pytest.raises(fs.DesignError, match="nearest name is sample"):
+        budget(hexapod(), {"x": 1e-6}, at="sampl")
+
+
+def test_a_batch_is_the_loop():
+    """Two designs at once, each as alone; a command of two coordinates has as many corners as designs times two."""
+    import dataclasses
+
+    from flexstage.cases.hexapod import Hexapod
+
+    lengths = np.array([0.05, 0.06])
+    together = budget(noisy(hexapod(dataclasses.replace(Hexapod(), head_radius=lengths))), {"x": 5e-6}, temperature=0.1)
+    for index, radius in enumerate(lengths):
+        alone = budget(noisy(hexapod(dataclasses.replace(Hexapod(), head_radius=float(radius)))), {"x": 5e-6}, temperature=0.1)
+        np.testing.assert_allclose(together.ideal.values[index], alone.ideal.values, rtol=1e-6, atol=1e-14)
+        np.testing.assert_allclose(together.sums.values[index], alone.sums.values, rtol=1e-6, atol=1e-14)
+
+
+def test_evidence_may_be_given_piece_by_piece():
+    """The analysis itself takes results only: the same numbers as the study's."""
+    from flexstage.analysis.error_budget import Evidence
+    from flexstage.analysis.workspace.map_error import map_error_at
+
+    stage, command = case("hexapod"), {"z": 5e-6}
+    kinematics, model = ideal(stage), lumped(stage)
+    evidence = Evidence(
+        kinematics=kinematics,
+        lost_motion=lost_motion(kinematics, model),
+        map_error=map_error_at(stage, kinematics, command_strokes(kinematics, command)),
+        resolution=pose_resolution(stage, kinematics),
+        drift=drift(stage, model, ground="steel").of(),
+        arm=np.zeros(3),
+    )
+    found = error_budget(evidence, command, temperature=1.0)
+    np.testing.assert_allclose(found.ideal.values, budget(stage, command, temperature=1.0).ideal.values, rtol=1e-9, atol=1e-18)

@@ -1,0 +1,195 @@
+"""`[require]` lines: every key is read, judged and told apart; what is misspelt is mended by advice."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import flexstage as fs
+from flexstage.analysis.drift import drift
+from flexstage.analysis.lost_motion import lost_motion
+from flexstage.analysis.modes import modes
+from flexstage.analysis.requirements import KINDS, Sense, Subject, known_keys, requirements
+from flexstage.analysis.statics import statics
+from flexstage.analysis.workspace.load import load_share
+from flexstage.analysis.workspace.strength import hinge_stress
+from flexstage.analysis.workspace.stroke import stroke_limits
+from flexstage.cases.hexapod import Hexapod, hexapod
+from flexstage.cases.registry import CASES, case
+from flexstage.readings.ideal import ideal
+from flexstage.readings.lumped import lumped
+from flexstage.studies.judge import judge
+
+
+@pytest.fixture(scope="module")
+def stage():
+    return case("double-triangle")
+
+
+def asking(stage, **lines):
+    return replace(stage, requirements={key.replace("__", "."): text for key, text in lines.items()})
+
+
+def one(stage, key, text):
+    return judge(replace(stage, requirements={key: text}))[0]
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_every_key_of_every_case_is_read(name):
+    """With the unit its quantity asks for, or that about an axis."""
+    mechanism = case(name)
+    for key in known_keys(mechanism):
+        for subject, kind in KINDS.items():
+            units = [kind.quantity.si, *([kind.about.si] if kind.about else [])]
+            if key.startswith(subject.value.partition("<")[0]):
+                found = [item for unit in units if (item := readable(mechanism, key, f"at most 3 {unit}" if unit != "1" else "at most 3"))]
+                if found and found[0].subject is subject:
+                    assert found[0].limit == 3.0
+                    break
+        else:
+            pytest.fail(f"{key} is not read")
+
+
+def readable(mechanism, key, text):
+    try:
+        return requirements(replace(mechanism, requirements={key: text}))[0]
+    except fs.DesignError:
+        return None
+
+
+def test_a_line_is_read():
+    stage = replace(hexapod(), requirements={"stroke.ry": "  at least   300 urad  at sample ", "loss": "at most 5 %"})
+    first, second = requirements(stage)
+    assert (first.subject, first.name, first.point, first.sense) == (Subject.STROKE, "ry", "sample", Sense.AT_LEAST)
+    assert first.limit == pytest.approx(300e-6)
+    assert (second.subject, second.limit) == (Subject.LOSS, 0.05)
+
+
+@pytest.mark.parametrize(
+    ("key", "text", "told"),
+    [
+        ("stroke.w", "at least 5 um", "nothing of this name can be required. Near to it are stroke"),
+        ("safty", "at least 2", "The nearest name is safety"),
+        ("frequency.platform.0", "at least 2 Hz", "frequency.platform"),
+        ("loss.B7", "at most 2 %", "Near to it are loss.B"),
+        ("stroke.x", "more than 3 um", 'Write "at least" or "at most" and a value'),
+        ("stroke.x", "at least", 'Write "at least" or "at most" and a value'),
+        ("stroke.x", "at least 50", 'found "50" without a unit'),
+        ("stroke.x", "at least 50 urad", "where a displacement is expected"),
+        ("stroke.rx", "at least 50 um", "where a rotation is expected"),
+        ("drift.x", "at most 5 um", "where a drift is expected"),
+        ("mass", "at most 5 kg at chuck", "is not asked at a point"),
+        ("stroke.x", "at least 50 um at chuck", "no point has this name"),
+    ],
+)
+def test_what_cannot_be_read_is_told(stage, key, text, told):
+    with pytest.raises(fs.DesignError) as error:
+        requirements(replace(stage, requirements={key: text}))
+    assert told in str(error.value)
+    assert f"require.{key}" in str(error.value)
+
+
+def test_all_findings_are_told_at_once(stage):
+    with pytest.raises(fs.DesignError) as error:
+        judge(replace(stage, requirements={"safty": "at least 2", "mass": "at most 5 m", "stroke.z": "at least 150 um"}))
+    assert [finding.where for finding in error.value.findings] == ["require.safty", "require.mass"]
+
+
+def test_values_are_those_of_the_analyses(stage):
+    """Each key against its analysis, asked by hand."""
+    kinematics, model = ideal(stage), lumped(stage)
+    lost, limits = lost_motion(kinematics, model), stroke_limits(stage)
+    own = np.diagonal(lost.loss.values)
+    cases = {
+        "frequency.1": (modes(model).frequencies[0], "Hz"),
+        "frequency.platform.6": (modes(model).platform_frequencies[5], "Hz"),
+        "safety": (hinge_stress(stage, model, limits.from_zero).least, ""),
+        "stiffness.z": (1.0 / statics(model).compliance.values[2, 2], "N/m"),
+        "stiffness.rz": (1.0 / statics(model).compliance.values[5, 5], "N m/rad"),
+        "loss": (np.max(own), ""),
+        "loss.B1": (own[0], ""),
+        "crosstalk": (np.max(np.abs(lost.loss.values - np.diag(own))), ""),
+        "drift.z": (abs(drift(stage, model, ground="steel").motion.at("platform.z", "uniform")), "m/K"),
+        "mass": (13.9965, "kg"),
+        "height": (0.1125, "m"),
+        "envelope.z": (0.1125, "m"),
+        "opening": (0.0, "m"),
+        "resolution.z": (10e-9, "m"),
+        "load.B4": (load_share(stage, model).range(limits.from_zero)[1][3], "N"),
+        "stroke.z": (np.min(limits.high / np.abs(lost.correction.values[:, 2])), "m"),
+    }
+    for key, (value, unit) in cases.items():
+        found = one(stage, key, f"at most 1 {unit}".strip())
+        assert found.value == pytest.approx(value, rel=1e-6, abs=1e-15), key
+
+
+def test_the_corner_of_all_required_strokes(stage):
+    """x, y 50 um and yaw 244 urad at once: 89 of 75 um, and more to make up for lost motion."""
+    lines = {"stroke.x": "at least 50 um", "stroke.y": "at least 50 um", "stroke.rz": "at least 244 urad"}
+    corner, gauges = judge(replace(stage, requirements={**lines, "corner": "at most 100 %", "gauge.range": "at most 100 %"}))[3:]
+    assert 89.0 / 75.0 < corner.value < 1.05 * 89.0 / 75.0
+    assert not corner.passed
+    assert gauges.value == pytest.approx((0.5 * (1.0 + np.sqrt(3.0)) * 50.0 + 0.13 * 244.0) / 250.0, rel=1e-6)
+    assert gauges.passed
+
+
+def test_margins_and_edges(stage):
+    """Ten per cent to spare is 0.1 on either side; meeting a limit exactly is passing."""
+    mass = 13.9965
+    assert one(stage, "mass", f"at most {mass / 0.9} kg").margin == pytest.approx(0.1)
+    assert one(stage, "mass", f"at least {mass / 1.1} kg").margin == pytest.approx(0.1)
+    assert one(stage, "mass", f"at most {mass} kg").passed
+    assert one(stage, "mass", f"at least {mass} kg").passed
+    assert not one(stage, "mass", f"at most {mass * 0.999} kg").passed
+    assert one(stage, "opening", "at most 0 mm").passed
+
+
+def test_what_the_stage_cannot_answer_fails_with_a_reason(stage):
+    brittle = replace(stage, materials={"steel": replace(stage.materials["steel"], yield_stress=None)})
+    found = one(brittle, "safety", "at least 2")
+    assert found.value is None
+    assert not found.passed
+    assert "states no yield stress" in found.reason
+    planar = case("xy-stage")
+    assert "is no ideal motion" in one(planar, "stroke.z", "at least 1 um").reason
+    assert "do not determine" in one(case("xy-stage-floating"), "stroke.x", "at least 1 um").reason
+    assert "there are" in one(stage, "frequency.platform.900", "at least 1 Hz").reason
+    assert "no stroke is required" in one(stage, "corner", "at most 1").reason
+
+
+def test_points_of_interest_count():
+    """A stroke about the sample, and its stiffness: other numbers than at the platform's reference."""
+    stage = hexapod()
+    for key in ("stroke.rx", "stiffness.x", "resolution.x", "drift.z"):
+        unit = {"stroke.rx": "urad", "stiffness.x": "N/um", "resolution.x": "nm", "drift.z": "nm/K"}[key]
+        here, there = (one(stage, key, f"at least 1 {unit}{where}").value for where in ("", " at sample"))
+        assert here != pytest.approx(there, rel=1e-4), key
+
+
+def test_a_batch_is_judged_design_by_design():
+    """Two head radii at once: a verdict each."""
+    radii = np.array([0.05, 0.06])
+    together = replace(
+        hexapod(replace(Hexapod(), head_radius=radii)), requirements={"stroke.rz": "at least 500 urad", "safety": "at least 2"}
+    )
+    for verdict in judge(together):
+        assert verdict.passed.shape == (2,)
+        for index, radius in enumerate(radii):
+            alone = replace(
+                hexapod(replace(Hexapod(), head_radius=float(radius))), requirements={verdict.requirement.key: verdict.requirement.text}
+            )
+            assert verdict.value[index] == pytest.approx(float(judge(alone)[0].value), rel=1e-6)
+
+
+def test_only_what_is_asked_is_worked_out(stage, monkeypatch):
+    """A line about the mass reads no stage."""
+    from flexstage.studies import judge as room
+
+    def refused(*_):
+        raise AssertionError("worked out for nothing")
+
+    for name in ("lumped", "ideal", "modes", "lost_motion", "hinge_stress", "drift"):
+        monkeypatch.setattr(room, name, refused)
+    assert judge(replace(stage, requirements={"mass": "at most 14 kg"}))[0].passed
