@@ -7,6 +7,7 @@ import doctest
 import io
 import os
 import re
+import shlex
 import subprocess
 import sys
 import tomllib
@@ -17,12 +18,14 @@ from typing import Any
 import pytest
 import tomlkit
 
+from flexstage.apps.cli import run
 from flexstage.mechanism.store import load
 from tests.docs.pages import Block, commands, path_of
 from tests.hygiene.source import ROOT
 
 _SHELLS = ("sh", "bash", "console", "shell")
 _PROGRAM = re.compile(r"(\.venv/bin/)?flexstage( |$)")
+_FOR_A_SHELL = re.compile(r"[|<>;&$]")
 _LOOSELY = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
 _UNCHECKED = ("", "text", "json", "html", "matlab", "make")
 
@@ -37,6 +40,13 @@ class Runner:
 
     def run(self, block: Block) -> None:
         """Do what a block says; fails with the page and line."""
+        try:
+            self._do(block)
+        except Exception as error:
+            error.add_note(f"in {block.where}")
+            raise
+
+    def _do(self, block: Block) -> None:
         if block.language == "python":
             self._python(block)
         elif block.language in _SHELLS or (not block.language and _PROGRAM.match(block.text)):
@@ -64,18 +74,11 @@ class Runner:
 
     def _flexstage(self, block: Block, line: str) -> str:
         expected = int(block.word("exit") or 0)
-        done = subprocess.run(
-            ["bash", "-o", "pipefail", "-c", line.removeprefix(".venv/bin/")],
-            cwd=self.folder,
-            env=_environment(),
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            text=True,
-            check=False,
-        )
-        if done.returncode != expected:
-            pytest.fail(f"{block.where}: exit code {done.returncode}, expected {expected}\n$ {line}\n{done.stdout}", pytrace=False)
-        return done.stdout
+        whole = line.startswith(".venv/") or _FOR_A_SHELL.search(line)
+        code, printed = (_in_a_shell if whole else _in_this_process)(line, self.folder)
+        if code != expected:
+            pytest.fail(f"{block.where}: exit code {code}, expected {expected}\n$ {line}\n{printed}", pytrace=False)
+        return printed
 
     def _toml(self, block: Block) -> None:
         if (name := block.word("file")) is not None:
@@ -98,6 +101,28 @@ class Runner:
                 load(path)
         finally:
             path.write_text(whole, encoding="utf-8")
+
+
+def _in_this_process(line: str, folder: Path) -> tuple[int, str]:
+    """Run a command line without a process of its own: a hundred of them would cost minutes."""
+    printed = io.TextIOWrapper(io.BytesIO(), encoding="utf-8", write_through=True)
+    with contextlib.chdir(folder), contextlib.redirect_stdout(printed), contextlib.redirect_stderr(printed):
+        code = run(shlex.split(line, comments=True)[1:])
+    return code, printed.buffer.getvalue().decode()
+
+
+def _in_a_shell(line: str, folder: Path) -> tuple[int, str]:
+    """Run it as the installed program, through a shell."""
+    done = subprocess.run(
+        ["bash", "-o", "pipefail", "-c", line.removeprefix(".venv/bin/")],
+        cwd=folder,
+        env=_environment(),
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        check=False,
+    )
+    return done.returncode, done.stdout
 
 
 def _environment() -> dict[str, str]:

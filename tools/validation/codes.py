@@ -60,7 +60,7 @@ def _gains() -> Section:
     from tests.elsewhere.exudyn_model import stroked, system
     from tests.elsewhere.test_exudyn import STAGES
 
-    stage = STAGES["set B"]()
+    stage = STAGES["double-triangle"]()
     model, peer = fs.lumped(stage), system(stage, expand(stage))
     rows: list[Row] = []
     for actuator, component in (("B1", 0), ("B4", 2)):

@@ -1,0 +1,197 @@
+"""The pictures of the documentation, drawn anew from the shipped stage: `make pictures` writes docs/pictures/*.svg.
+
+Run with `--png FOLDER` to look at them: the same pictures as PNG.
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from threadpoolctl import threadpool_limits
+
+import flexstage as fs
+from flexstage.analysis.modes import clusters
+from flexstage.beams.closed_forms import (
+    paros_weisbord_rotation_simplified,
+    schotborgh_rotation_stiffness,
+    smith_toroid_rotation_stiffness,
+)
+from flexstage.cases.double_triangle import double_triangle
+from flexstage.present.figures.budget import loss_figure
+from flexstage.present.figures.directional import directional_figure
+from flexstage.present.figures.export import to_png, to_svg
+from flexstage.present.figures.style import FULL, GRID, INK, MUTED, PAPER, SERIES, canvas, styled
+from flexstage.present.plan import plan_figure
+from flexstage.present.scene.facet import Facet, Kind
+from flexstage.present.scene.stage import Scene, displaced, largest_motion, scene
+from flexstage.present.scene.view import Side, draw, ordered, outline, triad, view, write
+from flexstage.spatial.frame import COMPONENTS
+from tests.analytic import test_paros_weisbord, test_smith_toroid
+from tests.analytic.hinges import UNIT, circular, diagonal, error
+
+PICTURES = Path(__file__).resolve().parents[1] / "docs" / "pictures"
+_COLOURS = {"ink": INK, "muted": MUTED, "rule": GRID, "paper": PAPER}
+_SWAY = 0.03
+"""Largest motion of a drawn mode [m]."""
+_SIDES = ((Side.ISOMETRIC, (0, 0)), (Side.TOP, (0, 1)), (Side.FRONT, (1, 0)), (Side.RIGHT, (1, 1)))
+
+
+def stage() -> Any:
+    """The double-triangular stage from three sides and above the corner, all to one scale but for the corner."""
+    drawn = scene(double_triangle())
+    with styled():
+        figure = canvas(FULL, 0.82 * FULL)
+        panels = figure.subplots(2, 2, height_ratios=(2.6, 1.0))
+        for side, place in _SIDES:
+            _side(panels[place], drawn, side)
+    return figure
+
+
+def _side(axes: Any, drawn: Scene, side: Side) -> None:
+    seen = view(side)
+    facets = ordered(drawn, seen)
+    _framed(axes, facets, side)
+    draw(axes, facets, seen)
+    if side in (Side.ISOMETRIC, Side.TOP):
+        write(axes, drawn.labels, seen)
+    triad(axes, seen)
+
+
+def _framed(axes: Any, facets: list[Facet], side: Side) -> None:
+    flat = np.concatenate([view(side).flat(facet.points) for facet in facets])
+    gap = 12.0
+    axes.set_xlim(flat[:, 0].min() - gap, flat[:, 0].max() + gap)
+    axes.set_ylim(flat[:, 1].min() - gap, flat[:, 1].max() + gap)
+    axes.set_aspect("equal")
+    axes.set_axis_off()
+
+
+def modes() -> Any:
+    """The platform's modes, exaggerated, over its outline at rest; of repeated ones the first."""
+    drawn, model = scene(double_triangle()), fs.lumped(double_triangle())
+    found = fs.modes(model)
+    kept = [facet for facet in ordered(drawn, view(Side.ISOMETRIC)) if facet.paint.kind not in (Kind.GAUGE, Kind.GROUND)]
+    groups = [group for group in clusters(found.frequencies, 1e-6) if set(group) <= set(found.platform)]
+    with styled():
+        figure = canvas(FULL, 0.58 * FULL)
+        for axes, group in zip(figure.subplots(2, 2).flat, groups, strict=True):
+            index = group[0]
+            twists = _twists(drawn, model, found.shapes[:, index])
+            _mode(axes, kept, displaced(kept, drawn, twists, _SWAY / largest_motion(drawn, twists)))
+            times = ", twice" if len(group) == 2 else ""
+            axes.set_title(f"{found.names[index]}, {found.frequencies[index]:.1f} Hz{times}")
+    return figure
+
+
+def _twists(drawn: Scene, model: fs.LinearModel, shape: Any) -> dict[str, Any]:
+    return {body: model.output[model.output_index(tuple(f"{body}.{name}" for name in COMPONENTS))] @ shape for body in drawn.references}
+
+
+def _mode(axes: Any, kept: list[Facet], moved: list[Facet]) -> None:
+    seen = view(Side.ISOMETRIC)
+    _framed(axes, [*kept, *moved], Side.ISOMETRIC)
+    outline(axes, [facet for facet in kept if facet.paint.kind is Kind.PLATFORM], seen)
+    draw(axes, moved, seen)
+
+
+def plan() -> Any:
+    """The dimensioned plan."""
+    mechanism = double_triangle()
+    return plan_figure(mechanism, scene(mechanism))
+
+
+def polar() -> Any:
+    """Stiffness in the plane by direction."""
+    return directional_figure(fs.statics(fs.lumped(double_triangle())))
+
+
+def budget() -> Any:
+    """Lost motion by hinge."""
+    mechanism = double_triangle()
+    return loss_figure(fs.lost_motion(fs.ideal(mechanism), fs.lumped(mechanism)))
+
+
+def hinge_errors() -> Any:
+    """How far beam theory and the closed forms are off, over t/R, for circular notches and toroidal necks."""
+    with styled():
+        figure = canvas(FULL, 2.9)
+        notch, neck = figure.subplots(1, 2, sharey=True)
+        _curves(notch, _notch_errors(), "circular notch, 2-D elements")
+        _curves(neck, _neck_errors(), "toroidal neck, axisymmetric elements")
+        notch.set_ylabel("error of the compliance [%]")
+    return figure
+
+
+def _curves(axes: Any, curves: Mapping[str, list[tuple[float, float]]], title: str) -> None:
+    axes.axhline(0.0, color=INK, linewidth=0.6)
+    for number, (name, points) in enumerate(curves.items()):
+        places, values = zip(*points, strict=True)
+        axes.plot(
+            places, values, marker="o", markersize=3.0, color=SERIES[number], linestyle=("-", "-", "-", "--", ":")[number], label=name
+        )
+    axes.set_title(title)
+    axes.set_xlabel("neck thickness over radius, t/R")
+    axes.set_ylim(-23.0, 17.0)
+    axes.legend(loc="upper left")
+
+
+def _notch_errors() -> dict[str, list[tuple[float, float]]]:
+    curves: dict[str, list[tuple[float, float]]] = {
+        name: [] for name in ("$C_x$, beam", "$C_{rz}$, beam", "$C_y$, beam", "$C_{rz}$, Paros-Weisbord simplified", "$C_{rz}$, Schotborgh")
+    }
+    for ratio, rz, _, _, _, x, _, y, _ in test_paros_weisbord.TABLE:
+        found, size = diagonal(circular(ratio), UNIT), (1.0, 1.0, ratio, 1.0)
+        simple, fitted = paros_weisbord_rotation_simplified(*size), 1.0 / schotborgh_rotation_stiffness(*size)
+        pairs = ((found[0], x), (found[5], rz), (found[1], y), (simple, rz), (fitted, rz))
+        for points, (ours, true) in zip(curves.values(), pairs, strict=True):
+            points.append((ratio, float(error(ours, true))))
+    return curves
+
+
+def _neck_errors() -> dict[str, list[tuple[float, float]]]:
+    curves: dict[str, list[tuple[float, float]]] = {name: [] for name in ("$C_x$, beam", "$C_{rz}$, beam", "$C_{rz}$, Smith")}
+    for ratio, rz, _, _, x, _ in test_smith_toroid.TABLE:
+        found = diagonal(fs.Neck("m", thickness=ratio, profile=fs.Circular(1.0)), UNIT)
+        pairs = ((found[0], x), (found[5], rz), (1.0 / smith_toroid_rotation_stiffness(1.0, ratio, 1.0), rz))
+        for points, (ours, true) in zip(curves.values(), pairs, strict=True):
+            points.append((ratio, float(error(ours, true))))
+    return curves
+
+
+DRAWN: Mapping[str, tuple[Callable[[], Any], str]] = {
+    "stage": (stage, "the double-triangular stage from above the corner, from above, from the front and from the right"),
+    "plan": (plan, "dimensioned plan of the double-triangular stage"),
+    "polar": (polar, "stiffness of the double-triangular stage in the plane by direction: circles"),
+    "budget": (budget, "lost motion of the six actuators by hinge"),
+    "modes": (modes, "shapes of the platform's six modes"),
+    "hinge-errors": (hinge_errors, "error of beam theory against finite elements over thickness over radius"),
+}
+
+
+def standing_alone(svg: str) -> str:
+    """An SVG that was made to stand inside a page, as a file of its own: with a name space and the page's colours."""
+    for name, colour in _COLOURS.items():
+        svg = svg.replace(f"var(--{name})", colour)
+    svg = svg.replace('style="max-width', f'style="background:{PAPER};max-width', 1)
+    return svg.replace("<svg ", '<svg xmlns="http://www.w3.org/2000/svg" font-family="DejaVu Sans, Verdana, sans-serif" ', 1)
+
+
+def main() -> None:
+    """Write all pictures."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--png", type=Path, help="folder for PNGs to look at, instead of the pages' SVGs")
+    folder = parser.parse_args().png
+    with threadpool_limits(limits=1):
+        for name, (figure, said) in DRAWN.items():
+            if folder:
+                (folder / f"{name}.png").write_bytes(to_png(figure()))
+            else:
+                (PICTURES / f"{name}.svg").write_text(standing_alone(to_svg(figure(), name, said)), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
