@@ -18,6 +18,7 @@ from flexstage.present.documents.envelope import FORMAT
 from flexstage.readings.ideal import ideal
 from flexstage.readings.lumped import lumped
 from tests.apps.command import Command, design_in
+from tests.hygiene.source import ROOT
 
 READINGS = ("ideal", "mapped", "lumped")
 WITH_READING = ("mapping", "stiffness", "lost-motion", "modes", "response", "workspace", "analyse")
@@ -176,3 +177,22 @@ def test_changes_are_told_old_new_and_relative(flexstage: Command) -> None:
     assert yaw["old"] > yaw["new"] == pytest.approx(document["modes"]["modes"][3]["frequency_hz"], rel=1e-12)
     assert yaw["relative"] == pytest.approx(yaw["new"] / yaw["old"] - 1.0, rel=1e-9)
     assert document["physics_digest"] != digest(double_triangle(), physics=True)
+
+
+ENVELOPE = {"format", "kind", "version", "name", "reading", "physics_digest", "method", "reasons"}
+
+
+def page_section(kind: str) -> str:
+    """The section of docs/json.md about one command."""
+    text = (ROOT / "docs" / "json.md").read_text(encoding="utf-8")
+    return text.partition(f"\n## {kind}\n")[2].partition("\n## ")[0]
+
+
+@pytest.mark.parametrize("name", [*WITH_READING, *LUMPED_ONLY, "check", "catalogue"])
+def test_every_key_is_documented(flexstage: Command, name: str) -> None:
+    extra = {"analyse": ["--set", "parts.neck.thickness=1.5mm"], "sensitivities": ["--parameter", "parts.neck.thickness"]}
+    extra |= {"mapping": ["--reading", "lumped"]}
+    design = [] if name == "catalogue" else ["stage.toml"]
+    document = flexstage(name, *design, *extra.get(name, []), "--json", "-").document
+    section = page_section(name)
+    assert [key for key in document if key not in ENVELOPE and f"`{key}`" not in section] == []

@@ -25,13 +25,14 @@ from flexstage.studies.attempt import Attempts
 from flexstage.studies.budget import budget
 from flexstage.studies.judge import judge
 from flexstage.studies.reading import Reading
+from flexstage.studies.units import UnitResult, units
 from flexstage.studies.workspace import Workspace, workspace
 
 __all__ = ["Analysis", "Reading", "analyse", "grounded_drift", "platform_modes", "read", "required_command"]
 
 _MODE_LIMIT = 1000.0
 _RIGID = "the ideal reading has no elasticity"
-_UNLUMPED = "drift needs the lumped reading"
+_UNLUMPED = "this needs the lumped reading"
 _DRIFTLESS = "the error budget needs the drift"
 
 
@@ -40,7 +41,8 @@ class Analysis:
     """All results of one reading of a stage; `None` where a reading or a stage does not give them, and `missing` says why, by field name.
 
     `response` is that of the platform's twist and all gauges to the strokes, `transmissibility` that of the platform to the ground.
-    Drift, error budget and the `verdicts` on the requirements are those of the lumped reading; drift is missing for the others.
+    Drift, error budget, `units` (each distinct unit alone) and the `verdicts` on the requirements are those of the lumped reading; all but
+    the verdicts are missing for the others.
     The error budget is that of the required strokes, or of all single-axis strokes at once, and of one kelvin.
     """
 
@@ -56,6 +58,7 @@ class Analysis:
     workspace: Workspace | None
     drift: Drift | None
     error_budget: ErrorBudget | None
+    units: Mapping[str, UnitResult] | None
     verdicts: tuple[Verdict, ...]
     missing: Mapping[str, str]
 
@@ -106,6 +109,7 @@ def analyse(mechanism: Mechanism, reading: Reading = Reading.LUMPED) -> Analysis
         workspace=reach,
         drift=drifted,
         error_budget=attempt.given("error_budget", drifted, _DRIFTLESS, lambda known: _errors(mechanism, command, reach, known)),
+        units=attempt.given("units", model if reading is Reading.LUMPED else None, _UNLUMPED, lambda _: units(mechanism)),
         verdicts=verdicts,
         missing=Table(attempt.missing),
     )

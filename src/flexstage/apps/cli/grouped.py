@@ -90,6 +90,7 @@ def analysis_tables(analysis: Analysis) -> Iterator[Table | None]:
     """Tables of `analyse`: what decides first, one or two an analysis; the commands of one analysis show more."""
     from flexstage.present.tables import errors, kinematics, lost_motion, statics, workspace
     from flexstage.present.tables.modes import mode_table
+    from flexstage.present.tables.units import unit_table
 
     found = analysis.kinematics
     yield kinematics.mobility_table(found)
@@ -98,6 +99,7 @@ def analysis_tables(analysis: Analysis) -> Iterator[Table | None]:
     if analysis.statics is not None:
         yield statics.stiffness_table(analysis.statics)
         yield statics.principal_table(analysis.statics)
+    yield unit_table(analysis.units) if analysis.units else None
     if analysis.lost_motion is not None:
         yield lost_motion.loss_table(analysis.lost_motion)
         yield lost_motion.budget_table(analysis.lost_motion)

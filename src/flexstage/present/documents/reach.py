@@ -59,7 +59,7 @@ def workspace_body(workspace: Workspace) -> Document:
         "stack_lines": _of(workspace.stack_lines, _stack_lines),
         "stress": _of(workspace.stress, _stress),
         "buckling": _of(workspace.buckling, _buckling),
-        "loads": _of(workspace.loads, lambda found: _loads(found, limits)),
+        "loads": _of(workspace.loads, lambda found: _loads(found, limits.from_zero)),
         **({"reasons": dict(workspace.missing)} if workspace.missing else {}),
     }
 

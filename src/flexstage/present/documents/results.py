@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
@@ -21,6 +21,7 @@ from flexstage.readings.linear.kinematics import Kinematics
 from flexstage.readings.linear.model import LinearModel
 from flexstage.readings.linear.static import static_gain
 from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
+from flexstage.studies.units import UnitResult
 
 LISTED_MODES = 24
 _LOCKED = "this reading locks freedoms of the platform: its stiffness is infinite along them"
@@ -232,6 +233,46 @@ def elastic_jacobian(kinematics: Kinematics, model: LinearModel) -> Document:
     ['B1', 'B2']
     """
     return static_gain(model, tuple(f"platform.{name}" for name in COMPONENTS), kinematics.actuators).to_json()
+
+
+def units_body(found: Mapping[str, UnitResult]) -> Document:
+    """Each distinct unit alone: stiffness at its output along and across its direction, gain and loss, and its springs if it is a lever.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.studies.units import units
+    >>> round(units_body(units(double_triangle()))["horizontal"]["axial_stiffness_n_per_m"] / 1e6, 2)
+    10.3
+    """
+    return {name: _unit(unit) for name, unit in found.items()}
+
+
+def _unit(unit: UnitResult) -> Document:
+    lever = (
+        None
+        if unit.lever is None
+        else {
+            "drive_n_per_m": unit.lever.drive,
+            "pivot_nm_per_rad": unit.lever.pivot,
+            "pole_n_per_m": unit.lever.pole,
+            "short_arm_m": unit.lever.short_arm,
+            "long_arm_m": unit.lever.long_arm,
+            "gain": unit.lever.gain,
+            "tip_compliance_m_per_n": unit.lever.tip_compliance,
+        }
+    )
+    return {
+        "copy": unit.copy,
+        "direction": unit.direction,
+        "axial_stiffness_n_per_m": unit.axial,
+        "lateral_stiffness_n_per_m": unit.lateral,
+        "ideal_gain": unit.ideal_gain,
+        "gain": unit.gain,
+        "loss": unit.loss,
+        "load_compliance_m_per_n": unit.load_compliance,
+        "mapped_stiffness_n_per_m": unit.series,
+        "lever": lever,
+        "stiffness": unit.stiffness.to_json(),
+    }
 
 
 def drift_body(drift: Drift) -> Document:

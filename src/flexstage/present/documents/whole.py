@@ -6,7 +6,15 @@ from collections.abc import Iterable
 
 from flexstage.present.documents.envelope import Document, plain
 from flexstage.present.documents.reach import budget_body, requirements_body, workspace_body
-from flexstage.present.documents.results import drift_body, lost_motion_body, mapping_body, modes_body, response_body, stiffness_body
+from flexstage.present.documents.results import (
+    drift_body,
+    lost_motion_body,
+    mapping_body,
+    modes_body,
+    response_body,
+    stiffness_body,
+    units_body,
+)
 from flexstage.studies.complete import Analysis
 from flexstage.studies.difference import Change
 
@@ -34,6 +42,7 @@ def analysis_body(analysis: Analysis) -> Document:
         "workspace": None if analysis.workspace is None else workspace_body(analysis.workspace),
         "drift": None if analysis.drift is None else drift_body(analysis.drift),
         "budget": None if analysis.error_budget is None else budget_body(analysis.error_budget),
+        "units": None if analysis.units is None else units_body(analysis.units),
     }
     reasons = {_KEYS.get(name, name): reason for name, reason in analysis.missing.items()}
     documents = {name: None if document is None else plain(document) for name, document in found.items()}
