@@ -69,7 +69,7 @@ def bridge(parameters: Bridge | None = None) -> Mechanism:
         damping=ModalDamping(0.01),
         envelope=(90 * mm, 50 * mm, 10 * mm),
         mode_limit=5 * kHz,
-        requirements={"stroke.y": "at least 200 um", "frequency.platform.1": "at least 150 Hz", "safety": "at least 2"},
+        requirements={"stroke.y": "at least 160 um", "frequency.platform.1": "at least 150 Hz", "safety": "at least 2"},
         tags=stock_tags(("aluminium",), ("stack",), ("probe",)),
         sources=SOURCES,
     )

@@ -71,11 +71,11 @@ def tip_tilt(parameters: TipTilt | None = None) -> Mechanism:
             "S1-S3": Probe("probe", "platform", Polar(0.45 * p.holder, 90 * deg, Facing.AXIS, -0.5 * p.holder_thickness), Positive.OPENS)
         },
         damping=ModalDamping(0.01),
-        envelope=(100 * mm, 100 * mm, 75 * mm),
+        envelope=(100 * mm, 100 * mm, 80 * mm),
         mode_limit=20 * kHz,
         requirements={
-            "stroke.z": "at least 35 um",
-            "stroke.rx": "at least 1 mrad",
+            "stroke.z": "at least 18 um",
+            "stroke.rx": "at least 0.9 mrad",
             "frequency.platform.1": "at least 500 Hz",
             "safety": "at least 2",
         },

@@ -79,7 +79,7 @@ def xy_stage(parameters: XYStage | None = None) -> Mechanism:
 
 
 def _requirements(p: XYStage) -> dict[str, str]:
-    strokes = {f"stroke.{axis}": "at least 33 um" for axis in ("x", "y")[: p.driven]}
+    strokes = {f"stroke.{axis}": "at least 18 um" for axis in ("x", "y")[: p.driven]}
     return strokes | {"frequency.platform.1": "at least 150 Hz", "safety": "at least 2"}
 
 

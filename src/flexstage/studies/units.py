@@ -48,7 +48,10 @@ class UnitResult:
 
 
 def units(mechanism: Mechanism) -> dict[str, UnitResult]:
-    """Analyse the first copy of every placed unit that has exactly one actuator. One design."""
+    """Analyse the first copy of every placed unit that drives its output by exactly one actuator, alone. One design.
+
+    A unit that needs the rest of the stage to work (a carriage that its neighbours guide) is left out.
+    """
     actuators = expand(mechanism).actuators
     mapping = ideal(mechanism).mapping
     first: dict[str, UnitResult] = {}
@@ -59,8 +62,9 @@ def units(mechanism: Mechanism) -> dict[str, UnitResult]:
             for value, name in zip(row, mapping.columns, strict=True):
                 if name in ("x", "y", "z"):
                     pushed["xyz".index(name)] = value
-            if np.linalg.norm(pushed) > 0.0:
-                first[unit] = _unit(mechanism, copy, unit, frame.rotation.T @ pushed / np.linalg.norm(pushed))
+            direction = frame.rotation.T @ pushed / (np.linalg.norm(pushed) or 1.0)
+            if ideal(isolate(mechanism, copy, guide=_vector(direction))).actuated:
+                first[unit] = _unit(mechanism, copy, unit, direction)
     return first
 
 
