@@ -5,9 +5,10 @@ The first word behind a fence is the language; the words after it, which no rend
     python                  run; the blocks of a page share one namespace
     sh                      lines that start with `flexstage` are run and must leave with exit code 0; `make` lines name an existing target
     sh exit=2               they must leave with that exit code
-    toml file=guide.toml    a whole file: written into the page's folder
-    toml into=guide.toml    a piece of a file: that file with the piece laid over it must load
-    toml mistake=guide.toml the same, but `flexstage check` must refuse it; what it prints is the output
+    toml file=guide.toml    a whole file (of any language): written into the page's folder
+    toml add=guide.toml     a piece of a file: laid over that file, which must load
+    toml into=guide.toml    the same, and afterwards the file is as it was
+    toml mistake=guide.toml the same too, but `flexstage check` must refuse it; what it prints is the output
     text output             what the block before it prints, "..." for anything; white space is not compared
 """
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import doctest
 import io
 import os
 import re
@@ -26,7 +25,6 @@ from tests.hygiene.source import ROOT
 _SHELLS = ("sh", "bash", "console", "shell")
 _PROGRAM = re.compile(r"(\.venv/bin/)?flexstage( |$)")
 _FOR_A_SHELL = re.compile(r"[|<>;&$]")
-_LOOSELY = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
 _UNCHECKED = ("", "text", "json", "html", "matlab", "make")
 
 
@@ -47,7 +45,9 @@ class Runner:
             raise
 
     def _do(self, block: Block) -> None:
-        if block.language == "python":
+        if (name := block.word("file")) is not None:
+            path_of(self.folder, name).write_text(block.text, encoding="utf-8")
+        elif block.language == "python":
             self._python(block)
         elif block.language in _SHELLS or (not block.language and _PROGRAM.match(block.text)):
             self._shell(block)
@@ -81,20 +81,21 @@ class Runner:
         return printed
 
     def _toml(self, block: Block) -> None:
-        if (name := block.word("file")) is not None:
-            path_of(self.folder, name).write_text(block.text, encoding="utf-8")
-            return
-        base, wrong = block.word("into"), block.word("mistake")
-        name = base or wrong
-        assert name is not None, f"{block.where}: say what the file is: file=..., into=... or mistake=..."
-        self._laid_over(block, name, wrong=wrong is not None)
+        (key, name), *more = [(key, name) for key in ("add", "into", "mistake") if (name := block.word(key))] or [("", "")]
+        assert name and not more, f"{block.where}: say what the file is: file=..., add=..., into=... or mistake=..."
+        if key == "add":
+            path = self.folder / name
+            path.write_text(_laid(block, path), encoding="utf-8")
+            load(path)
+        else:
+            self._tried(block, name, wrong=key == "mistake")
 
-    def _laid_over(self, block: Block, name: str, *, wrong: bool) -> None:
+    def _tried(self, block: Block, name: str, *, wrong: bool) -> None:
         """Lay a piece over a file of the page, then load it, or show what the command says of it; the file itself stays."""
         path = self.folder / name
         whole = path.read_text(encoding="utf-8")
         try:
-            path.write_text(tomlkit.dumps(_merged(tomllib.loads(whole), tomllib.loads(block.text))), encoding="utf-8")
+            path.write_text(_laid(block, path), encoding="utf-8")
             if wrong:
                 self._shell(Block(block.page, block.line, "sh", ("exit=2",), f"flexstage check {name}"))
             else:
@@ -141,6 +142,11 @@ def _known(block: Block, line: str) -> None:
         assert re.search(rf"^{re.escape(words[1])}:", makefile, re.MULTILINE), f"{block.where}: there is no target {words[1]}"
 
 
+def _laid(block: Block, path: Path) -> str:
+    """A file's text with the piece laid over it."""
+    return tomlkit.dumps(_merged(tomllib.loads(path.read_text(encoding="utf-8")), tomllib.loads(block.text)))
+
+
 def _merged(below: Mapping[str, Any], above: Mapping[str, Any]) -> dict[str, Any]:
     result = dict(below)
     for key, value in above.items():
@@ -150,5 +156,6 @@ def _merged(below: Mapping[str, Any], above: Mapping[str, Any]) -> dict[str, Any
 
 
 def _compare(block: Block, printed: str) -> None:
-    if not doctest.OutputChecker().check_output(block.text, printed, _LOOSELY):
+    pieces = (re.escape(" ".join(piece.split())) for piece in block.text.split("..."))
+    if not re.fullmatch(".*?".join(pieces), " ".join(printed.split())):
         pytest.fail(f"{block.where}: the page says\n{block.text}\nbut this is printed\n{printed}", pytrace=False)
