@@ -9,12 +9,12 @@ many times over.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from flexstage.base.number import Number, Vector
-from flexstage.base.scale import X, Y, Z, deg, kHz, mm
+from flexstage.base.scale import X, Y, Z, deg, kHz, mm, nm, um
 from flexstage.cases.stock import ALUMINIUM, GAUGE, SLIM_STACK, SOURCES, stock_tags
 from flexstage.mechanism.mechanism import Link, Mechanism, ModalDamping, Placement, Probe, Unit
 from flexstage.mechanism.pattern import Pose
@@ -64,7 +64,7 @@ def bridge(parameters: Bridge | None = None) -> Mechanism:
         links={"pzt": Link(("left", "right"), "stack", (0.0, 0.0, 0.0), X), **_guides(p, top)},
         units={name: _arm(p, *ends) for name, ends in arms.items()},
         place={_copy(name): Placement(name, _arm_pose(p, *ends)) for name, ends in arms.items()},
-        sensors={"probe": GAUGE},
+        sensors={"probe": replace(GAUGE, range=500 * um, resolution=1 * nm, source="capacitive gauge of 500 um range, typical")},
         gauges={"S": Probe("probe", "platform", Pose((0.0, top + 0.5 * p.size[1], 0.0), along=Y), Positive.OPENS)},
         damping=ModalDamping(0.01),
         envelope=(90 * mm, 50 * mm, 10 * mm),
