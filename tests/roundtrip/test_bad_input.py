@@ -287,6 +287,10 @@ DANGLING = {"tip": Body(mass=1.0), **STAGE.bodies}
             ["place.leg", "a unit and a copy have this name"],
         ),
         (
+            dataclasses.replace(STAGE, links={"L2": Link(("ground", "platform"), "wire", O, X)}),
+            ["place.L2", "a link and a copy have this name"],
+        ),
+        (
             dataclasses.replace(STAGE, place={"L": Placement("leg", Pose(along=X, up=X))}),
             ["place.L.pose.up", "0 deg to along"],
         ),

@@ -1,7 +1,7 @@
 """Size and dimension of a unit's text.
 
-Names and prefixes are pint's, from a short list of definitions; the angle is a dimension of its own. A unit is a product or quotient of names
-with small powers, read from left to right: `N m/rad`, `nm/Hz^0.5`, `um/m/K`, `1/K`, `m/(N m)`. Sizes are exact fractions.
+Names and prefixes are pint's, from a short list of definitions; the angle is a dimension of its own. A unit is a product or quotient of
+names with small powers, read from left to right: `N m/rad`, `nm/Hz^0.5`, `um/m/K`, `1/K`, `m/(N m)`. Sizes are exact fractions.
 """
 
 from __future__ import annotations

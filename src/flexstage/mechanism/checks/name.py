@@ -148,8 +148,10 @@ def _copies(mechanism: Mechanism) -> Iterator[tuple[str, Unit]]:
 
 def _clashes(mechanism: Mechanism) -> Iterator[Finding]:
     copies = {name for key in mechanism.place for name in copy_names(key)}
-    for name in sorted(copies & set(mechanism.units)):
-        yield Finding(f"place.{name}", "a unit and a copy have this name", "Give one of them another name: addresses could mean either")
+    for kind, names in (("unit", mechanism.units), ("link", mechanism.links)):
+        for name in sorted(copies & set(names)):
+            advice = "Give one of them another name: addresses could mean either"
+            yield Finding(f"place.{name}", f"a {kind} and a copy have this name", advice)
 
 
 def _link(mechanism: Mechanism, where: str, link: Link, bodies: set[str]) -> Iterator[Finding]:

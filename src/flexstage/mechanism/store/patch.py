@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 import tomlkit
+from tomlkit.exceptions import TOMLKitError
 
 from flexstage.base.finding import refuse
 from flexstage.mechanism.address import set_value, value_from_text
@@ -32,18 +33,25 @@ def patch(text: str, values: Mapping[str, Any], *, where: str = "text") -> str:
     mode_limit = "800 Hz"  # enough
     """
     mechanism = mechanism_from(parse_toml(text, where), shipped())
-    document = tomlkit.parse(text)
     for address, value in values.items():
         place = locate(mechanism, address)
         kept = value_from_text(value, place, address) if isinstance(value, str) else value
         changed = set_value(mechanism, address, kept)
+        text = _patched(text, mechanism, changed, address)
+        mechanism = changed
+    if mechanism_from(parse_toml(text, where), shipped()) != mechanism:
+        raise refuse(where, "its tables are laid out so that single values cannot be changed", "Write it anew with dump")
+    return text
+
+
+def _patched(text: str, mechanism: Mechanism, changed: Mechanism, address: str) -> str:
+    try:
+        document = tomlkit.parse(text)
         _untag(document, mechanism, changed)
         _set(document, mechanism, changed, address)
-        mechanism = changed
-    result = tomlkit.dumps(document)
-    if mechanism_from(parse_toml(result, where), shipped()) != mechanism:
-        raise refuse(where, "its tables are laid out so that single values cannot be changed", "Write it anew with dump")
-    return result
+        return tomlkit.dumps(document)
+    except TOMLKitError as error:
+        raise refuse(address, f"the file cannot be changed there: {error}", "Write it anew with dump") from None
 
 
 def _set(document: Any, mechanism: Mechanism, changed: Mechanism, address: str) -> None:
@@ -58,7 +66,7 @@ def _set(document: Any, mechanism: Mechanism, changed: Mechanism, address: str) 
 
 def _set_changes(document: Any, mechanism: Mechanism, changed: Mechanism) -> None:
     if "change" not in document:
-        document.append("change", tomlkit.table())
+        document["change"] = {}
     table = document["change"]
     for key in mechanism.changes.keys() - changed.changes.keys():
         del table[key]
