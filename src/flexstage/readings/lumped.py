@@ -23,7 +23,7 @@ from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.mechanism.moving_mass import moving_inertia
 from flexstage.parts.material import Material
 from flexstage.parts.part import Part, Restricted
-from flexstage.readings.linear.elimination import eliminate
+from flexstage.readings.linear.elimination import eliminate, pivoted
 from flexstage.readings.linear.model import Channel, Contribution, LinearModel, assembled, gathered
 from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS, WRENCH_UNITS, Frame, seen_at
 
@@ -183,9 +183,7 @@ def _pinned(stage: _Stage, loose: Array, independent: tuple[int, ...]) -> list[i
             f"{', '.join(_moving(stage, loose, independent))}",
             "Add a link that holds this motion, or check which freedoms the links leave free",
         )
-    from scipy.linalg import qr
-
-    _, _, order = qr((loose / moved).T, pivoting=True)
+    order = pivoted((loose / moved).T)[2]
     return sorted(int(index) for index in order[: loose.shape[1]])
 
 

@@ -18,6 +18,9 @@ from flexstage.beams.compliance import compliance
 from flexstage.mechanism.expand import Assembly, PlacedLink, copies, expand
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
 from flexstage.mechanism.moving_mass import moving_inertia
+from flexstage.parts.freedom import ALL, Freedom
+from flexstage.parts.given import Joint
+from flexstage.parts.part import Restricted
 from flexstage.readings.ideal import ideal
 from flexstage.readings.linear.kinematics import Kinematics
 from flexstage.readings.linear.model import Channel, Contribution, LinearModel
@@ -63,8 +66,8 @@ class LeverStiffness:
 def mapped(mechanism: Mechanism) -> LinearModel:
     """Read a stage as the paper does: axial springs in actuator coordinates under a rigid platform.
 
-    Each unit's stiffness is stated in the description, or computed for direct units (a straight strut) and lever units. Raises `DesignError`
-    naming every other unit and the key that states it.
+    Each unit's stiffness is stated in the description, or computed for direct units (a straight strut) and lever units. Raises
+    `DesignError` naming every other unit and the key that states it.
     """
     kinematics = ideal(mechanism)
     kinematics.mapping  # noqa: B018  (refuses under-actuated stages)
@@ -158,7 +161,7 @@ def lever_stiffness(assembly: Assembly, drive: str) -> LeverStiffness:
         raise refuse(drive, f"its lever has {len(pivots)} pivots to ground and {len(poles)} output poles, expected one each", "")
     pole = _chain(ways, assembly, poles[0].name, stop)
     pivot = pivots[0]
-    turning = 1.0 / compliance(pivot.part, pivot.material)[..., 5, 5]
+    turning = 1.0 / _compliance(pivot)[..., 5, 5]
     centre = pivot.frame.position
     return LeverStiffness(
         drive=1.0 / _series(driving, assembly.links[drive]),
@@ -209,9 +212,20 @@ def _series(chain: list[PlacedLink], line: PlacedLink) -> Array:
         if offset > _COLLINEAR:
             raise refuse(link.name, f"it lies {offset * 1e3:.4g} mm beside the line of {line.name}, expected 0", "")
         local = (np.swapaxes(link.frame.rotation, -1, -2) @ axis[..., None])[..., 0]
-        matrix = compliance(link.part, link.material)[..., :3, :3]
+        matrix = _compliance(link)[..., :3, :3]
         total = total + (local[..., None, :] @ matrix @ local[..., :, None])[..., 0, 0]
     return total
+
+
+def _compliance(link: PlacedLink) -> Array:
+    """Compliance of a link's part; a restricted part gives its elastic freedoms only, and what it frees has no stiffness to state."""
+    part = link.part
+    if isinstance(part, Joint) or (isinstance(part, Restricted) and Freedom.X in part.free):
+        raise refuse(link.name, "it is an ideal joint or has no axial stiffness, and the unit's stiffness needs one", "")
+    if isinstance(part, Restricted):
+        elastic = np.array([freedom in part.elastic for freedom in ALL])
+        return np.where(elastic[:, None] & elastic, compliance(part.part, link.material), 0.0)
+    return compliance(part, link.material)
 
 
 def _perpendicular(arm: Array, axis: Array) -> Array:

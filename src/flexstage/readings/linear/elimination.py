@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import cast
 
 import numpy as np
 from scipy.linalg import qr
@@ -60,7 +61,7 @@ def _pivot_columns(first: Array, keep: tuple[int, ...]) -> list[int]:
     outside = _without(first.shape[1], keep)
     if not first.size:
         return []
-    orthogonal, triangle, order = qr(_preferred(first[:, outside]), pivoting=True)
+    orthogonal, triangle, order = pivoted(_preferred(first[:, outside]))
     rank = _rank(triangle)
     dependent = [outside[index] for index in order[:rank]]
     left = (orthogonal.T @ first[:, list(keep)])[rank:]
@@ -111,6 +112,15 @@ def null_space(matrix: Array) -> Array:
     """
     if not matrix.size:
         return np.eye(matrix.shape[1])
-    orthogonal, triangle, _ = qr(_preferred(matrix.T), pivoting=True)
+    orthogonal, triangle, _ = pivoted(_preferred(matrix.T))
     diagonal = np.abs(np.diag(triangle))
     return orthogonal[:, int(np.sum(diagonal > _RANK * diagonal[0])) :]
+
+
+def pivoted(matrix: Array) -> tuple[Array, Array, Array]:
+    """QR decomposition of one real matrix with column pivoting: Q (m, m), R and the order of the columns, largest first.
+
+    >>> pivoted(np.array([[1.0, 2.0]]))[2].tolist()
+    [1, 0]
+    """
+    return cast(tuple[Array, Array, Array], qr(matrix, pivoting=True))
