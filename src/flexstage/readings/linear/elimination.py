@@ -74,7 +74,7 @@ def _pivots(matrix: Array) -> list[int]:
     """Indices of a maximal set of independent columns, best conditioned first."""
     if not matrix.size:
         return []
-    triangle, order = qr(_preferred(matrix), mode="r", pivoting=True)
+    _, triangle, order = pivoted(_preferred(matrix))
     return [int(index) for index in order[: _rank(triangle)]]
 
 
