@@ -9,8 +9,8 @@ author = "The flexstage authors"
 copyright = "2026, the flexstage authors"
 release = flexstage.__version__
 
-extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.mathjax"]
-myst_enable_extensions = ["amsmath", "colon_fence", "deflist", "dollarmath"]
+extensions = ["myst_parser", "sphinx.ext.autodoc"]
+myst_enable_extensions = ["colon_fence", "deflist"]  # formulas are plain text: MathJax would be fetched when a page is read
 myst_heading_anchors = 3
 
 # autodoc shows objects where they live, not where the lazy table hands them out.

@@ -81,8 +81,9 @@ class Runner:
         return printed
 
     def _toml(self, block: Block) -> None:
-        (key, name), *more = [(key, name) for key in ("add", "into", "mistake") if (name := block.word(key))] or [("", "")]
-        assert name and not more, f"{block.where}: say what the file is: file=..., add=..., into=... or mistake=..."
+        said = [(key, name) for key in ("add", "into", "mistake") if (name := block.word(key))]
+        assert len(said) == 1, f"{block.where}: say what the file is: file=..., add=..., into=... or mistake=..."
+        ((key, name),) = said
         if key == "add":
             path = self.folder / name
             path.write_text(_laid(block, path), encoding="utf-8")
