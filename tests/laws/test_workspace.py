@@ -5,18 +5,21 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from flexstage.analysis.workspace.blocking import platform_lines, stack_lines
 from flexstage.analysis.workspace.gauging import gauge_inverse, gauge_range, pose_resolution
 from flexstage.analysis.workspace.load import load_share
+from flexstage.analysis.workspace.map_error import linear_map_error, map_error_at
 from flexstage.analysis.workspace.polytope import reachable
 from flexstage.analysis.workspace.strength import hinge_stress
 from flexstage.analysis.workspace.stroke import StrokeLimits, mapping_at, single_axis, stroke_limits, utilisation
 from flexstage.base.finding import DesignError
 from flexstage.base.labelled import Matrix
 from flexstage.beams.stress import stress
+from flexstage.cases.registry import case
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import Force
 from flexstage.readings.ideal import ideal
@@ -205,6 +208,21 @@ def test_strokes_along_z_do_not_depend_on_where_the_stage_stands(mechanism, move
     second = mapping_at(there, ideal(there))
     assert first.columns == second.columns
     np.testing.assert_allclose(second.values, first.values, rtol=0.0, atol=1e-9 * np.max(np.abs(first.values)))
+
+
+@pytest.mark.parametrize("name", ["double-triangle", "hexapod", "bridge", "tip-tilt", "tip-tilt-four", "xy-stage"])
+def test_map_error_is_worst_where_it_says(name):
+    """Finite kinematics at the named strokes errs by the worst value; random strokes within the limits err no more."""
+    stage = case(name)
+    kinematics, limits = ideal(stage), stroke_limits(stage)
+    found = linear_map_error(stage, kinematics, limits)
+    there = map_error_at(stage, kinematics, found.worst_strokes)
+    np.testing.assert_allclose(np.abs(np.diagonal(there.errors)), found.worst, rtol=1e-6, atol=1e-15)
+    assert np.all(np.abs(there.errors) <= found.worst * (1.0 + 1e-6) + 1e-15)
+    polytope = reachable(kinematics.mapping, limits)
+    weights = np.random.default_rng(5).dirichlet(np.ones(len(polytope.vertices)), 40)
+    inside = map_error_at(stage, kinematics, weights @ polytope.vertices @ kinematics.mapping.values.T)
+    assert np.all(inside.worst <= found.worst + 1e-12)
 
 
 @settings(max_examples=60)
