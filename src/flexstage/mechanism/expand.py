@@ -93,6 +93,9 @@ def copy_frames(pattern: Pattern, count: int) -> tuple[Frame, ...]:
     >>> tangent = Polar(radius=0.1, first=0.0, facing=Facing.TANGENT)
     >>> copy_frames(tangent, 1)[0].direction(np.array([1.0, 0, 0])).round(9).tolist()
     [0.0, 1.0, 0.0]
+    >>> upright = Polar(radius=0.1, first=0.0, facing=Facing.AXIS)
+    >>> copy_frames(upright, 1)[0].rotation.T.tolist()  # x up, z inward, and y = z cross x
+    [[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]]
     """
     if not isinstance(pattern, Polar):
         return (Frame(axes(pattern.along, pattern.up), stack(pattern.at)),) * count
@@ -103,7 +106,7 @@ def copy_frames(pattern: Pattern, count: int) -> tuple[Frame, ...]:
 def _polar_frame(pattern: Polar, angle: Number) -> Frame:
     position = stack((pattern.radius * np.cos(angle), pattern.radius * np.sin(angle), pattern.height))
     if pattern.facing is Facing.AXIS:
-        upright = np.array([[0.0, 0.0, -1.0], [0.0, -1.0, 0.0], [1.0, 0.0, 0.0]])
+        upright = np.array([[0.0, 0.0, -1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]])
         return Frame(turn_z(angle + pattern.turn) @ upright, position)
     quarter = {Facing.OUTWARD: 0.0, Facing.TANGENT: 0.5 * np.pi, Facing.INWARD: np.pi}[pattern.facing]
     return Frame(turn_z(angle + quarter + pattern.turn), position)
