@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 from typing import Any
 
@@ -160,12 +161,10 @@ def test_numbers_that_are_not_finite_are_null_with_a_reason(flexstage: Command) 
 @pytest.mark.parametrize("name", sorted(CASES))
 def test_every_case_is_analysed(flexstage: Command, tmp_path: Path, name: str) -> None:
     design_in(tmp_path, name)
-    ended = flexstage("analyse", "stage.toml", "--json", "-")
+    ended = flexstage("analyse", "stage.toml", "--json", "out.json")
     assert ended.code == 0, ended.err
-    assert ended.document["mapping"]["mobility"] >= 1
-    tables = flexstage("analyse", "stage.toml")
-    assert tables.code == 0, tables.err
-    assert "Mobility" in tables.out
+    assert json.loads((tmp_path / "out.json").read_text())["mapping"]["mobility"] >= 1
+    assert "Mobility" in ended.out
 
 
 def test_changes_are_told_old_new_and_relative(flexstage: Command) -> None:

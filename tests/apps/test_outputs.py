@@ -16,7 +16,7 @@ from flexstage.mechanism.store import load
 from flexstage.readings.ideal import ideal
 from flexstage.readings.lumped import lumped
 from flexstage.studies import complete
-from tests.apps.command import Command
+from tests.apps.command import Command, design_in
 
 BAD_TARGETS = {
     ("--report", "nowhere/report.html"): "no folder nowhere",
@@ -129,3 +129,23 @@ def test_plan_is_drawn_in_every_format(flexstage: Command, tmp_path: Path) -> No
     for ending, start in {"svg": b"<?xml", "pdf": b"%PDF", "png": b"\x89PNG"}.items():
         assert flexstage("plan", "stage.toml", "-o", f"plan.{ending}").code == 0
         assert (tmp_path / f"plan.{ending}").read_bytes().startswith(start)
+
+
+@pytest.mark.parametrize("reading", ["ideal", "mapped", "lumped"])
+def test_reports_stand_alone(flexstage: Command, tmp_path: Path, reading: str) -> None:
+    assert flexstage("analyse", "stage.toml", "--reading", reading, "--report", "report.html", "--json", "-").code == 0
+    text = (tmp_path / "report.html").read_text(encoding="utf-8")
+    assert text.startswith("<!doctype html>")
+    assert text.rstrip().endswith("</html>")
+    assert "double triangle" in text
+    assert not any(mark in text for mark in ('src="http', 'href="http', "@import", "<script src"))
+
+
+@pytest.mark.parametrize("name", ["parallelogram", "tip-tilt-four", "xy-stage-floating"])
+def test_stages_with_locked_or_free_motions_are_reported(flexstage: Command, tmp_path: Path, name: str) -> None:
+    # By the mapped reading their platform has fewer than six freedoms: no stiffness matrix, no curve of it.
+    design_in(tmp_path, name)
+    reading = "lumped" if name == "xy-stage-floating" else "mapped"
+    ended = flexstage("analyse", "stage.toml", "--reading", reading, "--report", "report.html")
+    assert ended.code == 0, ended.err
+    assert (tmp_path / "report.html").read_text(encoding="utf-8").rstrip().endswith("</html>")

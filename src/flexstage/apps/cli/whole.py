@@ -74,15 +74,16 @@ def _worked_out(
     require(output_findings(outputs, design))
     from flexstage.apps.cli.opening import changed
     from flexstage.mechanism.store import load
-    from flexstage.studies.cautions import cautions
+    from flexstage.studies.cautions import part_cautions
     from flexstage.studies.complete import analyse as analysed
     from flexstage.studies.difference import difference
 
     stated = load(design)
     mechanism = changed(stated, changes)
-    for caution in cautions(mechanism):
-        warn(str(caution))
     analysis = analysed(mechanism, reading)
+    room = None if analysis.workspace is None else analysis.workspace.room
+    for caution in (*part_cautions(mechanism), *(() if room is None else room.findings)):
+        warn(str(caution))
     if not changes:
         return analysis, None
     addresses = tuple(change.partition("=")[0].strip() for change in changes)

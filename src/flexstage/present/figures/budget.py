@@ -65,7 +65,8 @@ def _share_figure(shares: Mapping[str, Mapping[str, float]], totals: Mapping[str
             _beside(axes, (right[row], row), totals[name], INK)
         _tidy(axes, label)
         _room_at_right(axes, 1.13)
-        figure.legend(loc="outside upper left", ncols=4, handlelength=0.9, handleheight=0.9, columnspacing=1.4)
+        if parts:  # massless axial springs lose nothing: there is nothing to name
+            figure.legend(loc="outside upper left", ncols=4, handlelength=0.9, handleheight=0.9, columnspacing=1.4)
     return figure
 
 
