@@ -25,7 +25,7 @@ def damping_law(model: LinearModel, damping: Damping | None = None) -> Damping:
         raise refuse(
             "damping",
             "the design states no damping, and a response at a resonance is nothing but damping",
-            'State it in the design, e.g. [damping] kind = "modal", ratio = 0.01, or pass damping=ModalDamping(0.01)',
+            'State it in the design, for example damping = { law = "modal", ratio = 0.01 }, or pass damping=ModalDamping(0.01)',
         )
     return law
 
