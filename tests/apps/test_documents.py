@@ -172,7 +172,7 @@ def test_changes_are_told_old_new_and_relative(flexstage: Command) -> None:
     (value,) = document["changes"]["set"]
     assert (value["old"], value["new"]) == (0.00154, 0.0014)
     figures = {figure["name"]: figure for figure in document["changes"]["figures"]}
-    yaw = figures["platform mode 4"]
+    yaw = figures["frequency.platform.4"]
     assert yaw["old"] > yaw["new"] == pytest.approx(document["modes"]["modes"][3]["frequency_hz"], rel=1e-12)
     assert yaw["relative"] == pytest.approx(yaw["new"] / yaw["old"] - 1.0, rel=1e-9)
     assert document["physics_digest"] != digest(double_triangle(), physics=True)

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexstage.mechanism.address import get, quantity_of
-from flexstage.mechanism.mechanism import Mechanism
+from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS, WRENCH_UNITS
 from flexstage.studies.complete import Analysis
 
@@ -80,27 +80,33 @@ def _value(figures: Mapping[str, KeyFigure], name: str) -> float | None:
 
 
 def key_figures(analysis: Analysis) -> tuple[KeyFigure, ...]:
-    """What a designer looks at first: required values, frequencies of the platform, stiffness, gains and losses, strokes, strength.
+    """What a designer looks at first: required values, frequencies of the platform, stiffness, losses, strokes, strength.
+
+    Names are those of requirements.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.studies.complete import Reading, analyse
     >>> [figure.name for figure in key_figures(analyse(double_triangle(), Reading.MAPPED))][8:10]
-    ['platform mode 1', 'platform mode 2']
+    ['frequency.platform.2', 'frequency.platform.3']
     """
-    return (*_required(analysis), *_frequencies(analysis), *_stiffness(analysis), *_gains(analysis), *_reach(analysis))
+    found = (*_required(analysis), *_frequencies(analysis), *_stiffness(analysis), *_losses(analysis), *_reach(analysis))
+    named = {figure.name: figure for figure in reversed(found)}
+    return tuple(named[name] for name in dict.fromkeys(figure.name for figure in found))
 
 
 def _required(analysis: Analysis) -> Iterator[KeyFigure]:
     for verdict in analysis.verdicts:
         if verdict.value is not None:
-            yield KeyFigure(f"require {verdict.requirement.key}", verdict.requirement.quantity.si, float(verdict.value))
+            asked = verdict.requirement
+            name = asked.key if asked.point == PLATFORM else f"{asked.key} at {asked.point}"
+            yield KeyFigure(name, asked.quantity.si, float(verdict.value))
 
 
 def _frequencies(analysis: Analysis) -> Iterator[KeyFigure]:
     if analysis.modes is None:
         return
     for number, index in enumerate(analysis.modes.platform, start=1):
-        yield KeyFigure(f"platform mode {number}", "Hz", float(analysis.modes.frequencies[index]))
+        yield KeyFigure(f"frequency.platform.{number}", "Hz", float(analysis.modes.frequencies[index]))
 
 
 def _stiffness(analysis: Analysis) -> Iterator[KeyFigure]:
@@ -109,15 +115,14 @@ def _stiffness(analysis: Analysis) -> Iterator[KeyFigure]:
     compliance = np.diag(analysis.statics.compliance.values)
     for name, value, top, bottom in zip(COMPONENTS, compliance, WRENCH_UNITS, TWIST_UNITS, strict=True):
         if value > 0.0:
-            yield KeyFigure(f"stiffness {name}, others free", f"{top}/{bottom}", float(1.0 / value))
+            yield KeyFigure(f"stiffness.{name}", f"{top}/{bottom}", float(1.0 / value))
 
 
-def _gains(analysis: Analysis) -> Iterator[KeyFigure]:
+def _losses(analysis: Analysis) -> Iterator[KeyFigure]:
     if analysis.lost_motion is None:
         return
     for name in analysis.lost_motion.loss.rows:
-        yield KeyFigure(f"gain {name}", "1", float(analysis.lost_motion.transfer.at(name, name)))
-        yield KeyFigure(f"loss {name}", "1", float(analysis.lost_motion.loss.at(name, name)))
+        yield KeyFigure(f"loss.{name}", "1", float(analysis.lost_motion.loss.at(name, name)))
 
 
 def _reach(analysis: Analysis) -> Iterator[KeyFigure]:
@@ -126,8 +131,8 @@ def _reach(analysis: Analysis) -> Iterator[KeyFigure]:
         return
     strokes = reach.single if reach.corrected is None else reach.corrected
     for name, value in zip(strokes.coordinates, strokes.symmetric, strict=True):
-        yield KeyFigure(f"stroke {name}", TWIST_UNITS[COMPONENTS.index(name)], float(value))
+        yield KeyFigure(f"stroke.{name}", TWIST_UNITS[COMPONENTS.index(name)], float(value))
     if reach.stress is not None and reach.stress.links:
         yield KeyFigure("safety", "1", float(reach.stress.least))
     if reach.buckling is not None and reach.buckling.links:
-        yield KeyFigure("buckling load factor", "1", float(reach.buckling.least))
+        yield KeyFigure("buckling", "1", float(reach.buckling.least))

@@ -54,11 +54,9 @@ def analyse(
     _write_files(analysis, report, mat)
     if json is not None:
         write(json, _json_text(analysis, compared), "--json")
+        _announce(json)
     if json != STDOUT:
         _show(analysis, compared)
-    for target in (report, mat, json):
-        if target is not None and str(target) != STDOUT:
-            tell(f"Wrote {target}")
     missed = [verdict for verdict in analysis.verdicts if not verdict.passed]
     if strict and missed:
         tell(f"{len(missed)} of {len(analysis.verdicts)} requirements are missed.")
@@ -95,10 +93,17 @@ def _write_files(analysis: Analysis, report: Path | None, mat: Path | None) -> N
         from flexstage.present.matlab import as_mat
 
         write(mat, as_mat(analysis), "--mat")
+        _announce(mat)
     if report is not None:
         from flexstage.present.report import report as composed
 
         write(report, composed(analysis), "--report")
+        _announce(report)
+
+
+def _announce(target: str | Path) -> None:
+    if str(target) != STDOUT:
+        tell(f"Wrote {target}")
 
 
 def _json_text(analysis: Analysis, compared: Compared | None) -> str:
