@@ -12,7 +12,7 @@ from flexstage.base.number import Array
 from flexstage.mechanism.expand import copy_names
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.mechanism.pattern import Polar
-from flexstage.parts.body import Block
+from flexstage.parts.body import Block, Cylinder
 from flexstage.present.display import number
 from flexstage.present.figures.style import FULL, INK, MUTED, PAPER, SERIES, canvas, styled
 from flexstage.present.scene.facet import Kind
@@ -66,12 +66,12 @@ def plan_figure(mechanism: Mechanism, scene: Scene) -> Any:
         axes = figure.add_axes((0.0, 0.0, 1.0, 1.0), xlim=(low[0], high[0]), ylim=(low[1], high[1]), aspect="equal")
         axes.set_axis_off()
         _outlines(axes, scene)
-        _platform(axes, mechanism)
+        _platform(axes, mechanism, scene)
         _axes_of_symmetry(axes, reach)
         _rings(axes, rings(mechanism), [1e3 * np.array(label.point[:2]) for label in scene.labels])
         _rectangles(axes, mechanism)
         write(axes, scene.labels, view(Side.TOP))
-        _sizes(axes, mechanism, reach)
+        _sizes(axes, scene, reach)
     return figure
 
 
@@ -132,17 +132,19 @@ def _turn(first: tuple[float, float], second: tuple[float, float], third: tuple[
     return (second[0] - first[0]) * (third[1] - first[1]) - (second[1] - first[1]) * (third[0] - first[0])
 
 
-def _platform(axes: Any, mechanism: Mechanism) -> None:
-    for block in _platform_blocks(mechanism):
-        centre = [1e3 * plain(value) for value in block.at[:2]]
-        _rectangle(axes, [1e3 * plain(value) for value in block.size[:2]], "-", SERIES[0], centre)
-        if block.hole is not None:
-            _rectangle(axes, [1e3 * plain(value) for value in block.hole], "-", SERIES[0], centre)
-
-
-def _platform_blocks(mechanism: Mechanism) -> list[Block]:
+def _platform(axes: Any, mechanism: Mechanism, scene: Scene) -> None:
+    """Outlines of the platform's solids, and of the holes in its blocks."""
+    for outline in _plans(scene, Kind.PLATFORM):
+        closed = hull(outline)
+        axes.plot(*np.vstack([closed, closed[:1]]).T, color=SERIES[0], linewidth=1.0)
     platform = mechanism.bodies.get(PLATFORM)
-    return [solid for solid in platform.solids.values() if isinstance(solid, Block)] if platform is not None else []
+    for solid in platform.solids.values() if platform is not None else ():
+        if isinstance(solid, Block) and solid.hole is not None:
+            _rectangle(axes, [1e3 * plain(value) for value in solid.hole], "-", SERIES[0], [1e3 * plain(value) for value in solid.at[:2]])
+        elif isinstance(solid, Cylinder) and solid.bore is not None and abs(plain(solid.along[2])) > 0.0:
+            circle = np.linspace(0.0, 2.0 * np.pi, 61)
+            x, y = (1e3 * (plain(solid.at[index]) + 0.5 * plain(solid.bore) * turn(circle)) for index, turn in enumerate((np.cos, np.sin)))
+            axes.plot(x, y, color=SERIES[0], linewidth=1.0)
 
 
 def _rectangle(axes: Any, size: Sequence[float], style: str, colour: str, centre: Sequence[float] = (0.0, 0.0)) -> None:
@@ -174,7 +176,7 @@ def _axes_of_symmetry(axes: Any, reach: Array) -> None:
 def _rings(axes: Any, found: tuple[Ring, ...], taken: list[Array]) -> None:
     """Circles with their radii, and a ray to each first copy with its position angle; `taken` are places of other texts."""
     circle = np.linspace(0.0, 2.0 * np.pi, 121)
-    for angle in sorted({round(ring.first % 360.0, 6) for ring in found}):
+    for angle in sorted({round(ring.first % 360.0, 6) for ring in found} - {0.0}):
         _ray(axes, np.deg2rad(angle), max(ring.radius for ring in found if round(ring.first % 360.0, 6) == angle))
     for radius in sorted({round(ring.radius, 6) for ring in found}):
         axes.plot(radius * np.cos(circle), radius * np.sin(circle), color=MUTED, linewidth=0.5, linestyle=(0, (8, 3, 1.5, 3)))
@@ -212,17 +214,15 @@ def _arrow(style: str) -> dict[str, Any]:
     return {"arrowstyle": style, "color": INK, "lw": 0.5, "mutation_scale": 5, "shrinkA": 0.0, "shrinkB": 0.0}
 
 
-def _sizes(axes: Any, mechanism: Mechanism, reach: Array) -> None:
+def _sizes(axes: Any, scene: Scene, reach: Array) -> None:
     """Dimension lines of the platform: its width below, its depth on the left."""
-    blocks = _platform_blocks(mechanism)
-    if not blocks:
+    outlines = list(_plans(scene, Kind.PLATFORM))
+    if not outlines:
         return
-    size = [1e3 * plain(value) for value in blocks[0].size[:2]]
-    centre = [1e3 * plain(value) for value in blocks[0].at[:2]]
+    low, high = (function(np.concatenate(outlines), axis=0) for function in (np.min, np.max))
     gap = 0.1 * float(reach.max())
-    low = np.array(centre) - 0.5 * np.array(size)
-    _dimension(axes, np.array([low[0], low[1]]), np.array([low[0] + size[0], low[1]]), -reach[1] - gap)
-    _upright(axes, low, size[1], -reach[0] - gap)
+    _dimension(axes, low, np.array([high[0], low[1]]), -reach[1] - gap)
+    _upright(axes, low, float(high[1] - low[1]), -reach[0] - gap)
 
 
 def _dimension(axes: Any, first: Array, second: Array, level: float) -> None:

@@ -6,13 +6,15 @@ import io
 import re
 from typing import Any
 
-from flexstage.present.figures.style import GRID, INK, MUTED, PAPER, styled
+from flexstage.present.figures.style import DRIVE, GAUGE, GRID, INK, MUTED, PAPER, styled
 
 _NUMBER = re.compile(r"-?\d+\.\d+(?:e-?\d+)?")
 _PATH = re.compile(r'<path([^>]*?) d="([^"]*)"([^>]*)>')
+_STRAIGHT = re.compile(r"[MLz\d.\s-]+")
+_STEP = re.compile(r"([MLz])\s*(?:(-?[\d.]+)\s+(-?[\d.]+))?")
 _GEOMETRY = re.compile(r'(?<=\s)(x|y|x1|x2|y1|y2|width|height|transform|points|viewBox)="([^"]*)"')
 _STYLE = re.compile(r' style="([^"]+)"')
-_THEME = {INK: "var(--ink)", MUTED: "var(--muted)", GRID: "var(--rule)", PAPER: "var(--paper)"}
+_THEME = {INK: "ink", MUTED: "muted", GRID: "rule", PAPER: "paper", DRIVE: "drive", GAUGE: "gauge"}
 
 
 def to_svg(figure: Any, name: str, description: str) -> str:
@@ -92,7 +94,47 @@ def _short(numbers: str, decimals: int = 1) -> str:
 def _path(found: re.Match[str]) -> str:
     """A path with fewer digits; translucent areas keep one more, or their seams show."""
     decimals = 2 if "fill-opacity" in found[3] else 1
-    return f'<path{found[1]} d="{_short(found[2], decimals)}"{found[3]}>'
+    text = found[2].replace("\n", " ")
+    outline = _relative(text, decimals) if _STRAIGHT.fullmatch(text) else _short(text, decimals)
+    return f'<path{found[1]} d="{outline}"{found[3]}>'
+
+
+def _relative(text: str, decimals: int) -> str:
+    """A path of straight lines with steps instead of points; a line that goes on from the last point needs no new start."""
+    scale = 10**decimals
+    here: tuple[int, int] | None = None
+    pieces: list[str] = []
+    drawing = False
+    for sign, x, y in _STEP.findall(text):
+        if not x:
+            pieces.append("z")
+            here = None
+            continue
+        point = (round(float(x) * scale), round(float(y) * scale))
+        if sign == "L" and here is not None:
+            pieces.append(_step("" if drawing else "l", point[0] - here[0], point[1] - here[1], decimals))
+            drawing = True
+        elif point != here:
+            pieces.append(f"M{_decimal(point[0], decimals)} {_decimal(point[1], decimals)}")
+            drawing = False
+        here = point
+    return "".join(pieces)
+
+
+def _step(sign: str, across: int, up: int, decimals: int) -> str:
+    first, second = _decimal(across, decimals), _decimal(up, decimals)
+    start = sign or ("" if first.startswith("-") else " ")
+    return f"{start}{first}{'' if second.startswith('-') else ' '}{second}"
+
+
+def _decimal(value: int, decimals: int) -> str:
+    """An integer number of units of the last decimal, as short as it goes.
+
+    >>> _decimal(-5, 1), _decimal(120, 1)
+    ('-.5', '12')
+    """
+    text = f"{value / 10**decimals:.{decimals}f}".rstrip("0").rstrip(".")
+    return text.replace("0.", ".", 1) if text.startswith(("0.", "-0.")) else text
 
 
 def _rounded(number: str, decimals: int) -> str:
@@ -104,7 +146,7 @@ def _styling(style: str) -> str:
     """A style with the page's colours and font, without blanks."""
     style = re.sub(r"font: (?:(bold|\d+) )?([\d.]+)px [^;]+", _font, style)
     for colour, variable in _THEME.items():
-        style = style.replace(colour, variable)
+        style = style.replace(colour, f"var(--{variable},{colour})")
     style = re.sub(r"stroke-linejoin: \w+;? ?|font-family: [^;]+;? ?", "", style)
     if "fill-opacity" in style:
         style += "; shape-rendering: crispEdges"  # or the seams between neighbours show

@@ -62,7 +62,7 @@ def _magnitudes(axes: Any, curves: Sequence[Curve], response: Response, unit: st
     low, _ = axes.get_ylim()
     axes.set_ylim(max(low, _DECADES * largest), 4.0 * largest)
     axes.set_ylabel(f"magnitude [{typeset(form.unit)}]" if form.unit != "1" else typeset("magnitude [um/um]"))
-    axes.legend(loc="lower left", handlelength=1.2)
+    axes.legend(loc="lower left", bbox_to_anchor=(-0.02, 1.0), ncols=3, handlelength=1.2, columnspacing=1.2, borderaxespad=0.2)
 
 
 def _phases(axes: Any, curves: Sequence[Curve], response: Response) -> None:

@@ -10,11 +10,13 @@ INK = "#1f2a37"
 MUTED = "#667382"
 GRID = "#dde3ea"
 PAPER = "#fefefe"
+DRIVE = "#8a5200"
+GAUGE = "#9c1f42"
 SERIES = ("#0077bb", "#ee7733", "#009988", "#cc3311", "#33bbee", "#ee3377", "#997700", "#bbbbbb")
 """Paul Tol's vibrant scheme (personal.sron.nl/~pault), one dark yellow added."""
 
 PASS, FAIL, WARN = "#2e8540", "#cc3311", "#b7791f"
-FULL, HALF, THIRD = 7.2, 3.5, 2.3
+FULL, HALF, THIRD = 7.2, 3.5, 3.0
 """Widths of figures in inches."""
 
 _RC: dict[Any, Any] = {

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+import math
+from dataclasses import dataclass
 from enum import Enum
+from functools import cached_property
 from typing import TypeAlias
 
 import numpy as np
@@ -28,6 +30,7 @@ Edge: TypeAlias = Array | None
 The zero vector stands for a sharp edge, which is always drawn.
 """
 
+_NEXT, _LAST = [1, 2, 0], [2, 0, 1]
 SHARP: Array = np.zeros(3)
 SHARP.flags.writeable = False
 
@@ -46,25 +49,33 @@ class Facet:
     """A convex polygon (or, with two points, a line) in the stage's frame; seen from outside its points run counter-clockwise.
 
     `points` (n, 3) [m]; `edges` one a point; `paint` says what it belongs to: point k follows the first of its carriers by 1 - `share`[k],
-    the second by `share`[k].
+    the second by `share`[k]. A piece of a facet knows the `whole`.
     """
 
     points: Array
     edges: tuple[Edge, ...]
     paint: Paint
     share: Array
+    whole: Facet | None = None
 
-    @property
+    @cached_property
     def normal(self) -> Array:
-        """Outward normal (not of unit length; zero for a line): Newell's sum of cross products."""
+        """Outward unit normal (zero for a line and for a facet without area): Newell's sum of cross products."""
         if len(self.points) < 3:
             return SHARP
         arms = self.points - self.points[0]
-        return np.cross(arms[1:-1], arms[2:]).sum(axis=0)
+        total = cross(arms[1:-1], arms[2:]).sum(axis=0)
+        size = math.sqrt(total @ total)
+        return total / size if size > 0.0 else SHARP
 
-    def moved(self, displacement: Array) -> Facet:
-        """The facet with its points displaced (n, 3)."""
-        return replace(self, points=self.points + displacement)
+
+def cross(first: Array, second: Array) -> Array:
+    """Cross products of rows (..., 3); many times faster than numpy's for few rows.
+
+    >>> cross(np.array([1.0, 0.0, 0.0]), np.array([0.0, 1.0, 0.0])).tolist()
+    [0.0, 0.0, 1.0]
+    """
+    return first[..., _NEXT] * second[..., _LAST] - first[..., _LAST] * second[..., _NEXT]
 
 
 def loft(rings: Array, paint: Paint, *, round_section: bool = False, closed: bool = True) -> list[Facet]:
@@ -81,7 +92,7 @@ def loft(rings: Array, paint: Paint, *, round_section: bool = False, closed: boo
     facets: list[Facet] = []
     for level in range(count - 1):
         quads = [_quad(rings, level, side) for side in range(sides)]
-        normals = [np.cross(quad[2] - quad[0], quad[3] - quad[1]) for quad in quads]
+        normals = [cross(quad[2] - quad[0], quad[3] - quad[1]) for quad in quads]
         for side, quad in enumerate(quads):
             ends = (SHARP if level == 0 else None, SHARP if level == count - 2 else None)
             after, before = (normals[(side + step) % sides] if round_section else SHARP for step in (1, -1))
@@ -126,7 +137,7 @@ def rectangle(height: float, width: float) -> Array:
     return 0.5 * np.array([[-height, -width], [height, -width], [height, width], [-height, width]])
 
 
-def circle(diameter: float, sides: int = 16) -> Array:
+def circle(diameter: float, sides: int = 12) -> Array:
     """Corners (k, 2) of a circle's polygon, counter-clockwise.
 
     >>> circle(2.0, 4).round(3).tolist()

@@ -8,7 +8,7 @@ import numpy as np
 
 from flexstage.base.number import Array
 
-_PIXELS = 700
+_PIXELS = 450
 
 
 def visible(polygons: Sequence[Array], opaque: Sequence[bool]) -> list[bool]:

@@ -65,18 +65,12 @@ def _best(facets: Sequence[Facet], tolerance: float) -> tuple[Array, list[int], 
 
 def _trial(divider: Facet, points: Array, starts: Array, tolerance: float) -> tuple[float, Array, Array, Array]:
     """Cost, normal, sides and distances of the plane of one facet: splits are dear, imbalance is cheap."""
-    normal = _plane(divider)
+    normal = divider.normal
     distance = (points - divider.points[0]) @ normal
     ahead = np.maximum.reduceat(distance, starts[:-1]) > tolerance
     back = np.minimum.reduceat(distance, starts[:-1]) < -tolerance
     cost = 4.0 * np.sum(ahead & back) + abs(int(np.sum(ahead)) - int(np.sum(back)))
     return float(cost), normal, np.where(ahead & back, 2, ahead.astype(int) - back.astype(int)), distance
-
-
-def _plane(facet: Facet) -> Array:
-    normal = facet.normal
-    length = float(np.sqrt(normal @ normal))
-    return normal / length if length else np.array([0.0, 0.0, 1.0])
 
 
 def _split(facet: Facet, distance: Array) -> tuple[Facet, Facet]:
@@ -104,7 +98,7 @@ def _clipped(facet: Facet, distance: Array) -> Facet:
             edges.append(None if inside else facet.edges[index])
     if count == 2:
         points, share, edges = points[:2], share[:2], [facet.edges[0], None]
-    return replace(facet, points=np.array(points), share=np.array(share), edges=tuple(edges))
+    return replace(facet, points=np.array(points), share=np.array(share), edges=tuple(edges), whole=facet.whole or facet)
 
 
 def farthest_first(tree: Partition | None, eye: Array) -> Iterator[Facet]:

@@ -14,6 +14,7 @@ from flexstage.present.scene.stage import Scene, displaced
 from flexstage.present.scene.view import Side, View, draw, ordered, outline, triad, view, write
 
 _TALLEST = 1.1
+_MOVED = (Kind.PLATFORM, Kind.BODY, Kind.DRIVE)
 
 
 def stage_picture(scene: Scene, *, side: Side = Side.ISOMETRIC, width: float = FULL, names: bool = True) -> Any:
@@ -44,10 +45,10 @@ def moved_picture(scene: Scene, twists: Mapping[str, Array], factor: float, *, s
     1
     """
     seen = view(side)
-    kept = [facet for facet in ordered(scene, seen) if facet.paint.kind not in (Kind.GAUGE, Kind.GROUND)]
+    kept = [facet for facet in ordered(scene, seen) if facet.paint.kind in _MOVED]
     moved = displaced(kept, scene, twists, factor)
     with styled():
-        axes = _axes([*kept, *moved], seen, width)
+        axes = _axes(kept, seen, width)
         outline(axes, [facet for facet in kept if facet.paint.kind is Kind.PLATFORM], seen)
         draw(axes, moved, seen)
     return axes.figure

@@ -88,7 +88,7 @@ def part_facets(part: Part, paint: Paint, marker: float) -> list[Facet]:
 
     >>> from flexstage.present.scene.facet import Kind
     >>> len(part_facets(Rod("steel", length=0.03, diameter=0.001), Paint(Kind.HINGE, ("a", "b")), 0.01))
-    18
+    14
     """
     inner = part.part if isinstance(part, Restricted) else part
     ends = 0.5 * part_length(inner) * np.array([-1.0, 1.0])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -11,7 +11,7 @@ from flexstage.base.number import Array
 from flexstage.mechanism.expand import Assembly, PlacedBody, PlacedGauge, PlacedLink, expand
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
 from flexstage.parts.part import is_actuator
-from flexstage.present.scene.facet import Facet, Kind, Paint, circle, extruded, line, loft, rectangle
+from flexstage.present.scene.facet import Facet, Kind, Paint, circle, cross, extruded, line, loft, rectangle
 from flexstage.present.scene.order import Partition, partition
 from flexstage.present.scene.primitives import part_facets, part_length, part_section, solid_facets
 from flexstage.spatial.frame import Frame, axes
@@ -64,7 +64,7 @@ def scene(mechanism: Mechanism) -> Scene:
     return Scene(tuple(facets), partition(facets, size), tuple(_labels(assembly, size)), references, size)
 
 
-def displaced(facets: Iterable[Facet], still: Scene, twists: Mapping[str, Array], factor: float) -> list[Facet]:
+def displaced(facets: Sequence[Facet], still: Scene, twists: Mapping[str, Array], factor: float) -> list[Facet]:
     """Facets with every body of the scene moved by `factor` times its twist (6,) at its reference point; others stand still.
 
     Links bend from the motion of the one body to that of the other.
@@ -72,18 +72,26 @@ def displaced(facets: Iterable[Facet], still: Scene, twists: Mapping[str, Array]
     >>> displaced([], scene(Mechanism("")), {}, 1.0)
     []
     """
+    if not facets:
+        return []
+    points, change = _displacement(facets, still, twists, factor)
+    ends = np.cumsum([len(facet.points) for facet in facets])[:-1]
+    return [replace(facet, points=piece) for facet, piece in zip(facets, np.split(points + change, ends), strict=True)]
 
-    def motion(body: str, points: Array) -> Array:
-        if body not in twists:
-            return np.zeros_like(points)
-        twist = factor * np.real(twists[body])
-        return twist[:3] + np.cross(twist[3:], points - still.references[body])
 
-    return [
-        facet.moved((1.0 - share) * motion(facet.paint.carriers[0], facet.points) + share * motion(facet.paint.carriers[1], facet.points))
-        for facet in facets
-        for share in (facet.share[:, None],)
-    ]
+def _displacement(facets: Sequence[Facet], still: Scene, twists: Mapping[str, Array], factor: float) -> tuple[Array, Array]:
+    """All points of the facets (p, 3) and their displacements: each between the motions of the two bodies that carry it."""
+    known = {name: number for number, name in enumerate(twists)}
+    motion = np.array([*(np.real(twist) for twist in twists.values()), np.zeros(6)])
+    centres = np.array([*(still.references[name] for name in twists), np.zeros(3)])
+    points = np.concatenate([facet.points for facet in facets])
+    share = np.concatenate([facet.share for facet in facets])[:, None]
+    counts = [len(facet.points) for facet in facets]
+    moves: list[Array] = []
+    for side in (0, 1):
+        rows = np.repeat([known.get(facet.paint.carriers[side], len(known)) for facet in facets], counts)
+        moves.append(motion[rows, :3] + cross(motion[rows, 3:], points - centres[rows]))
+    return points, factor * ((1.0 - share) * moves[0] + share * moves[1])
 
 
 def largest_motion(still: Scene, twists: Mapping[str, Array]) -> float:
@@ -92,9 +100,10 @@ def largest_motion(still: Scene, twists: Mapping[str, Array]) -> float:
     >>> largest_motion(scene(Mechanism("")), {})
     0.0
     """
-    moved = displaced(still.facets, still, twists, 1.0)
-    steps = (np.sum((after.points - before.points) ** 2, axis=1).max() for before, after in zip(still.facets, moved, strict=True))
-    return float(np.sqrt(max(steps, default=0.0)))
+    if not still.facets:
+        return 0.0
+    _, change = _displacement(still.facets, still, twists, 1.0)
+    return float(np.sqrt(np.sum(change**2, axis=1).max()))
 
 
 def _first(values: Array) -> Array:

@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum
+from functools import cache
 from typing import Any
 
 import numpy as np
 
 from flexstage.base.number import Array
-from flexstage.present.figures.style import INK, MUTED, PAPER
+from flexstage.present.figures.style import DRIVE, GAUGE, INK, MUTED, PAPER
 from flexstage.present.scene.facet import Facet, Kind
 from flexstage.present.scene.hidden import visible
 from flexstage.present.scene.order import farthest_first
@@ -32,10 +33,12 @@ NAMES = {
     Kind.GAUGE: "gauges",
     Kind.GROUND: "ground",
 }
-_LABEL_COLOURS = {Kind.DRIVE: "#8a5200", Kind.GAUGE: "#9c1f42"}
+_LABEL_COLOURS = {Kind.DRIVE: DRIVE, Kind.GAUGE: GAUGE}
 _SHADES = 9
 _ARROW = {"arrowstyle": "-|>", "color": MUTED, "lw": 0.8, "mutation_scale": 5, "shrinkA": 0.0, "shrinkB": 0.0}
 _NONE = (0.0, 0.0, 0.0, 0.0)
+_EDGE = (*(int(INK[place : place + 2], 16) / 255.0 for place in (1, 3, 5)), 1.0)
+_LIGHT = np.array([-0.35, 0.55, 0.76])
 
 
 class Side(Enum):
@@ -79,12 +82,41 @@ def ordered(scene: Scene, seen: View) -> list[Facet]:
     >>> ordered(scene(Mechanism("")), view(Side.TOP))
     []
     """
-    return [facet for facet in farthest_first(scene.order, seen.axes[2]) if _faces(facet, seen)]
+    return unsplit([facet for facet in farthest_first(scene.order, seen.axes[2]) if _faces(facet, seen)], seen)
 
 
 def _faces(facet: Facet, seen: View) -> bool:
-    normal = facet.normal
-    return len(facet.points) == 2 or bool(normal @ seen.axes[2] > 1e-6 * np.abs(normal).sum())
+    return len(facet.points) == 2 or float(facet.normal @ seen.axes[2]) > 1e-6
+
+
+def unsplit(facets: list[Facet], seen: View) -> list[Facet]:
+    """The facets with translucent ones made whole again and drawn last, where nothing opaque stands before them: pieces show their seams.
+
+    >>> unsplit([], view(Side.TOP))
+    []
+    """
+    wholes = {id(facet.whole or facet): facet.whole or facet for facet in facets if _is_translucent(facet)}
+    opaque = [facet for facet in facets if not _is_translucent(facet)]
+    if not wholes or not opaque:
+        return facets
+    points = np.concatenate([facet.points for facet in opaque])
+    starts = np.cumsum([0, *(len(facet.points) for facet in opaque)])[:-1]
+    free = {key for key, whole in wholes.items() if not np.any(_before(whole, points, starts, seen))}
+    return [facet for facet in facets if id(facet.whole or facet) not in free] + [wholes[key] for key in wholes if key in free]
+
+
+def _is_translucent(facet: Facet) -> bool:
+    return _COLOURS[facet.paint.kind][1] < 1.0
+
+
+def _before(whole: Facet, points: Array, starts: Array, seen: View) -> Array:
+    """Which of the facets whose points start at `starts` reach before a facet's plane, in the picture's box around it."""
+    ahead = np.maximum.reduceat((points - whole.points[0]) @ whole.normal, starts) > 1e-5
+    if len(whole.points) < 3:
+        return ahead
+    flat, own = seen.flat(points), seen.flat(whole.points)
+    low, high = np.minimum.reduceat(flat, starts, axis=0), np.maximum.reduceat(flat, starts, axis=0)
+    return ahead & np.all((high > own.min(axis=0)) & (low < own.max(axis=0)), axis=1)
 
 
 def draw(axes: Any, facets: Sequence[Facet], seen: View) -> None:
@@ -107,8 +139,11 @@ def draw(axes: Any, facets: Sequence[Facet], seen: View) -> None:
         if shows:
             strokes += _strokes(facet, flat, seen)
     if strokes:
-        paths, fills, edges, widths = zip(*((each.path, each.fill, each.edge, each.width) for each in strokes), strict=True)
-        axes.add_collection(PathCollection(paths, facecolors=fills, edgecolors=edges, linewidths=widths, clip_on=False))
+        fills, edges = (np.array([getattr(each, name) for each in strokes]) for name in ("fill", "edge"))
+        widths = [each.width for each in strokes]
+        axes.add_collection(
+            PathCollection([each.path for each in strokes], facecolors=fills, edgecolors=edges, linewidths=widths, clip_on=False)
+        )
 
 
 @dataclass(frozen=True)
@@ -121,7 +156,6 @@ class _Stroke:
 
 def _strokes(facet: Facet, flat: Array, seen: View) -> list[_Stroke]:
     """A facet's area and its drawn edges."""
-    from matplotlib.colors import to_rgba
     from matplotlib.path import Path
 
     result: list[_Stroke] = []
@@ -132,7 +166,7 @@ def _strokes(facet: Facet, flat: Array, seen: View) -> list[_Stroke]:
     ends = _edges(facet, seen)
     if ends:
         codes = [Path.MOVETO, Path.LINETO] * len(ends)
-        result.append(_Stroke(Path(flat[np.ravel(ends)], codes), _NONE, to_rgba(INK), 0.4))
+        result.append(_Stroke(Path(flat[np.ravel(ends)], codes), _NONE, _EDGE, 0.4))
     return result
 
 
@@ -143,14 +177,16 @@ def _edges(facet: Facet, seen: View) -> list[tuple[int, int]]:
 
 def _shade(facet: Facet, seen: View) -> tuple[float, ...]:
     """The kind's colour, darker the more the facet turns away from a light above the viewer's left shoulder."""
+    light = float(facet.normal @ (_LIGHT @ seen.axes))
+    return _toned(facet.paint.kind, round((0.62 + 0.38 * max(0.0, light)) * _SHADES))
+
+
+@cache
+def _toned(kind: Kind, tone: int) -> tuple[float, ...]:
     from matplotlib.colors import to_rgb
 
-    colour, alpha = _COLOURS[facet.paint.kind]
-    light = seen.axes.T @ np.array([-0.35, 0.55, 0.76])
-    normal = facet.normal
-    bright = 0.62 + 0.38 * max(0.0, float(normal @ light / np.sqrt(normal @ normal)))
-    bright = round(bright * _SHADES) / _SHADES
-    return (*(round(channel * bright, 3) for channel in to_rgb(colour)), alpha)
+    colour, alpha = _COLOURS[kind]
+    return (*(round(channel * tone / _SHADES, 3) for channel in to_rgb(colour)), alpha)
 
 
 def outline(axes: Any, facets: Sequence[Facet], seen: View) -> None:
@@ -215,3 +251,15 @@ def triad(axes: Any, seen: View) -> None:
         tip = start + length * direction
         axes.annotate("", xy=tuple(tip), xytext=tuple(start), arrowprops=_ARROW)
         axes.text(*(start + 1.3 * length * direction), name, ha="center", va="center", fontsize=6.5, color=MUTED, style="italic")
+
+
+def legend(scene: Scene) -> tuple[tuple[str, str], ...]:
+    """Colours and names of the kinds a scene shows.
+
+    >>> from flexstage.mechanism.mechanism import Mechanism
+    >>> from flexstage.present.scene.stage import scene
+    >>> legend(scene(Mechanism("")))
+    ()
+    """
+    shown = {facet.paint.kind for facet in scene.facets}
+    return tuple((_COLOURS[kind][0], name) for kind, name in NAMES.items() if kind in shown)

@@ -114,7 +114,8 @@ def source_table(mechanism: Mechanism) -> Table | None:
     """
     rows = [(Cell(key, Mark.STRONG), text) for key, text in mechanism.sources.items()]
     holders = {**mechanism.materials, **mechanism.parts, **mechanism.sensors}
-    rows += [(Cell(name, Mark.STRONG), value.source) for name, value in holders.items() if getattr(value, "source", "")]
+    own = {name: str(getattr(value, "source", "")) for name, value in holders.items()}
+    rows += [(Cell(name, Mark.STRONG), text) for name, text in own.items() if text]
     return build("Sources", ["", "source"], rows) if rows else None
 
 
@@ -146,7 +147,8 @@ def _joined(addresses: tuple[str, ...]) -> Iterator[tuple[str, ...]]:
 
 def _grouped(mechanism: Mechanism, addresses: tuple[str, ...]) -> tuple[str, str]:
     """The kind of thing an address belongs to, and the name within it."""
-    address = addresses[0].rpartition(".")[0] if len(addresses) > 1 else addresses[0]
+    address = next(iter(addresses))
+    address = address.rpartition(".")[0] if len(addresses) > 1 else address
     first, _, rest = address.partition(".")
     if "/" in first or address in mechanism.changes or first not in TITLES or not rest:
         return ("changes" if "/" in first or address in mechanism.changes else "", address)

@@ -8,7 +8,7 @@ from flexstage.analysis.drift import Drift
 from flexstage.analysis.error_budget import ErrorBudget
 from flexstage.base.labelled import Matrix
 from flexstage.present.display import number
-from flexstage.present.table import Cell, Column, Mark, Table, build, first_design, matrix_table
+from flexstage.present.table import Cell, Column, Mark, Table, build, first_design, matrix_table, short_names
 from flexstage.present.tables.workspace import command_text
 from flexstage.spatial.frame import COMPONENTS
 
@@ -21,22 +21,25 @@ def drift_table(drift: Drift) -> Table:
     >>> from flexstage.analysis.drift import drift
     >>> stage = double_triangle()
     >>> drift_table(drift(stage, fs.lumped(stage), ground="steel")).texts()[0][1]
-    'uniform [nm/K]'
+    'uniform [per K]'
     """
     values = first_design(drift.motion.values, 2)
     scale = np.max(np.abs(values), axis=1, keepdims=True, initial=0.0)
     kept = np.where(np.abs(values) < 1e-9 * max(float(np.max(scale)), 1e-12), 0.0, values)
-    rows = [(Cell(name, Mark.STRONG), *(_fine(value, name) for value in line)) for name, line in zip(drift.motion.rows, kept, strict=True)]
-    heads = ["motion", Column("uniform", "nm/K"), *(Column(f"gradient {axis}", "nm/(K/m)") for axis in "xyz")]
+    rows = [
+        (Cell(f"{name} [{'nrad' if name.rpartition('.')[2].startswith('r') else 'nm'}]", Mark.STRONG), *(_fine(value) for value in line))
+        for name, line in zip(short_names(drift.motion.rows), kept, strict=True)
+    ]
+    heads = ["motion", Column("uniform", "per K"), *(Column(f"gradient {axis}", "per K/m") for axis in "xyz")]
     ground = f"made of {drift.ground}" if drift.ground else "taken not to grow"
     at = ", ".join(number(1e3 * float(value)) for value in first_design(drift.datum, 1))
-    notes = [f"Rotations in nrad. Strokes held. Ground {ground}; its point ({at}) mm stays."]
+    notes = [f"Strokes held. Ground {ground}; its point ({at}) mm stays."]
     return build("Thermal drift", heads, rows, notes=notes, provenance=drift.provenance)
 
 
-def _fine(value: float, name: str) -> Cell:
+def _fine(value: float) -> Cell:
     text = number(1e9 * float(value), 4)
-    return Cell(text, Mark.FAINT if text == "0" or not name else Mark.PLAIN)
+    return Cell(text, Mark.FAINT if text == "0" else Mark.PLAIN)
 
 
 def error_budget_tables(budget: ErrorBudget) -> tuple[Table, ...]:

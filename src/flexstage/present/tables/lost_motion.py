@@ -35,7 +35,8 @@ def _loss_row(lost: LostMotion, name: str) -> tuple[Cell, ...]:
     line = first_design(lost.loss.values, 2)[index]
     own = _silent(float(line[index]))
     others = np.delete(np.abs(line), index)
-    largest = ", ".join(f"{part} {percent(share, 3)}" for part, share in list(own_budget(lost, name).items())[:2] if abs(share) > NOISE)
+    least = max(NOISE, 0.02 * abs(own))
+    largest = ", ".join(f"{part} {percent(share, 3)}" for part, share in list(own_budget(lost, name).items())[:2] if abs(share) > least)
     gain = float(first_design(lost.transfer.values, 2)[index, index])
     return (
         Cell(name, Mark.STRONG),

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from flexstage.analysis.modes import Modes
-from flexstage.present.display import aligned, percent
+from flexstage.present.display import NOISE, aligned, percent
 from flexstage.present.table import Cell, Column, Mark, Table, batch_note, build, first_design
 
 _FURTHER = 3
@@ -27,7 +27,7 @@ def mode_table(modes: Modes) -> Table:
             Cell(str(index + 1), Mark.STRONG),
             Cell(frequency),
             Cell(modes.names[index]),
-            Cell(percent(float(share[index])), bar=float(share[index])),
+            Cell(percent(_loud(float(share[index]))), bar=float(share[index])),
             Cell("in plane" if modes.in_plane[index] else "out of plane"),
             _role(modes, index),
         )
@@ -36,6 +36,11 @@ def mode_table(modes: Modes) -> Table:
     heads = [Column("mode"), Column("frequency", "Hz"), "name", Column("platform's share"), "plane", "role"]
     notes = [margin_text(modes), *_unseen(modes, listed), *batch_note(modes.frequencies, 1)]
     return build("Modes", heads, rows, notes=notes, provenance=modes.provenance)
+
+
+def _loud(share: float) -> float:
+    """A share without rounding noise."""
+    return share if share > NOISE else 0.0
 
 
 def listed_modes(modes: Modes) -> tuple[int, ...]:

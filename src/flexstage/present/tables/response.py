@@ -35,11 +35,15 @@ def leading_curves(response: Response) -> tuple[Curve, ...]:
     values = response.values.reshape(-1, *response.values.shape[-3:])[0]
     result: list[Curve] = []
     for row, output in enumerate(response.outputs):
-        sizes = np.round(np.abs(values[0, row]) / (np.max(np.abs(values[0, row])) or 1.0), 6)
-        # Of inputs that move it alike, one that moves it forward.
-        column = int(np.argmax(sizes + 1e-7 * (values[0, row].real > 0.0)))
+        column = _leading(values[0, row])
         result.append(Curve(output.name, response.inputs[column].name, response.units[row][column], values[:, row, column]))
     return tuple(result)
+
+
+def _leading(gains: Array) -> int:
+    """The largest gain; among those within 2 % of it one that moves the output forward."""
+    sizes = np.round(np.abs(gains) / (np.max(np.abs(gains)) or 1.0), 6)
+    return int(np.argmax(np.where(sizes > 0.98, 1.0 + (np.real(gains) > 0.0), sizes)))
 
 
 def response_table(response: Response) -> Table:
