@@ -8,7 +8,7 @@ import numpy as np
 
 from flexstage.base.finding import Finding
 from flexstage.base.number import Vector, stack
-from flexstage.mechanism.checks.value import first_failing
+from flexstage.mechanism.checks.value import LARGEST, first_failing
 from flexstage.mechanism.mechanism import Link, Mechanism
 from flexstage.mechanism.pattern import Pattern, Pose
 from flexstage.parts.body import Body, Cylinder
@@ -110,10 +110,11 @@ def _pair(where: str, along: Vector, other_where: str, other: Vector | None) -> 
 
 
 def _zero(where: str, direction: Vector) -> Iterator[Finding]:
-    components = stack(direction)
+    components = np.real(stack(direction))
     finite = np.isfinite(components).all(axis=-1)
-    nothing = (np.abs(components) == 0.0).all(axis=-1) | ~finite
-    if np.any(nothing):
-        at, _ = first_failing(nothing)
-        what = "the direction is not finite" if not np.all(finite) else "the direction is zero"
-        yield Finding(f"{where}{at}", what, "Give one of x, -x, y, -y, z, -z, or three numbers")
+    largest = np.max(np.abs(components), axis=-1)
+    useless = ~finite | (largest < 1.0 / LARGEST) | (largest > LARGEST)
+    if np.any(useless):
+        at, (length,) = first_failing(useless, largest)
+        fault = "not finite" if not np.isfinite(length) else "zero" if length == 0.0 else f"of length {length:.3g}"
+        yield Finding(f"{where}{at}", f"the direction is {fault}", "Give one of x, -x, y, -y, z, -z, or three numbers")

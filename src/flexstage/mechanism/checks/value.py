@@ -13,6 +13,9 @@ from flexstage.mechanism.grammar import NumberNode, node_of, numbers
 from flexstage.mechanism.locate import locate
 from flexstage.mechanism.mechanism import Mechanism
 
+LARGEST = 1e40
+"""Numbers beyond it, or nonzero below its reciprocal, in SI: their powers would leave the range of floats, and nothing is made so."""
+
 
 def value_findings(mechanism: Mechanism) -> Iterator[Finding]:
     """Findings about single numbers.
@@ -57,6 +60,13 @@ def _number(where: str, value: Any, node: NumberNode) -> Iterator[Finding]:
     if np.any(endless):
         at, (found,) = first_failing(endless, real)
         yield Finding(f"{where}{at}", f"found {found}, which is not finite", example)
+        return
+    size = np.abs(real)
+    extreme = (size > LARGEST) | ((size < 1.0 / LARGEST) & (size > 0.0))
+    if np.any(extreme):
+        at, (found,) = first_failing(extreme, real)
+        told = show(found, node.quantity, digits=6)
+        yield Finding(f"{where}{at}", f"found {told}, which nothing that is made can have", "Check the exponent and the unit")
         return
     outside = _outside(real, node)
     if node.bound is not None and np.any(outside):
