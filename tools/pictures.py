@@ -6,6 +6,7 @@ Run with `--png FOLDER` to look at them: the same pictures as PNG.
 from __future__ import annotations
 
 import argparse
+import re
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
@@ -24,7 +25,7 @@ from flexstage.cases.double_triangle import double_triangle
 from flexstage.present.figures.budget import loss_figure
 from flexstage.present.figures.directional import directional_figure
 from flexstage.present.figures.export import to_png, to_svg
-from flexstage.present.figures.style import FULL, GRID, INK, MUTED, PAPER, SERIES, canvas, styled
+from flexstage.present.figures.style import FULL, INK, MUTED, PAPER, SERIES, canvas, styled
 from flexstage.present.plan import plan_figure
 from flexstage.present.scene.facet import Facet, Kind
 from flexstage.present.scene.stage import Scene, displaced, largest_motion, scene
@@ -34,7 +35,7 @@ from tests.analytic import test_paros_weisbord, test_smith_toroid
 from tests.analytic.hinges import UNIT, circular, diagonal, error
 
 PICTURES = Path(__file__).resolve().parents[1] / "docs" / "pictures"
-_COLOURS = {"ink": INK, "muted": MUTED, "rule": GRID, "paper": PAPER}
+_OF_THE_PAGE = re.compile(r"var\(--\w+,\s*([^)]+)\)")
 _SWAY = 0.03
 """Largest motion of a drawn mode [m]."""
 _SIDES = ((Side.ISOMETRIC, (0, 0)), (Side.TOP, (0, 1)), (Side.FRONT, (1, 0)), (Side.RIGHT, (1, 1)))
@@ -173,9 +174,8 @@ DRAWN: Mapping[str, tuple[Callable[[], Any], str]] = {
 
 
 def standing_alone(svg: str) -> str:
-    """An SVG that was made to stand inside a page, as a file of its own: with a name space and the page's colours."""
-    for name, colour in _COLOURS.items():
-        svg = svg.replace(f"var(--{name})", colour)
+    """An SVG that was made to stand inside a page, as a file of its own: with a name space and colours of its own."""
+    svg = _OF_THE_PAGE.sub(r"\1", svg)
     svg = svg.replace('style="max-width', f'style="background:{PAPER};max-width', 1)
     return svg.replace("<svg ", '<svg xmlns="http://www.w3.org/2000/svg" font-family="DejaVu Sans, Verdana, sans-serif" ', 1)
 

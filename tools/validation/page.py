@@ -145,5 +145,6 @@ _CODES = """\
 The same stages in codes that others wrote. What is shared and what is not stands above each table."""
 
 _LAWS = """\
-What must hold for *every* stage is tried on random parts, models and mechanisms (Hypothesis). Each law is a test in `tests/laws`; the
-number beside it is that of the random examples it is tried on, the same ones in every run."""
+What must hold for *every* stage is tried on random parts, models and mechanisms (Hypothesis). Each law is a test; the number beside it is
+that of the random examples it is tried on, the same ones in every run. The last section is no law but a second author: the lumped
+reading written again, plainly, and compared matrix by matrix."""
