@@ -25,7 +25,7 @@ from flexstage.cases.double_triangle import double_triangle
 from flexstage.present.figures.budget import loss_figure
 from flexstage.present.figures.directional import directional_figure
 from flexstage.present.figures.export import to_png, to_svg
-from flexstage.present.figures.style import FULL, INK, MUTED, PAPER, SERIES, canvas, styled
+from flexstage.present.figures.style import FULL, INK, PAPER, SERIES, canvas, styled
 from flexstage.present.plan import plan_figure
 from flexstage.present.scene.facet import Facet, Kind
 from flexstage.present.scene.stage import Scene, displaced, largest_motion, scene
