@@ -148,7 +148,7 @@ SM_REF_A = DoubleTriangle(
 SM_REF_B = DoubleTriangle(
     name="double triangle",
     neck=Neck("steel", thickness=1.54 * mm, width=2.246 * mm, profile=Straight(13.235 * mm)),
-    front_offset=75.6 * mm,
+    front_offset=95.6175 * mm,
     horizontal_span=191.235 * mm,
     horizontal_radius=85 * mm,
     horizontal_height=80 * mm,
@@ -269,7 +269,7 @@ def _vertical_blocks(p: DoubleTriangle, line: Number) -> dict[str, Body]:
         "bottom": Block("steel", (20 * mm, 40 * mm, 4.5 * mm), (0.0, 0.0, line - 15.75 * mm)),
         "left": Block("steel", (20 * mm, 6.5 * mm, 27 * mm), (0.0, 16.75 * mm, line)),
         "right": Block("steel", (20 * mm, 6.5 * mm, 27 * mm), (0.0, -16.75 * mm, line)),
-        "top": Block("steel", (20 * mm, 40 * mm, 12.5 * mm), (0.0, 0.0, line + 19.75 * mm)),
+        "top": Block("steel", (20 * mm, 20 * mm, 12.5 * mm), (0.0, 0.0, line + 19.75 * mm)),
     }
     return {
         "base": Body(solids={"block": Block("steel", adapter, (back, 0.0, line))}),
