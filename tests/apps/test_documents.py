@@ -11,6 +11,7 @@ import pytest
 
 from flexstage.analysis.lost_motion import lost_motion
 from flexstage.analysis.modes import modes
+from flexstage.analysis.random_response import Rate, Spectrum, random_response
 from flexstage.base.digest import digest
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.cases.registry import CASES
@@ -130,6 +131,16 @@ def test_transmissibility_is_one_at_low_frequency(flexstage: Command) -> None:
         "response", "stage.toml", "--input", "ground", "--output", "platform", "--band", "1 mHz", "2 mHz", "--json", "-"
     ).document
     assert np.array(document["real"][0]) == pytest.approx(np.eye(6), abs=1e-6)
+
+
+def test_random_inputs_give_rms_values(flexstage: Command) -> None:
+    named = ("--output", "platform.z", "--band", "1 Hz", "1 kHz", "--json", "-")
+    document = flexstage("response", "stage.toml", "--noise", "ground.z=1e-5 m/s^2/Hz^0.5", "--noise", "B4=1 nm/Hz^0.5", *named).document
+    found = document["random"]
+    spectra = {"ground.z": Spectrum(1e-10, rate=Rate.ACCELERATION), "B4": Spectrum(1e-18)}
+    expected = random_response(lumped(load("stage.toml")), ("platform.z",), spectra, (1.0, 1000.0))
+    assert found["inputs"] == ["ground.z", "B4"]
+    assert found["rms"] == pytest.approx(expected.rms.tolist(), rel=1e-9)
 
 
 def test_analyse_nests_the_documents_of_the_commands(flexstage: Command) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from flexstage.analysis.deflection import Deflection, deflection
 from flexstage.analysis.drift import Drift, drift
 from flexstage.analysis.error_budget import ErrorBudget
 from flexstage.analysis.lost_motion import LostMotion, lost_motion
@@ -41,9 +42,9 @@ class Analysis:
     """All results of one reading of a stage; `None` where a reading or a stage does not give them, and `missing` says why, by field name.
 
     `response` is that of the platform's twist and all gauges to the strokes, `transmissibility` that of the platform to the ground.
-    Drift, error budget, `units` (each distinct unit alone) and the `verdicts` on the requirements are those of the lumped reading; all but
-    the verdicts are missing for the others.
-    The error budget is that of the required strokes, or of all single-axis strokes at once, and of one kelvin.
+    `deflection` under dead load, drift, error budget, `units` (each distinct unit alone) and the `verdicts` on the requirements are those
+    of the lumped reading; all but the verdicts are missing for the others. The error budget is that of the required strokes, or of all
+    single-axis strokes at once, and of one kelvin.
     """
 
     mechanism: Mechanism
@@ -51,6 +52,7 @@ class Analysis:
     kinematics: Kinematics
     model: LinearModel | None
     statics: Statics | None
+    deflection: Deflection | None
     lost_motion: LostMotion | None
     modes: Modes | None
     response: Response | None
@@ -93,15 +95,15 @@ def analyse(mechanism: Mechanism, reading: Reading = Reading.LUMPED) -> Analysis
     seen = (PLATFORM, *kinematics.gauges)
     command = required_command(mechanism)
     reach = attempt.of("workspace", lambda: workspace(mechanism, kinematics, model, lost=lost, command=command))
-    drifted = attempt.given(
-        "drift", model if reading is Reading.LUMPED else None, _UNLUMPED, lambda known: grounded_drift(mechanism, known)
-    )
+    hinged = model if reading is Reading.LUMPED else None
+    drifted = attempt.given("drift", hinged, _UNLUMPED, lambda known: grounded_drift(mechanism, known))
     return Analysis(
         mechanism=mechanism,
         reading=reading,
         kinematics=kinematics,
         model=model,
         statics=attempt.given("statics", model, _RIGID, statics),
+        deflection=attempt.given("deflection", hinged, _UNLUMPED, lambda known: deflection(mechanism, known)),
         lost_motion=lost,
         modes=attempt.given("modes", model, _RIGID, lambda known: platform_modes(mechanism, known)),
         response=attempt.given("response", model, _RIGID, lambda known: response(known, seen, kinematics.actuators)),
@@ -109,7 +111,7 @@ def analyse(mechanism: Mechanism, reading: Reading = Reading.LUMPED) -> Analysis
         workspace=reach,
         drift=drifted,
         error_budget=attempt.given("error_budget", drifted, _DRIFTLESS, lambda known: _errors(mechanism, command, reach, known)),
-        units=attempt.given("units", model if reading is Reading.LUMPED else None, _UNLUMPED, lambda _: units(mechanism)),
+        units=attempt.given("units", hinged, _UNLUMPED, lambda _: units(mechanism)),
         verdicts=verdicts,
         missing=Table(attempt.missing),
     )

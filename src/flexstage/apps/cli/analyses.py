@@ -8,6 +8,7 @@ import typer
 
 from flexstage.apps.cli.answer import Asked, answer, elastic_model, known_point
 from flexstage.apps.cli.grouped import lost_motion_tables, mapping_tables, stiffness_tables
+from flexstage.apps.cli.noise import spectra_from
 from flexstage.apps.cli.opening import opened
 from flexstage.apps.cli.options import Changes, Design, Json, Theory
 from flexstage.studies.reading import Reading
@@ -52,12 +53,14 @@ def stiffness(
     6x6, by direction in the plane, and the centre of stiffness; strokes held.
     """
     mechanism = opened(design, changes, [("--json", json)])
+    from flexstage.analysis.deflection import deflection
     from flexstage.analysis.statics import statics
     from flexstage.present.documents.results import stiffness_body
 
     model = elastic_model(mechanism, reading)
     found = statics(model, load_point=known_point(model, load_at or at), read_point=known_point(model, at))
-    answer(Asked("stiffness", mechanism, reading, json), lambda: stiffness_body(found), lambda: stiffness_tables(found))
+    sagging = deflection(mechanism, model, point=at) if reading is Reading.LUMPED else None
+    answer(Asked("stiffness", mechanism, reading, json), lambda: stiffness_body(found, sagging), lambda: stiffness_tables(found, sagging))
 
 
 def lost_motion(design: Design, *, reading: Theory = Reading.LUMPED, changes: Changes = None, json: Json = None) -> None:
@@ -108,18 +111,29 @@ def response(
         ),
     ] = None,
     band: Band = None,
+    noise: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--noise",
+            metavar="INPUT=DENSITY",
+            help='White random input: its amplitude density, e.g. "ground.z=1 nm/Hz^0.5", or that of a rate, "ground.z=1e-5 m/s^2/Hz^0.5".',
+            show_default=False,
+        ),
+    ] = None,
     changes: Changes = None,
     json: Json = None,
 ) -> None:
     """Frequency response of outputs to inputs.
 
     Strokes to the platform's motion and the gauges, unless others are named. --input ground gives the transmissibility: absolute motion
-    over absolute motion of the ground.
+    over absolute motion of the ground. With --noise, the rms values of the outputs too.
     """
     mechanism = opened(design, changes, [("--json", json)])
+    from flexstage.analysis.random_response import random_response
     from flexstage.analysis.response import default_frequencies
     from flexstage.analysis.response import response as responded
     from flexstage.present.documents.results import response_body
+    from flexstage.present.tables.random_response import random_table
     from flexstage.present.tables.response import response_table
     from flexstage.readings.linear.damping import damping_law
 
@@ -128,7 +142,13 @@ def response(
     grid = default_frequencies(model, _hertz(band), damping=law)
     chosen = outputs or ["platform", *(channel.name for channel in model.outputs if "." not in channel.name)]
     found = responded(model, chosen, inputs or model.strokes, grid, damping=law)
-    answer(Asked("response", mechanism, reading, json), lambda: response_body(found, law), lambda: [response_table(found)])
+    limits = (float(grid[0]), float(grid[-1]))
+    shaken = random_response(model, chosen, spectra_from(model, noise), limits, damping=law) if noise else None
+    answer(
+        Asked("response", mechanism, reading, json),
+        lambda: response_body(found, law) | ({} if shaken is None else {"random": shaken.to_json()}),
+        lambda: [response_table(found), None if shaken is None else random_table(shaken)],
+    )
 
 
 def _hertz(band: tuple[str, str] | None) -> tuple[float, float] | None:

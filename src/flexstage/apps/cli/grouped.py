@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from flexstage.analysis.deflection import Deflection
     from flexstage.analysis.drift import Drift
     from flexstage.analysis.lost_motion import LostMotion
     from flexstage.analysis.statics import Statics
@@ -29,15 +30,17 @@ def mapping_tables(kinematics: Kinematics) -> Iterator[Table | None]:
     yield tables.redundant_table(kinematics)
 
 
-def stiffness_tables(statics: Statics) -> Iterator[Table]:
+def stiffness_tables(statics: Statics, deflection: Deflection | None) -> Iterator[Table | None]:
     """Tables of `stiffness`."""
     from flexstage.present.tables import statics as tables
+    from flexstage.present.tables.deflection import deflection_table
 
     yield tables.stiffness_table(statics)
     yield tables.compliance_table(statics)
     yield tables.principal_table(statics)
     yield tables.direction_table(statics)
     yield tables.centre_table(statics)
+    yield None if deflection is None else deflection_table(deflection)
 
 
 def lost_motion_tables(lost: LostMotion) -> Iterator[Table | None]:

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from flexstage.analysis.deflection import Deflection
 from flexstage.analysis.drift import Drift
 from flexstage.analysis.lost_motion import LostMotion
 from flexstage.analysis.modes import Modes
@@ -24,6 +25,7 @@ from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
 from flexstage.studies.units import UnitResult
 
 LISTED_MODES = 24
+_UNLUMPED = "deflection under dead load needs the lumped reading"
 _LOCKED = "this reading locks freedoms of the platform: its stiffness is infinite along them"
 
 
@@ -68,8 +70,8 @@ def _jacobian_units(kinematics: Kinematics) -> tuple[tuple[str, ...], ...]:
     return ratio_units(TWIST_UNITS, ("m",) * len(kinematics.actuators))
 
 
-def stiffness_body(statics: Statics) -> Document:
-    """Compliance and stiffness of the platform, the in-plane tensors (others held, others free), their axes, the centre of stiffness.
+def stiffness_body(statics: Statics, deflection: Deflection | None = None) -> Document:
+    """Compliance and stiffness of the platform, in-plane tensors (others held, others free), their axes, centre of stiffness, dead load.
 
     What does not exist because the reading locks freedoms of the platform is null, with the reason.
 
@@ -89,13 +91,15 @@ def stiffness_body(statics: Statics) -> Document:
     }
     held, free = (bool(np.isnan(matrix.values).any()) for matrix in (statics.stiffness, statics.free.tensor))
     missing = [key for key in values if (free if key.endswith("_free") else held)]
+    reasons = dict.fromkeys(missing, _LOCKED) | ({} if deflection is not None else {"dead_load": _UNLUMPED})
     return {
         "load_point": statics.load_point,
         "read_point": statics.read_point,
         "compliance": statics.compliance.to_json(),
         **{key: None if key in missing else value for key, value in values.items()},
+        "dead_load": None if deflection is None else {"point": deflection.point, "by_cause": deflection.by_cause.to_json()},
         "method": statics.provenance,
-        **({"reasons": dict.fromkeys(missing, _LOCKED)} if missing else {}),
+        **({"reasons": reasons} if reasons else {}),
     }
 
 

@@ -34,7 +34,7 @@ def analysis_body(analysis: Analysis) -> Document:
     damping = None if analysis.model is None else analysis.model.damping
     found: dict[str, Document | None] = {
         "mapping": mapping_body(analysis.kinematics),
-        "stiffness": None if analysis.statics is None else stiffness_body(analysis.statics),
+        "stiffness": None if analysis.statics is None else stiffness_body(analysis.statics, analysis.deflection),
         "lost-motion": None if analysis.lost_motion is None else lost_motion_body(analysis.lost_motion),
         "modes": None if analysis.modes is None else modes_body(analysis.modes),
         "response": None if analysis.response is None else response_body(analysis.response, damping),
@@ -44,7 +44,7 @@ def analysis_body(analysis: Analysis) -> Document:
         "budget": None if analysis.error_budget is None else budget_body(analysis.error_budget),
         "units": None if analysis.units is None else units_body(analysis.units),
     }
-    reasons = {_KEYS.get(name, name): reason for name, reason in analysis.missing.items()}
+    reasons = {_KEYS.get(name, name): reason for name, reason in analysis.missing.items() if name != "deflection"}  # see stiffness
     documents = {name: None if document is None else plain(document) for name, document in found.items()}
     return {"requirements": requirements_body(analysis.verdicts), **documents, **({"reasons": reasons} if reasons else {})}
 
