@@ -22,6 +22,7 @@ from flexstage.beams.stress import stress
 from flexstage.cases.registry import case
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import Force
+from flexstage.parts.body import Payload
 from flexstage.readings.ideal import ideal
 from flexstage.readings.linear.static import static_gain
 from flexstage.readings.lumped import lumped
@@ -137,6 +138,22 @@ def test_forces_of_the_description_act_as_wrenches_do(mechanism, seed):
 
 @settings(max_examples=60)
 @given(actuated_platforms(), seeds)
+def test_an_eccentric_payload_is_its_weight_at_its_place(mechanism, seed):
+    random = np.random.default_rng(seed)
+    mass, at = random.uniform(0.1, 5.0), tuple(0.1 * random.normal(size=3))
+    loaded = replace(mechanism, payloads={"wafer": Payload("platform", mass, at)})
+    bare, found = load_share(mechanism, lumped(mechanism)), load_share(loaded, lumped(loaded))
+    assert found.loads.columns == ("own weight", "payload wafer")
+    weight = bare.under(mass * np.array(mechanism.gravity), np.array(at))
+    scale = mass * 10.0 * np.max(np.abs(bare.share.values))
+    np.testing.assert_allclose(found.loads.values[:, 1], weight, rtol=0.0, atol=1e-9 * scale)
+    np.testing.assert_allclose(
+        found.loads.values[:, 0], bare.loads.values[:, 0], rtol=0.0, atol=1e-9 * (scale + np.max(np.abs(bare.compression)))
+    )
+
+
+@settings(max_examples=60)
+@given(actuated_platforms(), seeds)
 def test_no_stroke_inside_the_box_stresses_more_than_its_corners(mechanism, seed):
     model, limits, assembly = lumped(mechanism), stroke_limits(mechanism), expand(mechanism)
     found = hinge_stress(replace(mechanism, gravity=(0.0, 0.0, 0.0)), model, limits)
@@ -165,16 +182,16 @@ def test_lines_of_force_and_stroke_cross(mechanism):
 def test_gauge_inverse_returns_the_motion(mechanism):
     """S R_s V = V wherever the gauges see every motion; else it is refused."""
     kinematics = ideal(mechanism)
+    scale = np.array([1.0 / kinematics.length if name.startswith("r") else 1.0 for name in kinematics.coordinates])
+    seen = kinematics.sensing @ kinematics.motion * scale
     try:
         inverse = gauge_inverse(kinematics).values
     except DesignError:
-        seen = kinematics.sensing @ kinematics.motion
-        scale = np.array([1.0 / kinematics.length if name.startswith("r") else 1.0 for name in kinematics.coordinates])
-        assert np.linalg.matrix_rank(seen * scale, tol=1e-9) < kinematics.mobility
+        assert np.linalg.matrix_rank(seen, tol=1e-9) < kinematics.mobility
         return
     back = inverse @ kinematics.sensing @ kinematics.motion
-    scale = np.max(np.abs(kinematics.motion)) * np.linalg.cond(inverse)
-    np.testing.assert_allclose(back, kinematics.motion, rtol=0.0, atol=1e-10 * scale)
+    error = 1e-13 * np.linalg.cond(seen) / kinematics.length
+    np.testing.assert_allclose(back, kinematics.motion, rtol=0.0, atol=error)
     found = pose_resolution(mechanism, kinematics)
     assert np.all(found.rms <= found.worst * (1.0 + 1e-12))
 

@@ -95,8 +95,7 @@ def gauge_inverse(kinematics: Kinematics) -> Matrix:
             f"{len(kinematics.gauges)} gauges see {rank} of the platform's {kinematics.mobility} ideal motions",
             "Add gauges, or turn them so that every motion changes a reading",
         )
-    transposed = np.swapaxes(seen * scale, -1, -2)
-    back = np.linalg.solve(transposed @ (seen * scale), transposed)
+    back = np.linalg.pinv(np.real(seen) * scale)
     values = kinematics.motion @ (scale[:, None] * back)
     return Matrix(values, COMPONENTS, kinematics.gauges, tuple((f"{unit}/m",) * len(kinematics.gauges) for unit in TWIST_UNITS))
 

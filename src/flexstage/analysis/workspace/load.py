@@ -15,14 +15,16 @@ from flexstage.readings.linear.model import LinearModel
 from flexstage.readings.linear.static import displacement, static_gain
 from flexstage.spatial.frame import COMPONENTS, FORCES, WRENCH_UNITS, transport
 
+OWN_WEIGHT = "own weight"
+
 
 @dataclass(frozen=True, eq=False)
 class LoadShare:
     """Axial forces of the stacks under dead load, positive in compression.
 
-    `loads` (actuators x gravity and named forces) [N]; `share` (actuators x wrench at the platform's reference) per unit wrench; `stroke`
-    (actuators x strokes) [N/m]. `maximum`, `preload` and `tensile` (..., n) [N] are the stacks' limits (NaN: not stated); `reference`
-    (..., 3) the platform's reference point [m].
+    `loads` (actuators x own weight, payloads and forces) [N]; `share` (actuators x wrench at the platform's reference) per unit wrench;
+    `stroke` (actuators x strokes) [N/m]. `maximum`, `preload` and `tensile` (..., n) [N] are the stacks' limits (NaN: not stated);
+    `reference` (..., 3) the platform's reference point [m].
     """
 
     actuators: tuple[str, ...]
@@ -93,15 +95,14 @@ def load_share(mechanism: Mechanism, model: LinearModel) -> LoadShare:
     assembly = expand(mechanism)
     names = tuple(assembly.actuators)
     axial = tuple(f"{link}.fx" for link in assembly.actuators.values())
-    columns = [model.base_inertia[..., :3] @ stack(mechanism.gravity)]
-    columns += [applied(mechanism, model, force) for force in mechanism.forces.values()]
-    motion = displacement(model, np.stack(np.broadcast_arrays(*columns), axis=-1))
+    causes = dead_loads(mechanism, model)
+    motion = displacement(model, np.stack(np.broadcast_arrays(*causes.values()), axis=-1))
     loads = -(model.output[..., model.output_index(axial), :] @ motion)
     wrench = static_gain(model, axial, tuple(f"{PLATFORM}.{name}" for name in FORCES)).values
     piezos = stacks(mechanism).values()
     return LoadShare(
         actuators=names,
-        loads=Matrix(loads, names, ("gravity", *mechanism.forces), "N"),
+        loads=Matrix(loads, names, tuple(causes), "N"),
         share=Matrix(-wrench, names, FORCES, ratio_units(("N",) * len(names), WRENCH_UNITS)),
         stroke=Matrix(-static_gain(model, axial, names).values, names, names, "N/m"),
         maximum=_stated([piezo.maximum_load for piezo in piezos]),
@@ -110,6 +111,27 @@ def load_share(mechanism: Mechanism, model: LinearModel) -> LoadShare:
         reference=assembly.bodies[PLATFORM].reference,
         provenance=model.provenance,
     )
+
+
+def dead_loads(mechanism: Mechanism, model: LinearModel) -> dict[str, Array]:
+    """Generalised forces (..., n) by cause: the stage's own weight, each payload's, each stated force.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.readings.lumped import lumped
+    >>> list(dead_loads(double_triangle(), lumped(double_triangle())))
+    ['own weight']
+    """
+    carried = {name: applied(mechanism, model, _weight(mechanism, name)) for name in mechanism.payloads}
+    everything = model.base_inertia[..., :3] @ stack(mechanism.gravity)
+    own = everything - sum(carried.values(), np.zeros(len(model.coordinates)))
+    forces = {name: applied(mechanism, model, force) for name, force in mechanism.forces.items()}
+    return {OWN_WEIGHT: own, **{f"payload {name}": load for name, load in carried.items()}, **forces}
+
+
+def _weight(mechanism: Mechanism, name: str) -> Force:
+    load = mechanism.payloads[name]
+    x, y, z = (load.mass * component for component in mechanism.gravity)
+    return Force(load.body, load.at, (x, y, z))
 
 
 def applied(mechanism: Mechanism, model: LinearModel, force: Force) -> Array:

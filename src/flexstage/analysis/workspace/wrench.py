@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from flexstage.analysis.workspace.load import applied
+import numpy as np
+
+from flexstage.analysis.workspace.load import dead_loads
 from flexstage.analysis.workspace.stroke import StrokeLimits
-from flexstage.base.number import Array, stack
+from flexstage.base.number import Array
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.readings.linear.model import LinearModel
 from flexstage.readings.linear.static import displacement, static_gain
@@ -38,8 +40,6 @@ def dead_wrenches(mechanism: Mechanism, model: LinearModel, outputs: tuple[str, 
     >>> bool(dead_wrenches(stage, lumped(stage), ("platform.z",)) < 0)
     True
     """
-    load = model.base_inertia[..., :3] @ stack(mechanism.gravity)
-    for force in mechanism.forces.values():
-        load = load + applied(mechanism, model, force)
+    load = sum(dead_loads(mechanism, model).values(), np.zeros(len(model.coordinates)))
     motion = displacement(model, load[..., None])
     return (model.output[..., model.output_index(outputs), :] @ motion)[..., 0]
