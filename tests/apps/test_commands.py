@@ -11,10 +11,12 @@ from pathlib import Path
 
 import pytest
 
+from flexstage.apps import doctor
 from flexstage.apps.cli import run
 from flexstage.apps.cli.application import COMMANDS
 from flexstage.apps.cli.installation import self_test
-from flexstage.apps.doctor import Verdict
+from flexstage.apps.cure import MakeFolder
+from flexstage.apps.doctor import Row, Verdict
 from flexstage.studies import complete
 from tests.apps.command import Command, design_in
 
@@ -164,6 +166,22 @@ def test_the_doctor_runs_without_typer(tmp_path: Path) -> None:
     done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=True)
     assert done.stdout.splitlines() == ["consulted True", "0", "70"]
     assert "flexstage doctor --mend" in done.stderr
+
+
+def test_the_doctor_prints_rows_and_tells_by_exit_code(flexstage: Command, monkeypatch: pytest.MonkeyPatch) -> None:
+    rows = [
+        Row("numpy", "2.0", ">=2", Verdict.GOOD),
+        Row("folder", "missing", "writable", Verdict.BAD, "make it", MakeFolder(Path("made"))),
+    ]
+    monkeypatch.setattr(doctor, "examine", lambda *_: tuple(row for row in rows if row.cure is None or not Path("made").exists()))
+    sick = flexstage("doctor")
+    assert sick.code == 2
+    assert "1 thing to mend" in sick.out
+    assert "make it" in sick.out
+    mended = flexstage("doctor", "--mend")
+    assert mended.code == 0, mended.out
+    assert "mended" in mended.out
+    assert "sound" in mended.out
 
 
 def test_the_doctors_self_test_is_good_and_notices_wrong_numbers(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -45,6 +45,15 @@ def test_two_outputs_need_two_files(flexstage: Command) -> None:
     assert "the output of --json" in ended.err
 
 
+def test_stdout_holds_one_output_only(flexstage: Command) -> None:
+    ended = flexstage("analyse", "stage.toml", "--json", "-", "--report", "-")
+    assert ended.code == 2
+    assert "stdout is the output of --json too" in ended.err
+    page = flexstage("analyse", "stage.toml", "--reading", "ideal", "--report", "-")
+    assert page.out.startswith("<!doctype html>")
+    assert page.out.rstrip().endswith("</html>")
+
+
 def test_write_protected_files_stay(flexstage: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "out.json").write_text("old")
     allowed = os.access

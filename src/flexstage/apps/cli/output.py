@@ -16,7 +16,12 @@ STDOUT = "-"
 def output_findings(wanted: Iterable[tuple[str, str | Path | None]], design: Path | None = None) -> Iterator[Finding]:
     """What keeps the outputs, pairs of an option and its path, from being written; `design` is the file that must not be overwritten."""
     taken: dict[Path, str] = {} if design is None else {design.resolve(): "the design file"}
+    spoken: str | None = None
     for option, target in wanted:
+        if target is not None and str(target) == STDOUT:
+            if spoken is not None:
+                yield Finding(option, f"stdout is the output of {spoken} too", "Write one of them to a file")
+            spoken = option
         if target is None or str(target) == STDOUT:
             continue
         path = Path(target)

@@ -55,7 +55,7 @@ def analyse(
     if json is not None:
         write(json, _json_text(analysis, compared), "--json")
         _announce(json)
-    if json != STDOUT:
+    if STDOUT not in (json, str(report), str(mat)):
         _show(analysis, compared)
     missed = [verdict for verdict in analysis.verdicts if not verdict.passed]
     if strict and missed:
