@@ -17,7 +17,7 @@ def mode_table(modes: Modes) -> Table:
     >>> import flexstage as fs
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> mode_table(fs.modes(fs.lumped(double_triangle()))).texts()[3]
-    ['3', '127.99', 'z', '90.03 %', 'out of plane', 'platform']
+    ['3', '128.45', 'z', '90.68 %', 'out of plane', 'platform']
     """
     listed = listed_modes(modes)
     frequencies = aligned([float(value) for value in first_design(modes.frequencies, 1)[list(listed)]], 5)
