@@ -121,8 +121,8 @@ def hinge_errors() -> Any:
     with styled():
         figure = canvas(FULL, 2.9)
         notch, neck = figure.subplots(1, 2, sharey=True)
-        _curves(notch, _notch_errors(), "circular notch, 2-D elements")
-        _curves(neck, _neck_errors(), "toroidal neck, axisymmetric elements")
+        _curves(notch, notch_errors(), "circular notch, 2-D elements")
+        _curves(neck, neck_errors(), "toroidal neck, axisymmetric elements")
         notch.set_ylabel("error of the compliance [%]")
     return figure
 
@@ -140,7 +140,8 @@ def _curves(axes: Any, curves: Mapping[str, list[tuple[float, float]]], title: s
     axes.legend(loc="upper left")
 
 
-def _notch_errors() -> dict[str, list[tuple[float, float]]]:
+def notch_errors() -> dict[str, list[tuple[float, float]]]:
+    """Error in percent over t/R, by curve."""
     curves: dict[str, list[tuple[float, float]]] = {
         name: [] for name in ("$C_x$, beam", "$C_{rz}$, beam", "$C_y$, beam", "$C_{rz}$, Paros-Weisbord simplified", "$C_{rz}$, Schotborgh")
     }
@@ -153,7 +154,8 @@ def _notch_errors() -> dict[str, list[tuple[float, float]]]:
     return curves
 
 
-def _neck_errors() -> dict[str, list[tuple[float, float]]]:
+def neck_errors() -> dict[str, list[tuple[float, float]]]:
+    """The same for toroidal necks."""
     curves: dict[str, list[tuple[float, float]]] = {name: [] for name in ("$C_x$, beam", "$C_{rz}$, beam", "$C_{rz}$, Smith")}
     for ratio, rz, _, _, x, _ in test_smith_toroid.TABLE:
         found = diagonal(fs.Neck("m", thickness=ratio, profile=fs.Circular(1.0)), UNIT)

@@ -7,9 +7,11 @@ import xml.etree.ElementTree as ET
 
 import pytest
 
+from tests.analytic import test_paros_weisbord, test_smith_toroid
+from tests.analytic.hinges import PERCENT_DIGIT
 from tests.docs.pages import pages
 from tests.hygiene.source import ROOT, expect_none
-from tools.pictures import DRAWN, PICTURES, hinge_errors, standing_alone
+from tools.pictures import DRAWN, PICTURES, neck_errors, notch_errors
 
 LINK = re.compile(r"!?\[[^\]]*\]\((?!https?:|#)([^)#\s]+)[^)]*\)")
 
@@ -38,8 +40,14 @@ def test_pictures_stand_alone(name):
     assert root.get("aria-label") == DRAWN[name][1]
 
 
-def test_the_same_picture_is_drawn_again():
-    from flexstage.present.figures.export import to_svg
-
-    name = "hinge-errors"
-    assert standing_alone(to_svg(hinge_errors(), name, DRAWN[name][1])) == (PICTURES / f"{name}.svg").read_text(encoding="utf-8")
+def test_the_drawn_errors_are_those_of_the_reference():
+    """Columns of the tables that the finite elements' authority states, to their last digit."""
+    full, simplified, schotborgh, x, y = (test_paros_weisbord.TABLE[0].index(value) for value in (-1.95, -1.33, -2.64, -10.04, -4.67))
+    rz, smith, axial = (test_smith_toroid.TABLE[0].index(value) for value in (-0.83, -0.46, -2.84))
+    drawn = [*notch_errors().values(), *neck_errors().values()]
+    tables = [test_paros_weisbord.TABLE] * 5 + [test_smith_toroid.TABLE] * 3
+    columns = [x, full, y, simplified, schotborgh, axial, rz, smith]
+    for points, table, column in zip(drawn, tables, columns, strict=True):
+        for (ratio, value), row in zip(points, table, strict=True):
+            assert ratio == row[0]
+            assert value == pytest.approx(row[column], abs=PERCENT_DIGIT)

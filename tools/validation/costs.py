@@ -94,4 +94,7 @@ def _six(model: fs.LinearModel) -> np.ndarray:
 
 def _change(values: np.ndarray, against: np.ndarray) -> tuple[str]:
     change = np.round(100.0 * (values / against - 1.0), 2) + 0.0
-    return (f"{np.min(change):+.2f} to {np.max(change):+.2f} %" if np.max(np.abs(change)) > 0.005 else "none",)
+    low, high = float(np.min(change)), float(np.max(change))
+    if low == high:
+        return (f"{low:+.2f} %" if low else "none",)
+    return (f"{low:+.2f} to {high:+.2f} %",)
