@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import flexstage as fs
-from flexstage.readings.finite import FinitePose, forward, inverse
+from flexstage.readings.finite import FinitePose, forward_kinematics, inverse_kinematics
 from flexstage.readings.ideal import ideal
 
 X, Y, Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
@@ -46,7 +46,7 @@ def test_the_lever_end_moves_on_a_circle():
     kinematics = ideal(mechanism)
     assert kinematics.coordinates == ("rz",)
     angle = np.arcsin(600e-6 / 0.078)
-    lifted = inverse(mechanism, kinematics, FinitePose(np.zeros(3), np.array([0.0, 0.0, -angle]))).pose
+    lifted = inverse_kinematics(mechanism, kinematics, FinitePose(np.zeros(3), np.array([0.0, 0.0, -angle]))).pose
     assert lifted.displacement[1] == pytest.approx(600e-6, rel=1e-12)
     sideways = lifted.displacement[0]
     assert sideways == pytest.approx(0.078 - np.sqrt(0.078**2 - 600e-6**2), rel=1e-9)
@@ -62,7 +62,7 @@ def test_the_lever_stroke_is_the_change_of_a_triangle_side():
     turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
     stroke = np.linalg.norm(turn @ head - foot) - np.linalg.norm(head - foot)
     end = np.array([-0.078, 0.0])
-    found = forward(mechanism, kinematics, np.array([stroke]))
+    found = forward_kinematics(mechanism, kinematics, np.array([stroke]))
     np.testing.assert_allclose(found.pose.displacement[:2], turn @ end - end, rtol=0.0, atol=1e-13)
     np.testing.assert_allclose(found.pose.rotation_vector, [0.0, 0.0, angle], rtol=0.0, atol=1e-12)
 
@@ -93,7 +93,7 @@ def test_a_pure_rotation_of_the_platform():
     vector = np.array([0.11, -0.07, 0.05])
     turn = _rodrigues(vector)
     strokes = [np.linalg.norm(turn @ np.array(end) - start) - np.linalg.norm(np.array(end) - start) for start, end in feet.values()]
-    found = forward(mechanism, kinematics, np.array(strokes))
+    found = forward_kinematics(mechanism, kinematics, np.array(strokes))
     np.testing.assert_allclose(found.pose.rotation_vector, vector, rtol=0.0, atol=1e-12)
     arm = np.array([0.02, 0.03, 0.15])
     np.testing.assert_allclose(found.pose.displacement, turn @ arm - arm, rtol=0.0, atol=1e-13)
@@ -133,7 +133,7 @@ def test_a_leaf_parallelogram_sinks_by_three_fifths():
     """0.6 x^2/L for guided leaves (beam constraint model, kinematic part)."""
     mechanism = parallel((0.05, 0.05), lambda length: fs.Leaf("metal", length, 0.0005, 0.02))
     kinematics = ideal(mechanism)
-    found = forward(mechanism, kinematics, np.array([1e-4]))
+    found = forward_kinematics(mechanism, kinematics, np.array([1e-4]))
     assert found.consistent
     assert found.pose.displacement[1] == pytest.approx(-0.6 * found.pose.displacement[0] ** 2 / 0.05, rel=1e-9)
     np.testing.assert_allclose(found.pose.rotation_vector, 0.0, atol=1e-15)
@@ -151,7 +151,7 @@ def test_a_rod_sinks_as_a_leaf_does():
         bodies=mechanism.bodies,
         links={**mechanism.links, **held},
     )
-    found = forward(mechanism, ideal(mechanism), np.array([1e-4]))
+    found = forward_kinematics(mechanism, ideal(mechanism), np.array([1e-4]))
     assert found.pose.displacement[1] == pytest.approx(-0.6 * found.pose.displacement[0] ** 2 / 0.05, rel=1e-9)
 
 
@@ -160,29 +160,29 @@ def test_unequal_redundant_legs_disagree():
     mechanism = parallel((0.04, 0.05, 0.04), lambda length: fs.Leaf("metal", length, 0.0005, 0.02))
     kinematics = ideal(mechanism)
     assert kinematics.redundant
-    found = forward(mechanism, kinematics, np.array([1e-4]))
+    found = forward_kinematics(mechanism, kinematics, np.array([1e-4]))
     assert not found.consistent
     gap = 0.6 * 1e-8 * (1.0 / 0.04 - 1.0 / 0.05)
     assert 0.1 * gap < found.residual < gap
-    assert forward(mechanism, kinematics, np.array([0.0])).consistent
+    assert forward_kinematics(mechanism, kinematics, np.array([0.0])).consistent
 
 
 def test_a_batch_of_designs():
     """Levers of two arms at once, each as alone."""
     arms = np.array([0.078, 0.05])
     together = lever(long=arms)
-    found = forward(together, ideal(together), np.array([[1e-4], [1e-4]]))
+    found = forward_kinematics(together, ideal(together), np.array([[1e-4], [1e-4]]))
     for index, arm in enumerate(arms):
         alone = lever(long=float(arm))
         np.testing.assert_allclose(
-            found.pose.vector[index], forward(alone, ideal(alone), np.array([1e-4])).pose.vector, rtol=0.0, atol=1e-15
+            found.pose.vector[index], forward_kinematics(alone, ideal(alone), np.array([1e-4])).pose.vector, rtol=0.0, atol=1e-15
         )
 
 
 def test_strokes_out_of_reach_are_refused():
     mechanism = lever()
     with pytest.raises(fs.DesignError, match="no convergence"):
-        forward(mechanism, ideal(mechanism), np.array([0.5]))
+        forward_kinematics(mechanism, ideal(mechanism), np.array([0.5]))
 
 
 def test_an_under_actuated_stage_is_refused():
@@ -195,4 +195,4 @@ def test_an_under_actuated_stage_is_refused():
         links={name: link for name, link in mechanism.links.items() if name.startswith("leg")},
     )
     with pytest.raises(fs.DesignError, match="do not determine"):
-        forward(loose, ideal(loose), np.zeros(0))
+        forward_kinematics(loose, ideal(loose), np.zeros(0))

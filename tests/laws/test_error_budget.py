@@ -14,7 +14,7 @@ from flexstage.analysis.lost_motion import lost_motion
 from flexstage.analysis.workspace.gauging import pose_resolution
 from flexstage.cases.hexapod import hexapod
 from flexstage.cases.registry import case
-from flexstage.readings.finite import forward
+from flexstage.readings.finite import forward_kinematics
 from flexstage.readings.ideal import ideal
 from flexstage.readings.linear.static import static_gain
 from flexstage.readings.lumped import lumped
@@ -70,7 +70,7 @@ def test_linear_map_is_the_worst_of_the_corners(name):
     stage = case(name)
     kinematics, command = ideal(stage), commanded(stage)
     strokes = command_strokes(kinematics, command)
-    errors = [forward(stage, kinematics, single).pose.vector - kinematics.jacobian @ single for single in strokes]
+    errors = [forward_kinematics(stage, kinematics, single).pose.vector - kinematics.jacobian @ single for single in strokes]
     found = budget(stage, command).ideal.values[:, SOURCES.index("linear map")]
     np.testing.assert_allclose(found, np.max(np.abs(errors), axis=0), rtol=1e-6, atol=1e-15)
 

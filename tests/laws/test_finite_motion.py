@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from flexstage.cases.double_triangle import SM_REF_A, SM_REF_B, double_triangle
 from flexstage.cases.registry import CASES, case
-from flexstage.readings.finite import FinitePose, forward, inverse
+from flexstage.readings.finite import FinitePose, forward_kinematics, inverse_kinematics
 from flexstage.readings.ideal import ideal
 from tests.laws.strategies import actuated_platforms, moved, turns
 
@@ -35,8 +35,8 @@ def compare(found, pose, kinematics, tolerance=1e-12):
 def test_forward_undoes_inverse(mechanism, seed):
     kinematics = ideal(mechanism)
     pose = wanted(kinematics, seed)
-    there = inverse(mechanism, kinematics, pose)
-    back = forward(mechanism, kinematics, there.strokes)
+    there = inverse_kinematics(mechanism, kinematics, pose)
+    back = forward_kinematics(mechanism, kinematics, there.strokes)
     assert there.consistent
     assert back.consistent
     compare(there, pose, kinematics)
@@ -48,8 +48,8 @@ def test_inverse_undoes_forward(name):
     mechanism = case(name)
     kinematics = ideal(mechanism)
     pose = wanted(kinematics, 7)
-    strokes = inverse(mechanism, kinematics, pose).strokes
-    again = inverse(mechanism, kinematics, forward(mechanism, kinematics, strokes).pose)
+    strokes = inverse_kinematics(mechanism, kinematics, pose).strokes
+    again = inverse_kinematics(mechanism, kinematics, forward_kinematics(mechanism, kinematics, strokes).pose)
     np.testing.assert_allclose(again.strokes, strokes, rtol=0.0, atol=1e-12)
 
 
@@ -58,10 +58,10 @@ def test_inverse_undoes_forward_over_the_corners(parameters):
     mechanism = double_triangle(parameters)
     kinematics = ideal(mechanism)
     strokes = 1e-4 * np.random.default_rng(3).choice([-1.0, 1.0], (5, 2, 6))
-    there = forward(mechanism, kinematics, strokes)
+    there = forward_kinematics(mechanism, kinematics, strokes)
     assert there.consistent.shape == (5, 2)
     assert there.consistent.all()
-    np.testing.assert_allclose(inverse(mechanism, kinematics, there.pose).strokes, strokes, rtol=0.0, atol=1e-15)
+    np.testing.assert_allclose(inverse_kinematics(mechanism, kinematics, there.pose).strokes, strokes, rtol=0.0, atol=1e-15)
 
 
 @given(actuated_platforms(), seeds)
@@ -69,7 +69,10 @@ def test_error_of_the_linear_map_is_quadratic(mechanism, seed):
     kinematics = ideal(mechanism)
     size = np.max(np.abs(kinematics.actuation @ np.random.default_rng(seed).uniform(-1.0, 1.0, kinematics.mobility)))
     strokes = 1e-5 / size * (kinematics.actuation @ np.random.default_rng(seed).uniform(-1.0, 1.0, kinematics.mobility))
-    errors = [forward(mechanism, kinematics, scale * strokes).pose.vector - kinematics.jacobian @ (scale * strokes) for scale in (1.0, 0.5)]
+    errors = [
+        forward_kinematics(mechanism, kinematics, scale * strokes).pose.vector - kinematics.jacobian @ (scale * strokes)
+        for scale in (1.0, 0.5)
+    ]
     np.testing.assert_allclose(4.0 * errors[1], errors[0], rtol=0.0, atol=0.02 * np.max(np.abs(errors[0])) + 1e-14)
 
 
@@ -78,7 +81,7 @@ def test_first_derivative_is_the_linear_map(mechanism, seed):
     """By complex step: forward kinematics is analytic."""
     kinematics = ideal(mechanism)
     strokes = kinematics.actuation @ np.random.default_rng(seed).uniform(-1.0, 1.0, kinematics.mobility)
-    found = forward(mechanism, kinematics, 1e-8j * strokes).pose.vector
+    found = forward_kinematics(mechanism, kinematics, 1e-8j * strokes).pose.vector
     linear = kinematics.jacobian @ strokes
     np.testing.assert_allclose(found.imag / 1e-8, linear, rtol=0.0, atol=1e-6 * np.max(np.abs(linear)))
 
@@ -87,10 +90,10 @@ def test_first_derivative_is_the_linear_map(mechanism, seed):
 def test_moving_the_stage_only_turns_the_motion(mechanism, move, seed):
     turn, shift = move
     kinematics = ideal(mechanism)
-    strokes = inverse(mechanism, kinematics, wanted(kinematics, seed)).strokes
-    here = forward(mechanism, kinematics, strokes)
+    strokes = inverse_kinematics(mechanism, kinematics, wanted(kinematics, seed)).strokes
+    here = forward_kinematics(mechanism, kinematics, strokes)
     elsewhere = moved(mechanism, turn, shift)
-    there = forward(elsewhere, ideal(elsewhere), strokes)
+    there = forward_kinematics(elsewhere, ideal(elsewhere), strokes)
     np.testing.assert_allclose(there.pose.displacement, turn @ here.pose.displacement, rtol=0.0, atol=1e-12)
     np.testing.assert_allclose(there.pose.rotation_vector, turn @ here.pose.rotation_vector, rtol=0.0, atol=1e-11)
 
@@ -100,7 +103,9 @@ def test_moving_the_stage_only_turns_the_motion(mechanism, move, seed):
 def test_a_batch_of_strokes_is_the_loop(mechanism, seed):
     kinematics = ideal(mechanism)
     poses = [wanted(kinematics, seed + number) for number in range(3)]
-    strokes = np.stack([inverse(mechanism, kinematics, pose).strokes for pose in poses])
-    together = forward(mechanism, kinematics, strokes)
+    strokes = np.stack([inverse_kinematics(mechanism, kinematics, pose).strokes for pose in poses])
+    together = forward_kinematics(mechanism, kinematics, strokes)
     for index, single in enumerate(strokes):
-        np.testing.assert_allclose(together.pose.vector[index], forward(mechanism, kinematics, single).pose.vector, rtol=0.0, atol=1e-13)
+        np.testing.assert_allclose(
+            together.pose.vector[index], forward_kinematics(mechanism, kinematics, single).pose.vector, rtol=0.0, atol=1e-13
+        )

@@ -120,7 +120,7 @@ class _Relative:
     vector: Array
 
 
-def forward(mechanism: Mechanism, kinematics: Kinematics, strokes: Array) -> FiniteMotion:
+def forward_kinematics(mechanism: Mechanism, kinematics: Kinematics, strokes: Array) -> FiniteMotion:
     """Pose of the platform for strokes (..., n) [m] in the order of `kinematics.actuators`, from the drawn position.
 
     Newton's method on the poses of all bodies. Leaves and rods shorten with their deflection w and slope t as in the beam constraint model,
@@ -130,7 +130,7 @@ def forward(mechanism: Mechanism, kinematics: Kinematics, strokes: Array) -> Fin
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.readings.ideal import ideal
     >>> stage = double_triangle()
-    >>> lifted = forward(stage, ideal(stage), np.array([0, 0, 0, 50e-6, 50e-6, 50e-6]))
+    >>> lifted = forward_kinematics(stage, ideal(stage), np.array([0, 0, 0, 50e-6, 50e-6, 50e-6]))
     >>> round(1e6 * float(lifted.pose.displacement[2]), 1)
     150.0
     """
@@ -138,16 +138,16 @@ def forward(mechanism: Mechanism, kinematics: Kinematics, strokes: Array) -> Fin
     return _solved(mechanism, kinematics, strokes, None)
 
 
-def inverse(mechanism: Mechanism, kinematics: Kinematics, pose: FinitePose) -> FiniteMotion:
+def inverse_kinematics(mechanism: Mechanism, kinematics: Kinematics, pose: FinitePose) -> FiniteMotion:
     """Strokes that bring the platform's reference point to `pose`, of which the components named in `kinematics.coordinates` count.
 
-    Method, links and errors as for `forward`.
+    Method, links and errors as for `forward_kinematics`.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.readings.ideal import ideal
     >>> stage = double_triangle()
     >>> lifted = FinitePose(np.array([0.0, 0.0, 150e-6]), np.zeros(3))
-    >>> (1e6 * inverse(stage, ideal(stage), lifted).strokes[3:]).round(1).tolist()
+    >>> (1e6 * inverse_kinematics(stage, ideal(stage), lifted).strokes[3:]).round(1).tolist()
     [50.0, 50.0, 50.0]
     """
     wanted = pose.vector[..., [COMPONENTS.index(name) for name in kinematics.coordinates]]

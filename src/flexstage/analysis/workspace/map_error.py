@@ -12,7 +12,7 @@ from flexstage.base.finding import refuse
 from flexstage.base.labelled import Matrix
 from flexstage.base.number import Array
 from flexstage.mechanism.mechanism import Mechanism
-from flexstage.readings.finite import design_shape, forward
+from flexstage.readings.finite import design_shape, forward_kinematics
 from flexstage.readings.linear.kinematics import Kinematics
 from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
 
@@ -76,7 +76,7 @@ def map_error_at(mechanism: Mechanism, kinematics: Kinematics, strokes: Array) -
     count = len(kinematics.actuators)
     if strokes.shape[-1] != count:
         raise refuse("linear map error", f"{strokes.shape[-1]} strokes are given for {count} actuators", "Give one stroke an actuator")
-    moved = forward(mechanism, kinematics, strokes)
+    moved = forward_kinematics(mechanism, kinematics, strokes)
     linear = (kinematics.jacobian @ strokes[..., None])[..., 0]
     errors = moved.pose.vector - linear
     place = np.argmax(np.abs(errors), axis=0)
