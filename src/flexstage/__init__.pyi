@@ -2,6 +2,14 @@ from flexstage.analysis.deflection import (
     Deflection as Deflection,
     deflection as deflection,
 )
+from flexstage.analysis.drift import (
+    Drift as Drift,
+    drift as drift,
+)
+from flexstage.analysis.error_budget import (
+    ErrorBudget as ErrorBudget,
+    error_budget as error_budget,
+)
 from flexstage.analysis.lost_motion import (
     LostMotion as LostMotion,
     lost_motion as lost_motion,
@@ -11,6 +19,15 @@ from flexstage.analysis.modes import (
     modal_assurance as modal_assurance,
     modes as modes,
     subspace_angle as subspace_angle,
+)
+from flexstage.analysis.random_response import (
+    RandomResponse as RandomResponse,
+    Spectrum as Spectrum,
+    random_response as random_response,
+)
+from flexstage.analysis.response import (
+    response as response,
+    transmissibility as transmissibility,
 )
 from flexstage.analysis.statics import (
     Statics as Statics,
@@ -58,6 +75,32 @@ from flexstage.base.scale import (
     um as um,
     urad as urad,
 )
+from flexstage.beams.compliance import (
+    compliance as compliance,
+    stiffness as stiffness,
+)
+from flexstage.beams.stress import (
+    stress as stress,
+)
+from flexstage.beams.validity import (
+    validity as validity,
+)
+from flexstage.cases.double_triangle import (
+    double_triangle as double_triangle,
+)
+from flexstage.cases.registry import (
+    case as case,
+)
+from flexstage.mechanism.address import (
+    addresses as addresses,
+    assign as assign,
+    get as get,
+    set_value as set_value,
+)
+from flexstage.mechanism.checks import (
+    check as check,
+    checked as checked,
+)
 from flexstage.mechanism.expand import (
     expand as expand,
 )
@@ -81,6 +124,14 @@ from flexstage.mechanism.pattern import (
 from flexstage.mechanism.restrict import (
     isolate as isolate,
     restrict as restrict,
+)
+from flexstage.mechanism.store import (
+    dump as dump,
+    dumps as dumps,
+    load as load,
+    loads as loads,
+    patch as patch,
+    schema as schema,
 )
 from flexstage.parts.body import (
     Block as Block,
@@ -128,14 +179,30 @@ from flexstage.parts.profile import (
 from flexstage.parts.rod import (
     Rod as Rod,
 )
+from flexstage.present.report import (
+    report as report,
+)
+from flexstage.readings.finite import (
+    FiniteMotion as FiniteMotion,
+    FinitePose as FinitePose,
+    forward_kinematics as forward_kinematics,
+    inverse_kinematics as inverse_kinematics,
+)
 from flexstage.readings.ideal import (
     ideal as ideal,
+)
+from flexstage.readings.linear.frequency import (
+    Response as Response,
 )
 from flexstage.readings.linear.kinematics import (
     Kinematics as Kinematics,
 )
 from flexstage.readings.linear.model import (
     LinearModel as LinearModel,
+)
+from flexstage.readings.linear.state_space import (
+    StateSpace as StateSpace,
+    state_space as state_space,
 )
 from flexstage.readings.linear.static import (
     static_gain as static_gain,
@@ -146,6 +213,20 @@ from flexstage.readings.lumped import (
 )
 from flexstage.readings.mapped import (
     mapped as mapped,
+)
+from flexstage.studies.budget import (
+    budget as budget,
+)
+from flexstage.studies.complete import (
+    Analysis as Analysis,
+    Reading as Reading,
+    analyse as analyse,
+)
+from flexstage.studies.difference import (
+    difference as difference,
+)
+from flexstage.studies.judge import (
+    judge as judge,
 )
 from flexstage.studies.omitted import (
     Omitted as Omitted,
@@ -158,6 +239,10 @@ from flexstage.studies.sensitivities import (
 from flexstage.studies.units import (
     UnitResult as UnitResult,
     units as units,
+)
+from flexstage.studies.workspace import (
+    Workspace as Workspace,
+    workspace as workspace,
 )
 
 __version__: str

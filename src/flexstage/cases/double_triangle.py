@@ -12,9 +12,9 @@ from dataclasses import dataclass
 
 from flexstage.base.number import Number
 from flexstage.base.scale import X, Y, Z, deg, kHz, mm, um
-from flexstage.cases.tidy import tidy
 from flexstage.mechanism.mechanism import Link, Mechanism, ModalDamping, Opening, Placement, Probe, Unit
 from flexstage.mechanism.pattern import Facing, Polar
+from flexstage.mechanism.store import tidied
 from flexstage.parts.body import Block, Body
 from flexstage.parts.freedom import ROTATIONS, Freedom
 from flexstage.parts.gauge import Gauge, Positive
@@ -23,6 +23,7 @@ from flexstage.parts.neck import Neck
 from flexstage.parts.notch import Notch
 from flexstage.parts.piezo import Piezo
 from flexstage.parts.profile import Circular, Straight
+
 
 @dataclass(frozen=True)
 class DoubleTriangle:
@@ -205,7 +206,7 @@ def double_triangle(parameters: DoubleTriangle = SM_REF_B) -> Mechanism:
         tags=_tags(p),
         sources=SOURCES,
     )
-    return tidy(stage)
+    return tidied(stage)
 
 
 def _gauges(p: DoubleTriangle) -> dict[str, Probe]:

@@ -14,6 +14,7 @@ from flexstage.cases.parallelogram import parallelogram
 from flexstage.cases.tip_tilt import TipTilt, tip_tilt
 from flexstage.cases.xy_stage import XYStage, xy_stage
 from flexstage.mechanism.mechanism import Mechanism
+from flexstage.mechanism.store import tidied
 
 
 @dataclass(frozen=True)
@@ -40,11 +41,11 @@ CASES: Mapping[str, Case] = {
 
 
 def case(name: str) -> Mechanism:
-    """The description of a shipped case. Raises `DesignError` with the nearest name where there is none of this name.
+    """The description of a shipped case, its numbers as a file shows them. Raises `DesignError` with the nearest name where there is none of this name.
 
     >>> case("hexapod").name
     'hexapod'
     """
     if name not in CASES:
         raise refuse(name, "there is no case of this name", nearest(name, CASES))
-    return CASES[name].build()
+    return tidied(CASES[name].build())
