@@ -51,9 +51,7 @@ def test_table_1_fits_a_tensor_that_a_symmetric_stage_cannot_have() -> None:
     assert mean - np.hypot(cosine, sine) == pytest.approx(38.2, abs=0.1)
 
 
-@pytest.mark.xfail(
-    strict=True, reason="Table 1 fits principal axes near 44 degrees; three units 120 degrees apart have none: recorded"
-)
+@pytest.mark.xfail(strict=True, reason="Table 1 fits principal axes near 44 degrees; three units 120 degrees apart have none: recorded")
 def test_table_1_is_as_isotropic_as_the_stage() -> None:
     statics = fs.statics(fs.lumped(double_triangle(SM_REF_B)))
     spread = np.ptp(statics.free.along(ANGLES)) / statics.free.principal.mean()

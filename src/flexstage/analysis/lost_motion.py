@@ -22,9 +22,9 @@ INTERNAL = "internal stress"
 class LostMotion:
     """Lost motion of a stage with n strokes and f ideal motions.
 
-    `gain` T = dx/da elastic (..., 6, n); `transfer` R_a V^+ T (..., n, n), its diagonal the gain of each actuator; `loss` Lambda = I - transfer;
-    `parasitic` the part of T outside the ideal motions; `budget` every link's and axis' share of each entry of Lambda (they add up to it);
-    `correction` the gains a = (R_a V^+ T)^-1 R_a xi; `energy` the strain energy by part per squared unit stroke.
+    `gain` T = dx/da elastic (..., 6, n); `transfer` R_a V^+ T (..., n, n), its diagonal the gain of each actuator; `loss` Lambda = I -
+    transfer; `parasitic` the part of T outside the ideal motions; `budget` every link's and axis' share of each entry of Lambda (they
+    add up to it); `correction` the gains a = (R_a V^+ T)^-1 R_a xi; `energy` the strain energy by part per squared unit stroke.
     """
 
     gain: Matrix
@@ -46,9 +46,10 @@ class LostMotion:
 def lost_motion(kinematics: Kinematics, model: LinearModel) -> LostMotion:
     """Compare an elastic model with the ideal kinematics of the same stage.
 
-    Lambda = I - R_a V^+ T. Its budget is exact for any graph: let f_e^(i) be link e's force under the platform wrench (R_a V^+)^T e_i with all
-    strokes zero, gamma_e^(j) its deformation in the ideal motion of stroke j; by virtual work and reciprocity Lambda_ij = sum_e f_e^(i) .
-    gamma_e^(j). For one unloaded lever the diagonal is eps / (1 + eps), eps = K_theta2 / (r_1^2 K_1) (Eq. 11 of Shin & Moon). Small motions.
+    Lambda = I - R_a V^+ T. Its budget is exact for any graph: let f_e^(i) be link e's force under the platform wrench (R_a V^+)^T e_i
+    with all strokes zero, gamma_e^(j) its deformation in the ideal motion of stroke j; by virtual work and reciprocity Lambda_ij =
+    sum_e f_e^(i) . gamma_e^(j). For one unloaded lever the diagonal is eps / (1 + eps), eps = K_theta2 / (r_1^2 K_1) (Eq. 11 of Shin &
+    Moon). Small motions.
     """
     names = kinematics.actuators
     gain = static_gain(model, _PLATFORM_TWIST, names)

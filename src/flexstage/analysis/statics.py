@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexstage.base.labelled import Matrix, ratio_units
-from flexstage.base.number import Array, first_design, Number
+from flexstage.base.number import Array, Number, first_design
 from flexstage.readings.linear.model import LinearModel
 from flexstage.readings.linear.static import displacement
 from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS, WRENCH_UNITS

@@ -29,9 +29,10 @@ from flexstage.parts.profile import Circular, Straight
 class DoubleTriangle:
     """Parameters of a double-triangular stage, SI.
 
-    Horizontal units lie tangentially at `horizontal_radius`, `horizontal_height` above the stage's origin, their front necks at `front_offset`
-    along the line of action, necks `horizontal_span` apart. Vertical units have their poles at `pole_radius`, the upper pole hinge at
-    `pole_height`, the lower one `pole_span` below; `short_arm` r1, `long_arm` r2; their push is turned by `vertical_turn` from the tangent.
+    Horizontal units lie tangentially at `horizontal_radius`, `horizontal_height` above the stage's origin, their front necks at
+    `front_offset` along the line of action, necks `horizontal_span` apart. Vertical units have their poles at `pole_radius`, the upper
+    pole hinge at `pole_height`, the lower one `pole_span` below; `short_arm` r1, `long_arm` r2; their push is turned by `vertical_turn`
+    from the tangent.
     """
 
     name: str
@@ -71,12 +72,12 @@ STEEL = Material(
 
 def _cased(outer: float, inner: float) -> float:
     """Bending rigidity of a steel casing tube [N m^2]."""
-    return 200e9 * math.pi / 64.0 * (outer**4 - inner**4)
+    return round(200e9 * math.pi / 64.0 * (outer**4 - inner**4), 1)
 
 
 def _stack_mass(diameter: float, outer: float, inner: float, length: float) -> float:
     ceramic = 7800.0 * math.pi / 4.0 * diameter**2 * length
-    return ceramic + 7850.0 * math.pi / 4.0 * (outer**2 - inner**2) * length
+    return round(ceramic + 7850.0 * math.pi / 4.0 * (outer**2 - inner**2) * length, 4)
 
 
 def _horizontal_stack(length: float) -> Piezo:
@@ -237,7 +238,7 @@ def _horizontal(p: DoubleTriangle) -> Unit:
 
 
 def _vertical(p: DoubleTriangle) -> Unit:
-    """x = push; origin at the upper pole hinge; the stack passes through the pole and turns the lever about the pivot below the front hinge."""
+    """x = push; origin at the upper pole hinge; the stack, through the pole, turns the lever about the pivot below the front hinge."""
     bottom = -p.pole_span
     line = bottom + p.short_arm
     rear = p.long_arm - p.back_distance

@@ -41,7 +41,9 @@ CASES: Mapping[str, Case] = {
 
 
 def case(name: str) -> Mechanism:
-    """The description of a shipped case, its numbers as a file shows them. Raises `DesignError` with the nearest name where there is none of this name.
+    """The description of a shipped case, its numbers as a file shows them.
+
+    Raises `DesignError` with the nearest name where there is none of this name.
 
     >>> case("hexapod").name
     'hexapod'

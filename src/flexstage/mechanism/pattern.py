@@ -24,9 +24,9 @@ class Facing(Enum):
 class Polar(Description):
     """Copies at equal steps on a circle around the stage's z axis.
 
-    `first` is the *position angle* of the first copy, counted from x towards y; `facing` the direction of each copy's x axis, then turned by
-    `turn` about z. Each copy's z axis is the stage's z axis (for `Facing.AXIS`: x is up and z points inward, before `turn`). `step` is
-    the angle between copies; absent: a full circle shared by the copies.
+    `first` is the *position angle* of the first copy, counted from x towards y; `facing` the direction of each copy's x axis, then
+    turned by `turn` about z. Each copy's z axis is the stage's z axis (for `Facing.AXIS`: x is up and z points inward, before `turn`).
+    `step` is the angle between copies; absent: a full circle shared by the copies.
     """
 
     radius: Annotated[Number, LENGTH, NOT_NEGATIVE]

@@ -29,9 +29,10 @@ from flexstage.parts.freedom import Freedom
 class Piezo(Description):
     """A piezo stack along x: an axial spring with an imposed free stroke u (u > 0 expands), elsewhere the stiffness of its section.
 
-    `stroke` is the full free stroke over the voltage range; `stiffness` the axial stiffness; `diameter` that of the ceramic.
-    The ceramic's effective modulus follows, E = k L / A. `bending_rigidity` is the EI of the encapsulated stack where its casing stiffens it
-    (absent: that of the ceramic). Blocking force = stroke x stiffness. `maximum_load` is compressive, `tensile_limit` without preload.
+    `stroke` is the full free stroke over the voltage range; `stiffness` the axial stiffness; `diameter` that of the ceramic. The
+    ceramic's effective modulus follows, E = k L / A. `bending_rigidity` is the EI of the encapsulated stack where its casing stiffens
+    it (absent: that of the ceramic). Blocking force = stroke x stiffness. `maximum_load` is compressive, `tensile_limit` without
+    preload.
     """
 
     stroke: Annotated[Number, DISPLACEMENT, POSITIVE]

@@ -1,7 +1,7 @@
 """Profiles of flexure hinges: how the cross-section's thickness grows along the hinge.
 
-A profile gives the half length a of the hinge and the added height w(s) >= 0 on each side at the station s in [-1, 1], x = a s. The section's
-thickness there is t + 2 w. Stations let the quadrature concentrate where the section is thin.
+A profile gives the half length a of the hinge and the added height w(s) >= 0 on each side at the station s in [-1, 1], x = a s. The
+section's thickness there is t + 2 w. Stations let the quadrature concentrate where the section is thin.
 """
 
 from __future__ import annotations

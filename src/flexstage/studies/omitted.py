@@ -17,8 +17,9 @@ Restrictions = Mapping[str, tuple[tuple[Freedom, ...], tuple[Freedom, ...]]]
 
 @dataclass(frozen=True)
 class Omitted:
-    """A response in the simple and in the full theory, and how each omitted freedom (`lever_notch.x`) changes the simple one when added alone.
+    """A response in the simple and in the full theory, and what each omitted freedom costs.
 
+    `changes` says how each freedom (`lever_notch.x`) changes the simple response when it alone gets its elasticity back.
     `interaction` = full - simple - sum of changes: what only the freedoms' combinations explain.
     """
 

@@ -1,7 +1,7 @@
 """Exact sensitivities of frequencies and gains to every number of a description.
 
-Derivatives of K, M and the gains are taken by complex step through the readings' own formulas, one batch axis a parameter; eigenvalue derivatives
-are analytic, d lambda = phi^T (dK - lambda dM) phi.
+Derivatives of K, M and the gains are taken by complex step through the readings' own formulas, one batch axis a parameter; eigenvalue
+derivatives are analytic, d lambda = phi^T (dK - lambda dM) phi.
 """
 
 from __future__ import annotations
@@ -65,8 +65,8 @@ def sensitivities(
 ) -> Sensitivities:
     """Derivatives of the lowest `modes` frequencies and of all gains with respect to the addressed numbers (default: every one).
 
-    Modes closer than `cluster` (relative gap) are repeated: for them only the derivative of the mean is smooth. Raises `DesignError` for unknown
-    addresses.
+    Modes closer than `cluster` (relative gap) are repeated: for them only the derivative of the mean is smooth. Raises `DesignError`
+    for unknown addresses.
     """
     names = addresses(mechanism) if parameters is None else parameters
     solved = eigen(lumped(mechanism))

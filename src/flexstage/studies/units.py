@@ -27,10 +27,10 @@ _FORCES = ("platform.fx", "platform.fy", "platform.fz")
 class UnitResult:
     """One unit alone, in its own frame, by the lumped reading.
 
-    `direction` (3,) is that of its output; `stiffness` 6x6 at the output, all other freedoms held, strokes held; `axial` and `lateral` [N/m] its
-    translations along and across the direction (lateral: softest, stiffest). With the output guided along the direction: `gain`
-    output per stroke, `ideal_gain`, `loss`, `load_compliance` [m/N]. `series` is its stiffness in actuator coordinates for the mapped reading
-    (`None` where that reading refuses) and `lever` its springs if it is a lever unit.
+    `direction` (3,) is that of its output; `stiffness` 6x6 at the output, all other freedoms held, strokes held; `axial` and `lateral`
+    [N/m] its translations along and across the direction (lateral: softest, stiffest). With the output guided along the direction:
+    `gain` output per stroke, `ideal_gain`, `loss`, `load_compliance` [m/N]. `series` is its stiffness in actuator coordinates for the
+    mapped reading (`None` where that reading refuses) and `lever` its springs if it is a lever unit.
     """
 
     unit: str
