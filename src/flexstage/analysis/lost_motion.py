@@ -50,6 +50,12 @@ def lost_motion(kinematics: Kinematics, model: LinearModel) -> LostMotion:
     with all strokes zero, gamma_e^(j) its deformation in the ideal motion of stroke j; by virtual work and reciprocity Lambda_ij =
     sum_e f_e^(i) . gamma_e^(j). For one unloaded lever the diagonal is eps / (1 + eps), eps = K_theta2 / (r_1^2 K_1) (Eq. 11 of Shin &
     Moon). Small motions.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.readings.ideal import ideal
+    >>> from flexstage.readings.lumped import lumped
+    >>> round(float(lost_motion(ideal(double_triangle()), lumped(double_triangle())).loss.at("B4", "B4")), 3)
+    0.034
     """
     names = kinematics.actuators
     gain = static_gain(model, _PLATFORM_TWIST, names)

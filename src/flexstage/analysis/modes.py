@@ -62,6 +62,11 @@ def modes(model: LinearModel, *, limit: float = 1000.0, count: int = 6, cluster:
 
     The platform's modes are the `count` largest platform shares below `limit` [Hz]; modes closer than `cluster` (relative) are kept
     together, and within such a cluster the basis is turned so that shapes follow the platform's axes. Small motions.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.readings.mapped import mapped
+    >>> modes(mapped(double_triangle())).names[:4]
+    ('tilt', 'tilt', 'z', 'yaw')
     """
     platform = model.output[..., model.output_index(tuple(f"{_PLATFORM}.{name}" for name in COMPONENTS)), :]
     solved = _aligned(platform, eigen(model), cluster)

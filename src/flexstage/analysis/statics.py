@@ -1,4 +1,4 @@
-"""Statics of the platform: compliance and stiffness, directional stiffness, centre of stiffness, dead load."""
+"""Statics of the platform: compliance and stiffness, directional stiffness, centre of stiffness."""
 
 from __future__ import annotations
 
@@ -55,6 +55,11 @@ def statics(model: LinearModel, *, load_point: str = "platform", read_point: str
 
     C = C_read K^-1 C_load^T, strokes held. Small displacements. Where the model leaves the platform fewer than six freedoms (the mapped
     reading of a guide), the stiffness is infinite along the others: then it and the tensors that need it are NaN (first design decides).
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.readings.mapped import mapped
+    >>> (statics(mapped(double_triangle())).held.principal / 1e6).round(3).tolist()  # Eq. 2: 1.5 x 10.30 N/um
+    [15.45, 15.45]
     """
     read = tuple(f"{read_point}.{name}" for name in COMPONENTS)
     load = tuple(f"{load_point}.{name}" for name in COMPONENTS)
@@ -132,9 +137,3 @@ def equivalent_stiffness(axial: Number, lateral: Number, angles: Array) -> Array
     along = np.stack([np.cos(angles), np.sin(angles)], axis=-1)
     across = np.stack([-np.sin(angles), np.cos(angles)], axis=-1)
     return axial * np.einsum("ki,kj->ij", along, along) + lateral * np.einsum("ki,kj->ij", across, across)
-
-
-def dead_load(model: LinearModel, gravity: Array) -> Array:
-    """Coordinates (..., n) of the deflection under gravity (3,) [m/s^2], strokes held: K q = M Phi g."""
-    weight = model.base_inertia[..., :3] @ np.asarray(gravity)
-    return displacement(model, weight[..., None])[..., 0]

@@ -116,6 +116,10 @@ def expand(mechanism: Mechanism) -> Assembly:
     """Expand a description: units copied by pattern, departures applied, frames in the stage's frame.
 
     The description must have passed its checks. Without platform reference the platform's twist is given at its own centre of mass.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> len(expand(double_triangle()).links)
+    27
     """
     placed = tuple(copies(mechanism))
     links = {link.name: link for link in _links(mechanism, placed)}
@@ -129,7 +133,12 @@ def expand(mechanism: Mechanism) -> Assembly:
 
 
 def copies(mechanism: Mechanism) -> Iterator[tuple[str, str, Frame]]:
-    """Yield (copy name, unit name, frame) of every placed unit."""
+    """Yield (copy name, unit name, frame) of every placed unit.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> [name for name, _, _ in copies(double_triangle())]
+    ['B1', 'B2', 'B3', 'B4', 'B5', 'B6']
+    """
     for key, placement in mechanism.place.items():
         names = copy_names(key)
         frames = copy_frames(placement.pattern, len(names))
@@ -195,7 +204,15 @@ def _placed_link(mechanism: Mechanism, drawn: _DrawnLink, outer: Frame, names: t
 
 
 def departed(mechanism: Mechanism, link: Link, owners: tuple[str, ...]) -> tuple[Link, Part]:
-    """A link and its part with the mechanism's `changes` for the owners' addresses applied, in the owners' order."""
+    """A link and its part with the mechanism's `changes` for the owners' addresses applied, in the owners' order.
+
+    >>> from dataclasses import replace
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> stage = replace(double_triangle(), changes={"horizontal/front.thickness": 1.4e-3})
+    >>> link = stage.units["horizontal"].links["front"]
+    >>> departed(stage, link, ("horizontal/front", "B1/front"))[1].thickness
+    0.0014
+    """
     part = mechanism.parts[link.part]
     for owner in dict.fromkeys(owners):
         for address, value in mechanism.changes.items():

@@ -41,14 +41,27 @@ class Layout:
 
 
 def layout(assembly: Assembly) -> Layout:
-    """The coordinate layout of an expanded stage."""
+    """The coordinate layout of an expanded stage.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.mechanism.expand import expand
+    >>> layout(expand(double_triangle())).coordinates[:2]
+    ('platform.x', 'platform.y')
+    """
     names = tuple(assembly.bodies)
     first = tuple(name for name in names if name == "platform")
     return Layout(first + tuple(name for name in names if name != "platform"))
 
 
 def twist_at(assembly: Assembly, order: Layout, body: str, frame: Frame) -> Array:
-    """The (..., 6, n) matrix of a body's twist at a frame's origin, in the frame's axes; zero for the ground."""
+    """The (..., 6, n) matrix of a body's twist at a frame's origin, in the frame's axes; zero for the ground.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.mechanism.expand import expand
+    >>> assembly = expand(double_triangle())
+    >>> twist_at(assembly, layout(assembly), "platform", assembly.links["B4/upper"].frame).shape
+    (6, 114)
+    """
     if body == GROUND:
         return np.zeros((6, order.size))
     carry = seen_at(frame, assembly.bodies[body].reference)
@@ -58,19 +71,40 @@ def twist_at(assembly: Assembly, order: Layout, body: str, frame: Frame) -> Arra
 
 
 def end_twists(assembly: Assembly, order: Layout, link: PlacedLink) -> tuple[Array, Array]:
-    """The (..., 6, n) matrices of the twists of a link's first and second body, at the link's centre, in its frame."""
+    """The (..., 6, n) matrices of the twists of a link's first and second body, at the link's centre, in its frame.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.mechanism.expand import expand
+    >>> assembly = expand(double_triangle())
+    >>> len(end_twists(assembly, layout(assembly), assembly.links["B1/front"]))
+    2
+    """
     first, second = link.joins
     return twist_at(assembly, order, first, link.frame), twist_at(assembly, order, second, link.frame)
 
 
 def deformation(assembly: Assembly, order: Layout, link: PlacedLink) -> Array:
-    """The (..., 6, n) matrix of a link's relative twist: second body against first, at the link's centre, in its frame."""
+    """The (..., 6, n) matrix of a link's relative twist: second body against first, at the link's centre, in its frame.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.mechanism.expand import expand
+    >>> assembly = expand(double_triangle())
+    >>> deformation(assembly, layout(assembly), assembly.links["B1/front"]).shape
+    (6, 114)
+    """
     first, second = end_twists(assembly, order, link)
     return second - first
 
 
 def with_ground(assembly: Assembly, order: Layout) -> Array:
-    """The (..., n, 6) rigid motion of all bodies moving with the ground, whose twist is given at the platform's reference point."""
+    """The (..., n, 6) rigid motion of all bodies moving with the ground, whose twist is given at the platform's reference point.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.mechanism.expand import expand
+    >>> assembly = expand(double_triangle())
+    >>> with_ground(assembly, layout(assembly))[:6].tolist() == np.eye(6).tolist()  # the platform itself
+    True
+    """
     centre = assembly.bodies[PLATFORM].reference
     carries = [transport(assembly.bodies[body].reference - centre) for body in order.bodies]
     batch = np.broadcast_shapes(*(carry.shape[:-2] for carry in carries))

@@ -12,7 +12,14 @@ from flexstage.spatial.frame import rigid_inertia
 
 
 def carried(mechanism: Mechanism, placed: PlacedBody) -> tuple[MassProperties, ...]:
-    """Mass properties of the body itself, where it has mass, and of each payload it carries, in the stage's frame."""
+    """Mass properties of the body itself, where it has mass, and of each payload it carries, in the stage's frame.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.mechanism.expand import expand
+    >>> stage = double_triangle()
+    >>> len(carried(stage, expand(stage).bodies["platform"]))
+    1
+    """
     loads = [
         MassProperties(np.asarray(load.mass), stack(load.at), np.zeros((3, 3)) if load.inertia is None else tensor(load.inertia))
         for load in mechanism.payloads.values()
@@ -22,7 +29,14 @@ def carried(mechanism: Mechanism, placed: PlacedBody) -> tuple[MassProperties, .
 
 
 def moving_inertia(mechanism: Mechanism, placed: PlacedBody) -> Array | None:
-    """6x6 inertia (..., 6, 6) of the body with its payloads for its twist at its reference, in the stage's axes; `None` without mass."""
+    """6x6 inertia (..., 6, 6) of the body with its payloads for its twist at its reference, in the stage's axes; `None` without mass.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.mechanism.expand import expand
+    >>> stage = double_triangle()
+    >>> round(float(moving_inertia(stage, expand(stage).bodies["platform"])[0, 0]), 4)
+    13.9965
+    """
     items = carried(mechanism, placed)
     if not items:
         return None

@@ -59,6 +59,11 @@ def complete(value: Any, path: tuple[str, ...]) -> tuple[str, ...]:
     """Return the full path, filling in skipped levels (`radius` for `profile.radius`) where that is unique.
 
     Raises `KeyError` with the name that was not found or that has several places.
+
+    >>> from flexstage.parts.notch import Notch
+    >>> from flexstage.parts.profile import Circular
+    >>> complete(Notch("steel", 1e-3, 1e-2, Circular(5e-3)), ("radius",))
+    ('profile', 'radius')
     """
     if not path:
         return ()

@@ -22,6 +22,10 @@ def restrict(mechanism: Mechanism, kept: Mapping[str, tuple[Freedoms, Freedoms]]
     """Restrict parts to (elastic, free) freedoms, by part name or by the address of a drawn link (`vertical/lower`); the rest is locked.
 
     Restricted parts have no mass. Raises `DesignError` for a name that is neither.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> restrict(double_triangle(), {"neck": ((Freedom.X,), ())}).parts["neck"].elastic
+    (<Freedom.X: 'x'>,)
     """
     result = mechanism
     for name, (elastic, free) in kept.items():
@@ -52,6 +56,10 @@ def isolate(mechanism: Mechanism, copy: str, *, guide: Vector | None = None) -> 
     """One unit alone, in its own frame, its output a massless platform; with `guide` the output can only move along that direction.
 
     The output's reference point is the joint with the platform. Departures of this copy are kept.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> list(isolate(double_triangle(), "B4").place)
+    ['B4']
     """
     units = {name: unit for name, unit, _ in copies(mechanism)}
     if copy not in units:

@@ -39,7 +39,12 @@ class _Graph:
 
 
 def free_freedoms(link: PlacedLink) -> tuple[Freedom, ...]:
-    """The freedoms taken as free at a link: its own statement, else the part's intended ones."""
+    """The freedoms taken as free at a link: its own statement, else the part's intended ones.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> [freedom.value for freedom in free_freedoms(expand(double_triangle()).links["B4/pivot"])]
+    ['rz']
+    """
     return link.link.free if link.link.free is not None else link.part.intended
 
 
@@ -48,6 +53,10 @@ def ideal(mechanism: Mechanism) -> Kinematics:
 
     Small motions about the drawn position. Raises `DesignError` where a stroke moves nothing but itself (an actuator without a path to the
     platform). Under-actuated stages are read, but their `mapping` is refused.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> ideal(double_triangle()).mapping.values[0].round(3).tolist()
+    [1.0, 0.0, 0.0, 0.0, -0.025, 0.085]
     """
     graph = _graph(mechanism)
     solution = eliminate(graph.constraints, graph.scale, keep=tuple(range(6)))

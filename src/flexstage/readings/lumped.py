@@ -59,6 +59,10 @@ def lumped(mechanism: Mechanism, masses: Masses = Masses.ALL) -> LinearModel:
     Valid for small displacements about the drawn position and frequencies below the first resonance of the parts themselves. Locked
     freedoms of `Restricted` and `Joint` parts are eliminated exactly; freedoms without stiffness that nothing feels are pinned and
     listed in `idle`. Raises `DesignError` for a mechanism (K singular), naming the bodies that can move freely.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> len(lumped(double_triangle()).coordinates)
+    114
     """
     stage = _stage(mechanism)
     size = stage.order.size

@@ -68,6 +68,10 @@ def mapped(mechanism: Mechanism) -> LinearModel:
 
     Each unit's stiffness is stated in the description, or computed for direct units (a straight strut) and lever units. Raises
     `DesignError` naming every other unit and the key that states it.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> (mapped(double_triangle()).stiffness_matrix[0, 0] / 1e6).round(2).item()  # 1.5 K_a
+    15.45
     """
     kinematics = ideal(mechanism)
     kinematics.mapping  # noqa: B018  (refuses under-actuated stages)
@@ -117,7 +121,13 @@ def _spread(*arrays: Array) -> list[Array]:
 
 
 def unit_stiffness(mechanism: Mechanism, assembly: Assembly) -> dict[str, Number]:
-    """Stiffness of every actuator's unit in actuator coordinates [N/m], stated or computed."""
+    """Stiffness of every actuator's unit in actuator coordinates [N/m], stated or computed.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> stage = double_triangle()
+    >>> round(float(unit_stiffness(stage, expand(stage))["B1"]) / 1e6, 3)
+    10.3
+    """
     unit_of = {copy: unit for copy, unit, _ in copies(mechanism)}
     findings: list[Finding] = []
     result: dict[str, Number] = {}
@@ -134,7 +144,12 @@ def unit_stiffness(mechanism: Mechanism, assembly: Assembly) -> dict[str, Number
 
 
 def computed_stiffness(assembly: Assembly, drive: str) -> Number:
-    """Stiffness in actuator coordinates of a direct or a lever unit, by the name of its actuator's link."""
+    """Stiffness in actuator coordinates of a direct or a lever unit, by the name of its actuator's link.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> round(float(computed_stiffness(expand(double_triangle()), "B4/pzt")) / 1e6, 2)
+    30.28
+    """
     ways = _ways(assembly, drive)
     levers = [body for body, links in ways.items() if len(links) > 2 and body not in (GROUND, PLATFORM)]
     if levers:
@@ -147,7 +162,12 @@ def computed_stiffness(assembly: Assembly, drive: str) -> Number:
 
 
 def lever_stiffness(assembly: Assembly, drive: str) -> LeverStiffness:
-    """The springs and arms of a lever unit: drive ground - lever, one pivot ground - lever, pole lever - platform."""
+    """The springs and arms of a lever unit: drive ground - lever, one pivot ground - lever, pole lever - platform.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> round(float(lever_stiffness(expand(double_triangle()), "B4/pzt").gain) / 3, 3)  # Table 2: 585 of 600
+    0.975
+    """
     ways = _ways(assembly, drive)
     levers = [body for body, links in ways.items() if len(links) > 2 and body not in (GROUND, PLATFORM)]
     stop = frozenset({GROUND, PLATFORM, *levers})

@@ -44,6 +44,13 @@ def omitted(mechanism: Mechanism, simple: Restrictions, channel: tuple[str, str]
     """Compare the static response of an output to an input, `channel` = (output, input), between restricted and full parts.
 
     Each freedom that `simple` locks or frees is given its elasticity back alone, the others staying as they are. One design.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.cases.double_triangle import EQUATION_3
+    >>> from flexstage.mechanism.restrict import isolate
+    >>> unit = isolate(double_triangle(), "B4", guide=(0.0, 0.0, 1.0))
+    >>> omitted(unit, EQUATION_3, ("platform.z", "B4")).unexplained < 1e-3
+    True
     """
     parts = {name for unit in mechanism.units.values() for link in unit.links.values() for name in (link.part,)}
     known = {name: freedoms for name, freedoms in simple.items() if name in parts and not isinstance(mechanism.parts[name], Joint)}

@@ -51,6 +51,10 @@ def units(mechanism: Mechanism) -> dict[str, UnitResult]:
     """Analyse the first copy of every placed unit that drives its output by exactly one actuator, alone. One design.
 
     A unit that needs the rest of the stage to work (a carriage that its neighbours guide) is left out.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> round(units(double_triangle())["horizontal"].axial / 1e6, 2)  # N/um
+    10.3
     """
     actuators = expand(mechanism).actuators
     mapping = ideal(mechanism).mapping

@@ -25,6 +25,11 @@ def eigen(model: LinearModel) -> Eigen:
 
     Solved as K^-1 M with K = L L^T, so M may be singular. Sign rule: the largest component, rotations weighted with 0.1 m, is positive. A
     design whose K is not positive definite gives NaN. The number of modes is that of the first design.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.readings.mapped import mapped
+    >>> (eigen(mapped(double_triangle())).values[:3] ** 0.5 / (2 * np.pi)).round(2).tolist()
+    [110.91, 110.91, 135.15]
     """
     return solve(model.stiffness_matrix, model.inertia_matrix, _weights(model.coordinates))
 

@@ -130,7 +130,13 @@ def _transposed(matrix: Array) -> Array:
 
 
 def labelled(model: LinearModel, values: Array, rows: tuple[str, ...], columns: tuple[str, ...]) -> Matrix:
-    """A matrix from the model's inputs to outputs, with units from its channels."""
+    """A matrix from the model's inputs to outputs, with units from its channels.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.readings.mapped import mapped
+    >>> labelled(mapped(double_triangle()), np.eye(1), ("platform.rx",), ("B4",)).unit
+    (('rad/m',),)
+    """
     row_units = tuple(model.outputs[index].unit for index in model.output_index(rows))
     column_units = tuple(model.inputs[index].unit for index in model.input_index(columns))
     return Matrix(values, rows, columns, ratio_units(row_units, column_units))
