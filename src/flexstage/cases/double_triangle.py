@@ -14,7 +14,6 @@ from flexstage.base.number import Number
 from flexstage.base.scale import X, Y, Z, deg, kHz, mm, um
 from flexstage.mechanism.mechanism import Link, Mechanism, ModalDamping, Opening, Placement, Probe, Unit
 from flexstage.mechanism.pattern import Facing, Polar
-from flexstage.mechanism.store import tidied
 from flexstage.parts.body import Block, Body
 from flexstage.parts.freedom import ROTATIONS, Freedom
 from flexstage.parts.gauge import Gauge, Positive
@@ -183,7 +182,7 @@ def double_triangle(parameters: DoubleTriangle = SM_REF_B) -> Mechanism:
     plate = Block("steel", size=(320 * mm, 320 * mm, 20 * mm), at=(0.0, 0.0, p.platform_height), hole=(110 * mm, 110 * mm))
     tangent = Polar(p.horizontal_radius, -90 * deg, Facing.TANGENT, p.horizontal_height)
     poles = Polar(p.pole_radius, 90 * deg, Facing.TANGENT, p.pole_height, turn=p.vertical_turn)
-    stage = Mechanism(
+    return Mechanism(
         name=p.name,
         materials={"steel": STEEL},
         parts={
@@ -207,7 +206,6 @@ def double_triangle(parameters: DoubleTriangle = SM_REF_B) -> Mechanism:
         tags=_tags(p),
         sources=SOURCES,
     )
-    return tidied(stage)
 
 
 def _gauges(p: DoubleTriangle) -> dict[str, Probe]:
