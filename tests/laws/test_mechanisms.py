@@ -96,9 +96,12 @@ def test_rigid_motion_strains_nothing(mechanism):
     assert not model.rigid_output[feels].any()
 
 
-@given(mechanisms(), st.floats(0.05, 3.0))
+@given(mechanisms(), st.floats(0.05, 0.95) | st.floats(1.05, 3.0))
 def test_transmissibility_is_that_of_a_moved_floor(mechanism, ratio):
-    """With the floor's motion prescribed: (K_qq - w^2 M_qq) q = -(K_qf - w^2 M_qf) x_f, all inertia of links included."""
+    """With the floor's motion prescribed: (K_qq - w^2 M_qq) q = -(K_qf - w^2 M_qf) x_f, all inertia of links included.
+
+    Near a resonance both sides are as uncertain as its frequency is, over the relative gap to it.
+    """
     stage = expand(floating(mechanism))
     order = layout(stage)
     parts, masses = {}, {}
@@ -111,7 +114,9 @@ def test_transmissibility_is_that_of_a_moved_floor(mechanism, ratio):
             inertia = rigid_inertia(placed.mass.mass, placed.mass.inertia, placed.mass.centre, placed.reference)
             masses[f"body {name}"] = Contribution(np.eye(order.size)[order.columns(name)], inertia)
     model = lumped(mechanism)
-    frequency = ratio * np.sqrt(eigen(model).values[0]) / (2.0 * np.pi)
+    natural = eigen(model).values
+    frequency = ratio * np.sqrt(natural[0]) / (2.0 * np.pi)
+    gap = np.min(np.abs(1.0 - ratio**2 * natural[0] / natural))
     dynamic = assembled(parts, order.size) - (2.0 * np.pi * frequency) ** 2 * assembled(masses, order.size)
     floor = range(*order.columns("floor").indices(order.size))
     free = [index for index in range(order.size) if index not in floor]
@@ -119,8 +124,7 @@ def test_transmissibility_is_that_of_a_moved_floor(mechanism, ratio):
     carry = transport(stage.bodies["floor"].reference - stage.bodies[PLATFORM].reference)
     expected = moved_[:6] @ carry * METRE[:, None] / METRE
     found = transmissibility(model, frequencies=np.array([frequency]), damping=ModalDamping(0.0)).values[0] * METRE[:, None] / METRE
-    amplified = np.abs(expected).max()
-    assert np.abs(found - expected).max() < rounding(model) * (1.0 + amplified) * max(1.0, amplified)
+    assert np.abs(found - expected).max() <= rounding(model) * (1.0 + np.abs(expected).max()) / max(gap, 1e-9)
 
 
 @given(mechanisms(), turns())
@@ -250,7 +254,7 @@ def towards_ideal(mechanism, step):
 
 @given(actuated_platforms())
 def test_ideal_is_the_limit_of_lumped(mechanism):
-    """Stacks as they are, hinges stiffer and softer: the distance falls in proportion to the step."""
+    """Stacks as they are, hinges stiffer and softer: the distance d = c s/(1 + c s) falls with the step s, ever more in proportion."""
     kinematics = ideal(mechanism)
     feasible = kinematics.actuation @ kinematics.inverse
     expected = kinematics.jacobian @ feasible * METRE[:, None]
@@ -259,7 +263,7 @@ def test_ideal_is_the_limit_of_lumped(mechanism):
         gain = static_gain(lumped(towards_ideal(mechanism, step)), TWIST, kinematics.actuators).values @ feasible * METRE[:, None]
         distances.append(np.abs(gain - expected).max() / np.abs(expected).max())
     assert distances[0] < 0.2
-    assert distances[1] < 0.105 * distances[0] + 1e-8
+    assert distances[1] < 0.1 * distances[0] * (1.0 + 4.0 * distances[0]) + 1e-8
 
 
 @given(rosettes())
