@@ -86,3 +86,21 @@ def test_every_number_of_the_stage_has_a_finite_sensitivity() -> None:
     assert exact.parameters == addresses(stage)
     assert np.all(np.isfinite(exact.frequency))
     assert np.all(np.isfinite(exact.loss))
+
+
+@pytest.mark.parametrize(
+    ("address", "message"),
+    [("parts.neck", "not a single number"), ("vertical/front.at", "not a single number"), ("neck.thicknes", "nearest"), ("mode_limit", "")],
+)
+def test_only_single_numbers_have_sensitivities(address: str, message: str) -> None:
+    stage = double_triangle(SM_REF_B)
+    if not message:
+        assert np.all(fs.sensitivities(stage, (address,), modes=1).frequency == 0.0)
+        return
+    with pytest.raises(fs.DesignError, match=message):
+        fs.sensitivities(stage, (address,), modes=1)
+
+
+def test_numbers_that_are_not_stated_have_no_sensitivity() -> None:
+    with pytest.raises(fs.DesignError, match="does not state it"):
+        fs.sensitivities(double_triangle(SM_REF_B), ("parts.stack_vertical.preload",), modes=1)

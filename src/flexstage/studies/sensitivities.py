@@ -13,9 +13,12 @@ import numpy as np
 
 from flexstage.analysis.lost_motion import lost_motion
 from flexstage.analysis.modes import clusters
+from flexstage.base.finding import Finding, nearest, require
 from flexstage.base.labelled import Matrix
 from flexstage.base.number import Array
 from flexstage.mechanism.address import addresses, get, quantity_of, set_value
+from flexstage.mechanism.grammar import NumberNode
+from flexstage.mechanism.locate import locate
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.readings.ideal import ideal
 from flexstage.readings.linear.eigen import Eigen, eigen
@@ -66,7 +69,7 @@ def sensitivities(
     """Derivatives of the lowest `modes` frequencies and of all gains with respect to the addressed numbers (default: every one).
 
     Modes closer than `cluster` (relative gap) are repeated: for them only the derivative of the mean is smooth. Raises `DesignError`
-    for unknown addresses.
+    for unknown addresses and for those of anything but a single number that the description states.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> found = sensitivities(double_triangle(), ("materials.steel.density",), modes=6)
@@ -74,6 +77,7 @@ def sensitivities(
     True
     """
     names = addresses(mechanism) if parameters is None else parameters
+    require(_not_numbers(mechanism, names))
     solved = eigen(lumped(mechanism))
     solved = Eigen(solved.values[:modes], solved.shapes[:, :modes])
     groups = clusters(solved.values, cluster)
@@ -100,6 +104,18 @@ def sensitivities(
     )
 
 
+def _not_numbers(mechanism: Mechanism, names: tuple[str, ...]) -> Iterator[Finding]:
+    for name in names:
+        place = locate(mechanism, name)
+        if not isinstance(place.node, NumberNode):
+            inner = [each for each in addresses(mechanism) if each.startswith(f"{place.address}.")]
+            yield Finding(
+                name, "this is not a single number", f"Address one of its numbers. {nearest(name, inner)}" if inner else "Address a number"
+            )
+        elif get(mechanism, name) is None:
+            yield Finding(name, "the description does not state it", "State it, or choose another number")
+
+
 def _chunks(mechanism: Mechanism, names: tuple[str, ...]) -> Iterator[list[int]]:
     """Positions of parameters that can be stepped together: a departure hides the number it departs from, so each level goes alone."""
     level = [0 if "/" not in name else 1 if name.partition("/")[0] in mechanism.units else 2 for name in names]
@@ -113,7 +129,7 @@ def stepped(mechanism: Mechanism, names: tuple[str, ...]) -> Mechanism:
     """The description with one batch axis: design k has a tiny imaginary step in parameter k.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> stepped(double_triangle(), ("parts.neck.thickness",)).parts["neck"].thickness.real.tolist()
+    >>> stepped(double_triangle(), ("parts.neck.thickness",)).parts["neck"].thickness.real.round(9).tolist()
     [0.00154]
     """
     result = mechanism
