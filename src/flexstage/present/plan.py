@@ -62,7 +62,7 @@ def plan_figure(mechanism: Mechanism, scene: Scene) -> Any:
     with styled():
         reach = _reach(mechanism, scene)
         low, high = _limits(reach)
-        figure = canvas(FULL, min(1.1, float((high - low)[1] / (high - low)[0])) * FULL, fitted=False)
+        figure = canvas(FULL, min(1.1, float((high - low)[1] / (high - low)[0])) * FULL)
         axes = figure.add_axes((0.0, 0.0, 1.0, 1.0), xlim=(low[0], high[0]), ylim=(low[1], high[1]), aspect="equal")
         axes.set_axis_off()
         _outlines(axes, scene)

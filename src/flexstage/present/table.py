@@ -124,7 +124,7 @@ def matrix_table(title: str, matrix: Matrix, *, against: Matrix | None = None, f
         [_row_head(name, form), *(_entry(value * form.factor / column.factor) for value, column in zip(line, columns, strict=True))]
         for name, form, line in zip(short_names(matrix.rows), rows, kept, strict=True)
     ]
-    ratio = ["Entries: row unit per column unit."] if any(_unit(form) for form in (*rows, *columns)) else []
+    ratio = ["Entries: row unit per column unit."] if all(any(_unit(form) for form in forms) for forms in (rows, columns)) else []
     return build(title, [Column("", numeric=False), *heads], lines, notes=[*notes, *ratio, *said])
 
 

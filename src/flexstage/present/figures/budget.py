@@ -11,12 +11,14 @@ from flexstage.analysis.error_budget import ErrorBudget
 from flexstage.analysis.lost_motion import LostMotion
 from flexstage.base.number import Array
 from flexstage.present.display import number, percent, shown, typeset
-from flexstage.present.figures.style import FULL, INK, MUTED, SERIES, canvas, styled
+from flexstage.present.figures.style import FULL, INK, MUTED, SERIES, Margins, canvas, panels, styled, text_width
 from flexstage.present.table import first_design
 from flexstage.present.tables.lost_motion import ELSEWHERE, energy_shares, own_budget
 
 _REST = "rest"
 _COLOURED = 6
+_ACROSS = 8
+_LEGEND = {"handlelength": 0.9, "handleheight": 0.9, "columnspacing": 1.4, "borderaxespad": 0.0}
 _OTHER_COLOUR, _REST_COLOUR = "#9aa5b1", "#ccd3da"
 
 
@@ -51,8 +53,9 @@ def energy_figure(lost: LostMotion) -> Any:
 def _share_figure(shares: Mapping[str, Mapping[str, float]], totals: Mapping[str, str], label: str) -> Any:
     parts = _largest_parts(shares)
     with styled():
-        figure = canvas(FULL, 0.75 + 0.27 * len(shares))
-        axes = figure.add_subplot()
+        top = 0.1 + 0.16 * -(-len(parts) // _ACROSS)
+        figure = canvas(FULL, 0.5 + top + 0.27 * len(shares))
+        axes = panels(figure, 1, 1, Margins(left=0.15 + text_width(shares), top=top))[0, 0]
         left, right = np.zeros(len(shares)), np.zeros(len(shares))
         names = list(shares)
         for index, part in enumerate(parts):
@@ -66,7 +69,7 @@ def _share_figure(shares: Mapping[str, Mapping[str, float]], totals: Mapping[str
         _tidy(axes, label)
         _room_at_right(axes, 1.13)
         if parts:  # massless axial springs lose nothing: there is nothing to name
-            figure.legend(loc="outside upper left", ncols=4, handlelength=0.9, handleheight=0.9, columnspacing=1.4)
+            figure.legend(loc="upper left", ncols=_ACROSS, **_LEGEND)
     return figure
 
 
@@ -113,11 +116,11 @@ def error_figure(budget: ErrorBudget) -> Any:
     """
     with styled():
         figure = canvas(FULL, 2.5)
-        panels = figure.subplots(1, 2)
-        for axes, rows, unit in zip(panels, (slice(0, 3), slice(3, 6)), ("m", "rad"), strict=True):
+        row = panels(figure, 1, 2, Margins(left=0.25, top=0.28, across=0.45))[0]
+        for axes, rows, unit in zip(row, (slice(0, 3), slice(3, 6)), ("m", "rad"), strict=True):
             _error_panel(axes, budget, rows, unit)
-        handles, labels = panels[0].get_legend_handles_labels()
-        figure.legend(handles, labels, loc="outside upper left", ncols=6, handlelength=0.9, handleheight=0.9, columnspacing=1.4)
+        handles, labels = row[0].get_legend_handles_labels()
+        figure.legend(handles, labels, loc="upper left", ncols=6, **_LEGEND)
     return figure
 
 

@@ -28,7 +28,7 @@ def directional_figure(statics: Statics) -> Any:
 
     with styled():
         figure = canvas(HALF, 1.12 * HALF)
-        axes = figure.add_subplot(projection="polar")
+        axes = figure.add_axes((0.13, 0.2, 0.74, 0.74 / 1.12), projection="polar")
         both = (("others held", statics.held, SERIES[0]), ("others free", statics.free, SERIES[1]))
         curves = [curve for curve in both if not np.isnan(curve[1].principal).any()]  # none where the reading locks the plane
         for name, stiffness, colour in curves:
@@ -43,7 +43,7 @@ def directional_figure(statics: Statics) -> Any:
         axes.set_ylim(0.0, 1.1e-6 * max((float(first_design(stiffness.principal, 1)[0]) for _, stiffness, _ in curves), default=1e6))
         axes.yaxis.set_major_locator(MaxNLocator(4))
         if curves:
-            axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.07), handlelength=1.2, title=typeset("N/um"), title_fontsize=7.5)
+            axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.08), handlelength=1.2, title=typeset("N/um"), title_fontsize=7.5)
         axes.set_xticks(np.deg2rad(np.arange(0, 360, 45)), ["x", "45°", "y", "135°", "180°", "225°", "270°", "315°"])
         axes.grid(linewidth=0.5)
         axes.tick_params(labelcolor=INK)

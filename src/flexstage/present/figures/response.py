@@ -9,7 +9,7 @@ import numpy as np
 
 from flexstage.analysis.modes import Modes
 from flexstage.present.display import preferred, typeset
-from flexstage.present.figures.style import FULL, MUTED, SERIES, canvas, styled
+from flexstage.present.figures.style import FULL, MUTED, SERIES, Margins, canvas, panels, styled
 from flexstage.present.table import first_design
 from flexstage.present.tables.response import Curve, leading_curves
 from flexstage.readings.linear.frequency import Response
@@ -36,19 +36,21 @@ def response_figure(response: Response, modes: Modes | None = None) -> Any:
             groups.setdefault(curve.unit, []).append(curve)
     with styled():
         figure = canvas(FULL, 3.7)
-        panels = figure.subplots(2, len(groups) or 1, sharex=True, squeeze=False, height_ratios=[1.7, 1.0])
+        margins = Margins(left=0.6, top=0.45, across=0.7, down=0.15)
+        grid = panels(figure, 2, len(groups) or 1, margins, heights=[1.7, 1.0])
         for column, (unit, curves) in enumerate(groups.items()):
-            _magnitudes(panels[0, column], curves, response, unit)
-            _phases(panels[1, column], curves, response)
-            _mode_marks(panels[0, column], modes, response)
-        for axes in panels.ravel():
+            _magnitudes(grid[0, column], curves, response, unit)
+            _phases(grid[1, column], curves, response)
+            _mode_marks(grid[0, column], modes, response)
+        for axes in grid.ravel():
             _plain_ticks(axes.xaxis, (1.0, 2.0, 5.0))
-        for axes in panels[0]:
+        for axes in grid[0]:
             _plain_ticks(axes.yaxis, (1.0,))
-        for axes in panels[1]:
+            axes.tick_params(labelbottom=False)
+        for axes in grid[1]:
             axes.set_xlabel("frequency [Hz]")
             axes.set_xlim(_start(response, modes), float(response.frequencies[-1]))
-        panels[1, 0].set_ylabel("phase [°]")
+        grid[1, 0].set_ylabel("phase [°]")
     return figure
 
 

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from flexstage.analysis.modes import Modes
-from flexstage.present.figures.style import FULL, INK, MUTED, SERIES, canvas, styled
+from flexstage.present.figures.style import FULL, INK, MUTED, SERIES, Margins, canvas, panels, styled
 from flexstage.present.table import first_design
 from flexstage.present.tables.modes import listed_modes
 
@@ -24,7 +24,7 @@ def spectrum_figure(modes: Modes) -> Any:
     frequencies, share = first_design(modes.frequencies, 1), first_design(modes.share, 1)
     with styled():
         figure = canvas(FULL, 1.75)
-        axes = figure.add_subplot()
+        axes = panels(figure, 1, 1, Margins())[0, 0]
         kinds = (("platform", modes.platform, SERIES[0]), ("local neighbours", modes.local, SERIES[1]))
         rest = tuple(index for index in listed if index not in modes.platform and index not in modes.local)
         for name, indices, colour in (*kinds, ("other local modes", rest, SERIES[7])):

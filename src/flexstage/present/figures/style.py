@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator
+from collections.abc import Generator, Iterable, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass
 from typing import Any
 
 INK = "#1f2a37"
@@ -23,6 +24,7 @@ _RC: dict[Any, Any] = {
     "font.family": ["DejaVu Sans"],
     "font.size": 8.0,
     "text.color": INK,
+    "text.parse_math": False,  # names are the user's: a dollar sign is a dollar sign
     "axes.edgecolor": MUTED,
     "axes.labelcolor": INK,
     "axes.linewidth": 0.6,
@@ -70,12 +72,53 @@ def styled() -> Generator[None]:
         yield
 
 
-def canvas(width: float, height: float, *, fitted: bool = True) -> Any:
-    """An empty `matplotlib.figure.Figure` of that size in inches; `fitted`: its axes are laid out without overlaps.
+def canvas(width: float, height: float) -> Any:
+    """An empty `matplotlib.figure.Figure` of that size in inches.
 
     >>> canvas(2.0, 1.0).get_size_inches().tolist()
     [2.0, 1.0]
     """
     from matplotlib.figure import Figure
 
-    return Figure(figsize=(width, height), layout="constrained" if fitted else None)
+    return Figure(figsize=(width, height))
+
+
+@dataclass(frozen=True)
+class Margins:
+    """Room around and between the panels of a figure, in inches. Stated, not searched for: a search draws everything twice."""
+
+    left: float = 0.5
+    right: float = 0.1
+    bottom: float = 0.42
+    top: float = 0.1
+    across: float = 0.55
+    down: float = 0.2
+
+
+def panels(figure: Any, rows: int, columns: int, margins: Margins, *, heights: Sequence[float] | None = None) -> Any:
+    """Axes (rows, columns) of a figure within margins; `heights` are relative, axes of a column share their x axis.
+
+    >>> panels(canvas(3.0, 3.0), 2, 1, Margins()).shape
+    (2, 1)
+    """
+    width, height = figure.get_size_inches()
+    inner_width = (width - margins.left - margins.right - (columns - 1) * margins.across) / columns
+    inner_height = (height - margins.bottom - margins.top - (rows - 1) * margins.down) / rows
+    figure.subplots_adjust(
+        left=margins.left / width,
+        right=1.0 - margins.right / width,
+        bottom=margins.bottom / height,
+        top=1.0 - margins.top / height,
+        wspace=margins.across / inner_width,
+        hspace=margins.down / inner_height,
+    )
+    return figure.subplots(rows, columns, squeeze=False, height_ratios=heights, sharex="col" if rows > 1 else False)
+
+
+def text_width(texts: Iterable[str], size: float = 8.0) -> float:
+    """About how wide the longest of some texts is, in inches.
+
+    >>> round(text_width(["B1", "pivot.rz"]), 2)
+    0.53
+    """
+    return max((len(text) for text in texts), default=0) * 0.6 * size / 72.0

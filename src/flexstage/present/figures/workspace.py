@@ -10,7 +10,7 @@ import numpy as np
 
 from flexstage.base.number import Array, Number
 from flexstage.present.display import Shown, shown, typeset
-from flexstage.present.figures.style import FULL, MUTED, SERIES, canvas, styled
+from flexstage.present.figures.style import FULL, MUTED, SERIES, Margins, canvas, panels, styled
 from flexstage.present.plan import hull
 from flexstage.present.table import first_design
 from flexstage.present.tables.workspace import unit_of
@@ -38,11 +38,11 @@ def workspace_figure(workspace: Workspace) -> Any | None:
     pairs = _pairs(polytope.coordinates)
     with styled():
         figure = canvas(FULL, 2.25 if len(pairs) > 2 else 2.6)
-        panels = figure.subplots(1, len(pairs), squeeze=False)[0]
-        for axes, pair in zip(panels, pairs, strict=True):
+        row = panels(figure, 1, len(pairs), Margins(left=0.6, top=0.3, across=0.62))[0]
+        for axes, pair in zip(row, pairs, strict=True):
             _panel(axes, workspace, pair)
-        handles, labels = panels[0].get_legend_handles_labels()
-        figure.legend(handles, labels, loc="outside upper left", ncols=3, handlelength=1.3)
+        handles, labels = row[0].get_legend_handles_labels()
+        figure.legend(handles, labels, loc="upper left", ncols=3, handlelength=1.3, borderaxespad=0.0)
     return figure
 
 

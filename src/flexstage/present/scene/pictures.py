@@ -61,7 +61,7 @@ def _axes(facets: list[Facet], seen: View, width: float) -> Any:
     low, high = flat.min(axis=0), flat.max(axis=0)
     gap = 0.05 * float(max(high - low)) or 1.0
     extent = high - low + 2.0 * gap
-    figure = canvas(width, width * min(_TALLEST, float(extent[1] / extent[0])), fitted=False)
+    figure = canvas(width, width * min(_TALLEST, float(extent[1] / extent[0])))
     axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
     axes.set_xlim(low[0] - gap, high[0] + gap)
     axes.set_ylim(low[1] - gap, high[1] + gap)

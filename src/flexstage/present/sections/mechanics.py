@@ -6,6 +6,7 @@ from flexstage.present.figures.budget import energy_figure, loss_figure
 from flexstage.present.figures.directional import directional_figure
 from flexstage.present.figures.export import to_svg
 from flexstage.present.page import Abreast, Block, Folded, Picture, Prose, Section, section
+from flexstage.present.tables.deflection import deflection_table
 from flexstage.present.tables.kinematics import (
     freedom_table,
     gauge_table,
@@ -26,6 +27,7 @@ from flexstage.present.tables.lost_motion import (
     parasitic_table,
 )
 from flexstage.present.tables.statics import centre_table, compliance_table, direction_table, principal_table, stiffness_table
+from flexstage.present.tables.units import lever_table, unit_table
 from flexstage.readings.linear.kinematics import Kinematics
 from flexstage.studies.complete import Analysis
 
@@ -80,14 +82,21 @@ def stiffness_section(analysis: Analysis) -> Section | None:
     if statics is None:
         return None
     polar = to_svg(directional_figure(statics), "polar", "Stiffness by direction in the plane")
+    sag = () if analysis.deflection is None else (deflection_table(analysis.deflection),)
     caption = "Stiffness in the plane by direction of the force. Free: what a push test measures. Held: all other motions are prevented."
     return section(
         "Stiffness",
         [
             Prose("Stiffness of the platform with the strokes held, as seen at its reference point."),
             stiffness_table(statics),
-            Abreast((Picture(polar, caption), Abreast((principal_table(statics), centre_table(statics))))),
-            Folded("Compliance, and stiffness by angle", (compliance_table(statics), direction_table(statics))),
+            Abreast((Picture(polar, caption), Abreast((principal_table(statics), centre_table(statics), *sag)))),
+            *([] if analysis.units is None else [unit_table(analysis.units)]),
+            _folded(
+                "Compliance, stiffness by angle, springs of the lever units",
+                compliance_table(statics),
+                direction_table(statics),
+                None if analysis.units is None else lever_table(analysis.units),
+            ),
         ],
     )
 

@@ -30,7 +30,7 @@ def stage_section(mechanism: Mechanism, seen: Scene) -> Section | None:
     corner = to_svg(stage_picture(seen), "corner", "The stage from above its front corner")
     sides = tuple(_side(seen, *each) for each in _SIDES)
     plan = to_svg(plan_figure(mechanism, seen), "plan", "Dimensioned plan of the stage")
-    caption = "Rigid bodies as described; where a hinge lies off the outline of its body, a thin line joins them. The platform is drawn translucent."
+    caption = "Rigid bodies as described, the platform translucent; where a hinge lies off the outline of its body, a thin line joins them."
     plan_caption = " ".join(["Plan, dimensions in mm.", *_ring_texts(mechanism)])
     return section(
         "The stage",

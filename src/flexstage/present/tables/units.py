@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from flexstage.present.display import NO_VALUE, number, percent, value_with_unit
+from flexstage.present.display import NO_VALUE, NOISE, number, percent, value_with_unit
+from flexstage.present.scene.primitives import plain
 from flexstage.present.table import Cell, Column, Mark, Table, build
 from flexstage.studies.omitted import Omitted
 from flexstage.studies.units import UnitResult
@@ -26,15 +27,41 @@ def unit_table(found: Mapping[str, UnitResult]) -> Table:
             " to ".join(value_with_unit(value, "N/m", 4) for value in unit.lateral),
             number(unit.ideal_gain),
             number(unit.gain),
-            percent(unit.loss),
+            percent(unit.loss if abs(unit.loss) > NOISE else 0.0),
             NO_VALUE if unit.series is None else value_with_unit(unit.series, "N/m"),
         )
         for name, unit in found.items()
     ]
     heads = ["unit", "copy", Column("axial stiffness"), Column("lateral stiffness"), Column("ideal gain"), Column("gain")]
-    heads += [Column("loss"), Column("stiffness for the mapped reading")]
-    note = "Each unit alone, strokes held, its output guided along its direction; the last column is in actuator coordinates."
+    heads += [Column("loss"), Column("in strokes")]
+    note = "Each unit alone, strokes held, output guided along its direction. In strokes: in actuator coordinates, as mapped reads it."
     return build("Units alone", heads, rows, notes=[note])
+
+
+def lever_table(found: Mapping[str, UnitResult]) -> Table | None:
+    """The springs and arms of lever units as in Eqs. 3-11 of Shin & Moon; `None` without lever units.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.studies.units import units
+    >>> lever_table(units(double_triangle())).texts()[1][:2]
+    ['vertical', '30.996 N/um']
+    """
+    levers = {name: unit.lever for name, unit in found.items() if unit.lever is not None}
+    rows = [
+        (
+            Cell(name, Mark.STRONG),
+            value_with_unit(plain(lever.drive), "N/m"),
+            value_with_unit(plain(lever.pivot), "N m/rad"),
+            value_with_unit(plain(lever.pole), "N/m"),
+            f"{number(1e3 * plain(lever.short_arm))} / {number(1e3 * plain(lever.long_arm))}",
+            number(plain(lever.gain)),
+            value_with_unit(plain(lever.tip_compliance), "m/N", 4),
+        )
+        for name, lever in levers.items()
+    ]
+    heads = ["unit", Column("drive K1"), Column("pivot K_theta2"), Column("pole K3"), Column("arms r1 / r2", "mm")]
+    heads += [Column("gain (Eq. 11)"), Column("tip compliance (Eq. 11)")]
+    return build("Springs of the lever units", heads, rows) if rows else None
 
 
 def omitted_table(found: Omitted, *, top: int = 12) -> Table:

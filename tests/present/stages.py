@@ -1,0 +1,37 @@
+"""Stages the presentation is tried on, each analysed once a session."""
+
+from __future__ import annotations
+
+import functools
+from dataclasses import replace
+
+from flexstage.cases.registry import CASES, case
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.studies.complete import Analysis, Reading, analyse
+
+NAMES = tuple(CASES)
+HOSTILE = '<script>alert("1 & 2")</script>'
+
+
+@functools.cache
+def analysed(name: str, reading: Reading = Reading.LUMPED) -> Analysis:
+    return analyse(case(name), reading)
+
+
+def hostile() -> Mechanism:
+    """The parallelogram with markup in every text a user may write, and mathematics in the names of its copies."""
+    stage = case("parallelogram")
+    materials = {name: replace(material, source=HOSTILE) for name, material in stage.materials.items()}
+    renamed = {
+        "name": HOSTILE,
+        "materials": materials,
+        "tags": {"parts": f"stated {HOSTILE}"},
+        "sources": {HOSTILE: HOSTILE, "$x^{": "$\\alpha$"},
+    }
+    bodies = {f"<b>{name}" if name != "platform" else name: body for name, body in stage.bodies.items()}
+    links = {f"<i>$_{{{name}}}": replace(link, joins=tuple(_renamed(join) for join in link.joins)) for name, link in stage.links.items()}
+    return replace(stage, bodies=bodies, links=links, changes={}, requirements={}, **renamed)
+
+
+def _renamed(body: str) -> str:
+    return body if body in ("platform", "ground") else f"<b>{body}"
