@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import tomlkit
 from scipy.io import loadmat
 
 from flexstage.analysis.modes import modes
@@ -158,3 +159,29 @@ def test_stages_with_locked_or_free_motions_are_reported(flexstage: Command, tmp
     ended = flexstage("analyse", "stage.toml", "--reading", reading, "--report", "report.html")
     assert ended.code == 0, ended.err
     assert (tmp_path / "report.html").read_text(encoding="utf-8").rstrip().endswith("</html>")
+
+
+WITHOUT = ["damping", "gauges", "require", "mode_limit", "opening", "place"]
+
+
+@pytest.mark.parametrize("reading", ["ideal", "mapped", "lumped"])
+@pytest.mark.parametrize("key", WITHOUT)
+def test_stages_that_lack_something_are_analysed_as_far_as_they_go(flexstage: Command, tmp_path: Path, key: str, reading: str) -> None:
+    design = design_in(tmp_path, "parallelogram")
+    document = tomlkit.parse(design.read_text())
+    document.pop(key, None)
+    design.write_text(tomlkit.dumps(document))
+    ended = flexstage("analyse", "stage.toml", "--reading", reading, "--report", "report.html", "--mat", "out.mat", "--json", "out.json")
+    if (key, reading) == ("place", "mapped"):
+        assert ended.code == 2  # without strokes there is no unit whose stiffness could be taken
+        return
+    assert ended.code == 0, ended.err
+    found = json.loads((tmp_path / "out.json").read_text())
+    if key == "damping" and reading != "ideal":
+        assert found["response"] is None
+        assert "damping" in found["reasons"]["response"]
+    if key == "gauges":
+        assert found["mapping"]["R_s"]["rows"] == []
+        assert "gauges" in found["workspace"]["reasons"]["resolution"]
+    if key == "place":
+        assert found["mapping"]["R_a"] is None

@@ -50,6 +50,8 @@ class Modes:
     @property
     def local(self) -> tuple[int, ...]:
         """Modes that are not the platform's, below 1.5 times its highest one."""
+        if not self.platform:
+            return ()
         highest = first_design(self.platform_frequencies, 1)[-1]
         frequencies = first_design(self.frequencies, 1)
         return tuple(

@@ -87,7 +87,7 @@ def gauge_inverse(kinematics: Kinematics) -> Matrix:
     """
     seen = kinematics.sensing @ kinematics.motion
     scale = np.array([1.0 / kinematics.length if name.startswith("r") else 1.0 for name in kinematics.coordinates])
-    first = np.real(seen.reshape(-1, *seen.shape[-2:])[0]) * scale
+    first = np.real(seen[(0,) * (seen.ndim - 2)]) * scale
     rank = int(np.linalg.matrix_rank(first, tol=1e-9)) if first.size else 0
     if rank < kinematics.mobility:
         raise refuse(

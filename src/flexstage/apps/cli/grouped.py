@@ -23,7 +23,7 @@ def mapping_tables(kinematics: Kinematics) -> Iterator[Table | None]:
     yield tables.mobility_table(kinematics)
     if kinematics.actuated:
         yield tables.mapping_table(kinematics)
-    yield tables.gauge_table(kinematics)
+    yield tables.gauge_table(kinematics) if kinematics.gauges else None
     yield tables.motion_table(kinematics)
     yield tables.freedom_table(kinematics)
     yield tables.idle_table(kinematics)
@@ -98,7 +98,7 @@ def analysis_tables(analysis: Analysis) -> Iterator[Table | None]:
     found = analysis.kinematics
     yield kinematics.mobility_table(found)
     yield kinematics.mapping_table(found) if found.actuated else None
-    yield kinematics.gauge_table(found)
+    yield kinematics.gauge_table(found) if found.gauges else None
     if analysis.statics is not None:
         yield statics.stiffness_table(analysis.statics)
         yield statics.principal_table(analysis.statics)

@@ -50,6 +50,8 @@ def ports(model: LinearModel, outputs: Iterable[str], inputs: Iterable[str]) -> 
     rows = _expanded(outputs, tuple(known), "output")
     sources = {channel.name: number for number, channel in enumerate(model.inputs)}
     columns = _expanded(inputs, (*sources, *_further_inputs(model)), "input")
+    named = {"outputs": rows, "inputs": columns}
+    require(Finding(kind, "none is named", "Name at least one") for kind, names in named.items() if not names)
     picked = [known[name] for name in rows]
     parts = [_column(model, name, known, sources) for name in columns]
     return Ports(
