@@ -70,7 +70,8 @@ def mat_variables(analysis: Analysis) -> dict[str, Any]:
 
 
 def _labelled(name: str, matrix: Matrix) -> dict[str, Any]:
-    unit = matrix.unit if isinstance(matrix.unit, str) else np.array(matrix.unit, dtype=object).reshape(len(matrix.rows), len(matrix.columns))
+    shape = (len(matrix.rows), len(matrix.columns))
+    unit = matrix.unit if isinstance(matrix.unit, str) else np.array(matrix.unit, dtype=object).reshape(shape)
     return {name: matrix.values, f"{name}_rows": _cells(matrix.rows), f"{name}_columns": _cells(matrix.columns), f"{name}_unit": unit}
 
 
