@@ -59,11 +59,12 @@ class Modes:
         )
 
 
-def modes(model: LinearModel, *, limit: float = 1000.0, count: int = 6, cluster: float = 1e-6) -> Modes:
+def modes(model: LinearModel, *, limit: float = np.inf, count: int = 6, cluster: float = 1e-6) -> Modes:
     """Modes of the undamped model (Eq. 28 of Shin & Moon).
 
-    The platform's modes are the `count` largest platform shares below `limit` [Hz]; modes closer than `cluster` (relative) are kept
-    together, and within such a cluster the basis is turned so that shapes follow the platform's axes. Small motions.
+    The platform's modes are the `count` largest platform shares below `limit` [Hz] (absent: of all modes); modes closer than `cluster`
+    (relative) are kept together, and within such a cluster the basis is turned so that shapes follow the platform's axes. Small
+    motions.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.readings.mapped import mapped

@@ -20,7 +20,7 @@ from flexstage.parts.profile import Circular, Elliptic, Filleted, length
 from flexstage.parts.rod import Rod
 
 _UNIT = Material(young=1.0, poisson=0.3, density=1.0)
-_CALIBRATE = "calibrate it by the solid reading, or count on a larger error than the one stated"
+_CALIBRATE = 'State a measured or computed 6x6 (kind = "given"), or count on a larger error than the one stated'
 
 # Error of the compliance by beam theory against converged finite elements, hinge and root, nu = 0.3. Zero is the thin limit.
 _RATIO = (0.0, 0.05, 0.10, 0.20, 0.40, 0.50, 0.80)  # t/R, reference B1: plane stress

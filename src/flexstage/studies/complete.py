@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+import numpy as np
+
 from flexstage.analysis.deflection import Deflection, deflection
 from flexstage.analysis.drift import Drift, drift
 from flexstage.analysis.error_budget import ErrorBudget
@@ -31,7 +33,6 @@ from flexstage.studies.workspace import Workspace, workspace
 
 __all__ = ["Analysis", "Reading", "analyse", "grounded_drift", "platform_modes", "read", "required_command"]
 
-_MODE_LIMIT = 1000.0
 _RIGID = "the ideal reading has no elasticity"
 _UNLUMPED = "this needs the lumped reading"
 _DRIFTLESS = "the error budget needs the drift"
@@ -145,11 +146,11 @@ def grounded_drift(mechanism: Mechanism, model: LinearModel) -> Drift:
 
 
 def platform_modes(mechanism: Mechanism, model: LinearModel) -> Modes:
-    """Modes with the description's frequency limit for the platform's modes, or 1 kHz.
+    """Modes with the description's frequency limit for the platform's modes; without one, the largest shares of all modes.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> platform_modes(double_triangle(), mapped(double_triangle())).limit
     1000.0
     """
-    limit = mechanism.mode_limit if isinstance(mechanism.mode_limit, float) else _MODE_LIMIT
-    return modes(model, limit=limit, count=min(6, len(model.coordinates)))
+    limit = mechanism.mode_limit
+    return modes(model, limit=np.inf if limit is None else float(np.max(limit)), count=min(6, len(model.coordinates)))

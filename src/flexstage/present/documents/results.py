@@ -171,7 +171,7 @@ def modes_body(modes: Modes) -> Document:
         "platform_modes": list(modes.platform),
         "local": list(modes.local),
         "margin": modes.margin,
-        "limit_hz": modes.limit,
+        "limit_hz": modes.limit if np.isfinite(modes.limit) else None,
         "listed": listed,
         "computed": len(modes.names),
         "platform_shapes": Matrix(modes.platform_shapes[:, :listed], COMPONENTS, columns, units).to_json(),
@@ -181,7 +181,7 @@ def modes_body(modes: Modes) -> Document:
 
 def _listed(modes: Modes) -> int:
     """How many modes are listed: those below the limit, at least the first 24, and every local mode."""
-    below = int(np.sum(modes.frequencies < modes.limit))
+    below = int(np.sum(modes.frequencies < modes.limit)) if np.isfinite(modes.limit) else 0
     local = max((*modes.local, *modes.platform), default=-1) + 1
     return min(len(modes.names), max(below, local, LISTED_MODES))
 

@@ -70,8 +70,9 @@ def margin_text(modes: Modes) -> str:
     "The platform's modes are the 6 with the largest share of kinet"
     """
     least = float(np.min(first_design(modes.share, 1)[list(modes.platform)])) if modes.platform else 0.0
-    chosen = f"The platform's modes are the {len(modes.platform)} with the largest share of kinetic energy in the platform below"
-    return f"{chosen} {modes.limit:g} Hz: at least {percent(least, 3)} each, {percent(modes.margin, 3)} in the next one."
+    chosen = f"The platform's modes are the {len(modes.platform)} with the largest share of kinetic energy in the platform"
+    below = f" below {modes.limit:g} Hz" if np.isfinite(modes.limit) else ""
+    return f"{chosen}{below}: at least {percent(least, 3)} each, {percent(modes.margin, 3)} in the next one."
 
 
 def _unseen(modes: Modes, listed: tuple[int, ...]) -> list[str]:
