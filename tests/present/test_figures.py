@@ -84,8 +84,8 @@ def test_compaction_keeps_points_within_a_tenth() -> None:
 def test_a_dollar_sign_is_a_dollar_sign() -> None:
     with styled():
         figure = canvas(1.0, 1.0)
-        figure.add_subplot().set_xlabel("$x^2 & <b>")
-    assert "$x^2 &amp; &lt;b&gt;" in to_svg(figure, "n", "d")
+        figure.add_subplot().set_xlabel("$x^2$ & <b>")
+    assert "$x^2$ &amp; &lt;b&gt;" in to_svg(figure, "n", "d")
 
 
 def test_png_is_reproducible() -> None:
