@@ -21,7 +21,7 @@ from flexstage.cases.double_triangle import double_triangle
 from flexstage.readings.ideal import ideal
 from flexstage.readings.lumped import lumped
 
-REPEATS = 15
+REPEATS = 40
 TARGET = 0.050
 
 
