@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from flexstage.mechanism.mechanism import Mechanism
+from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
 from flexstage.mechanism.restrict import restrict
 from flexstage.parts.freedom import ALL, Freedom
 from flexstage.parts.given import Joint
@@ -43,7 +43,8 @@ class Omitted:
 def omitted(mechanism: Mechanism, simple: Restrictions, channel: tuple[str, str]) -> Omitted:
     """Compare the static response of an output to an input, `channel` = (output, input), between restricted and full parts.
 
-    Each freedom that `simple` locks or frees is given its elasticity back alone, the others staying as they are. One design.
+    Each freedom that `simple` locks or frees (by part, or by link: `vertical/pivot`) is given its elasticity back alone, the others staying
+    as they are. One design.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.cases.double_triangle import EQUATION_3
@@ -53,7 +54,11 @@ def omitted(mechanism: Mechanism, simple: Restrictions, channel: tuple[str, str]
     True
     """
     parts = {name for unit in mechanism.units.values() for link in unit.links.values() for name in (link.part,)}
-    known = {name: freedoms for name, freedoms in simple.items() if name in parts and not isinstance(mechanism.parts[name], Joint)}
+    known = {
+        name: freedoms
+        for name, freedoms in simple.items()
+        if "/" in name or (name in parts and not isinstance(mechanism.parts[name], Joint))
+    }
     base = _gain(mechanism, known, channel)
     changes = {
         f"{name}.{freedom.value}": _gain(mechanism, {**known, name: _with(known[name], freedom)}, channel) - base
@@ -62,6 +67,25 @@ def omitted(mechanism: Mechanism, simple: Restrictions, channel: tuple[str, str]
         if freedom not in known[name][0]
     }
     return Omitted(*channel, base, _gain(mechanism, {}, channel), changes)
+
+
+def lever_theory(mechanism: Mechanism, name: str) -> Restrictions:
+    """What Eq. 3 of Shin & Moon knows of a lever unit, by link: the axial springs, and the rotation of the pivot between lever and ground.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> [freedom.value for freedom in lever_theory(double_triangle(), "vertical")["vertical/pivot"][0]]
+    ['rz']
+    """
+    links = mechanism.units[name].links
+    joined = [body for link in links.values() for body in link.joins]
+    known: dict[str, tuple[tuple[Freedom, ...], tuple[Freedom, ...]]] = {}
+    for key, link in links.items():
+        part = mechanism.parts[link.part]
+        intended = link.free if link.free is not None else part.intended
+        turns = GROUND in link.joins and any(joined.count(body) > 2 for body in link.joins if body not in (GROUND, PLATFORM))
+        if not isinstance(part, Joint):
+            known[f"{name}/{key}"] = (intended, ()) if turns else ((Freedom.X,), intended)
+    return known
 
 
 def _with(kept: tuple[tuple[Freedom, ...], tuple[Freedom, ...]], freedom: Freedom) -> tuple[tuple[Freedom, ...], tuple[Freedom, ...]]:

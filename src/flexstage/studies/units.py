@@ -18,6 +18,7 @@ from flexstage.readings.ideal import ideal
 from flexstage.readings.linear.static import static_gain
 from flexstage.readings.lumped import lumped
 from flexstage.readings.mapped import LeverStiffness, computed_stiffness, lever_stiffness
+from flexstage.studies.omitted import Omitted, lever_theory, omitted
 
 _DISPLACEMENTS = ("platform.x", "platform.y", "platform.z")
 _FORCES = ("platform.fx", "platform.fy", "platform.fz")
@@ -30,7 +31,8 @@ class UnitResult:
     `direction` (3,) is that of its output; `stiffness` 6x6 at the output, all other freedoms held, strokes held; `axial` and `lateral`
     [N/m] its translations along and across the direction (lateral: softest, stiffest). With the output guided along the direction:
     `gain` output per stroke, `ideal_gain`, `loss`, `load_compliance` [m/N]. `series` is its stiffness in actuator coordinates for the
-    mapped reading (`None` where that reading refuses) and `lever` its springs if it is a lever unit.
+    mapped reading (`None` where that reading refuses). For a lever unit, `lever` are its springs and `omitted` says what Eq. 3
+    leaves out of its gain, freedom by freedom.
     """
 
     unit: str
@@ -45,6 +47,7 @@ class UnitResult:
     load_compliance: float
     series: float | None
     lever: LeverStiffness | None
+    omitted: Omitted | None
 
 
 def units(mechanism: Mechanism) -> dict[str, UnitResult]:
@@ -82,6 +85,8 @@ def _unit(mechanism: Mechanism, copy: str, unit: str, direction: Array) -> UnitR
     gain = direction @ static_gain(model, _DISPLACEMENTS, (copy,)).values[:, 0]
     load = direction @ static_gain(model, _DISPLACEMENTS, _FORCES).values @ direction
     ideal_gain = direction @ kinematics.jacobian[:3, 0]
+    lever = _lever(mechanism, copy)
+    channel = (_DISPLACEMENTS[int(np.argmax(np.abs(direction)))], copy)
     return UnitResult(
         unit=unit,
         copy=copy,
@@ -94,7 +99,8 @@ def _unit(mechanism: Mechanism, copy: str, unit: str, direction: Array) -> UnitR
         loss=float(lost_motion(kinematics, model).loss.values[0, 0]),
         load_compliance=float(load),
         series=_series(mechanism, copy),
-        lever=_lever(mechanism, copy),
+        lever=lever,
+        omitted=None if lever is None else omitted(guided, lever_theory(guided, unit), channel),
     )
 
 

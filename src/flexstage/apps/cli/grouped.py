@@ -93,7 +93,7 @@ def analysis_tables(analysis: Analysis) -> Iterator[Table | None]:
     """Tables of `analyse`: what decides first, one or two an analysis; the commands of one analysis show more."""
     from flexstage.present.tables import errors, kinematics, lost_motion, statics, workspace
     from flexstage.present.tables.modes import mode_table
-    from flexstage.present.tables.units import unit_table
+    from flexstage.present.tables.units import omitted_table, unit_table
 
     found = analysis.kinematics
     yield kinematics.mobility_table(found)
@@ -106,6 +106,8 @@ def analysis_tables(analysis: Analysis) -> Iterator[Table | None]:
     if analysis.lost_motion is not None:
         yield lost_motion.loss_table(analysis.lost_motion)
         yield lost_motion.budget_table(analysis.lost_motion)
+    for unit in (analysis.units or {}).values():
+        yield None if unit.omitted is None else omitted_table(unit.omitted)
     yield None if analysis.modes is None else mode_table(analysis.modes)
     if analysis.workspace is not None:
         yield workspace.stroke_table(analysis.workspace)

@@ -22,6 +22,7 @@ from flexstage.readings.linear.kinematics import Kinematics
 from flexstage.readings.linear.model import LinearModel
 from flexstage.readings.linear.static import static_gain
 from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
+from flexstage.studies.omitted import Omitted
 from flexstage.studies.units import UnitResult
 
 LISTED_MODES = 24
@@ -275,7 +276,20 @@ def _unit(unit: UnitResult) -> Document:
         "load_compliance_m_per_n": unit.load_compliance,
         "mapped_stiffness_n_per_m": unit.series,
         "lever": lever,
+        "omitted": None if unit.omitted is None else _omitted(unit.omitted),
         "stiffness": unit.stiffness.to_json(),
+    }
+
+
+def _omitted(found: Omitted) -> Document:
+    return {
+        "output": found.output,
+        "input": found.input,
+        "simple": found.simple,
+        "full": found.full,
+        "changes": dict(found.changes),
+        "interaction": found.interaction,
+        "unexplained": found.unexplained,
     }
 
 

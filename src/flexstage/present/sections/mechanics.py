@@ -27,7 +27,7 @@ from flexstage.present.tables.lost_motion import (
     parasitic_table,
 )
 from flexstage.present.tables.statics import centre_table, compliance_table, direction_table, principal_table, stiffness_table
-from flexstage.present.tables.units import lever_table, unit_table
+from flexstage.present.tables.units import lever_table, omitted_table, unit_table
 from flexstage.readings.linear.kinematics import Kinematics
 from flexstage.studies.complete import Analysis
 
@@ -131,5 +131,10 @@ def lost_motion_section(analysis: Analysis) -> Section | None:
             parasitic_table(lost),
             Folded("Budget by part, and energy by part", (budget_table(lost), energy_table(lost))),
             Folded("Gains, crosstalk, corrected mapping", (gain_table(lost), crosstalk_table(lost), correction_table(lost))),
+            *[
+                Folded(f"What Eq. 3 omits of the {name} unit's gain", (omitted_table(unit.omitted),))
+                for name, unit in (analysis.units or {}).items()
+                if unit.omitted is not None
+            ],
         ],
     )
