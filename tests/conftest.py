@@ -9,14 +9,16 @@ for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ[name] = "1"
 
 import pytest
-from hypothesis import HealthCheck, settings
+from hypothesis import HealthCheck, Phase, settings
 from threadpoolctl import threadpool_limits
 
 FULL = os.environ.get("FLEXSTAGE_TESTS") == "full"
 
 # Laws build whole mechanisms: drawing one is slow by nature, and no test has a time limit.
 _SLOW = [HealthCheck.too_slow, HealthCheck.data_too_large]
-settings.register_profile("default", max_examples=200, deadline=None, derandomize=True, suppress_health_check=_SLOW)
+# Shrinking a failing random stage takes minutes and says little more than the stage itself.
+_PHASES = (Phase.explicit, Phase.reuse, Phase.generate)
+settings.register_profile("default", max_examples=200, deadline=None, derandomize=True, suppress_health_check=_SLOW, phases=_PHASES)
 settings.register_profile("full", max_examples=2000, deadline=None, derandomize=True, suppress_health_check=_SLOW)
 settings.load_profile("full" if FULL else "default")
 
