@@ -51,6 +51,14 @@ class Matrix:
 
         return pandas.DataFrame(self.values, index=list(self.rows), columns=list(self.columns))
 
+    def to_xarray(self) -> Any:
+        """The matrix as an xarray DataArray with dimensions `row` and `column` after its batch axes; `unit` is an attribute."""
+        import xarray
+
+        batch = tuple(f"batch {number + 1}" for number in range(self.values.ndim - 2))
+        coords = {"row": list(self.rows), "column": list(self.columns)}
+        return xarray.DataArray(self.values, dims=(*batch, "row", "column"), coords=coords, attrs={"unit": self.unit})
+
     def _repr_html_(self) -> str:
         head = "".join(f"<th>{column}</th>" for column in self.columns)
         body = "".join(
