@@ -70,4 +70,4 @@ examples: setup-dev ## run every example of README.md and docs
 
 lock: setup-dev ## pin the requirements anew (newer versions: make lock UPGRADE=--upgrade)
 	$(COMPILE) $(UPGRADE) pyproject.toml requirements/build.in --extra dev -o requirements/dev.txt
-	$(COMPILE) pyproject.toml requirements/build.in --extra tables -c requirements/dev.txt -o requirements/runtime.txt
+	$(COMPILE) pyproject.toml requirements/build.in --extra solid --extra tables -c requirements/dev.txt -o requirements/runtime.txt
