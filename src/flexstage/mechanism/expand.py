@@ -10,12 +10,12 @@ from typing import TypeAlias
 import numpy as np
 
 from flexstage.base.number import Array, Number, stack
-from flexstage.mechanism.mechanism import GROUND, Link, Mechanism, Probe
+from flexstage.mechanism.mechanism import GROUND, PLATFORM, Link, Mechanism, Probe
 from flexstage.mechanism.path import complete, replaced
 from flexstage.mechanism.pattern import Facing, Pattern, Polar
-from flexstage.parts.body import Body
+from flexstage.parts.body import Body, Solid, owner_of, solid_frame
 from flexstage.parts.gauge import Gauge, Positive
-from flexstage.parts.mass import MassProperties, mass_properties
+from flexstage.parts.mass import MassProperties, combined, mass_properties, within
 from flexstage.parts.material import Material
 from flexstage.parts.part import Part, is_actuator, material_of
 from flexstage.spatial.frame import Frame, axes, identity, turn_z
@@ -25,14 +25,29 @@ _LINK_FIELDS = frozenset(field.name for field in fields(Link))
 
 
 @dataclass(frozen=True, eq=False)
+class PlacedSolid:
+    """An outline of the expanded stage and its own frame in the stage's frame.
+
+    The frame's origin is the solid's centre, its axes a block's edges (z along its hole), or x a cylinder's axis.
+    """
+
+    solid: Solid
+    frame: Frame
+
+
+@dataclass(frozen=True, eq=False)
 class PlacedBody:
-    """A body of the expanded stage: its frame, its reference point (..., 3) and its own mass properties, in the stage's frame."""
+    """A body of the expanded stage: its frame, its reference point (..., 3) and its own mass properties, in the stage's frame.
+
+    `solids` are its outlines by address, those lent to it included (`platform.plate`, `B1/pad.lug`); the mass is that of all of them.
+    """
 
     name: str
     body: Body
     frame: Frame
     reference: Array
     mass: MassProperties | None
+    solids: Mapping[str, PlacedSolid]
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,13 +80,17 @@ class PlacedGauge:
 
 @dataclass(frozen=True, eq=False)
 class Assembly:
-    """The expanded stage: every body, link and gauge by name. `actuators` maps input names to link names."""
+    """The expanded stage: every body that moves, every link and gauge by name. `actuators` maps input names to link names.
+
+    Bodies that are `of` another one are no bodies here: their solids are their owner's, or among `ground`, the outlines of the ground.
+    """
 
     bodies: Mapping[str, PlacedBody]
     links: Mapping[str, PlacedLink]
     gauges: Mapping[str, PlacedGauge]
     actuators: Mapping[str, str]
     points: Mapping[str, tuple[str, Array]]
+    ground: Mapping[str, PlacedSolid]
 
 
 def copy_names(key: str) -> tuple[str, ...]:
@@ -123,13 +142,11 @@ def expand(mechanism: Mechanism) -> Assembly:
     """
     placed = tuple(copies(mechanism))
     links = {link.name: link for link in _links(mechanism, placed)}
-    bodies = {name: _placed_body(name, drawn, frame, links) for name, drawn, frame in _bodies(mechanism, placed)}
-    points = {
-        (point if name == "platform" else f"{name}.{point}"): (name, body.frame.point(stack(at)))
-        for name, body in bodies.items()
-        for point, at in body.body.points.items()
-    }
-    return Assembly(bodies, links, dict(_gauges(mechanism)), _actuators(links), points)
+    drawn = tuple(_bodies(mechanism, placed))
+    lent = _by_owner(drawn)
+    bodies = {item.name: _placed_body((item, *lent.get(item.name, ())), links) for item in drawn if item.body.of is None}
+    ground = {address: solid for item in lent.get(GROUND, ()) for address, solid in item.solids()}
+    return Assembly(bodies, links, dict(_gauges(mechanism)), _actuators(links), dict(_points(drawn)), ground)
 
 
 def copies(mechanism: Mechanism) -> Iterator[tuple[str, str, Frame]]:
@@ -148,10 +165,21 @@ def copies(mechanism: Mechanism) -> Iterator[tuple[str, str, Frame]]:
 
 @dataclass(frozen=True, eq=False)
 class _DrawnBody:
-    """A body with its own mass properties, both in the frame it is drawn in."""
+    """A body and its own mass properties, seen from the frame it is drawn in; `frame` is that of this copy."""
 
+    name: str
     body: Body
-    mass: MassProperties | None
+    own: MassProperties | None
+    frame: Frame
+
+    def mass(self) -> MassProperties | None:
+        """The mass properties in the stage's frame."""
+        return None if self.own is None else within(self.own, self.frame)
+
+    def solids(self) -> Iterator[tuple[str, PlacedSolid]]:
+        """The outlines by address, in the stage's frame."""
+        for name, solid in self.body.solids.items():
+            yield f"{self.name}.{name}", PlacedSolid(solid, solid_frame(solid).within(self.frame))
 
 
 @dataclass(frozen=True, eq=False)
@@ -163,27 +191,44 @@ class _DrawnLink:
     frame: Frame
 
 
-def _bodies(mechanism: Mechanism, placed: tuple[_Copy, ...]) -> Iterator[tuple[str, _DrawnBody, Frame]]:
-    for name, drawn in _drawn_bodies(mechanism, mechanism.bodies).items():
-        yield name, drawn, identity()
-    units = {name: _drawn_bodies(mechanism, unit.bodies) for name, unit in mechanism.units.items()}
+def _bodies(mechanism: Mechanism, placed: tuple[_Copy, ...]) -> Iterator[_DrawnBody]:
+    for name, body in mechanism.bodies.items():
+        yield _DrawnBody(name, body, mass_properties(body, mechanism.materials), identity())
+    units = {unit: mechanism.units[unit].bodies for _, unit, _ in placed}
+    masses = {unit: {name: mass_properties(body, mechanism.materials) for name, body in bodies.items()} for unit, bodies in units.items()}
     for copy, unit, frame in placed:
-        for name, drawn in units[unit].items():
-            yield f"{copy}/{name}", drawn, frame
+        for name, body in units[unit].items():
+            yield _DrawnBody(f"{copy}/{name}", body, masses[unit][name], frame)
 
 
-def _drawn_bodies(mechanism: Mechanism, bodies: Mapping[str, Body]) -> dict[str, _DrawnBody]:
-    return {name: _DrawnBody(body, mass_properties(body, mechanism.materials)) for name, body in bodies.items()}
+def _by_owner(drawn: tuple[_DrawnBody, ...]) -> dict[str, list[_DrawnBody]]:
+    """The bodies that are of another one, by its name."""
+    lent: dict[str, list[_DrawnBody]] = {}
+    for item in drawn:
+        if item.body.of is not None:
+            lent.setdefault(item.body.of, []).append(item)
+    return lent
+
+
+def _points(drawn: tuple[_DrawnBody, ...]) -> Iterator[tuple[str, tuple[str, Array]]]:
+    """Named points with the bodies they move with; those of the ground stand still and are none."""
+    for item in drawn:
+        owner = item.body.of or item.name
+        for point, at in item.body.points.items():
+            if owner != GROUND:
+                yield point if item.name == PLATFORM else f"{item.name}.{point}", (owner, item.frame.point(stack(at)))
 
 
 def _links(mechanism: Mechanism, placed: tuple[_Copy, ...]) -> Iterator[PlacedLink]:
     for name, drawn in _drawn_links("links.", mechanism.links).items():
-        yield _placed_link(mechanism, drawn, identity(), (name, drawn.link.joins))
+        first, second = (owner_of(mechanism.bodies, body) for body in drawn.link.joins)
+        yield _placed_link(mechanism, drawn, identity(), (name, (first, second)))
     units = {name: _drawn_links(f"{name}/", unit.links) for name, unit in mechanism.units.items()}
     for copy, unit, frame in placed:
         own = mechanism.units[unit].bodies
         for name, drawn in units[unit].items():
-            first, second = (f"{copy}/{body}" if body in own else body for body in drawn.link.joins)
+            ends = [body if body not in own else own[body].of or f"{copy}/{body}" for body in drawn.link.joins]
+            first, second = (owner_of(mechanism.bodies, end) for end in ends)
             yield _placed_link(mechanism, drawn, frame, (f"{copy}/{name}", (first, second)))
 
 
@@ -226,9 +271,11 @@ def departed(mechanism: Mechanism, link: Link, owners: tuple[str, ...]) -> tuple
     return link, part
 
 
-def _placed_body(name: str, drawn: _DrawnBody, frame: Frame, links: Mapping[str, PlacedLink]) -> PlacedBody:
-    body, own = drawn.body, drawn.mass
-    mass = None if own is None else MassProperties(own.mass, frame.point(own.centre), _turned(frame, own.inertia))
+def _placed_body(drawn: tuple[_DrawnBody, ...], links: Mapping[str, PlacedLink]) -> PlacedBody:
+    """The first body, with what the others lend it."""
+    name, body, frame = drawn[0].name, drawn[0].body, drawn[0].frame
+    masses = [mass for item in drawn if (mass := item.mass()) is not None]
+    mass = combined(masses) if len(masses) > 1 else masses[0] if masses else None
     if body.reference is not None:
         reference = frame.point(stack(body.reference))
     elif mass is not None:
@@ -236,11 +283,7 @@ def _placed_body(name: str, drawn: _DrawnBody, frame: Frame, links: Mapping[str,
     else:
         joints = [link.frame.position for link in links.values() if name in link.joins]
         reference = sum(joints, np.zeros(3)) / len(joints) if joints else frame.position
-    return PlacedBody(name, body, frame, reference, mass)
-
-
-def _turned(frame: Frame, inertia: Array) -> Array:
-    return frame.rotation @ inertia @ np.swapaxes(frame.rotation, -1, -2)
+    return PlacedBody(name, body, frame, reference, mass, dict(solid for item in drawn for solid in item.solids()))
 
 
 def _actuators(links: Mapping[str, PlacedLink]) -> dict[str, str]:

@@ -107,7 +107,7 @@ def _grows(link: PlacedLink) -> bool:
 
 def _body_material(mechanism: Mechanism, assembly: Assembly, name: str) -> tuple[str, str]:
     """The material a body grows with and its source; an empty name where it is not known."""
-    solids = assembly.bodies[name].body.solids
+    solids = {address.removeprefix(f"{name}."): placed.solid for address, placed in assembly.bodies[name].solids.items()}
     if len({solid.material for solid in solids.values()}) == 1:
         return next(iter(solids.values())).material, "of its solids"
     if solids:

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexstage.base.number import Array, Number, stack
-from flexstage.mechanism.expand import Assembly, PlacedBody, PlacedLink
-from flexstage.parts.body import Block, Cylinder
+from flexstage.mechanism.expand import Assembly, PlacedLink, PlacedSolid
+from flexstage.parts.body import Block
 from flexstage.parts.leaf import Leaf
 from flexstage.parts.neck import Neck
 from flexstage.parts.notch import Notch
@@ -17,7 +17,7 @@ from flexstage.parts.part import Part, Restricted
 from flexstage.parts.piezo import Piezo
 from flexstage.parts.profile import Circular, Elliptic, Filleted, Profile, length
 from flexstage.parts.rod import Rod
-from flexstage.spatial.frame import Frame, axes
+from flexstage.spatial.frame import Frame
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,32 +51,24 @@ class Outline:
 
 
 def outlines(assembly: Assembly) -> tuple[Outline, ...]:
-    """Outlines of all solids and of all parts with dimensions; given 6x6 parts and ideal joints have none.
+    """Outlines of all solids, the ground's included, and of all parts with dimensions; given 6x6 parts and ideal joints have none.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.mechanism.expand import expand
     >>> [outline.name for outline in outlines(expand(double_triangle()))][:2]
     ['platform.plate', 'B1/base.block']
     """
-    solids = [outline for body in assembly.bodies.values() for outline in _solids(body)]
+    placed = {name: solid for body in assembly.bodies.values() for name, solid in body.solids.items()} | dict(assembly.ground)
+    solids = (_solid(name, solid) for name, solid in placed.items())
     return (*solids, *(outline for link in assembly.links.values() for outline in _part(link)))
 
 
-def _solids(placed: PlacedBody) -> Iterator[Outline]:
-    for name, solid in placed.body.solids.items():
-        place = placed.frame.point(stack(solid.at))
-        address = f"{placed.name}.{name}"
-        if isinstance(solid, Block):
-            hole = None if solid.hole is None else stack(solid.hole)
-            yield Outline(address, Frame(placed.frame.rotation, place), stack(solid.size), hole=hole)
-        else:
-            bore = None if solid.bore is None else np.asarray(solid.bore)
-            size = _cylinder(solid.length, solid.diameter)
-            yield Outline(address, Frame(_axis(placed, solid), place), size, is_round=True, bore=bore)
-
-
-def _axis(placed: PlacedBody, solid: Cylinder) -> Array:
-    return placed.frame.rotation @ axes(solid.along)
+def _solid(name: str, placed: PlacedSolid) -> Outline:
+    solid = placed.solid
+    if isinstance(solid, Block):
+        return Outline(name, placed.frame, stack(solid.size), hole=None if solid.hole is None else stack(solid.hole))
+    bore = None if solid.bore is None else np.asarray(solid.bore)
+    return Outline(name, placed.frame, _cylinder(solid.length, solid.diameter), is_round=True, bore=bore)
 
 
 def _part(link: PlacedLink) -> Iterator[Outline]:

@@ -10,7 +10,7 @@ from flexstage.base.number import Vector
 from flexstage.mechanism.expand import copies
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Link, Mechanism, Placement
 from flexstage.mechanism.pattern import Pose
-from flexstage.parts.body import Body
+from flexstage.parts.body import Body, owner_of
 from flexstage.parts.freedom import Freedom
 from flexstage.parts.given import Joint
 from flexstage.parts.part import Part, Restricted
@@ -55,7 +55,8 @@ def _restrict_link(result: Mechanism, original: Mechanism, address: str, freedom
 def isolate(mechanism: Mechanism, copy: str, *, guide: Vector | None = None) -> Mechanism:
     """One unit alone, in its own frame, its output a massless platform; with `guide` the output can only move along that direction.
 
-    The output's reference point is the joint with the platform. Departures of this copy are kept.
+    The output's reference point is the joint with the platform. Departures of this copy are kept; outlines that belong to other bodies of
+    the stage (lugs of the platform) are left out.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> list(isolate(double_triangle(), "B4").place)
@@ -65,9 +66,10 @@ def isolate(mechanism: Mechanism, copy: str, *, guide: Vector | None = None) -> 
     if copy not in units:
         raise refuse(copy, "no unit is placed under this name", f"Placed are {', '.join(units)}")
     unit = mechanism.units[units[copy]]
-    joint = next((link for link in unit.links.values() if PLATFORM in link.joins), None)
+    joint = next((link for link in unit.links.values() if PLATFORM in (owner_of(unit.bodies, body) for body in link.joins)), None)
     if joint is None:
         raise refuse(copy, "its unit does not join the platform", "Only units with an output can be taken alone")
+    own = {name: body if body.of is None else replace(body, solids={}) for name, body in unit.bodies.items()}
     links = {} if guide is None else {"guide": Link((GROUND, PLATFORM), "guide", joint.at, guide)}
     parts = dict(mechanism.parts) if guide is None else {**mechanism.parts, "guide": Joint((Freedom.X,))}
     return replace(
@@ -75,6 +77,7 @@ def isolate(mechanism: Mechanism, copy: str, *, guide: Vector | None = None) -> 
         parts=parts,
         bodies={PLATFORM: Body(reference=joint.at)},
         links=links,
+        units={**mechanism.units, units[copy]: replace(unit, bodies=own)},
         place={copy: Placement(units[copy], Pose())},
         gauges={},
         payloads={},

@@ -7,21 +7,25 @@ from dataclasses import dataclass, field
 from typing import Annotated, TypeAlias
 
 from flexstage.base.digest import Description
-from flexstage.base.number import Number, Table, Vector
+from flexstage.base.number import Number, Table, Vector, stack
 from flexstage.base.quantity import DIRECTION, INERTIA, LENGTH, MASS, NOT_NEGATIVE, POSITIVE
+from flexstage.spatial.frame import Frame, axes
 
 
 @dataclass(frozen=True, eq=False)
 class Block(Description):
-    """A rectangular block centred at `at`, edges along the axes of the frame it stands in; `hole` is a rectangular through hole along z.
+    """A rectangular block centred at `at`, its x edge along the direction `along`, its z edge along `up` (perpendicular to `along`).
 
-    A hole of equal sides (hx, hy), centred. Sizes in metres.
+    Without directions its edges lie along the axes of the frame it stands in. `hole` is a centred rectangular through hole of sides (x, y)
+    along the block's own z edge. Sizes in metres.
     """
 
     material: str
     size: tuple[Annotated[Number, LENGTH, POSITIVE], Annotated[Number, LENGTH, POSITIVE], Annotated[Number, LENGTH, POSITIVE]]
     at: Annotated[Vector, LENGTH] = (0.0, 0.0, 0.0)
     hole: tuple[Annotated[Number, LENGTH, POSITIVE], Annotated[Number, LENGTH, POSITIVE]] | None = None
+    along: Annotated[Vector, DIRECTION] = (1.0, 0.0, 0.0)
+    up: Annotated[Vector, DIRECTION] = (0.0, 0.0, 1.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,6 +41,16 @@ class Cylinder(Description):
 
 
 Solid: TypeAlias = Block | Cylinder
+
+
+def solid_frame(solid: Solid) -> Frame:
+    """The frame of an outline in the one it is drawn in: origin at its centre, axes along a block's edges, x along a cylinder's axis.
+
+    >>> upright = Block("steel", size=(0.3, 0.2, 0.1), at=(0.0, 0.0, 1.0), along=(0.0, 0.0, 1.0), up=(1.0, 0.0, 0.0))
+    >>> solid_frame(upright).rotation.T.tolist()  # x edge up, y edge = up x along, z edge along the body's x
+    [[0.0, 0.0, 1.0], [0.0, -1.0, 0.0], [1.0, 0.0, 0.0]]
+    """
+    return Frame(axes(solid.along, solid.up if isinstance(solid, Block) else None), stack(solid.at))
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,6 +74,10 @@ class Body(Description):
 
     Stated mass properties and solids exclude one another; a body with neither has no mass of its own. `reference` is the point its twist is
     given at (absent: its centre of mass, or without mass the mean of its joints).
+
+    `of` names another body of the stage, or the ground, that these solids belong to: a lug of the platform drawn once in a unit's frame and
+    so placed with every copy. Such a body does not move by itself: its solids, mass and points are its owner's, and links that join it join
+    the owner. It states no mass and no reference.
     """
 
     solids: Mapping[str, Solid] = field(default_factory=lambda: Table({}))
@@ -68,6 +86,17 @@ class Body(Description):
     inertia: Inertia | None = None
     points: Mapping[str, Annotated[Vector, LENGTH]] = field(default_factory=lambda: Table({}))
     reference: Annotated[Vector, LENGTH] | None = None
+    of: str | None = None
+
+
+def owner_of(bodies: Mapping[str, Body], name: str) -> str:
+    """The body that moves where the named one is joined: its owner where it is `of` another one, else itself.
+
+    >>> owner_of({"pad": Body(of="platform")}, "pad"), owner_of({}, "ground")
+    ('platform', 'ground')
+    """
+    body = bodies.get(name)
+    return name if body is None or body.of is None else body.of
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexstage.base.number import Array, Number, stack
-from flexstage.parts.body import Block, Body, Cylinder, Inertia, Solid
+from flexstage.parts.body import Block, Body, Cylinder, Inertia, Solid, solid_frame
 from flexstage.parts.material import Material
-from flexstage.spatial.frame import axes
+from flexstage.spatial.frame import Frame
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,19 +78,33 @@ def solid_properties(solid: Solid, density: Number) -> MassProperties:
     >>> float(solid_properties(Cylinder("steel", diameter=2.0, length=1.0), 1.0).mass.round(12))
     3.14159265359
     """
-    if isinstance(solid, Block):
-        return _block(solid, density)
-    return _cylinder(solid, density)
+    mass, diagonal = _block(solid, density) if isinstance(solid, Block) else _cylinder(solid, density)
+    own = MassProperties(mass, np.zeros(3), diagonal[..., None] * np.eye(3))
+    return within(own, solid_frame(solid))
 
 
-def _block(solid: Block, density: Number) -> MassProperties:
+def within(properties: MassProperties, frame: Frame) -> MassProperties:
+    """The same mass properties seen from the frame that `frame` stands in: J' = R J R^T.
+
+    >>> point = MassProperties(np.array(1.0), np.array([1.0, 0.0, 0.0]), np.diag([0.0, 1.0, 2.0]))
+    >>> quarter = Frame(np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]), np.zeros(3))
+    >>> turned = within(point, quarter)
+    >>> turned.centre.tolist(), turned.inertia.diagonal().tolist()
+    ([0.0, 1.0, 0.0], [1.0, 0.0, 2.0])
+    """
+    inertia = frame.rotation @ properties.inertia @ np.swapaxes(frame.rotation, -1, -2)
+    return MassProperties(properties.mass, frame.point(properties.centre), inertia)
+
+
+def _block(solid: Block, density: Number) -> tuple[Array, Array]:
+    """Mass and principal moments along the block's edges."""
     length, width, height = solid.size
     full = _cuboid(density, length, width, height)
     mass, diagonal = full
     if solid.hole is not None:
         hole_mass, hole_diagonal = _cuboid(density, solid.hole[0], solid.hole[1], height)
         mass, diagonal = mass - hole_mass, diagonal - hole_diagonal
-    return MassProperties(mass, stack(solid.at), diagonal[..., None] * np.eye(3))
+    return mass, diagonal
 
 
 def _cuboid(density: Number, length: Number, width: Number, height: Number) -> tuple[Array, Array]:
@@ -99,15 +113,13 @@ def _cuboid(density: Number, length: Number, width: Number, height: Number) -> t
     return mass, mass[..., None] / 12.0 * stack(squares)
 
 
-def _cylinder(solid: Cylinder, density: Number) -> MassProperties:
+def _cylinder(solid: Cylinder, density: Number) -> tuple[Array, Array]:
+    """Mass and principal moments, the axis first."""
     mass, along, across = _round(density, solid.diameter, solid.length)
     if solid.bore is not None:
         less, less_along, less_across = _round(density, solid.bore, solid.length)
         mass, along, across = mass - less, along - less_along, across - less_across
-    turn = axes(solid.along)
-    diagonal = stack((along, across, across))
-    inertia = turn @ (diagonal[..., None] * np.eye(3)) @ np.swapaxes(turn, -1, -2)
-    return MassProperties(np.asarray(mass), stack(solid.at), inertia)
+    return np.asarray(mass), stack((along, across, across))
 
 
 def _round(density: Number, diameter: Number, length: Number) -> tuple[Number, Number, Number]:

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from flexstage.base.number import Array
-from flexstage.mechanism.expand import copy_names
+from flexstage.base.number import Array, first_design
+from flexstage.mechanism.expand import copy_names, expand
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.mechanism.pattern import Polar
 from flexstage.parts.body import Block, Cylinder
@@ -21,6 +21,7 @@ from flexstage.present.scene.stage import Scene
 from flexstage.present.scene.view import Side, view, write
 
 _FILLS = {Kind.BODY: "#8d99a6", Kind.HINGE: "#0f8a7e", Kind.DRIVE: "#f2a33c", Kind.GAUGE: "#c2395a", Kind.GROUND: "#56606b"}
+_UPRIGHT = 1.0 - 1e-9
 _LAYERS = (Kind.GROUND, Kind.BODY, Kind.DRIVE, Kind.HINGE, Kind.GAUGE)
 
 
@@ -137,14 +138,22 @@ def _platform(axes: Any, mechanism: Mechanism, scene: Scene) -> None:
     for outline in _plans(scene, Kind.PLATFORM):
         closed = hull(outline)
         axes.plot(*np.vstack([closed, closed[:1]]).T, color=SERIES[0], linewidth=1.0)
-    platform = mechanism.bodies.get(PLATFORM)
-    for solid in platform.solids.values() if platform is not None else ():
-        if isinstance(solid, Block) and solid.hole is not None:
-            _rectangle(axes, [1e3 * plain(value) for value in solid.hole], "-", SERIES[0], [1e3 * plain(value) for value in solid.at[:2]])
-        elif isinstance(solid, Cylinder) and solid.bore is not None and abs(plain(solid.along[2])) > 0.0:
-            circle = np.linspace(0.0, 2.0 * np.pi, 61)
-            x, y = (1e3 * (plain(solid.at[index]) + 0.5 * plain(solid.bore) * turn(circle)) for index, turn in enumerate((np.cos, np.sin)))
-            axes.plot(x, y, color=SERIES[0], linewidth=1.0)
+    for ring in _holes(mechanism):
+        axes.plot(1e3 * ring[:, 0], 1e3 * ring[:, 1], color=SERIES[0], linewidth=1.0)
+
+
+def _holes(mechanism: Mechanism) -> Iterator[Array]:
+    """Closed outlines (k, 3) [m] of the upright holes in the platform's solids."""
+    if PLATFORM not in mechanism.bodies:
+        return
+    for placed in expand(mechanism).bodies[PLATFORM].solids.values():
+        solid, turn, place = placed.solid, first_design(placed.frame.rotation, 2), first_design(placed.frame.position, 1)
+        if isinstance(solid, Block) and solid.hole is not None and abs(turn[2, 2]) > _UPRIGHT:
+            corners = 0.5 * np.array([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0], [-1, -1, 0]])
+            yield place + (corners * [*(plain(side) for side in solid.hole), 0.0]) @ turn.T
+        elif isinstance(solid, Cylinder) and solid.bore is not None and abs(turn[2, 0]) > _UPRIGHT:
+            angle = np.linspace(0.0, 2.0 * np.pi, 61)
+            yield place + 0.5 * plain(solid.bore) * np.stack([0.0 * angle, np.cos(angle), np.sin(angle)], axis=-1) @ turn.T
 
 
 def _rectangle(axes: Any, size: Sequence[float], style: str, colour: str, centre: Sequence[float] = (0.0, 0.0)) -> None:

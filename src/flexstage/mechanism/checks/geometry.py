@@ -44,11 +44,11 @@ def geometry_findings(mechanism: Mechanism, *, departures: bool = True) -> Itera
     if departures:
         for owner, part in _departed_parts(mechanism):
             yield from _part(owner, part)
-    for name, body in mechanism.bodies.items():
-        yield from _body(f"bodies.{name}", body)
+    bodies = {f"bodies.{name}": body for name, body in mechanism.bodies.items()}
     for unit, drawn in mechanism.units.items():
-        for name, body in drawn.bodies.items():
-            yield from _body(f"units.{unit}.bodies.{name}", body)
+        bodies |= {f"units.{unit}.bodies.{name}": body for name, body in drawn.bodies.items()}
+    for where, body in bodies.items():
+        yield from _body(where, body) if body.of is None else _lent(where, body, mechanism.bodies.get(body.of))
     for name, payload in mechanism.payloads.items():
         if payload.inertia is not None:
             yield from _inertia(f"payloads.{name}.inertia", payload.inertia)
@@ -141,6 +141,19 @@ def _body(where: str, body: Body) -> Iterator[Finding]:
         yield Finding(where, f"it states its {', '.join(stated)} without a mass", "State the mass too")
     if body.inertia is not None:
         yield from _inertia(f"{where}.inertia", body.inertia)
+    for name, solid in body.solids.items():
+        yield from _solid(f"{where}.solids.{name}", solid)
+
+
+def _lent(where: str, body: Body, owner: Body | None) -> Iterator[Finding]:
+    """A body of another one has outlines only, and its owner takes its mass from outlines too."""
+    stated = [name for name in ("mass", "centre", "inertia", "reference") if getattr(body, name) is not None]
+    if stated:
+        what = f'it is of "{body.of}" and states its {", ".join(stated)}'
+        yield Finding(where, what, f'Leave these out, or state them of "{body.of}"')
+    if owner is not None and owner.mass is not None and body.solids:
+        what = f'it lends solids to "{body.of}", which states its mass'
+        yield Finding(where, what, f'Leave the mass out: that of "{body.of}" then comes from all its solids')
     for name, solid in body.solids.items():
         yield from _solid(f"{where}.solids.{name}", solid)
 

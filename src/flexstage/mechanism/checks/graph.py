@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 from flexstage.base.finding import Finding
 from flexstage.mechanism.expand import copy_names
-from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
+from flexstage.mechanism.mechanism import GROUND, PLATFORM, Link, Mechanism
+from flexstage.parts.body import Body, owner_of
 from flexstage.parts.part import is_actuator
 
 
@@ -41,17 +42,26 @@ def graph_findings(mechanism: Mechanism) -> Iterator[Finding]:
 
 
 def _expanded(mechanism: Mechanism) -> tuple[list[str], list[_Edge]]:
-    bodies = list(mechanism.bodies)
-    edges = [_Edge(name, link.joins, link.part) for name, link in mechanism.links.items()]
+    stage = {body: owner_of(mechanism.bodies, body) for body in mechanism.bodies}
+    bodies = list(_moving(mechanism.bodies, stage))
+    edges = [_edge(name, link, stage) for name, link in mechanism.links.items()]
     for key, placement in mechanism.place.items():
         unit = mechanism.units[placement.unit]
         for copy in copy_names(key):
-            own = {body: f"{copy}/{body}" for body in unit.bodies}
-            bodies += own.values()
-            for name, link in unit.links.items():
-                first, second = (own.get(body, body) for body in link.joins)
-                edges.append(_Edge(f"{copy}/{name}", (first, second), link.part))
+            own = {body: drawn.of or f"{copy}/{body}" for body, drawn in unit.bodies.items()}
+            bodies += _moving(unit.bodies, own)
+            edges += [_edge(f"{copy}/{name}", link, stage | own) for name, link in unit.links.items()]
     return bodies, edges
+
+
+def _moving(bodies: Mapping[str, Body], names: Mapping[str, str]) -> Iterator[str]:
+    """The names in the expanded stage of those bodies that are not of another one."""
+    return (names[name] for name, body in bodies.items() if body.of is None)
+
+
+def _edge(name: str, link: Link, bodies: Mapping[str, str]) -> _Edge:
+    first, second = (bodies.get(body, body) for body in link.joins)
+    return _Edge(name, (first, second), link.part)
 
 
 def _reached(edges: Iterable[_Edge]) -> set[str]:

@@ -10,7 +10,7 @@ from flexstage.base.finding import Finding, nearest
 from flexstage.mechanism.expand import copy_names
 from flexstage.mechanism.grammar import RESERVED
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Link, Mechanism, Unit
-from flexstage.parts.body import Body
+from flexstage.parts.body import Body, owner_of
 from flexstage.parts.part import material_of
 
 MOST_COPIES = 360
@@ -27,6 +27,7 @@ def name_findings(mechanism: Mechanism) -> Iterator[Finding]:
     """
     yield from _spelling(mechanism)
     yield from _bodies(mechanism)
+    yield from _owners(mechanism)
     yield from _materials(mechanism)
     yield from _placed(mechanism)
     yield from _clashes(mechanism)
@@ -91,14 +92,28 @@ def _all_bodies(mechanism: Mechanism) -> Iterator[tuple[str, Body]]:
             yield f"units.{unit}.bodies.{name}", body
 
 
-def _links(mechanism: Mechanism) -> Iterator[tuple[str, Link, set[str]]]:
-    """Every drawn link, where it stands, and the bodies it may join."""
-    stage = {GROUND, *mechanism.bodies}
+def _links(mechanism: Mechanism) -> Iterator[tuple[str, Link, dict[str, Body]]]:
+    """Every drawn link, where it stands, and the bodies it may join beside the ground."""
+    stage = dict(mechanism.bodies)
     for name, link in mechanism.links.items():
         yield f"links.{name}", link, stage
     for unit, drawn in mechanism.units.items():
         for name, link in drawn.links.items():
-            yield f"units.{unit}.links.{name}", link, stage | set(drawn.bodies)
+            yield f"units.{unit}.links.{name}", link, stage | dict(drawn.bodies)
+
+
+def _owners(mechanism: Mechanism) -> Iterator[Finding]:
+    """A body that is `of` another one names a body of the stage that moves by itself, or the ground."""
+    for where, body in _all_bodies(mechanism):
+        if body.of is None:
+            continue
+        yield from _known(f"{where}.of", "body of the stage", body.of, {GROUND, *mechanism.bodies})
+        owner = mechanism.bodies.get(body.of)
+        if where == f"bodies.{PLATFORM}":
+            yield Finding(f"{where}.of", "the platform moves by itself", "Let the other body be of the platform")
+        elif owner is not None and owner.of is not None:
+            what = f'"{body.of}" is itself of "{owner.of}"'
+            yield Finding(f"{where}.of", what, f'Write of = "{owner.of}"' if owner is not body else "Name another body, or leave it out")
 
 
 def _bodies(mechanism: Mechanism) -> Iterator[Finding]:
@@ -129,7 +144,8 @@ def _placed(mechanism: Mechanism) -> Iterator[Finding]:
     bodies = {GROUND, *mechanism.bodies}
     for name, placement in mechanism.place.items():
         yield from _known(f"place.{name}.unit", "unit", placement.unit, mechanism.units)
-    gauged = bodies | {f"{copy}/{body}" for copy, unit in _copies(mechanism) for body in unit.bodies}
+    gauged = {name for name in bodies if owner_of(mechanism.bodies, name) == name}
+    gauged |= {f"{copy}/{name}" for copy, unit in _copies(mechanism) for name, body in unit.bodies.items() if body.of is None}
     for name, probe in mechanism.gauges.items():
         yield from _known(f"gauges.{name}.gauge", "sensor", probe.gauge, mechanism.sensors)
         yield from _known(f"gauges.{name}.body", "body", probe.body, gauged)
@@ -154,9 +170,10 @@ def _clashes(mechanism: Mechanism) -> Iterator[Finding]:
             yield Finding(f"place.{name}", f"a {kind} and a copy have this name", advice)
 
 
-def _link(mechanism: Mechanism, where: str, link: Link, bodies: set[str]) -> Iterator[Finding]:
+def _link(mechanism: Mechanism, where: str, link: Link, bodies: dict[str, Body]) -> Iterator[Finding]:
     for body in link.joins:
-        yield from _known(f"{where}.joins", "body", body, bodies)
-    if link.joins[0] == link.joins[1]:
-        yield Finding(f"{where}.joins", f'both ends join "{link.joins[0]}"', "Name two different bodies")
+        yield from _known(f"{where}.joins", "body", body, {GROUND, *bodies})
+    first, second = (owner_of(bodies, body) for body in link.joins)
+    if first == second:
+        yield Finding(f"{where}.joins", f'both ends join "{first}"', "Name two different bodies")
     yield from _known(f"{where}.part", "part", link.part, mechanism.parts)

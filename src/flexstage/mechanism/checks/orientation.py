@@ -11,7 +11,7 @@ from flexstage.base.number import Vector, stack
 from flexstage.mechanism.checks.value import LARGEST, first_failing
 from flexstage.mechanism.mechanism import Link, Mechanism
 from flexstage.mechanism.pattern import Pattern, Pose
-from flexstage.parts.body import Body, Cylinder
+from flexstage.parts.body import Block, Body
 from flexstage.parts.freedom import Freedom
 from flexstage.parts.given import Given, Joint
 from flexstage.parts.leaf import Leaf
@@ -24,7 +24,7 @@ _TOLERANCE = np.deg2rad(0.1)
 
 
 def orientation_findings(mechanism: Mechanism) -> Iterator[Finding]:
-    """Findings about directions of links, patterns and cylinders.
+    """Findings about directions of links, patterns and solids.
 
     >>> link = Link(("ground", "platform"), "wire", at=(0.0, 0.0, 0.0), along=(0.0, 0.0, 0.0))
     >>> print(*orientation_findings(Mechanism("", links={"strut": link})))
@@ -33,8 +33,8 @@ def orientation_findings(mechanism: Mechanism) -> Iterator[Finding]:
     yield from _links(mechanism, "", mechanism.links.items())
     for unit, drawn in mechanism.units.items():
         yield from _links(mechanism, f"units.{unit}.", drawn.links.items())
-        yield from _cylinders(f"units.{unit}.bodies", drawn.bodies.items())
-    yield from _cylinders("bodies", mechanism.bodies.items())
+        yield from _solids(f"units.{unit}.bodies", drawn.bodies.items())
+    yield from _solids("bodies", mechanism.bodies.items())
     for name, placement in mechanism.place.items():
         yield from _pattern(f"place.{name}", placement.pattern)
     for name, probe in mechanism.gauges.items():
@@ -81,11 +81,11 @@ def _turns_into_itself(part: Given) -> bool:
     return bool(np.allclose(turn @ matrix @ turn.T, matrix, rtol=1e-9, atol=0.0))
 
 
-def _cylinders(where: str, bodies: Iterable[tuple[str, Body]]) -> Iterator[Finding]:
+def _solids(where: str, bodies: Iterable[tuple[str, Body]]) -> Iterator[Finding]:
     for name, body in bodies:
         for solid_name, solid in body.solids.items():
-            if isinstance(solid, Cylinder):
-                yield from _zero(f"{where}.{name}.solids.{solid_name}.along", solid.along)
+            here = f"{where}.{name}.solids.{solid_name}"
+            yield from _pair(f"{here}.along", solid.along, f"{here}.up", solid.up if isinstance(solid, Block) else None)
 
 
 def _pattern(where: str, pattern: Pattern) -> Iterator[Finding]:

@@ -37,7 +37,7 @@ SHARP.flags.writeable = False
 
 @dataclass(frozen=True)
 class Paint:
-    """What the facets of one solid have in common: its kind, the bodies that carry it, its name (`B1/front`, `platform/plate`)."""
+    """What the facets of one solid have in common: its kind, the bodies that carry it, its name (`B1/front`, `platform.plate`)."""
 
     kind: Kind
     carriers: tuple[str, str]

@@ -14,7 +14,6 @@ from flexstage.parts.piezo import Piezo
 from flexstage.parts.profile import Circular, Elliptic, Filleted, Profile, length
 from flexstage.parts.rod import Rod
 from flexstage.present.scene.facet import Facet, Paint, circle, extruded, loft, pierced, rectangle
-from flexstage.spatial.frame import axes
 
 _ARC = np.deg2rad([0.0, 45.0, 90.0])
 _ROUND_NECK_SIDES = 8
@@ -113,7 +112,7 @@ def _hinge(part: Notch | Neck, paint: Paint) -> list[Facet]:
 
 
 def solid_facets(solid: Solid, paint: Paint) -> list[Facet]:
-    """Facets of an outline in its body's frame.
+    """Facets of an outline in its own frame: its centre at the origin, a cylinder's axis along x.
 
     >>> from flexstage.present.scene.facet import Kind
     >>> len(solid_facets(Block("steel", (0.1, 0.1, 0.01)), Paint(Kind.BODY, ("a", "a"))))
@@ -123,12 +122,11 @@ def solid_facets(solid: Solid, paint: Paint) -> list[Facet]:
 
 
 def _block(solid: Block, paint: Paint) -> list[Facet]:
-    at = np.array([plain(value) for value in solid.at])
     size = [plain(value) for value in solid.size]
-    outer = _prism(rectangle(size[0], size[1]), size[2]) + at
+    outer = _prism(rectangle(size[0], size[1]), size[2])
     if solid.hole is None:
         return loft(outer, paint)
-    return pierced(outer, _prism(rectangle(plain(solid.hole[0]), plain(solid.hole[1])), size[2]) + at, paint)
+    return pierced(outer, _prism(rectangle(plain(solid.hole[0]), plain(solid.hole[1])), size[2]), paint)
 
 
 def _prism(section: Array, height: float) -> Array:
@@ -137,11 +135,9 @@ def _prism(section: Array, height: float) -> Array:
 
 
 def _cylinder(solid: Cylinder, paint: Paint) -> list[Facet]:
-    turn = np.real(axes(tuple(plain(value) for value in solid.along)))  # type: ignore[arg-type]
-    at = np.array([plain(value) for value in solid.at])
     ends = 0.5 * plain(solid.length) * np.array([-1.0, 1.0])
-    outer = extruded(ends, [circle(plain(solid.diameter), 24)] * 2) @ turn.T + at
+    outer = extruded(ends, [circle(plain(solid.diameter), 24)] * 2)
     if solid.bore is None:
         return loft(outer, paint, round_section=True)
-    inner = extruded(ends, [circle(plain(solid.bore), 24)] * 2) @ turn.T + at
+    inner = extruded(ends, [circle(plain(solid.bore), 24)] * 2)
     return pierced(outer, inner, paint, round_section=True)

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from flexstage.base.number import Array
-from flexstage.mechanism.expand import Assembly, PlacedBody, PlacedGauge, PlacedLink, expand
+from flexstage.mechanism.expand import Assembly, PlacedBody, PlacedGauge, PlacedLink, PlacedSolid, expand
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
 from flexstage.parts.part import is_actuator
 from flexstage.present.scene.facet import Facet, Kind, Paint, circle, cross, extruded, line, loft, rectangle
@@ -57,6 +57,7 @@ def scene(mechanism: Mechanism) -> Scene:
     joints = _joints(assembly)
     size = _span(np.array([point for points in joints.values() for point in points]).reshape(-1, 3))
     facets = [facet for body in assembly.bodies.values() for facet in _body(body, joints.get(body.name, []), size)]
+    facets += _solids(assembly.ground, Paint(Kind.GROUND, (GROUND, GROUND)))
     size = max(size, _span(np.concatenate([facet.points for facet in facets])) if facets else size)
     facets += [facet for link in assembly.links.values() for facet in _link(link, assembly, size)]
     facets += [facet for gauge in assembly.gauges.values() for facet in _gauge(gauge, size)]
@@ -158,13 +159,16 @@ def _middle(body: str, link: PlacedLink, assembly: Assembly) -> Array | None:
 
 def _body(body: PlacedBody, joints: list[Array], size: float) -> list[Facet]:
     paint = Paint(Kind.PLATFORM if body.name == PLATFORM else Kind.BODY, (body.name, body.name), body.name)
-    if not body.body.solids:
+    if not body.solids:
         return _bars(joints, paint, _BAR * size)
-    frame = _frame(body.frame)
-    named = [(solid, replace(paint, name=f"{body.name}/{name}")) for name, solid in body.body.solids.items()]
-    facets = [_placed(facet, frame) for solid, own in named for facet in solid_facets(solid, own)]
+    facets = _solids(body.solids, paint)
     points = np.concatenate([facet.points for facet in facets])
     return facets + list(_legs(points, joints, paint, size))
+
+
+def _solids(solids: Mapping[str, PlacedSolid], paint: Paint) -> list[Facet]:
+    named = [(placed, _frame(placed.frame), replace(paint, name=name)) for name, placed in solids.items()]
+    return [_placed(facet, frame) for placed, frame, own in named for facet in solid_facets(placed.solid, own)]
 
 
 def _placed(facet: Facet, frame: Frame) -> Facet:
