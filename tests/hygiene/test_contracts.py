@@ -28,6 +28,20 @@ def test_contracts_hold() -> None:
     assert done.returncode == 0, done.stdout + done.stderr
 
 
+def planted(folder: Path, imports: dict[str, str]) -> Path:
+    """A copy of the package in which each of the given files imports the module it should not."""
+    shutil.copy(ROOT / "pyproject.toml", folder)
+    shutil.copytree(SRC, folder / "src" / "flexstage", ignore=shutil.ignore_patterns("__pycache__"))
+    for importer, imported in imports.items():
+        for path in (importer, imported.removeprefix("flexstage.").replace(".", "/") + ".py"):
+            target = folder / "src" / "flexstage" / path
+            if not target.exists() and not target.with_suffix("").is_dir():
+                target.write_text('"""Stands in for a module that is not there yet."""\n')
+        path = folder / "src" / "flexstage" / importer
+        path.write_text(f"{path.read_text()}\nimport {imported}\n")
+    return folder
+
+
 @pytest.mark.parametrize(
     ("importer", "imported"),
     [
@@ -38,24 +52,29 @@ def test_contracts_hold() -> None:
         ("readings/lumped.py", "flexstage.readings.ideal"),
         ("readings/lumped.py", "flexstage.readings.mapped"),
         ("readings/mapped.py", "flexstage.readings.lumped"),
-        ("readings/solid.py", "flexstage.readings.lumped"),
-        ("readings/solid.py", "flexstage.beams"),
+        ("readings/finite.py", "flexstage.readings.lumped"),
+        ("readings/lumped.py", "flexstage.readings.solid.install"),
+        ("readings/mapped.py", "flexstage.readings.solid.install"),
+        ("readings/solid/install.py", "flexstage.readings.lumped"),
+        ("readings/solid/install.py", "flexstage.readings.finite"),
+        ("readings/solid/install.py", "flexstage.beams"),
+        ("beams/leaf.py", "flexstage.readings.solid.install"),
+        ("beams/leaf.py", "flexstage.readings.linear"),
         ("readings/measured.py", "flexstage.readings.ideal"),
         ("readings/linear/__init__.py", "flexstage.readings.lumped"),
     ],
 )
 def test_contracts_bite(tmp_path: Path, importer: str, imported: str) -> None:
-    shutil.copy(ROOT / "pyproject.toml", tmp_path)
-    shutil.copytree(SRC, tmp_path / "src" / "flexstage", ignore=shutil.ignore_patterns("__pycache__"))
-    for path in (importer, imported.removeprefix("flexstage.").replace(".", "/") + ".py"):
-        target = tmp_path / "src" / "flexstage" / path
-        if not target.exists() and not target.with_suffix("").is_dir():
-            target.write_text('"""Stands in for a module that is not there yet."""\n')
-    path = tmp_path / "src" / "flexstage" / importer
-    path.write_text(f"{path.read_text()}\nimport {imported}\n")
-    done = lint(tmp_path)
+    done = lint(planted(tmp_path, {importer: imported}))
     assert done.returncode == 1, done.stdout + done.stderr
     assert "BROKEN" in done.stdout
+
+
+def test_contracts_bite_through_others(tmp_path: Path) -> None:
+    chain = {"readings/solid/install.py": "flexstage.cases.stock", "cases/stock.py": "flexstage.beams.leaf"}
+    done = lint(planted(tmp_path, chain))
+    assert "nor beam theory the solid reading BROKEN" in done.stdout
+    assert "Imports go down the floors only KEPT" in done.stdout
 
 
 def test_every_reading_has_its_contract() -> None:

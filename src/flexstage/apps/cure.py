@@ -10,6 +10,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import TypeAlias
 
+from flexstage.apps import quadmath
 from flexstage.apps.pins import pins
 
 
@@ -28,7 +29,12 @@ class MakeFolder:
     path: Path
 
 
-Cure: TypeAlias = Reinstall | MakeFolder
+@dataclass(frozen=True)
+class ProvideLibrary:
+    """Give NGSolve the library its packages leave out, from the copy that numpy carries."""
+
+
+Cure: TypeAlias = Reinstall | MakeFolder | ProvideLibrary
 
 
 @dataclass(frozen=True)
@@ -47,10 +53,20 @@ def carry_out(cure: Cure) -> Outcome:
     True
     """
     try:
-        said = _reinstall(cure) if isinstance(cure, Reinstall) else _make_folder(cure)
+        said = _carried_out(cure)
     except (OSError, subprocess.SubprocessError) as error:
         said = str(error)
     return Outcome(cure, not said, said)
+
+
+def _carried_out(cure: Cure) -> str:
+    match cure:
+        case Reinstall():
+            return _reinstall(cure) or quadmath.provide(sys.path)  # a package installed anew lacks the library anew
+        case MakeFolder():
+            return _make_folder(cure)
+        case ProvideLibrary():
+            return quadmath.provide(sys.path)
 
 
 def _make_folder(cure: MakeFolder) -> str:

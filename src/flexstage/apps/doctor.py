@@ -16,7 +16,8 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 import flexstage
-from flexstage.apps.cure import Cure, MakeFolder, Outcome, Reinstall, carry_out
+from flexstage.apps import quadmath
+from flexstage.apps.cure import Cure, MakeFolder, Outcome, ProvideLibrary, Reinstall, carry_out
 from flexstage.apps.installed import package
 from flexstage.apps.pins import Need, can_parse, needs, pins, python_versions, requirement
 
@@ -86,7 +87,7 @@ def _itself() -> Row:
 
 
 def _packages() -> Iterator[Row]:
-    direct = needs("tables")
+    direct = needs("solid", "tables")
     with ThreadPoolExecutor(max_workers=os.cpu_count()) as pool:
         yield from pool.map(examine_package, direct)
     # What those need in turn is worth a row only when something is wrong with it.
@@ -108,8 +109,15 @@ def examine_package(need: Need) -> Row:
     if not need.admits(present):
         return Row(need.name, present, need.versions, Verdict.BAD, _pip(need), cure)
     if said := _import_error(need.name.replace("-", "_")):
-        return Row(need.name, f"{present}, does not import: {said}", need.versions, Verdict.BAD, _pip(need), cure)
+        return _not_importing(need, f"{present}, does not import: {said}")
     return Row(need.name, present, need.versions, Verdict.GOOD)
+
+
+def _not_importing(need: Need, found: str) -> Row:
+    if need.name == "ngsolve" and quadmath.lacking(sys.path):
+        remedy = "flexstage doctor --mend puts a copy of libquadmath.so.0 beside it; or on Debian: apt-get install libquadmath0"
+        return Row(need.name, found, need.versions, Verdict.BAD, remedy, ProvideLibrary())
+    return Row(need.name, found, need.versions, Verdict.BAD, _pip(need), Reinstall(need.name, need.versions))
 
 
 def examine_files(need: Need) -> Row | None:
@@ -121,9 +129,11 @@ def examine_files(need: Need) -> Row | None:
     found = package(need.name)
     if found and not found.lost:
         return None
-    verdict = Verdict.NOTE if need.extra and not found else Verdict.BAD
+    wanted = need.versions or "installed"
+    if need.extra and not found:
+        return Row(need.name, "missing", wanted, Verdict.NOTE, f"if you want what needs it: pip install 'flexstage[{need.extra}]'")
     state = f"{found.version}, {found.lost} files lost" if found else "missing"
-    return Row(need.name, state, need.versions or "installed", verdict, _pip(need), Reinstall(need.name, need.versions))
+    return Row(need.name, state, wanted, Verdict.BAD, _pip(need), Reinstall(need.name, need.versions))
 
 
 def _pip(need: Need) -> str:

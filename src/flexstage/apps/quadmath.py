@@ -1,0 +1,68 @@
+"""The library that NGSolve's wheels leave out: their OpenBLAS wants `libquadmath.so.0`, which a bare machine does not have.
+
+numpy's wheels carry it under another name. A copy beside the library that wants it is found first by the loader, whatever else the
+machine has. Standard library only: run by `tools/setup.py` before anything is installed, and by the doctor.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import tempfile
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+
+_NAME = "libquadmath.so.0"
+_WANTING = "ngsolve_openblas/libgfortran.so*"
+_CARRIERS = ("numpy.libs", "scipy.libs")
+
+
+def lacking(folders: Iterable[Path | str]) -> Path | None:
+    """Where the library has to be put within these `site-packages` folders; None if nothing there wants it or it is there.
+
+    >>> lacking([]) is None
+    True
+    """
+    return next(_places([Path(folder) for folder in folders]), None)
+
+
+def provide(folders: Iterable[Path | str]) -> str:
+    """Put the library where it is lacking; says why if that is not possible, else nothing. Doing it twice is the same as once.
+
+    >>> provide([])
+    ''
+    """
+    known = [Path(folder) for folder in folders]
+    place = lacking(known)
+    if place is None:
+        return ""
+    copies = (found for folder in known for carrier in _CARRIERS for found in sorted((folder / carrier).glob("libquadmath-*.so*")))
+    copy = next(copies, None)
+    if copy is None:
+        return f"no package carries a copy of {_NAME}; install the system's (Debian: apt-get install libquadmath0)"
+    try:
+        _copy(copy, place)
+    except OSError as error:
+        return f"{place}: {error.strerror}"
+    return ""
+
+
+def _places(folders: Iterable[Path]) -> Iterator[Path]:
+    for folder in folders:
+        for library in folder.glob(_WANTING):
+            # Some builds (64-bit ARM) do not want it: the name of what a library wants stands in its dynamic section.
+            if not library.with_name(_NAME).exists() and _NAME.encode() in library.read_bytes():
+                yield library.with_name(_NAME)
+
+
+def _copy(source: Path, place: Path) -> None:
+    # Made whole, then renamed: another process may be importing at this moment.
+    handle, unfinished = tempfile.mkstemp(dir=place.parent, prefix=f".{_NAME}.")
+    os.close(handle)
+    try:
+        shutil.copyfile(source, unfinished)
+        Path(unfinished).chmod(0o755)
+        Path(unfinished).replace(place)
+    except OSError:
+        Path(unfinished).unlink(missing_ok=True)
+        raise

@@ -1,0 +1,1 @@
+"""Solid reading: the description as a three-dimensional elastic body."""

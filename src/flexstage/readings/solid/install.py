@@ -1,0 +1,50 @@
+"""Is the solver of the solid reading there: NGSolve with netgen, in the version flexstage was tested with, able to load its libraries?"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from importlib import import_module
+from importlib.metadata import PackageNotFoundError, version
+
+from flexstage.base.finding import Finding, require
+
+SOLVER_VERSION = "6.2.2608"
+"""The version of NGSolve and netgen the results were tested with. Meshes, and with them digits of the results, differ between versions."""
+
+_INSTALL = f"Install {SOLVER_VERSION} with: pip install 'flexstage[solid]' (Python 3.11 to 3.14; Linux on x86-64, macOS, Windows)"
+
+
+def solver_findings() -> tuple[Finding, ...]:
+    """What keeps NGSolve and netgen from working here; nothing if they do. Imports them unless something is already known to be wrong.
+
+    >>> solver_findings()
+    ()
+    """
+    return tuple(_versions()) or tuple(_loading())
+
+
+def require_solver() -> None:
+    """Raise a `DesignError` that names the remedy if NGSolve or netgen is missing, of another version or does not load.
+
+    >>> require_solver()
+    """
+    require(solver_findings())
+
+
+def _versions() -> Iterator[Finding]:
+    for name in ("ngsolve", "netgen-mesher"):
+        try:
+            found = version(name)
+        except PackageNotFoundError:
+            yield Finding(f"the solid reading's package {name}", "is not installed", _INSTALL)
+            continue
+        if found != SOLVER_VERSION:
+            yield Finding(f"the solid reading's package {name}", f"is version {found}, not {SOLVER_VERSION}", _INSTALL)
+
+
+def _loading() -> Iterator[Finding]:
+    try:
+        import_module("ngsolve")
+    except (ImportError, OSError) as error:  # a library that does not load is either, by who loads it
+        advice = "See what is broken with: flexstage doctor; mend it with: flexstage doctor --mend"
+        yield Finding("the solid reading's package ngsolve", f"does not load ({error})", advice)

@@ -1,0 +1,1 @@
+# netgen brings no types: its modules are tables of a compiled library.
