@@ -15,7 +15,7 @@ from flexstage.apps import cure, doctor
 from flexstage.apps.cure import MakeFolder, Reinstall
 from flexstage.apps.doctor import Row, Verdict, examine, examine_package, mend, writable
 from flexstage.apps.installed import packages
-from flexstage.apps.pins import Need, needs, parsed_pins, pins
+from flexstage.apps.pins import Need, needs, needs_of, parsed_pins, pins
 
 
 def distribution(folder: Path, code: str = "value = 1\n", version: str = "1.0") -> Path:
@@ -75,6 +75,19 @@ def test_missing_extra_is_only_noted() -> None:
     assert row.verdict is Verdict.NOTE
     assert "flexstage[tables]" in row.remedy
     assert mend([row]) == ()
+
+
+def test_what_an_extra_left_out_needs_in_turn_is_not_missed(site: Path) -> None:
+    # Neither is installed: the extra's package is noted, and what that would need is nobody's need.
+    distribution(site)
+    assert list(needs_of([Need("no-such-package", "", "solid"), Need("sample", "", "")])) == []
+
+
+def test_what_an_installed_package_needs_in_turn_is_found(site: Path) -> None:
+    distribution(site)
+    with (site / "sample-1.0.dist-info" / "METADATA").open("a") as metadata:
+        metadata.write("Requires-Dist: no-such-package>=2\nRequires-Dist: another; extra == 'more'\n")
+    assert list(needs_of([Need("sample", "", "")])) == [Need("no-such-package", ">=2", "")]
 
 
 def test_whole_package(site: Path) -> None:

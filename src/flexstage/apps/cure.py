@@ -21,6 +21,9 @@ class Reinstall:
     name: str
     versions: str = ""
 
+    def __str__(self) -> str:
+        return f"package {self.name}"
+
 
 @dataclass(frozen=True)
 class MakeFolder:
@@ -28,10 +31,16 @@ class MakeFolder:
 
     path: Path
 
+    def __str__(self) -> str:
+        return f"folder {self.path}"
+
 
 @dataclass(frozen=True)
 class ProvideLibrary:
     """Give NGSolve the library its packages leave out, from the copy that numpy carries."""
+
+    def __str__(self) -> str:
+        return "libquadmath.so.0 beside NGSolve"
 
 
 Cure: TypeAlias = Reinstall | MakeFolder | ProvideLibrary

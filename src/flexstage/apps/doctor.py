@@ -19,7 +19,7 @@ import flexstage
 from flexstage.apps import quadmath
 from flexstage.apps.cure import Cure, MakeFolder, Outcome, ProvideLibrary, Reinstall, carry_out
 from flexstage.apps.installed import package
-from flexstage.apps.pins import Need, can_parse, needs, pins, python_versions, requirement
+from flexstage.apps.pins import Need, can_parse, needs, needs_of, python_versions, requirement
 
 _TIME_LIMIT = 120.0
 _THREADS = "import json, numpy.linalg, scipy.linalg, threadpoolctl as t; print(json.dumps([p['num_threads'] for p in t.threadpool_info()]))"
@@ -91,7 +91,7 @@ def _packages() -> Iterator[Row]:
     with ThreadPoolExecutor(max_workers=os.cpu_count()) as pool:
         yield from pool.map(examine_package, direct)
     # What those need in turn is worth a row only when something is wrong with it.
-    further = (examine_files(Need(name, "", "")) for name in sorted(pins().keys() - {need.name for need in direct}))
+    further = (examine_files(need) for need in sorted(needs_of(direct), key=lambda need: need.name))
     yield from (row for row in further if row and row.verdict is Verdict.BAD)
 
 

@@ -6,6 +6,7 @@ Nothing here needs a third party, but for the reading of version ranges, which p
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from importlib import import_module
 from importlib.metadata import PackageNotFoundError, metadata, requires
@@ -92,6 +93,30 @@ def _need(line: str, extras: tuple[str, ...]) -> Need | None:
         if parsed.marker is None or parsed.marker.evaluate({"extra": extra}):
             return Need(normalised(parsed.name), str(parsed.specifier), extra)
     return None
+
+
+def needs_of(direct: Iterable[Need]) -> Iterator[Need]:
+    """What the given packages need in turn, each once, as far as they are installed: a missing one does not say what it needs.
+
+    >>> "contourpy" in [need.name for need in needs_of(needs())]
+    True
+    """
+    waiting = list(direct)
+    seen = {need.name for need in waiting}
+    while waiting:
+        for need in _requires(waiting.pop().name):
+            if need.name not in seen:
+                seen.add(need.name)
+                waiting.append(need)
+                yield need
+
+
+def _requires(name: str) -> tuple[Need, ...]:
+    try:
+        lines = requires(name) or []
+    except (PackageNotFoundError, ValueError):
+        return ()
+    return tuple(need for line in lines if (need := _need(line, ())))
 
 
 def pins() -> dict[str, str]:
