@@ -47,14 +47,25 @@ def test_actuator_mapping(parameters: DoubleTriangle, mapping: np.ndarray, deter
 
 @pytest.mark.parametrize(("parameters", "determinant"), [(SM_REF_A, -0.02278125), (SM_REF_B, -0.01482975)])
 def test_gauge_mapping(parameters: DoubleTriangle, determinant: float) -> None:
-    kinematics = fs.ideal(double_triangle(parameters))
+    stage = double_triangle(parameters)
+    kinematics = fs.ideal(stage)
     sensing = kinematics.gauge_mapping.values
     radius = parameters.gauge_radius
     assert np.linalg.det(sensing) == pytest.approx(determinant, rel=1e-5)
     np.testing.assert_allclose(sensing[3], [0, 0, 1, radius, 0, 0], atol=1e-12)
     np.testing.assert_allclose(sensing[4, 2:5], [1, -radius / 2, radius * COSINE], atol=1e-12)
-    depth = parameters.platform_height - parameters.gauge_height
+    depth = expand(stage).bodies["platform"].reference[2] - parameters.gauge_height
     np.testing.assert_allclose(sensing[0], [1, 0, 0, 0, -depth, radius], atol=1e-12)
+
+
+@pytest.mark.parametrize(("parameters", "height"), [(SM_REF_A, 0.0), (SM_REF_B, 0.105)])
+def test_the_platform_weighs_the_same_with_its_lugs(parameters: DoubleTriangle, height: float) -> None:
+    mass = expand(double_triangle(parameters)).bodies["platform"].mass
+    assert mass is not None
+    assert mass.mass == pytest.approx(13.9965, rel=1e-6)
+    np.testing.assert_allclose(mass.centre, [0.0, 0.0, height], atol=1e-9)
+    np.testing.assert_allclose(np.diag(mass.inertia), [0.134016, 0.134016, 0.267100], rtol=4e-6)
+    np.testing.assert_allclose(mass.inertia, np.diag(np.diag(mass.inertia)), atol=1e-12)
 
 
 def test_inverse_gauge_mapping_of_set_a() -> None:
@@ -73,8 +84,7 @@ def test_inverse_gauge_mapping_of_set_a() -> None:
 def test_mapped_stiffness(parameters: DoubleTriangle, diagonal: list[float]) -> None:
     stiffness = fs.mapped(double_triangle(parameters)).stiffness_matrix
     np.testing.assert_allclose(np.diag(stiffness), diagonal, rtol=1e-5)
-    depth = parameters.platform_height - parameters.horizontal_height
-    coupling = -386246.0 if depth else 0.0
+    coupling = -386246.0 if parameters is SM_REF_B else 0.0
     np.testing.assert_allclose([stiffness[0, 4], -stiffness[1, 3]], coupling, rtol=1e-5, atol=1e-6)
 
 

@@ -10,18 +10,28 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from flexstage.base.number import Number
+from flexstage.base.number import Number, Vector
 from flexstage.base.scale import X, Y, Z, deg, kHz, mm, um
 from flexstage.mechanism.mechanism import Link, Mechanism, ModalDamping, Opening, Placement, Probe, Unit
 from flexstage.mechanism.pattern import Facing, Polar
-from flexstage.parts.body import Block, Body
+from flexstage.parts.body import Block, Body, Cylinder, Solid
 from flexstage.parts.freedom import ROTATIONS, Freedom
 from flexstage.parts.gauge import Gauge, Positive
 from flexstage.parts.material import Material
 from flexstage.parts.neck import Neck
 from flexstage.parts.notch import Notch
 from flexstage.parts.piezo import Piezo
-from flexstage.parts.profile import Circular, Straight
+from flexstage.parts.profile import Circular, Straight, length
+
+
+@dataclass(frozen=True)
+class Plate:
+    """The platform's square plate: `side`, `thickness`, `height` of its middle; squares of side `corner` are cut from its corners."""
+
+    side: Number
+    thickness: Number
+    height: Number
+    corner: Number = 0.0
 
 
 @dataclass(frozen=True)
@@ -31,7 +41,7 @@ class DoubleTriangle:
     Horizontal units lie tangentially at `horizontal_radius`, `horizontal_height` above the stage's origin, their front necks at
     `front_offset` along the line of action, necks `horizontal_span` apart. Vertical units have their poles at `pole_radius`, the upper
     pole hinge at `pole_height`, the lower one `pole_span` below; `short_arm` r1, `long_arm` r2; their push is turned by `vertical_turn`
-    from the tangent.
+    from the tangent. With `blocks` all bodies are solids that touch where links join them; without, all but the plate are massless.
     """
 
     name: str
@@ -54,7 +64,7 @@ class DoubleTriangle:
     back_distance: Number
     gauge_radius: Number
     gauge_height: Number
-    platform_height: Number
+    plate: Plate
     blocks: bool
 
 
@@ -142,7 +152,7 @@ SM_REF_A = DoubleTriangle(
     back_distance=227 * mm,
     gauge_radius=150 * mm,
     gauge_height=0.0,
-    platform_height=0.0,
+    plate=Plate(320 * mm, 20 * mm, 0.0),
     blocks=False,
 )
 
@@ -167,7 +177,7 @@ SM_REF_B = DoubleTriangle(
     back_distance=227 * mm,
     gauge_radius=130 * mm,
     gauge_height=80 * mm,
-    platform_height=105 * mm,
+    plate=Plate(side=340.64498 * mm, thickness=18.96433 * mm, height=105.21508 * mm, corner=49.91874 * mm),
     blocks=True,
 )
 
@@ -179,7 +189,6 @@ def double_triangle(parameters: DoubleTriangle = SM_REF_B) -> Mechanism:
     ['B1-B3', 'B4-B6']
     """
     p = parameters
-    plate = Block("steel", size=(320 * mm, 320 * mm, 20 * mm), at=(0.0, 0.0, p.platform_height), hole=(110 * mm, 110 * mm))
     tangent = Polar(p.horizontal_radius, -90 * deg, Facing.TANGENT, p.horizontal_height)
     poles = Polar(p.pole_radius, 90 * deg, Facing.TANGENT, p.pole_height, turn=p.vertical_turn)
     return Mechanism(
@@ -193,7 +202,7 @@ def double_triangle(parameters: DoubleTriangle = SM_REF_B) -> Mechanism:
             "pole_neck": p.pole_neck,
             "stack_vertical": p.vertical_stack,
         },
-        bodies={"platform": Body(solids={"plate": plate})},
+        bodies={"platform": Body(solids=_plate(p.plate))},
         units={"horizontal": _horizontal(p), "vertical": _vertical(p)},
         place={"B1-B3": Placement("horizontal", tangent), "B4-B6": Placement("vertical", poles)},
         sensors={"C36": Gauge(range=500 * um, resolution=0.01 * um, source="Lion Precision C36, Shin & Moon 2.1")},
@@ -206,6 +215,20 @@ def double_triangle(parameters: DoubleTriangle = SM_REF_B) -> Mechanism:
         tags=_tags(p),
         sources=SOURCES,
     )
+
+
+def _plate(plate: Plate) -> dict[str, Block]:
+    """The plate with its hole, in three pieces where its corners are cut off."""
+    opening = (110 * mm, 110 * mm)
+    if plate.corner == 0.0:
+        return {"plate": Block("steel", (plate.side, plate.side, plate.thickness), (0.0, 0.0, plate.height), opening)}
+    across = plate.side - 2.0 * plate.corner
+    strip, reach = (across, plate.corner, plate.thickness), 0.5 * (plate.side - plate.corner)
+    return {
+        "plate": Block("steel", (plate.side, across, plate.thickness), (0.0, 0.0, plate.height), opening),
+        "left": Block("steel", strip, (0.0, reach, plate.height)),
+        "right": Block("steel", strip, (0.0, -reach, plate.height)),
+    }
 
 
 def _gauges(p: DoubleTriangle) -> dict[str, Probe]:
@@ -221,18 +244,44 @@ def _horizontal(p: DoubleTriangle) -> Unit:
     """x = push; origin on the line of action, nearest to the stage's axis."""
     back = p.front_offset - p.horizontal_span
     middle = p.front_offset - 0.5 * p.horizontal_span
-    inset = 0.5 * (p.horizontal_span - p.horizontal_stack.length) - 4 * mm
-    size = (8 * mm, 26 * mm, 24 * mm)
-    base = Body(solids={"block": Block("steel", size, (back + inset, 0.0, 0.0))}) if p.blocks else Body()
-    tip = Body(solids={"block": Block("steel", size, (p.front_offset - inset, 0.0, 0.0))}) if p.blocks else Body()
     return Unit(
-        bodies={"base": base, "tip": tip},
+        bodies=_horizontal_blocks(p) if p.blocks else {"base": Body(), "tip": Body()},
         links={
             "back": Link(("ground", "base"), "neck", (back, 0.0, 0.0), X, bends=Y),
             "pzt": Link(("base", "tip"), "stack_horizontal", (middle, 0.0, 0.0), X),
             "front": Link(("tip", "platform"), "neck", (p.front_offset, 0.0, 0.0), X, bends=Y),
         },
     )
+
+
+def _horizontal_blocks(p: DoubleTriangle) -> dict[str, Body]:
+    """Adapters between stack and necks, and the platform's lug that the front neck ends on (all assumed)."""
+    half = 0.5 * length(p.neck.profile)
+    tip = 0.5 * (p.horizontal_span - p.horizontal_stack.length) - half
+    middle = p.front_offset - 0.5 * p.horizontal_span
+    reach = 0.5 * (p.horizontal_stack.length + tip)
+    under = p.plate.height - 0.5 * p.plate.thickness - p.horizontal_height
+    return {
+        "base": Body(solids={"block": Block("steel", (tip, 26 * mm, 24 * mm), (middle - reach, 0.0, 0.0))}),
+        "tip": Body(solids={"block": Block("steel", (tip, 26 * mm, 24 * mm), (middle + reach, 0.0, 0.0))}),
+        "lug": Body(solids=_lug(p.front_offset + half, under), of="platform"),
+    }
+
+
+def _lug(face: Number, under: Number) -> dict[str, Block]:
+    """A nose for the neck and a longer root under the plate."""
+    step = 4 * mm
+    return {
+        "nose": _between((face, -6 * mm, -3 * mm), (face + 16 * mm, 6 * mm, step)),
+        "root": _between((face, -7 * mm, step), (face + 24 * mm, 7 * mm, under)),
+    }
+
+
+def _between(low: Vector, high: Vector) -> Block:
+    """The steel block between two opposite corners."""
+    size = tuple(end - start for start, end in zip(low, high, strict=True))
+    middle = tuple(0.5 * (start + end) for start, end in zip(low, high, strict=True))
+    return Block("steel", size, middle)  # type: ignore[arg-type]
 
 
 def _vertical(p: DoubleTriangle) -> Unit:
@@ -242,40 +291,75 @@ def _vertical(p: DoubleTriangle) -> Unit:
     rear = p.long_arm - p.back_distance
     middle = p.long_arm - 0.5 * p.back_distance
     return Unit(
-        bodies=_vertical_blocks(p, line) if p.blocks else {name: Body() for name in ("base", "tip", "lever", "pole")},
+        bodies=_vertical_blocks(p) if p.blocks else {name: Body() for name in ("base", "tip", "lever", "pole")},
         links={
             "back": Link(("ground", "base"), "foot_notch", (rear, 0.0, line), X, bends=Y),
             "pzt": Link(("base", "tip"), "stack_vertical", (middle, 0.0, line), X),
             "front": Link(("tip", "lever"), "foot_notch", (p.long_arm, 0.0, line), X, bends=Y),
-            "pivot": Link(("ground", "lever"), "lever_notch", (p.long_arm, 0.0, bottom), X, bends=Y),
+            "pivot": Link(("lever", "ground"), "lever_notch", (p.long_arm, 0.0, bottom), X, bends=Y),
             "lower": Link(("lever", "pole"), "pole_neck", (0.0, 0.0, bottom), Z, bends=Y),
             "upper": Link(("pole", "platform"), "pole_neck", (0.0, 0.0, 0.0), Z, bends=Y),
         },
     )
 
 
-def _vertical_blocks(p: DoubleTriangle, line: Number) -> dict[str, Body]:
-    """Blocks of a buildable unit: stack adapters, a lever of two cheeks astride the stack, a pole pierced by the stack (all assumed)."""
-    adapter = (8 * mm, 26 * mm, 26 * mm)
-    front, back = p.long_arm - 9 * mm, p.long_arm - p.back_distance + 9 * mm
-    cheek = (93 * mm, 8 * mm, 35 * mm)
-    lever = {
-        "left": Block("steel", cheek, (36.5 * mm, 25 * mm, -p.pole_span)),
-        "right": Block("steel", cheek, (36.5 * mm, -25 * mm, -p.pole_span)),
-        "head": Block("steel", (12 * mm, 58 * mm, 50 * mm), (89 * mm, 0.0, line - 11 * mm)),
-        "foot": Block("steel", (20 * mm, 42 * mm, 8 * mm), (0.0, 0.0, -p.pole_span - 12 * mm)),
-    }
-    pole = {
-        "bottom": Block("steel", (20 * mm, 40 * mm, 4.5 * mm), (0.0, 0.0, line - 15.75 * mm)),
-        "left": Block("steel", (20 * mm, 6.5 * mm, 27 * mm), (0.0, 16.75 * mm, line)),
-        "right": Block("steel", (20 * mm, 6.5 * mm, 27 * mm), (0.0, -16.75 * mm, line)),
-        "top": Block("steel", (20 * mm, 20 * mm, 12.5 * mm), (0.0, 0.0, line + 19.75 * mm)),
-    }
+def _vertical_blocks(p: DoubleTriangle) -> dict[str, Body]:
+    """Blocks of a buildable unit: stack adapters, a lever astride the stack, a pole around the stack, the platform's pad (all assumed)."""
+    line = p.short_arm - p.pole_span
+    half = 0.5 * length(p.foot_notch.profile)
+    tip = 0.5 * (p.back_distance - p.vertical_stack.length) - half
+    middle = p.long_arm - 0.5 * p.back_distance
+    reach = 0.5 * (p.vertical_stack.length + tip)
+    adapter = (tip, 26 * mm, 26 * mm)
+    neck = 0.5 * length(p.pole_neck.profile)
+    under = p.plate.height - 0.5 * p.plate.thickness - p.pole_height
     return {
-        "base": Body(solids={"block": Block("steel", adapter, (back, 0.0, line))}),
-        "tip": Body(solids={"block": Block("steel", adapter, (front, 0.0, line))}),
-        "lever": Body(solids=lever),
-        "pole": Body(solids=pole),
+        "base": Body(solids={"block": Block("steel", adapter, (middle - reach, 0.0, line))}),
+        "tip": Body(solids={"block": Block("steel", adapter, (middle + reach, 0.0, line))}),
+        "lever": Body(solids=_lever(p, line)),
+        "pole": Body(solids=_pole(line, neck - p.pole_span, -neck)),
+        "pad": Body(solids={"disc": _upright(neck, under)}, of="platform"),
+    }
+
+
+def _lever(p: DoubleTriangle, line: Number) -> dict[str, Block]:
+    """Two cheeks astride the stack and the pole, deep near the pivot; they stand on a saddle that the pivot's notch ends on.
+
+    Ears lead past the pivot to the head under the front hinge, above the pivot's foot on the ground; a foot under the pole joins the tips.
+    """
+    face = p.long_arm - 0.5 * length(p.lever_notch.profile)
+    front = p.long_arm + 0.5 * length(p.foot_notch.profile)
+    sole, seat = -p.pole_span - 18 * mm, -p.pole_span - 0.5 * length(p.pole_neck.profile)
+    saddle, step, end, low, top = face - 14 * mm, 24 * mm, front + 12 * mm, line - 15 * mm, line + 16 * mm
+    inner, outer = 21 * mm, 29 * mm
+    solids = {
+        "saddle": _between((saddle, -outer, sole), (face, outer, low)),
+        "head": _between((front, -inner, line - 19 * mm), (end, inner, top)),
+        "foot": _between((-14 * mm, -inner, sole), (14 * mm, inner, seat)),
+    }
+    for side, (near, far) in {"left": (inner, outer), "right": (-outer, -inner)}.items():
+        solids |= {
+            side: _between((step, near, sole), (saddle, far, top)),
+            f"{side}_tip": _between((-14 * mm, near, sole), (step, far, line - 12 * mm)),
+            f"{side}_ear": _between((saddle, near, low), (end, far, top)),
+        }
+    return solids
+
+
+def _upright(bottom: Number, top: Number) -> Cylinder:
+    """A disc around the pole's axis that a pole neck ends on."""
+    return Cylinder("steel", 21 * mm, top - bottom, (0.0, 0.0, 0.5 * (bottom + top)))
+
+
+def _pole(line: Number, bottom: Number, top: Number) -> dict[str, Solid]:
+    """A frame around the stack, and a seat that stays clear of the inner units, between the heights of the necks' ends."""
+    wide, deep, bore = 20 * mm, 13 * mm, 13.5 * mm
+    return {
+        "bottom": _between((-deep, -wide, bottom), (deep, wide, line - bore)),
+        "left": _between((-deep, bore, line - bore), (deep, wide, line + bore)),
+        "right": _between((-deep, -wide, line - bore), (deep, -bore, line + bore)),
+        "top": _between((-deep, -wide, line + bore), (deep, wide, top - 4.5 * mm)),
+        "seat": _upright(top - 4.5 * mm, top),
     }
 
 
@@ -296,6 +380,7 @@ EQUATION_18 = EQUATION_3 | {"neck": ((Freedom.X,), ROTATIONS), "stack_horizontal
 SOURCES = {
     "paper": "Shin & Moon, Static and Dynamic Analyses of a 6-DOF Ultra-Precision Parallel Mechanism",
     "fit": "derived from the paper's unit stiffnesses, Table 2 and the stacks' lengths",
+    "trim": "the plate is trimmed so that with lugs and pads it has mass, inertia and centre of one of 320 x 320 x 20 mm at 105 mm height",
     "layout": "a layout that fits 380 x 380 x 115 mm, chosen here",
 }
 
@@ -329,4 +414,9 @@ def _tags(p: DoubleTriangle) -> dict[str, str]:
     derived += ["parts.neck.width"] if p.neck.width is not None else []
     derived += ["units.horizontal.links.back.at", "units.vertical.links.front.at", "units.vertical.links.pivot.at"]
     derived += ["parts.stack_horizontal.length", "parts.stack_vertical.length"]
-    return {key: f"stated {value}" for key, value in stated.items()} | dict.fromkeys(derived, "derived fit")
+    trimmed = [f"bodies.platform.solids.{name}.{field}" for name in _plate(p.plate) for field in ("size", "at")] if p.blocks else []
+    return (
+        {key: f"stated {value}" for key, value in stated.items()}
+        | dict.fromkeys(derived, "derived fit")
+        | dict.fromkeys(trimmed, "derived trim")
+    )

@@ -84,7 +84,7 @@ def room(mechanism: Mechanism) -> Room:
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> room(double_triangle()).size[2].round(6).item()
-    0.1125
+    0.112697
     """
     found = outlines(expand(mechanism))
     if not found:
