@@ -24,14 +24,14 @@ from flexstage.parts.piezo import Piezo
 from flexstage.readings.ideal import ideal
 from flexstage.readings.linear.eigen import eigen
 from flexstage.readings.linear.model import Contribution, assembled
-from flexstage.readings.linear.port import WRENCH_COMPONENTS, ports
+from flexstage.readings.linear.port import ports
 from flexstage.readings.linear.static import displacement, part_deformation, static_gain
 from flexstage.readings.lumped import lumped
-from flexstage.spatial.frame import COMPONENTS, rigid_inertia, transport, turned
+from flexstage.spatial.frame import COMPONENTS, FORCES, rigid_inertia, transport, turned
 from tests.laws.strategies import actuated_platforms, mechanisms, moved, platforms, rosettes, turns
 
 TWIST = tuple(f"{PLATFORM}.{name}" for name in COMPONENTS)
-WRENCH = tuple(f"{PLATFORM}.{name}" for name in WRENCH_COMPONENTS)
+WRENCH = tuple(f"{PLATFORM}.{name}" for name in FORCES)
 METRE = np.array([1.0, 1.0, 1.0, 0.1, 0.1, 0.1])
 """Makes twists (rotations times 0.1 m) and wrenches (moments over 0.1 m) comparable."""
 
@@ -52,9 +52,16 @@ def scaled(matrix):
 
 
 def rounding(model):
-    """What rounding may do to solutions of K q = f, relative: 50 + 4 n unit roundoffs (n coordinates) times K's condition number."""
+    """What rounding may do to solutions of K q = f, relative to the largest motion: 4 n eps cond(H) + 1e-12, with K = D H D and H_ii = 1.
+
+    A solve by Cholesky's or Gauss's elimination meets |D dq| <= 3 n^2 u cond(H) |D q|, whatever D is, that is however differently the
+    coordinates are scaled (Demmel 1989; Higham, Accuracy and Stability of Numerical Algorithms, 2002, section 10.1; u = eps/2). That is
+    for errors that all add up; of random signs they add up to some n eps cond(H), which also holds the rounding of K's own entries: those
+    are relative to d_i d_j, as K is a sum of positive parts. Over 600 random stages a law, other than the ones this is derived from, the
+    largest error is 0.15 of this bound. The floor 1e-12 is for what no stiffness matrix causes, the turning of frames and loads.
+    """
     stiffness = model.stiffness_matrix
-    return (50.0 + 4.0 * len(stiffness)) * np.finfo(float).eps * np.linalg.cond(scaled(stiffness)) + 1e-11
+    return 4.0 * len(stiffness) * np.finfo(float).eps * np.linalg.cond(scaled(stiffness)) + 1e-12
 
 
 @given(mechanisms())
@@ -101,7 +108,9 @@ def test_rigid_motion_strains_nothing(mechanism):
 def test_transmissibility_is_that_of_a_moved_floor(mechanism, ratio):
     """With the floor's motion prescribed: (K_qq - w^2 M_qq) q = -(K_qf - w^2 M_qf) x_f, all inertia of links included.
 
-    Near a resonance both sides are as uncertain as its frequency is, over the relative gap to it.
+    Rounding relative to K counts 1 + ratio^2 times, as w^2 M <= ratio^2 K, and 1/gap times: K - w^2 M = K^(1/2) (1 - w^2 A) K^(1/2), where
+    1 - w^2 A has the least eigenvalue gap = min |1 - w^2/lambda|. It is relative to the motion of the whole stage, |D x|, and not to the
+    platform's own: that may all but stand still while a body on it resonates.
     """
     stage = expand(floating(mechanism))
     order = layout(stage)
@@ -118,14 +127,18 @@ def test_transmissibility_is_that_of_a_moved_floor(mechanism, ratio):
     natural = eigen(model).values
     frequency = ratio * np.sqrt(natural[0]) / (2.0 * np.pi)
     gap = np.min(np.abs(1.0 - ratio**2 * natural[0] / natural))
-    dynamic = assembled(parts, order.size) - (2.0 * np.pi * frequency) ** 2 * assembled(masses, order.size)
+    static = assembled(parts, order.size)
+    dynamic = static - (2.0 * np.pi * frequency) ** 2 * assembled(masses, order.size)
     floor = range(*order.columns("floor").indices(order.size))
     free = [index for index in range(order.size) if index not in floor]
     moved_ = -np.linalg.solve(dynamic[np.ix_(free, free)], dynamic[np.ix_(free, floor)])
     carry = transport(stage.bodies["floor"].reference - stage.bodies[PLATFORM].reference)
     expected = moved_[:6] @ carry * METRE[:, None] / METRE
+    weight = np.sqrt(np.diag(static))
+    size = np.linalg.norm(weight[:, None] * np.concatenate([moved_ @ carry, carry]) / METRE, axis=0)
     found = transmissibility(model, frequencies=np.array([frequency]), damping=ModalDamping(0.0)).values[0] * METRE[:, None] / METRE
-    assert np.abs(found - expected).max() <= rounding(model) * (1.0 + np.abs(expected).max()) / max(gap, 1e-9)
+    tolerance = rounding(model) * (1.0 + ratio**2) / gap
+    assert np.all(np.abs(found - expected) <= tolerance * size * (METRE / weight[:6])[:, None])
 
 
 @given(mechanisms(), turns())
@@ -171,7 +184,7 @@ def test_reciprocity(mechanism):
     """Maxwell and Betti: motions per wrench are symmetric over all bodies; a stroke's motion is the dual of its stack's force."""
     model = lumped(mechanism)
     bodies = tuple(mechanism.bodies)
-    chosen = ports(model, bodies, [f"{body}.{name}" for body in bodies for name in WRENCH_COMPONENTS])
+    chosen = ports(model, bodies, [f"{body}.{name}" for body in bodies for name in FORCES])
     flexibility = chosen.output @ displacement(model, chosen.force)
     weight = np.tile(METRE, len(bodies))
     flexibility = flexibility * weight[:, None] * weight
