@@ -7,11 +7,10 @@ from hypothesis import strategies as st
 
 from flexstage.mechanism.mechanism import ModalDamping, RayleighDamping, StructuralDamping
 from flexstage.readings.linear.model import Channel, Contribution, LinearModel
-from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS, transport
+from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, transport
 
 BODIES = ("platform", "arm")
 SIZE = 6 * len(BODIES)
-FORCES = ("fx", "fy", "fz", "mx", "my", "mz")
 
 
 def _positive(random, size, rank=None):

@@ -10,10 +10,9 @@ from flexstage.base.labelled import Matrix, ratio_units
 from flexstage.base.number import Array, Number, first_design
 from flexstage.readings.linear.model import LinearModel
 from flexstage.readings.linear.static import displacement
-from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS, WRENCH_UNITS
+from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNITS
 
 _SINGULAR = 1e-11
-_FORCES = ("fx", "fy", "fz", "mx", "my", "mz")
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,7 +64,7 @@ def statics(model: LinearModel, *, load_point: str = "platform", read_point: str
     load = tuple(f"{load_point}.{name}" for name in COMPONENTS)
     force = np.swapaxes(model.output[..., model.output_index(load), :], -1, -2)
     values = model.output[..., model.output_index(read), :] @ displacement(model, force)
-    wrench = tuple(f"{load_point}.{name}" for name in _FORCES)
+    wrench = tuple(f"{load_point}.{name}" for name in FORCES)
     inverse = _inverse(values)
     return Statics(
         load_point,

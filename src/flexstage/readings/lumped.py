@@ -25,11 +25,10 @@ from flexstage.parts.material import Material
 from flexstage.parts.part import Part, Restricted
 from flexstage.readings.linear.elimination import eliminate, pivoted
 from flexstage.readings.linear.model import Channel, Contribution, LinearModel, assembled, gathered
-from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS, WRENCH_UNITS, Frame, seen_at
+from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNITS, Frame, seen_at
 
 _SINGULAR = 1e-11
 _ROUNDING = 1e-12
-_FORCES = ("fx", "fy", "fz", "mx", "my", "mz")
 
 _Value = TypeVar("_Value")
 
@@ -238,7 +237,7 @@ def _inputs(stage: _Stage) -> tuple[tuple[Channel, ...], Array, dict[str, Array]
     places = [(PLATFORM, stage.order.selector(PLATFORM))]
     places += [(name, twist_at(stage.assembly, stage.order, body, _at(point))) for name, (body, point) in stage.assembly.points.items()]
     channels = [Channel(name, "m") for name in drives]
-    channels += [Channel(f"{name}.{force}", unit) for name, _ in places for force, unit in zip(_FORCES, WRENCH_UNITS, strict=True)]
+    channels += [Channel(f"{name}.{force}", unit) for name, _ in places for force, unit in zip(FORCES, WRENCH_UNITS, strict=True)]
     columns = _spread((np.zeros((stage.order.size, len(drives))), *(_transposed(rows) for _, rows in places)))
     imposed: dict[str, Array] = {}
     for number, link in enumerate(drives.values()):
@@ -268,7 +267,7 @@ def _outputs(stage: _Stage) -> tuple[tuple[Channel, ...], Array, Array]:
     for name, item in stage.strains.items():
         rows.append(item.law @ item.operator)
         passed.append(np.zeros((6, _input_count(assembly))) if name not in drives else _own_force(assembly, item, drives[name]))
-        channels += [Channel(f"{name}.{force}", unit) for force, unit in zip(_FORCES, WRENCH_UNITS, strict=True)]
+        channels += [Channel(f"{name}.{force}", unit) for force, unit in zip(FORCES, WRENCH_UNITS, strict=True)]
     return tuple(channels), np.concatenate(_spread(tuple(rows)), axis=-2), np.concatenate(_spread(tuple(passed)), axis=-2)
 
 

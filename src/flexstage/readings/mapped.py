@@ -24,7 +24,7 @@ from flexstage.parts.part import Restricted
 from flexstage.readings.ideal import ideal
 from flexstage.readings.linear.kinematics import Kinematics
 from flexstage.readings.linear.model import Channel, Contribution, LinearModel
-from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS, WRENCH_UNITS
+from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNITS
 
 _COLLINEAR = 1e-6
 
@@ -90,7 +90,7 @@ def _model(mechanism: Mechanism, kinematics: Kinematics, springs: Mapping[str, N
     channels = [Channel(f"{PLATFORM}.{name}", unit) for name, unit in zip(COMPONENTS, TWIST_UNITS, strict=True)]
     channels += [Channel(name, "m") for name in kinematics.gauges]
     inputs = [Channel(name, "m") for name in kinematics.actuators]
-    inputs += [Channel(f"{PLATFORM}.{name}", unit) for name, unit in zip(("fx", "fy", "fz", "mx", "my", "mz"), WRENCH_UNITS, strict=True)]
+    inputs += [Channel(f"{PLATFORM}.{name}", unit) for name, unit in zip(FORCES, WRENCH_UNITS, strict=True)]
     transposed = np.swapaxes(kinematics.motion, -1, -2)
     batch = kinematics.motion.shape[:-2]
     return LinearModel(
@@ -137,8 +137,8 @@ def unit_stiffness(mechanism: Mechanism, assembly: Assembly) -> dict[str, Number
         try:
             result[name] = stated if stated is not None else computed_stiffness(assembly, drive)
         except DesignError as error:
-            key = f"units.{unit_of[copy]}.stiffness" if copy else "(draw the actuator inside a unit)"
-            findings += [Finding(f"{item.where}", item.what, f"State {key}, or use the lumped reading") for item in error.findings]
+            key = f"State units.{unit_of[copy]}.stiffness" if copy else "Draw the actuator in a unit, whose stiffness can be stated"
+            findings += [Finding(item.where, item.what, f"{key}, or use the lumped reading") for item in error.findings]
     require(findings)
     return result
 

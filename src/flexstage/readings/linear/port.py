@@ -11,9 +11,7 @@ from flexstage.base.finding import Finding, nearest, require
 from flexstage.base.number import Array
 from flexstage.mechanism.mechanism import GROUND
 from flexstage.readings.linear.model import Channel, LinearModel
-from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS, WRENCH_UNITS
-
-WRENCH_COMPONENTS = ("fx", "fy", "fz", "mx", "my", "mz")
+from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNITS
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,7 +77,7 @@ def input_names(model: LinearModel) -> tuple[str, ...]:
 
 def _further_inputs(model: LinearModel) -> tuple[str, ...]:
     bodies = dict.fromkeys(name.rpartition(".")[0] for name in _twists(model))
-    wrenches = [f"{body}.{component}" for body in bodies for component in WRENCH_COMPONENTS]
+    wrenches = [f"{body}.{component}" for body in bodies for component in FORCES]
     return (*wrenches, *(f"{GROUND}.{component}" for component in COMPONENTS))
 
 
@@ -118,7 +116,7 @@ def _column(model: LinearModel, name: str, known: dict[str, int], sources: dict[
         axis = COMPONENTS.index(component)
         inertial = model.base_inertia[..., [axis]]
         return Channel(name, TWIST_UNITS[axis]), np.zeros_like(inertial), inertial, model.rigid_output[..., [axis]]
-    axis = WRENCH_COMPONENTS.index(component)
+    axis = FORCES.index(component)
     row = model.output[..., [known[f"{owner}.{COMPONENTS[axis]}"]], :]
     force = np.swapaxes(row, -1, -2)
     return Channel(name, WRENCH_UNITS[axis]), force, np.zeros_like(force), np.zeros((len(model.outputs), 1))
