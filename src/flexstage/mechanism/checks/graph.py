@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
@@ -34,11 +33,11 @@ def graph_findings(mechanism: Mechanism) -> Iterator[Finding]:
     for body in bodies:
         if body not in reached:
             yield Finding(body, "no chain of links leads from it to the ground", "Join it by a link, or remove it")
-    used = {edge.name for edge in _without_dead_ends(edges)}
+    used = _on_a_path(edges) if PLATFORM in reached else {edge.name for edge in edges}
     for edge in edges:
         if is_actuator(mechanism.parts[edge.part]) and edge.name not in used and set(edge.joins) <= reached:
             what = f"the actuator joins {edge.joins[0]} and {edge.joins[1]}, on no path between ground and platform"
-            yield Finding(edge.name, what, "Join its dangling end on, or remove it")
+            yield Finding(edge.name, what, "Lead one of its ends to the ground and the other to the platform, or remove it")
 
 
 def _expanded(mechanism: Mechanism) -> tuple[list[str], list[_Edge]]:
@@ -79,11 +78,36 @@ def _reached(edges: Iterable[_Edge]) -> set[str]:
     return reached
 
 
-def _without_dead_ends(edges: list[_Edge]) -> list[_Edge]:
-    """The links left after those that hang by one end are taken away, again and again."""
+def _on_a_path(edges: list[_Edge]) -> set[str]:
+    """The links on any path between ground and platform that visits no body twice.
+
+    They form one block (two-connected part) with a closing edge between the two: depth-first search after Hopcroft and Tarjan 1973, begun
+    with that edge, so that its block is the first to be complete at the ground.
+    """
+    ways: dict[str, list[tuple[str, str]]] = {}
+    for edge in (_Edge("", (GROUND, PLATFORM), ""), *edges):
+        for here, there in (edge.joins, edge.joins[::-1]):
+            ways.setdefault(here, []).append((edge.name, there))
+    depth, low = {GROUND: 0}, {GROUND: 0}
+    trail: list[str] = []
+    walk = [(GROUND, "", iter(ways[GROUND]))]
     while True:
-        ends = Counter(body for edge in edges for body in edge.joins)
-        left = [edge for edge in edges if all(ends[body] > 1 or body in (GROUND, PLATFORM) for body in edge.joins)]
-        if len(left) == len(edges):
-            return left
-        edges = left
+        body, via, rest = walk[-1]
+        name, there = next(rest, ("", ""))
+        if not there:
+            walk.pop()
+            parent = walk[-1][0]
+            if low[body] < depth[parent]:
+                low[parent] = min(low[parent], low[body])
+            elif not via:
+                return set(trail)
+            else:
+                while trail.pop() != via:
+                    pass
+        elif there not in depth:
+            depth[there] = low[there] = len(walk)
+            trail.append(name)
+            walk.append((there, name, iter(ways[there])))
+        elif name != via and depth[there] < depth[body]:
+            trail.append(name)
+            low[body] = min(low[body], depth[there])
