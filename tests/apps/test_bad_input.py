@@ -92,6 +92,20 @@ def test_actuators_without_a_path_are_refused(flexstage: Command, tmp_path: Path
         expect_refusal(flexstage(command, "stage.toml"), "B1/pzt", "B1/tip", "on no path between ground and platform")
 
 
+@pytest.mark.parametrize("joins", ['["tip", "ground"]', '["tip", "base"]'])
+def test_actuators_looped_back_are_refused(flexstage: Command, tmp_path: Path, joins: str) -> None:
+    """Both ends of the chain on the ground, or the stack between the ends of one loop: it pushes nothing."""
+    design = tmp_path / "stage.toml"
+    design.write_text(swapped('joins = ["tip", "platform"]', f"joins = {joins}")(design.read_text()))
+    for command in ("check", "mapping", "analyse"):
+        expect_refusal(flexstage(command, "stage.toml"), "B1/pzt", "B1/tip", "on no path between ground and platform")
+
+
+def test_an_assignment_is_named_once(flexstage: Command) -> None:
+    ended = flexstage("modes", "stage.toml", "--set", "neck=2mm")
+    expect_refusal(ended, "--set neck=2mm: it is no single value but holds thickness, profile.", '"neck.thickness=..."')
+
+
 def test_all_findings_are_told_at_once(flexstage: Command, tmp_path: Path) -> None:
     design = tmp_path / "stage.toml"
     text = swapped(NECK, "thickness = 1.54")(design.read_text())

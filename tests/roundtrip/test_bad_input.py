@@ -41,6 +41,13 @@ def test_the_small_stage_is_sound() -> None:
     assert check(loads(TEXT)) == ()
 
 
+def test_an_unknown_entry_of_the_catalogue_is_all_that_is_told() -> None:
+    """What it would have brought along is not missed besides; what stands beside it is read all the same."""
+    assert len(told(TEXT.replace('"SUS420"', '"SUS430"'))) == 1
+    lines = told(TEXT.replace('like = "SUS420"', 'like = "SUS430"\nyoung = "200 N"'))
+    assert [line.split(": ")[1] for line in lines] == ["materials.steel.like", "materials.steel.young"]
+
+
 @pytest.mark.parametrize(
     ("old", "new", "words"),
     [
@@ -306,9 +313,9 @@ DANGLING = {"tip": Body(mass=1.0), **STAGE.bodies}
             dataclasses.replace(STAGE, place={"L" * 70: Placement("leg", Polar(0.1, 0.0, Facing.AXIS))}),
             ["place.LLL", "70 characters"],
         ),
-        (dataclasses.replace(STAGE, changes={"L2/front.diameter": -0.001}), ['changes."L2/front.diameter"', "-1 mm"]),
-        (dataclasses.replace(STAGE, changes={"L2/front.diameter": "1 mm"}), ['changes."L2/front.diameter"', "'1 mm'", "a length"]),
-        (dataclasses.replace(STAGE, changes={"L9/front.diameter": 0.001}), ['changes."L9/front.diameter"', '"L9"']),
+        (dataclasses.replace(STAGE, changes={"L2/front.diameter": -0.001}), ['change."L2/front.diameter"', "-1 mm"]),
+        (dataclasses.replace(STAGE, changes={"L2/front.diameter": "1 mm"}), ['change."L2/front.diameter"', "'1 mm'", "a length"]),
+        (dataclasses.replace(STAGE, changes={"L9/front.diameter": 0.001}), ['change."L9/front.diameter"', '"L9"']),
         (dataclasses.replace(STAGE, tags={"parts.wire.width": "assumed"}), ['tags."parts.wire.width"', "points nowhere"]),
         (dataclasses.replace(STAGE, tags={"parts.wire.length": "stated"}), ["stated by no source", "paper"]),
         (dataclasses.replace(STAGE, materials={"steel": dataclasses.replace(STEEL, poisson=0.5)}), ["poisson", "0.5", "less than 0.5"]),

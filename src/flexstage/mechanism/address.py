@@ -19,7 +19,7 @@ from typing import Any
 
 import numpy as np
 
-from flexstage.base.finding import refuse
+from flexstage.base.finding import DesignError, refuse
 from flexstage.base.number import Table, freeze
 from flexstage.base.quantity import DIRECTION, Quantity
 from flexstage.base.unit import parse
@@ -31,6 +31,7 @@ from flexstage.mechanism.path import member, replaced
 from flexstage.parts.part import Part
 
 ASSUMED = "assumed"
+_MOST_NAMES = 8
 
 
 def get(mechanism: Mechanism, address: str) -> Any:
@@ -80,7 +81,19 @@ def assign(mechanism: Mechanism, assignment: str) -> Mechanism:
     address, equals, text = assignment.partition("=")
     if not equals:
         raise refuse(f'"{assignment}"', "an assignment needs an equals sign", 'Write for example "parts.neck.thickness=1.4 mm"')
-    return set_value(mechanism, address.strip(), value_from_text(text.strip(), locate(mechanism, address), address.strip()))
+    place, where = locate(mechanism, address), address.strip()
+    if not isinstance(place.node, (NumberNode, TextNode, ChoiceNode, DirectionNode)):
+        raise _several(mechanism, place, where)
+    return set_value(mechanism, where, value_from_text(text.strip(), place, where))
+
+
+def _several(mechanism: Mechanism, place: Place, where: str) -> DesignError:
+    """That an assignment to what holds several values says which it means."""
+    inner = [name for name, _, _ in numbers(place.node, get(mechanism, where), "")]
+    if not inner:
+        return refuse(where, "it holds no number that can be set", "Set it in the design file")
+    shown = ", ".join(inner[:_MOST_NAMES]) + (" and more" if len(inner) > _MOST_NAMES else "")
+    return refuse(where, f"it is no single value but holds {shown}", f'Set one, for example "{where}.{inner[0]}=..."')
 
 
 def addresses(mechanism: Mechanism) -> tuple[str, ...]:
@@ -168,7 +181,7 @@ def _departed(mechanism: Mechanism, place: Place) -> tuple[Link, Part]:
     try:
         return departed(mechanism, link, place.owners)
     except KeyError as error:
-        raise refuse(f"changes of {place.owners[-1]}", f"there is no {error}", "Check the description") from None
+        raise refuse(f"change of {place.owners[-1]}", f"there is no {error}", "Check the description") from None
 
 
 def _drawn(mechanism: Mechanism, owners: tuple[str, ...]) -> Link:

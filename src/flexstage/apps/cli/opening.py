@@ -39,9 +39,15 @@ def changed(mechanism: Mechanism, changes: Sequence[str]) -> Mechanism:
         try:
             result = assign(result, change)
         except DesignError as error:
-            findings += [Finding(f"--set {change}: {each.where}", each.what, each.advice) for each in error.findings]
+            findings += [Finding(_where(change, each.where), each.what, each.advice) for each in error.findings]
     require(findings)
     return checked(result) if changes else mechanism
+
+
+def _where(change: str, inner: str) -> str:
+    """The assignment, and the place a finding names where that says more than the assignment does."""
+    said = {change.partition("=")[0].strip(), f'"{change}"'}
+    return f"--set {change}" if inner in said else f"--set {change}: {inner}"
 
 
 def _part_cautions(mechanism: Mechanism) -> tuple[Finding, ...]:

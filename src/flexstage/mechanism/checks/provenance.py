@@ -22,12 +22,12 @@ def change_findings(mechanism: Mechanism) -> Iterator[Finding]:
     """Findings about departures: each must address a link's value, be of its kind, and stand alone.
 
     >>> print(*change_findings(Mechanism("", changes={"parts.neck.thickness": 0.001})))
-    changes."parts.neck.thickness": there is no "neck". There are none.
+    change."parts.neck.thickness": there is no "neck". There are none.
     """
     made: dict[str, str] = {}
     inside: dict[str, str] = {}
     for key, value in mechanism.changes.items():
-        where = f'changes."{key}"'
+        where = f'change."{key}"'
         try:
             place = locate(mechanism, key)
         except DesignError as error:

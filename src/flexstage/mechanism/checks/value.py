@@ -50,7 +50,7 @@ def first_failing(failing: Any, *values: Any) -> tuple[str, tuple[Any, ...]]:
 def _all_numbers(mechanism: Mechanism) -> Iterator[tuple[str, Any, NumberNode]]:
     yield from numbers(node_of(Mechanism), mechanism)
     for key, value in mechanism.changes.items():
-        yield from numbers(locate(mechanism, key).node, value, f'changes."{key}"')
+        yield from numbers(locate(mechanism, key).node, value, f'change."{key}"')
 
 
 def _number(where: str, value: Any, node: NumberNode) -> Iterator[Finding]:

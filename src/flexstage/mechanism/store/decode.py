@@ -168,7 +168,8 @@ class Reader:
         return self._record(options[name], {item: value for item, value in raw.items() if item != key}, where)
 
     def _record(self, node: RecordNode, raw: dict[str, Any], where: str) -> Any:
-        raw = self._untagged(self._expanded(node, raw, where), where)
+        known_like = self._like_is_known(node, raw, where)
+        raw = self._untagged(self._expanded(node, raw) if known_like else _without_like(raw), where)
         values: dict[str, Any] = {}
         used: set[str] = set()
         for name, slot in node.fields.items():
@@ -176,6 +177,8 @@ class Reader:
             if key in raw:
                 used.add(key)
                 values[name] = self.read(inner, raw[key], _join(where, key))
+            elif slot.required and not known_like:
+                values[name] = _BAD
             elif slot.required:
                 values[name] = self.refuse(where, f"it has no {_wanted(slot)}", f"Write for example {_example_of(slot)}")
             else:
@@ -195,21 +198,33 @@ class Reader:
             self.refuse(where, f"it has both {names}", "Leave one of them")
         return present[0] if present else (slot.key, slot.node)
 
-    def _expanded(self, node: RecordNode, raw: dict[str, Any], where: str) -> dict[str, Any]:
+    def _like_is_known(self, node: RecordNode, raw: dict[str, Any], where: str) -> bool:
+        """Whether what `like` names is in the catalogue, if anything is; what an unknown entry would have brought is not missed besides."""
+        section = self.catalogue.section(node.record)
+        if section is None or LIKE not in raw:
+            return True
+        name = raw[LIKE]
+        known = isinstance(name, str) and name in section.entries
+        if not known:
+            self.refuse(_join(where, LIKE), f"the catalogue has no {_kind(name)}", nearest(_kind(name), section.entries))
+        return known
+
+    def _expanded(self, node: RecordNode, raw: dict[str, Any]) -> dict[str, Any]:
         """The table with what its `like` brings along, overridden by what stands in it."""
         section = self.catalogue.section(node.record)
         if section is None or LIKE not in raw:
             return raw
         name = raw[LIKE]
-        if not isinstance(name, str) or name not in section.entries:
-            self.refuse(_join(where, LIKE), f"the catalogue has no {_kind(name)}", nearest(_kind(name), section.entries))
-            return {key: value for key, value in raw.items() if key != LIKE}
         shipped = section.entries[name]
         tags = {key: tag for key, tag in shipped.get(TAGS, {}).items() if key not in raw}
         self.sources.update(self.catalogue.sources_of(tags.values()))
         own = raw.get(TAGS, {})
         merged = {"source": f"{name} of the catalogue"} | dict(shipped) | raw | {TAGS: tags | own if isinstance(own, dict) else own}
-        return {key: value for key, value in merged.items() if key != LIKE}
+        return _without_like(merged)
+
+
+def _without_like(raw: dict[str, Any]) -> dict[str, Any]:
+    return {key: value for key, value in raw.items() if key != LIKE}
 
 
 def mechanism_from(raw: dict[str, Any], catalogue: Catalogue) -> Mechanism:
