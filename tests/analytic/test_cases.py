@@ -66,7 +66,7 @@ def test_xy_stage_is_held_four_times():
 
 
 def test_an_under_actuated_stage_has_no_mapping():
-    with pytest.raises(DesignError, match="1 strokes do not determine the platform's 2 ideal motions"):
+    with pytest.raises(DesignError, match="1 stroke does not determine the platform's 2 ideal motions"):
         _ = ideal(xy_stage(XYStage(driven=1))).mapping
 
 

@@ -185,3 +185,13 @@ def test_stages_that_lack_something_are_analysed_as_far_as_they_go(flexstage: Co
         assert "gauges" in found["workspace"]["reasons"]["resolution"]
     if key == "place":
         assert found["mapping"]["R_a"] is None
+
+
+def test_a_report_shows_what_was_set_and_what_that_did(flexstage: Command, tmp_path: Path) -> None:
+    flexstage("analyse", "stage.toml", "--set", "parts.neck.thickness=1.4mm", "--report", "set.html")
+    flexstage("analyse", "stage.toml", "--report", "plain.html")
+    changed, plain = ((tmp_path / name).read_text() for name in ("set.html", "plain.html"))
+    section = changed.partition('<section id="changes">')[2].partition("</section>")[0]
+    for text in ("parts.neck.thickness", "1.54 mm", "1.4 mm", "What the change does", "frequency.platform.1", "old", "new", "change"):
+        assert text in section, text
+    assert '<section id="changes">' not in plain

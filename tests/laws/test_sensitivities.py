@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 import flexstage as fs
 from flexstage.cases.double_triangle import SM_REF_A, SM_REF_B, double_triangle
+from flexstage.cases.tip_tilt import tip_tilt
 from flexstage.mechanism.address import addresses, get, set_value
+from flexstage.present.tables.sensitivities import loss_sensitivity_table
 
 MODES = 6
 
@@ -104,3 +108,27 @@ def test_only_single_numbers_have_sensitivities(address: str, message: str) -> N
 def test_numbers_that_are_not_stated_have_no_sensitivity() -> None:
     with pytest.raises(fs.DesignError, match="does not state it"):
         fs.sensitivities(double_triangle(SM_REF_B), ("parts.stack_vertical.preload",), modes=1)
+
+
+def test_without_enough_actuators_the_frequencies_are_still_given() -> None:
+    """Two of three posts of the tip-tilt mount: frequencies as before, against finite differences; no gains, and the reason."""
+    stage = tip_tilt()
+    place = {("P1-P2" if name == "P1-P3" else name): placement for name, placement in stage.place.items()}
+    stage = replace(stage, place=place, requirements={})
+    address = "parts.leaf.thickness"
+    found = fs.sensitivities(stage, (address,), modes=MODES)
+    value = get(stage, address)
+    high, low = (fs.modes(fs.lumped(set_value(stage, address, value * factor))).frequencies[:MODES] for factor in (1 + 1e-5, 1 - 1e-5))
+    np.testing.assert_allclose(
+        found.frequency[0], _means((high - low) / (2e-5 * value), found.clusters), rtol=1e-5, atol=1e-5 * found.frequencies.min() / value
+    )
+    assert found.actuators == ()
+    assert found.gain.shape == found.loss.shape == (1, 0)
+    assert "2 strokes do not determine the platform's 3 ideal motions" in found.missing["lost_motion"]
+    assert loss_sensitivity_table(found) is None
+
+
+def test_nothing_is_missing_from_an_actuated_stage() -> None:
+    found = fs.sensitivities(double_triangle(SM_REF_B), ("parts.neck.thickness",), modes=1)
+    assert dict(found.missing) == {}
+    assert found.loss.shape == (1, 6)

@@ -11,6 +11,7 @@ from flexstage.analysis.lost_motion import lost_motion
 from flexstage.analysis.modes import modes
 from flexstage.analysis.statics import statics
 from flexstage.cases.double_triangle import double_triangle
+from flexstage.cases.registry import case
 from flexstage.mechanism.address import set_value
 from flexstage.present.page import Abreast, Folded
 from flexstage.present.render import to_html, to_markdown, to_rich, to_text
@@ -20,8 +21,10 @@ from flexstage.present.tables.description import value_tables
 from flexstage.present.tables.lost_motion import budget_table, loss_table
 from flexstage.present.tables.modes import mode_table
 from flexstage.present.tables.statics import principal_table, stiffness_table
+from flexstage.present.tables.workspace import map_error_table, room_table
 from flexstage.readings.ideal import ideal
 from flexstage.readings.lumped import lumped
+from flexstage.spatial.frame import COMPONENTS
 from flexstage.studies.complete import Analysis, Reading
 from flexstage.studies.workspace import Workspace
 from tests.present.stages import HOSTILE, NAMES, analysed, hostile
@@ -139,3 +142,21 @@ def test_groups_hold_tables() -> None:
     table = Table("inner", (), ())
     nested = Folded("outer", (Abreast((Abreast((table,)),)),))
     assert "inner" in page(Head("t", "k", ()), [Section("s", (nested,))])
+
+
+@pytest.mark.parametrize(("name", "moved"), [("parallelogram", ["y"]), ("bridge", ["x", "y"]), ("tip-tilt", [*COMPONENTS])])
+def test_rounding_noise_of_the_linear_map_is_shown_as_nothing(name: str, moved: list[str]) -> None:
+    """A planar stage errs in its plane; what finite kinematics leave of the other axes is rounding, 1e-21 m and less."""
+    found = analysed(name).workspace.map_error
+    rows = {row[0]: row[1:] for row in map_error_table(found).texts()[1:]}
+    assert [axis for axis in rows if rows[axis] != ["0", ""]] == moved
+    note = "0 stands for rounding noise"
+    assert any(note in text for text in map_error_table(found).notes) == (len(moved) < 6)
+
+
+def test_only_a_stated_opening_is_spoken_of() -> None:
+    for name in ("double-triangle", "parallelogram"):
+        reach = analysed(name).workspace
+        stated = case(name).opening is not None
+        assert any("clear opening" in note for note in room_table(reach.room).notes) == stated
+    assert {case(name).opening is None for name in ("double-triangle", "parallelogram")} == {True, False}

@@ -49,7 +49,7 @@ def lost_motion(kinematics: Kinematics, model: LinearModel) -> LostMotion:
     Lambda = I - R_a V^+ T. Its budget is exact for any graph: let f_e^(i) be link e's force under the platform wrench (R_a V^+)^T e_i
     with all strokes zero, gamma_e^(j) its deformation in the ideal motion of stroke j; by virtual work and reciprocity Lambda_ij =
     sum_e f_e^(i) . gamma_e^(j). For one unloaded lever the diagonal is eps / (1 + eps), eps = K_theta2 / (r_1^2 K_1) (Eq. 11 of Shin &
-    Moon). Small motions.
+    Moon). Small motions. Raises `DesignError` where the strokes do not determine the platform.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.readings.ideal import ideal
@@ -57,13 +57,13 @@ def lost_motion(kinematics: Kinematics, model: LinearModel) -> LostMotion:
     >>> round(float(lost_motion(ideal(double_triangle()), lumped(double_triangle())).loss.at("B4", "B4")), 3)
     0.034
     """
-    names = kinematics.actuators
+    names, mapping = kinematics.actuators, kinematics.mapping.values
     gain = static_gain(model, _PLATFORM_TWIST, names)
-    sense = kinematics.actuation @ kinematics.projection
+    sense = mapping @ kinematics.projection
     transfer = sense @ gain.values
     loss = np.eye(len(names)) - transfer
     ideal_part = kinematics.motion @ (kinematics.projection @ gain.values)
-    correction = np.linalg.solve(transfer, kinematics.actuation) if kinematics.mobility == len(names) else _least(transfer, kinematics)
+    correction = np.linalg.solve(transfer, mapping) if kinematics.mobility == len(names) else _least(transfer, kinematics)
     return LostMotion(
         gain=gain,
         transfer=Matrix(transfer, names, names, "1"),

@@ -95,6 +95,16 @@ def section(title: str, blocks: Iterable[Block | None]) -> Section | None:
     return Section(title, kept) if kept else None
 
 
+def folded(title: str, *blocks: Block | None) -> Folded | None:
+    """The blocks that exist, shown on demand; `None` where there are none.
+
+    >>> folded("Empty", None) is None
+    True
+    """
+    kept = tuple(block for block in blocks if block is not None)
+    return Folded(title, kept) if kept else None
+
+
 def page(head: Head, sections: Sequence[Section]) -> str:
     """The whole page as HTML; every text that comes in is escaped, SVG is taken as it is.
 

@@ -9,16 +9,18 @@ from flexstage.present.scene.stage import scene
 from flexstage.present.sections.accuracy import drift_section, error_section
 from flexstage.present.sections.dynamics import mode_section, response_section
 from flexstage.present.sections.mechanics import kinematics_section, lost_motion_section, stiffness_section
-from flexstage.present.sections.overview import requirement_section, summary_section
+from flexstage.present.sections.overview import change_section, requirement_section, summary_section
 from flexstage.present.sections.reach import strength_section, workspace_section
 from flexstage.present.sections.sources import description_section, limit_section, reference_section
 from flexstage.present.sections.stage import stage_section
 from flexstage.studies.complete import Analysis
+from flexstage.studies.difference import Comparison
 
 
-def report(analysis: Analysis) -> str:
+def report(analysis: Analysis, compared: Comparison | None = None) -> str:
     """The analysis of a stage as a self-contained HTML page: verdicts first, pictures inline, nothing loaded from anywhere, no date.
 
+    With `compared`, the values that were set and what that did stand after the verdicts, as old, new and change.
     Results that the reading or the stage does not give are left out, with the reasons under "Limits and warnings". One design; of a
     batch the first is shown.
 
@@ -31,6 +33,7 @@ def report(analysis: Analysis) -> str:
     seen = scene(mechanism)
     sections = (
         requirement_section(analysis),
+        change_section(analysis, compared),
         summary_section(analysis),
         stage_section(mechanism, seen),
         kinematics_section(analysis),

@@ -44,6 +44,15 @@ class Change:
         return self.new / self.old - 1.0
 
 
+@dataclass(frozen=True, eq=False)
+class Comparison:
+    """What setting values did: the description as `stated`, the `addresses` that were set, the key `figures` before and after."""
+
+    stated: Mechanism
+    addresses: tuple[str, ...]
+    figures: tuple[Change, ...]
+
+
 def set_values(before: Mechanism, after: Mechanism, addresses: Iterable[str]) -> tuple[Change, ...]:
     """The values that were set, before and after; values that are no single numbers are left out.
 

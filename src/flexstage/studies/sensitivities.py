@@ -6,7 +6,7 @@ derivatives are analytic, d lambda = phi^T (dK - lambda dM) phi.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -15,7 +15,7 @@ from flexstage.analysis.lost_motion import lost_motion
 from flexstage.analysis.modes import clusters
 from flexstage.base.finding import Finding, nearest, require
 from flexstage.base.labelled import Matrix
-from flexstage.base.number import Array
+from flexstage.base.number import Array, Table
 from flexstage.mechanism.address import addresses, get, quantity_of, set_value
 from flexstage.mechanism.grammar import NumberNode
 from flexstage.mechanism.locate import locate
@@ -24,6 +24,7 @@ from flexstage.readings.ideal import ideal
 from flexstage.readings.linear.eigen import Eigen, eigen
 from flexstage.readings.linear.model import LinearModel
 from flexstage.readings.lumped import lumped
+from flexstage.studies.attempt import Attempts
 
 _STEP = 1e-20
 _CHUNK = 24
@@ -35,7 +36,8 @@ class Sensitivities:
 
     `frequency` (P, k) [Hz per SI unit of the parameter]: for the modes of a cluster it is the derivative of the cluster's mean. `clusters`
     lists the groups of modes; `one_sided` gives per cluster the eigenvalues (P, c) of Phi^T (dK - lambda dM) Phi as frequency slopes,
-    each parameter alone (not to be added up over parameters). `gain` and `loss` (P, n) are those of each actuator.
+    each parameter alone (not to be added up over parameters). `gain` and `loss` (P, n) are those of each actuator; without actuators
+    (n = 0) where the strokes do not determine the platform. `missing` says what is not given, and why.
     """
 
     parameters: tuple[str, ...]
@@ -48,6 +50,7 @@ class Sensitivities:
     actuators: tuple[str, ...]
     gain: Array
     loss: Array
+    missing: Mapping[str, str]
     provenance: str
 
     @property
@@ -68,8 +71,9 @@ def sensitivities(
 ) -> Sensitivities:
     """Derivatives of the lowest `modes` frequencies and of all gains with respect to the addressed numbers (default: every one).
 
-    Modes closer than `cluster` (relative gap) are repeated: for them only the derivative of the mean is smooth. Raises `DesignError`
-    for unknown addresses and for those of anything but a single number that the description states.
+    Modes closer than `cluster` (relative gap) are repeated: for them only the derivative of the mean is smooth. Where the strokes do not
+    determine the platform there are no gains: `missing` says so. Raises `DesignError` for unknown addresses and for those of anything
+    but a single number that the description states.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> found = sensitivities(double_triangle(), ("materials.steel.density",), modes=6)
@@ -81,8 +85,11 @@ def sensitivities(
     solved = eigen(lumped(mechanism))
     solved = Eigen(solved.values[:modes], solved.shapes[:, :modes])
     groups = clusters(solved.values, cluster)
+    attempt = Attempts()
+    actuators = attempt.of("lost_motion", lambda: ideal(mechanism).mapping.rows) or ()
     chunks = list(_chunks(mechanism, names))
-    pieces = [_piece(mechanism, tuple(names[position] for position in chunk), solved, groups) for chunk in chunks]
+    batches = (stepped(mechanism, tuple(names[position] for position in chunk)) for chunk in chunks)
+    pieces = [_piece(batch, len(chunk), (solved, groups), gains=bool(actuators)) for batch, chunk in zip(batches, chunks, strict=True)]
     back = np.argsort([position for chunk in chunks for position in chunk])
     slopes = [np.concatenate([piece[0][number] for piece in pieces])[back] for number in range(len(groups))]
     losses = np.concatenate([piece[1] for piece in pieces])[back]
@@ -97,9 +104,10 @@ def sensitivities(
         frequency=mean * scale,
         clusters=tuple(tuple(group) for group in groups),
         one_sided=tuple(slope * scale[group[0]] for slope, group in zip(slopes, groups, strict=True)),
-        actuators=ideal(mechanism).actuators,
+        actuators=actuators,
         gain=-losses,
         loss=losses,
+        missing=Table(attempt.missing),
         provenance=lumped(mechanism).provenance,
     )
 
@@ -140,14 +148,16 @@ def stepped(mechanism: Mechanism, names: tuple[str, ...]) -> Mechanism:
     return replace(result, requirements={})
 
 
-def _piece(mechanism: Mechanism, names: tuple[str, ...], solved: Eigen, groups: list[list[int]]) -> tuple[list[Array], Array]:
-    """Per cluster the slopes of lambda (p, c), and the derivative of every actuator's loss (p, n)."""
-    batch = stepped(mechanism, names)
+def _piece(batch: Mechanism, count: int, modes: tuple[Eigen, list[list[int]]], *, gains: bool) -> tuple[list[Array], Array]:
+    """Per cluster the slopes of lambda (p, c), and the derivative of every actuator's loss (p, n); n = 0 without `gains`."""
     model = lumped(batch)
-    slopes = [_slopes(model, solved, group, len(names)) for group in groups]
+    solved, groups = modes
+    slopes = [_slopes(model, solved, group, count) for group in groups]
+    if not gains:
+        return slopes, np.zeros((count, 0))
     loss = lost_motion(ideal(batch), model).loss.values
     diagonal = np.imag(np.diagonal(loss, axis1=-2, axis2=-1)) / _STEP
-    return slopes, np.broadcast_to(diagonal, (len(names), diagonal.shape[-1]))
+    return slopes, np.broadcast_to(diagonal, (count, diagonal.shape[-1]))
 
 
 def _slopes(model: LinearModel, solved: Eigen, group: list[int], count: int) -> Array:

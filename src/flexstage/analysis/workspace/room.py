@@ -32,8 +32,8 @@ class Intrusion:
 class Room:
     """What the stage occupies.
 
-    `intrusions` into the opening (none described: none found); `low` and `high` corners (..., 3) [m] of the bounding box; `envelope`
-    (..., 3) [m] or `None`; `extreme` names the outlines that reach farthest (low x, y, z, high x, y, z; first design).
+    `intrusions` into the `opening` (..., 2) [m], none where none is described; `low` and `high` corners (..., 3) [m] of the bounding box;
+    `envelope` (..., 3) [m] or `None`; `extreme` names the outlines that reach farthest (low x, y, z, high x, y, z; first design).
     """
 
     intrusions: tuple[Intrusion, ...]
@@ -41,6 +41,7 @@ class Room:
     high: Array
     envelope: Array | None
     extreme: tuple[str, ...]
+    opening: Array | None = None
 
     @property
     def size(self) -> Array:
@@ -87,17 +88,20 @@ def room(mechanism: Mechanism) -> Room:
     0.112697
     """
     found = outlines(expand(mechanism))
+    envelope = None if mechanism.envelope is None else stack(mechanism.envelope)
+    opening = None if mechanism.opening is None else stack(mechanism.opening.size)
     if not found:
-        return Room((), np.zeros(3), np.zeros(3), None if mechanism.envelope is None else stack(mechanism.envelope), ())
+        return Room((), np.zeros(3), np.zeros(3), envelope, (), opening)
     high = [_joined([outline.reach(axis) for outline in found]) for axis in np.eye(3)]
     low = [_joined([-outline.reach(-axis) for outline in found]) for axis in np.eye(3)]
     ends = [np.argmin(_first(values)) for values in low] + [np.argmax(_first(values)) for values in high]
     return Room(
-        intrusions=() if mechanism.opening is None else tuple(_intrusions(found, stack(mechanism.opening.size))),
+        intrusions=() if opening is None else tuple(_intrusions(found, opening)),
         low=_joined([np.min(values, axis=-1) for values in low]),
         high=_joined([np.max(values, axis=-1) for values in high]),
-        envelope=None if mechanism.envelope is None else stack(mechanism.envelope),
+        envelope=envelope,
         extreme=tuple(found[int(index)].name for index in ends),
+        opening=opening,
     )
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -40,6 +40,12 @@ def answer(asked: Asked, body: Callable[[], Document], tables: Callable[[], Iter
     from flexstage.apps.cli.show import show
 
     show(table for table in tables() if table is not None)
+
+
+def tell_missing(missing: Mapping[str, str]) -> None:
+    """Say on stderr which results are not given, and why."""
+    for name, reason in missing.items():
+        tell(f"not given: {name.replace('_', ' ')}: {reason}")
 
 
 def elastic_model(mechanism: Mechanism, reading: Reading) -> LinearModel:

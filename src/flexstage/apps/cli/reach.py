@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from flexstage.apps.cli.answer import Asked, answer
+from flexstage.apps.cli.answer import Asked, answer, tell_missing
 from flexstage.apps.cli.grouped import drift_tables, workspace_tables
 from flexstage.apps.cli.opening import opened
 from flexstage.apps.cli.options import Changes, Design, Json, Theory
@@ -110,7 +110,7 @@ def sensitivities(
 ) -> None:
     """Exact derivatives with respect to every number.
 
-    Of frequencies, gains and losses, by the lumped reading.
+    Of frequencies, gains and losses, by the lumped reading; of frequencies alone where the strokes do not determine the platform.
     """
     mechanism = opened(design, changes, [("--json", json)])
     from flexstage.present.documents.reach import sensitivities_body
@@ -123,6 +123,7 @@ def sensitivities(
         lambda: sensitivities_body(found),
         lambda: [frequency_sensitivity_table(found), loss_sensitivity_table(found)],
     )
+    tell_missing(found.missing)
 
 
 def budget(

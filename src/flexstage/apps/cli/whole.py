@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from flexstage.apps.cli.answer import tell_missing
 from flexstage.apps.cli.failure import MISSED
 from flexstage.apps.cli.options import Changes, Design, Json, Theory
 from flexstage.apps.cli.output import STDOUT, output_findings, write
@@ -16,20 +16,10 @@ from flexstage.apps.cli.speech import tell, warn
 from flexstage.studies.reading import Reading
 
 if TYPE_CHECKING:
-    from flexstage.mechanism.mechanism import Mechanism
     from flexstage.present.documents.envelope import Document
     from flexstage.present.table import Table
     from flexstage.studies.complete import Analysis
-    from flexstage.studies.difference import Change
-
-
-@dataclass(frozen=True)
-class Compared:
-    """The effect of `--set`: the description before, the addresses that were set, and the key figures before and after."""
-
-    stated: Mechanism
-    addresses: tuple[str, ...]
-    figures: tuple[Change, ...]
+    from flexstage.studies.difference import Comparison
 
 
 def analyse(
@@ -48,10 +38,10 @@ def analyse(
 
     Requirements first, then kinematics, stiffness, lost motion, modes, response, workspace, drift, error budget.
 
-    With --set, the key figures are shown as old, new and change.
+    With --set, the key figures are shown as old, new and change, in the report too.
     """
     analysis, compared = _worked_out(design, reading, changes or [], [("--json", json), ("--report", report), ("--mat", mat)])
-    _write_files(analysis, report, mat)
+    _write_files(analysis, compared, (report, mat))
     if json is not None:
         write(json, _json_text(analysis, compared), "--json")
         _announce(json)
@@ -65,7 +55,7 @@ def analyse(
 
 def _worked_out(
     design: Path, reading: Reading, changes: list[str], outputs: list[tuple[str, str | Path | None]]
-) -> tuple[Analysis, Compared | None]:
+) -> tuple[Analysis, Comparison | None]:
     """The analysis of the design with its changes, and their effect if there are any; cautions go to stderr."""
     from flexstage.base.finding import require
 
@@ -74,7 +64,7 @@ def _worked_out(
     from flexstage.mechanism.store import load
     from flexstage.studies.cautions import part_cautions
     from flexstage.studies.complete import analyse as analysed
-    from flexstage.studies.difference import difference
+    from flexstage.studies.difference import Comparison, difference
 
     stated = load(design)
     mechanism = changed(stated, changes)
@@ -85,10 +75,11 @@ def _worked_out(
     if not changes:
         return analysis, None
     addresses = tuple(change.partition("=")[0].strip() for change in changes)
-    return analysis, Compared(stated, addresses, difference(analysed(stated, reading), analysis))
+    return analysis, Comparison(stated, addresses, difference(analysed(stated, reading), analysis))
 
 
-def _write_files(analysis: Analysis, report: Path | None, mat: Path | None) -> None:
+def _write_files(analysis: Analysis, compared: Comparison | None, files: tuple[Path | None, Path | None]) -> None:
+    report, mat = files
     if mat is not None:
         from flexstage.present.matlab import as_mat
 
@@ -97,7 +88,7 @@ def _write_files(analysis: Analysis, report: Path | None, mat: Path | None) -> N
     if report is not None:
         from flexstage.present.report import report as composed
 
-        write(report, composed(analysis), "--report")
+        write(report, composed(analysis, compared), "--report")
         _announce(report)
 
 
@@ -106,7 +97,7 @@ def _announce(target: str | Path) -> None:
         tell(f"Wrote {target}")
 
 
-def _json_text(analysis: Analysis, compared: Compared | None) -> str:
+def _json_text(analysis: Analysis, compared: Comparison | None) -> str:
     from flexstage.present.documents.envelope import as_text, enveloped
     from flexstage.present.documents.whole import analysis_body, changes_body
     from flexstage.studies.difference import set_values
@@ -118,15 +109,14 @@ def _json_text(analysis: Analysis, compared: Compared | None) -> str:
     return as_text(enveloped("analyse", analysis.mechanism, analysis.reading, body)) + "\n"
 
 
-def _show(analysis: Analysis, compared: Compared | None) -> None:
+def _show(analysis: Analysis, compared: Comparison | None) -> None:
     from flexstage.apps.cli.show import show
 
     show(table for table in _tables(analysis, compared) if table is not None)
-    for name, reason in analysis.missing.items():
-        tell(f"not given: {name.replace('_', ' ')}: {reason}")
+    tell_missing(analysis.missing)
 
 
-def _tables(analysis: Analysis, compared: Compared | None) -> Iterator[Table | None]:
+def _tables(analysis: Analysis, compared: Comparison | None) -> Iterator[Table | None]:
     from flexstage.apps.cli.grouped import analysis_tables
     from flexstage.present.tables.change import change_table, set_table
     from flexstage.present.tables.requirements import verdict_table
@@ -134,5 +124,5 @@ def _tables(analysis: Analysis, compared: Compared | None) -> Iterator[Table | N
     yield verdict_table(analysis.verdicts)
     if compared is not None:
         yield set_table(compared.stated, analysis.mechanism, compared.addresses)
-        yield change_table("What the change does", compared.figures)
+        yield change_table(compared.figures)
     yield from analysis_tables(analysis)

@@ -220,6 +220,7 @@ def sensitivities_body(found: Sensitivities) -> Document:
         "loss": _matrix(found.loss, (found.parameters, found.actuators), plain),
         "relative_loss": found.relative_loss.to_json(),
         "one_sided": list(found.one_sided),
+        "missing": dict(found.missing),
         "method": found.provenance,
     }
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from flexstage.present.figures.budget import error_figure
 from flexstage.present.figures.export import to_svg
-from flexstage.present.page import Folded, Picture, Prose, Section, section
+from flexstage.present.page import Picture, Prose, Section, folded, section
 from flexstage.present.tables.errors import drift_table, error_budget_tables, gauge_drift_table
 from flexstage.studies.complete import Analysis
 
@@ -25,9 +25,7 @@ def drift_section(analysis: Analysis) -> Section | None:
         "of 1 K/m."
     )
     gauges = gauge_drift_table(drift)
-    return section(
-        "Thermal drift", [Prose(text), drift_table(drift), None if gauges is None else Folded("What the gauges read", (gauges,))]
-    )
+    return section("Thermal drift", [Prose(text), drift_table(drift), folded("What the gauges read", gauges)])
 
 
 def error_section(analysis: Analysis) -> Section | None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from flexstage.present.figures.budget import energy_figure, loss_figure
 from flexstage.present.figures.directional import directional_figure
 from flexstage.present.figures.export import to_svg
-from flexstage.present.page import Abreast, Block, Folded, Picture, Prose, Section, section
+from flexstage.present.page import Abreast, Block, Folded, Picture, Prose, Section, folded, section
 from flexstage.present.tables.deflection import deflection_table
 from flexstage.present.tables.kinematics import (
     freedom_table,
@@ -53,7 +53,7 @@ def kinematics_section(analysis: Analysis) -> Section | None:
             *_mappings(kinematics),
             motion_table(kinematics),
             Folded("Freedoms taken as free", (freedom_table(kinematics),)),
-            _folded("Idle freedoms and redundant constraints", idle_table(kinematics), redundant_table(kinematics)),
+            folded("Idle freedoms and redundant constraints", idle_table(kinematics), redundant_table(kinematics)),
         ],
     )
 
@@ -63,11 +63,6 @@ def _mappings(kinematics: Kinematics) -> list[Block]:
     if not kinematics.actuated:
         return [*gauges]
     return [mapping_table(kinematics), Folded("Platform motion per stroke and gauge mapping", (jacobian_table(kinematics), *gauges))]
-
-
-def _folded(title: str, *blocks: Block | None) -> Folded | None:
-    kept = tuple(block for block in blocks if block is not None)
-    return Folded(title, kept) if kept else None
 
 
 def stiffness_section(analysis: Analysis) -> Section | None:
@@ -91,7 +86,7 @@ def stiffness_section(analysis: Analysis) -> Section | None:
             stiffness_table(statics),
             Abreast((Picture(polar, caption), Abreast((principal_table(statics), centre_table(statics), *sag)))),
             *([] if analysis.units is None else [unit_table(analysis.units)]),
-            _folded(
+            folded(
                 "Compliance, stiffness by angle, springs of the lever units",
                 compliance_table(statics),
                 direction_table(statics),

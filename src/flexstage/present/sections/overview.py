@@ -10,8 +10,10 @@ from flexstage.analysis.requirements import Verdict
 from flexstage.present.display import number, percent, value_with_unit
 from flexstage.present.page import Fact, Facts, Prose, Section, section
 from flexstage.present.table import Cell, Column, Content, Mark, Table, build, first_design
+from flexstage.present.tables.change import change_table, set_table
 from flexstage.present.tables.requirements import margin_text, meaning, met, shown_value
 from flexstage.studies.complete import Analysis
+from flexstage.studies.difference import Comparison
 
 _SILENT = 1e-9
 
@@ -29,6 +31,20 @@ def requirement_section(analysis: Analysis) -> Section | None:
         return None
     note = "Judged by the lumped reading, whichever reading the rest of this report uses."
     return section("Requirements", [Prose(_verdict_text(verdicts)), _verdict_table(verdicts), Prose(note)])
+
+
+def change_section(analysis: Analysis, compared: Comparison | None) -> Section | None:
+    """The values that were set, and the key figures before and after; `None` where nothing was set.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.studies.complete import Reading, analyse
+    >>> change_section(analyse(double_triangle(), Reading.IDEAL), None) is None
+    True
+    """
+    if compared is None:
+        return None
+    values = set_table(compared.stated, analysis.mechanism, compared.addresses)
+    return section("Changes", [values, change_table(compared.figures)])
 
 
 def _verdict_text(verdicts: Sequence[Verdict]) -> str:

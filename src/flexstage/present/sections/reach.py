@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from flexstage.present.figures.export import to_svg
 from flexstage.present.figures.workspace import workspace_figure
-from flexstage.present.page import Block, Folded, Picture, Prose, Section, section
+from flexstage.present.page import Block, Folded, Picture, Prose, Section, folded, section
 from flexstage.present.tables.strength import buckling_table, load_table, platform_line_table, stack_line_table, stress_table
 from flexstage.present.tables.workspace import (
     corner_table,
@@ -34,11 +34,6 @@ def workspace_section(analysis: Analysis) -> Section | None:
     figure = workspace_figure(reach)
     caption = "Reachable poses, projected on pairs of coordinates."
     picture = None if figure is None else Picture(to_svg(figure, "reach", caption), caption)
-    more: list[Block | None] = [
-        None if reach.polytope is None else extent_table(reach.polytope),
-        None if reach.map_error is None else map_error_table(reach.map_error),
-        None if reach.drive is None else drive_table(reach.drive),
-    ]
     return section(
         "Workspace",
         [
@@ -47,7 +42,12 @@ def workspace_section(analysis: Analysis) -> Section | None:
             None if reach.corner is None else corner_table(reach.corner),
             None if reach.gauges is None else gauge_range_table(reach.gauges),
             None if reach.resolution is None else resolution_table(reach.resolution),
-            Folded("Extents, error of the linear map, volts", tuple(block for block in more if block is not None)),
+            folded(
+                "Extents, error of the linear map, volts",
+                None if reach.polytope is None else extent_table(reach.polytope),
+                None if reach.map_error is None else map_error_table(reach.map_error),
+                None if reach.drive is None else drive_table(reach.drive),
+            ),
         ],
     )
 
@@ -78,9 +78,8 @@ def _strength(reach: Workspace) -> list[Block | None]:
 
 
 def _more(reach: Workspace) -> Folded | None:
-    tables = [
+    return folded(
+        "Stacks against the stage, buckling",
         None if reach.stack_lines is None else stack_line_table(reach.stack_lines),
         None if reach.buckling is None or not reach.buckling.links else buckling_table(reach.buckling),
-    ]
-    kept = tuple(table for table in tables if table is not None)
-    return Folded("Stacks against the stage, buckling", kept) if kept else None
+    )

@@ -8,7 +8,7 @@ from flexstage.mechanism.mechanism import Mechanism, StructuralDamping
 from flexstage.parts.neck import Neck
 from flexstage.parts.notch import Notch
 from flexstage.present.display import NO_VALUE, percent
-from flexstage.present.page import Block, Folded, Prose, Section, section
+from flexstage.present.page import Block, Folded, Prose, Section, folded, section
 from flexstage.present.scene.primitives import plain
 from flexstage.present.table import Cell, Column, Mark, Table, build
 from flexstage.present.tables.description import provenance_table, requirement_lines, source_table, value_tables
@@ -47,7 +47,6 @@ def description_section(mechanism: Mechanism) -> Section | None:
     'Description and provenance'
     """
     text = "Stated: printed in a source. Derived: follows from stated values. Assumed: chosen, or not tagged."
-    lines = requirement_lines(mechanism)
     values: tuple[Block, ...] = value_tables(mechanism)
     return section(
         "Description and provenance",
@@ -56,7 +55,7 @@ def description_section(mechanism: Mechanism) -> Section | None:
             provenance_table(mechanism),
             source_table(mechanism),
             Folded("Every value", values),
-            None if lines is None else Folded("Requirements as written", (lines,)),
+            folded("Requirements as written", requirement_lines(mechanism)),
         ],
     )
 

@@ -15,14 +15,14 @@ from flexstage.studies.difference import Change
 _SILENT = 1e-9
 
 
-def change_table(title: str, changes: Iterable[Change]) -> Table:
+def change_table(changes: Iterable[Change]) -> Table:
     """Old, new and change of every figure; what stays within a billionth is faint.
 
-    >>> change_table("What it does", [Change("platform mode 1", "Hz", 100.0, 90.0)]).texts()[1]
+    >>> change_table([Change("platform mode 1", "Hz", 100.0, 90.0)]).texts()[1]
     ['platform mode 1', '100', '90', '-10', '-10 %', 'Hz']
     """
     heads = ["figure", Column("old"), Column("new"), Column("change"), Column("relative"), "unit"]
-    return build(title, heads, [_row(change) for change in changes])
+    return build("What the change does", heads, [_row(change) for change in changes])
 
 
 def set_table(before: Mechanism, after: Mechanism, addresses: Iterable[str]) -> Table:

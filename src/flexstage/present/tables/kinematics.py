@@ -41,7 +41,8 @@ def actuation_text(kinematics: Kinematics) -> str:
     counted = f"{_count(strokes)} actuator{'s' if strokes != 1 else ''} drive{'s' if strokes == 1 else ''} {_count(mobility)} freedom"
     counted = counted[:1].upper() + counted[1:] + ("s" if mobility != 1 else "")
     if not kinematics.actuated:
-        return f"{counted}: the strokes do not determine the platform, and the mapping R_a is refused."
+        held = f", but the links hold {', '.join(kinematics.immobile)}" if kinematics.immobile and mobility else ""
+        return f"{counted}{held}: the strokes do not determine the platform, and the mapping R_a is refused."
     if strokes > mobility:
         return f"{counted}: redundant actuation, commands outside the range of R_a only stress the stage."
     return f"{counted}: the strokes determine the platform, and every command is free of stress in the ideal stage."

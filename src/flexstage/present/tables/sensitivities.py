@@ -26,8 +26,8 @@ def frequency_sensitivity_table(found: Sensitivities, *, modes: int = 6, top: in
     return _ranked("What moves the frequencies", found, values, (heads, top, note))
 
 
-def loss_sensitivity_table(found: Sensitivities, *, top: int = 15) -> Table:
-    """The parameters that change the actuators' losses most: loss in per cent of stroke per per cent of the parameter.
+def loss_sensitivity_table(found: Sensitivities, *, top: int = 15) -> Table | None:
+    """The parameters that change the actuators' losses most: loss in per cent of stroke per per cent of the parameter; `None` without any.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.studies.sensitivities import sensitivities
@@ -35,6 +35,8 @@ def loss_sensitivity_table(found: Sensitivities, *, top: int = 15) -> Table:
     >>> loss_sensitivity_table(seen).rows[0][0].text
     'lever_notch.thickness'
     """
+    if not found.actuators:
+        return None
     matrix = found.relative_loss
     note = "Change of the loss (a share of the stroke) per relative change of the parameter."
     return _ranked("What changes the lost motion", found, matrix.values, (list(matrix.columns), top, note))

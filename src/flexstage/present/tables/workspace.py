@@ -14,10 +14,13 @@ from flexstage.analysis.workspace.room import Room
 from flexstage.analysis.workspace.stroke import Utilisation
 from flexstage.base.labelled import Matrix
 from flexstage.base.number import Array, Number
-from flexstage.present.display import NO_VALUE, Shown, number, percent, shown, value_with_unit
+from flexstage.present.display import NO_VALUE, NOISE, Shown, number, percent, shown, value_with_unit
 from flexstage.present.table import Cell, Column, Mark, Table, build, figures, first_design
 from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
 from flexstage.studies.workspace import Workspace
+
+_ARM = 0.1
+"""Arm [m] at which rotations are compared with strokes."""
 
 
 def unit_of(coordinate: str) -> str:
@@ -121,19 +124,26 @@ def map_error_table(error: MapError) -> Table:
     >>> import numpy as np
     >>> zero = MapError((), np.zeros((1, 0)), np.zeros((1, 6)), np.zeros(6), np.zeros((6, 0)), np.array(0.0), "")
     >>> map_error_table(zero).texts()[1]
-    ['x', '0 um', '']
+    ['x', '0', '']
     """
     worst, strokes = first_design(error.worst, 1), first_design(error.worst_strokes, 2)
+    noise = NOISE * np.max(np.abs(error.strokes), initial=0.0) / np.array([1.0, 1.0, 1.0, *[_ARM] * 3])
     rows = [
         (
             Cell(name, Mark.STRONG),
-            Cell(value_with_unit(float(value), unit, 4)),
-            ", ".join(f"{actuator} {number(1e6 * float(at), 4)}" for actuator, at in zip(error.actuators, line, strict=True)),
+            Cell(value_with_unit(float(value), unit, 4) if value > least else "0"),
+            _strokes_text(error.actuators, line) if value > least else "",
         )
-        for name, unit, value, line in zip(COMPONENTS, TWIST_UNITS, worst, strokes, strict=True)
+        for name, unit, value, line, least in zip(COMPONENTS, TWIST_UNITS, worst, strokes, noise, strict=True)
     ]
     tried = f"Finite less linear kinematics at {error.strokes.shape[0]} combinations of strokes."
-    return build("Error of the linear map", ["along", Column("worst"), "at strokes [um]"], rows, notes=[tried])
+    rule = f"0 stands for rounding noise: below a billionth of the largest stroke (rotations: of one at an arm of {_ARM:g} m)."
+    notes = [tried, rule] if any(row[1].text == "0" for row in rows) else [tried]
+    return build("Error of the linear map", ["along", Column("worst"), "at strokes [um]"], rows, notes=notes)
+
+
+def _strokes_text(actuators: tuple[str, ...], strokes: Array) -> str:
+    return ", ".join(f"{name} {number(1e6 * float(at), 4)}" for name, at in zip(actuators, strokes, strict=True))
 
 
 def drive_table(drive: Drive) -> Table:
@@ -222,4 +232,5 @@ def room_table(room: Room) -> Table:
         rows.append((Cell(axis, Mark.STRONG), line[0], line[1], size, limit, f"{room.extreme[index]}, {room.extreme[3 + index]}"))
     heads = ["axis", Column("from", "mm"), Column("to", "mm"), Column("size", "mm"), Column("envelope", "mm"), "reached by"]
     clear = [f"{item.name} enters the clear opening by {number(1e3 * float(np.max(item.depth)), 4)} mm." for item in room.intrusions]
-    return build("Room", heads, rows, notes=clear or ["Nothing enters the clear opening."])
+    kept = clear or ([] if room.opening is None else ["Nothing enters the clear opening."])
+    return build("Room", heads, rows, notes=kept)

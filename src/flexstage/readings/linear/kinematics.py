@@ -67,6 +67,13 @@ class Kinematics:
         return self.mobility > 0 and bool(np.linalg.matrix_rank(scaled, tol=1e-9) == self.mobility)
 
     @property
+    def immobile(self) -> tuple[str, ...]:
+        """Actuators whose stroke no ideal motion of the platform changes: rigid links hold them (on the first design)."""
+        actuation = np.real(self.actuation[(0,) * (self.actuation.ndim - 2)])
+        size = np.max(np.abs(actuation * _scales(self.coordinates, 1.0 / self.length)), axis=-1, initial=0.0)
+        return tuple(name for name, largest in zip(self.actuators, size, strict=True) if largest < 1e-9)
+
+    @property
     def mapping(self) -> Matrix:
         """R_a = da/dxi (Eq. 13 of Shin & Moon; da/dx for six freedoms). Raises `DesignError` where the stage is under-actuated."""
         self._require_actuated()
@@ -101,11 +108,13 @@ class Kinematics:
 
     def _require_actuated(self) -> None:
         if not self.actuated:
+            strokes = "1 stroke does" if len(self.actuators) == 1 else f"{len(self.actuators)} strokes do"
+            motions = f"{self.mobility} ideal motion{'' if self.mobility == 1 else 's'}"
+            held = f"; the links hold {', '.join(self.immobile)}" if self.immobile and self.mobility else ""
             raise refuse(
                 "mapping",
-                f"{len(self.actuators)} strokes do not determine the platform's {self.mobility} ideal motions "
-                f"({', '.join(self.coordinates) or 'none'})",
-                "Add actuators, lock freedoms of links, or use the elastic readings, which allow it",
+                f"{strokes} not determine the platform's {motions} ({', '.join(self.coordinates) or 'none'}){held}",
+                "Add actuators or lock freedoms of links; stiffness, modes and response are given all the same",
             )
 
 
