@@ -25,3 +25,21 @@ def test_to_xarray_keeps_batch_axes_and_units() -> None:
 def test_to_json() -> None:
     document = fs.Matrix(VALUES[0], ("a", "b"), ("x", "y", "z"), "m").to_json()
     assert document == {"rows": ["a", "b"], "columns": ["x", "y", "z"], "unit": "m", "values": VALUES[0].tolist()}
+
+
+def test_as_text_units_stand_as_far_out_as_they_are_alike() -> None:
+    names = (("a", "b"), ("x", "y"))
+    values = np.array([[1.0, -0.0], [2.5, 1e-9]])
+    one, columns, rows, mixed = (
+        str(fs.Matrix(values, *names, unit))
+        for unit in ("m", (("m", "1"), ("m", "1")), (("m", "m"), ("rad", "rad")), (("m", "rad"), ("rad", "m")))
+    )
+    assert one.splitlines() == ["   x [m]  y [m]", "a      1      0", "b    2.5  1e-09"]
+    assert columns.splitlines()[0].split() == ["x", "[m]", "y"]
+    assert [line.split()[:2] for line in rows.splitlines()[1:]] == [["a", "[m]"], ["b", "[rad]"]]
+    assert mixed.splitlines()[2].split() == ["b", "2.5", "rad", "1e-09", "m"]
+
+
+def test_as_text_a_batch_shows_its_first_design_and_nothing_is_a_line() -> None:
+    assert str(fs.Matrix(VALUES, ("a", "b"), ("x", "y", "z"), "m")) == str(fs.Matrix(VALUES[0], ("a", "b"), ("x", "y", "z"), "m"))
+    assert str(fs.Matrix(np.zeros((0, 2)), (), ("x", "y"), ())).split() == ["x", "y"]

@@ -59,6 +59,35 @@ class Matrix:
         coords = {"row": list(self.rows), "column": list(self.columns)}
         return xarray.DataArray(self.values, dims=(*batch, "row", "column"), coords=coords, attrs={"unit": self.unit})
 
+    def __str__(self) -> str:
+        """A text with names on both sides, units where they belong and six digits; arrays over batch axes are shown by the first design.
+
+        >>> import numpy as np
+        >>> print(Matrix(np.array([[1.0, -0.025]]), ("B1",), ("x", "rx"), (("1", "m/rad"),)))
+            x  rx [m/rad]
+        B1  1      -0.025
+        """
+        first = self.values[(0,) * (self.values.ndim - 2)]
+        columns, rows, cells = self._units()
+        lines = [["", *(_with(name, unit) for name, unit in zip(self.columns, columns, strict=True))]]
+        for name, unit, values, own in zip(self.rows, rows, first, cells, strict=True):
+            texts = (_with(f"{value:.6g}", each, "{} {}") for value, each in zip(values + 0.0, own, strict=True))
+            lines.append([_with(name, unit), *texts])
+        widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
+        return "\n".join("  ".join([line[0].ljust(widths[0]), *map(str.rjust, line[1:], widths[1:])]) for line in lines)
+
+    def _units(self) -> tuple[list[str], list[str], list[list[str]]]:
+        """Units of the columns, of the rows and of the entries: each said once, as far out as they are alike."""
+        across, down = len(self.columns), len(self.rows)
+        blank = [[""] * across] * down
+        if isinstance(self.unit, str):
+            return [self.unit] * across, [""] * down, blank
+        if all(line == self.unit[0] for line in self.unit):
+            return list(self.unit[0] if self.unit else [""] * across), [""] * down, blank
+        if all(len(set(line)) <= 1 for line in self.unit):
+            return [""] * across, [line[0] if line else "" for line in self.unit], blank
+        return [""] * across, [""] * down, [list(line) for line in self.unit]
+
     def _repr_html_(self) -> str:
         head = "".join(f"<th>{column}</th>" for column in self.columns)
         body = "".join(
@@ -66,6 +95,10 @@ class Matrix:
             for row, line in zip(self.rows, self.values, strict=True)
         )
         return f"<table><tr><th></th>{head}</tr>{body}</table>"
+
+
+def _with(text: str, unit: str, form: str = "{} [{}]") -> str:
+    return text if unit in ("", "1") else form.format(text, unit)
 
 
 def ratio_units(rows: tuple[str, ...], columns: tuple[str, ...]) -> tuple[tuple[str, ...], ...]:

@@ -180,7 +180,7 @@ class Reader:
             elif slot.required and not known_like:
                 values[name] = _BAD
             elif slot.required:
-                values[name] = self.refuse(where, f"it has no {_wanted(slot)}", f"Write for example {_example_of(slot)}")
+                values[name] = self.refuse(where or "file", f"it has no {_wanted(slot)}", f"Write for example {_example_of(slot)}")
             else:
                 values[name] = slot.default
         known = [key for slot in node.fields.values() for key in _keys(slot)]
