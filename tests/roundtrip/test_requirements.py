@@ -113,8 +113,8 @@ def test_values_are_those_of_the_analyses(stage):
         "crosstalk": (np.max(np.abs(lost.loss.values - np.diag(own))), ""),
         "drift.z": (abs(drift(stage, model, ground="steel").motion.at("platform.z", "uniform")), "m/K"),
         "mass": (13.9965, "kg"),
-        "height": (0.1125, "m"),
-        "envelope.z": (0.1125, "m"),
+        "height": (0.1126972, "m"),  # from the levers, 2 mm, to the plate's upper face
+        "envelope.z": (0.1126972, "m"),
         "opening": (0.0, "m"),
         "resolution.z": (10e-9, "m"),
         "load.B4": (load_share(stage, model).range(limits.from_zero)[1][3], "N"),
@@ -140,8 +140,9 @@ def test_margins_and_edges(stage):
     mass = 13.9965
     assert one(stage, "mass", f"at most {mass / 0.9} kg").margin == pytest.approx(0.1)
     assert one(stage, "mass", f"at least {mass / 1.1} kg").margin == pytest.approx(0.1)
-    assert one(stage, "mass", f"at most {mass} kg").passed
-    assert one(stage, "mass", f"at least {mass} kg").passed
+    plain = case("double-triangle-a")
+    assert one(plain, "mass", f"at most {mass} kg").passed
+    assert one(plain, "mass", f"at least {mass} kg").passed
     assert not one(stage, "mass", f"at most {mass * 0.999} kg").passed
     assert one(stage, "opening", "at most 0 mm").passed
 

@@ -113,7 +113,8 @@ def _arm(p: Bridge, side: str, level: str) -> Unit:
 def _guides(p: Bridge, top: Number) -> dict[str, Link]:
     reach = 0.5 * (p.size[0] + p.guide.length)
     places = {f"guide{number + 1}": (side, level) for number, (side, level) in enumerate([(-1, -1), (-1, 1), (1, -1), (1, 1)])}
+    heights = {level: top + 0.5 * level * p.guide_spacing for level in (-1, 1)}
     return {
-        name: Link(("ground", "platform"), "guide", (side * reach, top + 0.5 * level * p.guide_spacing, 0.0), X, bends=Z)
+        name: Link(("ground", "platform"), "guide", (side * reach, heights[level], 0.0), (-1.0 * side, 0.0, 0.0), bends=Z)
         for name, (side, level) in places.items()
     }

@@ -11,7 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from flexstage.base.number import Number
-from flexstage.base.scale import X, Y, Z, kHz, mm
+from flexstage.base.scale import X, Z, kHz, mm
 from flexstage.cases.stock import ALUMINIUM, GAUGE, SLIM_STACK, SOURCES, STEEL, stock_tags
 from flexstage.cases.strut import Strut
 from flexstage.mechanism.mechanism import Link, Mechanism, ModalDamping, Placement, Probe
@@ -76,5 +76,5 @@ def _corner(p: Parallelogram) -> tuple[Number, Number, Number]:
 
 
 def _leaf(p: Parallelogram, side: float) -> Link:
-    """A leaf along y, thin along x: its own x axis lies along the stage's y, it bends about z."""
-    return Link(("ground", "platform"), "leaf", (side * p.spacing, 0.5 * (p.size[1] + p.leaf.length), 0.0), Y, bends=Z)
+    """A leaf along y, thin along x: its own x axis points from the ground to the platform, it bends about z."""
+    return Link(("ground", "platform"), "leaf", (side * p.spacing, 0.5 * (p.size[1] + p.leaf.length), 0.0), (0.0, -1.0, 0.0), bends=Z)

@@ -15,7 +15,7 @@ from flexstage.cases.stock import ALUMINIUM, GAUGE, GLASS_CERAMIC, SLIM_STACK, S
 from flexstage.cases.strut import Strut
 from flexstage.mechanism.mechanism import Link, Mechanism, ModalDamping, Placement, Probe, Unit
 from flexstage.mechanism.pattern import Facing, Polar
-from flexstage.parts.body import Body, Cylinder
+from flexstage.parts.body import Block, Body, Cylinder
 from flexstage.parts.gauge import Positive
 from flexstage.parts.leaf import Leaf
 from flexstage.parts.neck import Neck
@@ -55,13 +55,13 @@ def tip_tilt(parameters: TipTilt | None = None) -> Mechanism:
     """
     p = TipTilt() if parameters is None else parameters
     head = -0.5 * (p.holder_thickness + hinge_length(p.neck.profile))
-    strut = Strut((0.0, 0.0, head), Z, p.neck, p.stack, "steel", 9 * mm)
+    strut = Strut((0.0, 0.0, head), Z, p.neck, p.stack, "steel", 10.5 * mm)
     return Mechanism(
         name="tip-tilt mount" if p.posts == 3 else f"tip-tilt mount on {p.posts} posts",
         materials={"aluminium": ALUMINIUM, "steel": STEEL, "glass": GLASS_CERAMIC},
         parts={"neck": p.neck, "stack": p.stack, "leaf": p.leaf},
         bodies={"platform": _platform(p)},
-        units={"post": strut.unit(), "leaf": Unit({}, {"leaf": Link(("ground", "platform"), "leaf", (0.0, 0.0, 0.0), X, bends=Y)})},
+        units={"post": strut.unit(), "leaf": _leaf(p)},
         place={
             f"P1-P{p.posts}": Placement("post", Polar(p.post_radius, 90 * deg, Facing.OUTWARD)),
             "L1-L3": Placement("leaf", Polar(p.leaf_radius, 30 * deg, Facing.TANGENT)),
@@ -82,6 +82,19 @@ def tip_tilt(parameters: TipTilt | None = None) -> Mechanism:
         tags=stock_tags(("aluminium", "steel", "glass"), ("stack",), ("probe",)),
         sources=SOURCES,
     )
+
+
+def _leaf(p: TipTilt) -> Unit:
+    """A leaf along the tangent x, y inward, and the holder's lug that it ends on: a riser outside the rim on a foot under the disc."""
+    near, far = 0.5 * p.leaf.length, 0.5 * p.leaf.length + 8 * mm
+    half, under = 0.5 * p.leaf.width + 0.5 * mm, 0.5 * p.holder_thickness
+    reach = p.leaf_radius - 0.5 * p.holder + 7 * mm
+    lug = {
+        "riser": Block("aluminium", (far - near, 2.0 * half, 2.0 * under), (0.5 * (near + far), 0.0, 0.0)),
+        "foot": Block("aluminium", (far - near, half + reach, 4 * mm), (0.5 * (near + far), 0.5 * (reach - half), -under - 2 * mm)),
+    }
+    link = Link(("ground", "platform"), "leaf", (0.0, 0.0, 0.0), X, bends=Y)
+    return Unit({"lug": Body(solids=lug, of="platform")}, {"leaf": link})
 
 
 def _platform(p: TipTilt) -> Body:

@@ -11,7 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from flexstage.base.number import Number
-from flexstage.base.scale import X, Y, Z, deg, kHz, mm
+from flexstage.base.scale import X, Z, deg, kHz, mm
 from flexstage.cases.stock import ALUMINIUM, GAUGE, SLIM_STACK, SOURCES, STEEL, stock_tags
 from flexstage.cases.strut import Strut
 from flexstage.mechanism.mechanism import Link, Mechanism, ModalDamping, Placement, Probe, Unit
@@ -32,17 +32,18 @@ class XYStage:
     The platform is a square block of edge `edge` and height `height`. In every carriage's own frame x points inward, towards the
     platform: two `coupling` leaves along x at y = +- `coupling_offset`, then the carriage, `carriage` = (along x, along y), held by two
     `guide` leaves along y at its two ends. `driven` says how many axes have stacks: 2, or 1 for a stage whose y axis floats
-    (under-actuated).
+    (under-actuated). A carriage must be short enough for the guides of neighbours not to cross: half its length and a guide reach less far
+    than the guides' own distance from the axis.
     """
 
     coupling: Leaf = Leaf("aluminium", length=20 * mm, thickness=0.6 * mm, width=15 * mm)
     guide: Leaf = Leaf("aluminium", length=25 * mm, thickness=0.6 * mm, width=15 * mm)
     neck: Neck = Neck("steel", thickness=2 * mm, profile=Circular(4 * mm))
     stack: Piezo = SLIM_STACK
-    edge: Number = 50 * mm
+    edge: Number = 60 * mm
     height: Number = 15 * mm
     coupling_offset: Number = 20 * mm
-    carriage: tuple[Number, Number] = (12 * mm, 60 * mm)
+    carriage: tuple[Number, Number] = (12 * mm, 46 * mm)
     driven: int = 2
 
 
@@ -99,8 +100,8 @@ def _following(p: XYStage) -> Unit:
         "left": Link(("carriage", "platform"), "coupling", (near, p.coupling_offset, 0.0), X, bends=Z),
         "right": Link(("carriage", "platform"), "coupling", (near, -p.coupling_offset, 0.0), X, bends=Z),
     }
-    for name, y, x in (("guide1", side, -ends), ("guide2", side, ends), ("guide3", -side, -ends), ("guide4", -side, ends)):
-        links[name] = Link(("ground", "carriage"), "guide", (middle + x, y, 0.0), Y, bends=Z)
+    for name, sign, x in (("guide1", 1.0, -ends), ("guide2", 1.0, ends), ("guide3", -1.0, -ends), ("guide4", -1.0, ends)):
+        links[name] = Link(("ground", "carriage"), "guide", (middle + x, sign * side, 0.0), (0.0, -sign, 0.0), bends=Z)
     block = Block("aluminium", (*p.carriage, p.height), (middle, 0.0, 0.0))
     return Unit(bodies={"carriage": Body(solids={"block": block})}, links=links)
 

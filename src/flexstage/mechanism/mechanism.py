@@ -41,8 +41,8 @@ class Link(Description):
     """A part between two bodies.
 
     `joins` names them, first to second: the relative twist is that of the second against the first. `part` names an entry of the
-    mechanism's parts. The link frame has its origin at the part's centre `at`, x along `along`, z along `bends` (the axis of the compliant
-    rotation; needed for parts that are not round). `free` overrides the part's intended freedoms.
+    mechanism's parts. The link frame has its origin at the part's centre `at`, x along `along`, from the first body to the second, z along
+    `bends` (the axis of the compliant rotation; needed for parts that are not round). `free` overrides the part's intended freedoms.
     """
 
     joins: tuple[str, str]
