@@ -330,20 +330,27 @@ def _lever(p: DoubleTriangle, line: Number) -> dict[str, Block]:
     face = p.long_arm - 0.5 * length(p.lever_notch.profile)
     front = p.long_arm + 0.5 * length(p.foot_notch.profile)
     sole, seat = -p.pole_span - 18 * mm, -p.pole_span - 0.5 * length(p.pole_neck.profile)
-    saddle, step, end, low, top = face - 14 * mm, 24 * mm, front + 12 * mm, line - 15 * mm, line + 16 * mm
-    inner, outer = 21 * mm, 29 * mm
+    saddle, step, end, low, top = face - 14 * mm, 24 * mm, front + 16 * mm, line - 15 * mm, line + 18 * mm
+    ear, inner, outer = 15 * mm, 21 * mm, 29 * mm
     solids = {
         "saddle": _between((saddle, -outer, sole), (face, outer, low)),
-        "head": _between((front, -inner, line - 19 * mm), (end, inner, top)),
+        "head": _between((front, -ear, line - 20 * mm), (end, ear, top)),
         "foot": _between((-14 * mm, -inner, sole), (14 * mm, inner, seat)),
     }
-    for side, (near, far) in {"left": (inner, outer), "right": (-outer, -inner)}.items():
+    for side in ("left", "right"):
+        near, far = _beside(side, inner, outer)
         solids |= {
             side: _between((step, near, sole), (saddle, far, top)),
             f"{side}_tip": _between((-14 * mm, near, sole), (step, far, line - 12 * mm)),
-            f"{side}_ear": _between((saddle, near, low), (end, far, top)),
         }
+        near, far = _beside(side, ear, outer)
+        solids[f"{side}_ear"] = _between((saddle, near, low), (end, far, top))
     return solids
+
+
+def _beside(side: str, inner: Number, outer: Number) -> tuple[Number, Number]:
+    """From low to high y on one side of the unit's line."""
+    return (inner, outer) if side == "left" else (-outer, -inner)
 
 
 def _upright(bottom: Number, top: Number) -> Cylinder:

@@ -24,7 +24,7 @@ def requirement_section(analysis: Analysis) -> Section | None:
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.studies.complete import Reading, analyse
     >>> requirement_section(analyse(double_triangle(), Reading.IDEAL)).blocks[0].text
-    'All 8 requirements are met; the least margin is 6.2 %, for frequency.platform.1.'
+    'All 8 requirements are met; the least margin is 6.01 %, for frequency.platform.1.'
     """
     verdicts = analysis.verdicts
     if not verdicts:

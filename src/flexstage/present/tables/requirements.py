@@ -18,7 +18,7 @@ def verdict_table(verdicts: Sequence[Verdict]) -> Table | None:
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.studies.judge import judge
     >>> verdict_table(judge(double_triangle())).texts()[7]
-    ['frequency.platform.1', 'at least 100 Hz', '106.2 Hz', '+6.2 %', 'met']
+    ['frequency.platform.1', 'at least 100 Hz', '106.01 Hz', '+6.01 %', 'met']
     """
     if not verdicts:
         return None
@@ -56,7 +56,7 @@ def shown_value(verdict: Verdict) -> str:
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.studies.judge import judge
     >>> shown_value(judge(double_triangle())[6])
-    '106.2 Hz'
+    '106.01 Hz'
     """
     if verdict.value is None:
         return "unknown"
@@ -84,7 +84,7 @@ def margin_text(verdict: Verdict) -> str:
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.studies.judge import judge
     >>> margin_text(judge(double_triangle())[6])
-    '+6.2 %'
+    '+6.01 %'
     """
     if verdict.value is None:
         return "-"
