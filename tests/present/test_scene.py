@@ -162,4 +162,4 @@ def test_only_facets_that_face_the_viewer_are_drawn(side: Side) -> None:
 def test_the_plan_carries_its_dimensions() -> None:
     mechanism = double_triangle()
     texts = {text.get_text() for axes in plan_figure(mechanism, scene(mechanism)).axes for text in axes.texts}
-    assert {"R 85", "R 120", "R 130", "320", "90°", "−90°", "envelope 380 × 380", "clear opening 110 × 110", "B1", "S6"} <= texts
+    assert {"R 85", "R 120", "R 130", "340.64", "90°", "−90°", "envelope 380 × 380", "clear opening 110 × 110", "B1", "S6"} <= texts

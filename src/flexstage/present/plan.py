@@ -11,6 +11,7 @@ import numpy as np
 from flexstage.base.number import Array, first_design
 from flexstage.mechanism.expand import copy_names, expand
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
+from flexstage.mechanism.outline import outlines
 from flexstage.mechanism.pattern import Polar
 from flexstage.parts.body import Block, Cylinder
 from flexstage.present.display import number
@@ -81,7 +82,7 @@ def _reach(mechanism: Mechanism, scene: Scene) -> Array:
     points = [1e3 * facet.points[:, :2] for facet in scene.facets] or [np.full((1, 2), 50.0)]
     reach = np.abs(np.concatenate(points)).max(axis=0)
     if mechanism.envelope is not None:
-        reach = np.maximum(reach, [500.0 * plain(size) for size in mechanism.envelope[:2]])
+        reach = np.maximum(reach, np.abs(_room_middle(mechanism)) + [500.0 * plain(size) for size in mechanism.envelope[:2]])
     return np.maximum(reach, 0.2 * reach.max())
 
 
@@ -162,17 +163,32 @@ def _rectangle(axes: Any, size: Sequence[float], style: str, colour: str, centre
 
 
 def _rectangles(axes: Any, mechanism: Mechanism) -> None:
-    """Envelope and clear opening, with their names."""
-    named = [("envelope", mechanism.envelope, MUTED)]
-    named += [("clear opening", mechanism.opening.size, SERIES[3])] if mechanism.opening is not None else []
-    for name, extents, colour in named:
-        if extents is not None:
-            size = [1e3 * plain(value) for value in extents[:2]]
-            _rectangle(axes, size, "--", colour)
-            text = f"{name} {number(size[0])} x {number(size[1])}".replace(" x ", " × ")
-            inside = name == "clear opening"
-            place = (0.0, -0.48 * size[1]) if inside else (0.495 * size[0], 0.5 * size[1] + 1.0)
-            axes.text(*place, text, ha="center" if inside else "right", va="bottom", fontsize=6.5, color=colour)
+    """Envelope and clear opening, with their names: the opening lies about the stage's axis, the envelope about all that takes up room."""
+    if mechanism.envelope is not None:
+        size, (x, y) = [1e3 * plain(value) for value in mechanism.envelope[:2]], _room_middle(mechanism)
+        _rectangle(axes, size, "--", MUTED, (x, y))
+        place = (x + 0.495 * size[0], y + 0.5 * size[1] + 1.0)
+        axes.text(*place, _sized("envelope", size), ha="right", va="bottom", fontsize=6.5, color=MUTED)
+    if mechanism.opening is not None:
+        size = [1e3 * plain(value) for value in mechanism.opening.size]
+        _rectangle(axes, size, "--", SERIES[3])
+        axes.text(0.0, -0.48 * size[1], _sized("clear opening", size), ha="center", va="bottom", fontsize=6.5, color=SERIES[3])
+
+
+def _sized(name: str, size: Sequence[float]) -> str:
+    return f"{name} {number(size[0])} × {number(size[1])}"
+
+
+def _room_middle(mechanism: Mechanism) -> Array:
+    """Middle (x, y) [mm] of the box around all outlines: an envelope says how much room there is, not where."""
+    found = outlines(expand(mechanism))
+    if not found:
+        return np.zeros(2)
+
+    def farthest(direction: Array) -> float:
+        return max(float(first_design(np.asarray(outline.reach(direction)), 0)) for outline in found)
+
+    return np.array([500.0 * (farthest(axis) - farthest(-axis)) for axis in np.eye(3)[:2]])
 
 
 def _axes_of_symmetry(axes: Any, reach: Array) -> None:
