@@ -155,7 +155,7 @@ def test_what_the_stage_cannot_answer_fails_with_a_reason(stage):
     assert "states no yield stress" in found.reason
     planar = case("xy-stage")
     assert "is no ideal motion" in one(planar, "stroke.z", "at least 1 um").reason
-    assert "do not determine" in one(case("xy-stage-floating"), "stroke.x", "at least 1 um").reason
+    assert "does not determine" in one(case("xy-stage-floating"), "stroke.x", "at least 1 um").reason
     assert "there are" in one(stage, "frequency.platform.900", "at least 1 Hz").reason
     assert "no stroke is required" in one(stage, "corner", "at most 1").reason
 
