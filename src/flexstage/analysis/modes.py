@@ -132,10 +132,15 @@ def _energies(model: LinearModel, solved: Eigen) -> tuple[tuple[str, ...], Array
         seen = item.operator @ solved.shapes
         products = seen * (item.law @ seen)
         rows.append(np.sum(products, axis=-2))
-        first = first_design(products, 2)
-        components.append(first.reshape(-1, 6, first.shape[-1]).sum(axis=0))
+        components.append(_by_component(first_design(products, 2)))
     values = np.stack(np.broadcast_arrays(*rows), axis=-2)
     return tuple(model.inertia), values / np.sum(values, axis=-2, keepdims=True), np.stack(components)
+
+
+def _by_component(products: Array) -> Array:
+    """Sums (6, k) over the twists in the rows; energy within an elastic body belongs to no component."""
+    rows, count = products.shape
+    return products.reshape(-1, 6, count).sum(axis=0) if rows in {6, 12} else np.zeros((6, count))
 
 
 def _chosen(share: Array, frequencies: Array, limit: float, count: int, gap: float) -> tuple[tuple[int, ...], float]:

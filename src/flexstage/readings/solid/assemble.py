@@ -1,0 +1,324 @@
+"""Assembly: superelements, rigid bodies and casings as one linear model with the inputs and outputs of every elastic reading."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.base.finding import refuse
+from flexstage.base.number import Array
+from flexstage.mechanism.expand import Assembly, PlacedLink
+from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
+from flexstage.mechanism.moving_mass import carried, moving_inertia
+from flexstage.parts.piezo import Piezo
+from flexstage.readings.linear.model import Channel, Contribution, LinearModel, assembled
+from flexstage.readings.solid.casing import casing
+from flexstage.readings.solid.component import Component, is_elastic
+from flexstage.readings.solid.superelement import Superelement
+from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNITS, Frame, rigid_inertia, seen_at, transport, turned
+
+_SINGULAR = 1e-13
+
+
+@dataclass(frozen=True, eq=False)
+class Placed:
+    """A component with its superelement and the operator (n, N) from the model's coordinates to its own."""
+
+    component: Component
+    element: Superelement
+    operator: Array
+
+
+@dataclass(frozen=True, eq=False)
+class _Model:
+    mechanism: Mechanism
+    assembly: Assembly
+    names: tuple[str, ...]
+    blocks: Mapping[str, slice]
+    placed: tuple[Placed, ...]
+    twists: Mapping[str, Array]
+
+    @property
+    def size(self) -> int:
+        return len(self.names)
+
+    def twist(self, body: str, frame: Frame) -> Array:
+        """A body's twist (6, N) at a frame's origin in its axes."""
+        if body == GROUND:
+            return np.zeros((6, self.size))
+        return seen_at(frame, self.assembly.bodies[body].reference) @ self.twists[body]
+
+
+def linear_model(
+    mechanism: Mechanism, assembly: Assembly, parts: tuple[tuple[Component, Superelement], ...], provenance: str
+) -> LinearModel:
+    """Join reduced components to a model.
+
+    Coordinates: twists of rigid bodies, twists of the joints between elastic components (stage axes, at the joint), and each
+    component's internal coordinates. Raises `DesignError` when the joined stage can move freely.
+    """
+    model = _joined(mechanism, assembly, parts)
+    elastic, mass = dict(_stiffness(model)), dict(_inertia(model))
+    _check_held(model, elastic)
+    channels, output, feedthrough = _outputs(model)
+    inputs, force, imposed = _inputs(model)
+    rigid = _rigid(model)
+    absolute = np.array([channel.name.rpartition(".")[2] in COMPONENTS for channel in channels])
+    return LinearModel(
+        coordinates=model.names,
+        stiffness=elastic,
+        inertia=mass,
+        inputs=inputs,
+        force=force,
+        imposed=imposed,
+        outputs=channels,
+        output=output,
+        feedthrough=feedthrough,
+        rigid=rigid,
+        rigid_output=np.where(absolute[:, None], _rigid_outputs(model, channels), 0.0),
+        base_inertia=_carried(model),
+        damping=mechanism.damping,
+        idle=(),
+        provenance=provenance,
+    )
+
+
+def _joined(mechanism: Mechanism, assembly: Assembly, parts: tuple[tuple[Component, Superelement], ...]) -> _Model:
+    blocks, names = _coordinates(assembly, parts)
+    placed = tuple(Placed(component, element, _operator(assembly, component, element, blocks, len(names))) for component, element in parts)
+    twists: dict[str, Array] = {}
+    for body in assembly.bodies:
+        if not is_elastic(assembly, body):
+            twists[body] = np.eye(len(names))[blocks[body]]
+    for item in placed:
+        for body, mean in zip(item.component.bodies, item.element.bodies.values(), strict=True):
+            twists[body] = turned(item.component.place.rotation) @ mean @ item.operator
+    return _Model(mechanism, assembly, names, blocks, placed, twists)
+
+
+def _coordinates(assembly: Assembly, parts: tuple[tuple[Component, Superelement], ...]) -> tuple[dict[str, slice], tuple[str, ...]]:
+    blocks: dict[str, slice] = {}
+    names: list[str] = []
+
+    def add(owner: str, own: list[str]) -> None:
+        blocks[owner] = slice(len(names), len(names) + len(own))
+        names.extend(own)
+
+    for body in sorted(assembly.bodies, key=lambda name: name != PLATFORM):
+        if not is_elastic(assembly, body):
+            add(body, [f"{body}.{name}" for name in COMPONENTS])
+    for component, element in parts:
+        for item in component.interfaces:
+            joint = item.joint
+            if joint.name not in blocks and is_elastic(assembly, joint.body):
+                add(joint.name, [f"{joint.name}.{name}" for name in COMPONENTS])
+        inner = element.size - 6 * element.interfaces
+        add(_inside(component), [f"{component.name}~{number + 1}" for number in range(inner)])
+    return blocks, tuple(names)
+
+
+def _inside(component: Component) -> str:
+    return f"{component.name}~"
+
+
+def _operator(assembly: Assembly, component: Component, element: Superelement, blocks: Mapping[str, slice], size: int) -> Array:
+    result = np.zeros((element.size, size))
+    for number, item in enumerate(component.interfaces):
+        joint, rows = item.joint, slice(6 * number, 6 * number + 6)
+        turn = turned(component.place.rotation.T)
+        if joint.name in blocks:
+            result[rows, blocks[joint.name]] = turn
+        else:
+            at = component.place.point(joint.frame.position)
+            result[rows, blocks[joint.body]] = turn @ transport(at - assembly.bodies[joint.body].reference)
+    result[6 * element.interfaces :, blocks[_inside(component)]] = np.eye(element.size - 6 * element.interfaces)
+    return result
+
+
+def group_names(component: Component) -> tuple[str, ...]:
+    """Names under which a component's pieces count: links by their own, solids by their body's, in order.
+
+    The same order in every copy, so that one copy's superelement serves all.
+    """
+    return tuple(dict.fromkeys(piece.name if piece.body is None else piece.body for piece in component.pieces))
+
+
+def _links(component: Component) -> tuple[str, ...]:
+    return tuple(piece.name for piece in component.pieces if piece.body is None)
+
+
+def _stiffness(model: _Model) -> Iterator[tuple[str, Contribution]]:
+    for item in model.placed:
+        for name, law in zip(group_names(item.component), item.element.stiffness.values(), strict=True):
+            label = name if name in model.assembly.links else f"{name} (body)"
+            yield label, Contribution(item.operator, law, _loss_factor(model, name))
+    for name, link in model.assembly.links.items():
+        law = casing(link)
+        if law is not None:
+            yield f"{name} (casing)", Contribution(_across(model, link), law, _loss_factor(model, name))
+
+
+def _across(model: _Model, link: PlacedLink) -> Array:
+    """Relative twist (6, N) of a lone link's two end faces, second against first, at its centre in its frame."""
+    item = next(item for item in model.placed if link.name in _links(item.component))
+    rows = np.zeros((6, model.size))
+    for number, interface in enumerate(item.component.interfaces):
+        joint = interface.joint
+        at = Frame(item.component.place.rotation, item.component.place.point(joint.frame.position))
+        twist = turned(at.rotation) @ item.operator[6 * number : 6 * number + 6]
+        sign = 1.0 if joint.body == link.joins[1] else -1.0
+        rows += sign * seen_at(link.frame, at.position) @ twist
+    return rows
+
+
+def _loss_factor(model: _Model, name: str) -> float:
+    if name in model.assembly.links:
+        link = model.assembly.links[name]
+        value = getattr(link.material if link.material is not None else link.part, "loss_factor", None)
+    else:
+        solids = model.assembly.bodies[name].solids.values()
+        value = model.mechanism.materials[next(iter(solids)).solid.material].loss_factor
+    return 0.0 if value is None else float(np.real(value))
+
+
+def _inertia(model: _Model) -> Iterator[tuple[str, Contribution]]:
+    for item in model.placed:
+        for number, (name, law) in enumerate(zip(group_names(item.component), item.element.inertia.values(), strict=True)):
+            if name in model.assembly.links:
+                yield f"{name} (link)", Contribution(item.operator, law)
+            else:
+                yield from _body_inertia(model, item, name, number)
+    for name, body in model.assembly.bodies.items():
+        if is_elastic(model.assembly, name):
+            for number, load in enumerate(carried(model.mechanism, body)[1:]):
+                matrix = rigid_inertia(load.mass, load.inertia, load.centre, body.reference)
+                yield f"{name} (payload {number + 1})", Contribution(model.twists[name], matrix)
+        else:
+            matrix = moving_inertia(model.mechanism, body)
+            if matrix is not None:
+                yield name, Contribution(model.twists[name], matrix)
+
+
+def _body_inertia(model: _Model, item: Placed, name: str, number: int) -> Iterator[tuple[str, Contribution]]:
+    """A body's inertia with its mean twist, and what its elastic motion about that carries; the two are orthogonal."""
+    place = list(item.component.bodies).index(name)
+    mean, own = list(item.element.bodies.values())[place], list(item.element.body_inertia.values())[place]
+    turn = turned(item.component.place.rotation)
+    yield name, Contribution(model.twists[name], turn @ own @ turn.T)
+    whole = list(item.element.inertia.values())[number]
+    yield f"{name} (elastic)", Contribution(item.operator, whole - mean.T @ own @ mean)
+
+
+def _check_held(model: _Model, elastic: Mapping[str, Contribution]) -> None:
+    stiffness = assembled(elastic, model.size)
+    scale = 1.0 / np.sqrt(np.maximum(np.diag(stiffness), np.finfo(float).tiny))
+    values, vectors = np.linalg.eigh(stiffness * scale * scale[:, None])
+    if values[0] <= _SINGULAR:
+        motion = np.abs(vectors[:, 0] * scale)
+        moving = dict.fromkeys(model.names[index].rpartition(".")[0] for index in np.argsort(motion)[::-1][:12])
+        raise refuse(
+            "stage",
+            f"some motion has no stiffness (lowest scaled eigenvalue {values[0]:.2g}); it moves {', '.join(name for name in moving if name)}",
+            "Join it to the ground: a link whose end face meets neither body, or a unit without foot, leaves it free",
+        )
+
+
+def _inputs(model: _Model) -> tuple[tuple[Channel, ...], Array, dict[str, Array]]:
+    drives = model.assembly.actuators
+    places = [(PLATFORM, model.twists[PLATFORM])]
+    places += [(name, model.twist(body, Frame(np.eye(3), point))) for name, (body, point) in model.assembly.points.items()]
+    channels = [Channel(name, "m") for name in drives]
+    channels += [Channel(f"{name}.{part}", unit) for name, _ in places for part, unit in zip(FORCES, WRENCH_UNITS, strict=True)]
+    force = np.hstack([np.zeros((model.size, len(drives))), *(rows.T for _, rows in places)])
+    imposed: dict[str, Array] = {}
+    for number, link in enumerate(drives.values()):
+        free = _stroke(model, link)[1]
+        imposed[link] = np.zeros((len(free), len(channels)))
+        imposed[link][:, number] = free
+    return tuple(channels), force, imposed
+
+
+def _stroke(model: _Model, link: str) -> tuple[Placed, Array]:
+    item = next(item for item in model.placed if link in _links(item.component))
+    number = [name for name in _links(item.component) if isinstance(model.assembly.links[name].part, Piezo)].index(link)
+    return item, list(item.element.free_strokes.values())[number]
+
+
+def _outputs(model: _Model) -> tuple[tuple[Channel, ...], Array, Array]:
+    """Twists of platform, points and all bodies, gauge readings, and stress resultants at every link's centre in its frame."""
+    assembly = model.assembly
+    seen = {PLATFORM: model.twists[PLATFORM]}
+    seen |= {name: model.twist(body, Frame(np.eye(3), point)) for name, (body, point) in assembly.points.items()}
+    seen |= {name: model.twists[name] for name in assembly.bodies if name != PLATFORM}
+    channels = [Channel(f"{name}.{part}", unit) for name in seen for part, unit in zip(COMPONENTS, TWIST_UNITS, strict=True)]
+    rows = list(seen.values())
+    for name, gauge in assembly.gauges.items():
+        ends = [model.twist(body, gauge.frame)[:1] for body in (gauge.body, gauge.base)]
+        rows.append(gauge.sign * (ends[0] - ends[1]))
+        channels.append(Channel(name, "m"))
+    inputs = len(assembly.actuators) + 6 * (1 + len(assembly.points))
+    passed = [np.zeros((len(channels), inputs))]
+    for name in assembly.links:
+        own, through = _resultant(model, name, inputs)
+        rows.append(own)
+        passed.append(through)
+        channels += [Channel(f"{name}.{force}", unit) for force, unit in zip(FORCES, WRENCH_UNITS, strict=True)]
+    return tuple(channels), np.vstack(rows), np.vstack(passed)
+
+
+def _resultant(model: _Model, name: str, inputs: int) -> tuple[Array, Array]:
+    item = next(item for item in model.placed if name in _links(item.component))
+    rows = list(item.element.resultants.values())[_links(item.component).index(name)]
+    total = rows @ item.operator
+    law = casing(model.assembly.links[name])
+    if law is not None:
+        total = total + law @ _across(model, model.assembly.links[name])
+    through = np.zeros((6, inputs))
+    drives = list(model.assembly.actuators.values())
+    if name in drives:
+        through[:, drives.index(name)] = -rows @ _stroke(model, name)[1]
+    return total, through
+
+
+def _rigid(model: _Model) -> Array:
+    """Motion (N, 6) of bodies and joints with the ground; internal coordinates stay at rest (exact where nothing within is held)."""
+    centre = model.assembly.bodies[PLATFORM].reference
+    result = np.zeros((model.size, 6))
+    for body in model.assembly.bodies:
+        if body in model.blocks:
+            result[model.blocks[body]] = transport(model.assembly.bodies[body].reference - centre)
+    for item in model.placed:
+        for interface in item.component.interfaces:
+            if interface.joint.name in model.blocks:
+                at = item.component.place.point(interface.joint.frame.position)
+                result[model.blocks[interface.joint.name]] = transport(at - centre)
+    return result
+
+
+def _rigid_outputs(model: _Model, channels: tuple[Channel, ...]) -> Array:
+    """Absolute twists when everything moves with the ground."""
+    centre = model.assembly.bodies[PLATFORM].reference
+    places = {name: body.reference for name, body in model.assembly.bodies.items()}
+    places |= {name: point for name, (_, point) in model.assembly.points.items()}
+    result = np.zeros((len(channels), 6))
+    for number, channel in enumerate(channels):
+        owner, _, part = channel.name.rpartition(".")
+        if owner in places and part in COMPONENTS:
+            result[number] = transport(places[owner] - centre)[COMPONENTS.index(part)]
+    return result
+
+
+def _carried(model: _Model) -> Array:
+    """Inertial forces (N, 6) when everything, the ground included, is accelerated rigidly."""
+    centre = model.assembly.bodies[PLATFORM].reference
+    total = np.zeros((model.size, 6))
+    for item in model.placed:
+        total += item.operator.T @ item.element.carried @ seen_at(item.component.place, centre)
+    for name, body in model.assembly.bodies.items():
+        loads = carried(model.mechanism, body)
+        for load in loads[1:] if is_elastic(model.assembly, name) else loads:
+            matrix = rigid_inertia(load.mass, load.inertia, load.centre, body.reference)
+            total += model.twists[name].T @ matrix @ transport(body.reference - centre)
+    return total

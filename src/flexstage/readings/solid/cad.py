@@ -1,0 +1,120 @@
+"""The CAD of a component: its pieces as one conforming solid (or several, one a medium), with the faces it is joined and held by."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from netgen import occ
+
+from flexstage.base.finding import Finding, require
+from flexstage.base.number import Array
+from flexstage.readings.solid.component import Component, Interface, Joint
+from flexstage.readings.solid.draw import MILLIMETRES, drawn, moved
+from flexstage.readings.solid.piece import Medium, Piece
+
+_TOLERANCE = 1e-3
+"""Faces match within this distance [mm]."""
+
+
+@dataclass(frozen=True)
+class Cad:
+    """A component drawn: the shape [mm] whose faces carry the names of `faces`, its solids the names `medium 0`, ... of `media`."""
+
+    shape: occ.TopoDS_Shape
+    media: tuple[Medium, ...]
+    faces: tuple[str, ...]
+
+
+def cad(component: Component) -> Cad:
+    """Draw a component: pieces of one medium are fused, those of different media glued over their common faces.
+
+    Faces are named after joints: interfaces and those held by the ground. Raises `DesignError` for joints without a matching flat face and
+    for pieces that do not form one solid.
+    """
+    media = tuple(dict.fromkeys(piece.medium for piece in component.pieces))
+    solids = [_fused([piece for piece in component.pieces if piece.medium == medium]) for medium in media]
+    for number, solid in enumerate(solids):
+        solid.mat(f"medium {number}")
+    shape = solids[0] if len(solids) == 1 else occ.Glue(solids)
+    require(_in_pieces(component, shape))
+    shape = _stamped(shape, component.interfaces)
+    joints = [*(item.joint for item in component.interfaces), *component.fixed]
+    require(finding for joint in joints if (finding := _name_face(shape, joint)) is not None)
+    return Cad(shape, media, tuple(joint.name for joint in joints))
+
+
+def _fused(pieces: Sequence[Piece]) -> occ.TopoDS_Shape:
+    total = moved(drawn(pieces[0].form), pieces[0].frame)
+    for piece in pieces[1:]:
+        total = total + moved(drawn(piece.form), piece.frame)
+    return total
+
+
+def _in_pieces(component: Component, shape: occ.TopoDS_Shape) -> Iterator[Finding]:
+    """Glued media share faces; anything else that falls apart has a gap."""
+    found = len(shape.solids)
+    expected = len({piece.medium for piece in component.pieces})
+    if found > expected:
+        names = ", ".join(piece.name for piece in component.pieces)
+        yield Finding(
+            component.name, f"its pieces ({names}) form {found} separate solids instead of {expected}", "Let their outlines touch"
+        )
+
+
+def _stamped(shape: occ.TopoDS_Shape, interfaces: Sequence[Interface]) -> occ.TopoDS_Shape:
+    """The shape with the end faces of foreign links printed on it."""
+    stamps = [moved(drawn(item.footprint), item.stamp) for item in interfaces if item.footprint is not None and item.stamp is not None]
+    if not stamps:
+        return shape
+    for stamp in stamps:
+        stamp.mat("stamp")
+    glued = occ.Glue([*shape.solids, *stamps])
+    kept = [solid for solid in glued.solids if solid.name != "stamp"]
+    return kept[0] if len(kept) == 1 else occ.Compound(kept)
+
+
+def _name_face(shape: occ.TopoDS_Shape, joint: Joint) -> Finding | None:
+    origin, normal = joint.frame.position * MILLIMETRES, joint.frame.rotation[:, 0]
+    nearest, distance = None, np.inf
+    for face in shape.faces:
+        if not _is_flat(face, origin, normal):
+            continue
+        away = float(np.linalg.norm(_coordinates(face.center) - origin))
+        if away < distance:
+            nearest, distance = face, away
+    if nearest is None or distance > _TOLERANCE:
+        found = "no flat face there" if nearest is None else f"the nearest flat face's centre is {distance:.3g} mm away"
+        return Finding(
+            joint.name, f"the end face of {joint.link} does not meet {joint.body}: {found}", "Move the outline to touch it fully"
+        )
+    nearest.name = joint.name
+    return None
+
+
+def _is_flat(face: occ.Face, origin: Array, normal: Array) -> bool:
+    """Whether all of the face lies in the plane through `origin`."""
+    low, high = (_coordinates(corner) for corner in face.bounding_box)
+    middle = _coordinates(face.center)
+    if abs(float(normal @ (middle - origin))) > _TOLERANCE:
+        return False
+    return all(abs(float(normal @ (_coordinates(vertex.p) - origin))) <= _TOLERANCE for vertex in face.vertices) and bool(
+        np.all(high >= low)
+    )
+
+
+def _coordinates(point: occ.gp_Pnt) -> Array:
+    return np.array([point.x, point.y, point.z])
+
+
+def region(piece: Piece, points: Array) -> Array:
+    """Distance-like measure (n,) of points (n, 3) [m] from a piece: how far outside its bounding box they are, 0 inside [m]."""
+    local = (points - piece.frame.position) @ piece.frame.rotation
+    return np.max(np.maximum(np.abs(local) - half_extents(piece), 0.0), axis=1)
+
+
+def half_extents(piece: Piece) -> Array:
+    """Half sizes (3,) of a piece's bounding box in its own frame [m]."""
+    low, high = drawn(piece.form).bounding_box
+    return 0.5 * (_coordinates(high) - _coordinates(low)) / MILLIMETRES

@@ -1,0 +1,182 @@
+"""Elasticity on a mesh: u in metres over a mesh in millimetres; vectors of degrees of freedom are numpy arrays."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+
+import ngsolve
+import numpy as np
+
+from flexstage.base.number import Array
+from flexstage.readings.solid.draw import MILLIMETRES
+from flexstage.readings.solid.mesh import Meshed
+from flexstage.spatial.frame import Frame
+
+_PER_METRE = 1.0 / MILLIMETRES
+"""Of energies: gradients per mm are 1e3 smaller than per m, squared, over volumes 1e9 larger."""
+_PER_VOLUME = 1.0 / MILLIMETRES**3
+
+
+@dataclass(frozen=True)
+class Field:
+    """The displacement space of a mesh, held on `held` faces, and the coefficients of its media."""
+
+    meshed: Meshed
+    space: ngsolve.VectorH1
+    lame: ngsolve.CoefficientFunction
+    shear: ngsolve.CoefficientFunction
+    density: ngsolve.CoefficientFunction
+
+    @property
+    def size(self) -> int:
+        """Number of degrees of freedom."""
+        return self.space.ndof
+
+    @property
+    def free(self) -> Array:
+        """Which degrees of freedom (n,) are not on a held face."""
+        return np.array(list(self.space.FreeDofs()), dtype=bool)
+
+    def stress(self, strain: ngsolve.CoefficientFunction) -> ngsolve.CoefficientFunction:
+        """Hooke's law: 2 mu strain + lambda tr(strain) I [Pa, with strains per m]."""
+        return 2.0 * self.shear * strain + self.lame * ngsolve.Trace(strain) * ngsolve.Id(3)
+
+
+def field(meshed: Meshed, held: Iterable[str], order: int) -> Field:
+    """The displacement space of `order` on a mesh with named faces held."""
+    mesh = meshed.mesh
+    pattern = "|".join(_escaped(name) for name in held)
+    space = ngsolve.VectorH1(mesh, order=order, dirichlet=pattern) if pattern else ngsolve.VectorH1(mesh, order=order)
+
+    def coefficient(values: list[float]) -> ngsolve.CoefficientFunction:
+        return mesh.MaterialCF({f"medium {number}": value for number, value in enumerate(values)})
+
+    media = meshed.media
+    return Field(
+        meshed,
+        space,
+        coefficient([medium.lame for medium in media]),
+        coefficient([medium.shear for medium in media]),
+        coefficient([medium.density for medium in media]),
+    )
+
+
+def _escaped(name: str) -> str:
+    return "".join(f"\\{letter}" if letter in ".+*?()[]{}|^$\\" else letter for letter in name)
+
+
+def strain(displacement: ngsolve.CoefficientFunction) -> ngsolve.CoefficientFunction:
+    """Small strain of a displacement, per mm."""
+    return 0.5 * (ngsolve.Grad(displacement) + ngsolve.Grad(displacement).trans)
+
+
+def stiffness(space: Field, elements: Array | None = None, *, assemble: bool = True) -> ngsolve.BilinearForm:
+    """int stress(u) : strain(v) dV [N/m], over some elements (mask) or all; without `assemble` for application only."""
+    u, v = space.space.TnT()
+    form = ngsolve.BilinearForm(space.space, symmetric=True, nonassemble=not assemble)
+    form += _PER_METRE * ngsolve.InnerProduct(space.stress(strain(u)), strain(v)) * _volume(elements)
+    return form.Assemble() if assemble else form
+
+
+def inertia(space: Field, elements: Array | None = None, *, assemble: bool = True) -> ngsolve.BilinearForm:
+    """int rho u . v dV [kg], over some elements (mask) or all; without `assemble` for application only."""
+    u, v = space.space.TnT()
+    form = ngsolve.BilinearForm(space.space, symmetric=True, nonassemble=not assemble)
+    form += _PER_VOLUME * space.density * ngsolve.InnerProduct(u, v) * _volume(elements)
+    return form.Assemble() if assemble else form
+
+
+def _volume(elements: Array | None) -> object:
+    return ngsolve.dx if elements is None else ngsolve.dx(definedonelements=ngsolve.BitArray(elements.tolist()))
+
+
+def applied(form: ngsolve.BilinearForm, vectors: Array) -> Array:
+    """A form applied to columns (n, k), without a matrix."""
+    source, target = form.space.ndof, np.empty_like(vectors)
+    x, y = ngsolve.BaseVector(source), ngsolve.BaseVector(source)
+    for number in range(vectors.shape[1]):
+        x.FV().NumPy()[:] = vectors[:, number]
+        form.Apply(x, y)
+        target[:, number] = y.FV().NumPy()
+    return target
+
+
+def stroke_force(space: Field, frame: Frame, length: float) -> Array:
+    """Forces (n,) of a unit free stroke: int C e0 : strain(v) dV with the imposed strain e0 = x x^T / length along the frame's x axis."""
+    axis = np.outer(frame.rotation[:, 0], frame.rotation[:, 0]) / length
+    imposed = ngsolve.CoefficientFunction(tuple(axis.ravel()), dims=(3, 3))
+    v = space.space.TestFunction()
+    form = ngsolve.LinearForm(space.space)
+    # Strains of v are per mm: one factor 1e3; the volume 1e-9.
+    form += MILLIMETRES * _PER_VOLUME * ngsolve.InnerProduct(space.stress(imposed), strain(v)) * ngsolve.dx
+    form.Assemble()
+    return np.array(form.vec.FV().NumPy())
+
+
+def rigid(space: Field, frame: Frame, weight: ngsolve.CoefficientFunction | None = None, faces: str | None = None) -> Array:
+    """The six rigid motions (n, 6) in a frame's axes about its origin, times a weight; on some faces only if named.
+
+    Translations of 1 m and rotations of 1 rad.
+    """
+    columns = [_rigid_motion(frame, axis) for axis in range(6)]
+    if weight is not None:
+        columns = [weight * column for column in columns]
+    return _interpolated(space, columns, faces)
+
+
+def _rigid_motion(frame: Frame, axis: int) -> ngsolve.CoefficientFunction:
+    direction = frame.rotation[:, axis % 3]
+    if axis < 3:
+        return ngsolve.CoefficientFunction(tuple(float(value) for value in direction))
+    arm = [coordinate * (1.0 / MILLIMETRES) - float(at) for coordinate, at in zip(_coordinates(), frame.position, strict=True)]
+    a, b, c = (float(value) for value in direction)
+    return ngsolve.CoefficientFunction((b * arm[2] - c * arm[1], c * arm[0] - a * arm[2], a * arm[1] - b * arm[0]))
+
+
+def _coordinates() -> tuple[ngsolve.CoefficientFunction, ...]:
+    return ngsolve.x, ngsolve.y, ngsolve.z
+
+
+def _interpolated(space: Field, columns: list[ngsolve.CoefficientFunction], faces: str | None) -> Array:
+    result = np.empty((space.size, len(columns)))
+    function = ngsolve.GridFunction(space.space)
+    mesh = space.meshed.mesh
+    for number, column in enumerate(columns):
+        if faces is None:
+            function.Set(column, dual=False)
+        else:
+            function.Set(column, definedon=mesh.Boundaries(_escaped(faces)))
+        result[:, number] = function.vec.FV().NumPy()
+    return result
+
+
+def ramp(frame: Frame, half: float) -> ngsolve.CoefficientFunction:
+    """From 0 to 1 along a frame's x axis, over the middle half of a link of half length `half` [m]."""
+    axis = [float(value) for value in frame.rotation[:, 0]]
+    along = sum(
+        direction * (coordinate * (1.0 / MILLIMETRES) - float(at))
+        for direction, coordinate, at in zip(axis, _coordinates(), frame.position, strict=True)
+    )
+    value = 0.5 + along / half
+    return ngsolve.IfPos(value, ngsolve.IfPos(1.0 - value, value, 1.0), 0.0)
+
+
+Solver = Callable[[Array], Array]
+
+
+def factored(space: Field, form: ngsolve.BilinearForm) -> Solver:
+    """Solve with a form's matrix on the free degrees of freedom: columns (n, k) of forces to columns of displacements, zero where held."""
+    inverse = form.mat.Inverse(space.space.FreeDofs(), inverse="sparsecholesky")
+    x, y = form.mat.CreateColVector(), form.mat.CreateColVector()
+
+    def solve(forces: Array) -> Array:
+        columns = forces if forces.ndim == 2 else forces[:, None]
+        result = np.empty_like(columns)
+        for number in range(columns.shape[1]):
+            x.FV().NumPy()[:] = columns[:, number]
+            y.data = inverse * x
+            result[:, number] = y.FV().NumPy()
+        return result if forces.ndim == 2 else result[:, 0]
+
+    return solve

@@ -1,0 +1,137 @@
+"""Pieces: the parts and bodies of a stage as single solids, each with its medium, before anything is drawn."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import numpy as np
+
+from flexstage.base.finding import Finding
+from flexstage.base.number import Number
+from flexstage.mechanism.expand import PlacedLink
+from flexstage.parts.body import Block, Cylinder
+from flexstage.parts.leaf import Leaf
+from flexstage.parts.material import Material
+from flexstage.parts.neck import Neck
+from flexstage.parts.notch import Notch
+from flexstage.parts.part import Part, Restricted
+from flexstage.parts.piezo import Piezo
+from flexstage.parts.profile import length
+from flexstage.parts.rod import Rod
+from flexstage.spatial.frame import Frame
+
+Form: TypeAlias = Notch | Neck | Leaf | Rod | Piezo | Block | Cylinder
+"""What can be drawn: given 6x6 parts and ideal joints have no shape."""
+
+
+@dataclass(frozen=True)
+class Medium:
+    """An isotropic elastic medium: Young's modulus [Pa], Poisson's ratio, density [kg/m^3]."""
+
+    young: float
+    poisson: float
+    density: float
+
+    @property
+    def shear(self) -> float:
+        """Shear modulus G = E / (2 (1 + nu)) [Pa].
+
+        >>> Medium(260.0, 0.3, 1.0).shear
+        100.0
+        """
+        return self.young / (2.0 * (1.0 + self.poisson))
+
+    @property
+    def lame(self) -> float:
+        """First Lame constant E nu / ((1 + nu) (1 - 2 nu)) [Pa].
+
+        >>> Medium(1.0, 0.25, 1.0).lame
+        0.4
+        """
+        return self.young * self.poisson / ((1.0 + self.poisson) * (1.0 - 2.0 * self.poisson))
+
+
+@dataclass(frozen=True, eq=False)
+class Piece:
+    """One solid to draw: its address (`B1/front`, `platform.plate`), form, medium and frame.
+
+    A link's form is drawn at its frame's origin, x along it; a body's solid at its centre. `body` names the body it belongs to (absent for
+    links).
+    """
+
+    name: str
+    form: Form
+    medium: Medium
+    frame: Frame
+    body: str | None = None
+
+
+def medium(material: Material) -> Medium:
+    """The medium of a material.
+
+    >>> medium(Material(young=200e9, poisson=0.3, density=7750.0)).density
+    7750.0
+    """
+    return Medium(_single(material.young), _single(material.poisson), _single(material.density))
+
+
+def stack_medium(stack: Piezo) -> Medium:
+    """The medium of a stack's ceramic: E = k L / A from its axial stiffness, density from its mass.
+
+    >>> round(stack_medium(Piezo(stroke=1e-4, stiffness=17e6, length=0.162, diameter=0.01, mass=0.1)).young / 1e9, 2)
+    35.07
+    """
+    area = 0.25 * np.pi * _single(stack.diameter) ** 2
+    size = _single(stack.length)
+    return Medium(_single(stack.stiffness) * size / area, _single(stack.poisson), _single(stack.mass) / (area * size))
+
+
+def drawable(link: PlacedLink) -> Form | Finding:
+    """The form of a link's part, or why it has none."""
+    part: Part = link.part
+    if isinstance(part, Restricted):
+        return Finding(
+            link.name, "some of its freedoms are locked or freed by a restriction", "A solid has all of them: read the unrestricted stage"
+        )
+    if isinstance(part, (Notch, Neck, Leaf, Rod, Piezo)):
+        return part
+    return Finding(
+        link.name, f"a part of kind {type(part).__name__.lower()} has no shape", "Give it a form that can be drawn, or join rigid bodies"
+    )
+
+
+def span(form: Form) -> float:
+    """Length of a link's form between its end faces [m].
+
+    >>> from flexstage.parts.profile import Circular
+    >>> span(Notch("steel", 1e-3, 1e-2, Circular(5e-3)))
+    0.01
+    """
+    if isinstance(form, (Notch, Neck)):
+        return _single(length(form.profile))
+    if isinstance(form, Block):
+        return _single(form.size[0])
+    return _single(form.length)
+
+
+def thinnest(form: Form) -> float:
+    """Smallest dimension of a form [m]: it sets the mesh there.
+
+    >>> thinnest(Block("steel", (0.1, 0.02, 0.03)))
+    0.02
+    """
+    if isinstance(form, Block):
+        return min(_single(value) for value in form.size)
+    if isinstance(form, Cylinder):
+        wall = _single(form.diameter) if form.bore is None else 0.5 * (_single(form.diameter) - _single(form.bore))
+        return min(wall, _single(form.length))
+    if isinstance(form, (Rod, Piezo)):
+        return _single(form.diameter)
+    width = form.width if form.width is not None else form.thickness
+    return min(_single(form.thickness), _single(width))
+
+
+def _single(value: Number) -> float:
+    """One design's number; batches have no single solid."""
+    return float(np.real(value))

@@ -1,0 +1,213 @@
+"""Reduction of a component by Craig and Bampton's method (AIAA J. 6, 1313, 1968), with attachment motions for the loads within.
+
+u = sum of rigid motions of the interface faces and their static continuation + fixed-interface modes + static response, faces held, to a
+wrench on each body and to each stroke: statics under these loads is that of the full model, whatever the number of modes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import ngsolve
+import numpy as np
+import scipy.sparse as sparse
+from scipy.sparse.linalg import LinearOperator, eigsh
+
+from flexstage.base.number import Array
+from flexstage.parts.piezo import Piezo
+from flexstage.readings.solid.component import Component
+from flexstage.readings.solid.field import Field, Solver, applied, factored, field, inertia, ramp, rigid, stiffness, stroke_force
+from flexstage.readings.solid.mesh import Fineness, Meshed, meshed
+from flexstage.readings.solid.piece import span
+from flexstage.readings.solid.skin import skin
+from flexstage.readings.solid.superelement import Superelement
+from flexstage.spatial.frame import Frame, identity, transport
+
+_DEPENDENT = 1e-9
+
+
+@dataclass(frozen=True)
+class Reduction:
+    """How a component is reduced: mesh and order, and how many fixed-interface modes it keeps."""
+
+    fineness: Fineness = Fineness()
+    modes: int = 12
+
+
+@dataclass(frozen=True, eq=False)
+class _Problem:
+    component: Component
+    field: Field
+    stiffness: ngsolve.BilinearForm
+    inertia: ngsolve.BilinearForm
+    solve: Solver
+
+
+def reduced(component: Component, reduction: Reduction) -> Superelement:
+    """Mesh, assemble and reduce a component."""
+    problem = _problem(component, meshed(component, reduction.fineness), reduction.fineness.order)
+    faces = _continued(problem)
+    strokes = {str(number): force for number, force in _strokes(problem).items()}
+    loads = [_wrenches(problem, body) for body in component.bodies] + [force[:, None] for force in strokes.values()]
+    inner = _independent(problem, [_modes(problem, reduction.modes), *(problem.solve(load) for load in loads)])
+    basis = np.hstack([faces, inner])
+    return _projected(problem, basis, strokes)
+
+
+def _problem(component: Component, mesh: Meshed, order: int) -> _Problem:
+    held = [item.joint.name for item in component.interfaces] + [joint.name for joint in component.fixed]
+    space = field(mesh, held, order)
+    elastic, mass = stiffness(space), inertia(space)
+    return _Problem(component, space, elastic, mass, factored(space, elastic))
+
+
+def _continued(problem: _Problem) -> Array:
+    """Motions (n, 6 m) with one interface face moved rigidly and all others held: u = R - K_ff^-1 K R."""
+    columns = []
+    for item in problem.component.interfaces:
+        frame = Frame(np.eye(3), item.joint.frame.position)
+        moved = rigid(problem.field, frame, faces=item.joint.name)
+        columns.append(moved - problem.solve(_times(problem.stiffness, moved)))
+    return np.hstack(columns) if columns else np.zeros((problem.field.size, 0))
+
+
+def _times(form: ngsolve.BilinearForm, vectors: Array) -> Array:
+    x, y = form.mat.CreateRowVector(), form.mat.CreateColVector()
+    result = np.empty_like(vectors)
+    for number in range(vectors.shape[1]):
+        x.FV().NumPy()[:] = vectors[:, number]
+        y.data = form.mat * x
+        result[:, number] = y.FV().NumPy()
+    return result
+
+
+def _strokes(problem: _Problem) -> dict[int, Array]:
+    return {
+        number: stroke_force(problem.field, piece.frame, span(piece.form))
+        for number, piece in enumerate(problem.component.pieces)
+        if isinstance(piece.form, Piezo)
+    }
+
+
+def groups(component: Component) -> dict[str, tuple[int, ...]]:
+    """Pieces that share a name in the model: every link by itself, all solids of a body together."""
+    result: dict[str, tuple[int, ...]] = {}
+    for number, piece in enumerate(component.pieces):
+        name = piece.name if piece.body is None else piece.body
+        result[name] = (*result.get(name, ()), number)
+    return result
+
+
+def _elements(problem: _Problem, name: str) -> Array:
+    return np.isin(problem.field.meshed.owner, groups(problem.component)[name])
+
+
+def _wrenches(problem: _Problem, body: str) -> Array:
+    """Forces (n, 6) of unit wrenches on a body, spread over its mass: M R (R^T M R)^-1."""
+    frame = Frame(np.eye(3), problem.component.bodies[body])
+    motion = rigid(problem.field, frame)
+    momentum = applied(inertia(problem.field, _elements(problem, body), assemble=False), motion)
+    return momentum @ np.linalg.inv(motion.T @ momentum)
+
+
+def _modes(problem: _Problem, count: int) -> Array:
+    """The lowest fixed-interface modes (n, count), by shift and invert at zero."""
+    free = np.flatnonzero(problem.field.free)
+    count = min(count, len(free) - 2)
+    if count <= 0:
+        return np.zeros((problem.field.size, 0))
+    mass = _sparse(problem.inertia)[free][:, free]
+    elastic = _sparse(problem.stiffness)[free][:, free]
+    full = np.zeros(problem.field.size)
+
+    def inverse(force: Array) -> Array:
+        full[free] = force.ravel()
+        return problem.solve(full)[free]
+
+    operator = LinearOperator(elastic.shape, matvec=inverse, dtype=float)
+    start = np.random.default_rng(0).standard_normal(len(free))
+    _, vectors = eigsh(elastic, k=count, M=mass, sigma=0.0, OPinv=operator, v0=start, tol=1e-9)
+    result = np.zeros((problem.field.size, count))
+    result[free] = vectors
+    return result
+
+
+def _sparse(form: ngsolve.BilinearForm) -> sparse.csr_matrix:
+    values, columns, rows = form.mat.CSR()
+    return sparse.csr_matrix((np.asarray(values), np.asarray(columns), np.asarray(rows)))
+
+
+def _independent(problem: _Problem, motions: list[Array]) -> Array:
+    """An independent set spanning the motions, orthonormal in strain energy."""
+    everything = np.hstack(motions)
+    energy = everything.T @ _times(problem.stiffness, everything)
+    scale = 1.0 / np.sqrt(np.maximum(np.diag(energy), np.finfo(float).tiny))
+    values, vectors = np.linalg.eigh(0.5 * (energy + energy.T) * scale * scale[:, None])
+    kept = values > _DEPENDENT
+    return everything @ (scale[:, None] * vectors[:, kept] / np.sqrt(values[kept]))
+
+
+def _projected(problem: _Problem, basis: Array, strokes: Mapping[str, Array]) -> Superelement:
+    component, space = problem.component, problem.field
+    elastic: dict[str, Array] = {}
+    mass: dict[str, Array] = {}
+    bodies: dict[str, Array] = {}
+    moving: dict[str, Array] = {}
+    resultants: dict[str, Array] = {}
+    names = groups(component)
+    for name in names:
+        elements = _elements(problem, name)
+        forces = applied(stiffness(space, elements, assemble=False), basis)
+        momentum = applied(inertia(space, elements, assemble=False), basis)
+        elastic[name], mass[name] = _symmetric(basis.T @ forces), _symmetric(basis.T @ momentum)
+        if name in component.bodies:
+            motion = rigid(space, Frame(np.eye(3), component.bodies[name]))
+            own = motion.T @ applied(inertia(space, elements, assemble=False), motion)
+            bodies[name], moving[name] = np.linalg.solve(own, motion.T @ momentum), _symmetric(own)
+        else:
+            resultants[name] = _sections(problem, names[name][0]).T @ forces
+    everything = rigid(space, identity())
+    carried = basis.T @ _times(problem.inertia, everything)
+    named = {component.pieces[int(number)].name: force for number, force in strokes.items()}
+    law = sum(elastic.values(), np.zeros((basis.shape[1],) * 2))
+    projected = {name: basis.T @ force for name, force in named.items()}
+    return Superelement(
+        interfaces=len(component.interfaces),
+        stiffness=elastic,
+        inertia=mass,
+        bodies=bodies,
+        body_inertia=moving,
+        resultants=resultants,
+        strokes=projected,
+        free_strokes={name: _free_stroke(law, force) for name, force in projected.items()},
+        rigid=_rigid_coordinates(component, basis.shape[1]),
+        carried=carried,
+        skin=skin(space, basis),
+        freedoms=space.size,
+        elements=space.meshed.mesh.ne,
+    )
+
+
+def _sections(problem: _Problem, number: int) -> Array:
+    """Test motions (n, 6) that move a link's second side against its first, in its frame about its centre."""
+    piece = problem.component.pieces[number]
+    return rigid(problem.field, piece.frame, weight=ramp(piece.frame, 0.5 * span(piece.form)))
+
+
+def _free_stroke(law: Array, force: Array) -> Array:
+    """Coordinates of the unconstrained stroke: law e = force, of least size (rigid motions left out)."""
+    scale = 1.0 / np.sqrt(np.maximum(np.diag(law), np.finfo(float).tiny))
+    return scale * (np.linalg.pinv(law * scale * scale[:, None], rcond=1e-10, hermitian=True) @ (scale * force))
+
+
+def _rigid_coordinates(component: Component, size: int) -> Array:
+    result = np.zeros((size, 6))
+    for number, item in enumerate(component.interfaces):
+        arm = item.joint.frame.position
+        result[6 * number : 6 * number + 6] = transport(arm)
+    return result
+
+
+def _symmetric(matrix: Array) -> Array:
+    return 0.5 * (matrix + matrix.T)

@@ -1,0 +1,52 @@
+"""Superelements: a component reduced to its interfaces and a few motions within."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from flexstage.base.number import Array
+
+
+@dataclass(frozen=True, eq=False)
+class Skin:
+    """The surface for pictures: `vertices` (v, 3) [m], `triangles` (t, 3), `motion` (v, 3, n) of the vertices per coordinate, `stress`
+    (v, 6, n) at them as xx, yy, zz, xy, yz, zx [Pa], and the piece (index) of each triangle.
+    """
+
+    vertices: Array
+    triangles: Array
+    motion: Array
+    stress: Array
+    owner: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Superelement:
+    """A component reduced, in its own axes: six coordinates an interface (its twist, at its own point), then `internal` ones.
+
+    `stiffness` and `inertia` per piece group (links and bodies by position in the component), (n, n). `bodies` (6, n) mean twists and
+    `body_inertia` (6, 6) the inertia they carry (what is left of `inertia` is elastic motion within the body),
+    `resultants` (6, n) at links' centres in their frames, `strokes` (n,) forces of a unit free stroke with the `free` coordinates of the
+    unconstrained stroke and `stroke_resultants` (6,) it takes off. `rigid` (n, 6) is a rigid motion about the component's origin (only
+    where nothing is fixed), `carried` (n, 6) the inertial forces of a unit rigid acceleration.
+    """
+
+    interfaces: int
+    stiffness: Mapping[str, Array]
+    inertia: Mapping[str, Array]
+    bodies: Mapping[str, Array]
+    body_inertia: Mapping[str, Array]
+    resultants: Mapping[str, Array]
+    strokes: Mapping[str, Array]
+    free_strokes: Mapping[str, Array]
+    rigid: Array
+    carried: Array
+    skin: Skin
+    freedoms: int
+    elements: int
+
+    @property
+    def size(self) -> int:
+        """Number of coordinates."""
+        return self.rigid.shape[0]
