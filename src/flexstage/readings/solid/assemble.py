@@ -217,10 +217,11 @@ def _check_held(model: _Model, elastic: Mapping[str, Contribution]) -> None:
     values, vectors = np.linalg.eigh(stiffness * scale * scale[:, None])
     if values[0] <= _SINGULAR:
         motion = np.abs(vectors[:, 0] * scale)
-        moving = dict.fromkeys(model.names[index].rpartition(".")[0] for index in np.argsort(motion)[::-1][:12])
+        owners = dict.fromkeys(model.names[index].rpartition(".")[0] for index in np.argsort(motion)[::-1][:12])
+        moving = ", ".join(name for name in owners if name)
         raise refuse(
             "stage",
-            f"some motion has no stiffness (lowest scaled eigenvalue {values[0]:.2g}); it moves {', '.join(name for name in moving if name)}",
+            f"some motion has no stiffness (lowest scaled eigenvalue {values[0]:.2g}); it moves {moving}",
             "Join it to the ground: a link whose end face meets neither body, or a unit without foot, leaves it free",
         )
 

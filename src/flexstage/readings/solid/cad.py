@@ -16,6 +16,8 @@ from flexstage.readings.solid.piece import Medium, Piece
 
 _TOLERANCE = 1e-3
 """Faces match within this distance [mm]."""
+_AREA = 1e-4
+"""... and within this share of their area."""
 
 
 @dataclass(frozen=True)
@@ -77,20 +79,25 @@ def _stamped(shape: occ.TopoDS_Shape, interfaces: Sequence[Interface]) -> occ.To
 
 def _name_face(shape: occ.TopoDS_Shape, joint: Joint) -> Finding | None:
     origin, normal = joint.frame.position * MILLIMETRES, joint.frame.rotation[:, 0]
-    nearest, distance = None, np.inf
-    for face in shape.faces:
-        if not _is_flat(face, origin, normal):
-            continue
-        away = float(np.linalg.norm(_coordinates(face.center) - origin))
-        if away < distance:
-            nearest, distance = face, away
-    if nearest is None or distance > _TOLERANCE:
-        found = "no flat face there" if nearest is None else f"the nearest flat face's centre is {distance:.3g} mm away"
+    flat = [face for face in shape.faces if _is_flat(face, origin, normal)]
+    # A face around the joint (an annulus) has the same centre: the area tells them apart.
+    area = joint.area * MILLIMETRES**2
+    nearest = min(flat, key=lambda face: abs(face.mass - area) / area + _away(face, origin) / np.sqrt(area), default=None)
+    if nearest is None or _away(nearest, origin) > _TOLERANCE or abs(nearest.mass - area) > _AREA * area:
+        found = (
+            "no flat face there"
+            if nearest is None
+            else f"the likeliest face there has {nearest.mass:.4g} mm^2 instead of {area:.4g}, its centre {_away(nearest, origin):.3g} mm away"
+        )
         return Finding(
             joint.name, f"the end face of {joint.link} does not meet {joint.body}: {found}", "Move the outline to touch it fully"
         )
     nearest.name = joint.name
     return None
+
+
+def _away(face: occ.Face, origin: Array) -> float:
+    return float(np.linalg.norm(_coordinates(face.center) - origin))
 
 
 def _is_flat(face: occ.Face, origin: Array, normal: Array) -> bool:

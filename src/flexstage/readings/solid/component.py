@@ -8,7 +8,7 @@ Stacks stand alone, between rigid end caps. Components drawn in their unit's fra
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -18,18 +18,19 @@ from flexstage.mechanism.expand import Assembly, PlacedLink, copies, expand
 from flexstage.mechanism.mechanism import GROUND, Mechanism
 from flexstage.parts.material import Material
 from flexstage.parts.piezo import Piezo
-from flexstage.readings.solid.piece import Form, Piece, drawable, medium, span, stack_medium
+from flexstage.readings.solid.piece import Form, Piece, drawable, end_area, medium, span, stack_medium
 from flexstage.spatial.frame import Frame, identity
 
 
 @dataclass(frozen=True, eq=False)
 class Joint:
-    """Where a link's end face meets a body: its name (`B1/front:platform`) and frame, x along the link out of its end face."""
+    """Where a link's end face meets a body: its name (`B1/front:platform`), frame, x along the link out of its end face, and area [m^2]."""
 
     name: str
     link: str
     body: str
     frame: Frame
+    area: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,7 +98,8 @@ def link_joints(link: PlacedLink, form: Form) -> tuple[Joint, Joint]:
     first, second = link.joins
     about = Frame(link.frame.rotation @ np.diag([-1.0, -1.0, 1.0]), link.frame.point(np.array([-half, 0.0, 0.0])))
     along = Frame(link.frame.rotation, link.frame.point(np.array([half, 0.0, 0.0])))
-    return Joint(f"{link.name}:{first}", link.name, first, about), Joint(f"{link.name}:{second}", link.name, second, along)
+    area = end_area(form)
+    return Joint(f"{link.name}:{first}", link.name, first, about, area), Joint(f"{link.name}:{second}", link.name, second, along, area)
 
 
 def is_elastic(assembly: Assembly, body: str) -> bool:
@@ -200,7 +202,7 @@ def _footprints(graph: _Graph, bodies: list[str], owner: str) -> list[Interface]
 
 
 def _placed(joint: Joint, place: Frame) -> Joint:
-    return Joint(joint.name, joint.link, joint.body, _seen(joint.frame, place))
+    return replace(joint, frame=_seen(joint.frame, place))
 
 
 def _seen(frame: Frame, place: Frame) -> Frame:

@@ -10,6 +10,7 @@ import numpy as np
 from flexstage.base.finding import Finding
 from flexstage.base.number import Number
 from flexstage.mechanism.expand import PlacedLink
+from flexstage.mechanism.outline import rise
 from flexstage.parts.body import Block, Cylinder
 from flexstage.parts.leaf import Leaf
 from flexstage.parts.material import Material
@@ -113,6 +114,28 @@ def span(form: Form) -> float:
     if isinstance(form, Block):
         return _single(form.size[0])
     return _single(form.length)
+
+
+def end_area(form: Form) -> float:
+    """Area of a link form's end faces [m^2].
+
+    >>> from flexstage.parts.profile import Straight
+    >>> round(end_area(Neck("steel", 2e-3, Straight(1e-2), width=3e-3)) * 1e6, 9)
+    6.0
+    """
+    if isinstance(form, (Rod, Piezo)):
+        return 0.25 * np.pi * _single(form.diameter) ** 2
+    if isinstance(form, Block):
+        return _single(form.size[1]) * _single(form.size[2])
+    if isinstance(form, Cylinder):
+        return 0.25 * np.pi * (_single(form.diameter) ** 2 - (0.0 if form.bore is None else _single(form.bore) ** 2))
+    if isinstance(form, Leaf):
+        return _single(form.thickness) * _single(form.width)
+    grown = 2.0 * _single(rise(form.profile))
+    height = _single(form.thickness) + grown
+    if isinstance(form, Notch):
+        return height * _single(form.width)
+    return 0.25 * np.pi * height**2 if form.width is None else height * (_single(form.width) + grown)
 
 
 def thinnest(form: Form) -> float:
