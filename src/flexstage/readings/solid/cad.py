@@ -55,14 +55,15 @@ def _fused(pieces: Sequence[Piece]) -> occ.TopoDS_Shape:
 
 
 def _in_pieces(component: Component, shape: occ.TopoDS_Shape) -> Iterator[Finding]:
-    """Glued media share faces; anything else that falls apart has a gap."""
-    found = len(shape.solids)
-    expected = len({piece.medium for piece in component.pieces})
-    if found > expected:
+    """Solids that share faces, glued media included, hang together; anything else that falls apart has a gap."""
+    groups: list[set[tuple[float, ...]]] = []
+    for solid in shape.solids:
+        faces = {tuple(np.round((*_coordinates(face.center), face.mass), 6)) for face in solid.faces}
+        touching = [group for group in groups if group & faces]
+        groups = [group for group in groups if not group & faces] + [set.union(faces, *touching)]
+    if len(groups) > 1:
         names = ", ".join(piece.name for piece in component.pieces)
-        yield Finding(
-            component.name, f"its pieces ({names}) form {found} separate solids instead of {expected}", "Let their outlines touch"
-        )
+        yield Finding(component.name, f"its pieces ({names}) fall into {len(groups)} separate solids", "Let their outlines touch")
 
 
 def _stamped(shape: occ.TopoDS_Shape, interfaces: Sequence[Interface]) -> occ.TopoDS_Shape:

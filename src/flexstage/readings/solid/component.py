@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
+from enum import Enum
 
 import numpy as np
 
@@ -66,7 +67,14 @@ class _Graph:
     owner: Mapping[str, str]
 
 
-def components(mechanism: Mechanism) -> tuple[Component, ...]:
+class Cut(Enum):
+    """Where a stage is cut: at units and stacks, or nowhere (stacks keep their rigid end caps)."""
+
+    UNITS = "units"
+    NONE = "none"
+
+
+def components(mechanism: Mechanism, cut: Cut = Cut.UNITS) -> tuple[Component, ...]:
     """Cut a stage into components, each in its own axes.
 
     Raises `DesignError` naming every link that has no shape.
@@ -78,7 +86,7 @@ def components(mechanism: Mechanism) -> tuple[Component, ...]:
     assembly = expand(mechanism)
     forms = _forms(assembly)
     joints = {name: link_joints(assembly.links[name], form) for name, form in forms.items()}
-    graph = _Graph(assembly, mechanism.materials, forms, joints, _owners(assembly, forms))
+    graph = _Graph(assembly, mechanism.materials, forms, joints, _owners(assembly, forms, cut))
     frames = {name: frame for name, _, frame in copies(mechanism)}
     members: dict[str, list[str]] = {}
     for node, owner in graph.owner.items():
@@ -117,16 +125,14 @@ def _group(name: str) -> str:
     return name.rpartition("/")[0]
 
 
-def _owners(assembly: Assembly, forms: Mapping[str, Form]) -> dict[str, str]:
+def _owners(assembly: Assembly, forms: Mapping[str, Form], cut: Cut) -> dict[str, str]:
     """Which component each elastic body and link belongs to, named after its first body (a lone link: itself)."""
     bodies = [body for body in assembly.bodies if is_elastic(assembly, body)]
     nodes = sorted([*bodies, *forms], key=lambda name: _order(assembly, name))
     owner = {node: node for node in nodes}
     for name, form in forms.items():
-        if isinstance(form, Piezo):
-            continue
         for body in assembly.links[name].joins:
-            if body in owner and _group(body) == _group(name):
+            if body in owner and (cut is Cut.NONE or (_group(body) == _group(name) and not isinstance(form, Piezo))):
                 _unite(owner, name, body)
     return {node: _root(owner, node) for node in nodes}
 
@@ -187,7 +193,8 @@ def _link_pieces(graph: _Graph, links: list[str]) -> Iterator[Piece]:
 
 
 def _own_joints(graph: _Graph, links: list[str], owner: str) -> tuple[list[Interface], list[Joint]]:
-    joints = [joint for name in links for joint in graph.joints[name] if graph.owner.get(joint.body) != owner]
+    ends = [joint for name in links for joint in graph.joints[name]]
+    joints = [joint for joint in ends if graph.owner.get(joint.body) != owner or isinstance(graph.forms[joint.link], Piezo)]
     free = [Interface(joint) for joint in joints if joint.body != GROUND]
     return free, [joint for joint in joints if joint.body == GROUND]
 

@@ -6,12 +6,11 @@ wrench on each body and to each stroke: statics under these loads is that of the
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import ngsolve
 import numpy as np
-import scipy.sparse as sparse
 from scipy.sparse.linalg import LinearOperator, eigsh
 
 from flexstage.base.number import Array
@@ -25,6 +24,7 @@ from flexstage.readings.solid.superelement import Superelement
 from flexstage.spatial.frame import Frame, identity, transport
 
 _DEPENDENT = 1e-9
+_EIGENVALUES = 1e-9
 
 
 @dataclass(frozen=True)
@@ -44,13 +44,17 @@ class _Problem:
     solve: Solver
 
 
-def reduced(component: Component, reduction: Reduction) -> Superelement:
-    """Mesh, assemble and reduce a component."""
+def reduced(component: Component, reduction: Reduction, springs: Array | None = None) -> Superelement:
+    """Mesh, assemble and reduce a component.
+
+    With `springs` (6 m, 6 m) between its interfaces the modes kept are those of the component free at its interfaces and joined by the
+    springs, in place of the fixed-interface modes: so a whole stage in one piece has its own modes, exactly.
+    """
     problem = _problem(component, meshed(component, reduction.fineness), reduction.fineness.order)
     faces = _continued(problem)
     strokes = {str(number): force for number, force in _strokes(problem).items()}
     loads = [_wrenches(problem, body) for body in component.bodies] + [force[:, None] for force in strokes.values()]
-    inner = _independent(problem, [_modes(problem, reduction.modes), *(problem.solve(load) for load in loads)])
+    inner = _independent(problem, [_modes(problem, reduction.modes, faces, springs), *(problem.solve(load) for load in loads)])
     basis = np.hstack([faces, inner])
     return _projected(problem, basis, strokes)
 
@@ -111,31 +115,43 @@ def _wrenches(problem: _Problem, body: str) -> Array:
     return momentum @ np.linalg.inv(motion.T @ momentum)
 
 
-def _modes(problem: _Problem, count: int) -> Array:
-    """The lowest fixed-interface modes (n, count), by shift and invert at zero."""
+def _modes(problem: _Problem, count: int, faces: Array, springs: Array | None) -> Array:
+    """The lowest modes (n, count) by shift and invert at zero: with interfaces fixed, or free and joined by springs.
+
+    Motions are u = v + faces q with v zero on the interfaces: the stiffness is then diag(K, S), S = faces^T K faces + springs.
+    """
     free = np.flatnonzero(problem.field.free)
-    count = min(count, len(free) - 2)
+    joined = faces if springs is not None else faces[:, :0]
+    boundary = joined.T @ _times(problem.stiffness, joined) + (springs if springs is not None else 0.0)
+    size = len(free) + joined.shape[1]
+    count = min(count, size - 2)
     if count <= 0:
         return np.zeros((problem.field.size, 0))
-    mass = _sparse(problem.inertia)[free][:, free]
-    elastic = _sparse(problem.stiffness)[free][:, free]
-    full = np.zeros(problem.field.size)
+
+    def motion(x: Array) -> Array:
+        full = joined @ x[len(free) :]
+        full[free] += x[: len(free)]
+        return full
+
+    def weighed(x: Array) -> Array:
+        force = _times(problem.inertia, motion(x.ravel())[:, None])[:, 0]
+        return np.concatenate([force[free], joined.T @ force])
 
     def inverse(force: Array) -> Array:
-        full[free] = force.ravel()
-        return problem.solve(full)[free]
+        full = np.zeros(problem.field.size)
+        full[free] = force.ravel()[: len(free)]
+        return np.concatenate([problem.solve(full)[free], np.linalg.solve(boundary, force.ravel()[len(free) :])])
 
-    operator = LinearOperator(elastic.shape, matvec=inverse, dtype=float)
-    start = np.random.default_rng(0).standard_normal(len(free))
-    _, vectors = eigsh(elastic, k=count, M=mass, sigma=0.0, OPinv=operator, v0=start, tol=1e-9)
+    start = np.random.default_rng(0).standard_normal(size)
+    mass, solve = (_operator(size, function) for function in (weighed, inverse))
+    _, vectors = eigsh(solve, k=count, M=mass, sigma=0.0, OPinv=solve, v0=start, tol=_EIGENVALUES)  # with OPinv the first is not used
     result = np.zeros((problem.field.size, count))
-    result[free] = vectors
+    result[free] = vectors[: len(free)]
     return result
 
 
-def _sparse(form: ngsolve.BilinearForm) -> sparse.csr_matrix:
-    values, columns, rows = form.mat.CSR()
-    return sparse.csr_matrix((np.asarray(values), np.asarray(columns), np.asarray(rows)))
+def _operator(size: int, function: Callable[[Array], Array]) -> LinearOperator:
+    return LinearOperator((size, size), matvec=function, dtype=float)  # pyright: ignore[reportCallIssue]  (its stubs know only __new__)
 
 
 def _independent(problem: _Problem, motions: list[Array]) -> Array:
@@ -170,7 +186,6 @@ def _projected(problem: _Problem, basis: Array, strokes: Mapping[str, Array]) ->
     everything = rigid(space, identity())
     carried = basis.T @ _times(problem.inertia, everything)
     named = {component.pieces[int(number)].name: force for number, force in strokes.items()}
-    law = sum(elastic.values(), np.zeros((basis.shape[1],) * 2))
     projected = {name: basis.T @ force for name, force in named.items()}
     return Superelement(
         interfaces=len(component.interfaces),
@@ -180,7 +195,7 @@ def _projected(problem: _Problem, basis: Array, strokes: Mapping[str, Array]) ->
         body_inertia=moving,
         resultants=resultants,
         strokes=projected,
-        free_strokes={name: _free_stroke(law, force) for name, force in projected.items()},
+        free_strokes={name: _free_stroke(elastic[name], force) for name, force in projected.items()},
         rigid=_rigid_coordinates(component, basis.shape[1]),
         carried=carried,
         skin=skin(space, basis),

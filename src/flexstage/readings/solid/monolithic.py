@@ -1,0 +1,49 @@
+"""Monolithic solve: the whole stage in one mesh, the check of the substructured one."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from flexstage.base.digest import digest
+from flexstage.base.number import Array
+from flexstage.mechanism.expand import Assembly, expand
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.readings.linear.model import LinearModel
+from flexstage.readings.solid.assemble import linear_model
+from flexstage.readings.solid.casing import casing
+from flexstage.readings.solid.component import Component, Cut, components
+from flexstage.readings.solid.reduce import Reduction, reduced
+from flexstage.spatial.frame import Frame, seen_at
+
+
+def monolithic(mechanism: Mechanism, reduction: Reduction) -> LinearModel:
+    """Read a stage as one elastic solid: no interface is held rigid but the end caps of stacks.
+
+    The model is exact in statics and for its lowest `reduction.modes` modes where all bodies are elastic and no payload is carried;
+    it costs the time and memory of the whole mesh. Same names of inputs and outputs as `solid`.
+    """
+    assembly = expand(mechanism)
+    parts = components(mechanism, Cut.NONE)
+    joined = tuple((part, reduced(part, reduction, _springs(assembly, part))) for part in parts)
+    return linear_model(mechanism, assembly, joined, f"monolithic solid reading of {digest(mechanism, physics=True)[:16]}")
+
+
+def _springs(assembly: Assembly, component: Component) -> Array:
+    """Stiffness (6 m, 6 m) of the casings between a component's interfaces, in its axes."""
+    total = np.zeros((6 * len(component.interfaces),) * 2)
+    for piece in component.pieces:
+        law = None if piece.body is not None else casing(assembly.links[piece.name])
+        if law is not None:
+            across = _across(component, piece.name, piece.frame, assembly.links[piece.name].joins[1])
+            total += across.T @ law @ across
+    return total
+
+
+def _across(component: Component, link: str, frame: Frame, second: str) -> Array:
+    """Relative twist (6, 6 m) of a link's end faces, second against first, at its centre in its frame."""
+    rows = np.zeros((6, 6 * len(component.interfaces)))
+    for number, item in enumerate(component.interfaces):
+        if item.joint.link == link:
+            sign = 1.0 if item.joint.body == second else -1.0
+            rows[:, 6 * number : 6 * number + 6] = sign * seen_at(frame, item.joint.frame.position)
+    return rows
