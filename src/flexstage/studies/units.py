@@ -59,9 +59,19 @@ def units(mechanism: Mechanism) -> dict[str, UnitResult]:
     >>> round(units(double_triangle())["horizontal"].axial / 1e6, 2)  # N/um
     10.3
     """
+    return {unit: _unit(mechanism, copy, unit, direction) for unit, (copy, direction) in driven_units(mechanism).items()}
+
+
+def driven_units(mechanism: Mechanism) -> dict[str, tuple[str, Array]]:
+    """The first copy of every unit that drives its output by exactly one actuator, alone, and the direction (3,) of the output, by unit.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> {unit: copy for unit, (copy, _) in driven_units(double_triangle()).items()}
+    {'horizontal': 'B1', 'vertical': 'B4'}
+    """
     actuators = expand(mechanism).actuators
     mapping = ideal(mechanism).mapping
-    first: dict[str, UnitResult] = {}
+    first: dict[str, tuple[str, Array]] = {}
     for copy, unit, frame in copies(mechanism):
         if copy in actuators and unit not in first:
             row = mapping.values[mapping.rows.index(copy)]
@@ -70,9 +80,18 @@ def units(mechanism: Mechanism) -> dict[str, UnitResult]:
                 if name in ("x", "y", "z"):
                     pushed["xyz".index(name)] = value
             direction = frame.rotation.T @ pushed / (np.linalg.norm(pushed) or 1.0)
-            if ideal(isolate(mechanism, copy, guide=_vector(direction))).actuated:
-                first[unit] = _unit(mechanism, copy, unit, direction)
+            if ideal(isolate(mechanism, copy, guide=as_vector(direction))).actuated:
+                first[unit] = copy, direction
     return first
+
+
+def as_vector(direction: Array) -> Vector:
+    """A direction (3,) as descriptions hold it.
+
+    >>> as_vector(np.array([0.0, 0.0, 1.0]))
+    (0.0, 0.0, 1.0)
+    """
+    return (float(direction[0]), float(direction[1]), float(direction[2]))
 
 
 def _unit(mechanism: Mechanism, copy: str, unit: str, direction: Array) -> UnitResult:
@@ -80,7 +99,7 @@ def _unit(mechanism: Mechanism, copy: str, unit: str, direction: Array) -> UnitR
     block = alone.values[:3, :3]
     across = np.linalg.svd(direction[None, :])[2][1:]
     lateral = np.linalg.eigvalsh(across @ block @ across.T)
-    guided = isolate(mechanism, copy, guide=_vector(direction))
+    guided = isolate(mechanism, copy, guide=as_vector(direction))
     model, kinematics = lumped(guided), ideal(guided)
     gain = direction @ static_gain(model, _DISPLACEMENTS, (copy,)).values[:, 0]
     load = direction @ static_gain(model, _DISPLACEMENTS, _FORCES).values @ direction
@@ -102,10 +121,6 @@ def _unit(mechanism: Mechanism, copy: str, unit: str, direction: Array) -> UnitR
         lever=lever,
         omitted=None if lever is None else omitted(guided, lever_theory(guided, unit), channel),
     )
-
-
-def _vector(direction: Array) -> Vector:
-    return (float(direction[0]), float(direction[1]), float(direction[2]))
 
 
 def _series(mechanism: Mechanism, copy: str) -> float | None:

@@ -87,7 +87,7 @@ def linear_model(
 
 def _joined(mechanism: Mechanism, assembly: Assembly, parts: tuple[tuple[Component, Superelement], ...]) -> _Model:
     blocks, names = _coordinates(assembly, parts)
-    placed = tuple(Placed(component, element, _operator(assembly, component, element, blocks, len(names))) for component, element in parts)
+    placed = _placed(assembly, parts, blocks, len(names))
     twists: dict[str, Array] = {}
     for body in assembly.bodies:
         if not is_elastic(assembly, body):
@@ -96,6 +96,24 @@ def _joined(mechanism: Mechanism, assembly: Assembly, parts: tuple[tuple[Compone
         for body, mean in zip(item.component.bodies, item.element.bodies.values(), strict=True):
             twists[body] = turned(item.component.place.rotation) @ mean @ item.operator
     return _Model(mechanism, assembly, names, blocks, placed, twists)
+
+
+def placed_parts(assembly: Assembly, parts: tuple[tuple[Component, Superelement], ...]) -> tuple[Placed, ...]:
+    """The components with the operators from the coordinates of their `linear_model`, for fields within them.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.mechanism.expand import expand
+    >>> placed_parts(expand(parallelogram()), ())
+    ()
+    """
+    blocks, names = _coordinates(assembly, parts)
+    return _placed(assembly, parts, blocks, len(names))
+
+
+def _placed(
+    assembly: Assembly, parts: tuple[tuple[Component, Superelement], ...], blocks: Mapping[str, slice], size: int
+) -> tuple[Placed, ...]:
+    return tuple(Placed(component, element, _operator(assembly, component, element, blocks, size)) for component, element in parts)
 
 
 def _coordinates(assembly: Assembly, parts: tuple[tuple[Component, Superelement], ...]) -> tuple[dict[str, slice], tuple[str, ...]]:

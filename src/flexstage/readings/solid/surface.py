@@ -1,0 +1,65 @@
+"""Surfaces: displacement and stress at the skins of all components, for given coordinates of the stage's linear model."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+import numpy as np
+
+from flexstage.base.number import Array
+from flexstage.readings.solid.assemble import Placed
+
+
+def element_coordinates(item: Placed, motion: Array, strokes: Mapping[str, Array] | None = None) -> Array:
+    """A component's coordinates (n, k) that its stress follows, for the model's (N, k): the free strokes (k,) of its stacks, by link, taken off.
+
+    A stack that expands freely is without stress, so its free stroke must not count.
+    """
+    own = item.operator @ motion
+    for name, free in _stacks(item):
+        stroke = (strokes or {}).get(name)
+        if stroke is not None:
+            own = own - free[:, None] * stroke
+    return own
+
+
+def _stacks(item: Placed) -> Iterator[tuple[str, Array]]:
+    """The names of the component's stacks in this copy (the superelement may be another copy's), with their free strokes."""
+    reduced = [name for name in item.element.stiffness if name in item.element.resultants]
+    links = [piece.name for piece in item.component.pieces if piece.body is None]
+    for name, free in item.element.free_strokes.items():
+        yield links[reduced.index(name)], free
+
+
+def stresses(item: Placed, coordinates: Array) -> Array:
+    """Stress (v, 6, k) as xx, yy, zz, xy, yz, zx [Pa] at the vertices of a component's skin, in its own axes."""
+    skin = item.element.skin.stress
+    return (skin.reshape(-1, skin.shape[-1]) @ coordinates).reshape(len(skin), 6, -1)
+
+
+def von_mises(stress: Array) -> Array:
+    """Equivalent stress (...) of stresses (..., 6) as xx, yy, zz, xy, yz, zx: sqrt((differences squared)/2 + 3 (shears squared)).
+
+    >>> von_mises(np.array([[2.0, 0, 0, 0, 0, 0], [0, 0, 0, 1.0, 0, 0]])).round(9).tolist()
+    [2.0, 1.732050808]
+    """
+    x, y, z, xy, yz, zx = np.moveaxis(np.asarray(stress, dtype=float), -1, 0)
+    return np.sqrt(0.5 * ((x - y) ** 2 + (y - z) ** 2 + (z - x) ** 2) + 3.0 * (xy**2 + yz**2 + zx**2))
+
+
+def moved_vertices(item: Placed, motion: Array, factor: float) -> Array:
+    """Places (v, 3) [m] of a component's skin in the stage's frame, moved by `factor` times the motion of coordinates (N,)."""
+    skin = item.element.skin
+    own = item.operator @ motion
+    shift = (skin.motion.reshape(-1, skin.motion.shape[-1]) @ own).reshape(-1, 3)
+    return np.asarray(item.component.place.point(skin.vertices + factor * shift))
+
+
+def piece_vertices(item: Placed) -> Iterator[tuple[str, Array]]:
+    """Every link and body of a component in this copy's names, with the vertices (indices) of its skin."""
+    skin = item.element.skin
+    names: dict[str, list[int]] = {}
+    for number, piece in enumerate(item.component.pieces):
+        names.setdefault(piece.name if piece.body is None else piece.body, []).append(number)
+    for name, numbers in names.items():
+        yield name, np.unique(skin.triangles[np.isin(skin.owner, numbers)])

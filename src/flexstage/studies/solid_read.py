@@ -1,0 +1,127 @@
+"""How studies read solids: a stage, reduced by whoever is asked to (cached, with progress, or plainly), at two resolutions for the error."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, TypeAlias
+
+from flexstage.base.digest import digest
+from flexstage.base.finding import Finding, require
+from flexstage.mechanism.expand import expand
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.parts.given import Given
+from flexstage.readings.linear.model import LinearModel
+from flexstage.readings.solid.assemble import Placed, linear_model, placed_parts
+from flexstage.readings.solid.component import Component, components
+from flexstage.readings.solid.content import content
+from flexstage.readings.solid.superelement import Superelement
+
+if TYPE_CHECKING:
+    from flexstage.readings.solid.reduce import Reduction
+
+Parts: TypeAlias = tuple[tuple[Component, Superelement], ...]
+Solids: TypeAlias = "Callable[[Mechanism, Reduction], Parts]"
+"""Reduces the components of a stage: plainly (`plain_solids`), or from a cache and telling its progress."""
+
+_COARSER = 1.6
+
+
+@dataclass(frozen=True, eq=False)
+class SolidRead:
+    """A stage read as solids: its linear model, and the components with the operators that give their fields."""
+
+    mechanism: Mechanism
+    model: LinearModel
+    placed: tuple[Placed, ...]
+
+    @property
+    def elements(self) -> int:
+        """Number of finite elements of all distinct components."""
+        return sum(item.element.elements for item in self._distinct)
+
+    @property
+    def freedoms(self) -> int:
+        """Number of unknowns of all distinct components before they were reduced."""
+        return sum(item.element.freedoms for item in self._distinct)
+
+    @property
+    def _distinct(self) -> list[Placed]:
+        return list({id(item.element): item for item in self.placed}.values())
+
+
+def plain_solids(mechanism: Mechanism, reduction: Reduction) -> Parts:
+    """Reduce every distinct component, without a cache.
+
+    >>> plain_solids.__name__
+    'plain_solids'
+    """
+    from flexstage.readings.solid.reduce import reduced
+
+    parts = components(mechanism)
+    elements: dict[str, Superelement] = {}
+    for part in parts:
+        key = content(part)
+        if key not in elements:
+            elements[key] = reduced(part, reduction)
+    return tuple((part, elements[content(part)]) for part in parts)
+
+
+def read_solid(mechanism: Mechanism, reduction: Reduction, solids: Solids) -> SolidRead:
+    """Read a stage as solids; calibrated hinges as the shapes they stand for.
+
+    Raises `DesignError` for parts without a shape, and when the stage can move freely.
+
+    >>> read_solid.__name__
+    'read_solid'
+    """
+    shape = drawn(mechanism)
+    assembly = expand(shape)
+    parts = solids(shape, reduction)
+    said = f"solid reading of {digest(shape, physics=True)[:16]}, order {reduction.fineness.order}, {reduction.modes} modes a component"
+    return SolidRead(shape, linear_model(shape, assembly, parts, said), placed_parts(assembly, parts))
+
+
+def coarser(reduction: Reduction) -> Reduction:
+    """The resolution that an error is estimated against: one order less, or for order two a mesh 1.6 times as coarse.
+
+    >>> from flexstage.readings.solid.reduce import Reduction
+    >>> coarser(Reduction()).fineness.order
+    2
+    """
+    fineness = reduction.fineness
+    if fineness.order > 2:
+        return replace(reduction, fineness=replace(fineness, order=fineness.order - 1))
+    return replace(reduction, fineness=replace(fineness, neck=_COARSER * fineness.neck, block=_COARSER * fineness.block))
+
+
+def drawn(mechanism: Mechanism) -> Mechanism:
+    """The stage with every given part that stands for a drawn one replaced by it.
+
+    Raises `DesignError` where the part it stands for is not there.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> drawn(double_triangle()) == double_triangle()
+    True
+    """
+    stand_ins = {name: part.stands_for for name, part in mechanism.parts.items() if isinstance(part, Given) and part.stands_for}
+    require(
+        Finding(f"parts.{name}.stands_for", f'there is no part "{kept}"', "Keep the drawn part that was calibrated in the file")
+        for name, kept in stand_ins.items()
+        if kept not in mechanism.parts
+    )
+    if not stand_ins:
+        return mechanism
+    return replace(mechanism, parts={**mechanism.parts, **{name: mechanism.parts[kept] for name, kept in stand_ins.items()}})
+
+
+def calibrated(mechanism: Mechanism) -> tuple[str, ...]:
+    """Names of the parts whose 6x6 is of FEA origin: theory that uses them is not independent of FEA.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> calibrated(double_triangle())
+    ()
+    """
+    from flexstage.parts.given import Origin
+
+    return tuple(name for name, part in mechanism.parts.items() if isinstance(part, Given) and part.origin is Origin.FEA)

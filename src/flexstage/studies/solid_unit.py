@@ -1,0 +1,154 @@
+"""Each distinct unit alone, as a solid: stiffness at its output, gain and lost motion (Table 2 of Shin & Moon), stress at the command."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from flexstage.analysis.statics import statics
+from flexstage.base.finding import refuse
+from flexstage.base.labelled import Matrix
+from flexstage.base.number import Array
+from flexstage.mechanism.expand import expand
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.mechanism.restrict import isolate
+from flexstage.parts.piezo import Piezo
+from flexstage.readings.ideal import ideal
+from flexstage.readings.linear.static import displacement, static_gain
+from flexstage.spatial.frame import COMPONENTS
+from flexstage.studies.solid_read import SolidRead, Solids, read_solid
+from flexstage.studies.solid_stress import LinkStress, link_stress
+from flexstage.studies.units import as_vector, driven_units
+
+if TYPE_CHECKING:
+    from flexstage.readings.solid.reduce import Reduction
+
+_TWIST = tuple(f"platform.{name}" for name in COMPONENTS)
+_STEPS = 5
+
+
+@dataclass(frozen=True, eq=False)
+class SolidUnit:
+    """One unit alone, in its own frame, by the solid reading.
+
+    `direction` (3,) is that of its output; `stiffness` 6x6 at the output, strokes held; `axial` and `lateral` [N/m] its translations along
+    and across the direction, all else held (lateral: softest, stiffest). With the output guided along the direction and not loaded: `gain`
+    output per stroke, `ideal_gain`, `loss`; `strokes` (k,) [m] up to the stack's full one with `outputs` (k,) [m], linear; `stress` at
+    every link at the full stroke. `motion` (N,) are the coordinates of `read` at the full stroke, for pictures.
+    """
+
+    unit: str
+    copy: str
+    direction: Array
+    stiffness: Matrix
+    axial: float
+    lateral: tuple[float, float]
+    gain: float
+    ideal_gain: float
+    strokes: Array
+    stress: LinkStress
+    motion: Array
+    read: SolidRead
+
+    @property
+    def loss(self) -> float:
+        """Share of the ideal output that is lost."""
+        return 1.0 - self.gain / self.ideal_gain
+
+    @property
+    def load_compliance(self) -> float:
+        """Give of the guided output under a force along it [m/N]."""
+        return 1.0 / self.axial
+
+    @property
+    def commands(self) -> Array:
+        """Ideal outputs (k,) [m] of the strokes: what was commanded."""
+        return self.ideal_gain * self.strokes
+
+    @property
+    def outputs(self) -> Array:
+        """Outputs (k,) [m] of the strokes."""
+        return self.gain * self.strokes
+
+    @property
+    def figures(self) -> Mapping[str, float]:
+        """What an error is estimated of, in SI."""
+        return {
+            "axial stiffness": self.axial,
+            "softest lateral stiffness": self.lateral[0],
+            "stiffest lateral stiffness": self.lateral[1],
+            "gain": self.gain,
+        }
+
+
+def solid_units(mechanism: Mechanism, reduction: Reduction, solids: Solids) -> dict[str, SolidUnit]:
+    """Read the first copy of every placed unit that drives its output by exactly one actuator as a solid, alone.
+
+    Outlines that belong to other bodies are left out; the output is the end face of the link that joins the platform, kept plane. Raises
+    `DesignError` where no unit of the stage is of this kind.
+
+    >>> solid_units.__name__
+    'solid_units'
+    """
+    found = driven_units(mechanism)
+    if not found:
+        raise refuse(
+            "units",
+            "none of the stage's units drives an output of its own by one actuator",
+            "Ask for the whole stage instead: --what stage",
+        )
+    return {unit: _unit(mechanism, (unit, copy), direction, (reduction, solids)) for unit, (copy, direction) in found.items()}
+
+
+def _unit(mechanism: Mechanism, names: tuple[str, str], direction: Array, how: tuple[Reduction, Solids]) -> SolidUnit:
+    unit, copy = names
+    alone = isolate(mechanism, copy)
+    read = read_solid(alone, *how)
+    stiffness = statics(read.model).stiffness
+    along = np.concatenate([direction, np.zeros(3)])
+    driven = static_gain(read.model, _TWIST, (copy,)).values[:, 0]
+    block = stiffness.values[:3, :3]
+    across = np.linalg.svd(direction[None, :])[2][1:]
+    lateral = np.linalg.eigvalsh(across @ block @ across.T)
+    axial = float(along @ stiffness.values @ along)
+    gain = float(along @ stiffness.values @ driven) / axial
+    guide = stiffness.values @ (along * gain - driven)
+    full = full_stroke(mechanism, copy)
+    motion = full * _moved(read, copy, guide)
+    return SolidUnit(
+        unit=unit,
+        copy=copy,
+        direction=direction,
+        stiffness=stiffness,
+        axial=axial,
+        lateral=(float(lateral[0]), float(lateral[1])),
+        gain=gain,
+        ideal_gain=float(direction @ ideal(isolate(mechanism, copy, guide=as_vector(direction))).jacobian[:3, 0]),
+        strokes=full * np.arange(1, _STEPS + 1) / _STEPS,
+        stress=link_stress(read, motion[:, None], {copy: np.array([full])}),
+        motion=motion,
+        read=read,
+    )
+
+
+def _moved(read: SolidRead, copy: str, guide: Array) -> Array:
+    """Coordinates (N,) under a unit stroke while the guide holds the output by a wrench (6,)."""
+    model = read.model
+    platform = model.output[model.output_index(_TWIST)]
+    load = model.input_matrix[:, model.input_index((copy,))[0]] + platform.T @ guide
+    return displacement(model, load[:, None])[:, 0]
+
+
+def full_stroke(mechanism: Mechanism, copy: str) -> float:
+    """The full stroke of a copy's stack [m].
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> full_stroke(double_triangle(), "B4")
+    0.0002
+    """
+    assembly = expand(mechanism)
+    part = assembly.links[assembly.actuators[copy]].part
+    return float(np.real(part.stroke)) if isinstance(part, Piezo) else np.nan
