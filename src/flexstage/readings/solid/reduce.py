@@ -185,8 +185,7 @@ def _projected(problem: _Problem, basis: Array, strokes: Mapping[str, Array]) ->
             resultants[name] = _sections(problem, names[name][0]).T @ forces
     everything = rigid(space, identity())
     carried = basis.T @ _times(problem.inertia, everything)
-    named = {component.pieces[int(number)].name: force for number, force in strokes.items()}
-    projected = {name: basis.T @ force for name, force in named.items()}
+    projected = {int(number): basis.T @ force for number, force in strokes.items()}
     return Superelement(
         interfaces=len(component.interfaces),
         stiffness=elastic,
@@ -194,8 +193,8 @@ def _projected(problem: _Problem, basis: Array, strokes: Mapping[str, Array]) ->
         bodies=bodies,
         body_inertia=moving,
         resultants=resultants,
-        strokes=projected,
-        free_strokes={name: _free_stroke(elastic[name], force) for name, force in projected.items()},
+        strokes={component.pieces[number].name: force for number, force in projected.items()},
+        free_strokes={component.pieces[number].name: _free_stroke(component, number, force) for number, force in projected.items()},
         rigid=_rigid_coordinates(component, basis.shape[1]),
         carried=carried,
         skin=skin(space, basis),
@@ -210,10 +209,19 @@ def _sections(problem: _Problem, number: int) -> Array:
     return rigid(problem.field, piece.frame, weight=ramp(piece.frame, 0.5 * span(piece.form)))
 
 
-def _free_stroke(law: Array, force: Array) -> Array:
-    """Coordinates of the unconstrained stroke: law e = force, of least size (rigid motions left out)."""
-    scale = 1.0 / np.sqrt(np.maximum(np.diag(law), np.finfo(float).tiny))
-    return scale * (np.linalg.pinv(law * scale * scale[:, None], rcond=1e-10, hermitian=True) @ (scale * force))
+def _free_stroke(component: Component, number: int, force: Array) -> Array:
+    """Coordinates that strain a stack as its unconstrained stroke does: its end caps moved apart by the stroke, and what follows within.
+
+    Internal coordinates are orthonormal in energy with the interfaces held, so the response to the stroke's force is that force itself.
+    """
+    piece = component.pieces[number]
+    result = np.array(force)
+    result[: 6 * len(component.interfaces)] = 0.0
+    ends = [(place, item.joint.frame) for place, item in enumerate(component.interfaces) if item.joint.link == piece.name]
+    for place, frame in ends:
+        outward = float(np.sign((frame.position - piece.frame.position) @ piece.frame.rotation[:, 0]))
+        result[6 * place : 6 * place + 3] = piece.frame.rotation[:, 0] * outward / len(ends)
+    return result
 
 
 def _rigid_coordinates(component: Component, size: int) -> Array:
