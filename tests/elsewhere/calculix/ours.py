@@ -1,0 +1,73 @@
+"""A problem solved by the solid reading's own forms and factorisation.
+
+CalculiX 2.20 integrates the mass of a C3D10 by the four points of its stiffness, which are exact for quadratics only; products of two
+quadratic shape functions are quartic. Ours are integrated exactly: so far are the two codes' frequencies apart, and no further.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import ngsolve
+import numpy as np
+from scipy import sparse
+from scipy.sparse.linalg import LinearOperator, eigsh
+
+from flexstage.base.number import Array
+from flexstage.readings.solid.draw import MILLIMETRES
+from flexstage.readings.solid.field import Field, factored, field, inertia, stiffness
+from flexstage.readings.solid.mesh import Meshed
+from tests.elsewhere.calculix.problems import Problem, Solution
+
+MODES = 6
+
+
+@dataclass(frozen=True)
+class Law:
+    """How elements are made: polynomial `order`; the mass exact, or by as few points as CalculiX takes."""
+
+    order: int = 2
+    few_points: bool = False
+
+
+def solved(problem: Problem, mesh: Meshed, law: Law = Law()) -> Solution:
+    """Compliance of the loaded face and the lowest frequencies."""
+    space = field(mesh, [problem.held], law.order)
+    elastic, mass = stiffness(space), _by_four_points(space) if law.few_points else inertia(space)
+    solve = factored(space, elastic)
+    forces = np.column_stack([_force(space, problem.loaded, axis) for axis in range(3)])
+    free = np.flatnonzero(space.free)
+    full = np.zeros(space.size)
+
+    def inverse(force: Array) -> Array:
+        full[free] = force.ravel()
+        return solve(full)[free]
+
+    matrix = _sparse(elastic)[free][:, free]
+    operator = LinearOperator(matrix.shape, matvec=inverse, dtype=float)  # pyright: ignore[reportCallIssue]  (its stubs know only __new__)
+    start = np.random.default_rng(0).standard_normal(len(free))
+    values = eigsh(matrix, k=MODES, M=_sparse(mass)[free][:, free], sigma=0.0, OPinv=operator, v0=start, return_eigenvectors=False)
+    return Solution(forces.T @ solve(forces), np.sqrt(np.sort(values)) / (2.0 * np.pi))
+
+
+def _by_four_points(space: Field) -> ngsolve.BilinearForm:
+    u, v = space.space.TnT()
+    form = ngsolve.BilinearForm(space.space, symmetric=True)
+    rule = ngsolve.IntegrationRule(ngsolve.TET, 2)
+    form += MILLIMETRES**-3 * space.density * ngsolve.InnerProduct(u, v) * ngsolve.dx(intrules={ngsolve.TET: rule})
+    return form.Assemble()
+
+
+def _force(space: Field, face: str, axis: int) -> Array:
+    """Nodal forces (n,) of 1 N along an axis, spread evenly over a face."""
+    mesh = space.meshed.mesh
+    area = ngsolve.Integrate(ngsolve.CoefficientFunction(1.0), mesh, definedon=mesh.Boundaries(face))
+    form = ngsolve.LinearForm(space.space)
+    form += space.space.TestFunction()[axis] / area * ngsolve.ds(definedon=mesh.Boundaries(face))
+    form.Assemble()
+    return np.array(form.vec.FV().NumPy())
+
+
+def _sparse(form: ngsolve.BilinearForm) -> sparse.csr_matrix:
+    values, columns, rows = form.mat.CSR()
+    return sparse.csr_matrix((np.asarray(values), np.asarray(columns), np.asarray(rows)))
