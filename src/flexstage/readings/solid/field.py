@@ -36,7 +36,7 @@ class Field:
     @property
     def free(self) -> Array:
         """Which degrees of freedom (n,) are not on a held face."""
-        return np.array(list(self.space.FreeDofs()), dtype=bool)
+        return np.array([bool(bit) for bit in self.space.FreeDofs()], dtype=bool)
 
     def stress(self, strain: ngsolve.CoefficientFunction) -> ngsolve.CoefficientFunction:
         """Hooke's law: 2 mu strain + lambda tr(strain) I [Pa, with strains per m]."""
@@ -160,6 +160,39 @@ def ramp(frame: Frame, half: float) -> ngsolve.CoefficientFunction:
     )
     value = 0.5 + along / half
     return ngsolve.IfPos(value, ngsolve.IfPos(1.0 - value, value, 1.0), 0.0)
+
+
+def mean_motion(space: Field, frame: Frame, face: str) -> Array:
+    """Rows (6, n) of a face's mean twist: G^-1 int R^T u dS with G = int R^T R dS, R its rigid motions in a frame."""
+    v = space.space.TestFunction()
+    rows = np.empty((6, space.size))
+    for axis in range(6):
+        form = ngsolve.LinearForm(space.space)
+        form += ngsolve.InnerProduct(_rigid_motion(frame, axis), v) * ngsolve.ds(_escaped(face))
+        form.Assemble()
+        rows[axis] = form.vec.FV().NumPy()
+    return np.linalg.solve(rows @ rigid(space, frame), rows)
+
+
+def times(form: ngsolve.BilinearForm, vectors: Array) -> Array:
+    """An assembled form's matrix times columns (n, k)."""
+    x, y = form.mat.CreateRowVector(), form.mat.CreateColVector()
+    result = np.empty_like(vectors)
+    for number in range(vectors.shape[1]):
+        x.FV().NumPy()[:] = vectors[:, number]
+        y.data = form.mat * x
+        result[:, number] = y.FV().NumPy()
+    return result
+
+
+def shifted(space: Field, elastic: ngsolve.BilinearForm, mass: ngsolve.BilinearForm, shift: float) -> ngsolve.BilinearForm:
+    """Stiffness plus shift times inertia: definite without any support."""
+    u, v = space.space.TnT()
+    form = ngsolve.BilinearForm(space.space, symmetric=True)
+    form += ngsolve.InnerProduct(u, v) * ngsolve.dx
+    form.Assemble()
+    form.mat.AsVector().data = elastic.mat.AsVector() + shift * mass.mat.AsVector()
+    return form
 
 
 Solver = Callable[[Array], Array]

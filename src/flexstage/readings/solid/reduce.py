@@ -16,9 +16,12 @@ from scipy.sparse.linalg import LinearOperator, eigsh
 from flexstage.base.number import Array
 from flexstage.parts.piezo import Piezo
 from flexstage.readings.solid.component import Component
-from flexstage.readings.solid.field import Field, Solver, applied, factored, field, inertia, ramp, rigid, stiffness, stroke_force
-from flexstage.readings.solid.mesh import Fineness, Meshed, meshed
+from flexstage.readings.solid.field import Field, Solver, applied, field, inertia, ramp, rigid, stiffness, stroke_force, times
+from flexstage.readings.solid.fineness import Reduction
+from flexstage.readings.solid.hold import held, is_rigid
+from flexstage.readings.solid.mesh import Meshed, meshed
 from flexstage.readings.solid.piece import span
+from flexstage.readings.solid.progress import Report, Stage, silent
 from flexstage.readings.solid.skin import skin
 from flexstage.readings.solid.superelement import Superelement
 from flexstage.spatial.frame import Frame, identity, transport
@@ -27,20 +30,13 @@ _DEPENDENT = 1e-9
 _EIGENVALUES = 1e-9
 
 
-@dataclass(frozen=True)
-class Reduction:
-    """How a component is reduced: mesh and order, and how many fixed-interface modes it keeps."""
-
-    fineness: Fineness = Fineness()
-    modes: int = 12
-
-
 @dataclass(frozen=True, eq=False)
 class _Problem:
     component: Component
     field: Field
     stiffness: ngsolve.BilinearForm
     inertia: ngsolve.BilinearForm
+    faces: Array
     solve: Solver
 
 
@@ -50,40 +46,30 @@ def reduced(component: Component, reduction: Reduction, springs: Array | None = 
     With `springs` (6 m, 6 m) between its interfaces the modes kept are those of the component free at its interfaces and joined by the
     springs, in place of the fixed-interface modes: so a whole stage in one piece has its own modes, exactly.
     """
-    problem = _problem(component, meshed(component, reduction.fineness), reduction.fineness.order)
-    faces = _continued(problem)
+    return reduced_mesh(component, meshed(component, reduction.fineness), reduction, springs)
+
+
+def reduced_mesh(
+    component: Component, mesh: Meshed, reduction: Reduction, springs: Array | None = None, report: Report = silent
+) -> Superelement:
+    """Assemble and reduce a component that is meshed already, telling how far it is."""
+    problem = _problem(component, mesh, reduction, report)
+    report(Stage.REDUCING, 0.0)
     strokes = {str(number): force for number, force in _strokes(problem).items()}
     loads = [_wrenches(problem, body) for body in component.bodies] + [force[:, None] for force in strokes.values()]
-    inner = _independent(problem, [_modes(problem, reduction.modes, faces, springs), *(problem.solve(load) for load in loads)])
-    basis = np.hstack([faces, inner])
-    return _projected(problem, basis, strokes)
+    inner = _independent(problem, [_modes(problem, reduction.modes, springs), *(problem.solve(load) for load in loads)])
+    basis = np.hstack([problem.faces, inner])
+    return _projected(problem, basis, strokes, report)
 
 
-def _problem(component: Component, mesh: Meshed, order: int) -> _Problem:
-    held = [item.joint.name for item in component.interfaces] + [joint.name for joint in component.fixed]
-    space = field(mesh, held, order)
+def _problem(component: Component, mesh: Meshed, reduction: Reduction, report: Report) -> _Problem:
+    report(Stage.ASSEMBLING, 0.0)
+    plane = [item.joint.name for item in component.interfaces if is_rigid(component, item, reduction.hold)]
+    space = field(mesh, plane + [joint.name for joint in component.fixed], reduction.fineness.order)
     elastic, mass = stiffness(space), inertia(space)
-    return _Problem(component, space, elastic, mass, factored(space, elastic))
-
-
-def _continued(problem: _Problem) -> Array:
-    """Motions (n, 6 m) with one interface face moved rigidly and all others held: u = R - K_ff^-1 K R."""
-    columns = []
-    for item in problem.component.interfaces:
-        frame = Frame(np.eye(3), item.joint.frame.position)
-        moved = rigid(problem.field, frame, faces=item.joint.name)
-        columns.append(moved - problem.solve(_times(problem.stiffness, moved)))
-    return np.hstack(columns) if columns else np.zeros((problem.field.size, 0))
-
-
-def _times(form: ngsolve.BilinearForm, vectors: Array) -> Array:
-    x, y = form.mat.CreateRowVector(), form.mat.CreateColVector()
-    result = np.empty_like(vectors)
-    for number in range(vectors.shape[1]):
-        x.FV().NumPy()[:] = vectors[:, number]
-        y.data = form.mat * x
-        result[:, number] = y.FV().NumPy()
-    return result
+    report(Stage.FACTORISING, 0.0)
+    interfaces = held(component, space, (elastic, mass), reduction.hold)
+    return _Problem(component, space, elastic, mass, interfaces.faces, interfaces.solve)
 
 
 def _strokes(problem: _Problem) -> dict[int, Array]:
@@ -115,14 +101,14 @@ def _wrenches(problem: _Problem, body: str) -> Array:
     return momentum @ np.linalg.inv(motion.T @ momentum)
 
 
-def _modes(problem: _Problem, count: int, faces: Array, springs: Array | None) -> Array:
+def _modes(problem: _Problem, count: int, springs: Array | None) -> Array:
     """The lowest modes (n, count) by shift and invert at zero: with interfaces fixed, or free and joined by springs.
 
     Motions are u = v + faces q with v zero on the interfaces: the stiffness is then diag(K, S), S = faces^T K faces + springs.
     """
     free = np.flatnonzero(problem.field.free)
-    joined = faces if springs is not None else faces[:, :0]
-    boundary = joined.T @ _times(problem.stiffness, joined) + (springs if springs is not None else 0.0)
+    joined = problem.faces if springs is not None else problem.faces[:, :0]
+    boundary = joined.T @ times(problem.stiffness, joined) + (springs if springs is not None else 0.0)
     size = len(free) + joined.shape[1]
     count = min(count, size - 2)
     if count <= 0:
@@ -134,7 +120,7 @@ def _modes(problem: _Problem, count: int, faces: Array, springs: Array | None) -
         return full
 
     def weighed(x: Array) -> Array:
-        force = _times(problem.inertia, motion(x.ravel())[:, None])[:, 0]
+        force = times(problem.inertia, motion(x.ravel())[:, None])[:, 0]
         return np.concatenate([force[free], joined.T @ force])
 
     def inverse(force: Array) -> Array:
@@ -144,7 +130,8 @@ def _modes(problem: _Problem, count: int, faces: Array, springs: Array | None) -
 
     start = np.random.default_rng(0).standard_normal(size)
     mass, solve = (_operator(size, function) for function in (weighed, inverse))
-    _, vectors = eigsh(solve, k=count, M=mass, sigma=0.0, OPinv=solve, v0=start, tol=_EIGENVALUES)  # with OPinv the first is not used
+    # With OPinv the first argument is used for its shape only.
+    _, vectors = eigsh(solve, k=count, M=mass, sigma=0.0, OPinv=solve, v0=start, tol=_EIGENVALUES)  # pyright: ignore[reportArgumentType]
     result = np.zeros((problem.field.size, count))
     result[free] = vectors[: len(free)]
     return result
@@ -157,14 +144,14 @@ def _operator(size: int, function: Callable[[Array], Array]) -> LinearOperator:
 def _independent(problem: _Problem, motions: list[Array]) -> Array:
     """An independent set spanning the motions, orthonormal in strain energy."""
     everything = np.hstack(motions)
-    energy = everything.T @ _times(problem.stiffness, everything)
+    energy = everything.T @ times(problem.stiffness, everything)
     scale = 1.0 / np.sqrt(np.maximum(np.diag(energy), np.finfo(float).tiny))
     values, vectors = np.linalg.eigh(0.5 * (energy + energy.T) * scale * scale[:, None])
     kept = values > _DEPENDENT
     return everything @ (scale[:, None] * vectors[:, kept] / np.sqrt(values[kept]))
 
 
-def _projected(problem: _Problem, basis: Array, strokes: Mapping[str, Array]) -> Superelement:
+def _projected(problem: _Problem, basis: Array, strokes: Mapping[str, Array], report: Report) -> Superelement:
     component, space = problem.component, problem.field
     elastic: dict[str, Array] = {}
     mass: dict[str, Array] = {}
@@ -172,7 +159,8 @@ def _projected(problem: _Problem, basis: Array, strokes: Mapping[str, Array]) ->
     moving: dict[str, Array] = {}
     resultants: dict[str, Array] = {}
     names = groups(component)
-    for name in names:
+    for number, name in enumerate(names):
+        report(Stage.PROJECTING, number / len(names))
         elements = _elements(problem, name)
         forces = applied(stiffness(space, elements, assemble=False), basis)
         momentum = applied(inertia(space, elements, assemble=False), basis)
@@ -184,7 +172,7 @@ def _projected(problem: _Problem, basis: Array, strokes: Mapping[str, Array]) ->
         else:
             resultants[name] = _sections(problem, names[name][0]).T @ forces
     everything = rigid(space, identity())
-    carried = basis.T @ _times(problem.inertia, everything)
+    carried = basis.T @ times(problem.inertia, everything)
     projected = {int(number): basis.T @ force for number, force in strokes.items()}
     return Superelement(
         interfaces=len(component.interfaces),

@@ -1,0 +1,71 @@
+"""Interfaces held: faces that stay plane (rigid), or whose mean motion counts while they warp freely (averaged).
+
+A rigid face is stiffer than the joint it stands for, an averaged one softer: the two bracket what cutting there costs. The end caps of
+stacks are rigid always.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import ngsolve
+import numpy as np
+
+from flexstage.base.number import Array
+from flexstage.parts.piezo import Piezo
+from flexstage.readings.solid.component import Component, Interface
+from flexstage.readings.solid.field import Field, Solver, factored, mean_motion, rigid, shifted, times
+from flexstage.readings.solid.fineness import Hold
+from flexstage.spatial.frame import Frame
+
+_SHIFT = (2.0 * np.pi * 10.0) ** 2
+"""Inertia that carries a component no face holds, as of a motion at 10 Hz: it enters the basis only, not the energies [1/s^2]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Held:
+    """Motions (n, 6 m) of unit interface twists, and the solver for loads within with all interface twists zero."""
+
+    faces: Array
+    solve: Solver
+
+
+def is_rigid(component: Component, interface: Interface, hold: Hold) -> bool:
+    """Whether an interface stays plane: asked for, or a stack's end cap."""
+    stacks = [piece.name for piece in component.pieces if isinstance(piece.form, Piezo)]
+    return hold is Hold.RIGID or interface.joint.link in stacks or isinstance(interface.footprint, Piezo)
+
+
+def held(component: Component, space: Field, forms: tuple[ngsolve.BilinearForm, ngsolve.BilinearForm], hold: Hold) -> Held:
+    """Hold a component's interfaces; `forms` are its stiffness and inertia, and `space` must hold its rigid and grounded faces."""
+    elastic, mass = forms
+    loose = [item for item in component.interfaces if not is_rigid(component, item, hold)]
+    unsupported = len(loose) == len(component.interfaces) and not component.fixed
+    plain = factored(space, shifted(space, elastic, mass, _SHIFT) if unsupported else elastic)
+    if not loose:
+        return Held(_rigid_faces(component.interfaces, space, elastic, plain), plain)
+    means = np.vstack([mean_motion(space, _frame(item), item.joint.name) for item in loose])
+    carried = plain(means.T)
+    gain = np.linalg.inv(means @ carried)
+
+    def solve(forces: Array) -> Array:
+        motion = plain(forces)
+        return motion - carried @ (gain @ (means @ motion))
+
+    free = np.split(carried @ gain, len(loose), axis=1)
+    columns = [free[loose.index(item)] if item in loose else _rigid_faces([item], space, elastic, solve) for item in component.interfaces]
+    return Held(np.hstack(columns), solve)
+
+
+def _rigid_faces(interfaces: Sequence[Interface], space: Field, elastic: ngsolve.BilinearForm, solve: Solver) -> Array:
+    """One face moved rigidly and all others held: u = R - K_ff^-1 K R."""
+    columns = []
+    for item in interfaces:
+        moved = rigid(space, _frame(item), faces=item.joint.name)
+        columns.append(moved - solve(times(elastic, moved)))
+    return np.hstack(columns) if columns else np.zeros((space.size, 0))
+
+
+def _frame(interface: Interface) -> Frame:
+    return Frame(np.eye(3), interface.joint.frame.position)
