@@ -17,26 +17,16 @@ from flexstage.parts.profile import Straight
 from flexstage.readings.solid.cad import Cad, cad, region
 from flexstage.readings.solid.component import Component
 from flexstage.readings.solid.draw import MILLIMETRES
+from flexstage.readings.solid.fineness import Fineness
 from flexstage.readings.solid.piece import Medium, Piece, thinnest
+from flexstage.readings.solid.progress import Report, Stage, silent
 
-_ATTEMPTS = ((1.0, 1.0, 1.0), (1.0, 0.8, 1.0), (0.8, 1.0, 1.0), (1.0, 1.0, 1.4), (0.85, 0.6, 1.0), (0.7, 0.7, 1.4), (0.5, 0.8, 1.0))
+ATTEMPTS = ((1.0, 1.0, 1.0), (1.0, 0.8, 1.0), (0.8, 1.0, 1.0), (1.0, 1.0, 1.4), (0.85, 0.6, 1.0), (0.7, 0.7, 1.4), (0.5, 0.8, 1.0))
 """Factors on all sizes, on the grading and on the segments per radius of curvature, one attempt after the other."""
 _HINGE_CURVATURE = 3.0
 _ROUND_CURVATURE = 1.5
 _WITHIN = 1e-6
 """A face belongs to a piece when its centre is this near its bounding box [m]."""
-
-
-@dataclass(frozen=True)
-class Fineness:
-    """How fine to mesh and of which order: elements of `neck` times a link's least thickness on its faces, of `block` times a body's least
-    dimension elsewhere, growing by `grading` (0.1 slow to 0.9 fast); polynomial `order` of shape functions and geometry.
-    """
-
-    neck: float = 1.5
-    block: float = 1.5
-    grading: float = 0.6
-    order: int = 3
 
 
 @dataclass(frozen=True)
@@ -49,15 +39,17 @@ class Meshed:
     owner: Array
 
 
-def meshed(component: Component, fineness: Fineness) -> Meshed:
+def meshed(component: Component, fineness: Fineness, report: Report = silent, first: int = 0) -> Meshed:
     """Draw and mesh a component.
 
-    Where the mesher fails, or a curved face turns an element inside out, all sizes are shrunk and it is tried again, a few times. Raises
-    `DesignError` when none of that helps.
+    Where the mesher fails, or a curved face turns an element inside out, all sizes are shrunk and it is tried again, a few times; `first`
+    is the attempt to begin with, where an earlier one took the process down. Raises `DesignError` when none of that helps.
     """
+    report(Stage.DRAWING, 0.0)
     drawing = cad(component)
     failure = "the mesher was not asked"
-    for shrink, grading, curvature in _ATTEMPTS:
+    for number, (shrink, grading, curvature) in enumerate(ATTEMPTS[first:], start=first):
+        report(Stage.MESHING, number / len(ATTEMPTS))
         largest = _sized(component, drawing, fineness, shrink)
         outcome = _attempted(
             drawing,
@@ -74,7 +66,7 @@ def _attempted(drawing: Cad, order: int, sizes: Mapping[str, float]) -> ngsolve.
     """One attempt; else what went wrong."""
     try:
         raw = occ.OCCGeometry(drawing.shape).GenerateMesh(**sizes)
-    except Exception as error:  # netgen raises a bare NgException, and others for CAD it cannot read
+    except Exception as error:  # noqa: BLE001 (netgen raises a bare NgException, and others for CAD it cannot read)
         return str(error)
     mesh = ngsolve.Mesh(raw)
     if mesh.ne == 0:

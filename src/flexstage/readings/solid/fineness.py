@@ -1,0 +1,36 @@
+"""What is asked of a solid reading: how fine a mesh, of which order, and how many modes within each component. Loads no solver."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+
+
+@dataclass(frozen=True)
+class Fineness:
+    """How fine to mesh and of which polynomial `order`, that of the curved geometry included.
+
+    Elements are `neck` times a link's least thickness on its faces, `block` times a body's least dimension elsewhere, and grow by
+    `grading` (0.1 slow to 0.9 fast).
+    """
+
+    neck: float = 1.5
+    block: float = 1.5
+    grading: float = 0.6
+    order: int = 3
+
+
+class Hold(Enum):
+    """How interface faces follow their twist."""
+
+    RIGID = "rigid"
+    AVERAGED = "averaged"
+
+
+@dataclass(frozen=True)
+class Reduction:
+    """How a component is reduced: mesh and order, how many fixed-interface modes it keeps, how its interface faces are held."""
+
+    fineness: Fineness = Fineness()
+    modes: int = 12
+    hold: Hold = Hold.RIGID

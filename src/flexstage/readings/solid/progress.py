@@ -1,0 +1,82 @@
+"""Progress: where a solid reading stands, told by the process that computes and gathered over all components by the one that waits."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from enum import Enum
+
+
+class Stage(Enum):
+    """What is being done to a component, in this order."""
+
+    STARTING = "starting"
+    DRAWING = "drawing"
+    MESHING = "meshing"
+    ASSEMBLING = "assembling"
+    FACTORISING = "factorising"
+    REDUCING = "reducing modes"
+    PROJECTING = "projecting"
+
+
+_SHARES = {
+    Stage.STARTING: 0.03,
+    Stage.DRAWING: 0.02,
+    Stage.MESHING: 0.15,
+    Stage.ASSEMBLING: 0.10,
+    Stage.FACTORISING: 0.10,
+    Stage.REDUCING: 0.25,
+    Stage.PROJECTING: 0.35,
+}
+"""Usual shares of a component's time, at orders two and three."""
+
+Report = Callable[[Stage, float], None]
+"""Told of a stage and the fraction of it that is done."""
+
+
+@dataclass(frozen=True)
+class Step:
+    """Where the whole stands: what is done now, the fraction that is done, and the seconds left as far as can be told."""
+
+    text: str
+    fraction: float
+    left: float | None
+
+
+Progress = Callable[[Step], None]
+"""Told of every step, in the process and thread that called the reading; raising there stops it and cleans up."""
+
+
+def silent(_stage: Stage, _fraction: float) -> None:
+    """Report to nobody.
+
+    >>> silent(Stage.DRAWING, 0.0)
+    """
+
+
+def within(stage: Stage, fraction: float) -> float:
+    """Fraction of a component that is done when a fraction of a stage is.
+
+    >>> within(Stage.STARTING, 0.0), round(within(Stage.MESHING, 1.0), 2), round(within(Stage.PROJECTING, 1.0), 9)
+    (0.0, 0.2, 1.0)
+    """
+    stages = list(Stage)
+    return sum(_SHARES[each] for each in stages[: stages.index(stage)]) + _SHARES[stage] * min(max(fraction, 0.0), 1.0)
+
+
+def gathered(running: Mapping[str, tuple[Stage, float]], done: float, weights: Mapping[str, float]) -> float:
+    """Fraction of all that is done: `done` is the weight of finished components, `weights` are those of the ones running.
+
+    >>> gathered({"lever": (Stage.MESHING, 1.0)}, done=1.0, weights={"lever": 1.0})
+    0.2
+    """
+    return done + sum(weights[name] * within(*where) for name, where in running.items())
+
+
+def seconds_left(fraction: float, elapsed: float) -> float | None:
+    """Time left if it goes on as it went, absent while too little is done to tell.
+
+    >>> seconds_left(0.25, 10.0), seconds_left(0.01, 10.0)
+    (30.0, None)
+    """
+    return None if fraction < 0.05 else elapsed * (1.0 - fraction) / fraction
