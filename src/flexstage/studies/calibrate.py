@@ -1,0 +1,139 @@
+"""Calibration: hinges of beam theory replaced by their 6x6 from finite elements, so that the lumped reading has FEA's accuracy."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from flexstage.base.finding import Finding, require
+from flexstage.base.number import Array
+from flexstage.beams.compliance import compliance
+from flexstage.beams.mass import mass
+from flexstage.mechanism.checks.orientation import is_round
+from flexstage.mechanism.expand import expand
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.mechanism.store import loads
+from flexstage.mechanism.store.stand_in import KEPT, stood_in
+from flexstage.parts.given import Given, Origin
+from flexstage.studies.solid_hinge import Hinges, SolidHinge, solid_hinges
+from flexstage.studies.solid_read import calibrated
+
+TAG = "derived FEA"
+_DIGITS = 7
+
+
+@dataclass(frozen=True, eq=False)
+class Calibration:
+    """The hinges that were computed, the `parts` that stand in for them, and the design file's `text` with these parts."""
+
+    hinges: Mapping[str, SolidHinge]
+    parts: Mapping[str, Given]
+    text: str
+
+    @property
+    def softer(self) -> dict[str, Array]:
+        """By part, FEA's compliance over beam theory's less one (6,), along and about x, y, z."""
+        return {
+            name: np.diag(hinge.found.compliance) / np.diag(compliance(hinge.form, hinge.material)) - 1.0
+            for name, hinge in self.hinges.items()
+        }
+
+
+def calibrate(text: str, hinges: Hinges, *, where: str = "text") -> Calibration:
+    """Compute the 6x6 of every distinct hinge in a design file's text and put them in, comments kept.
+
+    Raises `DesignError` for hinges that are calibrated already, that single copies depart from, or whose 6x6 FEA could not find.
+
+    >>> calibrate.__name__
+    'calibrate'
+    """
+    mechanism = loads(text, where=where)
+    require(_already(mechanism))
+    require(_departing(mechanism))
+    found = solid_hinges(mechanism, hinges)
+    parts = given_parts(found)
+    errors = max(hinge.found.error for hinge in found.values())
+    return Calibration(found, parts, stood_in(text, parts, f"{TAG} within {100.0 * errors:.2g} %", where=where))
+
+
+def given_parts(found: Mapping[str, SolidHinge]) -> dict[str, Given]:
+    """The computed hinges as given parts, of the mass and with the intended freedoms of the drawn ones.
+
+    The 6x6 is given the symmetry of the drawn hinge. Raises `DesignError` where it is not positive definite.
+
+    >>> given_parts({})
+    {}
+    """
+    parts: dict[str, Given] = {}
+    findings: list[Finding] = []
+    for name, hinge in found.items():
+        matrix = _clean(hinge)
+        if np.min(np.diag(matrix)) <= 0.0:
+            what = f"its compliance by FEA comes out negative (error {100.0 * hinge.found.error:.2g} %)"
+            findings.append(Finding(f"parts.{name}", what, "Ask for more accuracy"))
+            continue
+        parts[name] = Given(
+            compliance=tuple(tuple(float(f"{value:.{_DIGITS}g}") for value in row) for row in matrix),
+            free=hinge.form.intended,
+            mass=_mass(hinge),
+            origin=Origin.FEA,
+            source=f"finite elements of order {hinge.found.order}, {hinge.found.freedoms} freedoms, error {100.0 * hinge.found.error:.2g} %",
+            stands_for=name + KEPT,
+        )
+    require(findings)
+    return parts
+
+
+def with_matrices(mechanism: Mechanism, found: Mapping[str, SolidHinge]) -> Mechanism:
+    """The stage with the computed hinges as given parts, those of which no copy departs.
+
+    Raises `DesignError` where copies depart from a shared hinge.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> with_matrices(double_triangle(), {}) == double_triangle()
+    True
+    """
+    require(_departing(mechanism))
+    parts = given_parts(found)
+    kept = {name + KEPT: hinge.form for name, hinge in found.items()}
+    same = {other: parts[name] for name, hinge in found.items() for other in _alike(mechanism, hinge)}
+    return replace(mechanism, parts={**mechanism.parts, **kept, **same, **parts})
+
+
+def _alike(mechanism: Mechanism, hinge: SolidHinge) -> Iterator[str]:
+    """Parts under other names that are the same hinge."""
+    for link in expand(mechanism).links.values():
+        if link.drawn in hinge.links:
+            yield link.link.part
+
+
+def _already(mechanism: Mechanism) -> Iterator[Finding]:
+    for name in calibrated(mechanism):
+        yield Finding(f"parts.{name}", "its 6x6 is of FEA origin already", "Calibrate the file that it was made from")
+
+
+def _departing(mechanism: Mechanism) -> Iterator[Finding]:
+    for link in expand(mechanism).links.values():
+        shared = mechanism.parts[link.link.part]
+        if link.part != shared:
+            yield Finding(link.name, f"departs from its part {link.link.part}, whose 6x6 is shared", "Give that link a part of its own")
+
+
+def _clean(hinge: SolidHinge) -> Array:
+    """The 6x6 with the symmetry of the drawn hinge, which its mesh has not quite.
+
+    Reflected in its three planes a hinge is itself, so that its 6x6 about the centre is diagonal; a round one is alike across its axis.
+    """
+    own = np.diag(hinge.found.compliance)
+    return np.diag(own if not is_round(hinge.form) else [own[0], *2 * [np.mean(own[1:3])], own[3], *2 * [np.mean(own[4:])]])
+
+
+def _mass(hinge: SolidHinge) -> float:
+    """Mass of the drawn hinge [kg]: that of a unit translation of both of its ends."""
+    both = np.zeros(12)
+    both[[0, 6]] = 1.0
+    return float(both @ np.real(mass(hinge.form, hinge.material)) @ both)
+
+

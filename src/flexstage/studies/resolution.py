@@ -1,0 +1,70 @@
+"""Resolution of a solid study: which order of elements, and the error estimated from the results at two resolutions."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Generic, TypeVar
+
+from flexstage.studies.solid_read import coarser
+
+if TYPE_CHECKING:
+    from flexstage.readings.solid.reduce import Reduction
+
+_Result = TypeVar("_Result")
+HIGHEST = 4
+
+
+@dataclass(frozen=True)
+class Resolution:
+    """What is asked: the relative error of stiffnesses, gains and frequencies, or, instead, a fixed `order` of elements."""
+
+    accuracy: float = 0.01
+    order: int | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Resolved(Generic[_Result]):
+    """A result with the relative error estimated of each of its figures: the change from the resolution before. An estimate, no bound."""
+
+    result: _Result
+    errors: Mapping[str, float]
+    order: int
+
+    @property
+    def error(self) -> float:
+        """The largest of the errors."""
+        return max(self.errors.values(), default=0.0)
+
+
+def resolved(
+    work: Callable[[Reduction], _Result], figures: Callable[[_Result], Mapping[str, float]], asked: Resolution
+) -> Resolved[_Result]:
+    """Work at rising orders (2, 3, 4) until the figures change by less than the accuracy, or at one order and at the next coarser resolution.
+
+    >>> found = resolved(lambda way: 1.0 + 0.1 ** way.fineness.order, lambda value: {"value": value}, Resolution(0.02))
+    >>> found.order, round(found.error, 4)
+    (3, 0.009)
+    """
+    from flexstage.readings.solid.mesh import Fineness
+    from flexstage.readings.solid.reduce import Reduction
+
+    orders = range(3, HIGHEST + 1) if asked.order is None else (asked.order,)
+    before = figures(work(coarser(Reduction(Fineness(order=orders[0])))))
+    for order in orders:
+        result = work(Reduction(Fineness(order=order)))
+        now = figures(result)
+        found = Resolved(result, changes(before, now), order)
+        if found.error <= asked.accuracy or order == orders[-1]:
+            return found
+        before = now
+    raise AssertionError
+
+
+def changes(before: Mapping[str, float], after: Mapping[str, float]) -> dict[str, float]:
+    """Relative changes of the figures that both have.
+
+    >>> changes({"a": 1.0, "b": 1.0}, {"a": 2.0})
+    {'a': 0.5}
+    """
+    return {name: abs(value - before[name]) / (abs(value) or 1.0) for name, value in after.items() if name in before}

@@ -1,0 +1,101 @@
+"""The 6x6 of every distinct hinge of a stage, as a solid by itself."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, TypeAlias
+
+from flexstage.base.digest import digest
+from flexstage.base.finding import refuse
+from flexstage.base.labelled import Matrix, ratio_units
+from flexstage.mechanism.expand import PlacedLink, expand
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.parts.leaf import Leaf
+from flexstage.parts.material import Material
+from flexstage.parts.neck import Neck
+from flexstage.parts.notch import Notch
+from flexstage.parts.rod import Rod
+from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNITS
+from flexstage.studies.solid_read import drawn
+
+if TYPE_CHECKING:
+    from flexstage.readings.solid.hinge import HingeSolid
+
+HingePart: TypeAlias = Notch | Neck | Leaf | Rod
+Hinges: TypeAlias = "Callable[[HingePart, Material], HingeSolid]"
+"""Computes one hinge: plainly, or from a cache and telling its progress."""
+
+
+@dataclass(frozen=True, eq=False)
+class SolidHinge:
+    """A distinct hinge: its `part` by name, the drawn `links` that are like it, and its 6x6 about its centre in the link frame."""
+
+    part: str
+    links: tuple[str, ...]
+    form: HingePart
+    material: Material
+    found: HingeSolid
+
+    @property
+    def compliance(self) -> Matrix:
+        """C (6, 6) with names and units."""
+        return Matrix(self.found.compliance, COMPONENTS, FORCES, ratio_units(TWIST_UNITS, WRENCH_UNITS))
+
+    @property
+    def stiffness(self) -> Matrix:
+        """K (6, 6) with names and units."""
+        return Matrix(self.found.stiffness, FORCES, COMPONENTS, ratio_units(WRENCH_UNITS, TWIST_UNITS))
+
+
+def plain_hinges(accuracy: float = 0.01, order: int | None = None) -> Hinges:
+    """Hinges computed to an accuracy (or at one order and the one before), without a cache.
+
+    >>> plain_hinges.__name__
+    'plain_hinges'
+    """
+    from flexstage.readings.solid.estimate import Accuracy
+    from flexstage.readings.solid.hinge import hinge_compliance
+
+    asked = Accuracy(error=accuracy) if order is None else Accuracy(error=accuracy, orders=(max(1, order - 1), order), meshes=1)
+    return lambda part, material: hinge_compliance(part, material, asked)
+
+
+def distinct_hinges(mechanism: Mechanism) -> dict[str, tuple[HingePart, Material, tuple[str, ...]]]:
+    """Form, material and drawn links of every distinct hinge, by the name of its part (or of the copy that departs from it).
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> {name: links for name, (_, _, links) in distinct_hinges(double_triangle()).items()}["lever_notch"]
+    ('vertical/pivot',)
+    """
+    shape = drawn(mechanism)
+    found: dict[str, tuple[str, list[PlacedLink]]] = {}
+    for link in expand(shape).links.values():
+        if isinstance(link.part, (Notch, Neck, Leaf, Rod)) and link.material is not None:
+            key = f"{digest(link.part, physics=True)} {digest(link.material, physics=True)}"
+            name = link.link.part if link.part == shape.parts[link.link.part] else link.name
+            found.setdefault(key, (name, []))[1].append(link)
+    return {name: _hinge(links) for name, links in found.values()}
+
+
+def _hinge(links: list[PlacedLink]) -> tuple[HingePart, Material, tuple[str, ...]]:
+    first = links[0]
+    assert isinstance(first.part, (Notch, Neck, Leaf, Rod))  # noqa: S101  distinct_hinges has asked
+    assert first.material is not None  # noqa: S101
+    return first.part, first.material, tuple(dict.fromkeys(link.drawn for link in links))
+
+
+def solid_hinges(mechanism: Mechanism, hinges: Hinges) -> dict[str, SolidHinge]:
+    """Compute the 6x6 of every distinct notch, neck, leaf and rod.
+
+    Raises `DesignError` where a stage has none.
+
+    >>> solid_hinges.__name__
+    'solid_hinges'
+    """
+    found = distinct_hinges(mechanism)
+    if not found:
+        raise refuse("links", "none of them is a notch, neck, leaf or rod", "Only these have a 6x6 that can be computed")
+    return {
+        name: SolidHinge(name, links, form, material, hinges(form, material)) for name, (form, material, links) in found.items()
+    }

@@ -1,0 +1,316 @@
+"""Verification: theory beside finite elements for hinges, units and the whole stage, with the error of both and which to trust where."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from enum import Enum
+
+import numpy as np
+
+from flexstage.analysis.statics import Statics, statics
+from flexstage.base.finding import DesignError
+from flexstage.base.number import Array
+from flexstage.beams.compliance import compliance
+from flexstage.mechanism.expand import expand
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.readings.linear.model import LinearModel
+from flexstage.readings.lumped import lumped
+from flexstage.readings.mapped import mapped
+from flexstage.spatial.frame import COMPONENTS
+from flexstage.studies.calibrate import with_matrices
+from flexstage.studies.complete import platform_modes
+from flexstage.studies.paired import paired
+from flexstage.studies.resolution import Resolution, Resolved, resolved
+from flexstage.studies.solid_hinge import Hinges, SolidHinge, solid_hinges
+from flexstage.studies.solid_read import Solids, calibrated
+from flexstage.studies.solid_stage import SolidStage, solid_stage
+from flexstage.studies.solid_unit import SolidUnit, solid_units
+from flexstage.studies.units import UnitResult, driven_units, units
+
+_CLOSE = 0.02
+
+
+class Trust(Enum):
+    """Which result a comparison speaks for."""
+
+    DEPENDENT = "not independent"
+    EITHER = "they agree"
+    UNCLEAR = "FEA too coarse to tell"
+    THEORY = "theory will do"
+    CALIBRATED = "calibrated theory"
+    FEA = "FEA"
+
+
+@dataclass(frozen=True)
+class Row:
+    """One number by theory and by FEA, SI.
+
+    `theory` is the lumped reading's (for hinges beam theory's), `mapped` the paper's axial springs where they give it, `calibrated` the
+    lumped reading with the hinges' FEA 6x6; `error` the relative error estimated of FEA. `calibration` names the parts of FEA origin that
+    the theory contains. `assurance` is the modal assurance of paired modes.
+    """
+
+    group: str
+    figure: str
+    unit: str
+    theory: float
+    fea: float
+    error: float
+    mapped: float | None = None
+    calibrated: float | None = None
+    calibration: tuple[str, ...] = ()
+    assurance: float | None = None
+
+    @property
+    def difference(self) -> float:
+        """Theory over FEA less one."""
+        return _relative(self.theory, self.fea)
+
+    @property
+    def calibrated_difference(self) -> float | None:
+        """Calibrated theory over FEA less one."""
+        return None if self.calibrated is None else _relative(self.calibrated, self.fea)
+
+    @property
+    def trust(self) -> Trust:
+        """Which of them to trust."""
+        away = abs(self.difference)
+        if self.calibration:
+            return Trust.DEPENDENT
+        if self.error > max(0.5 * away, _CLOSE):
+            return Trust.UNCLEAR
+        if away <= self.error:
+            return Trust.EITHER
+        if away <= _CLOSE:
+            return Trust.THEORY
+        if self.calibrated is not None and abs(_relative(self.calibrated, self.fea)) <= _CLOSE + self.error:
+            return Trust.CALIBRATED
+        return Trust.FEA
+
+
+def _relative(value: float, reference: float) -> float:
+    return value / reference - 1.0 if reference else float("inf") if value else 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class Verification:
+    """The rows of a verification, and the solid results behind them; `missing` says why a group is not there."""
+
+    mechanism: Mechanism
+    rows: tuple[Row, ...]
+    hinges: Mapping[str, SolidHinge]
+    units: Resolved[dict[str, SolidUnit]] | None
+    stage: Resolved[SolidStage] | None
+    missing: Mapping[str, str]
+
+    @property
+    def groups(self) -> dict[str, tuple[Row, ...]]:
+        """The rows by what they are about, in order."""
+        return {name: tuple(row for row in self.rows if row.group == name) for name in dict.fromkeys(row.group for row in self.rows)}
+
+    @property
+    def verdicts(self) -> dict[str, str]:
+        """For every group, in words, which theory to trust."""
+        return {name: verdict(rows) for name, rows in self.groups.items()}
+
+
+def verify(mechanism: Mechanism, solids: Solids, hinges: Hinges, asked: Resolution = Resolution()) -> Verification:
+    """Compare theory with finite elements for every distinct hinge and unit and for the whole stage.
+
+    Theory is the description as it stands; FEA the shapes it draws. Raises `DesignError` where the stage cannot be read as a solid.
+
+    >>> verify.__name__
+    'verify'
+    """
+    missing: dict[str, str] = {}
+    stage = stage_solid(mechanism, solids, asked)
+    found = solid_hinges(mechanism, hinges)
+    matched = with_matrices(mechanism, found)
+    try:
+        alone = units_solid(mechanism, solids, asked) if driven_units(mechanism) else None
+    except DesignError as error:
+        alone, missing["units"] = None, str(error)
+    if alone is None:
+        missing.setdefault("units", "none of the stage's units drives an output of its own by one actuator")
+    rows = (
+        *hinge_rows(mechanism, found),
+        *(() if alone is None else unit_rows(mechanism, matched, alone)),
+        *stage_rows(mechanism, matched, stage),
+    )
+    return Verification(mechanism, rows, found, alone, stage, missing)
+
+
+def stage_solid(mechanism: Mechanism, solids: Solids, asked: Resolution) -> Resolved[SolidStage]:
+    """The whole stage as a solid, to the accuracy asked.
+
+    >>> stage_solid.__name__
+    'stage_solid'
+    """
+    return resolved(lambda way: solid_stage(mechanism, way, solids), lambda found: found.figures, asked)
+
+
+def units_solid(mechanism: Mechanism, solids: Solids, asked: Resolution) -> Resolved[dict[str, SolidUnit]]:
+    """Every distinct unit alone as a solid, to the accuracy asked; the errors by `unit: figure`.
+
+    >>> units_solid.__name__
+    'units_solid'
+    """
+
+    def figures(found: dict[str, SolidUnit]) -> dict[str, float]:
+        return {f"{name}: {figure}": value for name, unit in found.items() for figure, value in unit.figures.items()}
+
+    return resolved(lambda way: solid_units(mechanism, way, solids), figures, asked)
+
+
+def hinge_rows(mechanism: Mechanism, found: Mapping[str, SolidHinge]) -> Iterator[Row]:
+    """The six direct compliances of every hinge, by beam theory (or as the file gives them) and by FEA.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> list(hinge_rows(double_triangle(), {}))
+    []
+    """
+    given = calibrated(mechanism)
+    links = {link.drawn: link for link in expand(mechanism).links.values()}
+    for name, hinge in found.items():
+        link = links.get(hinge.links[0]) or links[hinge.links[0].removeprefix("links.")]
+        theory = np.diag(compliance(link.part, link.material))  # pyright: ignore[reportArgumentType]
+        touched = (link.link.part,) if link.link.part in given else ()
+        for index, axis in enumerate(COMPONENTS):
+            unit = "m/N" if index < 3 else "rad/(N m)"
+            value = float(np.real(theory[index]))
+            fea = float(hinge.found.compliance[index, index])
+            yield Row(f"hinge {name}", f"compliance {axis}", unit, value, fea, hinge.found.error, calibration=touched)
+
+
+def unit_rows(mechanism: Mechanism, matched: Mechanism, found: Resolved[dict[str, SolidUnit]]) -> Iterator[Row]:
+    """K_a, K_l, gain and loss of every unit alone.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> list(unit_rows(double_triangle(), double_triangle(), Resolved({}, {}, 3)))
+    []
+    """
+    theory, better = units(mechanism), units(matched)
+    for name, unit in found.result.items():
+        touched = _touched(mechanism, name)
+        first, second = _unit_figures(theory[name]), _unit_figures(better[name])
+        simple = _mapped_unit(theory[name])
+        for figure, value in unit.figures.items():
+            dimension = "1" if figure == "gain" else "N/m"
+            yield Row(
+                group=f"unit {name}",
+                figure=figure,
+                unit=dimension,
+                theory=first[figure],
+                fea=value,
+                error=found.errors.get(f"{name}: {figure}", 0.0),
+                mapped=simple.get(figure),
+                calibrated=second[figure],
+                calibration=touched,
+            )
+        if unit.loss > 1e-4:
+            error = found.errors.get(f"{name}: gain", 0.0) * (1.0 - unit.loss) / unit.loss
+            values = (theory[name].loss, unit.loss, error)
+            yield Row(f"unit {name}", "loss", "1", *values, calibrated=better[name].loss, calibration=touched)
+
+
+def _unit_figures(unit: UnitResult) -> dict[str, float]:
+    return {
+        "axial stiffness": unit.axial,
+        "softest lateral stiffness": unit.lateral[0],
+        "stiffest lateral stiffness": unit.lateral[1],
+        "gain": unit.gain,
+    }
+
+
+def _mapped_unit(unit: UnitResult) -> dict[str, float]:
+    """What the paper's springs give of a unit: Eq. 11 for levers, the series of axial springs for direct ones."""
+    if unit.lever is not None:
+        return {"axial stiffness": float(1.0 / unit.lever.tip_compliance), "gain": float(unit.lever.gain)}
+    return {} if unit.series is None else {"axial stiffness": unit.series}
+
+
+def _touched(mechanism: Mechanism, unit: str | None) -> tuple[str, ...]:
+    """The calibrated parts that a unit, or with `None` the stage, is built of."""
+    given = calibrated(mechanism)
+    links = [link.link for link in expand(mechanism).links.values() if unit is None or link.drawn.startswith(f"{unit}/")]
+    return tuple(name for name in given if any(link.part == name for link in links))
+
+
+def stage_rows(mechanism: Mechanism, matched: Mechanism, found: Resolved[SolidStage]) -> Iterator[Row]:
+    """Stiffness of the platform by direction, and its modes, paired by shape.
+
+    >>> stage_rows.__name__
+    'stage_rows'
+    """
+    touched = _touched(mechanism, None)
+    readings = {"theory": lumped(mechanism), "calibrated": lumped(matched), "mapped": _mapped(mechanism)}
+    known = {name: model for name, model in readings.items() if model is not None}
+    fea = found.result
+    tables = {name: _stiffness_figures(statics(model)) for name, model in known.items()}
+    for figure, value in _stiffness_figures(fea.statics).items():
+        unit = "N m/rad" if figure.endswith(("rx", "ry", "rz")) else "N/m"
+        extra = {name: table[figure] for name, table in tables.items() if np.isfinite(table[figure])}
+        yield _stage_row((figure, unit, value), extra, found.errors.get(figure, 0.0), touched)
+    pairs = {name: paired(fea.modes, platform_modes(mechanism, model), fea.read.model) for name, model in known.items()}
+    for number, index in enumerate(fea.modes.platform):
+        extra = {name: pair[index].frequency for name, pair in pairs.items() if index in pair}
+        if "theory" in extra:
+            figure = f"platform mode {number + 1}"
+            label = f"{figure} ({fea.modes.names[index]})"
+            row = _stage_row((label, "Hz", float(fea.modes.frequencies[index])), extra, found.errors.get(figure, 0.0), touched)
+            yield replace(row, assurance=pairs["theory"][index].assurance)
+
+
+def _stage_row(said: tuple[str, str, float], values: Mapping[str, float], error: float, touched: tuple[str, ...]) -> Row:
+    figure, unit, fea = said
+    return Row("stage", figure, unit, values["theory"], fea, error, values.get("mapped"), values.get("calibrated"), touched)
+
+
+def _mapped(mechanism: Mechanism) -> LinearModel | None:
+    try:
+        return mapped(mechanism)
+    except DesignError:
+        return None
+
+
+def _stiffness_figures(found: Statics) -> dict[str, float]:
+    held, free = found.held.principal, found.free.principal
+    diagonal: Array = np.diag(found.stiffness.values)
+    return {
+        "stiffest in plane, others held": float(held[0]),
+        "softest in plane, others held": float(held[1]),
+        "stiffest in plane, others free": float(free[0]),
+        "softest in plane, others free": float(free[1]),
+        **{f"stiffness {COMPONENTS[index]}": float(diagonal[index]) for index in (2, 3, 4, 5)},
+    }
+
+
+def verdict(rows: tuple[Row, ...]) -> str:
+    """In words, what the rows of one group say about which theory to trust.
+
+    >>> verdict((Row("stage", "mode 1", "Hz", 105.0, 100.0, 0.001, calibrated=100.5),))
+    'Lumped theory is up to 5 % off (mode 1); with calibrated hinges 0.5 %: calibrate, then trust the lumped reading.'
+    """
+    worst = max(rows, key=lambda row: abs(row.difference))
+    least = max(row.error for row in rows)
+    off = f"up to {_percent(abs(worst.difference))} off ({worst.figure})"
+    if any(row.calibration for row in rows):
+        names = ", ".join(dict.fromkeys(name for row in rows for name in row.calibration))
+        return f"Not independent: the theory contains the FEA 6x6 of {names}. It is {off}: what is left is not the hinges'."
+    name = "Beam theory" if worst.group.startswith("hinge") else "Lumped theory"
+    if all(row.trust in {Trust.EITHER, Trust.THEORY} for row in rows):
+        return f"{name} is {off}, FEA's own error {_percent(least)}: trust the theory."
+    if any(row.trust is Trust.UNCLEAR for row in rows):
+        return f"{name} is {off}, but FEA's own error is up to {_percent(least)}: ask for more accuracy before deciding."
+    better = [abs(row.calibrated_difference) for row in rows if row.calibrated_difference is not None]
+    if not better:
+        return f"{name} is {off}, FEA's own error {_percent(least)}: trust FEA, or calibrate."
+    after = f"with calibrated hinges {_percent(max(better))}"
+    if all(row.trust is not Trust.FEA for row in rows):
+        return f"{name} is {off}; {after}: calibrate, then trust the lumped reading."
+    return f"{name} is {off}; {after}: the rest is the elasticity of bodies and joints, which only the solid reading knows. Trust FEA."
+
+
+def _percent(share: float) -> str:
+    return f"{100.0 * share:.2g} %"
