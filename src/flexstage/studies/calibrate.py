@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from flexstage.base.finding import Finding, require
-from flexstage.base.number import Array
+from flexstage.base.number import Array, stack
 from flexstage.beams.compliance import compliance
 from flexstage.beams.mass import mass
 from flexstage.mechanism.checks.orientation import is_round
@@ -17,6 +17,7 @@ from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.store import loads
 from flexstage.mechanism.store.stand_in import KEPT, stood_in
 from flexstage.parts.given import Given, Origin
+from flexstage.spatial.frame import COMPONENTS
 from flexstage.studies.solid_hinge import Hinges, SolidHinge, solid_hinges
 from flexstage.studies.solid_read import calibrated
 
@@ -36,7 +37,7 @@ class Calibration:
     def softer(self) -> dict[str, Array]:
         """By part, FEA's compliance over beam theory's less one (6,), along and about x, y, z."""
         return {
-            name: np.diag(hinge.found.compliance) / np.diag(compliance(hinge.form, hinge.material)) - 1.0
+            name: np.diag(stack(self.parts[name].compliance)) / np.diag(compliance(hinge.form, hinge.material)) - 1.0
             for name, hinge in self.hinges.items()
         }
 
@@ -61,7 +62,8 @@ def calibrate(text: str, hinges: Hinges, *, where: str = "text") -> Calibration:
 def given_parts(found: Mapping[str, SolidHinge]) -> dict[str, Given]:
     """The computed hinges as given parts, of the mass and with the intended freedoms of the drawn ones.
 
-    The 6x6 is given the symmetry of the drawn hinge. Raises `DesignError` where it is not positive definite.
+    The 6x6 is given the symmetry of the drawn hinge; a freedom whose compliance FEA cannot tell from that of the blocks beside the hinge
+    keeps beam theory's. Raises `DesignError` where it is not positive definite.
 
     >>> given_parts({})
     {}
@@ -79,7 +81,7 @@ def given_parts(found: Mapping[str, SolidHinge]) -> dict[str, Given]:
             free=hinge.form.intended,
             mass=_mass(hinge),
             origin=Origin.FEA,
-            source=f"finite elements of order {hinge.found.order}, {hinge.found.freedoms} freedoms, error {100.0 * hinge.found.error:.2g} %",
+            source=_source(hinge),
             stands_for=name + KEPT,
         )
     require(findings)
@@ -126,8 +128,15 @@ def _clean(hinge: SolidHinge) -> Array:
 
     Reflected in its three planes a hinge is itself, so that its 6x6 about the centre is diagonal; a round one is alike across its axis.
     """
-    own = np.diag(hinge.found.compliance)
+    own = np.where(hinge.separable, np.diag(hinge.found.compliance), np.diag(compliance(hinge.form, hinge.material)))
     return np.diag(own if not is_round(hinge.form) else [own[0], *2 * [np.mean(own[1:3])], own[3], *2 * [np.mean(own[4:])]])
+
+
+def _source(hinge: SolidHinge) -> str:
+    found = hinge.found
+    kept = [axis for axis, known in zip(COMPONENTS, hinge.separable, strict=True) if not known]
+    beam = f"; {', '.join(kept)} by beam theory" if kept else ""
+    return f"finite elements of order {found.order}, {found.freedoms} freedoms, error {100.0 * found.error:.2g} %{beam}"
 
 
 def _mass(hinge: SolidHinge) -> float:
@@ -135,5 +144,3 @@ def _mass(hinge: SolidHinge) -> float:
     both = np.zeros(12)
     both[[0, 6]] = 1.0
     return float(both @ np.real(mass(hinge.form, hinge.material)) @ both)
-
-

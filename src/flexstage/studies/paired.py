@@ -16,7 +16,7 @@ _CLOSE = 0.01
 
 @dataclass(frozen=True)
 class Pair:
-    """The mode of another reading that a mode is paired with: its index, its frequency [Hz], and how much of its shape it shares, 0 to 1."""
+    """The mode of another reading that a mode is paired with: its index, its frequency [Hz], the share 0 to 1 of the shape they share."""
 
     index: int
     frequency: float

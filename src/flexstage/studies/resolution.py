@@ -4,12 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Generic, TypeVar
+from typing import Generic, TypeVar
 
+from flexstage.readings.solid.fineness import Fineness, Reduction
 from flexstage.studies.solid_read import coarser
-
-if TYPE_CHECKING:
-    from flexstage.readings.solid.reduce import Reduction
 
 _Result = TypeVar("_Result")
 HIGHEST = 4
@@ -21,6 +19,9 @@ class Resolution:
 
     accuracy: float = 0.01
     order: int | None = None
+
+
+DEFAULT = Resolution()
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,15 +41,12 @@ class Resolved(Generic[_Result]):
 def resolved(
     work: Callable[[Reduction], _Result], figures: Callable[[_Result], Mapping[str, float]], asked: Resolution
 ) -> Resolved[_Result]:
-    """Work at rising orders (2, 3, 4) until the figures change by less than the accuracy, or at one order and at the next coarser resolution.
+    """Work at rising orders (2, 3, 4) until the figures change by less than the accuracy, or at one order and the next coarser way.
 
     >>> found = resolved(lambda way: 1.0 + 0.1 ** way.fineness.order, lambda value: {"value": value}, Resolution(0.02))
     >>> found.order, round(found.error, 4)
     (3, 0.009)
     """
-    from flexstage.readings.solid.mesh import Fineness
-    from flexstage.readings.solid.reduce import Reduction
-
     orders = range(3, HIGHEST + 1) if asked.order is None else (asked.order,)
     before = figures(work(coarser(Reduction(Fineness(order=orders[0])))))
     for order in orders:

@@ -6,6 +6,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias
 
+import numpy as np
+
 from flexstage.base.digest import digest
 from flexstage.base.finding import refuse
 from flexstage.base.labelled import Matrix, ratio_units
@@ -21,6 +23,8 @@ from flexstage.studies.solid_read import drawn
 
 if TYPE_CHECKING:
     from flexstage.readings.solid.hinge import HingeSolid
+
+_MOST_STUB = 0.9
 
 HingePart: TypeAlias = Notch | Neck | Leaf | Rod
 Hinges: TypeAlias = "Callable[[HingePart, Material], HingeSolid]"
@@ -41,6 +45,15 @@ class SolidHinge:
     def compliance(self) -> Matrix:
         """C (6, 6) with names and units."""
         return Matrix(self.found.compliance, COMPONENTS, FORCES, ratio_units(TWIST_UNITS, WRENCH_UNITS))
+
+    @property
+    def separable(self) -> tuple[bool, ...]:
+        """Whether each direct compliance can be told from that of the stubs beside the hinge: they have at most 90 % of the whole.
+
+        Stubs of a wide notch twist far less than Saint-Venant's beams, which are taken off.
+        """
+        whole, own = (np.diag(each) for each in (self.found.whole, self.found.compliance))
+        return tuple(bool(value) for value in whole - own <= _MOST_STUB * whole)
 
     @property
     def stiffness(self) -> Matrix:
@@ -96,6 +109,4 @@ def solid_hinges(mechanism: Mechanism, hinges: Hinges) -> dict[str, SolidHinge]:
     found = distinct_hinges(mechanism)
     if not found:
         raise refuse("links", "none of them is a notch, neck, leaf or rod", "Only these have a 6x6 that can be computed")
-    return {
-        name: SolidHinge(name, links, form, material, hinges(form, material)) for name, (form, material, links) in found.items()
-    }
+    return {name: SolidHinge(name, links, form, material, hinges(form, material)) for name, (form, material, links) in found.items()}

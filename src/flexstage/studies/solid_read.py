@@ -1,10 +1,10 @@
-"""How studies read solids: a stage, reduced by whoever is asked to (cached, with progress, or plainly), at two resolutions for the error."""
+"""How studies read solids: a stage, reduced by whoever is asked to (from a cache, with progress, or plainly)."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TypeAlias
 
 from flexstage.base.digest import digest
 from flexstage.base.finding import Finding, require
@@ -15,10 +15,8 @@ from flexstage.readings.linear.model import LinearModel
 from flexstage.readings.solid.assemble import Placed, linear_model, placed_parts
 from flexstage.readings.solid.component import Component, components
 from flexstage.readings.solid.content import content
+from flexstage.readings.solid.fineness import Reduction
 from flexstage.readings.solid.superelement import Superelement
-
-if TYPE_CHECKING:
-    from flexstage.readings.solid.reduce import Reduction
 
 Parts: TypeAlias = tuple[tuple[Component, Superelement], ...]
 Solids: TypeAlias = "Callable[[Mechanism, Reduction], Parts]"
@@ -85,7 +83,7 @@ def read_solid(mechanism: Mechanism, reduction: Reduction, solids: Solids) -> So
 def coarser(reduction: Reduction) -> Reduction:
     """The resolution that an error is estimated against: one order less, or for order two a mesh 1.6 times as coarse.
 
-    >>> from flexstage.readings.solid.reduce import Reduction
+    >>> from flexstage.readings.solid.fineness import Reduction
     >>> coarser(Reduction()).fineness.order
     2
     """

@@ -16,13 +16,13 @@ from flexstage.base.finding import DesignError
 from flexstage.base.number import Array
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.readings.linear.static import displacement
+from flexstage.readings.solid.fineness import Reduction
 from flexstage.studies.complete import platform_modes
 from flexstage.studies.solid_read import SolidRead, Solids, read_solid
 from flexstage.studies.solid_stress import LinkStress, link_stress
 
 if TYPE_CHECKING:
     from flexstage.readings.linear.model import Contribution, LinearModel
-    from flexstage.readings.solid.reduce import Reduction
 
 _BODY = " (body)"
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -18,13 +17,11 @@ from flexstage.mechanism.restrict import isolate
 from flexstage.parts.piezo import Piezo
 from flexstage.readings.ideal import ideal
 from flexstage.readings.linear.static import displacement, static_gain
+from flexstage.readings.solid.fineness import Reduction
 from flexstage.spatial.frame import COMPONENTS
 from flexstage.studies.solid_read import SolidRead, Solids, read_solid
 from flexstage.studies.solid_stress import LinkStress, link_stress
 from flexstage.studies.units import as_vector, driven_units
-
-if TYPE_CHECKING:
-    from flexstage.readings.solid.reduce import Reduction
 
 _TWIST = tuple(f"platform.{name}" for name in COMPONENTS)
 _STEPS = 5

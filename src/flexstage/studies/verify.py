@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
-from enum import Enum
 
 import numpy as np
 
@@ -21,25 +20,15 @@ from flexstage.spatial.frame import COMPONENTS
 from flexstage.studies.calibrate import with_matrices
 from flexstage.studies.complete import platform_modes
 from flexstage.studies.paired import paired
-from flexstage.studies.resolution import Resolution, Resolved, resolved
+from flexstage.studies.resolution import DEFAULT, Resolution, Resolved, resolved
 from flexstage.studies.solid_hinge import Hinges, SolidHinge, solid_hinges
 from flexstage.studies.solid_read import Solids, calibrated
 from flexstage.studies.solid_stage import SolidStage, solid_stage
 from flexstage.studies.solid_unit import SolidUnit, solid_units
+from flexstage.studies.trust import Trust
 from flexstage.studies.units import UnitResult, driven_units, units
 
 _CLOSE = 0.02
-
-
-class Trust(Enum):
-    """Which result a comparison speaks for."""
-
-    DEPENDENT = "not independent"
-    EITHER = "they agree"
-    UNCLEAR = "FEA too coarse to tell"
-    THEORY = "theory will do"
-    CALIBRATED = "calibrated theory"
-    FEA = "FEA"
 
 
 @dataclass(frozen=True)
@@ -115,7 +104,7 @@ class Verification:
         return {name: verdict(rows) for name, rows in self.groups.items()}
 
 
-def verify(mechanism: Mechanism, solids: Solids, hinges: Hinges, asked: Resolution = Resolution()) -> Verification:
+def verify(mechanism: Mechanism, solids: Solids, hinges: Hinges, asked: Resolution = DEFAULT) -> Verification:
     """Compare theory with finite elements for every distinct hinge and unit and for the whole stage.
 
     Theory is the description as it stands; FEA the shapes it draws. Raises `DesignError` where the stage cannot be read as a solid.
@@ -177,6 +166,8 @@ def hinge_rows(mechanism: Mechanism, found: Mapping[str, SolidHinge]) -> Iterato
         theory = np.diag(compliance(link.part, link.material))  # pyright: ignore[reportArgumentType]
         touched = (link.link.part,) if link.link.part in given else ()
         for index, axis in enumerate(COMPONENTS):
+            if not hinge.separable[index]:
+                continue
             unit = "m/N" if index < 3 else "rad/(N m)"
             value = float(np.real(theory[index]))
             fea = float(hinge.found.compliance[index, index])

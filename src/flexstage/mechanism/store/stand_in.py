@@ -95,6 +95,3 @@ def _rename_tags(document: Any, old: str, new: str) -> None:
     for key in [key for key in tags if str(key).startswith(old)]:
         tags[new + str(key).removeprefix(old)] = tags[key]
         del tags[key]
-
-
-

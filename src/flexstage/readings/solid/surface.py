@@ -11,7 +11,7 @@ from flexstage.readings.solid.assemble import Placed
 
 
 def element_coordinates(item: Placed, motion: Array, strokes: Mapping[str, Array] | None = None) -> Array:
-    """A component's coordinates (n, k) that its stress follows, for the model's (N, k): the free strokes (k,) of its stacks, by link, taken off.
+    """A component's coordinates (n, k) that its stress follows, for the model's (N, k), with the `strokes` (k,) [m] of its stacks, by link.
 
     A stack that expands freely is without stress, so its free stroke must not count.
     """
