@@ -73,7 +73,10 @@ def volumes(points: np.ndarray, cells: np.ndarray) -> np.ndarray:
 
 
 def test_volumes_are_those_of_the_drawing(file: Path, stage: Mechanism) -> None:
-    """By component: elements may straddle the border of two pieces of one material. Parabolas cut a round stack's volume by 0.1 %, chords by 5 %."""
+    """By component: elements may straddle the border of two pieces of one material.
+
+    Parabolas cut a round stack by 0.1 %, chords by 5 %.
+    """
     mesh = meshio.read(file)
     size = volumes(mesh.points, mesh.cells_dict["tetra10"])
     assert size.min() > 0.0
