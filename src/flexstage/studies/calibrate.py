@@ -42,7 +42,7 @@ class Calibration:
         }
 
 
-def calibrate(text: str, hinges: Hinges, *, where: str = "text") -> Calibration:
+def calibrate(text: str, compute: Hinges, *, where: str = "text") -> Calibration:
     """Compute the 6x6 of every distinct hinge in a design file's text and put them in, comments kept.
 
     Raises `DesignError` for hinges that are calibrated already, that single copies depart from, or whose 6x6 FEA could not find.
@@ -53,7 +53,7 @@ def calibrate(text: str, hinges: Hinges, *, where: str = "text") -> Calibration:
     mechanism = loads(text, where=where)
     require(_already(mechanism))
     require(_departing(mechanism))
-    found = solid_hinges(mechanism, hinges)
+    found = solid_hinges(mechanism, compute)
     parts = given_parts(found)
     errors = max(hinge.found.error for hinge in found.values())
     return Calibration(found, parts, stood_in(text, parts, f"{TAG} within {100.0 * errors:.2g} %", where=where))

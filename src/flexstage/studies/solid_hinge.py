@@ -18,15 +18,17 @@ from flexstage.parts.material import Material
 from flexstage.parts.neck import Neck
 from flexstage.parts.notch import Notch
 from flexstage.parts.rod import Rod
+from flexstage.readings.solid.estimate import Accuracy
+from flexstage.readings.solid.hinge_cache import HingePart, kept_hinge
+from flexstage.readings.solid.parts import Ways
 from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNITS
-from flexstage.studies.solid_read import drawn
+from flexstage.studies.solid_read import STANDARD_WAYS, Notice, drawn
 
 if TYPE_CHECKING:
     from flexstage.readings.solid.hinge import HingeSolid
 
 _MOST_STUB = 0.9
 
-HingePart: TypeAlias = Notch | Neck | Leaf | Rod
 Hinges: TypeAlias = "Callable[[HingePart, Material], HingeSolid]"
 """Computes one hinge: plainly, or from a cache and telling its progress."""
 
@@ -61,17 +63,18 @@ class SolidHinge:
         return Matrix(self.found.stiffness, FORCES, COMPONENTS, ratio_units(WRENCH_UNITS, TWIST_UNITS))
 
 
-def plain_hinges(accuracy: float = 0.01, order: int | None = None) -> Hinges:
-    """Hinges computed to an accuracy (or at one order and the one before), without a cache.
+def hinges(accuracy: float = 0.01, order: int | None = None, ways: Ways = STANDARD_WAYS, notice: Notice | None = None) -> Hinges:
+    """Hinges computed to an accuracy, or at one order and the one before, each once, by the cache of `ways`.
 
-    >>> plain_hinges.__name__
-    'plain_hinges'
+    >>> hinges().__name__
+    'compute'
     """
-    from flexstage.readings.solid.estimate import Accuracy
-    from flexstage.readings.solid.hinge import hinge_compliance
-
     asked = Accuracy(error=accuracy) if order is None else Accuracy(error=accuracy, orders=(max(1, order - 1), order), meshes=1)
-    return lambda part, material: hinge_compliance(part, material, asked)
+
+    def compute(part: HingePart, material: Material) -> HingeSolid:
+        return kept_hinge(part, material, asked, ways.cache, notice)
+
+    return compute
 
 
 def distinct_hinges(mechanism: Mechanism) -> dict[str, tuple[HingePart, Material, tuple[str, ...]]]:
@@ -98,7 +101,7 @@ def _hinge(links: list[PlacedLink]) -> tuple[HingePart, Material, tuple[str, ...
     return first.part, first.material, tuple(dict.fromkeys(link.drawn for link in links))
 
 
-def solid_hinges(mechanism: Mechanism, hinges: Hinges) -> dict[str, SolidHinge]:
+def solid_hinges(mechanism: Mechanism, compute: Hinges) -> dict[str, SolidHinge]:
     """Compute the 6x6 of every distinct notch, neck, leaf and rod.
 
     Raises `DesignError` where a stage has none.
@@ -109,4 +112,4 @@ def solid_hinges(mechanism: Mechanism, hinges: Hinges) -> dict[str, SolidHinge]:
     found = distinct_hinges(mechanism)
     if not found:
         raise refuse("links", "none of them is a notch, neck, leaf or rod", "Only these have a 6x6 that can be computed")
-    return {name: SolidHinge(name, links, form, material, hinges(form, material)) for name, (form, material, links) in found.items()}
+    return {name: SolidHinge(name, links, form, material, compute(form, material)) for name, (form, material, links) in found.items()}

@@ -13,14 +13,17 @@ from flexstage.mechanism.mechanism import Mechanism
 from flexstage.parts.given import Given
 from flexstage.readings.linear.model import LinearModel
 from flexstage.readings.solid.assemble import Placed, linear_model, placed_parts
-from flexstage.readings.solid.component import Component, components
-from flexstage.readings.solid.content import content
+from flexstage.readings.solid.component import components
 from flexstage.readings.solid.fineness import Reduction
-from flexstage.readings.solid.superelement import Superelement
+from flexstage.readings.solid.parts import Parts, Ways, reduce_parts
 
-Parts: TypeAlias = tuple[tuple[Component, Superelement], ...]
-Solids: TypeAlias = "Callable[[Mechanism, Reduction], Parts]"
-"""Reduces the components of a stage: plainly (`plain_solids`), or from a cache and telling its progress."""
+Solids: TypeAlias = Callable[[Mechanism, Reduction], Parts]
+"""Reduces the components of a stage."""
+
+Notice: TypeAlias = Callable[[Finding], None]
+"""Told what is to be known but stops nothing: a damaged file of the cache."""
+
+STANDARD_WAYS = Ways()
 
 _COARSER = 1.6
 
@@ -48,24 +51,27 @@ class SolidRead:
         return list({id(item.element): item for item in self.placed}.values())
 
 
-def plain_solids(mechanism: Mechanism, reduction: Reduction) -> Parts:
-    """Reduce every distinct component, without a cache.
+def solids(ways: Ways = STANDARD_WAYS, notice: Notice | None = None) -> Solids:
+    """Reduces components by `ways`: from a cache, telling the progress; `notice` is told what is to be said about the cache.
 
-    >>> plain_solids.__name__
-    'plain_solids'
+    >>> solids()(Mechanism("nothing"), Reduction())
+    ()
     """
-    from flexstage.readings.solid.reduce import reduced
 
-    parts = components(mechanism)
-    elements: dict[str, Superelement] = {}
-    for part in parts:
-        key = content(part)
-        if key not in elements:
-            elements[key] = reduced(part, reduction)
-    return tuple((part, elements[content(part)]) for part in parts)
+    def reduce(mechanism: Mechanism, reduction: Reduction) -> Parts:
+        found = reduce_parts(components(mechanism), reduction, ways)
+        for finding in found.notices:
+            (notice or _ignore)(finding)
+        return found.parts
+
+    return reduce
 
 
-def read_solid(mechanism: Mechanism, reduction: Reduction, solids: Solids) -> SolidRead:
+def _ignore(_finding: Finding) -> None:
+    """Nobody is told."""
+
+
+def read_solid(mechanism: Mechanism, reduction: Reduction, reduce: Solids) -> SolidRead:
     """Read a stage as solids; calibrated hinges as the shapes they stand for.
 
     Raises `DesignError` for parts without a shape, and when the stage can move freely.
@@ -75,7 +81,7 @@ def read_solid(mechanism: Mechanism, reduction: Reduction, solids: Solids) -> So
     """
     shape = drawn(mechanism)
     assembly = expand(shape)
-    parts = solids(shape, reduction)
+    parts = reduce(shape, reduction)
     said = f"solid reading of {digest(shape, physics=True)[:16]}, order {reduction.fineness.order}, {reduction.modes} modes a component"
     return SolidRead(shape, linear_model(shape, assembly, parts, said), placed_parts(assembly, parts))
 

@@ -66,7 +66,7 @@ class SolidStage:
 _DIAGONAL = {2: "stiffness z", 3: "stiffness rx", 4: "stiffness ry", 5: "stiffness rz"}
 
 
-def solid_stage(mechanism: Mechanism, reduction: Reduction, solids: Solids) -> SolidStage:
+def solid_stage(mechanism: Mechanism, reduction: Reduction, reduce: Solids) -> SolidStage:
     """Read a whole stage as a solid.
 
     Raises `DesignError` for parts without a shape, outlines that do not touch, and when the stage can move freely.
@@ -74,7 +74,7 @@ def solid_stage(mechanism: Mechanism, reduction: Reduction, solids: Solids) -> S
     >>> solid_stage.__name__
     'solid_stage'
     """
-    read = read_solid(mechanism, reduction, solids)
+    read = read_solid(mechanism, reduction, reduce)
     found = platform_modes(mechanism, read.model)
     corners = _corners(read)
     stress = None if corners is None else link_stress(read, *corners)
@@ -101,6 +101,19 @@ def _corners(read: SolidRead) -> tuple[Array, dict[str, Array]] | None:
     dead = sum(dead_loads(read.mechanism, read.model).values(), np.zeros(len(read.model.coordinates)))
     motion = displacement(read.model, read.model.input_matrix[:, columns] @ strokes.T + dead[:, None])
     return motion, {name: strokes[:, number] for number, name in enumerate(limits.actuators)}
+
+
+def worst_strokes(stage: SolidStage) -> dict[str, float]:
+    """The strokes [m] by actuator at the corner of the weakest link.
+
+    >>> worst_strokes.__name__
+    'worst_strokes'
+    """
+    if stage.stress is None:
+        return {}
+    limits = stroke_limits(stage.read.mechanism).from_zero
+    case = int(stage.stress.case[stage.stress.names.index(stage.stress.weakest)])
+    return dict(zip(limits.actuators, (float(value) for value in limits.corners[case]), strict=True))
 
 
 def block_energy(model: LinearModel, shapes: Array) -> Array:

@@ -81,7 +81,7 @@ class SolidUnit:
         }
 
 
-def solid_units(mechanism: Mechanism, reduction: Reduction, solids: Solids) -> dict[str, SolidUnit]:
+def solid_units(mechanism: Mechanism, reduction: Reduction, reduce: Solids) -> dict[str, SolidUnit]:
     """Read the first copy of every placed unit that drives its output by exactly one actuator as a solid, alone.
 
     Outlines that belong to other bodies are left out; the output is the end face of the link that joins the platform, kept plane. Raises
@@ -97,7 +97,7 @@ def solid_units(mechanism: Mechanism, reduction: Reduction, solids: Solids) -> d
             "none of the stage's units drives an output of its own by one actuator",
             "Ask for the whole stage instead: --what stage",
         )
-    return {unit: _unit(mechanism, (unit, copy), direction, (reduction, solids)) for unit, (copy, direction) in found.items()}
+    return {unit: _unit(mechanism, (unit, copy), direction, (reduction, reduce)) for unit, (copy, direction) in found.items()}
 
 
 def _unit(mechanism: Mechanism, names: tuple[str, str], direction: Array, how: tuple[Reduction, Solids]) -> SolidUnit:

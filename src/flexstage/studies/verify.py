@@ -104,7 +104,7 @@ class Verification:
         return {name: verdict(rows) for name, rows in self.groups.items()}
 
 
-def verify(mechanism: Mechanism, solids: Solids, hinges: Hinges, asked: Resolution = DEFAULT) -> Verification:
+def verify(mechanism: Mechanism, reduce: Solids, compute: Hinges, asked: Resolution = DEFAULT) -> Verification:
     """Compare theory with finite elements for every distinct hinge and unit and for the whole stage.
 
     Theory is the description as it stands; FEA the shapes it draws. Raises `DesignError` where the stage cannot be read as a solid.
@@ -113,11 +113,11 @@ def verify(mechanism: Mechanism, solids: Solids, hinges: Hinges, asked: Resoluti
     'verify'
     """
     missing: dict[str, str] = {}
-    stage = stage_solid(mechanism, solids, asked)
-    found = solid_hinges(mechanism, hinges)
+    stage = stage_solid(mechanism, reduce, asked)
+    found = solid_hinges(mechanism, compute)
     matched = with_matrices(mechanism, found)
     try:
-        alone = units_solid(mechanism, solids, asked) if driven_units(mechanism) else None
+        alone = units_solid(mechanism, reduce, asked) if driven_units(mechanism) else None
     except DesignError as error:
         alone, missing["units"] = None, str(error)
     if alone is None:
@@ -130,16 +130,16 @@ def verify(mechanism: Mechanism, solids: Solids, hinges: Hinges, asked: Resoluti
     return Verification(mechanism, rows, found, alone, stage, missing)
 
 
-def stage_solid(mechanism: Mechanism, solids: Solids, asked: Resolution) -> Resolved[SolidStage]:
+def stage_solid(mechanism: Mechanism, reduce: Solids, asked: Resolution) -> Resolved[SolidStage]:
     """The whole stage as a solid, to the accuracy asked.
 
     >>> stage_solid.__name__
     'stage_solid'
     """
-    return resolved(lambda way: solid_stage(mechanism, way, solids), lambda found: found.figures, asked)
+    return resolved(lambda way: solid_stage(mechanism, way, reduce), lambda found: found.figures, asked)
 
 
-def units_solid(mechanism: Mechanism, solids: Solids, asked: Resolution) -> Resolved[dict[str, SolidUnit]]:
+def units_solid(mechanism: Mechanism, reduce: Solids, asked: Resolution) -> Resolved[dict[str, SolidUnit]]:
     """Every distinct unit alone as a solid, to the accuracy asked; the errors by `unit: figure`.
 
     >>> units_solid.__name__
@@ -149,7 +149,7 @@ def units_solid(mechanism: Mechanism, solids: Solids, asked: Resolution) -> Reso
     def figures(found: dict[str, SolidUnit]) -> dict[str, float]:
         return {f"{name}: {figure}": value for name, unit in found.items() for figure, value in unit.figures.items()}
 
-    return resolved(lambda way: solid_units(mechanism, way, solids), figures, asked)
+    return resolved(lambda way: solid_units(mechanism, way, reduce), figures, asked)
 
 
 def hinge_rows(mechanism: Mechanism, found: Mapping[str, SolidHinge]) -> Iterator[Row]:
