@@ -214,6 +214,19 @@ from flexstage.readings.lumped import (
 from flexstage.readings.mapped import (
     mapped as mapped,
 )
+from flexstage.readings.solid.cache import (
+    Cache as Cache,
+)
+from flexstage.readings.solid.fineness import (
+    Fineness as Fineness,
+    Hold as Hold,
+    Reduction as Reduction,
+)
+from flexstage.readings.solid.reading import (
+    SolidReading as SolidReading,
+    solid as solid,
+    solid_parts as solid_parts,
+)
 from flexstage.studies.budget import (
     budget as budget,
 )

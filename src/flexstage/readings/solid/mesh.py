@@ -17,12 +17,10 @@ from flexstage.parts.profile import Straight
 from flexstage.readings.solid.cad import Cad, cad, region
 from flexstage.readings.solid.component import Component
 from flexstage.readings.solid.draw import MILLIMETRES
-from flexstage.readings.solid.fineness import Fineness
+from flexstage.readings.solid.fineness import ATTEMPTS, Fineness
 from flexstage.readings.solid.piece import Medium, Piece, thinnest
 from flexstage.readings.solid.progress import Report, Stage, silent
 
-ATTEMPTS = ((1.0, 1.0, 1.0), (1.0, 0.8, 1.0), (0.8, 1.0, 1.0), (1.0, 1.0, 1.4), (0.85, 0.6, 1.0), (0.7, 0.7, 1.4), (0.5, 0.8, 1.0))
-"""Factors on all sizes, on the grading and on the segments per radius of curvature, one attempt after the other."""
 _HINGE_CURVATURE = 3.0
 _ROUND_CURVATURE = 1.5
 _WITHIN = 1e-6

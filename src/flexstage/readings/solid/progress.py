@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from enum import Enum
 
@@ -64,13 +64,13 @@ def within(stage: Stage, fraction: float) -> float:
     return sum(_SHARES[each] for each in stages[: stages.index(stage)]) + _SHARES[stage] * min(max(fraction, 0.0), 1.0)
 
 
-def gathered(running: Mapping[str, tuple[Stage, float]], done: float, weights: Mapping[str, float]) -> float:
-    """Fraction of all that is done: `done` is the weight of finished components, `weights` are those of the ones running.
+def gathered(running: Mapping[str, tuple[Stage, float]], shares: Mapping[str, float], finished: Iterable[str]) -> float:
+    """Fraction of all components that is done, each with its share of the whole.
 
-    >>> gathered({"lever": (Stage.MESHING, 1.0)}, done=1.0, weights={"lever": 1.0})
-    0.2
+    >>> round(gathered({"lever": (Stage.MESHING, 1.0)}, {"lever": 0.5, "foot": 0.5}, ["foot"]), 9)
+    0.6
     """
-    return done + sum(weights[name] * within(*where) for name, where in running.items())
+    return sum(shares[name] for name in finished) + sum(shares[name] * within(*where) for name, where in running.items())
 
 
 def seconds_left(fraction: float, elapsed: float) -> float | None:

@@ -2,28 +2,89 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import warnings
+from dataclasses import dataclass
 
 from flexstage.base.digest import digest
+from flexstage.base.finding import Finding
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.readings.linear.model import LinearModel
 from flexstage.readings.solid.assemble import linear_model
+from flexstage.readings.solid.cache import Cache
 from flexstage.readings.solid.component import Component, components
-from flexstage.readings.solid.content import content
-from flexstage.readings.solid.reduce import Reduction, reduced
+from flexstage.readings.solid.fineness import Reduction
+from flexstage.readings.solid.parts import Parts, Ways, reduce_parts
+from flexstage.readings.solid.progress import Progress
+from flexstage.readings.solid.remote import Limits
 from flexstage.readings.solid.superelement import Superelement
 
-Reducer = Callable[[Component, Reduction], Superelement]
+_CACHE, _STANDARD = Cache(), Reduction()
 
 
-def solid(mechanism: Mechanism, reduction: Reduction = Reduction(), reducer: Reducer = reduced) -> LinearModel:
-    """Read a stage as 3-D elastic solids."""
-    parts = components(mechanism)
-    keys = [content(part) for part in parts]
-    elements: dict[str, Superelement] = {}
-    for key, part in zip(keys, parts, strict=True):
-        if key not in elements:
-            elements[key] = reducer(part, reduction)
-    joined = tuple((part, elements[key]) for key, part in zip(keys, parts, strict=True))
-    return linear_model(mechanism, expand(mechanism), joined, f"solid reading of {digest(mechanism, physics=True)[:16]}")
+@dataclass(frozen=True, eq=False)
+class SolidReading:
+    """A stage read as solids: its linear model, the components with the superelements it is made of, how they were reduced.
+
+    `notices` say what is to be known about the cache; the result is complete all the same.
+    """
+
+    model: LinearModel
+    parts: Parts
+    reduction: Reduction
+    notices: tuple[Finding, ...]
+
+    @property
+    def components(self) -> tuple[Component, ...]:
+        """The components, copies included."""
+        return tuple(component for component, _ in self.parts)
+
+    @property
+    def superelements(self) -> tuple[Superelement, ...]:
+        """The superelement of each component; copies share one."""
+        return tuple(element for _, element in self.parts)
+
+
+def solid(
+    mechanism: Mechanism,
+    reduction: Reduction = _STANDARD,
+    *,
+    cache: Cache | None = _CACHE,
+    progress: Progress | None = None,
+    memory: float | None = None,
+) -> LinearModel:
+    """Read a stage as 3-D elastic solids: finite elements of each distinct component, reduced by Craig and Bampton's method and joined.
+
+    Same names of inputs and outputs as `lumped`. Every component is drawn, meshed and reduced once, in a process of its own, and kept in
+    the `cache` (`None`: neither looked up nor kept). `progress` is told what is done, the fraction and the seconds left; `memory` [bytes]
+    bounds what is planned with (absent: what the machine has left). Raises `DesignError` for links without a shape, outlines that do not
+    meet, meshes that cannot be made, too little memory or time, and stages that move freely. What is to be said about the cache is warned.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> solid(parallelogram(), memory=1e6, cache=None)
+    Traceback (most recent call last):
+    flexstage.base.finding.DesignError: ...
+    """
+    reading = solid_parts(mechanism, reduction, cache=cache, progress=progress, memory=memory)
+    for notice in reading.notices:
+        warnings.warn(str(notice), stacklevel=2)
+    return reading.model
+
+
+def solid_parts(
+    mechanism: Mechanism,
+    reduction: Reduction = _STANDARD,
+    *,
+    cache: Cache | None = _CACHE,
+    progress: Progress | None = None,
+    memory: float | None = None,
+) -> SolidReading:
+    """Read a stage as `solid` does, and return the reduced components as well: fields for pictures and stress, and notices.
+
+    >>> solid_parts.__name__
+    'solid_parts'
+    """
+    ways = Ways(cache, progress, Limits(memory=memory))
+    reduced = reduce_parts(components(mechanism), reduction, ways)
+    model = linear_model(mechanism, expand(mechanism), reduced.parts, f"solid reading of {digest(mechanism, physics=True)[:16]}")
+    return SolidReading(model, reduced.parts, reduction, reduced.notices)

@@ -1,0 +1,318 @@
+"""Reducing components in processes of their own: as many at once as cores and memory allow, with time limits, watched and cleaned up.
+
+One loop in the caller's thread starts, watches and ends them, so that it works from bare scripts, notebooks and tests alike, and so that
+an interruption, wherever it comes, ends every process and removes every file of a reduction that is not finished.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import pickle
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from collections import deque
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import IO, cast
+
+from flexstage.base.finding import Finding, refuse, require
+from flexstage.readings.solid.fineness import ATTEMPTS
+from flexstage.readings.solid.memory import Counts, available, needed, refusal
+from flexstage.readings.solid.progress import Progress, Stage, Step, gathered, seconds_left
+from flexstage.readings.solid.worker import FINDINGS, PROGRESS, RESULT, TASK, Job, Outcome, Task, findings_in
+
+_MOST_WORKERS = 2
+_PAUSE = 0.02
+_TELL_EVERY = 0.5
+_ONE_THREAD = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "NGS_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
+
+
+@dataclass(frozen=True)
+class Limits:
+    """What reductions may take.
+
+    `memory` in all [bytes] (absent: what the machine has left), `seconds` a component, `mesh_seconds` for one attempt at a mesh, and
+    `workers` at once (absent: one a core, two at most).
+    """
+
+    memory: float | None = None
+    seconds: float = 3600.0
+    mesh_seconds: float = 600.0
+    workers: int | None = None
+
+
+Done = Callable[[Job, bytes], None]
+"""Told of every component as it is finished, with its superelement as stored."""
+
+
+def reduce_all(jobs: Iterable[Job], done: Done, limits: Limits, progress: Progress | None = None) -> None:
+    """Reduce components in processes of their own.
+
+    Raises `DesignError` with the findings of all that failed, after the others are done: refused by themselves, crashed, out of time,
+    without room. Raising from `progress` or an interruption ends all.
+
+    >>> reduce_all([], print, Limits())
+    """
+    run = _Run(deque((job, 0, time.monotonic()) for job in jobs), done, limits, progress or _nobody)
+    try:
+        run.finish()
+    finally:
+        run.end()
+    require(run.findings)
+
+
+def _nobody(_step: Step) -> None:
+    """Nobody is told."""
+
+
+def workers(limits: Limits) -> int:
+    """How many components are reduced at once.
+
+    >>> workers(Limits(workers=1))
+    1
+    """
+    cores = len(os.sched_getaffinity(0)) if sys.platform == "linux" else (os.cpu_count() or 1)
+    return limits.workers or min(_MOST_WORKERS, cores)
+
+
+@dataclass(eq=False)
+class _Child:
+    """A running worker and what it said last."""
+
+    job: Job
+    attempt: int
+    begun: float
+    folder: Path
+    process: subprocess.Popen[bytes]
+    stage: Stage = Stage.STARTING
+    fraction: float = 0.0
+    since: float = field(default_factory=time.monotonic)
+    counts: Counts | None = None
+    granted: float | None = None
+    offset: int = 0
+
+    def listen(self) -> None:
+        """Take in the whole lines that came since."""
+        path = self.folder / PROGRESS
+        text = path.read_bytes()[self.offset :] if path.is_file() else b""
+        for line in text.splitlines(keepends=True):
+            if not line.endswith(b"\n"):
+                return
+            self.offset += len(line)
+            said = json.loads(line)
+            if "counts" in said:
+                self.counts = Counts(*said["counts"])
+            else:
+                self.stage, self.fraction, self.since = Stage[said["stage"]], said["fraction"], time.monotonic()
+
+    @property
+    def wanted(self) -> float:
+        """Memory it is going to need [bytes]."""
+        if self.counts is None:
+            return 0.0
+        return needed(self.counts, self.job.reduction.fineness.order, self.job.columns)
+
+    @property
+    def held(self) -> float:
+        """Memory it has already [bytes], where the system tells."""
+        try:
+            pages = int(Path(f"/proc/{self.process.pid}/statm").read_text(encoding="ascii").split()[1])
+        except (OSError, ValueError, IndexError):
+            return 0.0
+        return float(pages * os.sysconf("SC_PAGE_SIZE"))
+
+    @property
+    def voice(self) -> IO[bytes]:
+        """Its standard input."""
+        return cast("IO[bytes]", self.process.stdin)
+
+    def permit(self) -> None:
+        """Let it assemble."""
+        self.granted, self.since = self.wanted, time.monotonic()
+        with contextlib.suppress(OSError):  # it died meanwhile: seen at the next look
+            self.voice.write(b"!")
+
+    def last_words(self) -> str:
+        """The last line it wrote to its log."""
+        lines = (self.folder / "log").read_text(encoding="utf-8", errors="replace").strip().splitlines()
+        return lines[-1][:300] if lines else "it said nothing"
+
+    def remove(self) -> None:
+        """End the process, remove its folder."""
+        self.process.kill()
+        self.process.wait()
+        self.voice.close()
+        shutil.rmtree(self.folder, ignore_errors=True)
+
+
+class _Run:
+    """The reductions of one call: those to come, those running, those done."""
+
+    def __init__(self, waiting: deque[tuple[Job, int, float]], done: Done, limits: Limits, progress: Progress) -> None:
+        self.waiting, self.done, self.limits, self.progress = waiting, done, limits, progress
+        self.children: list[_Child] = []
+        self.findings: list[Finding] = []
+        total = sum(len(job.component.pieces) for job, _, _ in waiting)
+        self.shares = {job.name: len(job.component.pieces) / total for job, _, _ in waiting}
+        self.finished: list[str] = []
+        self.begun, self.told, self.text, self.fraction = time.monotonic(), 0.0, "", 0.0
+
+    def finish(self) -> None:
+        """Go on until nothing waits and nothing runs."""
+        while self.waiting or self.children:
+            while self.waiting and len(self.children) < workers(self.limits):
+                self._start(*self.waiting.popleft())
+            for child in tuple(self.children):
+                self._look(child)
+            self._permit()
+            self._tell()
+            time.sleep(_PAUSE)
+
+    def end(self) -> None:
+        """Leave no process and no file behind."""
+        for child in self.children:
+            child.remove()
+
+    def _start(self, job: Job, attempt: int, begun: float) -> None:
+        task = Task(job, attempt, available() if self.limits.memory is None else self.limits.memory)
+        self.children.append(_started(task, begun if attempt else time.monotonic()))
+
+    def _look(self, child: _Child) -> None:
+        code = child.process.poll()
+        child.listen()
+        if code is None:
+            self._check_time(child)
+        elif code == Outcome.DONE:
+            self.done(child.job, (child.folder / RESULT).read_bytes())
+            self._close(child)
+        elif code == Outcome.REFUSED and (child.folder / FINDINGS).is_file():
+            self._close(child, *findings_in(child.folder))
+        elif code == Outcome.DISK_FULL:
+            self._close(child, _disk_full(child.job.name))
+        elif not self._again(child):
+            self._close(child, _failed(child, code))
+
+    def _check_time(self, child: _Child) -> None:
+        now = time.monotonic()
+        if child.stage is Stage.MESHING and child.counts is None and now - child.since > self.limits.mesh_seconds:
+            if not self._again(child):
+                self._close(child, _hung(child, self.limits.mesh_seconds))
+        elif now - child.begun > self.limits.seconds:
+            self._close(child, _hung(child, self.limits.seconds))
+
+    def _again(self, child: _Child) -> bool:
+        """Begin with the next attempt at a mesh, where one took the process down or did not end."""
+        attempt = round(child.fraction * len(ATTEMPTS)) + 1
+        if child.stage is not Stage.MESHING or child.counts is not None or attempt >= len(ATTEMPTS) or child.process.poll() == 1:
+            return False
+        self.children.remove(child)
+        child.remove()
+        self.waiting.appendleft((child.job, attempt, child.begun))
+        return True
+
+    def _close(self, child: _Child, *findings: Finding) -> None:
+        self.findings += findings
+        self.finished.append(child.job.name)
+        self.children.remove(child)
+        child.remove()
+
+    def _permit(self) -> None:
+        """Permit what fits beside those that run; refuse what does not fit even alone."""
+        for child in tuple(self.children):
+            if child.counts is None or child.granted is not None:
+                continue
+            others = [each for each in self.children if each.granted is not None]
+            room = self._room(child, others)
+            finding = refusal(child.job.name, child.counts, child.job.reduction.fineness, child.job.columns, room)
+            if finding is None:
+                child.permit()
+            elif not others:
+                self._close(child, finding)
+
+    def _room(self, child: _Child, others: list[_Child]) -> float:
+        if self.limits.memory is not None:
+            return self.limits.memory - sum(each.granted or 0.0 for each in others)
+        return available() + child.held - sum(max(0.0, (each.granted or 0.0) - each.held) for each in others)
+
+    def _tell(self) -> None:
+        running = {child.job.name: (child.stage, child.fraction) for child in self.children}
+        text = ", ".join(f"{name}: {stage.value}" for name, (stage, _) in running.items()) or "done"
+        self.fraction = min(1.0, max(self.fraction, gathered(running, self.shares, self.finished)))
+        now = time.monotonic()
+        if text != self.text or now - self.told > _TELL_EVERY:
+            self.text, self.told = text, now
+            self.progress(Step(text, self.fraction, seconds_left(self.fraction, now - self.begun)))
+
+
+def _started(task: Task, begun: float) -> _Child:
+    folder: Path | None = None
+    try:
+        folder = Path(tempfile.mkdtemp(prefix="flexstage-"))
+        (folder / TASK).write_bytes(pickle.dumps(task))
+        with (folder / "log").open("wb") as log:
+            process = subprocess.Popen(
+                [sys.executable, "-P", "-m", "flexstage.readings.solid.worker", str(folder)],
+                stdin=subprocess.PIPE,
+                bufsize=0,
+                stdout=log,
+                stderr=log,
+                cwd=folder,
+                env=_environment(),
+                start_new_session=True,  # an interruption from the keyboard reaches the parent alone, which ends the child
+            )
+    except BaseException as error:
+        if folder is not None:
+            shutil.rmtree(folder, ignore_errors=True)
+        if isinstance(error, OSError):
+            raise _unstarted(task.job.name, error) from error
+        raise
+    return _Child(task.job, task.attempt, begun, folder, process)
+
+
+def _environment() -> dict[str, str]:
+    """One thread for every library; flexstage found where it is here, the user's own folder not searched."""
+    root = str(Path(__file__).resolve().parents[3])
+    paths = [root, *filter(None, [os.environ.get("PYTHONPATH")])]
+    return {**os.environ, **dict.fromkeys(_ONE_THREAD, "1"), "PYTHONPATH": os.pathsep.join(paths)}
+
+
+def _failed(child: _Child, code: int) -> Finding:
+    doing = child.stage.value
+    if code == 1:
+        advice = "This is a fault of flexstage or its solver: please report it with the design; other sizes of elements may get around it"
+        return Finding(child.job.name, f"its process failed while {doing} ({child.last_words()})", advice)
+    tried = f", at {child.attempt + 1} sizes of elements" if child.attempt else ""
+    advice = "Ask for elements of another size or order, and report it with the design if it happens again"
+    if child.stage in {Stage.DRAWING, Stage.MESHING}:
+        advice = "Change the outline or the elements' sizes a little: slivers and faces that nearly touch bring the mesher down"
+    elif code == -signal.SIGKILL:
+        advice = "Something ended it, as systems do when memory runs out: ask for larger elements or a lower order, or state less memory"
+    return Finding(child.job.name, f"its process crashed while {doing} ({_reason(code)}){tried}", advice)
+
+
+def _reason(code: int) -> str:
+    names = {-number.value: number.name for number in signal.Signals}
+    return names.get(code, f"exit code {code}")
+
+
+def _hung(child: _Child, seconds: float) -> Finding:
+    advice = "Ask for larger elements or a lower order, allow more time, or look for slivers, which can keep the mesher busy for ever"
+    return Finding(child.job.name, f"it was still {child.stage.value} after the {seconds:.4g} s allowed", advice)
+
+
+def _disk_full(name: str) -> Finding:
+    advice = "Free some of it, or let the environment variable TMPDIR name a folder with more room"
+    return Finding(name, f"no room is left in the folder for temporary files, {tempfile.gettempdir()}", advice)
+
+
+def _unstarted(name: str, error: OSError) -> Exception:
+    where = tempfile.gettempdir()
+    advice = "See that Python can be started and that the folder for temporary files (environment variable TMPDIR) has room"
+    return refuse(name, f"no process could be started for it in {where} ({error.strerror})", advice)

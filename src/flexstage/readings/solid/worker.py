@@ -1,0 +1,183 @@
+"""The process that draws, meshes and reduces one component: `python -m flexstage.readings.solid.worker FOLDER`.
+
+CAD and mesher may crash or hang; here they take nothing with them. In the folder are `task` (read), `progress` (JSON lines, appended),
+`result` or `findings` (written aside, then renamed). A byte on the standard input permits the reduction, once its memory is known; its
+end says that the parent is gone.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import ctypes
+import errno
+import faulthandler
+import json
+import os
+import pickle
+import signal
+import sys
+import threading
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from enum import IntEnum
+from pathlib import Path
+
+from flexstage.base.finding import DesignError, Finding
+from flexstage.base.number import Array
+from flexstage.parts.piezo import Piezo
+from flexstage.readings.solid.component import Component
+from flexstage.readings.solid.fineness import Reduction
+from flexstage.readings.solid.memory import Counts
+from flexstage.readings.solid.progress import Report, Stage
+from flexstage.readings.solid.store import written
+
+TASK, PROGRESS, RESULT, FINDINGS = "task", "progress", "result", "findings"
+_PR_SET_PDEATHSIG = 1
+_SLACK = 5e8
+"""What libraries take beyond a reduction's own memory [bytes]."""
+
+
+class Outcome(IntEnum):
+    """Exit codes; anything else is a crash."""
+
+    DONE = 0
+    REFUSED = 2
+    DISK_FULL = 3
+
+
+@dataclass(frozen=True, eq=False)
+class Job:
+    """A component to reduce, stored for `key`; `springs` (6 m, 6 m) between its interfaces, for modes of a whole stage in one piece."""
+
+    key: str
+    component: Component
+    reduction: Reduction
+    springs: Array | None = None
+
+    @property
+    def name(self) -> str:
+        """The component's name."""
+        return self.component.name
+
+    @property
+    def columns(self) -> int:
+        """Coordinates its superelement will have at most."""
+        part = self.component
+        stacks = sum(isinstance(piece.form, Piezo) for piece in part.pieces)
+        return 6 * (len(part.interfaces) + len(part.bodies)) + stacks + self.reduction.modes
+
+
+@dataclass(frozen=True, eq=False)
+class Task:
+    """What a worker is told: the job, the attempt at its mesh to begin with, and the memory it may take at most [bytes]."""
+
+    job: Job
+    attempt: int
+    memory: float
+
+
+def _main(folder: Path) -> Outcome:
+    """Work on the task in a folder; what is refused is left there as findings."""
+    try:
+        _place(folder / RESULT, _work(folder))
+    except DesignError as error:
+        told = [{"where": finding.where, "what": finding.what, "advice": finding.advice} for finding in error.findings]
+        _place(folder / FINDINGS, json.dumps(told).encode())
+        return Outcome.REFUSED
+    return Outcome.DONE
+
+
+def findings_in(folder: Path) -> tuple[Finding, ...]:
+    """The findings a worker left.
+
+    >>> from tempfile import TemporaryDirectory
+    >>> with TemporaryDirectory() as folder:
+    ...     _ = (Path(folder) / FINDINGS).write_text('[{"where": "lever", "what": "too thin", "advice": "Thicken it"}]')
+    ...     print(*findings_in(Path(folder)))
+    lever: too thin. Thicken it.
+    """
+    return tuple(Finding(**item) for item in json.loads((folder / FINDINGS).read_bytes()))
+
+
+def _work(folder: Path) -> bytes:
+    permitted = _watch_parent()
+    report = _reporter(folder / PROGRESS)
+    report(Stage.STARTING, 0.0)
+    task: Task = pickle.loads((folder / TASK).read_bytes())  # noqa: S301 (written by the parent process, into a folder only it can write to)
+    _limit_memory(task.memory)
+    return _reduced(task, report, lambda counts: _ask(folder / PROGRESS, counts, permitted))
+
+
+def _reduced(task: Task, report: Report, ask: Callable[[Counts], None]) -> bytes:
+    from flexstage.readings.solid.mesh import meshed
+    from flexstage.readings.solid.reduce import reduced_mesh
+
+    job = task.job
+    mesh = meshed(job.component, job.reduction.fineness, report, task.attempt)
+    size = mesh.mesh
+    ask(Counts(size.nv, size.nedge, size.nface, size.ne))
+    return written(reduced_mesh(job.component, mesh, job.reduction, job.springs, report), job.key)
+
+
+def _ask(path: Path, counts: Counts, permitted: threading.Event) -> None:
+    """Tell the parent what is to be assembled, and wait until it permits it."""
+    _append(path, {"counts": [counts.vertices, counts.edges, counts.faces, counts.elements]})
+    permitted.wait()
+
+
+def _reporter(path: Path) -> Report:
+    return lambda stage, fraction: _append(path, {"stage": stage.name, "fraction": fraction})
+
+
+def _append(path: Path, line: object) -> None:
+    with path.open("a", encoding="utf-8") as stream:
+        stream.write(json.dumps(line) + "\n")
+
+
+def _place(path: Path, data: bytes) -> None:
+    aside = path.with_suffix(".part")
+    aside.write_bytes(data)
+    aside.replace(path)
+
+
+def _watch_parent() -> threading.Event:
+    """An event set by the first byte of the standard input; this process ends with the parent, whose end of the pipe closes then."""
+    if sys.platform == "linux":  # even while compiled code holds the interpreter's lock
+        ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
+    permitted = threading.Event()
+
+    def listen() -> None:
+        while os.read(sys.stdin.fileno(), 1):
+            permitted.set()
+        os._exit(1)
+
+    threading.Thread(target=listen, daemon=True).start()
+    return permitted
+
+
+def _limit_memory(most: float) -> None:
+    """Let a mesh without end fail here rather than take the machine's memory; leave no core files."""
+    with contextlib.suppress(ImportError, ValueError, OSError):  # not on Windows, and not above a limit set by others
+        import resource
+
+        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+        if most != float("inf"):
+            limit = int(most + _SLACK)
+            resource.setrlimit(resource.RLIMIT_DATA, (limit, limit))
+
+
+def _run(arguments: Sequence[str]) -> int:
+    faulthandler.enable()
+    try:
+        return _main(Path(arguments[0]))
+    except OSError as error:
+        if error.errno not in {errno.ENOSPC, errno.EDQUOT}:
+            raise
+        return Outcome.DISK_FULL
+
+
+if __name__ == "__main__":
+    outcome = _run(sys.argv[1:])
+    sys.stdout.flush()
+    sys.stderr.flush()
+    os._exit(outcome)  # the result is placed: nothing is left to go wrong while libraries are taken down
