@@ -15,7 +15,8 @@ from flexstage.parts.leaf import Leaf
 from flexstage.parts.material import Material
 from flexstage.readings.solid.fineness import Fineness, Reduction
 from flexstage.readings.solid.gltf import Motion, Surface, gltf, surfaces
-from flexstage.studies.solid_read import SolidRead, plain_solids, read_solid
+from flexstage.readings.solid.parts import Ways
+from flexstage.studies.solid_read import SolidRead, read_solid, solids
 
 KINDS = {"SCALAR": 1, "VEC3": 3}
 TYPES = {gl.FLOAT: np.float32, gl.UNSIGNED_INT: np.uint32}
@@ -36,7 +37,7 @@ def leaf_stage() -> Mechanism:
 
 @pytest.fixture(scope="module")
 def read() -> SolidRead:
-    return read_solid(leaf_stage(), Reduction(Fineness(neck=4.0, block=1.0, order=2), modes=4), plain_solids)
+    return read_solid(leaf_stage(), Reduction(Fineness(neck=4.0, block=1.0, order=2), modes=4), solids(Ways(cache=None)))
 
 
 @pytest.fixture(scope="module")

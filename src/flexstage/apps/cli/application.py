@@ -7,7 +7,7 @@ from typing import Any
 
 import typer
 
-from flexstage.apps.cli import about, analyses, design, reach, whole
+from flexstage.apps.cli import about, analyses, design, reach, solid_files, whole
 
 app = typer.Typer(
     help="Design and proof of flexure-based ultra-precision positioning stages.",
@@ -30,6 +30,7 @@ COMMANDS: tuple[tuple[str, str, Callable[..., Any], str], ...] = (
     (_FILES, "plan", design.plan, "flexstage plan stage.toml -o plan.svg"),
     (_FILES, "catalogue", design.catalogue, "flexstage catalogue stacks"),
     (_WHOLE, "analyse", whole.analyse, "flexstage analyse stage.toml --report report.html --set horizontal/front.thickness=1.4mm"),
+    (_WHOLE, "cad", solid_files.cad, "flexstage cad stage.toml -o stage.step"),
     (_SINGLE, "mapping", analyses.mapping, "flexstage mapping stage.toml --json -"),
     (_SINGLE, "stiffness", analyses.stiffness, "flexstage stiffness stage.toml --reading mapped"),
     (_SINGLE, "lost-motion", analyses.lost_motion, "flexstage lost-motion stage.toml --set vertical/pivot.thickness=0.9mm"),

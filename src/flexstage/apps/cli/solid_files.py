@@ -1,0 +1,106 @@
+"""The command `cad`: a stage as solids in files for other programs, STEP, VTU and GLB."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from flexstage.apps.cli.options import Changes, Design
+from flexstage.apps.cli.speech import tell, warn
+
+if TYPE_CHECKING:
+    from flexstage.mechanism.mechanism import Mechanism
+    from flexstage.readings.solid.fineness import Fineness
+
+
+def cad(
+    design: Design,
+    *,
+    output: Annotated[
+        Path | None,
+        typer.Option("--output", "-o", metavar="STAGE.STEP", help="Write the named solids as a STEP assembly.", show_default=False),
+    ] = None,
+    mesh: Annotated[
+        Path | None, typer.Option("--mesh", metavar="STAGE.VTU", help="Mesh the stage and write the tetrahedra as VTU.", show_default=False)
+    ] = None,
+    gltf: Annotated[
+        Path | None,
+        typer.Option("--gltf", metavar="STAGE.GLB", help="Read the stage as solids; write its modes as animations.", show_default=False),
+    ] = None,
+    order: Annotated[int, typer.Option("--order", min=1, max=5, help="Order of elements and curved geometry, for --mesh and --gltf.")] = 2,
+    modes: Annotated[int, typer.Option("--modes", min=0, max=100, help="How many of the lowest modes --gltf shows.")] = 12,
+    changes: Changes = None,
+) -> None:
+    """Write a stage as solids.
+
+    One STEP assembly of named solids with materials; the mesh; the modes in motion.
+
+    Outlines are checked against each other first: what does not meet, overlaps or nearly coincides is told, and keeps it from being meshed.
+    """
+    from flexstage.apps.cli.opening import opened
+
+    if output is None and mesh is None and gltf is None:
+        raise typer.BadParameter("name a file to write, e.g. -o stage.step, --mesh stage.vtu or --gltf stage.glb", param_hint="--output")
+    mechanism = opened(design, changes, [("--output", output), ("--mesh", mesh), ("--gltf", gltf)])
+    for path, option, content in _contents(mechanism, {"--output": output, "--mesh": mesh, "--gltf": gltf}, order, modes):
+        _write(path, content, option)
+
+
+def _write(path: Path, content: bytes, option: str) -> None:
+    from flexstage.apps.cli.output import STDOUT, write
+
+    write(path, content, option)
+    if str(path) != STDOUT:
+        tell(f"Wrote {path}")
+
+
+def _contents(mechanism: Mechanism, wanted: dict[str, Path | None], order: int, modes: int) -> Iterator[tuple[Path, str, bytes]]:
+    """The files that are wanted, with their options, one after the other."""
+    from flexstage.readings.solid.fineness import Fineness
+    from flexstage.readings.solid.install import require_solver
+    from flexstage.studies.solid_read import drawn
+
+    require_solver()
+    stage, fineness = drawn(mechanism), Fineness(order=order)
+    _check_contact(stage, meshed=wanted["--mesh"] is not None or wanted["--gltf"] is not None)
+    if (path := wanted["--output"]) is not None:
+        from flexstage.readings.solid.step import step
+
+        yield path, "--output", step(stage)
+    if (path := wanted["--mesh"]) is not None:
+        from flexstage.readings.solid.vtu import stage_mesh, vtu
+
+        yield path, "--mesh", vtu(stage_mesh(stage, fineness))
+    if (path := wanted["--gltf"]) is not None:
+        yield path, "--gltf", _moving(stage, fineness, modes)
+
+
+def _check_contact(stage: Mechanism, *, meshed: bool) -> None:
+    """Findings keep a stage from being meshed; drawn it may be all the same, to be mended in CAD."""
+    from flexstage.base.finding import require
+    from flexstage.readings.solid.contact import contact_findings
+
+    findings = contact_findings(stage)
+    if meshed:
+        require(findings)
+    for finding in findings:
+        warn(str(finding))
+
+
+def _moving(stage: Mechanism, fineness: Fineness, count: int) -> bytes:
+    """The GLB file of a stage with its lowest modes."""
+    from flexstage.readings.solid.fineness import Reduction
+    from flexstage.readings.solid.gltf import Motion, gltf, surfaces
+    from flexstage.studies.complete import platform_modes
+    from flexstage.studies.solid_read import read_solid, solids
+
+    read = read_solid(stage, Reduction(fineness), solids(notice=lambda finding: warn(str(finding))))
+    found = platform_modes(stage, read.model)
+    motions = [
+        Motion(f"mode {number + 1}: {name}, {found.frequencies[number]:.1f} Hz", found.shapes[:, number])
+        for number, name in enumerate(found.names[:count])
+    ]
+    return gltf(stage.name or "stage", surfaces(read.placed, motions), motions)

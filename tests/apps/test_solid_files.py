@@ -1,0 +1,100 @@
+"""The command `cad`: files of solids, what keeps them from being written, and what is only warned of."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import meshio
+import numpy as np
+import pygltflib
+import pytest
+from netgen import occ
+
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.mechanism.store import dump
+from flexstage.parts.body import Body
+from flexstage.parts.freedom import Freedom
+from flexstage.parts.given import Joint
+from flexstage.readings.solid import contact
+from tests.apps.command import Command
+from tests.roundtrip.test_gltf import leaf_stage
+
+
+@pytest.fixture(autouse=True)
+def _own_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("FLEXSTAGE_CACHE", str(tmp_path / "cache"))
+
+
+def apart() -> Mechanism:
+    """The stage of two leaves, its block 5 um away from them."""
+    stage = leaf_stage()
+    block = stage.bodies["platform"].solids["block"]
+    return replace(
+        stage, bodies={"platform": Body(solids={"block": replace(block, at=tuple(np.add(block.at, (5e-6, 0.0, 0.0)).tolist()))})}
+    )
+
+
+def test_all_three_files(flexstage: Command, tmp_path: Path) -> None:
+    dump(leaf_stage(), tmp_path / "leaf.toml")
+    names = ("-o", "a.step", "--mesh", "a.vtu", "--gltf", "a.glb")
+    ended = flexstage("cad", "leaf.toml", *names, "--order", "1", "--modes", "2")
+    assert ended.code == 0, ended.err
+    assert all(f"Wrote {name}" in ended.err for name in names[1::2])
+    assert len(occ.OCCGeometry(str(tmp_path / "a.step")).shape.solids) == 3
+    assert len(meshio.read(tmp_path / "a.vtu").cells_dict["tetra10"]) > 100
+    shown = pygltflib.GLTF2.load_binary(str(tmp_path / "a.glb"))
+    assert shown is not None
+    assert [animation.name.partition(":")[0] for animation in shown.animations] == ["mode 1", "mode 2"]
+    assert all(animation.name.endswith(" Hz") for animation in shown.animations)
+    assert not list(tmp_path.glob(".*.part"))
+
+
+def test_what_does_not_meet_is_warned_of_in_step_and_refused_in_a_mesh(flexstage: Command, tmp_path: Path) -> None:
+    dump(apart(), tmp_path / "apart.toml")
+    drawn = flexstage("cad", "apart.toml", "-o", "a.step")
+    assert drawn.code == 0
+    assert "warning: one: its end face is 5 um away from platform" in drawn.err
+    for option, name in (("--mesh", "a.vtu"), ("--gltf", "a.glb")):
+        ended = flexstage("cad", "apart.toml", option, name)
+        assert ended.code == 2
+        assert "error: 2 findings" in ended.err
+        assert "Traceback" not in ended.err
+        assert not (tmp_path / name).exists()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (("-o", "nowhere/a.step"), "there is no folder nowhere"),
+        (("-o", "stage.toml"), "the design file"),
+        (("-o", "."), "it is a folder"),
+        (("-o", "a", "--gltf", "./a"), "the output of --output"),
+        ((), "name a file to write"),
+        (("--mesh", "a.vtu", "--order", "0"), "--order"),
+    ],
+)
+def test_bad_outputs_are_found_before_anything_is_drawn(
+    flexstage: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, arguments: tuple[str, ...], said: str
+) -> None:
+    monkeypatch.setattr(contact, "contact_findings", lambda *_: pytest.fail("drawn all the same"))
+    before = (tmp_path / "stage.toml").read_bytes()
+    ended = flexstage("cad", "stage.toml", *arguments)
+    assert ended.code == 2
+    assert said in ended.err
+    assert (tmp_path / "stage.toml").read_bytes() == before
+
+
+def test_a_part_without_shape_is_named(flexstage: Command, tmp_path: Path) -> None:
+    stage = leaf_stage()
+    dump(replace(stage, parts={"leaf": Joint((Freedom.X,))}), tmp_path / "joint.toml")
+    ended = flexstage("cad", "joint.toml", "-o", "a.step")
+    assert ended.code == 2
+    assert "one: a part of kind joint has no shape" in ended.err
+
+
+def test_step_to_stdout_is_nothing_but_step(flexstage: Command, tmp_path: Path) -> None:
+    dump(leaf_stage(), tmp_path / "leaf.toml")
+    ended = flexstage("cad", "leaf.toml", "-o", "-")
+    assert ended.out.startswith("ISO-10303-21;")
+    assert ended.out.rstrip().endswith("END-ISO-10303-21;")
