@@ -114,14 +114,12 @@ def stroke_force(space: Field, frame: Frame, length: float) -> Array:
     return np.array(form.vec.FV().NumPy())
 
 
-def rigid(space: Field, frame: Frame, weight: ngsolve.CoefficientFunction | None = None, faces: str | None = None) -> Array:
-    """The six rigid motions (n, 6) in a frame's axes about its origin, times a weight; on some faces only if named.
+def rigid(space: Field, frame: Frame, faces: str | None = None) -> Array:
+    """The six rigid motions (n, 6) in a frame's axes about its origin; on some faces only if named.
 
     Translations of 1 m and rotations of 1 rad.
     """
     columns = [_rigid_motion(frame, axis) for axis in range(6)]
-    if weight is not None:
-        columns = [weight * column for column in columns]
     return _interpolated(space, columns, faces)
 
 
@@ -151,15 +149,12 @@ def _interpolated(space: Field, columns: list[ngsolve.CoefficientFunction], face
     return result
 
 
-def ramp(frame: Frame, half: float) -> ngsolve.CoefficientFunction:
-    """From 0 to 1 along a frame's x axis, over the middle half of a link of half length `half` [m]."""
-    axis = [float(value) for value in frame.rotation[:, 0]]
-    along = sum(
-        direction * (coordinate * (1.0 / MILLIMETRES) - float(at))
-        for direction, coordinate, at in zip(axis, _coordinates(), frame.position, strict=True)
-    )
-    value = 0.5 + along / half
-    return ngsolve.IfPos(value, ngsolve.IfPos(1.0 - value, value, 1.0), 0.0)
+def degrees_of(space: Field, elements: Array) -> Array:
+    """Which degrees of freedom (n,) belong to some of the elements (mask)."""
+    result = np.zeros(space.size, dtype=bool)
+    for number in np.flatnonzero(elements):
+        result[list(space.space.GetDofNrs(ngsolve.ElementId(ngsolve.VOL, int(number))))] = True
+    return result
 
 
 def mean_motion(space: Field, frame: Frame, face: str) -> Array:

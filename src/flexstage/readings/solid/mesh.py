@@ -55,7 +55,7 @@ def meshed(component: Component, fineness: Fineness, report: Report = silent, fi
             {"maxh": largest, "grading": grading * fineness.grading, "curvaturesafety": curvature * _curvature(component)},
         )
         if isinstance(outcome, ngsolve.Mesh):
-            return Meshed(outcome, drawing.media, drawing.faces, owners(component.pieces, _centroids(outcome)))
+            return Meshed(outcome, drawing.media, drawing.faces, owners(component.pieces, centroids(outcome)))
         failure = outcome
     raise _unmeshed(component, failure)
 
@@ -111,7 +111,7 @@ def _lowest_jacobian(mesh: ngsolve.Mesh) -> float:
     return float(np.min(ngsolve.Det(ngsolve.specialcf.JacobianMatrix(3))(points)))
 
 
-def _centroids(mesh: ngsolve.Mesh) -> Array:
+def centroids(mesh: ngsolve.Mesh) -> Array:
     """Vertex means of all elements (n, 3) [m]."""
     corners = np.array([vertex.point for vertex in mesh.vertices])
     members = np.array([[vertex.nr for vertex in element.vertices] for element in mesh.Elements(ngsolve.VOL)])

@@ -16,17 +16,17 @@ from scipy.sparse.linalg import LinearOperator, eigsh
 from flexstage.base.number import Array
 from flexstage.parts.piezo import Piezo
 from flexstage.readings.solid.component import Component
-from flexstage.readings.solid.field import Field, Solver, applied, field, inertia, ramp, rigid, stiffness, stroke_force, times
+from flexstage.readings.solid.field import Field, Solver, applied, degrees_of, field, inertia, rigid, stiffness, stroke_force, times
 from flexstage.readings.solid.fineness import Reduction
 from flexstage.readings.solid.hold import held, is_rigid
-from flexstage.readings.solid.mesh import Meshed, meshed
+from flexstage.readings.solid.mesh import Meshed, centroids, meshed
 from flexstage.readings.solid.piece import span
 from flexstage.readings.solid.progress import Report, Stage, silent
 from flexstage.readings.solid.skin import skin
 from flexstage.readings.solid.superelement import Superelement
 from flexstage.spatial.frame import Frame, identity, transport
 
-_DEPENDENT = 1e-9
+_DEPENDENT = 1e-13
 _EIGENVALUES = 1e-9
 
 
@@ -192,9 +192,14 @@ def _projected(problem: _Problem, basis: Array, strokes: Mapping[str, Array], re
 
 
 def _sections(problem: _Problem, number: int) -> Array:
-    """Test motions (n, 6) that move a link's second side against its first, in its frame about its centre."""
+    """Test motions (n, 6): a link's elements beyond its middle move rigidly, in its frame about its centre, all others rest.
+
+    The work of the link's stresses on them is what passes through it, exactly, by equilibrium in the discrete sense.
+    """
     piece = problem.component.pieces[number]
-    return rigid(problem.field, piece.frame, weight=ramp(piece.frame, 0.5 * span(piece.form)))
+    along = (centroids(problem.field.meshed.mesh) - piece.frame.position) @ piece.frame.rotation[:, 0]
+    beyond = degrees_of(problem.field, (problem.field.meshed.owner == number) & (along > 0.0))
+    return rigid(problem.field, piece.frame) * beyond[:, None]
 
 
 def _free_stroke(component: Component, number: int, force: Array) -> Array:

@@ -1,0 +1,19 @@
+"""Stages read as solids, each once a session."""
+
+from __future__ import annotations
+
+from functools import cache
+
+from flexstage.cases.registry import case
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.readings.solid.fineness import Fineness, Reduction
+from flexstage.readings.solid.reading import SolidReading, solid_parts
+
+COARSE = Reduction(Fineness(order=2))
+
+
+@cache
+def read(name: str) -> tuple[Mechanism, SolidReading]:
+    """A shipped case and its coarse solid reading (order two), from no cache."""
+    stage = case(name)
+    return stage, solid_parts(stage, COARSE, cache=None)
