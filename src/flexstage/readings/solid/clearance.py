@@ -23,6 +23,12 @@ def clearance_questions(stage: Stage, clearance: float) -> Iterator[Question]:
     """A question for every near pair of outlines of different bodies or links, but links and the bodies they join.
 
     `clearance` is the least distance wanted [m]; copies ask the same.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.readings.solid.stage_pieces import stage_pieces
+    >>> stage = stage_pieces(parallelogram())
+    >>> len(list(clearance_questions(stage, 0.0))), len(list(clearance_questions(stage, 1.0))) > 20
+    (0, True)
     """
     pieces = list(stage.pieces.values())
     for one, other in near_pairs([stage.boxes[piece.name] for piece in pieces], clearance + TOUCHING):

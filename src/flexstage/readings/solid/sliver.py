@@ -39,7 +39,11 @@ class _Sliver:
 
 
 def sliver_findings(parts: Sequence[Component], *, coarse: bool = False) -> Iterator[Finding]:
-    """Slivers of every distinct component drawn as one; what keeps one from being drawn is told too, unless found before (`coarse`)."""
+    """Slivers of every distinct component drawn as one; what keeps one from being drawn is told too, unless found before (`coarse`).
+
+    >>> list(sliver_findings([]))
+    []
+    """
     yield from answered(Question(content(part), part.name, lambda part=part: _answers(part, coarse=coarse)) for part in parts)
 
 

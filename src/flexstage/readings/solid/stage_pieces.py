@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from flexstage.base.finding import Finding, require
+from flexstage.base.finding import Finding, refuse, require
 from flexstage.mechanism.expand import Assembly, expand
 from flexstage.mechanism.mechanism import GROUND, Mechanism
 from flexstage.mechanism.outline import Outline, outlines
@@ -66,3 +66,14 @@ def stage_pieces(mechanism: Mechanism) -> Stage:
             pieces[name], materials[name] = Piece(name, form, medium(link.material), link.frame), form.material
     joints = {name: link_joints(link, pieces[name].form) for name, link in assembly.links.items()}
     return Stage(assembly, pieces, {outline.name: outline for outline in outlines(assembly)}, joints, materials)
+
+
+def require_shapes(mechanism: Mechanism, stage: Stage) -> None:
+    """Raise a `DesignError` where nothing of a stage has a shape.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> require_shapes(parallelogram(), stage_pieces(parallelogram()))
+    """
+    if not stage.pieces:
+        advice = "Give bodies solids, or links parts that can be drawn"
+        raise refuse(mechanism.name or "stage", "no body has outlines and no link a shape", advice)

@@ -13,12 +13,11 @@ from pathlib import Path
 
 from netgen import occ
 
-from flexstage.base.finding import refuse
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.readings.solid.draw import drawn, moved
 from flexstage.readings.solid.paint import Colour, palette
 from flexstage.readings.solid.piece import Piece
-from flexstage.readings.solid.stage_pieces import Stage, stage_pieces
+from flexstage.readings.solid.stage_pieces import Stage, require_shapes, stage_pieces
 
 _ENTITY = re.compile(r"#(\d+)\s*=\s*(.*?);[ \t]*\r?\n", re.DOTALL)
 _REFERENCE = re.compile(r"#(\d+)")
@@ -35,7 +34,12 @@ class Part:
 
 
 def stage_parts(stage: Stage) -> tuple[Part, ...]:
-    """The solids of a stage: one a link, one a body (and a material), the ground's outlines each by itself."""
+    """The solids of a stage: one a link, one a body (and a material), the ground's outlines each by itself.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> [part.name for part in stage_parts(stage_pieces(parallelogram()))]
+    ['platform', 'B/base', 'B/tip', 'left', 'right', 'B/back', 'B/pzt', 'B/front']
+    """
     groups: dict[tuple[str, str], list[Piece]] = {}
     for piece in stage.pieces.values():
         owner = piece.name if piece.body is None or piece.name in stage.assembly.ground else piece.body
@@ -51,12 +55,13 @@ def step(mechanism: Mechanism) -> bytes:
     """The STEP file of a stage as it is described.
 
     Raises `DesignError` naming every link that has no shape, and where nothing at all has one.
+
+    >>> step(Mechanism("nothing"))
+    Traceback (most recent call last):
+    flexstage.base.finding.DesignError: nothing: no body has outlines and no link a shape. ...
     """
     stage = stage_pieces(mechanism)
-    if not stage.pieces:
-        raise refuse(
-            mechanism.name or "stage", "no body has outlines and no link a shape", "Give bodies solids, or links parts that can be drawn"
-        )
+    require_shapes(mechanism, stage)
     return step_text(mechanism.name or "stage", stage_parts(stage)).encode("ascii")
 
 
@@ -66,7 +71,11 @@ def _united(pieces: Sequence[Piece]) -> occ.TopoDS_Shape:
 
 
 def step_text(name: str, parts: Sequence[Part]) -> str:
-    """Parts as the text of a STEP file: one product each, all placed in an assembly of the given name."""
+    """Parts as the text of a STEP file: one product each, all placed in an assembly of the given name.
+
+    >>> step_text("nothing", ()).splitlines()[0]
+    'ISO-10303-21;'
+    """
     colours = palette(part.material for part in parts)
     lines = _Lines()
     root = _root(lines, name)

@@ -24,7 +24,7 @@ from flexstage.readings.solid.content import content
 from flexstage.readings.solid.draw import MILLIMETRES
 from flexstage.readings.solid.fineness import Fineness
 from flexstage.readings.solid.mesh import Meshed, meshed
-from flexstage.readings.solid.stage_pieces import Stage, stage_pieces
+from flexstage.readings.solid.stage_pieces import Stage, require_shapes, stage_pieces
 
 _CORNERS = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0), (0.0, 0.0, 0.0))
 _ORDER = (1, 0, 2, 3)
@@ -55,9 +55,14 @@ class StageMesh:
 def stage_mesh(mechanism: Mechanism, fineness: Fineness) -> StageMesh:
     """Mesh every distinct component once, and place it with every copy.
 
-    Raises `DesignError` where the outlines do not form solids or cannot be meshed.
+    Raises `DesignError` where the outlines do not form solids or cannot be meshed, and where nothing has a shape.
+
+    >>> stage_mesh(Mechanism("nothing"), Fineness())
+    Traceback (most recent call last):
+    flexstage.base.finding.DesignError: nothing: no body has outlines and no link a shape. ...
     """
     stage, parts = stage_pieces(mechanism), components(mechanism)
+    require_shapes(mechanism, stage)
     numbers = {name: number for number, name in enumerate(stage.pieces)}
     own: dict[str, Grid] = {}
     grids: list[Grid] = []
@@ -71,7 +76,14 @@ def stage_mesh(mechanism: Mechanism, fineness: Fineness) -> StageMesh:
 
 
 def grid(mesh: Meshed) -> Grid:
-    """A mesh's tetrahedra with the middles of their edges, which lie on the curved geometry."""
+    """A mesh's tetrahedra with the middles of their edges, which lie on the curved geometry.
+
+    >>> from netgen import occ
+    >>> cube = ngsolve.Mesh(occ.OCCGeometry(occ.Box((0, 0, 0), (1, 1, 1))).GenerateMesh(maxh=2.0))
+    >>> drawn = grid(Meshed(cube, (), (), np.zeros(cube.ne, dtype=int)))
+    >>> drawn.cells.shape == (cube.ne, 10), float(drawn.points.max())
+    (True, 0.001)
+    """
     elements = np.array([[vertex.nr for vertex in element.vertices] for element in mesh.mesh.Elements(ngsolve.VOL)])[:, _ORDER]
     corners = np.array(_CORNERS)[list(_ORDER)]
     middles = np.array([0.5 * (corners[one] + corners[other]) for one, other in _EDGES])
@@ -86,7 +98,11 @@ def grid(mesh: Meshed) -> Grid:
 
 
 def vtu(mesh: StageMesh) -> bytes:
-    """The file of a stage's mesh: cell data `piece`, `body`, `material`, `component` (numbers), `young` [Pa] and `density` [kg/m^3]."""
+    """The file of a stage's mesh: cell data `piece`, `body`, `material`, `component` (numbers), `young` [Pa] and `density` [kg/m^3].
+
+    >>> vtu.__name__  # meshing takes long
+    'vtu'
+    """
     pieces = [mesh.stage.pieces[name] for name in mesh.pieces]
     bodies = _numbered(piece.name if piece.body is None else piece.body for piece in pieces)
     materials = _numbered(mesh.stage.materials[name] for name in mesh.pieces)
