@@ -12,13 +12,14 @@ import numpy as np
 from flexstage.base.number import Array
 from flexstage.base.scale import mm
 from flexstage.cases.parallelogram import parallelogram
-from flexstage.cases.stock import ALUMINIUM, STEEL
+from flexstage.cases.stock import ALUMINIUM, SLIM_STACK, STEEL
 from flexstage.mechanism.mechanism import Link, Mechanism
 from flexstage.parts.body import Block, Body
 from flexstage.parts.notch import Notch
 from flexstage.parts.profile import Circular
 from flexstage.readings.solid.component import Component, components
-from flexstage.readings.solid.mesh import Fineness, Meshed, meshed
+from flexstage.readings.solid.fineness import Fineness
+from flexstage.readings.solid.mesh import Meshed, meshed
 
 NOTCH = Notch("steel", 1 * mm, 8 * mm, Circular(4 * mm))
 
@@ -60,10 +61,16 @@ class Solution:
 
 
 def hinge() -> Problem:
-    """A circular notch, one end face held, the other loaded."""
-    link = Link(("ground", "platform"), "notch", (0.0, 0.0, 0.0), (1.0, 0.0, 0.0), bends=(0.0, 0.0, 1.0))
-    stage = Mechanism("hinge", {"steel": STEEL}, {"notch": NOTCH}, {"platform": Body(mass=1.0)}, {"hinge": link})
-    return Problem(_named(stage, "hinge"), "hinge:ground", "hinge:platform")
+    """A cantilever: a circular notch, held at one end, with a block on the other that is loaded over a disc on its far side."""
+    notch_end, block_end = 4 * mm, 12 * mm
+    stack_at = block_end + 0.5 * float(SLIM_STACK.length)
+    links = {
+        "notch": Link(("ground", "platform"), "notch", (0.0, 0.0, 0.0), (1.0, 0.0, 0.0), bends=(0.0, 0.0, 1.0)),
+        "stack": Link(("platform", "ground"), "stack", (stack_at, 0.0, 0.0), (1.0, 0.0, 0.0)),
+    }
+    block = Block("steel", (block_end - notch_end, 10 * mm, 8 * mm), at=(0.5 * (notch_end + block_end), 0.0, 0.0))
+    stage = Mechanism("hinge", {"steel": STEEL}, {"notch": NOTCH, "stack": SLIM_STACK}, {"platform": Body({"block": block})}, links)
+    return Problem(_named(stage, "platform"), "notch:ground", "stack:platform")
 
 
 def pair() -> Problem:
