@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Generic, TypeVar
 
+from flexstage.base.finding import DesignError
 from flexstage.readings.solid.fineness import Fineness, Reduction
 from flexstage.studies.solid_read import coarser
 
@@ -26,11 +27,15 @@ DEFAULT = Resolution()
 
 @dataclass(frozen=True, eq=False)
 class Resolved(Generic[_Result]):
-    """A result with the relative error estimated of each of its figures: the change from the resolution before. An estimate, no bound."""
+    """A result with the relative error estimated of each of its figures: the change from the resolution before. An estimate, no bound.
+
+    `stopped` says why the order was not raised further although the accuracy asked was not reached.
+    """
 
     result: _Result
     errors: Mapping[str, float]
     order: int
+    stopped: str = ""
 
     @property
     def error(self) -> float:
@@ -49,14 +54,21 @@ def resolved(
     """
     orders = range(3, HIGHEST + 1) if asked.order is None else (asked.order,)
     before = figures(work(coarser(Reduction(Fineness(order=orders[0])))))
+    found: Resolved[_Result] | None = None
     for order in orders:
-        result = work(Reduction(Fineness(order=order)))
+        try:
+            result = work(Reduction(Fineness(order=order)))
+        except DesignError as error:  # of a higher order than one that went: what it needs is not there
+            if found is None:
+                raise
+            return replace(found, stopped=str(error))
         now = figures(result)
         found = Resolved(result, changes(before, now), order)
-        if found.error <= asked.accuracy or order == orders[-1]:
+        if found.error <= asked.accuracy:
             return found
         before = now
-    raise AssertionError
+    assert found is not None  # noqa: S101  there is at least one order
+    return found
 
 
 def changes(before: Mapping[str, float], after: Mapping[str, float]) -> dict[str, float]:

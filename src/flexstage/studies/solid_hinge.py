@@ -64,12 +64,12 @@ class SolidHinge:
 
 
 def hinges(accuracy: float = 0.01, order: int | None = None, ways: Ways = STANDARD_WAYS, notice: Notice | None = None) -> Hinges:
-    """Hinges computed to an accuracy, or at one order and the one before, each once, by the cache of `ways`.
+    """Hinges computed to an accuracy with elements of at most an `order` (never less than three), each once, by the cache of `ways`.
 
     >>> hinges().__name__
     'compute'
     """
-    asked = Accuracy(error=accuracy) if order is None else Accuracy(error=accuracy, orders=(max(1, order - 1), order), meshes=1)
+    asked = Accuracy(error=accuracy) if order is None else Accuracy(error=accuracy, orders=(2, max(3, order)))
 
     def compute(part: HingePart, material: Material) -> HingeSolid:
         return kept_hinge(part, material, asked, ways.cache, notice)

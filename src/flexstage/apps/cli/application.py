@@ -7,7 +7,7 @@ from typing import Any
 
 import typer
 
-from flexstage.apps.cli import about, analyses, design, reach, solid_files, whole
+from flexstage.apps.cli import about, analyses, design, reach, solid, solid_files, whole
 
 app = typer.Typer(
     help="Design and proof of flexure-based ultra-precision positioning stages.",
@@ -30,6 +30,9 @@ COMMANDS: tuple[tuple[str, str, Callable[..., Any], str], ...] = (
     (_FILES, "plan", design.plan, "flexstage plan stage.toml -o plan.svg"),
     (_FILES, "catalogue", design.catalogue, "flexstage catalogue stacks"),
     (_WHOLE, "analyse", whole.analyse, "flexstage analyse stage.toml --report report.html --set horizontal/front.thickness=1.4mm"),
+    (_WHOLE, "solid", solid.solid, "flexstage solid stage.toml --what unit --report units.html"),
+    (_WHOLE, "verify", solid.verify, "flexstage verify stage.toml --report verified.html"),
+    (_WHOLE, "calibrate", solid.calibrate, "flexstage calibrate stage.toml -o stage-calibrated.toml"),
     (_WHOLE, "cad", solid_files.cad, "flexstage cad stage.toml -o stage.step"),
     (_SINGLE, "mapping", analyses.mapping, "flexstage mapping stage.toml --json -"),
     (_SINGLE, "stiffness", analyses.stiffness, "flexstage stiffness stage.toml --reading mapped"),

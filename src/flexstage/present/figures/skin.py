@@ -22,10 +22,13 @@ if TYPE_CHECKING:
 _DARKEST = 0.55
 _TALLEST = 1.0
 _BAR = 0.35
+_DIVISIONS, _COARSEST = 4, 0.03
 
 
-def skin_figure(surfaces: Sequence[Surface], label: str, *, highest: float | None = None, side: Side = Side.ISOMETRIC) -> Any:
-    """Surfaces from one side as a matplotlib Figure; colours from zero to `highest` (the largest value, unless given), named by `label`.
+def skin_figure(surfaces: Sequence[Surface], label: str, *, exponent: float = 1.0, side: Side = Side.ISOMETRIC) -> Any:
+    """Surfaces from one side as a matplotlib Figure; colours from zero to the largest value, its unit in `label`.
+
+    Colours follow the value to the power of `exponent`: below one, small values are told apart.
 
     >>> from flexstage.studies.solid_surface import Surface
     >>> one = Surface(np.eye(3), np.array([[0, 1, 2]]), np.ones(3))
@@ -33,13 +36,13 @@ def skin_figure(surfaces: Sequence[Surface], label: str, *, highest: float | Non
     2
     """
     from matplotlib.collections import PolyCollection
-    from matplotlib.colors import Normalize
+    from matplotlib.colors import PowerNorm
 
     seen = view(side)
     corners, values = _faces(surfaces, seen)
     flat = seen.flat(corners.reshape(-1, 3)).reshape(-1, 3, 2)
-    top = float(np.max(values)) if highest is None else highest
-    scale = Normalize(0.0, top or 1.0)
+    highest = max((float(np.max(surface.values)) for surface in surfaces), default=0.0)
+    scale = PowerNorm(exponent, 0.0, highest or 1.0)
     with styled():
         from matplotlib import colormaps
 
@@ -52,11 +55,28 @@ def skin_figure(surfaces: Sequence[Surface], label: str, *, highest: float | Non
 
 
 def _faces(surfaces: Sequence[Surface], seen: View) -> tuple[Array, Array]:
-    """Corners (t, 3, 3) of the faces that look towards the viewer, farthest first, and their mean values (t,)."""
+    """Corners (t, 3, 3) of the faces, farthest first, and their mean values (t,); large ones divided, for depth and for colour."""
     corners = np.concatenate([surface.places[surface.triangles] for surface in surfaces])
-    values = np.concatenate([surface.values[surface.triangles].mean(axis=1) for surface in surfaces])
+    values = np.concatenate([surface.values[surface.triangles] for surface in surfaces])
+    size = float(np.max(np.ptp(corners.reshape(-1, 3), axis=0)))
+    for _ in range(_DIVISIONS):
+        corners, values = _divided(corners, values, _COARSEST * size)
     order = np.argsort(corners.mean(axis=1) @ seen.axes[2], kind="stable")
-    return corners[order], values[order]
+    return corners[order], values[order].mean(axis=1)
+
+
+def _divided(corners: Array, values: Array, limit: float) -> tuple[Array, Array]:
+    """Faces with an edge above the limit replaced by four, at the middles of their edges."""
+    edges = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2)
+    large = edges.max(axis=1) > limit
+    split = [_quarters(item[large]) for item in (corners, values)]
+    return np.concatenate([corners[~large], split[0]]), np.concatenate([values[~large], split[1]])
+
+
+def _quarters(items: Array) -> Array:
+    a, b, c = items[:, 0], items[:, 1], items[:, 2]
+    d, e, f = 0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a)
+    return np.concatenate([np.stack(each, axis=1) for each in ((a, d, f), (d, b, e), (f, e, c), (d, e, f))])
 
 
 def _shade(corners: Array, seen: View) -> Array:
@@ -86,10 +106,12 @@ def _colour_bar(axes: Any, scale: Any, label: str) -> None:
 
     figure = axes.figure
     share = _BAR / figure.get_size_inches()[1]
+    middle = float(f"{scale.vmax * 0.5 ** (1.0 / scale.gamma):.1g}")
+    ticks = [0.0, middle, scale.vmax]
     place = figure.add_axes((0.25, 0.62 * share, 0.5, 0.18 * share))
-    bar = figure.colorbar(ScalarMappable(scale, "viridis"), cax=place, orientation="horizontal", ticks=[0.0, scale.vmax])
+    bar = figure.colorbar(ScalarMappable(scale, "viridis"), cax=place, orientation="horizontal", ticks=ticks)
     bar.outline.set_visible(False)
-    place.set_xticklabels(["0", f"{number(float(scale.vmax), 3)} {label}".strip()])
+    place.set_xticklabels(["0", number(middle, 3), f"{number(float(scale.vmax), 3)} {label}".strip()])
     place.tick_params(length=0, labelsize=7, labelcolor=INK, pad=1)
 
 

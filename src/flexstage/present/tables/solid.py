@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from flexstage.present.display import NO_VALUE, aligned, number, percent, preferred, value_with_unit
+from flexstage.present.display import NO_VALUE, NOISE, aligned, number, percent, preferred, value_with_unit
 from flexstage.present.table import Cell, Column, Mark, Table, build, matrix_table
 from flexstage.studies.trust import Trust
 
@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 
 _AXES = ("x", "y", "z", "rx", "ry", "rz")
 _LISTED = 12
+_SILENT = 1e3
+"""Stress [Pa] below which there is none."""
 _CORNERS = "At sharp inner corners the true stress has no limit: there it grows with the resolution."
 _MARKS = {
     Trust.DEPENDENT: Mark.FAINT,
@@ -106,7 +108,7 @@ def solid_unit_table(found: Resolved[dict[str, SolidUnit]]) -> Table:
 def _weakest(stress: LinkStress) -> tuple[str, str, str]:
     at = stress.names.index(stress.weakest)
     safety = float(stress.safety[at])
-    low = stress.highest[at] < 1e3
+    low = stress.highest[at] < _SILENT
     return (
         NO_VALUE if low else stress.names[at],
         number(1e-6 * float(stress.highest[at]), 4) if not low else "0",
@@ -120,17 +122,21 @@ def command_table(name: str, unit: SolidUnit) -> Table:
     >>> command_table.__name__
     'command_table'
     """
-    columns = [aligned(1e6 * values) for values in (unit.strokes, unit.commands, unit.outputs, unit.commands - unit.outputs)]
+    lost = unit.commands - unit.outputs
+    lost = np.where(np.abs(lost) < NOISE * np.abs(unit.commands), 0.0, lost)
+    columns = [aligned(1e6 * values) for values in (unit.strokes, unit.commands, unit.outputs, lost)]
     heads = [Column("stroke", "um"), Column("commanded output", "um"), Column("output", "um"), Column("lost", "um")]
     return build(f"Output of the {name} unit by command", heads, list(zip(*columns, strict=True)))
 
 
-def stress_table(title: str, stress: LinkStress, listed: int = _LISTED) -> Table:
-    """The highest von Mises stress of links and bodies, weakest first.
+def stress_table(title: str, stress: LinkStress, listed: int = _LISTED) -> Table | None:
+    """The highest von Mises stress of links and bodies, highest first; `None` where there is none worth a line.
 
     >>> stress_table.__name__
     'stress_table'
     """
+    if np.max(stress.highest) < _SILENT:
+        return None
     order = np.argsort(-stress.highest, kind="stable")
     shown = [int(index) for index in order[:listed]]
     rows = [

@@ -1,0 +1,52 @@
+"""The bar of a long computation on stderr: what is done, how far, how long still. Nothing where stderr is no terminal."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Generator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from flexstage.readings.solid.progress import Step
+
+
+class Bar:
+    """A bar that follows the steps it is told of."""
+
+    def __init__(self, shown: Any | None) -> None:
+        self._shown = shown
+        self._task = None if shown is None else shown.add_task("starting", total=1.0, left="")
+
+    def step(self, step: Step) -> None:
+        """Show a step of a reduction."""
+        left = "" if step.left is None else f"{_clock(step.left)} left"
+        self._show(step.text, step.fraction, left)
+
+    def begin(self, text: str, fraction: float) -> None:
+        """Show the beginning of something whose own steps are not told."""
+        self._show(text, fraction, "")
+
+    def _show(self, text: str, fraction: float, left: str) -> None:
+        if self._shown is not None:
+            self._shown.update(self._task, description=text, completed=fraction, left=left)
+
+
+def _clock(seconds: float) -> str:
+    minutes, rest = divmod(round(seconds), 60)
+    return f"{minutes} min {rest:02d} s" if minutes else f"{rest} s"
+
+
+@contextmanager
+def bar() -> Generator[Bar]:
+    """A bar that is gone when the work is done."""
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn
+
+    console = Console(file=sys.stderr)
+    if not console.is_terminal:
+        yield Bar(None)
+        return
+    columns = (TextColumn("{task.description}"), BarColumn(), TaskProgressColumn(), TextColumn("{task.fields[left]}"))
+    with Progress(*columns, console=console, transient=True) as shown:
+        yield Bar(shown)

@@ -1,0 +1,296 @@
+"""Commands of the solid reading: `solid`, `verify`, `calibrate`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
+
+import typer
+
+from flexstage.apps.cli.answer import Asked, answer, tell_missing
+from flexstage.apps.cli.bar import Bar, bar
+from flexstage.apps.cli.options import Changes, Design, Json
+from flexstage.apps.cli.output import STDOUT, output_findings, write
+from flexstage.apps.cli.speech import tell, warn
+from flexstage.studies.what import What
+
+if TYPE_CHECKING:
+    from flexstage.base.finding import Finding
+    from flexstage.mechanism.mechanism import Mechanism
+    from flexstage.parts.material import Material
+    from flexstage.present.page import Section
+    from flexstage.present.table import Table
+    from flexstage.readings.solid.hinge import HingeSolid
+    from flexstage.studies.resolution import Resolution, Resolved
+    from flexstage.studies.solid_hinge import HingePart, Hinges
+    from flexstage.studies.solid_read import Solids
+    from flexstage.studies.verify import Verification
+
+Accuracy: TypeAlias = Annotated[
+    str, typer.Option("--accuracy", metavar="SHARE", help="Relative error to reach in stiffness, gain and frequency.")
+]
+Order: TypeAlias = Annotated[
+    int | None,
+    typer.Option("--order", min=2, max=5, help="Order of the elements; without it, raised until the accuracy is met.", show_default=False),
+]
+Report: TypeAlias = Annotated[
+    Path | None, typer.Option("--report", metavar="FILE", help="Write a self-contained HTML report with pictures.", show_default=False)
+]
+_DEFAULT_ACCURACY = "1 %"
+
+
+@dataclass(frozen=True)
+class _Found:
+    """A result of the solid reading, as a document, tables, and sections of a report."""
+
+    body: Callable[[], dict[str, object]]
+    tables: Callable[[], Iterator[Table | None]]
+    sections: Callable[[], Iterator[Section | None]]
+
+
+def solid(
+    design: Design,
+    *,
+    what: Annotated[What, typer.Option("--what", help="Every distinct hinge, every distinct unit alone, or the whole stage.")] = What.STAGE,
+    accuracy: Accuracy = _DEFAULT_ACCURACY,
+    order: Order = None,
+    changes: Changes = None,
+    json: Json = None,
+    report: Report = None,
+) -> None:
+    """Read a stage as elastic solids, by finite elements.
+
+    hinge: the 6x6 of every hinge. unit: stiffness, gain, lost motion and stress of every unit. stage: stiffness, modes and stress.
+
+    What was reduced once is kept and not computed again.
+    """
+    mechanism = _opened(design, changes, [("--json", json), ("--report", report)])
+    asked = _resolution(accuracy, order)
+    with bar() as shown:
+        found = _STUDIES[what](mechanism, asked, shown)
+    if report is not None:
+        _write_report(report, mechanism, found.sections())
+    if _shows(json, report):
+        answer(Asked("solid", mechanism, None, json), lambda: {"what": what.value, **found.body()}, found.tables)
+
+
+def verify(
+    design: Design,
+    *,
+    accuracy: Accuracy = _DEFAULT_ACCURACY,
+    order: Order = None,
+    changes: Changes = None,
+    json: Json = None,
+    report: Report = None,
+) -> None:
+    """Compare theory with finite elements, and say which to trust where.
+
+    Hinges, units and the whole stage: the paper's springs, the lumped reading, the lumped reading with calibrated hinges, and FEA with its
+    own error. Rows that calibrated parts touch are not independent of FEA.
+    """
+    mechanism = _opened(design, changes, [("--json", json), ("--report", report)])
+    asked = _resolution(accuracy, order)
+    from flexstage.present.documents.solid import verification_body
+    from flexstage.present.sections.solid import hinge_section, stage_solid_section, unit_section, verification_section
+    from flexstage.studies.verify import verify as verified
+
+    with bar() as shown:
+        found = verified(_checked(mechanism), _solids(shown), _hinges(mechanism, asked, shown), asked)
+    if report is not None:
+        units = None if found.units is None else unit_section(found.units)
+        stage = None if found.stage is None else stage_solid_section(found.stage)
+        _write_report(report, mechanism, iter([verification_section(found), hinge_section(found.hinges), units, stage]))
+    for each in (found.units, found.stage):
+        if each is not None:
+            _tell_error(each, asked)
+    tell_missing(found.missing)
+    if _shows(json, report):
+        answer(Asked("verify", mechanism, None, json), lambda: verification_body(found), lambda: _verification_tables(found))
+
+
+def calibrate(
+    design: Design,
+    *,
+    output: Annotated[Path, typer.Option("--output", "-o", metavar="STAGE.TOML", help="Design file to write.", show_default=False)],
+    accuracy: Accuracy = _DEFAULT_ACCURACY,
+    order: Order = None,
+    json: Json = None,
+) -> None:
+    """Replace the hinges of beam theory by their 6x6 from finite elements.
+
+    The lumped reading of the written file has FEA's accuracy in its hinges. Comments stay; the drawn hinges are kept beside.
+    """
+    from flexstage.base.finding import require
+
+    require(output_findings([("--output", output), ("--json", json)], design))
+    asked = _resolution(accuracy, order)
+    from flexstage.mechanism.store import loads
+    from flexstage.mechanism.store.file import read_text
+    from flexstage.present.documents.solid import calibration_body
+    from flexstage.present.tables.solid import calibration_table
+    from flexstage.studies.calibrate import calibrate as calibrated
+
+    text = read_text(design)
+    mechanism = loads(text, where=str(design))
+    with bar() as shown:
+        found = calibrated(text, _hinges(mechanism, asked, shown), where=str(design))
+    write(output, found.text, "--output")
+    for hinge in found.hinges.values():
+        if hinge.found.finding is not None:
+            warn(f"{hinge.part}: {hinge.found.finding.what}")
+    if str(output) != STDOUT:
+        tell(f"Wrote {output}")
+        answer(Asked("calibrate", mechanism, None, json), lambda: calibration_body(found), lambda: [calibration_table(found)])
+
+
+def _opened(design: Path, changes: list[str] | None, outputs: list[tuple[str, str | Path | None]]) -> Mechanism:
+    from flexstage.apps.cli.opening import changed
+    from flexstage.base.finding import require
+    from flexstage.mechanism.store import load
+
+    require(output_findings(outputs, design))
+    return changed(load(design), changes or ())
+
+
+def _resolution(accuracy: str, order: int | None) -> Resolution:
+    from flexstage.base.finding import refuse
+    from flexstage.base.quantity import RATIO
+    from flexstage.base.unit import parse
+    from flexstage.studies.resolution import Resolution
+
+    share = parse(accuracy, RATIO, where="--accuracy")
+    if not 1e-6 <= share < 1.0:
+        raise refuse("--accuracy", f"{accuracy} is no relative error to ask for", 'Give one between 0.0001 % and 100 %, e.g. "1 %"')
+    return Resolution(share, order)
+
+
+def _notice(finding: Finding) -> None:
+    warn(str(finding))
+
+
+def _solids(shown: Bar) -> Solids:
+    from flexstage.readings.solid.cache import Cache
+    from flexstage.readings.solid.parts import Ways
+    from flexstage.studies.solid_read import solids
+
+    return solids(Ways(Cache(), shown.step), _notice)
+
+
+def _hinges(mechanism: Mechanism, asked: Resolution, shown: Bar) -> Hinges:
+    from flexstage.studies.solid_hinge import distinct_hinges, hinges
+
+    count = len(distinct_hinges(mechanism))
+    compute = hinges(asked.accuracy, asked.order, notice=_notice)
+    done: list[HingePart] = []
+
+    def told(part: HingePart, material: Material) -> HingeSolid:
+        shown.begin(f"hinge {len(done) + 1} of {count}", len(done) / count)
+        done.append(part)
+        return compute(part, material)
+
+    return told
+
+
+def _checked(mechanism: Mechanism) -> Mechanism:
+    """The stage, its outlines checked against each other before anything is meshed."""
+    from flexstage.base.finding import require
+    from flexstage.readings.solid.contact import contact_findings
+    from flexstage.readings.solid.install import require_solver
+    from flexstage.studies.solid_read import drawn
+
+    require_solver()
+    require(contact_findings(drawn(mechanism)))
+    return mechanism
+
+
+def _hinge_study(mechanism: Mechanism, asked: Resolution, shown: Bar) -> _Found:
+    from flexstage.present.documents.solid import hinges_body
+    from flexstage.present.sections.solid import hinge_section
+    from flexstage.present.tables.solid import hinge_matrices, hinge_table
+    from flexstage.studies.solid_hinge import solid_hinges
+
+    found = solid_hinges(mechanism, _hinges(mechanism, asked, shown))
+    for hinge in found.values():
+        if hinge.found.finding is not None:
+            warn(f"{hinge.part}: {hinge.found.finding.what}. {hinge.found.finding.advice}.")
+    return _Found(
+        body=lambda: {"hinges": hinges_body(found)},
+        tables=lambda: iter([hinge_table(found), *hinge_matrices(found)]),
+        sections=lambda: iter([hinge_section(found)]),
+    )
+
+
+def _unit_study(mechanism: Mechanism, asked: Resolution, shown: Bar) -> _Found:
+    from flexstage.present.documents.solid import solid_units_body
+    from flexstage.present.sections.solid import unit_section
+    from flexstage.present.tables.solid import command_table, solid_unit_table, stress_table
+    from flexstage.studies.verify import units_solid
+
+    found = units_solid(_checked(mechanism), _solids(shown), asked)
+    _tell_error(found, asked)
+
+    def tables() -> Iterator[Table | None]:
+        yield solid_unit_table(found)
+        for name, unit in found.result.items():
+            yield command_table(name, unit)
+            yield stress_table(f"Stress in the {name} unit at full stroke", unit.stress)
+
+    return _Found(lambda: solid_units_body(found), tables, lambda: iter([unit_section(found)]))
+
+
+def _stage_study(mechanism: Mechanism, asked: Resolution, shown: Bar) -> _Found:
+    from flexstage.present.documents.solid import solid_stage_body
+    from flexstage.present.sections.solid import stage_solid_section
+    from flexstage.present.tables.modes import mode_table
+    from flexstage.present.tables.solid import block_table, stress_table
+    from flexstage.present.tables.statics import direction_table, principal_table, stiffness_table
+    from flexstage.studies.verify import stage_solid
+
+    found = stage_solid(_checked(mechanism), _solids(shown), asked)
+    _tell_error(found, asked)
+    stage = found.result
+
+    def tables() -> Iterator[Table | None]:
+        yield stiffness_table(stage.statics)
+        yield principal_table(stage.statics)
+        yield direction_table(stage.statics)
+        yield mode_table(stage.modes)
+        yield block_table(stage)
+        yield None if stage.stress is None else stress_table("Highest stress over the strokes", stage.stress)
+
+    return _Found(lambda: solid_stage_body(found), tables, lambda: iter([stage_solid_section(found)]))
+
+
+_STUDIES = {What.HINGE: _hinge_study, What.UNIT: _unit_study, What.STAGE: _stage_study}
+
+
+def _tell_error(found: Resolved[Any], asked: Resolution) -> None:
+    text = f"error estimated: {100.0 * found.error:.2g} %, at order {found.order}"
+    if found.error <= asked.accuracy:
+        tell(text)
+        return
+    more = found.stopped or (f"ask for --order {found.order + 1}" if asked.order is not None else "this is the highest order")
+    warn(f"{text}; {100.0 * asked.accuracy:.2g} % was asked: {more}")
+
+
+def _verification_tables(found: Verification) -> Iterator[Table]:
+    from flexstage.present.tables.solid import verdict_table_of, verification_table
+
+    for name, rows in found.groups.items():
+        yield verification_table(name, rows)
+    yield verdict_table_of(found)
+
+
+def _write_report(target: Path, mechanism: Mechanism, sections: Iterator[Section | None]) -> None:
+    from flexstage.present.solid_report import solid_report
+
+    write(target, solid_report(mechanism, sections), "--report")
+    if str(target) != STDOUT:
+        tell(f"Wrote {target}")
+
+
+def _shows(json: str | None, report: Path | None) -> bool:
+    """Whether stdout is free for the result, or it is asked for in a file."""
+    return json is not None or str(report) != STDOUT

@@ -1,0 +1,25 @@
+"""The report of the solid reading: one HTML file that stands alone."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import flexstage
+from flexstage.base.digest import digest
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.present.page import Head, Section, page
+
+
+def solid_report(mechanism: Mechanism, sections: Iterable[Section | None], kind: str = "A flexure stage as solids") -> str:
+    """Sections of the solid reading as a page of HTML; those that are absent are left out.
+
+    >>> solid_report(Mechanism("stage"), [None])[:15]
+    '<!doctype html>'
+    """
+    origin = (
+        ("reading", "solid"),
+        ("physics", digest(mechanism, physics=True)[:16]),
+        ("document", digest(mechanism)[:16]),
+        ("flexstage", flexstage.__version__),
+    )
+    return page(Head(mechanism.name or "stage", kind, origin), [each for each in sections if each is not None])
