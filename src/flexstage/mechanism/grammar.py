@@ -29,7 +29,7 @@ from flexstage.base.quantity import (
 )
 from flexstage.mechanism.mechanism import Mechanism, ModalDamping, RayleighDamping, StructuralDamping
 from flexstage.mechanism.pattern import Polar, Pose
-from flexstage.parts.body import Block, Cylinder
+from flexstage.parts.body import Block, Cylinder, Imported
 from flexstage.parts.given import Given, Joint
 from flexstage.parts.leaf import Leaf
 from flexstage.parts.neck import Neck
@@ -70,6 +70,7 @@ _ALTERNATIVES: dict[type, tuple[str | None, str]] = {
     Straight: ("shape", "straight"),
     Block: ("shape", "block"),
     Cylinder: ("shape", "cylinder"),
+    Imported: ("shape", "step"),
     ModalDamping: ("law", "modal"),
     StructuralDamping: ("law", "structural"),
     RayleighDamping: ("law", "rayleigh"),

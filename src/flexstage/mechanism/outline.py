@@ -9,7 +9,7 @@ import numpy as np
 
 from flexstage.base.number import Array, Number, stack
 from flexstage.mechanism.expand import Assembly, PlacedLink, PlacedSolid
-from flexstage.parts.body import Block
+from flexstage.parts.body import Block, Imported
 from flexstage.parts.leaf import Leaf
 from flexstage.parts.neck import Neck
 from flexstage.parts.notch import Notch
@@ -67,6 +67,8 @@ def _solid(name: str, placed: PlacedSolid) -> Outline:
     solid = placed.solid
     if isinstance(solid, Block):
         return Outline(name, placed.frame, stack(solid.size), hole=None if solid.hole is None else stack(solid.hole))
+    if isinstance(solid, Imported):
+        return Outline(name, placed.frame, stack(solid.size))
     bore = None if solid.bore is None else np.asarray(solid.bore)
     return Outline(name, placed.frame, _cylinder(solid.length, solid.diameter), is_round=True, bore=bore)
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Annotated, TypeAlias
 
-from flexstage.base.digest import Description
+from flexstage.base.digest import DOCUMENT_ONLY, Description
 from flexstage.base.number import Number, Table, Vector, stack
 from flexstage.base.quantity import DIRECTION, INERTIA, LENGTH, MASS, NOT_NEGATIVE, POSITIVE
 from flexstage.spatial.frame import Frame, axes
@@ -40,19 +40,6 @@ class Cylinder(Description):
     bore: Annotated[Number, LENGTH, POSITIVE] | None = None
 
 
-Solid: TypeAlias = Block | Cylinder
-
-
-def solid_frame(solid: Solid) -> Frame:
-    """The frame of an outline in the one it is drawn in: origin at its centre, axes along a block's edges, x along a cylinder's axis.
-
-    >>> upright = Block("steel", size=(0.3, 0.2, 0.1), at=(0.0, 0.0, 1.0), along=(0.0, 0.0, 1.0), up=(1.0, 0.0, 0.0))
-    >>> solid_frame(upright).rotation.T.tolist()  # x edge up, y edge = up x along, z edge along the body's x
-    [[0.0, 0.0, 1.0], [0.0, -1.0, 0.0], [1.0, 0.0, 0.0]]
-    """
-    return Frame(axes(solid.along, solid.up if isinstance(solid, Block) else None), stack(solid.at))
-
-
 @dataclass(frozen=True, eq=False)
 class Inertia(Description):
     """Moments and products of inertia about the centre of mass, along the axes of the frame the body stands in [kg m^2].
@@ -66,6 +53,46 @@ class Inertia(Description):
     xy: Annotated[Number, INERTIA] = 0.0
     xz: Annotated[Number, INERTIA] = 0.0
     yz: Annotated[Number, INERTIA] = 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class Imported(Description):
+    """A solid drawn elsewhere: the STEP `file`, its origin at `at`, its x axis along `along`, its z axis along `up`.
+
+    What readings with rigid bodies need is stated, in the file's own axes: the sides (`size`) and the `middle` of the box around the solid,
+    its `mass`, `centre` of mass and `inertia` about that. The solid reading holds them to the file (0.1 %). `sha256`, the digest of the
+    file's bytes, says which version of it is meant and stands for it in caches. `wall` is the thinnest wall, for the mesh (absent: the
+    shortest side). A relative path is looked for from the design file.
+    """
+
+    material: str
+    file: str = field(metadata=DOCUMENT_ONLY)
+    sha256: str
+    size: tuple[Annotated[Number, LENGTH, POSITIVE], Annotated[Number, LENGTH, POSITIVE], Annotated[Number, LENGTH, POSITIVE]]
+    mass: Annotated[Number, MASS, POSITIVE]
+    centre: Annotated[Vector, LENGTH]
+    inertia: Inertia
+    middle: Annotated[Vector, LENGTH] = (0.0, 0.0, 0.0)
+    at: Annotated[Vector, LENGTH] = (0.0, 0.0, 0.0)
+    along: Annotated[Vector, DIRECTION] = (1.0, 0.0, 0.0)
+    up: Annotated[Vector, DIRECTION] = (0.0, 0.0, 1.0)
+    wall: Annotated[Number, LENGTH, POSITIVE] | None = None
+
+
+Solid: TypeAlias = Block | Cylinder | Imported
+
+
+def solid_frame(solid: Solid) -> Frame:
+    """The frame of an outline in the one it is drawn in: origin at its centre, axes along a block's edges, x along a cylinder's axis.
+
+    The centre of an imported solid is the middle of the box around it.
+
+    >>> upright = Block("steel", size=(0.3, 0.2, 0.1), at=(0.0, 0.0, 1.0), along=(0.0, 0.0, 1.0), up=(1.0, 0.0, 0.0))
+    >>> solid_frame(upright).rotation.T.tolist()  # x edge up, y edge = up x along, z edge along the body's x
+    [[0.0, 0.0, 1.0], [0.0, -1.0, 0.0], [1.0, 0.0, 0.0]]
+    """
+    frame = Frame(axes(solid.along, None if isinstance(solid, Cylinder) else solid.up), stack(solid.at))
+    return Frame(frame.rotation, frame.point(stack(solid.middle))) if isinstance(solid, Imported) else frame
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexstage.base.number import Array, Number, stack
-from flexstage.parts.body import Block, Body, Cylinder, Inertia, Solid, solid_frame
+from flexstage.parts.body import Block, Body, Cylinder, Imported, Inertia, Solid, solid_frame
 from flexstage.parts.material import Material
 from flexstage.spatial.frame import Frame
 
@@ -73,11 +73,14 @@ def tensor(inertia: Inertia) -> Array:
 
 
 def solid_properties(solid: Solid, density: Number) -> MassProperties:
-    """Mass properties of one outline of uniform `density` [kg/m^3].
+    """Mass properties of one outline of uniform `density` [kg/m^3]; an imported one states its own.
 
     >>> float(solid_properties(Cylinder("steel", diameter=2.0, length=1.0), 1.0).mass.round(12))
     3.14159265359
     """
+    if isinstance(solid, Imported):
+        stated = MassProperties(np.asarray(solid.mass), stack(solid.centre) - stack(solid.middle), tensor(solid.inertia))
+        return within(stated, solid_frame(solid))
     mass, diagonal = _block(solid, density) if isinstance(solid, Block) else _cylinder(solid, density)
     own = MassProperties(mass, np.zeros(3), diagonal[..., None] * np.eye(3))
     return within(own, solid_frame(solid))

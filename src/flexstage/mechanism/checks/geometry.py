@@ -17,7 +17,7 @@ from flexstage.mechanism.checks.value import first_failing
 from flexstage.mechanism.expand import departed
 from flexstage.mechanism.locate import locate
 from flexstage.mechanism.mechanism import Mechanism
-from flexstage.parts.body import Block, Body, Cylinder, Inertia
+from flexstage.parts.body import Body, Cylinder, Imported, Inertia, Solid
 from flexstage.parts.given import Given
 from flexstage.parts.leaf import Leaf
 from flexstage.parts.mass import tensor
@@ -158,9 +158,13 @@ def _lent(where: str, body: Body, owner: Body | None) -> Iterator[Finding]:
         yield from _solid(f"{where}.solids.{name}", solid)
 
 
-def _solid(where: str, solid: Block | Cylinder) -> Iterator[Finding]:
+def _solid(where: str, solid: Solid) -> Iterator[Finding]:
     if isinstance(solid, Cylinder):
         yield from _Order(f"{where}.bore", LENGTH, "the diameter", "Make the bore smaller").strict(solid.bore, solid.diameter)
+    elif isinstance(solid, Imported):
+        yield from _inertia(f"{where}.inertia", solid.inertia)
+        for side in solid.size:
+            yield from _Order(f"{where}.wall", LENGTH, "the sides of the box around it", "Give the thinnest wall").loose(solid.wall, side)
     elif solid.hole is not None:
         for name, hole, size in zip("xy", solid.hole, solid.size, strict=False):
             yield from _Order(f"{where}.hole.{name}", LENGTH, "the size of the block", "Make the hole smaller").strict(hole, size)

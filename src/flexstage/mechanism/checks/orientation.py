@@ -11,7 +11,7 @@ from flexstage.base.number import Vector, stack
 from flexstage.mechanism.checks.value import LARGEST, first_failing
 from flexstage.mechanism.mechanism import Link, Mechanism
 from flexstage.mechanism.pattern import Pattern, Pose
-from flexstage.parts.body import Block, Body
+from flexstage.parts.body import Body, Cylinder
 from flexstage.parts.freedom import Freedom
 from flexstage.parts.given import Given, Joint
 from flexstage.parts.leaf import Leaf
@@ -85,7 +85,7 @@ def _solids(where: str, bodies: Iterable[tuple[str, Body]]) -> Iterator[Finding]
     for name, body in bodies:
         for solid_name, solid in body.solids.items():
             here = f"{where}.{name}.solids.{solid_name}"
-            yield from _pair(f"{here}.along", solid.along, f"{here}.up", solid.up if isinstance(solid, Block) else None)
+            yield from _pair(f"{here}.along", solid.along, f"{here}.up", None if isinstance(solid, Cylinder) else solid.up)
 
 
 def _pattern(where: str, pattern: Pattern) -> Iterator[Finding]:

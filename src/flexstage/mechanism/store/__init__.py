@@ -10,6 +10,7 @@ from pathlib import Path
 from flexstage.base.finding import DesignError
 from flexstage.mechanism.checks import checked as _checked
 from flexstage.mechanism.mechanism import Mechanism
+from flexstage.mechanism.store.anchor import anchored, beside
 from flexstage.mechanism.store.catalogue import shipped
 from flexstage.mechanism.store.decode import mechanism_from
 from flexstage.mechanism.store.encode import tree_of
@@ -26,13 +27,14 @@ def load(path: str | os.PathLike[str], *, checked: bool = True) -> Mechanism:
     """Return the description in a design file.
 
     Raises `DesignError` with everything that is wrong with the file; with `checked` also with the description (see `checks.check`).
+    Relative paths of imported solids are looked for from the file's folder, and whole in the description.
 
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     load(dump(Mechanism("empty"), f"{folder}/stage.toml"), checked=False) == Mechanism("empty")
     True
     """
-    return loads(read_text(path), where=os.fspath(path), checked=checked)
+    return anchored(loads(read_text(path), where=os.fspath(path), checked=checked), Path(path).parent)
 
 
 def loads(text: str, *, where: str = "text", checked: bool = True) -> Mechanism:
@@ -57,7 +59,7 @@ def dump(mechanism: Mechanism, path: str | os.PathLike[str], comments: Mapping[s
     ...     dump(Mechanism("empty"), f"{folder}/stage.toml").name
     'stage.toml'
     """
-    return write(path, dumps(mechanism, comments))
+    return write(path, dumps(beside(mechanism, Path(path).parent), comments))
 
 
 def dumps(mechanism: Mechanism, comments: Mapping[str, str] | None = None) -> str:

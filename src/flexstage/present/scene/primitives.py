@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from flexstage.base.number import Array, Number
-from flexstage.parts.body import Block, Cylinder, Solid
+from flexstage.parts.body import Block, Cylinder, Imported, Solid
 from flexstage.parts.leaf import Leaf
 from flexstage.parts.neck import Neck
 from flexstage.parts.notch import Notch
@@ -118,6 +118,8 @@ def solid_facets(solid: Solid, paint: Paint) -> list[Facet]:
     >>> len(solid_facets(Block("steel", (0.1, 0.1, 0.01)), Paint(Kind.BODY, ("a", "a"))))
     6
     """
+    if isinstance(solid, Imported):  # shown as the box around it
+        return _block(Block(solid.material, solid.size), paint)
     return _block(solid, paint) if isinstance(solid, Block) else _cylinder(solid, paint)
 
 

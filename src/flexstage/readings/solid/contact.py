@@ -17,6 +17,7 @@ from flexstage.mechanism.mechanism import GROUND, Mechanism
 from flexstage.readings.solid.clearance import clearance_questions
 from flexstage.readings.solid.component import components
 from flexstage.readings.solid.draw import MILLIMETRES, drawn, moved
+from flexstage.readings.solid.imported import import_findings
 from flexstage.readings.solid.near import Answer, Question, answered, distance_text, frame_key, near_pairs, seen_from
 from flexstage.readings.solid.piece import Piece, span, thinnest
 from flexstage.readings.solid.sliver import SLIVER, sliver_findings
@@ -46,6 +47,8 @@ def contact_findings(mechanism: Mechanism, clearance: float = 0.0) -> tuple[Find
         stage = stage_pieces(mechanism)
     except DesignError as error:
         return error.findings
+    if foreign := import_findings(mechanism):
+        return foreign
     questions = [*_joint_questions(stage), *_body_questions(stage), *clearance_questions(stage, clearance)]
     found = tuple(answered(questions))
     return (*found, *sliver_findings(components(mechanism), coarse=bool(found)))

@@ -7,17 +7,19 @@ stopped short by 3 % of their radius: a face tangent to another leaves a wedge o
 from __future__ import annotations
 
 from collections.abc import Callable
+from itertools import pairwise
 
 import numpy as np
 from netgen import occ
 from scipy.spatial.transform import Rotation
 
 from flexstage.base.number import Array
-from flexstage.parts.body import Block, Cylinder
+from flexstage.parts.body import Block, Cylinder, Imported
 from flexstage.parts.leaf import Leaf
 from flexstage.parts.neck import Neck
 from flexstage.parts.notch import Notch
 from flexstage.parts.profile import Circular, Elliptic, Filleted, Profile, length
+from flexstage.readings.solid.imported import imported_shape
 from flexstage.readings.solid.piece import Form
 from flexstage.spatial.frame import Frame
 
@@ -36,6 +38,8 @@ def drawn(form: Form) -> occ.Solid:
         return _block(form)
     if isinstance(form, Cylinder):
         return _tube(form)
+    if isinstance(form, Imported):
+        return imported_shape(form)
     if isinstance(form, Notch):
         return _extruded(form.thickness, form.profile, form.width)
     if isinstance(form, Neck):
@@ -144,11 +148,8 @@ def _cut(rise: float, profile: Profile, side: float) -> tuple[Curve, float, floa
         return half * np.sin(angle), side * (rise + height * (1.0 - np.cos(angle)))
 
     reach, end = at(largest)
-    if isinstance(profile, Circular):
-        curve = [_arc(at(-largest), at(0.0), at(largest))]
-    else:
-        curve = [_spline(at, largest)]
-    return curve, reach, side * end
+    curve = _arc(at(-largest), at(0.0), at(largest)) if isinstance(profile, Circular) else _spline(at, largest)
+    return [curve], reach, side * end
 
 
 def _filleted(rise: float, profile: Filleted, side: float) -> tuple[Curve, float, float]:
@@ -175,4 +176,4 @@ def _spline(at: Callable[[float], tuple[float, float]], largest: float) -> occ.T
 
 
 def _polyline(points: list[tuple[float, float]]) -> Curve:
-    return [occ.Segment(occ.Pnt(*a, 0), occ.Pnt(*b, 0)) for a, b in zip(points[:-1], points[1:], strict=True)]
+    return [occ.Segment(occ.Pnt(*a, 0), occ.Pnt(*b, 0)) for a, b in pairwise(points)]

@@ -11,7 +11,7 @@ from flexstage.base.finding import Finding
 from flexstage.base.number import Number
 from flexstage.mechanism.expand import PlacedLink
 from flexstage.mechanism.outline import rise
-from flexstage.parts.body import Block, Cylinder
+from flexstage.parts.body import Block, Cylinder, Imported
 from flexstage.parts.leaf import Leaf
 from flexstage.parts.material import Material
 from flexstage.parts.neck import Neck
@@ -22,7 +22,7 @@ from flexstage.parts.profile import length
 from flexstage.parts.rod import Rod
 from flexstage.spatial.frame import Frame
 
-Form: TypeAlias = Notch | Neck | Leaf | Rod | Piezo | Block | Cylinder
+Form: TypeAlias = Notch | Neck | Leaf | Rod | Piezo | Block | Cylinder | Imported
 """What can be drawn: given 6x6 parts and ideal joints have no shape."""
 
 
@@ -111,7 +111,7 @@ def span(form: Form) -> float:
     """
     if isinstance(form, (Notch, Neck)):
         return _single(length(form.profile))
-    if isinstance(form, Block):
+    if isinstance(form, (Block, Imported)):
         return _single(form.size[0])
     return _single(form.length)
 
@@ -125,7 +125,7 @@ def end_area(form: Form) -> float:
     """
     if isinstance(form, (Rod, Piezo)):
         return 0.25 * np.pi * _single(form.diameter) ** 2
-    if isinstance(form, Block):
+    if isinstance(form, (Block, Imported)):
         return _single(form.size[1]) * _single(form.size[2])
     if isinstance(form, Cylinder):
         return 0.25 * np.pi * (_single(form.diameter) ** 2 - (0.0 if form.bore is None else _single(form.bore) ** 2))
@@ -144,7 +144,9 @@ def thinnest(form: Form) -> float:
     >>> thinnest(Block("steel", (0.1, 0.02, 0.03)))
     0.02
     """
-    if isinstance(form, Block):
+    if isinstance(form, Imported) and form.wall is not None:
+        return _single(form.wall)
+    if isinstance(form, (Block, Imported)):
         return min(_single(value) for value in form.size)
     if isinstance(form, Cylinder):
         wall = _single(form.diameter) if form.bore is None else 0.5 * (_single(form.diameter) - _single(form.bore))

@@ -1,0 +1,63 @@
+"""Paths of imported solids: whole in a description, relative to the design file in the file where that is beside or above them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from pathlib import Path
+
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.parts.body import Body, Imported
+
+
+def anchored(mechanism: Mechanism, folder: Path) -> Mechanism:
+    """The description with the relative paths of imported solids made whole, from the folder of its file.
+
+    >>> anchored(Mechanism("a"), Path()) == Mechanism("a")
+    True
+    """
+    root = folder.resolve()
+    return _with_paths(mechanism, lambda path: str(root / path))
+
+
+def beside(mechanism: Mechanism, folder: Path) -> Mechanism:
+    """The description with the paths of imported solids relative to a folder, where they are within it.
+
+    >>> beside(Mechanism("a"), Path()) == Mechanism("a")
+    True
+    """
+    root = folder.resolve()
+
+    def shortened(path: str) -> str:
+        return Path(path).relative_to(root).as_posix() if Path(path).is_relative_to(root) else path
+
+    return _with_paths(mechanism, shortened)
+
+
+def _with_paths(mechanism: Mechanism, change: Callable[[str], str]) -> Mechanism:
+    """The description itself where nothing is imported."""
+    units = {name: unit.bodies for name, unit in mechanism.units.items()}
+    if not any(
+        isinstance(solid, Imported)
+        for bodies in (mechanism.bodies, *units.values())
+        for body in bodies.values()
+        for solid in body.solids.values()
+    ):
+        return mechanism
+    return replace(
+        mechanism,
+        bodies=_bodies(mechanism.bodies, change),
+        units={name: replace(unit, bodies=_bodies(unit.bodies, change)) for name, unit in mechanism.units.items()},
+    )
+
+
+def _bodies(bodies: Mapping[str, Body], change: Callable[[str], str]) -> dict[str, Body]:
+    return {
+        name: replace(
+            body,
+            solids={
+                key: replace(solid, file=change(solid.file)) if isinstance(solid, Imported) else solid for key, solid in body.solids.items()
+            },
+        )
+        for name, body in bodies.items()
+    }

@@ -1,0 +1,180 @@
+"""Imported solids: STEP files that stand for outlines, read and held to what the description states of them."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from netgen import occ
+
+from flexstage.base.finding import DesignError, Finding, refuse, require
+from flexstage.base.number import Array, stack
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.parts.body import Body, Imported, Inertia
+from flexstage.parts.mass import tensor
+
+_MILLIMETRES = 1e3
+_DIGITS = 6
+"""Digits of a box [mm]: the kernel widens it by 1e-7."""
+TOLERANCE = 1e-3
+"""What is stated agrees with the file within this share: of mass and inertia, and for places of the longest side."""
+
+
+@dataclass(frozen=True, eq=False)
+class Measured:
+    """What a file's solid is, in its own axes: `sha256` of the file, sides and middle of its box [m], volume [m^3], centre [m].
+
+    `inertia` (3, 3) is that of unit density about the centre [m^5].
+    """
+
+    sha256: str
+    size: Array
+    middle: Array
+    volume: float
+    centre: Array
+    inertia: Array
+
+
+def imported_shape(form: Imported) -> occ.TopoDS_Shape:
+    """The file's solid [mm], the middle of its box at the origin.
+
+    Raises `DesignError` where the file is not there, is no STEP file or not the one that is meant, or does not hold exactly one solid.
+
+    >>> imported_shape.__name__  # needs a file
+    'imported_shape'
+    """
+    path = Path(form.file)
+    require(_version_findings(path, form.sha256))
+    x, y, z = (-_MILLIMETRES * float(np.real(value)) for value in form.middle)
+    return _solid(path).Move(occ.Vec(x, y, z))
+
+
+def measured(path: Path) -> Measured:
+    """Measure the solid in a STEP file.
+
+    Raises `DesignError` where there is no such file or it does not hold exactly one solid.
+
+    >>> measured(Path("nowhere.step"))
+    Traceback (most recent call last):
+    flexstage.base.finding.DesignError: nowhere.step: it cannot be read: No such file or directory. ...
+    """
+    digest = _sha256(path)
+    solid = _solid(path)
+    low, high = (np.round([corner.x, corner.y, corner.z], _DIGITS) / _MILLIMETRES for corner in solid.bounding_box)
+    volume = float(solid.mass) / _MILLIMETRES**3
+    centre = np.array([solid.center.x, solid.center.y, solid.center.z]) / _MILLIMETRES
+    return Measured(digest, high - low, 0.5 * (low + high), volume, centre, _inertia(solid))
+
+
+def _inertia(solid: occ.TopoDS_Shape) -> Array:
+    """The inertia tensor of unit density about the centre [m^5]."""
+    matrix = solid.inertia
+    return np.array([[matrix[i, j] for j in range(3)] for i in range(3)]) / _MILLIMETRES**5
+
+
+def stated(found: Measured, file: str, material: str, density: float) -> Imported:
+    """The description of a measured solid of a `density` [kg/m^3].
+
+    >>> cube = Measured("", np.ones(3), np.zeros(3), 1.0, np.zeros(3), np.eye(3) / 6.0)
+    >>> round(stated(cube, "cube.step", "steel", 6.0).inertia.zz, 12)
+    1.0
+    """
+    j = density * found.inertia
+    inertia = Inertia(*(float(j[i, i]) for i in range(3)), xy=-float(j[0, 1]), xz=-float(j[0, 2]), yz=-float(j[1, 2]))
+    return Imported(
+        material=material,
+        file=file,
+        sha256=found.sha256,
+        size=_triple(found.size),
+        mass=density * found.volume,
+        centre=_triple(found.centre),
+        inertia=inertia,
+        middle=_triple(found.middle),
+    )
+
+
+def _triple(values: Array) -> tuple[float, float, float]:
+    x, y, z = (float(value) for value in values)
+    return x, y, z
+
+
+def import_findings(mechanism: Mechanism) -> tuple[Finding, ...]:
+    """Where imported solids are not what the description states of them; nothing without any.
+
+    >>> import_findings(Mechanism("nothing"))
+    ()
+    """
+    return tuple(finding for where, solid in _imported(mechanism) for finding in _findings(mechanism, where, solid))
+
+
+def _imported(mechanism: Mechanism) -> Iterator[tuple[str, Imported]]:
+    sections: dict[str, Mapping[str, Body]] = {"bodies": mechanism.bodies}
+    sections |= {f"units.{name}.bodies": unit.bodies for name, unit in mechanism.units.items()}
+    for section, bodies in sections.items():
+        for name, body in bodies.items():
+            for solid, each in body.solids.items():
+                if isinstance(each, Imported):
+                    yield f"{section}.{name}.solids.{solid}", each
+
+
+def _findings(mechanism: Mechanism, where: str, solid: Imported) -> Iterator[Finding]:
+    path = Path(solid.file)
+    try:
+        found = measured(path)
+    except DesignError as error:
+        yield from (Finding(f"{where}.file", f"{each.where}: {each.what}", each.advice) for each in error.findings)
+        return
+    if found.sha256 != solid.sha256:
+        yield from (Finding(f"{where}.sha256", each.what, each.advice) for each in _version_findings(path, solid.sha256))
+        return
+    density, longest = float(np.real(mechanism.materials[solid.material].density)), float(np.max(found.size))
+    mass, moment = density * found.volume, density * float(np.max(np.linalg.eigvalsh(found.inertia)))
+    pairs = (
+        ("size", stack(solid.size), found.size, longest, "m"),
+        ("middle", stack(solid.middle), found.middle, longest, "m"),
+        ("mass", np.array([solid.mass]), np.array([mass]), mass, "kg"),
+        ("centre", stack(solid.centre), found.centre, longest, "m"),
+        ("inertia", tensor(solid.inertia), density * found.inertia, moment, "kg m^2"),
+    )
+    for name, said, true, scale, unit in pairs:
+        off = float(np.max(np.abs(np.real(said) - true)))
+        if off > TOLERANCE * scale:
+            what = f"it is off by {off:.4g} {unit} from the file's: stated {_text(said)}, found {_text(true)} {unit}"
+            yield Finding(f"{where}.{name}", what, 'State what the file holds (see "flexstage import")')
+
+
+def _text(values: Array) -> str:
+    numbers = ", ".join(f"{float(value):.5g}" for value in np.ravel(np.real(values)))
+    return numbers if np.size(values) == 1 else f"({numbers})"
+
+
+def _version_findings(path: Path, sha256: str) -> Iterator[Finding]:
+    found = _sha256(path)
+    if found != sha256:
+        what = f"the file {path} has another content than stated (sha256 {found[:12]}..., stated {sha256[:12]}...)"
+        yield Finding(str(path), what, 'Give the file that was meant, or state the new one (see "flexstage import")')
+
+
+def _sha256(path: Path) -> str:
+    try:
+        return hashlib.sha256(path.read_bytes()).hexdigest()
+    except (OSError, ValueError) as error:
+        reason = (error.strerror if isinstance(error, OSError) else None) or str(error)
+        raise refuse(str(path), f"it cannot be read: {reason}", "Give the path of a STEP file, from the design file or whole") from None
+
+
+def _solid(path: Path) -> occ.TopoDS_Shape:
+    if not path.read_bytes()[:200].lstrip().startswith(b"ISO-10303-21"):
+        raise refuse(str(path), "this is no STEP file (it does not begin with ISO-10303-21)", "Export the solid as STEP")
+    if path.suffix.lower() not in {".step", ".stp"}:
+        raise refuse(str(path), f'its name ends in "{path.suffix}"', "Name it .step or .stp")
+    try:
+        solids = list(occ.OCCGeometry(str(path)).shape.solids)
+    except Exception as error:  # noqa: BLE001 (the CAD kernel raises what it likes)
+        raise refuse(str(path), f"the CAD kernel cannot read it ({error})", "Export the solid as STEP (AP214) anew") from None
+    if len(solids) != 1:
+        raise refuse(str(path), f"it holds {len(solids)} solids", "Give a file of one solid; a body may have several files")
+    return solids[0]
