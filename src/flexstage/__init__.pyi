@@ -137,6 +137,7 @@ from flexstage.parts.body import (
     Block as Block,
     Body as Body,
     Cylinder as Cylinder,
+    Imported as Imported,
     Inertia as Inertia,
     Payload as Payload,
 )
@@ -230,6 +231,10 @@ from flexstage.readings.solid.reading import (
 from flexstage.studies.budget import (
     budget as budget,
 )
+from flexstage.studies.calibrate import (
+    Calibration as Calibration,
+    calibrate as calibrate,
+)
 from flexstage.studies.complete import (
     Analysis as Analysis,
     Reading as Reading,
@@ -245,13 +250,33 @@ from flexstage.studies.omitted import (
     Omitted as Omitted,
     omitted as omitted,
 )
+from flexstage.studies.resolution import (
+    Resolution as Resolution,
+    Resolved as Resolved,
+)
 from flexstage.studies.sensitivities import (
     Sensitivities as Sensitivities,
     sensitivities as sensitivities,
 )
+from flexstage.studies.solid_hinge import (
+    SolidHinge as SolidHinge,
+    solid_hinges as solid_hinges,
+)
+from flexstage.studies.solid_stage import (
+    SolidStage as SolidStage,
+    solid_stage as solid_stage,
+)
+from flexstage.studies.solid_unit import (
+    SolidUnit as SolidUnit,
+    solid_units as solid_units,
+)
 from flexstage.studies.units import (
     UnitResult as UnitResult,
     units as units,
+)
+from flexstage.studies.verify import (
+    Verification as Verification,
+    verify as verify,
 )
 from flexstage.studies.workspace import (
     Workspace as Workspace,

@@ -18,7 +18,7 @@ from flexstage.mechanism.store import loads
 from flexstage.mechanism.store.stand_in import KEPT, stood_in
 from flexstage.parts.given import Given, Origin
 from flexstage.spatial.frame import COMPONENTS
-from flexstage.studies.solid_hinge import Hinges, SolidHinge, solid_hinges
+from flexstage.studies.solid_hinge import STANDARD_HINGES, Hinges, SolidHinge, solid_hinges
 from flexstage.studies.solid_read import calibrated
 
 TAG = "derived FEA"
@@ -42,7 +42,7 @@ class Calibration:
         }
 
 
-def calibrate(text: str, compute: Hinges, *, where: str = "text") -> Calibration:
+def calibrate(text: str, compute: Hinges = STANDARD_HINGES, *, where: str = "text") -> Calibration:
     """Compute the 6x6 of every distinct hinge in a design file's text and put them in, comments kept.
 
     Raises `DesignError` for hinges that are calibrated already, that single copies depart from, or whose 6x6 FEA could not find.

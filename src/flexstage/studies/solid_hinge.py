@@ -77,6 +77,10 @@ def hinges(accuracy: float = 0.01, order: int | None = None, ways: Ways = STANDA
     return compute
 
 
+STANDARD_HINGES = hinges()
+"""To 1 %, by the cache of the user."""
+
+
 def distinct_hinges(mechanism: Mechanism) -> dict[str, tuple[HingePart, Material, tuple[str, ...]]]:
     """Form, material and drawn links of every distinct hinge, by the name of its part (or of the copy that departs from it).
 
@@ -101,13 +105,15 @@ def _hinge(links: list[PlacedLink]) -> tuple[HingePart, Material, tuple[str, ...
     return first.part, first.material, tuple(dict.fromkeys(link.drawn for link in links))
 
 
-def solid_hinges(mechanism: Mechanism, compute: Hinges) -> dict[str, SolidHinge]:
+def solid_hinges(mechanism: Mechanism, compute: Hinges = STANDARD_HINGES) -> dict[str, SolidHinge]:
     """Compute the 6x6 of every distinct notch, neck, leaf and rod.
 
     Raises `DesignError` where a stage has none.
 
-    >>> solid_hinges.__name__
-    'solid_hinges'
+    >>> solid_hinges(Mechanism("bare"))
+    Traceback (most recent call last):
+        ...
+    flexstage.base.finding.DesignError: links: none of them is a notch, neck, leaf or rod. Only these have a 6x6 that can be computed.
     """
     found = distinct_hinges(mechanism)
     if not found:

@@ -71,13 +71,24 @@ def _ignore(_finding: Finding) -> None:
     """Nobody is told."""
 
 
+STANDARD_SOLIDS = solids()
+"""By the cache of the user, told to nobody."""
+
+STANDARD_REDUCTION = Reduction()
+
+
 def read_solid(mechanism: Mechanism, reduction: Reduction, reduce: Solids) -> SolidRead:
     """Read a stage as solids; calibrated hinges as the shapes they stand for.
 
     Raises `DesignError` for parts without a shape, and when the stage can move freely.
 
-    >>> read_solid.__name__
-    'read_solid'
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.mechanism.restrict import restrict
+    >>> from flexstage.parts.freedom import Freedom
+    >>> read_solid(restrict(parallelogram(), {'leaf': ((Freedom.X,), ())}), Reduction(), solids())
+    Traceback (most recent call last):
+        ...
+    flexstage.base.finding.DesignError: left: some of its freedoms are locked or freed by a restriction. ...
     """
     shape = drawn(mechanism)
     assembly = expand(shape)

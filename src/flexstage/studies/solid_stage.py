@@ -18,7 +18,7 @@ from flexstage.mechanism.mechanism import Mechanism
 from flexstage.readings.linear.static import displacement
 from flexstage.readings.solid.fineness import Reduction
 from flexstage.studies.complete import platform_modes
-from flexstage.studies.solid_read import SolidRead, Solids, read_solid
+from flexstage.studies.solid_read import STANDARD_REDUCTION, STANDARD_SOLIDS, SolidRead, Solids, read_solid
 from flexstage.studies.solid_stress import LinkStress, link_stress
 
 if TYPE_CHECKING:
@@ -66,13 +66,18 @@ class SolidStage:
 _DIAGONAL = {2: "stiffness z", 3: "stiffness rx", 4: "stiffness ry", 5: "stiffness rz"}
 
 
-def solid_stage(mechanism: Mechanism, reduction: Reduction, reduce: Solids) -> SolidStage:
+def solid_stage(mechanism: Mechanism, reduction: Reduction = STANDARD_REDUCTION, reduce: Solids = STANDARD_SOLIDS) -> SolidStage:
     """Read a whole stage as a solid.
 
     Raises `DesignError` for parts without a shape, outlines that do not touch, and when the stage can move freely.
 
-    >>> solid_stage.__name__
-    'solid_stage'
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.mechanism.restrict import restrict
+    >>> from flexstage.parts.freedom import Freedom
+    >>> solid_stage(restrict(parallelogram(), {'leaf': ((Freedom.X,), ())}))
+    Traceback (most recent call last):
+        ...
+    flexstage.base.finding.DesignError: left: some of its freedoms are locked or freed by a restriction. ...
     """
     read = read_solid(mechanism, reduction, reduce)
     found = platform_modes(mechanism, read.model)

@@ -19,7 +19,7 @@ from flexstage.readings.ideal import ideal
 from flexstage.readings.linear.static import displacement, static_gain
 from flexstage.readings.solid.fineness import Reduction
 from flexstage.spatial.frame import COMPONENTS
-from flexstage.studies.solid_read import SolidRead, Solids, read_solid
+from flexstage.studies.solid_read import STANDARD_REDUCTION, STANDARD_SOLIDS, SolidRead, Solids, read_solid
 from flexstage.studies.solid_stress import LinkStress, link_stress
 from flexstage.studies.units import as_vector, driven_units
 
@@ -81,14 +81,17 @@ class SolidUnit:
         }
 
 
-def solid_units(mechanism: Mechanism, reduction: Reduction, reduce: Solids) -> dict[str, SolidUnit]:
+def solid_units(mechanism: Mechanism, reduction: Reduction = STANDARD_REDUCTION, reduce: Solids = STANDARD_SOLIDS) -> dict[str, SolidUnit]:
     """Read the first copy of every placed unit that drives its output by exactly one actuator as a solid, alone.
 
     Outlines that belong to other bodies are left out; the output is the end face of the link that joins the platform, kept plane. Raises
     `DesignError` where no unit of the stage is of this kind.
 
-    >>> solid_units.__name__
-    'solid_units'
+    >>> from flexstage.cases.bridge import bridge
+    >>> solid_units(bridge())
+    Traceback (most recent call last):
+        ...
+    flexstage.base.finding.DesignError: units: none of the stage's units drives an output of its own by one actuator. ...
     """
     found = driven_units(mechanism)
     if not found:
@@ -143,7 +146,7 @@ def full_stroke(mechanism: Mechanism, copy: str) -> float:
     """The full stroke of a copy's stack [m].
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> full_stroke(double_triangle(), "B4")
+    >>> round(full_stroke(double_triangle(), "B4"), 9)
     0.0002
     """
     assembly = expand(mechanism)

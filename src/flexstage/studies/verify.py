@@ -21,8 +21,8 @@ from flexstage.studies.calibrate import with_matrices
 from flexstage.studies.complete import platform_modes
 from flexstage.studies.paired import paired
 from flexstage.studies.resolution import DEFAULT, Resolution, Resolved, resolved
-from flexstage.studies.solid_hinge import Hinges, SolidHinge, solid_hinges
-from flexstage.studies.solid_read import Solids, calibrated
+from flexstage.studies.solid_hinge import STANDARD_HINGES, Hinges, SolidHinge, solid_hinges
+from flexstage.studies.solid_read import STANDARD_SOLIDS, Solids, calibrated
 from flexstage.studies.solid_stage import SolidStage, solid_stage
 from flexstage.studies.solid_unit import SolidUnit, solid_units
 from flexstage.studies.trust import Trust
@@ -104,7 +104,9 @@ class Verification:
         return {name: verdict(rows) for name, rows in self.groups.items()}
 
 
-def verify(mechanism: Mechanism, reduce: Solids, compute: Hinges, asked: Resolution = DEFAULT) -> Verification:
+def verify(
+    mechanism: Mechanism, asked: Resolution = DEFAULT, reduce: Solids = STANDARD_SOLIDS, compute: Hinges = STANDARD_HINGES
+) -> Verification:
     """Compare theory with finite elements for every distinct hinge and unit and for the whole stage.
 
     Theory is the description as it stands; FEA the shapes it draws. Raises `DesignError` where the stage cannot be read as a solid.

@@ -97,7 +97,7 @@ def verify(
     from flexstage.studies.verify import verify as verified
 
     with bar() as shown:
-        found = verified(_checked(mechanism), _solids(shown), _hinges(mechanism, asked, shown), asked)
+        found = verified(_checked(mechanism), asked, _solids(shown), _hinges(mechanism, asked, shown))
     if report is not None:
         units = None if found.units is None else unit_section(found.units)
         stage = None if found.stage is None else stage_solid_section(found.stage)

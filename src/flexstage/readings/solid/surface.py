@@ -14,6 +14,13 @@ def element_coordinates(item: Placed, motion: Array, strokes: Mapping[str, Array
     """A component's coordinates (n, k) that its stress follows, for the model's (N, k), with the `strokes` (k,) [m] of its stacks, by link.
 
     A stack that expands freely is without stress, so its free stroke must not count.
+
+    >>> from types import SimpleNamespace as Of
+    >>> stack = Of(name="B/pzt", body=None)
+    >>> element = Of(stiffness={"A/pzt": None}, resultants={"A/pzt": None}, free_strokes={"A/pzt": np.array([1.0])})
+    >>> copy = Of(component=Of(pieces=(stack,)), element=element, operator=np.array([[2.0]]))
+    >>> element_coordinates(copy, np.array([[3.0]]), {"B/pzt": np.array([5.0])}).tolist()  # 2 x 3 - 5
+    [[1.0]]
     """
     own = item.operator @ motion
     for name, free in _stacks(item):
@@ -32,7 +39,13 @@ def _stacks(item: Placed) -> Iterator[tuple[str, Array]]:
 
 
 def stresses(item: Placed, coordinates: Array) -> Array:
-    """Stress (v, 6, k) as xx, yy, zz, xy, yz, zx [Pa] at the vertices of a component's skin, in its own axes."""
+    """Stress (v, 6, k) as xx, yy, zz, xy, yz, zx [Pa] at the vertices of a component's skin, in its own axes.
+
+    >>> from types import SimpleNamespace as Of
+    >>> one = Of(element=Of(skin=Of(stress=np.ones((1, 6, 2)))))
+    >>> stresses(one, np.array([[2.0], [3.0]]))[0, :, 0].tolist()
+    [5.0, 5.0, 5.0, 5.0, 5.0, 5.0]
+    """
     skin = item.element.skin.stress
     return (skin.reshape(-1, skin.shape[-1]) @ coordinates).reshape(len(skin), 6, -1)
 
@@ -48,7 +61,15 @@ def von_mises(stress: Array) -> Array:
 
 
 def moved_vertices(item: Placed, motion: Array, factor: float) -> Array:
-    """Places (v, 3) [m] of a component's skin in the stage's frame, moved by `factor` times the motion of coordinates (N,)."""
+    """Places (v, 3) [m] of a component's skin in the stage's frame, moved by `factor` times the motion of coordinates (N,).
+
+    >>> from types import SimpleNamespace as Of
+    >>> from flexstage.spatial.frame import identity
+    >>> skin = Of(vertices=np.zeros((1, 3)), motion=np.array([[[1.0], [0.0], [0.0]]]))
+    >>> item = Of(element=Of(skin=skin), operator=np.eye(1), component=Of(place=identity()))
+    >>> moved_vertices(item, np.array([0.5]), 2.0).tolist()
+    [[1.0, 0.0, 0.0]]
+    """
     skin = item.element.skin
     own = item.operator @ motion
     shift = (skin.motion.reshape(-1, skin.motion.shape[-1]) @ own).reshape(-1, 3)
@@ -56,7 +77,14 @@ def moved_vertices(item: Placed, motion: Array, factor: float) -> Array:
 
 
 def piece_vertices(item: Placed) -> Iterator[tuple[str, Array]]:
-    """Every link and body of a component in this copy's names, with the vertices (indices) of its skin."""
+    """Every link and body of a component in this copy's names, with the vertices (indices) of its skin.
+
+    >>> from types import SimpleNamespace as Of
+    >>> skin = Of(triangles=np.array([[0, 1, 2], [2, 1, 3]]), owner=np.array([0, 1]))
+    >>> pieces = (Of(name="B/tip.block", body="B/tip"), Of(name="B/front", body=None))
+    >>> [(name, at.tolist()) for name, at in piece_vertices(Of(element=Of(skin=skin), component=Of(pieces=pieces)))]
+    [('B/tip', [0, 1, 2]), ('B/front', [1, 2, 3])]
+    """
     skin = item.element.skin
     names: dict[str, list[int]] = {}
     for number, piece in enumerate(item.component.pieces):
