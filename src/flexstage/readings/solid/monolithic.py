@@ -10,22 +10,41 @@ from flexstage.mechanism.expand import Assembly, expand
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.readings.linear.model import LinearModel
 from flexstage.readings.solid.assemble import linear_model
+from flexstage.readings.solid.cache import Cache
 from flexstage.readings.solid.casing import casing
 from flexstage.readings.solid.component import Component, Cut, components
-from flexstage.readings.solid.reduce import Reduction, reduced
+from flexstage.readings.solid.fineness import Reduction
+from flexstage.readings.solid.parts import Ways, reduce_parts
+from flexstage.readings.solid.progress import Progress
+from flexstage.readings.solid.remote import Limits
 from flexstage.spatial.frame import Frame, seen_at
 
+_CACHE, _STANDARD = Cache(), Reduction(modes=18)
 
-def monolithic(mechanism: Mechanism, reduction: Reduction) -> LinearModel:
+
+def monolithic(
+    mechanism: Mechanism,
+    reduction: Reduction = _STANDARD,
+    *,
+    cache: Cache | None = _CACHE,
+    progress: Progress | None = None,
+    memory: float | None = None,
+) -> LinearModel:
     """Read a stage as one elastic solid: no interface is held rigid but the end caps of stacks.
 
     The model is exact in statics and for its lowest `reduction.modes` modes where all bodies are elastic and no payload is carried;
-    it costs the time and memory of the whole mesh. Same names of inputs and outputs as `solid`.
+    it costs the time and memory of the whole mesh. Same names of inputs and outputs, same options and errors as `solid`.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> monolithic(parallelogram(), memory=1e6, cache=None)
+    Traceback (most recent call last):
+    flexstage.base.finding.DesignError: ...
     """
     assembly = expand(mechanism)
     parts = components(mechanism, Cut.NONE)
-    joined = tuple((part, reduced(part, reduction, _springs(assembly, part))) for part in parts)
-    return linear_model(mechanism, assembly, joined, f"monolithic solid reading of {digest(mechanism, physics=True)[:16]}")
+    springs = {part.name: _springs(assembly, part) for part in parts}
+    whole = reduce_parts(parts, reduction, Ways(cache, progress, Limits(memory=memory)), springs)
+    return linear_model(mechanism, assembly, whole.parts, f"monolithic solid reading of {digest(mechanism, physics=True)[:16]}")
 
 
 def _springs(assembly: Assembly, component: Component) -> Array:
