@@ -29,6 +29,14 @@ def _one_blas_thread():
         yield
 
 
+@pytest.fixture(scope="session", autouse=True)
+def _own_cache(tmp_path_factory: pytest.TempPathFactory):
+    """Tests begin with an empty cache of superelements, and leave the user's alone."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("FLEXSTAGE_CACHE", str(tmp_path_factory.mktemp("cache")))
+        yield
+
+
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Skip the full tests unless asked for: `make check-all`."""
     if not FULL:

@@ -55,7 +55,10 @@ def reduce_parts(
     """
     jobs = [Job(key_of(part, reduction, springs.get(part.name)), part, reduction, springs.get(part.name)) for part in parts]
     store = _Store(ways.cache)
-    missing = [job for job in {job.key: job for job in reversed(jobs)}.values() if not store.holds(job)][::-1]
+    first: dict[str, Job] = {}
+    for job in jobs:
+        first.setdefault(job.key, job)
+    missing = [job for job in first.values() if not store.holds(job)]
     if missing:
         require_solver()
         reduce_all(missing, store.take, ways.limits, ways.progress)

@@ -26,6 +26,7 @@ from flexstage.base.finding import Finding, refuse, require
 from flexstage.readings.solid.fineness import ATTEMPTS
 from flexstage.readings.solid.memory import Counts, available, needed, refusal
 from flexstage.readings.solid.progress import Progress, Stage, Step, gathered, seconds_left
+from flexstage.readings.solid.store import versions
 from flexstage.readings.solid.worker import FINDINGS, PROGRESS, RESULT, TASK, Job, Outcome, Task, findings_in
 
 _MOST_WORKERS = 2
@@ -181,7 +182,7 @@ class _Run:
             child.remove()
 
     def _start(self, job: Job, attempt: int, begun: float) -> None:
-        task = Task(job, attempt, available() if self.limits.memory is None else self.limits.memory)
+        task = Task(job, attempt, available() if self.limits.memory is None else self.limits.memory, versions())
         self.children.append(_started(task, begun if attempt else time.monotonic()))
 
     def _look(self, child: _Child) -> None:

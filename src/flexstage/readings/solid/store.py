@@ -6,6 +6,7 @@ import functools
 import hashlib
 import io
 import json
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, fields, is_dataclass
 from pathlib import Path
@@ -21,6 +22,7 @@ from flexstage.readings.solid.superelement import Skin, Superelement
 FORMAT = 1
 """To be raised when the form of the file changes."""
 
+_IMPORTED = re.compile(r"^\s*from flexstage\.readings\.solid\.(\w+) import", re.MULTILINE)
 _RECORDS = {record.__name__: record for record in (Superelement, Skin)}
 
 
@@ -50,23 +52,39 @@ def versions() -> Versions:
     True
     """
     state = hashlib.sha256()
-    for path in sorted(Path(__file__).parent.glob("*.py")):
+    for path in method_files():
         state.update(path.name.encode() + path.read_bytes())
     return Versions(FORMAT, __version__, SOLVER_VERSION, state.hexdigest()[:16])
 
 
-def written(element: Superelement, key: str) -> bytes:
-    """A superelement as the bytes of a file, for the content `key`.
+def method_files() -> tuple[Path, ...]:
+    """The files of the solid reading that a reduction uses: what `reduce.py` imports, and what that imports.
+
+    >>> {"draw.py", "mesh.py", "skin.py"} <= {path.name for path in method_files()}
+    True
+    """
+    folder = Path(__file__).parent
+    found, waiting = dict[str, Path](), ["reduce"]
+    while waiting:
+        name = waiting.pop()
+        if name not in found:
+            found[name] = folder / f"{name}.py"
+            waiting += _IMPORTED.findall(found[name].read_text(encoding="utf-8"))
+    return tuple(found[name] for name in sorted(found))
+
+
+def written(element: Superelement, key: str, made: Versions) -> bytes:
+    """A superelement as the bytes of a file, for the content `key` and the versions it was made by.
 
     >>> small = Superelement(0, {}, {}, {}, {}, {}, {}, {}, np.zeros((0, 6)), np.zeros((0, 6)), Skin(*[np.zeros(0)] * 5), 3, 1)
-    >>> read(written(small, "key"), "key").freedoms
+    >>> read(written(small, "key", versions()), "key").freedoms
     3
     """
     arrays: dict[str, Array] = {}
     tree = _flat(element, "", arrays)
     body = io.BytesIO()
     np.savez(body, allow_pickle=False, **{str(number): value for number, value in enumerate(arrays.values())})
-    head = {"what": "flexstage superelement", "key": key, **_stamp(versions()), "tree": tree}
+    head = {"what": "flexstage superelement", "key": key, **_stamp(made), "tree": tree}
     return _sealed(head, body.getvalue())
 
 

@@ -29,7 +29,7 @@ from flexstage.readings.solid.component import Component
 from flexstage.readings.solid.fineness import Reduction
 from flexstage.readings.solid.memory import Counts
 from flexstage.readings.solid.progress import Report, Stage
-from flexstage.readings.solid.store import written
+from flexstage.readings.solid.store import Versions, written
 
 TASK, PROGRESS, RESULT, FINDINGS = "task", "progress", "result", "findings"
 _PR_SET_PDEATHSIG = 1
@@ -69,11 +69,12 @@ class Job:
 
 @dataclass(frozen=True, eq=False)
 class Task:
-    """What a worker is told: the job, the attempt at its mesh to begin with, and the memory it may take at most [bytes]."""
+    """What a worker is told: the job, the attempt at its mesh to begin with, the memory it may take at most [bytes], who is asking."""
 
     job: Job
     attempt: int
     memory: float
+    made: Versions
 
 
 def _main(folder: Path) -> Outcome:
@@ -116,7 +117,7 @@ def _reduced(task: Task, report: Report, ask: Callable[[Counts], None]) -> bytes
     mesh = meshed(job.component, job.reduction.fineness, report, task.attempt)
     size = mesh.mesh
     ask(Counts(size.nv, size.nedge, size.nface, size.ne))
-    return written(reduced_mesh(job.component, mesh, job.reduction, job.springs, report), job.key)
+    return written(reduced_mesh(job.component, mesh, job.reduction, job.springs, report), job.key, task.made)
 
 
 def _ask(path: Path, counts: Counts, permitted: threading.Event) -> None:

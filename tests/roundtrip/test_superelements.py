@@ -1,0 +1,112 @@
+"""Superelements as files: what is read is bit by bit what was written, or a reason why it cannot be."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import fields, replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from flexstage.base.number import Array
+from flexstage.readings.solid.store import read, versions, written
+from flexstage.readings.solid.superelement import Skin, Superelement
+
+KEY = "0123456789abcdef"
+
+
+def superelement(seed: int, size: int = 8) -> Superelement:
+    """Numbers without meaning, in the shapes of a superelement of one body between two links, with names that need care."""
+    draw = np.random.default_rng(seed)
+
+    def numbers(*shape: int) -> Array:
+        values = draw.standard_normal(shape) * 10.0 ** draw.integers(-300, 300, shape)
+        values.ravel()[: min(3, values.size)] = [0.0, -0.0, 5e-324][: min(3, values.size)]
+        return values
+
+    groups = ('B1/back "a"', "B1/förder", "B1/front\n")
+    return Superelement(
+        interfaces=1,
+        stiffness={name: numbers(size, size) for name in groups},
+        inertia={name: numbers(size, size) for name in reversed(groups)},
+        bodies={groups[1]: numbers(6, size)},
+        body_inertia={groups[1]: numbers(6, 6)},
+        resultants={},
+        strokes={groups[0]: numbers(size)},
+        free_strokes={groups[0]: numbers(size)},
+        rigid=numbers(size, 6),
+        carried=numbers(size, 6),
+        skin=Skin(
+            vertices=numbers(5, 3),
+            triangles=draw.integers(0, 5, (4, 3)),
+            motion=draw.standard_normal((5, 3, size)).astype(np.float32),
+            stress=draw.standard_normal((5, 6, size)).astype(np.float32),
+            owner=draw.integers(0, 3, 4),
+        ),
+        freedoms=123456,
+        elements=789,
+    )
+
+
+def assert_same(one: object, other: object) -> None:
+    if isinstance(one, np.ndarray):
+        assert isinstance(other, np.ndarray)
+        assert (one.dtype, one.shape, one.tobytes()) == (other.dtype, other.shape, other.tobytes())
+    elif isinstance(one, Mapping):
+        assert isinstance(other, Mapping)
+        assert list(one) == list(other)
+        for name in one:
+            assert_same(one[name], other[name])
+    elif isinstance(one, (Superelement, Skin)):
+        assert type(one) is type(other)
+        for field in fields(one):
+            assert_same(getattr(one, field.name), getattr(other, field.name))
+    else:
+        assert one == other
+
+
+@given(st.integers(0, 2**32), st.integers(6, 20))
+def test_what_is_read_is_what_was_written(seed: int, size: int) -> None:
+    element = superelement(seed, size)
+    assert_same(read(written(element, KEY, versions()), KEY), element)
+
+
+DATA = written(superelement(0), KEY, versions())
+
+
+@given(st.integers(0, len(DATA) - 1), st.integers(1, 255))
+def test_no_changed_byte_goes_unnoticed(place: int, change: int) -> None:
+    data = bytearray(DATA)
+    data[place] ^= change
+    outcome = read(bytes(data), KEY)
+    assert isinstance(outcome, str)
+    assert outcome.startswith("it is damaged")
+
+
+@given(st.integers(0, len(DATA) - 1))
+def test_nothing_cut_off_goes_unnoticed(kept: int) -> None:
+    assert isinstance(read(DATA[:kept], KEY), str)
+
+
+@given(st.binary(max_size=200))
+def test_nonsense_is_refused(data: bytes) -> None:
+    assert isinstance(read(data, KEY), str)
+
+
+@pytest.mark.parametrize("change", [{"format": 0}, {"flexstage": "0.0.9"}, {"solver": "6.2.2000"}, {"method": "0" * 16}])
+def test_other_versions_are_told_apart(change: dict[str, object]) -> None:
+    outcome = read(written(superelement(0), KEY, replace(versions(), **change)), KEY)
+    assert isinstance(outcome, str)
+    assert outcome.startswith("it is of another version: flexstage 0.")
+
+
+def test_another_component_is_told_apart() -> None:
+    assert read(DATA, "another") == "it holds another component"
+
+
+def test_nothing_in_a_file_is_run() -> None:
+    element = replace(superelement(0), carried=np.array([object()], dtype=object))
+    with pytest.raises(ValueError, match="Object arrays cannot be saved"):
+        written(element, KEY, versions())
