@@ -10,6 +10,7 @@ from netgen import occ
 
 from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array
+from flexstage.parts.body import Imported
 from flexstage.readings.solid.component import Component, Interface, Joint
 from flexstage.readings.solid.draw import MILLIMETRES, drawn, moved
 from flexstage.readings.solid.piece import Medium, Piece
@@ -124,5 +125,7 @@ def region(piece: Piece, points: Array) -> Array:
 
 def half_extents(piece: Piece) -> Array:
     """Half sizes (3,) of a piece's bounding box in its own frame [m]."""
+    if isinstance(piece.form, Imported):
+        return 0.5 * np.real(np.array(piece.form.size))
     low, high = drawn(piece.form).bounding_box
     return 0.5 * (_coordinates(high) - _coordinates(low)) / MILLIMETRES
