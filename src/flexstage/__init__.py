@@ -43,6 +43,8 @@ _ROOMS = {
     "readings.mapped": "mapped",
     "readings.solid.cache": "Cache",
     "readings.solid.fineness": "Fineness Hold Reduction",
+    "readings.solid.estimate": "Accuracy",
+    "readings.solid.hinge": "HingeSolid hinge_compliance",
     "readings.solid.reading": "SolidReading solid solid_parts",
     "readings.linear.kinematics": "Kinematics",
     "readings.linear.model": "LinearModel",

@@ -223,6 +223,13 @@ from flexstage.readings.solid.fineness import (
     Hold as Hold,
     Reduction as Reduction,
 )
+from flexstage.readings.solid.estimate import (
+    Accuracy as Accuracy,
+)
+from flexstage.readings.solid.hinge import (
+    HingeSolid as HingeSolid,
+    hinge_compliance as hinge_compliance,
+)
 from flexstage.readings.solid.reading import (
     SolidReading as SolidReading,
     solid as solid,

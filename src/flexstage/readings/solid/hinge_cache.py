@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from flexstage.readings.solid.hinge import HingeSolid
 
 HingePart: TypeAlias = Notch | Neck | Leaf | Rod
-_ARRAYS = ("compliance", "stiffness", "whole")
+_ARRAYS = ("compliance", "stiffness", "changes", "whole")
 
 
 def kept_hinge(
@@ -84,6 +84,7 @@ def _from(values: dict[str, Any]) -> HingeSolid:
         compliance=arrays["compliance"],
         stiffness=arrays["stiffness"],
         error=float(values["error"]),
+        changes=arrays["changes"],
         whole=arrays["whole"],
         stub=float(values["stub"]),
         freedoms=int(values["freedoms"]),

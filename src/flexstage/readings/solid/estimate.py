@@ -1,0 +1,56 @@
+"""How accurate a result of finite elements is, from a sequence of orders and meshes, and when to stop."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.base.number import Array
+
+_MOST = 0.8
+"""Largest ratio of one change to the one before that is taken to say something about convergence."""
+
+
+@dataclass(frozen=True)
+class Accuracy:
+    """What to ask of an adaptive solve.
+
+    `error` is the relative error wanted, `freedoms` the most degrees of freedom to spend. On the first mesh the order rises from the first
+    to the second of `orders`; then it stays, and elements shrink by `shrink` from mesh to mesh, `meshes` in all.
+    """
+
+    error: float = 0.01
+    freedoms: int = 200_000
+    orders: tuple[int, int] = (3, 5)
+    shrink: float = 0.6
+    meshes: int = 3
+
+
+def change(first: Array, second: Array) -> float:
+    """Largest change between two compliances (6, 6), each entry ij against sqrt(C_ii C_jj) of the second: free of units.
+
+    >>> change(np.diag([1.0, 2.0]), np.diag([1.0, 2.02])).__round__(4)
+    0.0099
+    """
+    scale = np.sqrt(np.abs(np.diag(second)))
+    return float(np.max(np.abs(second - first) / np.outer(scale, scale)))
+
+
+def remaining(changes: Iterable[float]) -> float:
+    """Error left in the last of a sequence of results, from the changes d_1, d_2, ... between neighbours: max(1, r / (1 - r)) d_n.
+
+    r = d_n / d_(n-1), at most 0.8: a geometric series where it converges slowly, and the last change, which overestimates, where it does
+    not. Infinite without any change. An estimate, not a bound.
+
+    >>> remaining([0.4, 0.1]), round(remaining([0.4, 0.3]), 6), remaining([0.4]), remaining([])
+    (0.1, 0.9, 0.4, inf)
+    """
+    known = list(changes)
+    if not known:
+        return float("inf")
+    if len(known) == 1 or known[-2] <= 0.0:
+        return known[-1]
+    ratio = min(known[-1] / known[-2], _MOST)
+    return known[-1] * max(1.0, ratio / (1.0 - ratio))

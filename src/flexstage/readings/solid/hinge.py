@@ -1,0 +1,262 @@
+"""A hinge by three-dimensional elasticity: its 6x6 between the ends of its arcs, with an estimate of its error.
+
+The hinge stands between rigid outer faces, with one stub of its full height on each side where its profile rises to one; the stubs are then
+taken off as beams, so that what the roots of the arcs yield remains with the hinge. Prismatic hinges stand between rigid faces directly.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import ngsolve
+import numpy as np
+from netgen import occ
+
+from flexstage.base.finding import Finding, refuse, require
+from flexstage.base.number import Array
+from flexstage.parts.leaf import Leaf
+from flexstage.parts.material import Material
+from flexstage.parts.neck import Neck
+from flexstage.parts.notch import Notch
+from flexstage.parts.profile import Filleted
+from flexstage.parts.rod import Rod
+from flexstage.readings.solid.estimate import Accuracy, change, remaining
+from flexstage.readings.solid.field import Field, applied, factored, field, rigid, stiffness
+from flexstage.readings.solid.mesh import Meshed
+from flexstage.readings.solid.piece import Medium, medium, span
+from flexstage.readings.solid.specimen import END, START, Hinge, Specimen, added, specimen
+from flexstage.readings.solid.stub import beam, circle, rectangle
+from flexstage.spatial.frame import identity, transport
+
+_SYMMETRY = 1e-8
+_ATTEMPTS = (
+    (1.0, 0.5, 1.2),
+    (1.0, 0.5, 2.0),
+    (1.0, 0.4, 3.0),
+    (0.8, 0.5, 2.0),
+    (0.8, 0.3, 3.0),
+    (0.6, 0.5, 2.5),
+    (0.6, 0.3, 4.0),
+    (0.4, 0.3, 3.0),
+)
+"""Factors on sizes, grading and segments per radius of curvature, tried one after the other."""
+
+
+@dataclass(frozen=True, eq=False)
+class HingeSolid:
+    """The 6x6 of a hinge by three-dimensional elasticity, about its centre in the link frame, between the ends of its arcs [SI].
+
+    `compliance` and `stiffness` (6, 6): twist of the second side against the first, (x, y, z, rx, ry, rz). `error` estimates the largest
+    relative error of the compliance *at the hinge's end*, where it acts, each entry ij against sqrt(C_ii C_jj) there; `changes` (6,) are
+    the last relative changes of the diagonal about the centre: those of y and z are larger, being small differences of lever arms.
+    `whole` (6, 6) is the compliance with the stubs of length `stub` [m]. `freedoms`, `elements` and `order` are those of the last solve;
+    `finding` says what was not reached, if anything.
+    """
+
+    compliance: Array
+    stiffness: Array
+    error: float
+    changes: Array
+    whole: Array
+    stub: float
+    freedoms: int
+    elements: int
+    order: int
+    finding: Finding | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class _Solve:
+    stiffness: Array
+    freedoms: int
+    elements: int
+    order: int
+
+
+def hinge_compliance(part: Hinge, material: Material, accuracy: Accuracy | None = None, stub: float | None = None) -> HingeSolid:
+    """The 6x6 of a notch, neck, leaf or rod by finite elements, to the accuracy asked for (1 % unless told).
+
+    Energies: with one outer face held and the other moved rigidly by e_i about the centre, K_ij = u_i . K u_j; C = K^-1 - sum over stubs of
+    X C_stub X^T. The order is raised, then the mesh refined, until the error estimated from the last changes (`estimate.remaining`) is
+    within `accuracy.error`. `stub` [m] is each stub's length, the hinge's full height unless told; prismatic hinges have none.
+
+    Linear elasticity; the stubs' outer faces stay plane. How much of the blocks counts as root is a convention: C_x depends on the stub's
+    length by 1-3 %, C_y by some 10 %, and C_rx of a hinge several times wider than high by a factor. Raises `DesignError` for a part
+    without a shape, for a batch, and where no mesh can be made.
+
+    >>> from flexstage.parts.profile import Straight
+    >>> steel = Material(young=200e9, poisson=0.3, density=7750.0)
+    >>> coarse = Accuracy(error=0.5, orders=(2, 3), meshes=1)
+    >>> bar = hinge_compliance(Neck("steel", 1e-3, Straight(0.01), width=2e-3), steel, coarse)
+    >>> round(float(bar.compliance[0, 0]) * 200e9 * 1e-3 * 2e-3 / 0.01, 1), bar.stub, bar.finding is None
+    (1.0, 0.0, True)
+    """
+    asked = accuracy or Accuracy()
+    require(_refusals(part))
+    own = medium(material)
+    length = _stub_length(part, stub)
+    taken = _stubs(part, length, own)
+    found: list[Array] = []
+    last = None
+    for last in _solves(part, length, own, asked):
+        found.append(_symmetric(np.linalg.inv(last.stiffness)) - taken)
+        if _error(part, found) <= asked.error:
+            break
+    if last is None:
+        what = f"its coarsest mesh has more than the {asked.freedoms} freedoms allowed"
+        raise refuse(_named(part), what, "Allow more freedoms")
+    alone, error = found[-1], _error(part, found)
+    return HingeSolid(
+        compliance=alone,
+        stiffness=_symmetric(np.linalg.inv(alone)),
+        error=error,
+        changes=np.abs(np.diag(alone - found[-2]) / np.diag(alone)) if len(found) > 1 else np.full(6, np.inf),
+        whole=alone + taken,
+        stub=length,
+        freedoms=last.freedoms,
+        elements=last.elements,
+        order=last.order,
+        finding=None if error <= asked.error else _short(part, error, asked),
+    )
+
+
+def _refusals(part: Hinge) -> Iterator[Finding]:
+    """Parts without a shape, batches, fillets longer than the hinge."""
+    if not isinstance(part, Hinge):
+        yield Finding(_named(part), "has no shape, or is no hinge", "Give a notch, neck, leaf or rod")
+        return
+    profile = None if isinstance(part, (Leaf, Rod)) else part.profile
+    for owner in (part, profile):
+        for name, value in vars(owner).items() if owner is not None else ():
+            if np.ndim(value) > 0:
+                yield Finding(f"{_named(part)}'s {name}", f"is a batch of {np.size(value)}", "A solid is one design: read them one by one")
+    if isinstance(profile, Filleted) and np.ndim(profile.length) == np.ndim(profile.radius) == 0:
+        total, radius = float(np.real(profile.length)), float(np.real(profile.radius))
+        if 2.0 * radius > total:
+            yield Finding(_named(part), f"its fillets of {radius:.4g} m do not fit into its length of {total:.4g} m", "Need 2 r <= l")
+
+
+def _error(part: Hinge, found: Sequence[Array]) -> float:
+    """Estimated error of the last of the compliances found, all taken at the hinge's end."""
+    arm = transport(np.array([0.5 * span(part), 0.0, 0.0]))
+    ends = [arm @ compliance @ arm.T for compliance in found]
+    return remaining([change(first, second) for first, second in pairwise(ends)])
+
+
+def _named(part: Hinge) -> str:
+    return f"the {type(part).__name__.lower()}"
+
+
+def _solves(part: Hinge, stub: float, own: Medium, asked: Accuracy) -> Iterator[_Solve]:
+    """Solves of rising order on one mesh, then of the highest on finer ones, until the next would have too many freedoms."""
+    lowest, highest = asked.orders
+    for refinement in range(asked.meshes):
+        mesh = _meshed(part, stub, asked.shrink**refinement, highest)
+        for order in range(lowest if refinement == 0 else highest, highest + 1):
+            space = _space(mesh, own, order)
+            if space.size > asked.freedoms:
+                return
+            yield _Solve(_law(part, space), space.size, mesh.ne, order)
+
+
+def _space(mesh: ngsolve.Mesh, own: Medium, order: int) -> Field:
+    mesh.Curve(order)
+    return field(Meshed(mesh, (own,), (START, END), np.zeros(mesh.ne, dtype=int)), [START, END], order)
+
+
+def _law(part: Hinge, space: Field) -> Array:
+    """Stiffness (6, 6) of the whole specimen: energies of the motions that move one outer face and hold the other."""
+    form, motion = stiffness(space), rigid(space, identity(), faces=END)
+    motion -= factored(space, form)(_times(form, motion))
+    law = motion.T @ applied(stiffness(space, assemble=False), motion)  # by strains: the rounding of K u drowns a thin leaf
+    _require_symmetric(part, law)
+    return _symmetric(law)
+
+
+def _times(form: ngsolve.BilinearForm, vectors: Array) -> Array:
+    x, y = form.mat.CreateRowVector(), form.mat.CreateColVector()
+    result = np.empty_like(vectors)
+    for number in range(vectors.shape[1]):
+        x.FV().NumPy()[:] = vectors[:, number]
+        y.data = form.mat * x
+        result[:, number] = y.FV().NumPy()
+    return result
+
+
+def _meshed(part: Hinge, stub: float, factor: float, order: int) -> ngsolve.Mesh:
+    reason = "the mesher was not asked"
+    for shrink, grading, curvature in _ATTEMPTS:
+        drawn = specimen(part, stub, factor * shrink)
+        outcome = _attempt(drawn, grading, curvature / factor, order)
+        if isinstance(outcome, ngsolve.Mesh):
+            return outcome
+        reason = outcome
+    raise refuse(_named(part), f"no mesh could be made: {reason}", "Look for proportions far from a hinge's")
+
+
+def _attempt(drawn: Specimen, grading: float, curvature: float, order: int) -> ngsolve.Mesh | str:
+    try:
+        raw = occ.OCCGeometry(drawn.solid).GenerateMesh(maxh=drawn.largest, grading=grading, curvaturesafety=curvature)
+    except Exception as error:  # noqa: BLE001 (netgen raises a bare NgException, and others for CAD it cannot read)
+        return str(error)
+    mesh = ngsolve.Mesh(raw)
+    if mesh.ne == 0:
+        return "no elements came out"
+    for degree in range(2, order + 1):
+        mesh.Curve(degree)
+        points = mesh.MapToAllElements(ngsolve.IntegrationRule(ngsolve.TET, 2 * degree), ngsolve.VOL)
+        lowest = float(np.min(ngsolve.Det(ngsolve.specialcf.JacobianMatrix(3))(points)))
+        if lowest <= 0.0:
+            return f"a curved face turns an element inside out, Jacobian {lowest:.3g}"
+    return mesh
+
+
+def _profile_height(part: Hinge) -> float:
+    return 0.0 if isinstance(part, (Leaf, Rod)) else added(part.profile)
+
+
+def _stub_length(part: Hinge, stub: float | None) -> float:
+    rise = _profile_height(part)
+    if rise == 0.0 or isinstance(part, (Leaf, Rod)):
+        return 0.0
+    return float(np.real(part.thickness)) + 2.0 * rise if stub is None else stub
+
+
+def _stubs(part: Hinge, length: float, own: Medium) -> Array:
+    """Compliance (6, 6) of both stubs about the hinge's centre."""
+    if length == 0.0 or not isinstance(part, (Notch, Neck)):
+        return np.zeros((6, 6))
+    rise = 2.0 * _profile_height(part)
+    height = float(np.real(part.thickness)) + rise
+    if part.width is None:
+        section = circle(height)
+    else:
+        width = float(np.real(part.width)) + (rise if isinstance(part, Neck) else 0.0)
+        section = rectangle(height, width)
+    alone, away = beam(section, length, own), 0.5 * (span(part) + length)
+    shifts = [transport(np.array([sign * away, 0.0, 0.0])) for sign in (-1.0, 1.0)]
+    return sum((shift @ alone @ shift.T for shift in shifts), np.zeros((6, 6)))
+
+
+def _symmetric(matrix: Array) -> Array:
+    return 0.5 * (matrix + matrix.T)
+
+
+def _require_symmetric(part: Hinge, law: Array) -> None:
+    skew = change(law, law.T)
+    if skew > _SYMMETRY:
+        raise refuse(
+            _named(part),
+            f"its stiffness is unsymmetric by {skew:.1e}, {_SYMMETRY:.0e} is allowed",
+            "Its mesh is ill-conditioned: check the proportions",
+        )
+
+
+def _short(part: Hinge, error: float, asked: Accuracy) -> Finding:
+    return Finding(
+        _named(part),
+        f"its 6x6 is known to {100.0 * error:.2g} %, {100.0 * asked.error:.2g} % was asked, within {asked.freedoms} freedoms",
+        "Allow more freedoms, or ask for less",
+    )
