@@ -72,7 +72,7 @@ def hinges(accuracy: float = 0.01, order: int | None = None, ways: Ways = STANDA
     asked = Accuracy(error=accuracy) if order is None else Accuracy(error=accuracy, orders=(2, max(3, order)))
 
     def compute(part: HingePart, material: Material) -> HingeSolid:
-        return kept_hinge(part, material, asked, ways.cache, notice)
+        return kept_hinge(part, material, asked, ways, notice)
 
     return compute
 

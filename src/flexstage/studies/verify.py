@@ -115,11 +115,11 @@ def verify(
     'verify'
     """
     missing: dict[str, str] = {}
-    stage = stage_solid(mechanism, reduce, asked)
+    stage = stage_solid(mechanism, asked, reduce)
     found = solid_hinges(mechanism, compute)
     matched = with_matrices(mechanism, found)
     try:
-        alone = units_solid(mechanism, reduce, asked) if driven_units(mechanism) else None
+        alone = units_solid(mechanism, asked, reduce) if driven_units(mechanism) else None
     except DesignError as error:
         alone, missing["units"] = None, str(error)
     if alone is None:
@@ -132,7 +132,7 @@ def verify(
     return Verification(mechanism, rows, found, alone, stage, missing)
 
 
-def stage_solid(mechanism: Mechanism, reduce: Solids, asked: Resolution) -> Resolved[SolidStage]:
+def stage_solid(mechanism: Mechanism, asked: Resolution = DEFAULT, reduce: Solids = STANDARD_SOLIDS) -> Resolved[SolidStage]:
     """The whole stage as a solid, to the accuracy asked.
 
     >>> stage_solid.__name__
@@ -141,7 +141,7 @@ def stage_solid(mechanism: Mechanism, reduce: Solids, asked: Resolution) -> Reso
     return resolved(lambda way: solid_stage(mechanism, way, reduce), lambda found: found.figures, asked)
 
 
-def units_solid(mechanism: Mechanism, reduce: Solids, asked: Resolution) -> Resolved[dict[str, SolidUnit]]:
+def units_solid(mechanism: Mechanism, asked: Resolution = DEFAULT, reduce: Solids = STANDARD_SOLIDS) -> Resolved[dict[str, SolidUnit]]:
     """Every distinct unit alone as a solid, to the accuracy asked; the errors by `unit: figure`.
 
     >>> units_solid.__name__

@@ -223,12 +223,16 @@ def _hinge_study(mechanism: Mechanism, asked: Resolution, shown: Bar) -> _Found:
 
 
 def _unit_study(mechanism: Mechanism, asked: Resolution, shown: Bar) -> _Found:
+    from flexstage.mechanism.restrict import isolate
     from flexstage.present.documents.solid import solid_units_body
     from flexstage.present.sections.solid import unit_section
     from flexstage.present.tables.solid import command_table, solid_unit_table, stress_table
+    from flexstage.studies.units import driven_units
     from flexstage.studies.verify import units_solid
 
-    found = units_solid(_checked(mechanism), _solids(shown), asked)
+    for copy, _ in driven_units(mechanism).values():
+        _checked(isolate(mechanism, copy))
+    found = units_solid(mechanism, asked, _solids(shown))
     _tell_error(found, asked)
 
     def tables() -> Iterator[Table | None]:
@@ -248,7 +252,7 @@ def _stage_study(mechanism: Mechanism, asked: Resolution, shown: Bar) -> _Found:
     from flexstage.present.tables.statics import direction_table, principal_table, stiffness_table
     from flexstage.studies.verify import stage_solid
 
-    found = stage_solid(_checked(mechanism), _solids(shown), asked)
+    found = stage_solid(_checked(mechanism), asked, _solids(shown))
     _tell_error(found, asked)
     stage = found.result
 
