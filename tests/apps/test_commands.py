@@ -10,6 +10,7 @@ import warnings
 from pathlib import Path
 
 import pytest
+from netgen import occ
 
 from flexstage.apps import doctor
 from flexstage.apps.cli import run
@@ -37,6 +38,8 @@ def test_examples_run(flexstage: Command, tmp_path: Path, example: str) -> None:
     words = shlex.split(example.partition(" > ")[0])
     if words[1] == "new":
         (tmp_path / "stage.toml").unlink()
+    if words[1] == "import":
+        occ.Box(occ.Pnt(0, 0, 0), occ.Pnt(10, 20, 30)).WriteStep(str(tmp_path / "part.step"))
     ended = flexstage(*words[1:])
     assert ended.code == 0, ended.err
     assert ended.out or "Wrote" in ended.err

@@ -12,11 +12,13 @@ import pytest
 from netgen import occ
 
 from flexstage.mechanism.mechanism import Mechanism
-from flexstage.mechanism.store import dump
+from flexstage.mechanism.store import dump, load
 from flexstage.parts.body import Body
 from flexstage.parts.freedom import Freedom
 from flexstage.parts.given import Joint
+from flexstage.parts.mass import mass_properties
 from flexstage.readings.solid import contact
+from flexstage.readings.solid.imported import import_findings
 from tests.apps.command import Command
 from tests.roundtrip.test_gltf import leaf_stage
 
@@ -98,3 +100,32 @@ def test_step_to_stdout_is_nothing_but_step(flexstage: Command, tmp_path: Path) 
     ended = flexstage("cad", "leaf.toml", "-o", "-")
     assert ended.out.startswith("ISO-10303-21;")
     assert ended.out.rstrip().endswith("END-ISO-10303-21;")
+
+
+def test_a_step_file_is_stated_so_that_the_design_holds_it(flexstage: Command, tmp_path: Path) -> None:
+    occ.Cylinder(occ.Pnt(0, 0, 0), occ.Z, r=7.0, h=3.0).WriteStep(str(tmp_path / "disc.step"))
+    ended = flexstage("import", "disc.step", "stage.toml", "--material", "steel", "--body", "disc")
+    assert ended.code == 0, ended.err
+    assert 'file = "disc.step"' in ended.out
+    steel = '[materials.steel]\nyoung = "200 GPa"\npoisson = 0.3\ndensity = "7750 kg/m^3"\n'
+    (tmp_path / "bodies.toml").write_text(f'format = "flexstage 1"\nname = "disc"\n{steel}{ended.out}')
+    stage = load(tmp_path / "bodies.toml", checked=False)
+    assert import_findings(stage) == ()
+    mass = mass_properties(stage.bodies["disc"], stage.materials)
+    assert mass is not None
+    assert float(mass.mass) == pytest.approx(np.pi * 0.007**2 * 0.003 * 7750.0, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (("nowhere.step", "--material", "steel"), "cannot be read"),
+        (("stage.toml", "--material", "steel"), "no STEP file"),
+        (("nowhere.step", "--material", "stele"), "steel"),
+    ],
+)
+def test_bad_imports(flexstage: Command, arguments: tuple[str, ...], said: str) -> None:
+    ended = flexstage("import", arguments[0], "stage.toml", *arguments[1:])
+    assert ended.code == 2
+    assert said in ended.err
+    assert "Traceback" not in ended.err

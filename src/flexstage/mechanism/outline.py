@@ -56,7 +56,7 @@ def outlines(assembly: Assembly) -> tuple[Outline, ...]:
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.mechanism.expand import expand
     >>> [outline.name for outline in outlines(expand(double_triangle()))][:2]
-    ['platform.plate', 'B1/base.block']
+    ['platform.plate', 'platform.left']
     """
     placed = {name: solid for body in assembly.bodies.values() for name, solid in body.solids.items()} | dict(assembly.ground)
     solids = (_solid(name, solid) for name, solid in placed.items())

@@ -28,6 +28,7 @@ COMMANDS: tuple[tuple[str, str, Callable[..., Any], str], ...] = (
     (_FILES, "check", design.check, "flexstage check stage.toml"),
     (_FILES, "schema", design.schema, "flexstage schema > flexstage.schema.json"),
     (_FILES, "plan", design.plan, "flexstage plan stage.toml -o plan.svg"),
+    (_FILES, "import", solid_files.state, "flexstage import part.step stage.toml --material steel"),
     (_FILES, "catalogue", design.catalogue, "flexstage catalogue stacks"),
     (_WHOLE, "analyse", whole.analyse, "flexstage analyse stage.toml --report report.html --set horizontal/front.thickness=1.4mm"),
     (_WHOLE, "solid", solid.solid, "flexstage solid stage.toml --what unit --report units.html"),

@@ -1,4 +1,4 @@
-"""The command `cad`: a stage as solids in files for other programs, STEP, VTU and GLB."""
+"""The commands `cad`, a stage as solids in files for other programs (STEP, VTU, GLB), and `import`, a STEP file stated as an outline."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from flexstage.apps.cli.bar import bar
 from flexstage.apps.cli.options import Changes, Design
 from flexstage.apps.cli.speech import tell, warn
 
@@ -47,6 +48,46 @@ def cad(
     mechanism = opened(design, changes, [("--output", output), ("--mesh", mesh), ("--gltf", gltf)])
     for path, option, content in _contents(mechanism, {"--output": output, "--mesh": mesh, "--gltf": gltf}, order, modes):
         _write(path, content, option)
+
+
+def state(
+    part: Annotated[Path, typer.Argument(metavar="PART.STEP", help="STEP file of one solid.", show_default=False)],
+    design: Design,
+    *,
+    material: Annotated[
+        str | None, typer.Option("--material", help="Material of the design; without it the only one.", show_default=False)
+    ] = None,
+    body: Annotated[str, typer.Option("--body", metavar="NAME", help="Body the outline is for.")] = "platform",
+) -> None:
+    """State a STEP file as an outline.
+
+    Prints the table for the design file: file, digest, size, mass, centre of mass and inertia.
+
+    Rigid readings take what is stated; the solid reading draws the file, and holds what is stated to it.
+    """
+    from flexstage.apps.cli.speech import say
+    from flexstage.mechanism.store import load, outline_text
+    from flexstage.readings.solid.install import require_solver
+
+    mechanism = load(design)
+    chosen = _material(mechanism, material)
+    require_solver()
+    from flexstage.readings.solid.imported import measured, stated
+
+    solid = stated(measured(part), str(part.resolve()), chosen, float(mechanism.materials[chosen].density))
+    say(outline_text(body, part.stem, solid, design.parent))
+
+
+def _material(mechanism: Mechanism, name: str | None) -> str:
+    from flexstage.base.finding import nearest, refuse
+
+    known = tuple(mechanism.materials)
+    if name is None and len(known) == 1:
+        return known[0]
+    if name is None or name not in known:
+        what = f"the design has {len(known)} materials" if name is None else f"the design has no material {name}"
+        raise refuse("--material", what, f"Name one. {nearest(name or '', known)}")
+    return name
 
 
 def _write(path: Path, content: bytes, option: str) -> None:
@@ -94,10 +135,12 @@ def _moving(stage: Mechanism, fineness: Fineness, count: int) -> bytes:
     """The GLB file of a stage with its lowest modes."""
     from flexstage.readings.solid.fineness import Reduction
     from flexstage.readings.solid.gltf import Motion, gltf, surfaces
+    from flexstage.readings.solid.parts import Ways
     from flexstage.studies.complete import platform_modes
     from flexstage.studies.solid_read import read_solid, solids
 
-    read = read_solid(stage, Reduction(fineness), solids(notice=lambda finding: warn(str(finding))))
+    with bar() as shown:
+        read = read_solid(stage, Reduction(fineness), solids(Ways(progress=shown.step), lambda finding: warn(str(finding))))
     found = platform_modes(stage, read.model)
     motions = [
         Motion(f"mode {number + 1}: {name}, {found.frequencies[number]:.1f} Hz", found.shapes[:, number])

@@ -10,7 +10,7 @@ from pathlib import Path
 from flexstage.base.finding import DesignError
 from flexstage.mechanism.checks import checked as _checked
 from flexstage.mechanism.mechanism import Mechanism
-from flexstage.mechanism.store.anchor import anchored, beside
+from flexstage.mechanism.store.anchor import anchored, beside, outline_text
 from flexstage.mechanism.store.catalogue import shipped
 from flexstage.mechanism.store.decode import mechanism_from
 from flexstage.mechanism.store.encode import tree_of
@@ -20,7 +20,7 @@ from flexstage.mechanism.store.schema import schema
 from flexstage.mechanism.store.tidy import tidied
 from flexstage.mechanism.store.toml import text_of
 
-__all__ = ["dump", "dumps", "load", "loads", "patch", "schema", "shipped", "tidied", "write"]
+__all__ = ["dump", "dumps", "load", "loads", "outline_text", "patch", "schema", "shipped", "tidied", "write"]
 
 
 def load(path: str | os.PathLike[str], *, checked: bool = True) -> Mechanism:

@@ -7,6 +7,9 @@ from dataclasses import replace
 from pathlib import Path
 
 from flexstage.mechanism.mechanism import Mechanism
+from flexstage.mechanism.store.encode import tree_of
+from flexstage.mechanism.store.tidy import tidied
+from flexstage.mechanism.store.toml import text_of
 from flexstage.parts.body import Body, Imported
 
 
@@ -32,6 +35,23 @@ def beside(mechanism: Mechanism, folder: Path) -> Mechanism:
         return Path(path).relative_to(root).as_posix() if Path(path).is_relative_to(root) else path
 
     return _with_paths(mechanism, shortened)
+
+
+def outline_text(body: str, name: str, solid: Imported, folder: Path) -> str:
+    """The text that states an imported outline in a design file in a folder.
+
+    >>> from flexstage.parts.body import Inertia
+    >>> cube = Imported("steel", "/parts/cube.step", "0", (0.01, 0.01, 0.01), 1e-3, (0.0, 0.0, 0.0), Inertia(1e-6, 1e-6, 1e-6))
+    >>> print(outline_text("platform", "cube", cube, Path("/parts")))
+    [bodies.platform.solids.cube]
+    shape = "step"
+    material = "steel"
+    file = "cube.step"
+    ...
+    """
+    stage = beside(tidied(Mechanism("", bodies={body: Body(solids={name: solid})})), folder)
+    lines = text_of({"bodies": tree_of(stage)["bodies"]}, {}).splitlines()
+    return "\n".join(line for line in lines if line and not line.startswith("#"))
 
 
 def _with_paths(mechanism: Mechanism, change: Callable[[str], str]) -> Mechanism:
