@@ -12,7 +12,7 @@ from flexstage.parts.rod import Rod
 from flexstage.readings.solid.cache import key_of
 from flexstage.readings.solid.component import Component, components
 from flexstage.readings.solid.fineness import Fineness, Reduction
-from flexstage.readings.solid.worker import Job
+from flexstage.readings.solid.reducing import Reducing
 
 COARSE = Reduction(Fineness(neck=2.5, block=2.5, order=2), modes=2)
 
@@ -37,8 +37,8 @@ def rod(length: float = 6 * mm) -> Component:
     return components(propped(length))[0]
 
 
-def job(component: Component) -> Job:
-    return Job(key_of(component, COARSE), component, COARSE)
+def job(component: Component) -> Reducing:
+    return Reducing(key_of(component, COARSE), component, COARSE)
 
 
 class Bomb:
@@ -51,8 +51,8 @@ class Bomb:
         return self.function, self.arguments
 
 
-def mined(name: str, bomb: Bomb, component: Component | None = None) -> Job:
+def mined(name: str, bomb: Bomb, component: Component | None = None) -> Reducing:
     """A job that goes off where it is loaded."""
     part = replace(component or rod(), name=name)
     plain = job(part)
-    return Job(plain.key, replace(part, place=bomb), COARSE)
+    return Reducing(plain.key, replace(part, place=bomb), COARSE)

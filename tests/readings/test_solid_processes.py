@@ -21,10 +21,10 @@ from flexstage.base.scale import mm
 from flexstage.readings.solid.cad import cad
 from flexstage.readings.solid.memory import Counts, entries, freedoms, needed
 from flexstage.readings.solid.progress import Stage, Step
-from flexstage.readings.solid.remote import Limits, reduce_all
+from flexstage.readings.solid.reducing import Reducing
+from flexstage.readings.solid.remote import Limits, work_all
 from flexstage.readings.solid.store import read
 from flexstage.readings.solid.superelement import Superelement
-from flexstage.readings.solid.worker import Job
 from flexstage.spatial.frame import Frame
 from tests.readings.small_solids import COARSE, Bomb, job, mined, rod
 
@@ -61,21 +61,21 @@ def until(holds: Callable[[], object]) -> None:
 FREE = Limits()
 
 
-def told(*jobs: Job, limits: Limits = FREE) -> tuple[Finding, ...]:
+def told(*jobs: Reducing, limits: Limits = FREE) -> tuple[Finding, ...]:
     with pytest.raises(DesignError) as caught:
-        reduce_all(jobs, lambda _job, _data: None, limits)
+        work_all(jobs, lambda _job, _data: None, limits)
     return caught.value.findings
 
 
-def results(*jobs: Job, limits: Limits = FREE) -> dict[str, Superelement]:
+def results(*jobs: Reducing, limits: Limits = FREE) -> dict[str, Superelement]:
     found: dict[str, Superelement] = {}
 
-    def take(done: Job, data: bytes) -> None:
+    def take(done: Reducing, data: bytes) -> None:
         element = read(data, done.key)
         assert isinstance(element, Superelement)
         found[done.name] = element
 
-    reduce_all(jobs, take, limits)
+    work_all(jobs, take, limits)
     return found
 
 
@@ -97,7 +97,7 @@ mesh._attempted = attempted
 def test_a_crash_is_a_finding_and_the_others_are_done(folder: Path) -> None:
     done: list[str] = []
     with pytest.raises(DesignError) as caught:
-        reduce_all([mined("lever", Bomb(ctypes.string_at, 0)), job(rod())], lambda each, _data: done.append(each.name), Limits())
+        work_all([mined("lever", Bomb(ctypes.string_at, 0)), job(rod())], lambda each, _data: done.append(each.name), Limits())
     (finding,) = caught.value.findings
     assert finding.where == "lever"
     assert finding.what == "its process crashed while starting (SIGSEGV)"
@@ -146,7 +146,7 @@ def test_findings_of_the_drawing_come_back_as_they_are(folder: Path) -> None:
 
 def test_reductions_repeat_bit_by_bit(folder: Path) -> None:
     outcomes: list[bytes] = []
-    reduce_all([job(rod()), job(replace(rod(), name="again"))], lambda _job, data: outcomes.append(data), Limits())
+    work_all([job(rod()), job(replace(rod(), name="again"))], lambda _job, data: outcomes.append(data), Limits())
     assert outcomes[0] == outcomes[1]
 
 
@@ -177,7 +177,7 @@ def test_what_does_not_fit_together_is_done_one_after_the_other(folder: Path) ->
     done: list[str] = []
     jobs = [job(rod(size * mm)) for size in (6.0, 7.0)]
     jobs = [replace(each, component=replace(each.component, name=name)) for each, name in zip(jobs, ("one", "two"), strict=True)]
-    reduce_all(jobs, lambda each, _data: done.append(each.name), Limits(memory=alone, workers=2), progress)
+    work_all(jobs, lambda each, _data: done.append(each.name), Limits(memory=alone, workers=2), progress)
     assert sorted(done) == ["one", "two"]
     assert max(len(names) for names in running) == 1
 
@@ -197,7 +197,7 @@ def test_freedoms_and_entries_are_those_of_the_solver(order: int) -> None:
 
 def test_progress_rises_from_stage_to_stage_to_the_end(folder: Path) -> None:
     steps: list[Step] = []
-    reduce_all([job(rod())], lambda _job, _data: None, Limits(), steps.append)
+    work_all([job(rod())], lambda _job, _data: None, Limits(), steps.append)
     fractions = [step.fraction for step in steps]
     assert fractions == sorted(fractions)
     assert fractions[0] < 0.05
@@ -215,15 +215,16 @@ def test_an_interruption_ends_everything(folder: Path) -> None:
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        reduce_all([job(rod()), job(replace(rod(), name="other"))], lambda _job, _data: None, Limits(), interrupt)
+        work_all([job(rod()), job(replace(rod(), name="other"))], lambda _job, _data: None, Limits(), interrupt)
 
 
 SCRIPT = """
 import sys
 sys.path.insert(0, {root!r})
-from flexstage.readings.solid.remote import Limits, reduce_all
+from flexstage.readings.solid.reducing import Reducing
+from flexstage.readings.solid.remote import Limits, work_all
 from tests.readings.small_solids import Bomb, job, mined, rod
-reduce_all([{job}], lambda each, data: print(each.name, len(data) > 1000), Limits())
+work_all([{job}], lambda each, data: print(each.name, len(data) > 1000), Limits())
 """
 ROOT = str(Path(__file__).parents[2])
 

@@ -11,6 +11,7 @@ import numpy as np
 from flexstage.base.digest import digest
 from flexstage.base.finding import refuse
 from flexstage.base.labelled import Matrix, ratio_units
+from flexstage.base.number import Array
 from flexstage.mechanism.expand import PlacedLink, expand
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.parts.leaf import Leaf
@@ -49,13 +50,18 @@ class SolidHinge:
         return Matrix(self.found.compliance, COMPONENTS, FORCES, ratio_units(TWIST_UNITS, WRENCH_UNITS))
 
     @property
+    def errors(self) -> Array:
+        """Relative errors estimated of the direct compliances (6,) about the centre."""
+        return np.maximum(self.found.error, np.where(np.isfinite(self.found.changes), self.found.changes, 0.0))
+
+    @property
     def separable(self) -> tuple[bool, ...]:
         """Whether each direct compliance can be told from that of the stubs beside the hinge: they have at most 90 % of the whole.
 
         Stubs of a wide notch twist far less than Saint-Venant's beams, which are taken off.
         """
         whole, own = (np.diag(each) for each in (self.found.whole, self.found.compliance))
-        return tuple(bool(value) for value in whole - own <= _MOST_STUB * whole)
+        return tuple(bool(value) for value in own >= (1.0 - _MOST_STUB) * whole)
 
     @property
     def stiffness(self) -> Matrix:

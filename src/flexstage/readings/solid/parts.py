@@ -14,10 +14,10 @@ from flexstage.readings.solid.component import Component
 from flexstage.readings.solid.fineness import Reduction
 from flexstage.readings.solid.install import require_solver
 from flexstage.readings.solid.progress import Progress
-from flexstage.readings.solid.remote import Limits, reduce_all
+from flexstage.readings.solid.reducing import Reducing
+from flexstage.readings.solid.remote import Limits, work_all
 from flexstage.readings.solid.store import read
 from flexstage.readings.solid.superelement import Superelement
-from flexstage.readings.solid.worker import Job
 
 Parts: TypeAlias = tuple[tuple[Component, Superelement], ...]
 """Components of a stage with their superelements; equal components share one."""
@@ -53,15 +53,15 @@ def reduce_parts(
     >>> reduce_parts((), Reduction()).parts
     ()
     """
-    jobs = [Job(key_of(part, reduction, springs.get(part.name)), part, reduction, springs.get(part.name)) for part in parts]
+    jobs = [Reducing(key_of(part, reduction, springs.get(part.name)), part, reduction, springs.get(part.name)) for part in parts]
     store = _Store(ways.cache)
-    first: dict[str, Job] = {}
+    first: dict[str, Reducing] = {}
     for job in jobs:
         first.setdefault(job.key, job)
     missing = [job for job in first.values() if not store.holds(job)]
     if missing:
         require_solver()
-        reduce_all(missing, store.take, ways.limits, ways.progress)
+        work_all(missing, store.take, ways.limits, ways.progress)
     return ReducedParts(tuple((job.component, store.elements[job.key]) for job in jobs), tuple(store.notices))
 
 
@@ -73,7 +73,7 @@ class _Store:
         self.elements: dict[str, Superelement] = {}
         self.notices: list[Finding] = []
 
-    def holds(self, job: Job) -> bool:
+    def holds(self, job: Reducing) -> bool:
         """Whether a superelement is in the cache; it is at hand then."""
         if self.cache is None:
             return False
@@ -83,7 +83,7 @@ class _Store:
             self.elements[job.key] = found.element
         return found.element is not None
 
-    def take(self, job: Job, data: bytes) -> None:
+    def take(self, job: Reducing, data: bytes) -> None:
         """Take a superelement as a worker wrote it, and keep it."""
         element = read(data, job.key)
         if isinstance(element, str):

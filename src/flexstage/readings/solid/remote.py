@@ -1,7 +1,7 @@
-"""Reducing components in processes of their own: as many at once as cores and memory allow, with time limits, watched and cleaned up.
+"""Jobs of the solid reading in processes of their own: as many at once as cores and memory allow, with time limits, watched and cleaned up.
 
 One loop in the caller's thread starts, watches and ends them, so that it works from bare scripts, notebooks and tests alike, and so that
-an interruption, wherever it comes, ends every process and removes every file of a reduction that is not finished.
+an interruption, wherever it comes, ends every process and removes every file of a job that is not finished.
 """
 
 from __future__ import annotations
@@ -20,11 +20,10 @@ from collections import deque
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import IO, cast
+from typing import IO, Generic, TypeVar, cast
 
 from flexstage.base.finding import Finding, refuse, require
-from flexstage.readings.solid.fineness import ATTEMPTS
-from flexstage.readings.solid.memory import Counts, available, needed, refusal
+from flexstage.readings.solid.memory import Counts, available
 from flexstage.readings.solid.progress import Progress, Stage, Step, gathered, seconds_left
 from flexstage.readings.solid.store import versions
 from flexstage.readings.solid.worker import FINDINGS, PROGRESS, RESULT, TASK, Job, Outcome, Task, findings_in
@@ -37,9 +36,9 @@ _ONE_THREAD = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "NG
 
 @dataclass(frozen=True)
 class Limits:
-    """What reductions may take.
+    """What jobs may take.
 
-    `memory` in all [bytes] (absent: what the machine has left), `seconds` a component, `mesh_seconds` for one attempt at a mesh, and
+    `memory` in all [bytes] (absent: what the machine has left), `seconds` each, `mesh_seconds` for one attempt at a mesh, and
     `workers` at once (absent: one a core, two at most).
     """
 
@@ -49,17 +48,16 @@ class Limits:
     workers: int | None = None
 
 
-Done = Callable[[Job, bytes], None]
-"""Told of every component as it is finished, with its superelement as stored."""
+AnyJob = TypeVar("AnyJob", bound=Job)
 
 
-def reduce_all(jobs: Iterable[Job], done: Done, limits: Limits, progress: Progress | None = None) -> None:
-    """Reduce components in processes of their own.
+def work_all(jobs: Iterable[AnyJob], done: Callable[[AnyJob, bytes], None], limits: Limits, progress: Progress | None = None) -> None:
+    """Do jobs in processes of their own; `done` is told of each as it is finished, with its result.
 
     Raises `DesignError` with the findings of all that failed, after the others are done: refused by themselves, crashed, out of time,
     without room. Raising from `progress` or an interruption ends all.
 
-    >>> reduce_all([], print, Limits())
+    >>> work_all([], print, Limits())
     """
     run = _Run(deque((job, 0, time.monotonic()) for job in jobs), done, limits, progress or _nobody)
     try:
@@ -74,7 +72,7 @@ def _nobody(_step: Step) -> None:
 
 
 def workers(limits: Limits) -> int:
-    """How many components are reduced at once.
+    """How many jobs are done at once.
 
     >>> workers(Limits(workers=1))
     1
@@ -84,10 +82,10 @@ def workers(limits: Limits) -> int:
 
 
 @dataclass(eq=False)
-class _Child:
+class _Child(Generic[AnyJob]):
     """A running worker and what it said last."""
 
-    job: Job
+    job: AnyJob
     attempt: int
     begun: float
     folder: Path
@@ -116,9 +114,7 @@ class _Child:
     @property
     def wanted(self) -> float:
         """Memory it is going to need [bytes]."""
-        if self.counts is None:
-            return 0.0
-        return needed(self.counts, self.job.reduction.fineness.order, self.job.columns)
+        return 0.0 if self.counts is None else self.job.needed(self.counts)
 
     @property
     def held(self) -> float:
@@ -153,15 +149,17 @@ class _Child:
         shutil.rmtree(self.folder, ignore_errors=True)
 
 
-class _Run:
-    """The reductions of one call: those to come, those running, those done."""
+class _Run(Generic[AnyJob]):
+    """The jobs of one call: those to come, those running, those done."""
 
-    def __init__(self, waiting: deque[tuple[Job, int, float]], done: Done, limits: Limits, progress: Progress) -> None:
+    def __init__(
+        self, waiting: deque[tuple[AnyJob, int, float]], done: Callable[[AnyJob, bytes], None], limits: Limits, progress: Progress
+    ) -> None:
         self.waiting, self.done, self.limits, self.progress = waiting, done, limits, progress
-        self.children: list[_Child] = []
+        self.children: list[_Child[AnyJob]] = []
         self.findings: list[Finding] = []
-        total = sum(len(job.component.pieces) for job, _, _ in waiting)
-        self.shares = {job.name: len(job.component.pieces) / total for job, _, _ in waiting}
+        total = sum(job.weight for job, _, _ in waiting)
+        self.shares = {job.name: job.weight / total for job, _, _ in waiting}
         self.finished: list[str] = []
         self.begun, self.told, self.text, self.fraction = time.monotonic(), 0.0, "", 0.0
 
@@ -181,11 +179,11 @@ class _Run:
         for child in self.children:
             child.remove()
 
-    def _start(self, job: Job, attempt: int, begun: float) -> None:
+    def _start(self, job: AnyJob, attempt: int, begun: float) -> None:
         task = Task(job, attempt, available() if self.limits.memory is None else self.limits.memory, versions())
-        self.children.append(_started(task, begun if attempt else time.monotonic()))
+        self.children.append(_Child(job, attempt, begun if attempt else time.monotonic(), *_started(task)))
 
-    def _look(self, child: _Child) -> None:
+    def _look(self, child: _Child[AnyJob]) -> None:
         code = child.process.poll()
         child.listen()
         if code is None:
@@ -200,7 +198,7 @@ class _Run:
         elif not self._again(child):
             self._close(child, _failed(child, code))
 
-    def _check_time(self, child: _Child) -> None:
+    def _check_time(self, child: _Child[AnyJob]) -> None:
         now = time.monotonic()
         if child.stage is Stage.MESHING and child.counts is None and now - child.since > self.limits.mesh_seconds:
             if not self._again(child):
@@ -208,17 +206,17 @@ class _Run:
         elif now - child.begun > self.limits.seconds:
             self._close(child, _hung(child, self.limits.seconds))
 
-    def _again(self, child: _Child) -> bool:
+    def _again(self, child: _Child[AnyJob]) -> bool:
         """Begin with the next attempt at a mesh, where one took the process down or did not end."""
-        attempt = round(child.fraction * len(ATTEMPTS)) + 1
-        if child.stage is not Stage.MESHING or child.counts is not None or attempt >= len(ATTEMPTS) or child.process.poll() == 1:
+        attempt = round(child.fraction * child.job.attempts) + 1
+        if child.stage is not Stage.MESHING or child.counts is not None or attempt >= child.job.attempts or child.process.poll() == 1:
             return False
         self.children.remove(child)
         child.remove()
         self.waiting.appendleft((child.job, attempt, child.begun))
         return True
 
-    def _close(self, child: _Child, *findings: Finding) -> None:
+    def _close(self, child: _Child[AnyJob], *findings: Finding) -> None:
         self.findings += findings
         self.finished.append(child.job.name)
         self.children.remove(child)
@@ -230,14 +228,13 @@ class _Run:
             if child.counts is None or child.granted is not None:
                 continue
             others = [each for each in self.children if each.granted is not None]
-            room = self._room(child, others)
-            finding = refusal(child.job.name, child.counts, child.job.reduction.fineness, child.job.columns, room)
+            finding = child.job.refusal(child.counts, self._room(child, others))
             if finding is None:
                 child.permit()
             elif not others:
                 self._close(child, finding)
 
-    def _room(self, child: _Child, others: list[_Child]) -> float:
+    def _room(self, child: _Child[AnyJob], others: list[_Child[AnyJob]]) -> float:
         if self.limits.memory is not None:
             return self.limits.memory - sum(each.granted or 0.0 for each in others)
         return available() + child.held - sum(max(0.0, (each.granted or 0.0) - each.held) for each in others)
@@ -252,7 +249,7 @@ class _Run:
             self.progress(Step(text, self.fraction, seconds_left(self.fraction, now - self.begun)))
 
 
-def _started(task: Task, begun: float) -> _Child:
+def _started(task: Task) -> tuple[Path, subprocess.Popen[bytes]]:
     folder: Path | None = None
     try:
         folder = Path(tempfile.mkdtemp(prefix="flexstage-"))
@@ -274,7 +271,7 @@ def _started(task: Task, begun: float) -> _Child:
         if isinstance(error, OSError):
             raise _unstarted(task.job.name, error) from error
         raise
-    return _Child(task.job, task.attempt, begun, folder, process)
+    return folder, process
 
 
 def _environment() -> dict[str, str]:
@@ -284,7 +281,7 @@ def _environment() -> dict[str, str]:
     return {**os.environ, **dict.fromkeys(_ONE_THREAD, "1"), "PYTHONPATH": os.pathsep.join(paths)}
 
 
-def _failed(child: _Child, code: int) -> Finding:
+def _failed(child: _Child[AnyJob], code: int) -> Finding:
     doing = child.stage.value
     if code == 1:
         advice = "This is a fault of flexstage or its solver: please report it with the design; other sizes of elements may get around it"
@@ -303,7 +300,7 @@ def _reason(code: int) -> str:
     return names.get(code, f"exit code {code}")
 
 
-def _hung(child: _Child, seconds: float) -> Finding:
+def _hung(child: _Child[AnyJob], seconds: float) -> Finding:
     advice = "Ask for larger elements or a lower order, allow more time, or look for slivers, which can keep the mesher busy for ever"
     return Finding(child.job.name, f"it was still {child.stage.value} after the {seconds:.4g} s allowed", advice)
 

@@ -45,26 +45,26 @@ class Versions:
 
 
 @functools.cache
-def versions() -> Versions:
-    """The versions at work here. The code counts, so that superelements of a changed method are never taken for new ones.
+def versions(method: str = "reduce") -> Versions:
+    """The versions at work here. The code of a method counts, so that results of one that changed are never taken for new ones.
 
     >>> versions().format == FORMAT
     True
     """
     state = hashlib.sha256()
-    for path in method_files():
+    for path in method_files(method):
         state.update(path.name.encode() + path.read_bytes())
     return Versions(FORMAT, __version__, SOLVER_VERSION, state.hexdigest()[:16])
 
 
-def method_files() -> tuple[Path, ...]:
-    """The files of the solid reading that a reduction uses: what `reduce.py` imports, and what that imports.
+def method_files(method: str = "reduce") -> tuple[Path, ...]:
+    """The files of the solid reading that a method uses: its own, what that imports, and so on.
 
     >>> {"draw.py", "mesh.py", "skin.py"} <= {path.name for path in method_files()}
     True
     """
     folder = Path(__file__).parent
-    found, waiting = dict[str, Path](), ["reduce"]
+    found, waiting = dict[str, Path](), [method]
     while waiting:
         name = waiting.pop()
         if name not in found:

@@ -1,7 +1,7 @@
-"""The process that draws, meshes and reduces one component: `python -m flexstage.readings.solid.worker FOLDER`.
+"""The process that does one job of the solid reading: `python -m flexstage.readings.solid.worker FOLDER`.
 
 CAD and mesher may crash or hang; here they take nothing with them. In the folder are `task` (read), `progress` (JSON lines, appended),
-`result` or `findings` (written aside, then renamed). A byte on the standard input permits the reduction, once its memory is known; its
+`result` or `findings` (written aside, then renamed). A byte on the standard input permits the assembly, once its memory is known; its
 end says that the parent is gone.
 """
 
@@ -17,19 +17,16 @@ import pickle
 import signal
 import sys
 import threading
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from enum import IntEnum
 from pathlib import Path
 
 from flexstage.base.finding import DesignError, Finding
-from flexstage.base.number import Array
-from flexstage.parts.piezo import Piezo
-from flexstage.readings.solid.component import Component
-from flexstage.readings.solid.fineness import Reduction
 from flexstage.readings.solid.memory import Counts
 from flexstage.readings.solid.progress import Report, Stage
-from flexstage.readings.solid.store import Versions, written
+from flexstage.readings.solid.store import Versions
 
 TASK, PROGRESS, RESULT, FINDINGS = "task", "progress", "result", "findings"
 _PR_SET_PDEATHSIG = 1
@@ -46,25 +43,42 @@ class Outcome(IntEnum):
 
 
 @dataclass(frozen=True, eq=False)
-class Job:
-    """A component to reduce, stored for `key`; `springs` (6 m, 6 m) between its interfaces, for modes of a whole stage in one piece."""
+class Call:
+    """What a job is given where it works: whom to tell, whom to ask once its mesh is known, which attempt at a mesh to begin with."""
 
-    key: str
-    component: Component
-    reduction: Reduction
-    springs: Array | None = None
+    report: Report
+    ask: Callable[[Counts], None]
+    attempt: int
+    made: Versions
+
+
+class Job(ABC):
+    """Work for a process of its own: a value that can be pickled, with a result in bytes."""
+
+    attempts: int = 1
+    """How many attempts at a mesh can be told apart by their number, so that one that takes the process down is followed by the next."""
 
     @property
+    @abstractmethod
     def name(self) -> str:
-        """The component's name."""
-        return self.component.name
+        """What it works on, as the user knows it."""
 
     @property
-    def columns(self) -> int:
-        """Coordinates its superelement will have at most."""
-        part = self.component
-        stacks = sum(isinstance(piece.form, Piezo) for piece in part.pieces)
-        return 6 * (len(part.interfaces) + len(part.bodies)) + stacks + self.reduction.modes
+    def weight(self) -> int:
+        """How much work it is, against the others."""
+        return 1
+
+    @abstractmethod
+    def work(self, call: Call) -> bytes:
+        """Do it."""
+
+    def needed(self, _counts: Counts) -> float:
+        """Memory it is going to need for a mesh [bytes]."""
+        return 0.0
+
+    def refusal(self, _counts: Counts, _limit: float) -> Finding | None:
+        """Why it does not fit into memory, with a smaller suggestion."""
+        return None
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,18 +120,7 @@ def _work(folder: Path) -> bytes:
     report(Stage.STARTING, 0.0)
     task: Task = pickle.loads((folder / TASK).read_bytes())  # noqa: S301 (written by the parent process, into a folder only it can write to)
     _limit_memory(task.memory)
-    return _reduced(task, report, lambda counts: _ask(folder / PROGRESS, counts, permitted))
-
-
-def _reduced(task: Task, report: Report, ask: Callable[[Counts], None]) -> bytes:
-    from flexstage.readings.solid.mesh import meshed
-    from flexstage.readings.solid.reduce import reduced_mesh
-
-    job = task.job
-    mesh = meshed(job.component, job.reduction.fineness, report, task.attempt)
-    size = mesh.mesh
-    ask(Counts(size.nv, size.nedge, size.nface, size.ne))
-    return written(reduced_mesh(job.component, mesh, job.reduction, job.springs, report), job.key, task.made)
+    return task.job.work(Call(report, lambda counts: _ask(folder / PROGRESS, counts, permitted), task.attempt, task.made))
 
 
 def _ask(path: Path, counts: Counts, permitted: threading.Event) -> None:

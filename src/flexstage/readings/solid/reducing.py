@@ -1,0 +1,62 @@
+"""The job of reducing one component."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from flexstage.base.finding import Finding
+from flexstage.base.number import Array
+from flexstage.parts.piezo import Piezo
+from flexstage.readings.solid.component import Component
+from flexstage.readings.solid.fineness import ATTEMPTS, Reduction
+from flexstage.readings.solid.memory import Counts, needed, refusal
+from flexstage.readings.solid.store import written
+from flexstage.readings.solid.worker import Call, Job
+
+
+@dataclass(frozen=True, eq=False)
+class Reducing(Job):
+    """A component to reduce, stored for `key`; `springs` (6 m, 6 m) between its interfaces, for modes of a whole stage in one piece."""
+
+    key: str
+    component: Component
+    reduction: Reduction
+    springs: Array | None = None
+
+    attempts = len(ATTEMPTS)
+
+    @property
+    def name(self) -> str:
+        """The component's name."""
+        return self.component.name
+
+    @property
+    def weight(self) -> int:
+        """Number of pieces."""
+        return len(self.component.pieces)
+
+    @property
+    def columns(self) -> int:
+        """Coordinates its superelement will have at most."""
+        part = self.component
+        stacks = sum(isinstance(piece.form, Piezo) for piece in part.pieces)
+        return 6 * (len(part.interfaces) + len(part.bodies)) + stacks + self.reduction.modes
+
+    def needed(self, counts: Counts) -> float:
+        """Memory of the reduction [bytes]."""
+        return needed(counts, self.reduction.fineness.order, self.columns)
+
+    def refusal(self, counts: Counts, limit: float) -> Finding | None:
+        """Why it does not fit, with an order or a fineness that does."""
+        return refusal(self.name, counts, self.reduction.fineness, self.columns, limit)
+
+    def work(self, call: Call) -> bytes:
+        """Draw, mesh, ask, reduce; the superelement as stored."""
+        from flexstage.readings.solid.mesh import meshed
+        from flexstage.readings.solid.reduce import reduced_mesh
+
+        mesh = meshed(self.component, self.reduction.fineness, call.report, call.attempt)
+        size = mesh.mesh
+        call.ask(Counts(size.nv, size.nedge, size.nface, size.ne))
+        element = reduced_mesh(self.component, mesh, self.reduction, self.springs, call.report)
+        return written(element, self.key, call.made)
