@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from itertools import combinations
 
 from netgen import occ
 
@@ -172,21 +171,23 @@ def _body_questions(stage: Stage) -> Iterator[Question]:
             base = pieces[0].frame
             seen = [Piece(piece.name, piece.form, piece.medium, seen_from(piece.frame, base), body) for piece in pieces]
             key = " ".join(f"{digest(piece.form, physics=True)} {frame_key(piece.frame)}" for piece in seen)
-            yield Question(f"body {key}", body, lambda seen=seen: _body_answers(seen))
+            slot = SLIVER * max(thinnest(piece.form) for piece in pieces)
+            near = near_pairs([stage.boxes[piece.name] for piece in pieces], slot)
+            yield Question(f"body {key}", body, lambda seen=seen, near=near: _body_answers(seen, near))
 
 
-def _body_answers(pieces: Sequence[Piece]) -> Iterator[Answer]:
+def _body_answers(pieces: Sequence[Piece], near: Sequence[tuple[int, int]]) -> Iterator[Answer]:
     shapes = [moved(drawn(piece.form), piece.frame) for piece in pieces]
     if len(occ.Fuse(shapes).solids) == 1:
-        yield from _slot_answers(pieces, shapes)
+        yield from _slot_answers(pieces, shapes, near)
     else:
         yield from _apart_answers(pieces, shapes)
 
 
-def _slot_answers(pieces: Sequence[Piece], shapes: Sequence[occ.TopoDS_Shape]) -> Iterator[Answer]:
+def _slot_answers(pieces: Sequence[Piece], shapes: Sequence[occ.TopoDS_Shape], near: Sequence[tuple[int, int]]) -> Iterator[Answer]:
     """Slots between outlines that are joined elsewhere."""
     thin = [thinnest(piece.form) for piece in pieces]
-    for one, other in combinations(range(len(pieces)), 2):
+    for one, other in near:
         away = float(shapes[one].Distance(shapes[other]))
         if _GAP < away < SLIVER * min(thin[one], thin[other]) * MILLIMETRES:
             what = f"a slot of {distance_text(away)} is left between {pieces[one].name} and {pieces[other].name}"

@@ -13,7 +13,7 @@ from netgen import occ
 
 from flexstage.base.finding import DesignError, Finding
 from flexstage.base.number import Array
-from flexstage.readings.solid.cad import cad, region
+from flexstage.readings.solid.cad import cad, half_extents
 from flexstage.readings.solid.component import Component
 from flexstage.readings.solid.content import content
 from flexstage.readings.solid.draw import MILLIMETRES, drawn
@@ -87,20 +87,24 @@ def _with_footprints(component: Component) -> tuple[Piece, ...]:
 
 def _slivers(shape: occ.TopoDS_Shape, pieces: Sequence[Piece]) -> Iterator[_Sliver]:
     thin = [thinnest(piece.form) * MILLIMETRES for piece in pieces]
-    measured = [("an edge {} long", edge.mass, _middle(edge)) for edge in shape.edges] + [
-        ("a face {} wide", _width(face), _middle(face)) for face in shape.faces
-    ]
     limit = SLIVER * max(thin)
-    for kind, size, middle in measured:
-        if not _NOTHING < size < limit:
-            continue
-        there = _near(pieces, middle, max(_TOUCHING, size / MILLIMETRES))
+    measured = [
+        *(("an edge {} long", edge.mass, edge) for edge in shape.edges),
+        *(("a face {} wide", _width(face), face) for face in shape.faces),
+    ]
+    small = [(kind, size, _middle(place)) for kind, size, place in measured if _NOTHING < size < limit]
+    halves = [half_extents(piece) for piece in pieces] if small else []
+    for kind, size, middle in small:
+        within = max(_TOUCHING, size / MILLIMETRES)
+        there = tuple(number for number, piece in enumerate(pieces) if _away(piece, halves[number], middle) <= within)
         if there and all(size < SLIVER * thin[number] and size < _OWN * _own(pieces[number].form) for number in there):
             yield _Sliver(kind, size, there)
 
 
-def _near(pieces: Sequence[Piece], middle: Array, within: float) -> tuple[int, ...]:
-    return tuple(number for number, piece in enumerate(pieces) if region(piece, middle[None])[0] <= within)
+def _away(piece: Piece, half: Array, point: Array) -> float:
+    """How far a point is outside a piece's box, by the largest component [m]."""
+    local = np.real(piece.frame.rotation).T @ (point - np.real(piece.frame.position))
+    return float(np.max(np.abs(local) - half))
 
 
 def _own(form: Form) -> float:
