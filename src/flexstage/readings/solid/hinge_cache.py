@@ -101,8 +101,8 @@ def _read(path: Path, tell: Callable[[Finding], None]) -> HingeSolid | None:
 def _encoded(found: HingeSolid) -> bytes:
     values = {field.name: getattr(found, field.name) for field in fields(found)}
     arrays = {name: value.tolist() for name, value in values.items() if isinstance(value, np.ndarray)}
-    finding = None if found.finding is None else asdict(found.finding)
-    body = {"arrays": arrays, "finding": finding, "numbers": {name: values[name] for name in values.keys() - arrays.keys() - {"finding"}}}
+    numbers = {name: value for name, value in values.items() if isinstance(value, (int, float))}
+    body = {"arrays": arrays, "numbers": numbers, "finding": None if found.finding is None else asdict(found.finding)}
     return json.dumps(body | {"checksum": _checksum(body)}).encode()
 
 
