@@ -32,8 +32,9 @@ def monolithic(
 ) -> LinearModel:
     """Read a stage as one elastic solid: no interface is held rigid but the end caps of stacks.
 
-    The model is exact in statics and for its lowest `reduction.modes` modes where all bodies are elastic and no payload is carried;
-    it costs the time and memory of the whole mesh. Same names of inputs and outputs, same options and errors as `solid`.
+    The model is exact in statics under strokes and wrenches on the platform, and for its lowest `reduction.modes` modes, where all bodies
+    are elastic and no payload is carried; it costs the time and memory of the whole mesh. Same names of inputs and outputs, same options
+    and errors as `solid`.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> monolithic(parallelogram(), memory=1e6, cache=None)

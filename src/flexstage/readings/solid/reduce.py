@@ -14,6 +14,7 @@ import numpy as np
 from scipy.sparse.linalg import LinearOperator, eigsh
 
 from flexstage.base.number import Array
+from flexstage.mechanism.mechanism import PLATFORM
 from flexstage.parts.piezo import Piezo
 from flexstage.readings.solid.component import Component
 from flexstage.readings.solid.field import Field, Solver, applied, degrees_of, field, inertia, rigid, stiffness, stroke_force, times
@@ -44,7 +45,8 @@ def reduced(component: Component, reduction: Reduction, springs: Array | None = 
     """Mesh, assemble and reduce a component.
 
     With `springs` (6 m, 6 m) between its interfaces the modes kept are those of the component free at its interfaces and joined by the
-    springs, in place of the fixed-interface modes: so a whole stage in one piece has its own modes, exactly.
+    springs, in place of the fixed-interface modes: so a whole stage in one piece has its own modes, exactly. Its statics is then exact
+    for strokes and wrenches on the platform only, which spares most of the motions of so large a mesh.
     """
     return reduced_mesh(component, meshed(component, reduction.fineness), reduction, springs)
 
@@ -56,7 +58,8 @@ def reduced_mesh(
     problem = _problem(component, mesh, reduction, report)
     report(Stage.REDUCING, 0.0)
     strokes = {str(number): force for number, force in _strokes(problem).items()}
-    loads = [_wrenches(problem, body) for body in component.bodies] + [force[:, None] for force in strokes.values()]
+    loaded = [PLATFORM] if springs is not None and PLATFORM in component.bodies else list(component.bodies)
+    loads = [_wrenches(problem, body) for body in loaded] + [force[:, None] for force in strokes.values()]
     inner = _independent(problem, [_modes(problem, reduction.modes, springs), *(problem.solve(load) for load in loads)])
     basis = np.hstack([problem.faces, inner])
     return _projected(problem, basis, strokes, report)
