@@ -17,7 +17,7 @@ from flexstage.parts.body import Body
 from flexstage.parts.freedom import Freedom
 from flexstage.parts.given import Joint
 from flexstage.parts.mass import mass_properties
-from flexstage.readings.solid import contact
+from flexstage.readings.solid import apart
 from flexstage.readings.solid.imported import import_findings
 from tests.apps.command import Command
 from tests.roundtrip.test_gltf import leaf_stage
@@ -28,7 +28,7 @@ def _own_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("FLEXSTAGE_CACHE", str(tmp_path / "cache"))
 
 
-def apart() -> Mechanism:
+def apart_stage() -> Mechanism:
     """The stage of two leaves, its block 5 um away from them."""
     stage = leaf_stage()
     block = stage.bodies["platform"].solids["block"]
@@ -53,7 +53,7 @@ def test_all_three_files(flexstage: Command, tmp_path: Path) -> None:
 
 
 def test_what_does_not_meet_is_warned_of_in_step_and_refused_in_a_mesh(flexstage: Command, tmp_path: Path) -> None:
-    dump(apart(), tmp_path / "apart.toml")
+    dump(apart_stage(), tmp_path / "apart.toml")
     drawn = flexstage("cad", "apart.toml", "-o", "a.step")
     assert drawn.code == 0
     assert "warning: one: its end face is 5 um away from platform" in drawn.err
@@ -79,7 +79,7 @@ def test_what_does_not_meet_is_warned_of_in_step_and_refused_in_a_mesh(flexstage
 def test_bad_outputs_are_found_before_anything_is_drawn(
     flexstage: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, arguments: tuple[str, ...], said: str
 ) -> None:
-    monkeypatch.setattr(contact, "contact_findings", lambda *_: pytest.fail("drawn all the same"))
+    monkeypatch.setattr(apart, "contact_apart", lambda *_: pytest.fail("drawn all the same"))
     before = (tmp_path / "stage.toml").read_bytes()
     ended = flexstage("cad", "stage.toml", *arguments)
     assert ended.code == 2

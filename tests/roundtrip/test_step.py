@@ -17,6 +17,7 @@ from flexstage.mechanism.mechanism import Mechanism
 from flexstage.parts.body import Block, Body
 from flexstage.parts.mass import mass_properties
 from flexstage.parts.material import Material
+from flexstage.readings.solid.apart import step_apart
 from flexstage.readings.solid.stage_pieces import stage_pieces
 from flexstage.readings.solid.step import stage_parts, step
 
@@ -113,3 +114,8 @@ def test_the_fused_volume_is_that_of_the_mass(tmp_path: Path) -> None:
 def test_a_stage_without_any_shape_is_refused() -> None:
     with pytest.raises(DesignError, match="no body has outlines"):
         step(replace(bricks(), bodies={"platform": Body(mass=1.0)}))
+
+
+def test_a_process_of_its_own_draws_the_same() -> None:
+    mechanism = bricks(low=Block("steel", (0.03, 0.02, 0.01)))
+    assert step_apart(mechanism) == step(mechanism)

@@ -108,13 +108,15 @@ def _contents(mechanism: Mechanism, wanted: dict[str, Path | None], order: int, 
     stage, fineness = drawn(mechanism), Fineness(order=order)
     _check_contact(stage, meshed=wanted["--mesh"] is not None or wanted["--gltf"] is not None)
     if (path := wanted["--output"]) is not None:
-        from flexstage.readings.solid.step import step
+        from flexstage.readings.solid.apart import step_apart
 
-        yield path, "--output", step(stage)
+        yield path, "--output", step_apart(stage)
     if (path := wanted["--mesh"]) is not None:
         from flexstage.readings.solid.vtu import stage_mesh, vtu
 
-        yield path, "--mesh", vtu(stage_mesh(stage, fineness))
+        with bar() as shown:
+            mesh = stage_mesh(stage, fineness, progress=shown.step)
+        yield path, "--mesh", vtu(mesh)
     if (path := wanted["--gltf"]) is not None:
         yield path, "--gltf", _moving(stage, fineness, modes)
 
@@ -122,9 +124,9 @@ def _contents(mechanism: Mechanism, wanted: dict[str, Path | None], order: int, 
 def _check_contact(stage: Mechanism, *, meshed: bool) -> None:
     """Findings keep a stage from being meshed; drawn it may be all the same, to be mended in CAD."""
     from flexstage.base.finding import require
-    from flexstage.readings.solid.contact import contact_findings
+    from flexstage.readings.solid.apart import contact_apart
 
-    findings = contact_findings(stage)
+    findings = contact_apart(stage)
     if meshed:
         require(findings)
     for finding in findings:

@@ -14,32 +14,20 @@ from pathlib import Path
 from xml.sax.saxutils import escape
 
 import meshio
-import ngsolve
 import numpy as np
 
 from flexstage.base.number import Array
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.readings.solid.component import Component, components
 from flexstage.readings.solid.content import content
-from flexstage.readings.solid.draw import MILLIMETRES
 from flexstage.readings.solid.fineness import Fineness
-from flexstage.readings.solid.mesh import Meshed, meshed
+from flexstage.readings.solid.grid import Grid, Gridding, stored_grid
+from flexstage.readings.solid.install import require_solver
+from flexstage.readings.solid.progress import Progress
+from flexstage.readings.solid.remote import Limits, work_all
 from flexstage.readings.solid.stage_pieces import Stage, require_shapes, stage_pieces
 
-_CORNERS = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0), (0.0, 0.0, 0.0))
-_ORDER = (1, 0, 2, 3)
-"""Corners in the order of VTK, whose tetrahedra turn the other way."""
-_EDGES = ((0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3))
-"""Edges in the order of VTK."""
-
-
-@dataclass(frozen=True, eq=False)
-class Grid:
-    """Quadratic tetrahedra: `points` (p, 3) [m], `cells` (c, 10), and the number of the piece (c,) they belong to."""
-
-    points: Array
-    cells: Array
-    owner: Array
+_LIMITS = Limits()
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,8 +40,8 @@ class StageMesh:
     pieces: tuple[str, ...]
 
 
-def stage_mesh(mechanism: Mechanism, fineness: Fineness) -> StageMesh:
-    """Mesh every distinct component once, and place it with every copy.
+def stage_mesh(mechanism: Mechanism, fineness: Fineness, limits: Limits = _LIMITS, progress: Progress | None = None) -> StageMesh:
+    """Mesh every distinct component once, in a process of its own, and place it with every copy.
 
     Raises `DesignError` where the outlines do not form solids or cannot be meshed, and where nothing has a shape.
 
@@ -63,38 +51,19 @@ def stage_mesh(mechanism: Mechanism, fineness: Fineness) -> StageMesh:
     """
     stage, parts = stage_pieces(mechanism), components(mechanism)
     require_shapes(mechanism, stage)
-    numbers = {name: number for number, name in enumerate(stage.pieces)}
+    require_solver()
+    jobs = [Gridding(content(part), part, fineness) for part in parts]
     own: dict[str, Grid] = {}
-    grids: list[Grid] = []
-    for part in parts:
-        key = content(part)
-        if key not in own:
-            own[key] = grid(meshed(part, fineness))
-        names = np.array([numbers[piece.name] for piece in part.pieces])
-        grids.append(Grid(part.place.point(own[key].points), own[key].cells, names[own[key].owner]))
-    return StageMesh(stage, parts, tuple(grids), tuple(stage.pieces))
+    work_all(
+        {job.key: job for job in reversed(jobs)}.values(), lambda job, data: own.update({job.key: stored_grid(data)}), limits, progress
+    )
+    numbers = {name: number for number, name in enumerate(stage.pieces)}
+    return StageMesh(stage, parts, tuple(_placed(job.component, own[job.key], numbers) for job in jobs), tuple(stage.pieces))
 
 
-def grid(mesh: Meshed) -> Grid:
-    """A mesh's tetrahedra with the middles of their edges, which lie on the curved geometry.
-
-    >>> from netgen import occ
-    >>> cube = ngsolve.Mesh(occ.OCCGeometry(occ.Box((0, 0, 0), (1, 1, 1))).GenerateMesh(maxh=2.0))
-    >>> drawn = grid(Meshed(cube, (), (), np.zeros(cube.ne, dtype=int)))
-    >>> drawn.cells.shape == (cube.ne, 10), float(drawn.points.max())
-    (True, 0.001)
-    """
-    elements = np.array([[vertex.nr for vertex in element.vertices] for element in mesh.mesh.Elements(ngsolve.VOL)])[:, _ORDER]
-    corners = np.array(_CORNERS)[list(_ORDER)]
-    middles = np.array([0.5 * (corners[one] + corners[other]) for one, other in _EDGES])
-    ends = np.sort(np.stack([elements[:, edge] for edge in _EDGES], axis=1), axis=2)
-    _, first, number = np.unique(ends.reshape(-1, 2), axis=0, return_index=True, return_inverse=True)
-    rule = ngsolve.IntegrationRule([tuple(point) for point in middles.tolist()], [0.0] * len(middles))
-    place = ngsolve.CoefficientFunction((ngsolve.x, ngsolve.y, ngsolve.z))
-    mapped = np.asarray(place(mesh.mesh.MapToAllElements(rule, ngsolve.VOL)))
-    points = np.array([vertex.point for vertex in mesh.mesh.vertices])
-    cells = np.hstack([elements, len(points) + number.reshape(-1, len(_EDGES))])
-    return Grid(np.vstack([points, mapped[first]]) / MILLIMETRES, cells, np.asarray(mesh.owner))
+def _placed(part: Component, own: Grid, numbers: Mapping[str, int]) -> Grid:
+    names = np.array([numbers[piece.name] for piece in part.pieces])
+    return Grid(part.place.point(own.points), own.cells, names[own.owner])
 
 
 def vtu(mesh: StageMesh) -> bytes:
