@@ -53,11 +53,11 @@ def resolved(
     (3, 0.009)
     """
     orders = range(3, HIGHEST + 1) if asked.order is None else (asked.order,)
-    before = figures(work(coarser(Reduction(Fineness(order=orders[0])))))
+    before = figures(work(coarser(at_order(orders[0]))))
     found: Resolved[_Result] | None = None
     for order in orders:
         try:
-            result = work(Reduction(Fineness(order=order)))
+            result = work(at_order(order))
         except DesignError as error:  # of a higher order than one that went: what it needs is not there
             if found is None:
                 raise
@@ -69,6 +69,15 @@ def resolved(
         before = now
     assert found is not None  # noqa: S101  there is at least one order
     return found
+
+
+def at_order(order: int) -> Reduction:
+    """The standard reduction with elements of an order.
+
+    >>> at_order(2).fineness.order
+    2
+    """
+    return Reduction(Fineness(order=order))
 
 
 def changes(before: Mapping[str, float], after: Mapping[str, float]) -> dict[str, float]:

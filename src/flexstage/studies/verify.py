@@ -173,7 +173,7 @@ def hinge_rows(mechanism: Mechanism, found: Mapping[str, SolidHinge]) -> Iterato
             unit = "m/N" if index < 3 else "rad/(N m)"
             value = float(np.real(theory[index]))
             fea = float(hinge.found.compliance[index, index])
-            yield Row(f"hinge {name}", f"compliance {axis}", unit, value, fea, hinge.found.error, calibration=touched)
+            yield Row(f"hinge {name}", f"compliance {axis}", unit, value, fea, float(hinge.errors[index]), calibration=touched)
 
 
 def unit_rows(mechanism: Mechanism, matched: Mechanism, found: Resolved[dict[str, SolidUnit]]) -> Iterator[Row]:

@@ -33,6 +33,7 @@ def hinges_body(found: Mapping[str, SolidHinge]) -> Document:
             "stiffness": hinge.stiffness.to_json(),
             "separable": list(hinge.separable),
             "error": hinge.found.error,
+            "errors": hinge.errors,
             "order": hinge.found.order,
             "elements": hinge.found.elements,
             "freedoms": hinge.found.freedoms,

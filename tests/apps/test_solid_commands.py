@@ -1,0 +1,143 @@
+"""The commands `solid`, `verify` and `calibrate`: documents, tables, reports, and how they end on bad input."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import flexstage as fs
+from flexstage.cases.bridge import bridge
+from flexstage.parts.freedom import Freedom
+from flexstage.readings.solid import install
+from flexstage.readings.solid.progress import Step
+from flexstage.studies import resolution
+from tests.apps.command import Command, command_in
+from tests.readings.solid_studies import COARSE, small, small_unit
+
+
+@pytest.fixture
+def command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfdbinary: Any) -> Command:
+    """Runs commands in a folder with a stage of few elements, read at one resolution, so that every component is reduced once."""
+    monkeypatch.setattr(resolution, "at_order", lambda _: COARSE)
+    monkeypatch.setattr(resolution, "coarser", lambda _: COARSE)
+    fs.dump(small(), tmp_path / "stage.toml", {"parts.neck": "As drawn."})
+    return command_in(tmp_path, monkeypatch, capfdbinary)
+
+
+def test_hinges(command: Command) -> None:
+    found = command("solid", "stage.toml", "--what", "hinge", "--accuracy", "5 %", "--json", "-").document
+    assert found["kind"] == "solid"
+    assert set(found["hinges"]) == {"leaf", "neck"}
+    neck = found["hinges"]["neck"]
+    assert neck["links"] == ["drive/back", "drive/front"]
+    assert neck["compliance"]["values"][0][0] == pytest.approx(7.44e-9, rel=0.03)
+    assert neck["error"] < 0.05
+
+
+def test_units(command: Command, tmp_path: Path) -> None:
+    ended = command("solid", "stage.toml", "--what", "unit", "--json", "-", "--report", "units.html")
+    assert ended.code == 0, ended.err
+    unit = ended.document["units"]["drive"]
+    assert unit["axial_stiffness_n_per_m"] == pytest.approx(small_unit().axial)
+    assert unit["command_m"][-1] == pytest.approx(38e-6)
+    page = (tmp_path / "units.html").read_text(encoding="utf-8")
+    assert "Units alone as solids" in page
+    assert "Output of the drive unit by command" in page
+
+
+def test_the_stage(command: Command, tmp_path: Path) -> None:
+    ended = command("solid", "stage.toml", "--report", "stage.html", "--json", "stage.json")
+    assert ended.code == 0, ended.err
+    for title in ("Stiffness at platform", "Modes", "Elasticity of the bodies", "Highest stress over the strokes"):
+        assert title in ended.out
+    page = (tmp_path / "stage.html").read_text(encoding="utf-8")
+    assert page.count("data:image/png;base64,") == 7  # six platform modes and the stress
+    assert "http" not in page.replace("http://www.w3.org/", "")
+
+
+def test_verification(command: Command, tmp_path: Path) -> None:
+    ended = command("verify", "stage.toml", "--accuracy", "5 %", "--json", "v.json", "--report", "v.html")
+    assert ended.code == 0, ended.err
+    assert "Which to trust" in ended.out
+    assert "Stage: theory and finite elements" in ended.out
+    assert "Theory and finite elements" in (tmp_path / "v.html").read_text(encoding="utf-8")
+
+
+def test_calibration_is_told_from_theory(command: Command, tmp_path: Path) -> None:
+    ended = command("calibrate", "stage.toml", "-o", "calibrated.toml", "--accuracy", "5 %")
+    assert ended.code == 0, ended.err
+    assert "Compliance by FEA over beam theory" in ended.out
+    assert "# As drawn." in (tmp_path / "calibrated.toml").read_text(encoding="utf-8")
+    assert command("modes", "calibrated.toml").code == 0
+    rows = command("verify", "calibrated.toml", "--accuracy", "5 %", "--json", "-").document["rows"]
+    assert {row["trust"] for row in rows} == {"not independent"}
+    axial = next(row for row in rows if row["figure"] == "axial stiffness")
+    assert axial["calibration"] == ["neck"]
+    assert abs(axial["difference"]) < 0.01
+
+
+def test_what_has_no_shape_is_named(command: Command, tmp_path: Path) -> None:
+    stage = fs.restrict(small(), {"leaf": ((Freedom.X,), ())})
+    fs.dump(stage, tmp_path / "restricted.toml")
+    for words in (("solid", "restricted.toml"), ("verify", "restricted.toml")):
+        ended = command(*words)
+        assert ended.code == 2
+        assert "left: some of its freedoms are locked or freed" in ended.err
+        assert "Traceback" not in ended.err
+
+
+def test_a_stage_without_units_of_its_own(command: Command, tmp_path: Path) -> None:
+    fs.dump(bridge(), tmp_path / "bridge.toml")
+    ended = command("solid", "bridge.toml", "--what", "unit", "--json", "out.json")
+    assert ended.code == 2
+    assert "none of the stage's units drives an output" in ended.err
+    assert not (tmp_path / "out.json").exists()
+
+
+def test_a_stand_in_for_a_part_that_is_gone(command: Command, tmp_path: Path) -> None:
+    stage = small()
+    unit = tuple(tuple(1e-7 * (row == column) for column in range(6)) for row in range(6))
+    leaf = fs.Given(unit, free=stage.parts["leaf"].intended, stands_for="gone")
+    fs.dump(replace(stage, parts={**stage.parts, "leaf": leaf}), tmp_path / "lost.toml")
+    ended = command("solid", "lost.toml")
+    assert ended.code == 2
+    assert 'parts.leaf.stands_for: there is no part "gone"' in ended.err
+
+
+@pytest.mark.parametrize("words", [("solid", "stage.toml"), ("verify", "stage.toml")])
+def test_a_missing_solver(command: Command, monkeypatch: pytest.MonkeyPatch, words: tuple[str, ...]) -> None:
+    monkeypatch.setattr(install, "SOLVER_VERSION", "0.0")
+    ended = command(*words)
+    assert ended.code == 2
+    assert "ngsolve" in ended.err
+    assert "pip install" in ended.err
+
+
+def test_bad_wishes(command: Command) -> None:
+    assert "no relative error" in command("solid", "stage.toml", "--accuracy", "500 %").err
+    assert command("solid", "stage.toml", "--accuracy", "1 mm").code == 2
+    assert command("solid", "stage.toml", "--order", "1").code == 2
+    assert command("calibrate", "stage.toml", "-o", "stage.toml").code == 2
+    assert command("solid", "stage.toml", "--json", "nowhere/out.json").code == 2
+
+
+def test_interruption_writes_nothing(command: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def interrupted(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("flexstage.studies.verify.solid_stage", interrupted)
+    ended = command("solid", "stage.toml", "--json", "out.json", "--report", "out.html")
+    assert ended.code == 130
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["stage.toml"]
+
+
+def test_the_bar_is_silent_without_a_terminal(capfd: Any) -> None:
+    from flexstage.apps.cli.bar import bar
+
+    with bar() as shown:
+        shown.step(Step("lever: meshing", 0.5, 70.0))
+        shown.begin("hinge 1 of 2", 0.0)
+    assert capfd.readouterr() == ("", "")

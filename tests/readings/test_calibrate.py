@@ -1,0 +1,127 @@
+"""Calibration: hinges' 6x6 in a design file's text. What is put in is known here, so that nothing needs finite elements."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import flexstage as fs
+from flexstage.base.finding import DesignError
+from flexstage.cases.double_triangle import double_triangle
+from flexstage.cases.parallelogram import parallelogram
+from flexstage.studies.calibrate import with_matrices
+from flexstage.studies.solid_hinge import distinct_hinges, solid_hinges
+from flexstage.studies.solid_read import calibrated, drawn
+from flexstage.studies.trust import Trust
+from flexstage.studies.verify import Row, hinge_rows, verdict
+from tests.readings.solid_studies import softened
+
+
+def test_every_hinge_is_found_once() -> None:
+    found = distinct_hinges(double_triangle())
+    assert list(found) == ["neck", "foot_notch", "lever_notch", "pole_neck"]
+    assert found["neck"][2] == ("horizontal/back", "horizontal/front")
+
+
+def test_a_copy_that_departs_is_a_hinge_of_its_own() -> None:
+    stage = replace(double_triangle(), changes={"B2/front.thickness": 1.55e-3})
+    assert "B2/front" in distinct_hinges(stage)
+
+
+@pytest.mark.parametrize("stage", [parallelogram(), double_triangle()])
+def test_a_file_calibrated_with_its_own_theory_is_read_alike(stage: fs.Mechanism) -> None:
+    after = fs.loads(fs.calibrate(fs.dumps(stage), softened(1.0)).text)
+    first, second = (fs.statics(fs.lumped(each)).stiffness.values for each in (stage, after))
+    scale = np.sqrt(np.diag(first))
+    np.testing.assert_allclose(second / np.outer(scale, scale), first / np.outer(scale, scale), atol=1e-5)
+
+
+@pytest.mark.parametrize("stage", [parallelogram(), double_triangle()])
+def test_mass_stays(stage: fs.Mechanism) -> None:
+    after = fs.loads(fs.calibrate(fs.dumps(stage), softened(1.0)).text)
+    masses = [np.abs(fs.lumped(each).base_inertia[:, :3].sum()) for each in (stage, after)]
+    assert masses[1] == pytest.approx(masses[0], rel=1e-6)
+    frequencies = [fs.modes(fs.lumped(each)).frequencies[:2] for each in (stage, after)]
+    np.testing.assert_allclose(frequencies[1], frequencies[0], rtol=2e-3)  # a given part has its mass at its centre
+
+
+def test_softer_hinges_are_read_softer() -> None:
+    stage = parallelogram()
+    after = fs.loads(fs.calibrate(fs.dumps(stage), softened(1.2)).text)
+    neck = fs.compliance(after.parts["neck"], None)
+    np.testing.assert_allclose(np.diag(neck) / np.diag(fs.compliance(stage.parts["neck"], stage.materials["steel"])), 1.2, rtol=1e-5)
+    assert fs.statics(fs.lumped(after)).held.principal[1] < fs.statics(fs.lumped(stage)).held.principal[1]
+
+
+def test_comments_stay_and_the_drawn_hinges_are_kept() -> None:
+    text = fs.dumps(parallelogram(), {"parts.neck": "The neck of the prototype.", "units.drive": "The drive."})
+    after = fs.calibrate(text, softened(1.1)).text
+    assert "# The neck of the prototype." in after
+    assert "# The drive." in after
+    stage = fs.loads(after)
+    assert drawn(stage).parts["neck"] == parallelogram().parts["neck"]
+    assert calibrated(stage) == ("leaf", "neck")
+    assert stage.tags["parts.neck.compliance"].startswith("derived FEA")
+
+
+def test_tags_of_the_drawn_hinge_follow_it() -> None:
+    stage = double_triangle()
+    after = fs.loads(fs.calibrate(fs.dumps(stage), softened(1.0)).text)
+    own = {key: tag for key, tag in stage.tags.items() if key.startswith("parts.neck.")}
+    assert own
+    assert {key.replace("parts.neck.", "parts.neck-drawn."): tag for key, tag in own.items()}.items() <= after.tags.items()
+
+
+def test_what_cannot_be_told_from_the_blocks_keeps_beam_theory() -> None:
+    found = fs.calibrate(fs.dumps(parallelogram()), softened(1.1, stubs=0.95))
+    np.testing.assert_allclose(found.softer["leaf"], [0.1, 0.1, 0.1, 0.0, 0.1, 0.1], atol=1e-6)
+    assert "rx by beam theory" in found.parts["leaf"].source
+    rows = list(hinge_rows(parallelogram(), found.hinges))
+    assert not any(row.figure == "compliance rx" for row in rows)
+
+
+def test_refusals() -> None:
+    text = fs.dumps(parallelogram())
+    once = fs.calibrate(text, softened(1.0)).text
+    with pytest.raises(DesignError, match="of FEA origin already"):
+        fs.calibrate(once, softened(1.0))
+    with pytest.raises(DesignError, match="leaf: its 6x6 by FEA is known to 30 % only"):
+        fs.calibrate(text, softened(1.0, error=0.3))
+    departing = replace(parallelogram(), changes={"B/front.thickness": 2.1e-3})
+    with pytest.raises(DesignError, match="B/front: departs from its part neck"):
+        fs.calibrate(fs.dumps(departing), softened(1.0))
+
+
+def test_rows_that_calibrated_parts_touch_are_not_independent() -> None:
+    stage = fs.loads(fs.calibrate(fs.dumps(parallelogram()), softened(1.1)).text)
+    rows = list(hinge_rows(stage, solid_hinges(stage, softened(1.1))))
+    assert {row.trust for row in rows} == {Trust.DEPENDENT}
+    assert max(abs(row.difference) for row in rows) < 1e-5
+    assert verdict(tuple(rows)).startswith("Not independent")
+
+
+def test_with_matrices_is_what_the_file_says() -> None:
+    stage = parallelogram()
+    same = with_matrices(stage, solid_hinges(stage, softened(1.1)))
+    read = fs.loads(fs.calibrate(fs.dumps(stage), softened(1.1)).text)
+    assert fs.digest(same, physics=True) == fs.digest(read, physics=True)
+
+
+@pytest.mark.parametrize(
+    ("theory", "calibrated_value", "error", "trust"),
+    [
+        (101.0, None, 0.001, Trust.THEORY),
+        (101.0, None, 0.015, Trust.EITHER),
+        (101.0, None, 0.2, Trust.UNCLEAR),
+        (110.0, None, 0.001, Trust.FEA),
+        (110.0, 101.0, 0.001, Trust.CALIBRATED),
+        (110.0, 108.0, 0.001, Trust.FEA),
+        (110.0, 101.0, 0.06, Trust.UNCLEAR),
+    ],
+)
+def test_trust(theory: float, calibrated_value: float | None, error: float, trust: Trust) -> None:
+    row = Row("stage", "mode 1", "Hz", theory, 100.0, error, calibrated=calibrated_value)
+    assert row.trust is trust
+    assert replace(row, calibration=("neck",)).trust is Trust.DEPENDENT
