@@ -21,7 +21,7 @@ from flexstage.base.scale import mm
 from flexstage.readings.solid.cad import cad
 from flexstage.readings.solid.memory import Counts, entries, freedoms, needed
 from flexstage.readings.solid.progress import Stage, Step
-from flexstage.readings.solid.reducing import Reducing
+from flexstage.readings.solid.reducing import Reducing, fewest_elements
 from flexstage.readings.solid.remote import Limits, work_all
 from flexstage.readings.solid.store import read
 from flexstage.readings.solid.superelement import Superelement
@@ -166,6 +166,25 @@ def test_too_little_memory_is_refused_with_what_would_fit(folder: Path) -> None:
     assert finding.advice.startswith("Ask for order 3, about 0.224 GB, or for larger elements, Fineness(neck=")
 
 
+def test_a_mesh_without_end_is_refused_before_it_is_made(folder: Path) -> None:
+    endless = replace(COARSE, fineness=replace(COARSE.fineness, neck=0.002))
+    seen: list[Step] = []
+    with pytest.raises(
+        DesignError, match=r"prop 1: its reduction at order 2 needs about .* GB .*, and 4 GB are there\. Ask for larger"
+    ) as caught:
+        work_all([replace(job(rod()), reduction=endless)], lambda _job, _data: None, Limits(memory=4e9), seen.append)
+    assert len(caught.value.findings) == 1
+    assert {step.text for step in seen} <= {"prop 1: starting", "done"}
+
+
+@pytest.mark.parametrize("neck", [0.5, 1.0, 2.5])
+def test_no_mesh_has_fewer_elements_than_expected(neck: float) -> None:
+    from flexstage.readings.solid.mesh import meshed
+
+    fineness = replace(COARSE.fineness, neck=neck)
+    assert fewest_elements(rod(), fineness) <= meshed(rod(), fineness).mesh.ne
+
+
 def test_what_does_not_fit_together_is_done_one_after_the_other(folder: Path) -> None:
     alone = 1.5 * 2e8
     running: list[set[str]] = []
@@ -221,7 +240,7 @@ def test_an_interruption_ends_everything(folder: Path) -> None:
 SCRIPT = """
 import sys
 sys.path.insert(0, {root!r})
-from flexstage.readings.solid.reducing import Reducing
+from flexstage.readings.solid.reducing import Reducing, fewest_elements
 from flexstage.readings.solid.remote import Limits, work_all
 from tests.readings.small_solids import Bomb, job, mined, rod
 work_all([{job}], lambda each, data: print(each.name, len(data) > 1000), Limits())

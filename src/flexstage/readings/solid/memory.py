@@ -37,6 +37,15 @@ class Counts:
     faces: float
     elements: float
 
+    @staticmethod
+    def of(elements: float) -> Counts:
+        """The usual counts of a mesh with so many elements.
+
+        >>> Counts.of(1000.0)
+        Counts(vertices=300.0, edges=1500.0, faces=2200.0, elements=1000.0)
+        """
+        return Counts(0.3 * elements, 1.5 * elements, 2.2 * elements, elements)
+
     def coarser(self, factor: float) -> Counts:
         """Roughly the counts with all sizes larger by a factor: graded meshes shrink with its square rather than its cube.
 

@@ -8,10 +8,37 @@ from flexstage.base.finding import Finding
 from flexstage.base.number import Array
 from flexstage.parts.piezo import Piezo
 from flexstage.readings.solid.component import Component
-from flexstage.readings.solid.fineness import ATTEMPTS, Reduction
+from flexstage.readings.solid.fineness import ATTEMPTS, Fineness, Reduction
 from flexstage.readings.solid.memory import Counts, needed, refusal
+from flexstage.readings.solid.piece import Form, Piece, span, thinnest
 from flexstage.readings.solid.store import written
 from flexstage.readings.solid.worker import Call, Job
+
+_TRIANGLE = 0.433
+"""Area of an equilateral triangle of side one."""
+
+
+def fewest_elements(component: Component, fineness: Fineness) -> float:
+    """Elements a mesh has at least: one at every triangle of the surface, were it that of the pieces' necks and blocks alone.
+
+    What asks for more memory than there is need not be meshed first.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.readings.solid.component import components
+    >>> part = components(parallelogram())[-1]  # a stack, 5 mm thick and 40 mm long
+    >>> round(fewest_elements(part, Fineness(neck=0.1)) / fewest_elements(part, Fineness(neck=1.0)))
+    100
+    """
+    return sum(_surface(piece.form) / (_TRIANGLE * _size(piece, fineness) ** 2) for piece in component.pieces)
+
+
+def _size(piece: Piece, fineness: Fineness) -> float:
+    return (fineness.neck if piece.body is None else fineness.block) * thinnest(piece.form)
+
+
+def _surface(form: Form) -> float:
+    """Lateral surface [m^2], that of the square around the least dimension."""
+    return 4.0 * thinnest(form) * max(span(form), thinnest(form))
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,10 +78,11 @@ class Reducing(Job):
         return refusal(self.name, counts, self.reduction.fineness, self.columns, limit)
 
     def work(self, call: Call) -> bytes:
-        """Draw, mesh, ask, reduce; the superelement as stored."""
+        """Ask for what the surface alone takes, draw, mesh, ask for the mesh, reduce; the superelement as stored."""
         from flexstage.readings.solid.mesh import meshed
         from flexstage.readings.solid.reduce import reduced_mesh
 
+        call.ask(Counts.of(fewest_elements(self.component, self.reduction.fineness)))
         mesh = meshed(self.component, self.reduction.fineness, call.report, call.attempt)
         size = mesh.mesh
         call.ask(Counts(size.nv, size.nedge, size.nface, size.ne))

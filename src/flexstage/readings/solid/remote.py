@@ -107,9 +107,14 @@ class _Child(Generic[AnyJob]):
             self.offset += len(line)
             said = json.loads(line)
             if "counts" in said:
-                self.counts = Counts(*said["counts"])
+                self.counts, self.granted = Counts(*said["counts"]), None
             else:
                 self.stage, self.fraction, self.since = Stage[said["stage"]], said["fraction"], time.monotonic()
+
+    @property
+    def waits(self) -> bool:
+        """Whether it waits for the permission it asked for."""
+        return self.counts is not None and self.granted is None
 
     @property
     def wanted(self) -> float:
@@ -200,7 +205,7 @@ class _Run(Generic[AnyJob]):
 
     def _check_time(self, child: _Child[AnyJob]) -> None:
         now = time.monotonic()
-        if child.stage is Stage.MESHING and child.counts is None and now - child.since > self.limits.mesh_seconds:
+        if child.stage is Stage.MESHING and not child.waits and now - child.since > self.limits.mesh_seconds:
             if not self._again(child):
                 self._close(child, _hung(child, self.limits.mesh_seconds))
         elif now - child.begun > self.limits.seconds:
@@ -209,7 +214,7 @@ class _Run(Generic[AnyJob]):
     def _again(self, child: _Child[AnyJob]) -> bool:
         """Begin with the next attempt at a mesh, where one took the process down or did not end."""
         attempt = round(child.fraction * child.job.attempts) + 1
-        if child.stage is not Stage.MESHING or child.counts is not None or attempt >= child.job.attempts or child.process.poll() == 1:
+        if child.stage is not Stage.MESHING or attempt >= child.job.attempts or child.process.poll() == 1:
             return False
         self.children.remove(child)
         child.remove()
@@ -225,7 +230,7 @@ class _Run(Generic[AnyJob]):
     def _permit(self) -> None:
         """Permit what fits beside those that run; refuse what does not fit even alone."""
         for child in tuple(self.children):
-            if child.counts is None or child.granted is not None:
+            if child.counts is None or not child.waits:
                 continue
             others = [each for each in self.children if each.granted is not None]
             finding = child.job.refusal(child.counts, self._room(child, others))

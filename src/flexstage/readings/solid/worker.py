@@ -1,7 +1,7 @@
 """The process that does one job of the solid reading: `python -m flexstage.readings.solid.worker FOLDER`.
 
 CAD and mesher may crash or hang; here they take nothing with them. In the folder are `task` (read), `progress` (JSON lines, appended),
-`result` or `findings` (written aside, then renamed). A byte on the standard input permits the assembly, once its memory is known; its
+`result` or `findings` (written aside, then renamed). A byte on the standard input permits what was asked for; its
 end says that the parent is gone.
 """
 
@@ -44,7 +44,10 @@ class Outcome(IntEnum):
 
 @dataclass(frozen=True, eq=False)
 class Call:
-    """What a job is given where it works: whom to tell, whom to ask once its mesh is known, which attempt at a mesh to begin with."""
+    """What a job is given where it works: whom to tell, whom to ask for memory, which attempt at a mesh to begin with.
+
+    `ask` waits until there is room for a mesh, expected or made.
+    """
 
     report: Report
     ask: Callable[[Counts], None]
@@ -123,10 +126,10 @@ def _work(folder: Path) -> bytes:
     return task.job.work(Call(report, lambda counts: _ask(folder / PROGRESS, counts, permitted), task.attempt, task.made))
 
 
-def _ask(path: Path, counts: Counts, permitted: threading.Event) -> None:
+def _ask(path: Path, counts: Counts, permitted: threading.Semaphore) -> None:
     """Tell the parent what is to be assembled, and wait until it permits it."""
     _append(path, {"counts": [counts.vertices, counts.edges, counts.faces, counts.elements]})
-    permitted.wait()
+    permitted.acquire()
 
 
 def _reporter(path: Path) -> Report:
@@ -144,15 +147,15 @@ def _place(path: Path, data: bytes) -> None:
     aside.replace(path)
 
 
-def _watch_parent() -> threading.Event:
-    """An event set by the first byte of the standard input; this process ends with the parent, whose end of the pipe closes then."""
+def _watch_parent() -> threading.Semaphore:
+    """Released by every byte of the standard input; this process ends with the parent, whose end of the pipe closes then."""
     if sys.platform == "linux":  # even while compiled code holds the interpreter's lock
         ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
-    permitted = threading.Event()
+    permitted = threading.Semaphore(0)
 
     def listen() -> None:
         while os.read(sys.stdin.fileno(), 1):
-            permitted.set()
+            permitted.release()
         os._exit(1)
 
     threading.Thread(target=listen, daemon=True).start()
