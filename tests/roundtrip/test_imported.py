@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from netgen import occ
 
+from flexstage.analysis.statics import statics
 from flexstage.base.digest import digest
 from flexstage.base.finding import DesignError
 from flexstage.mechanism.mechanism import Link, Mechanism
@@ -17,9 +18,12 @@ from flexstage.parts.body import Block, Body, Imported, Inertia
 from flexstage.parts.leaf import Leaf
 from flexstage.parts.mass import mass_properties
 from flexstage.parts.material import Material
+from flexstage.readings.linear.eigen import eigen
 from flexstage.readings.lumped import lumped
 from flexstage.readings.solid.contact import contact_findings
+from flexstage.readings.solid.fineness import Fineness, Reduction
 from flexstage.readings.solid.imported import import_findings, measured, stated
+from flexstage.readings.solid.reading import solid
 from flexstage.readings.solid.stage_pieces import stage_pieces
 from flexstage.readings.solid.step import stage_parts
 
@@ -130,3 +134,11 @@ def test_two_solids_are_too_many(tmp_path: Path) -> None:
     occ.Compound(boxes).WriteStep(str(path))
     with pytest.raises(DesignError, match="it holds 2 solids"):
         measured(path)
+
+
+def test_a_solid_read_from_the_file_is_as_stiff_and_heavy_as_the_drawn_one(part: Path) -> None:
+    reduction = Reduction(Fineness(neck=4.0, block=1.0, order=3), modes=2)  # the meshes differ: converged
+    ours, drawn = (solid(stage(each), reduction, cache=None) for each in (imported(part), BLOCK))
+    np.testing.assert_allclose(eigen(ours).values[:6], eigen(drawn).values[:6], rtol=1e-2)
+    loads = [statics(each).compliance.values for each in (ours, drawn)]
+    np.testing.assert_allclose(np.diag(loads[0]), np.diag(loads[1]), rtol=1e-2)

@@ -196,12 +196,12 @@ def _hinges(mechanism: Mechanism, asked: Resolution, shown: Bar) -> Hinges:
 def _checked(mechanism: Mechanism) -> Mechanism:
     """The stage, its outlines checked against each other before anything is meshed."""
     from flexstage.base.finding import require
-    from flexstage.readings.solid.contact import contact_findings
+    from flexstage.readings.solid.apart import contact_apart
     from flexstage.readings.solid.install import require_solver
     from flexstage.studies.solid_read import drawn
 
     require_solver()
-    require(contact_findings(drawn(mechanism)))
+    require(contact_apart(drawn(mechanism)))
     return mechanism
 
 
