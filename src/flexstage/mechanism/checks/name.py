@@ -11,6 +11,7 @@ from flexstage.mechanism.expand import copy_names
 from flexstage.mechanism.grammar import RESERVED
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Link, Mechanism, Unit
 from flexstage.parts.body import Body, owner_of
+from flexstage.parts.given import Given
 from flexstage.parts.part import material_of
 
 MOST_COPIES = 360
@@ -130,6 +131,8 @@ def _bodies(mechanism: Mechanism) -> Iterator[Finding]:
 def _materials(mechanism: Mechanism) -> Iterator[Finding]:
     for name, part in mechanism.parts.items():
         yield from _known(f"parts.{name}.material", "material", material_of(part), mechanism.materials)
+        if isinstance(part, Given):
+            yield from _known(f"parts.{name}.stands_for", "part", part.stands_for or None, mechanism.parts)
     for where, body in _all_bodies(mechanism):
         for name, solid in body.solids.items():
             yield from _known(f"{where}.solids.{name}.material", "material", solid.material, mechanism.materials)
