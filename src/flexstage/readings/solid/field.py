@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from functools import cached_property
 
 import ngsolve
 import numpy as np
@@ -37,6 +38,14 @@ class Field:
     def free(self) -> Array:
         """Which degrees of freedom (n,) are not on a held face."""
         return np.array([bool(bit) for bit in self.space.FreeDofs()], dtype=bool)
+
+    @cached_property
+    def linear(self) -> tuple[Array, Array]:
+        """Coefficients (n / 3,) of the function 1 and (n / 3, 3) of the coordinates [m], in one component of the space."""
+        one, place = _interpolated(
+            self, [ngsolve.CoefficientFunction((1.0, 1.0, 1.0)), ngsolve.CoefficientFunction(_coordinates())], None
+        ).T
+        return one.reshape(3, -1)[0], place.reshape(3, -1).T / MILLIMETRES
 
     def stress(self, strain: ngsolve.CoefficientFunction) -> ngsolve.CoefficientFunction:
         """Hooke's law: 2 mu strain + lambda tr(strain) I [Pa, with strains per m]."""
@@ -119,8 +128,13 @@ def rigid(space: Field, frame: Frame, faces: str | None = None) -> Array:
 
     Translations of 1 m and rotations of 1 rad.
     """
-    columns = [_rigid_motion(frame, axis) for axis in range(6)]
-    return _interpolated(space, columns, faces)
+    if faces is not None:
+        return _interpolated(space, [_rigid_motion(frame, axis) for axis in range(6)], faces)
+    one, place = space.linear
+    arm = place - one[:, None] * frame.position
+    axes = frame.rotation.T
+    motions = [*(np.outer(one, axis) for axis in axes), *(np.cross(axis, arm) for axis in axes)]
+    return np.stack([motion.T.ravel() for motion in motions], axis=1)
 
 
 def _rigid_motion(frame: Frame, axis: int) -> ngsolve.CoefficientFunction:
