@@ -15,6 +15,7 @@ from flexstage.readings.solid import install
 from flexstage.readings.solid.progress import Step
 from flexstage.studies import resolution
 from tests.apps.command import Command, command_in
+from tests.apps.test_documents import ENVELOPE, page_section
 from tests.readings.solid_studies import COARSE, small, small_unit
 
 
@@ -77,6 +78,21 @@ def test_calibration_is_told_from_theory(command: Command, tmp_path: Path) -> No
     axial = next(row for row in rows if row["figure"] == "axial stiffness")
     assert axial["calibration"] == ["neck"]
     assert abs(axial["difference"]) < 0.01
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("solid", "stage.toml", "--what", "unit"),
+        ("solid", "stage.toml", "--what", "stage"),
+        ("verify", "stage.toml"),
+        ("calibrate", "stage.toml", "-o", "out.toml"),
+    ],
+)
+def test_every_key_is_documented(command: Command, words: tuple[str, ...]) -> None:
+    document = command(*words, "--accuracy", "5 %", "--json", "-").document
+    section = page_section(words[0])
+    assert [key for key in document if key not in ENVELOPE and f"`{key}`" not in section] == []
 
 
 def test_what_has_no_shape_is_named(command: Command, tmp_path: Path) -> None:

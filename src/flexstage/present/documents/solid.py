@@ -158,4 +158,4 @@ def calibration_body(found: Calibration) -> Document:
     'calibration_body'
     """
     softer = found.softer
-    return {name: {**body, "over_beam_theory": softer[name]} for name, body in hinges_body(found.hinges).items()}
+    return {"parts": {name: {**body, "over_beam_theory": softer[name]} for name, body in hinges_body(found.hinges).items()}}
