@@ -115,7 +115,7 @@ def _aligned(platform: Array, solved: Eigen, gap: float) -> Eigen:
     shapes = np.array(solved.shapes)
     weighted = (platform @ shapes) * np.array([1.0, 1.0, 1.0, 0.1, 0.1, 0.1])[:, None]
     for group in clusters(first_design(solved.values, 1), 2.0 * gap):
-        if len(group) == 1:
+        if not 1 < len(group) <= len(COMPONENTS):  # six motions of the platform cannot tell more shapes apart
             continue
         seen = weighted[..., group]
         leading = np.sort(np.argsort(-np.round(np.sum(first_design(seen, 2) ** 2, axis=1), 9), kind="stable")[: len(group)])
