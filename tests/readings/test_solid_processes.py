@@ -284,5 +284,4 @@ def test_the_child_ends_with_its_parent(tmp_path: Path, ending: signal.Signals) 
         parent.send_signal(ending)
         assert parent.wait() != 0
     until(lambda: not working_in(tmp_path / "temporary"))
-    if ending is signal.SIGINT:
-        assert not list((tmp_path / "temporary").iterdir())
+    assert not list((tmp_path / "temporary").iterdir())

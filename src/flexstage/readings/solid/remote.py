@@ -185,7 +185,8 @@ class _Run(Generic[AnyJob]):
             child.remove()
 
     def _start(self, job: AnyJob, attempt: int, begun: float) -> None:
-        task = Task(job, attempt, available() if self.limits.memory is None else self.limits.memory, versions())
+        memory = available() if self.limits.memory is None else self.limits.memory
+        task = Task(job, attempt, memory, self.limits.seconds, versions())
         self.children.append(_Child(job, attempt, begun if attempt else time.monotonic(), *_started(task)))
 
     def _look(self, child: _Child[AnyJob]) -> None:

@@ -8,13 +8,12 @@ end says that the parent is gone.
 from __future__ import annotations
 
 import contextlib
-import ctypes
 import errno
 import faulthandler
 import json
 import os
 import pickle
-import signal
+import shutil
 import sys
 import threading
 from abc import ABC, abstractmethod
@@ -29,9 +28,10 @@ from flexstage.readings.solid.progress import Report, Stage
 from flexstage.readings.solid.store import Versions
 
 TASK, PROGRESS, RESULT, FINDINGS = "task", "progress", "result", "findings"
-_PR_SET_PDEATHSIG = 1
 _SLACK = 5e8
 """What libraries take beyond a reduction's own memory [bytes]."""
+_PATIENCE = 60.0
+"""How much longer than allowed it lives if nobody ends it [s]."""
 
 
 class Outcome(IntEnum):
@@ -86,11 +86,12 @@ class Job(ABC):
 
 @dataclass(frozen=True, eq=False)
 class Task:
-    """What a worker is told: the job, the attempt at its mesh to begin with, the memory it may take at most [bytes], who is asking."""
+    """What a worker is told: the job, the attempt at its mesh to begin with, the memory [bytes] and time [s] it may take, who is asking."""
 
     job: Job
     attempt: int
     memory: float
+    seconds: float
     made: Versions
 
 
@@ -118,11 +119,12 @@ def findings_in(folder: Path) -> tuple[Finding, ...]:
 
 
 def _work(folder: Path) -> bytes:
-    permitted = _watch_parent()
+    permitted = _watch_parent(folder)
     report = _reporter(folder / PROGRESS)
     report(Stage.STARTING, 0.0)
     task: Task = pickle.loads((folder / TASK).read_bytes())  # noqa: S301 (written by the parent process, into a folder only it can write to)
     _limit_memory(task.memory)
+    faulthandler.dump_traceback_later(task.seconds + _PATIENCE, exit=True)  # should compiled code keep the lock and the parent be gone
     return task.job.work(Call(report, lambda counts: _ask(folder / PROGRESS, counts, permitted), task.attempt, task.made))
 
 
@@ -147,15 +149,17 @@ def _place(path: Path, data: bytes) -> None:
     aside.replace(path)
 
 
-def _watch_parent() -> threading.Semaphore:
-    """Released by every byte of the standard input; this process ends with the parent, whose end of the pipe closes then."""
-    if sys.platform == "linux":  # even while compiled code holds the interpreter's lock
-        ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
+def _watch_parent(folder: Path) -> threading.Semaphore:
+    """Released by every byte of the standard input; this process ends with the parent, whose end of the pipe closes then.
+
+    CAD, mesher and solver release the interpreter's lock while they work, so this thread is heard.
+    """
     permitted = threading.Semaphore(0)
 
     def listen() -> None:
         while os.read(sys.stdin.fileno(), 1):
             permitted.release()
+        shutil.rmtree(folder, ignore_errors=True)
         os._exit(1)
 
     threading.Thread(target=listen, daemon=True).start()
