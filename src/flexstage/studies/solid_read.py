@@ -25,8 +25,6 @@ Notice: TypeAlias = Callable[[Finding], None]
 
 STANDARD_WAYS = Ways()
 
-_COARSER = 1.6
-
 
 @dataclass(frozen=True, eq=False)
 class SolidRead:
@@ -98,16 +96,12 @@ def read_solid(mechanism: Mechanism, reduction: Reduction, reduce: Solids) -> So
 
 
 def coarser(reduction: Reduction) -> Reduction:
-    """The resolution that an error is estimated against: one order less, or for order two a mesh 1.6 times as coarse.
+    """The resolution that an error is estimated against: the same mesh, one order less.
 
-    >>> from flexstage.readings.solid.fineness import Reduction
     >>> coarser(Reduction()).fineness.order
     2
     """
-    fineness = reduction.fineness
-    if fineness.order > 2:
-        return replace(reduction, fineness=replace(fineness, order=fineness.order - 1))
-    return replace(reduction, fineness=replace(fineness, neck=_COARSER * fineness.neck, block=_COARSER * fineness.block))
+    return replace(reduction, fineness=replace(reduction.fineness, order=reduction.fineness.order - 1))
 
 
 def drawn(mechanism: Mechanism) -> Mechanism:
