@@ -29,9 +29,9 @@ DEFAULT = Resolution()
 
 @dataclass(frozen=True, eq=False)
 class Resolved(Generic[_Result]):
-    """A result with the relative error estimated of each of its figures: the change from the order before (at order two, where
-    that is far off, a quarter of it). An estimate, no bound.
+    """A result with the relative error estimated of each of its figures. An estimate, no bound.
 
+    It is the change from the order before, at order two a quarter of it.
     `stopped` says why the order was not raised further although the accuracy asked was not reached.
     """
 
