@@ -153,7 +153,7 @@ def _solves(part: Hinge, stub: float, own: Medium, asked: Accuracy) -> Iterator[
     """Solves of rising order on one mesh, then of the highest on finer ones, until the next would have too many freedoms."""
     lowest, highest = asked.orders
     for refinement in range(asked.meshes):
-        mesh = _meshed(part, stub, asked.shrink**refinement, highest)
+        mesh = hinge_mesh(part, stub, asked.shrink**refinement, highest)
         for order in range(lowest if refinement == 0 else highest, highest + 1):
             space = _space(mesh, own, order)
             if space.size > asked.freedoms:
@@ -185,10 +185,20 @@ def _times(form: ngsolve.BilinearForm, vectors: Array) -> Array:
     return result
 
 
-def _meshed(part: Hinge, stub: float, factor: float, order: int) -> ngsolve.Mesh:
+def hinge_mesh(part: Hinge, stub: float | None = None, factor: float = 1.0, order: int = 5) -> ngsolve.Mesh:
+    """A mesh [mm] of a hinge with its stubs, faces `start` and `end` named; no element is turned inside out at any order up to `order`.
+
+    Elements are `factor` times as large as usual. Where the mesher fails or an element folds, other sizes are tried, a few times. Raises
+    `DesignError` when none of that helps.
+
+    >>> from flexstage.parts.profile import Straight
+    >>> hinge_mesh(Neck("steel", 1e-3, Straight(1e-3), width=1e-3)).GetMaterials()
+    ('medium 0',)
+    """
+    length = _stub_length(part, stub)
     reason = "the mesher was not asked"
     for shrink, grading, curvature in _ATTEMPTS:
-        drawn = specimen(part, stub, factor * shrink)
+        drawn = specimen(part, length, factor * shrink)
         outcome = _attempt(drawn, grading, curvature / factor, order)
         if isinstance(outcome, ngsolve.Mesh):
             return outcome
