@@ -25,6 +25,8 @@ def guarded(action: Callable[[], object]) -> int:
             action()
             sys.stdout.flush()
     except SystemExit as end:
+        if end.code == INTERRUPTED:  # the command line's framework turns the interruption into this
+            return _interrupted()
         return end.code if isinstance(end.code, int) else DONE if end.code is None else MISSED
     except DesignError as error:
         return _bad_input(error)
@@ -35,11 +37,15 @@ def guarded(action: Callable[[], object]) -> int:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return DONE
     except KeyboardInterrupt:
-        tell("Interrupted; nothing was written.")
-        return INTERRUPTED
+        return _interrupted()
     except Exception as error:  # noqa: BLE001 (the last resort: a message instead of a traceback)
         return _fault(error)
     return DONE
+
+
+def _interrupted() -> int:
+    tell("Interrupted; nothing was written. Solids that were finished are kept: the same command goes on from there.")
+    return INTERRUPTED
 
 
 def _bad_input(error: DesignError) -> int:
