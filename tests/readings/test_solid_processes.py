@@ -185,6 +185,16 @@ def test_no_mesh_has_fewer_elements_than_expected(neck: float) -> None:
     assert fewest_elements(rod(), fineness) <= meshed(rod(), fineness).mesh.ne
 
 
+@linux
+def test_more_memory_than_allowed_is_not_given(folder: Path) -> None:
+    text = """
+import flexstage.readings.solid.mesh as mesh
+mesh._attempted = lambda *_: bytearray(int(4e9))
+"""
+    (finding,) = told(mined("lever", code(text)), limits=Limits(memory=1e9))
+    assert finding == Finding("lever", "it took more memory while meshing than it may", finding.advice)
+
+
 def test_what_does_not_fit_together_is_done_one_after_the_other(folder: Path) -> None:
     alone = 1.5 * 2e8
     running: list[set[str]] = []

@@ -201,6 +201,8 @@ class _Run(Generic[AnyJob]):
             self._close(child, *findings_in(child.folder))
         elif code == Outcome.DISK_FULL:
             self._close(child, _disk_full(child.job.name))
+        elif code == Outcome.MEMORY_FULL:
+            self._close(child, _memory_full(child))
         elif not self._again(child):
             self._close(child, _failed(child, code))
 
@@ -309,6 +311,11 @@ def _reason(code: int) -> str:
 def _hung(child: _Child[AnyJob], seconds: float) -> Finding:
     advice = "Ask for larger elements or a lower order, allow more time, or look for slivers, which can keep the mesher busy for ever"
     return Finding(child.job.name, f"it was still {child.stage.value} after the {seconds:.4g} s allowed", advice)
+
+
+def _memory_full(child: _Child[AnyJob]) -> Finding:
+    advice = "Ask for larger elements or a lower order, or let it have more"
+    return Finding(child.job.name, f"it took more memory while {child.stage.value} than it may", advice)
 
 
 def _disk_full(name: str) -> Finding:

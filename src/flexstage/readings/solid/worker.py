@@ -28,8 +28,8 @@ from flexstage.readings.solid.progress import Report, Stage
 from flexstage.readings.solid.store import Versions
 
 TASK, PROGRESS, RESULT, FINDINGS = "task", "progress", "result", "findings"
-_SLACK = 5e8
-"""What libraries take beyond a reduction's own memory [bytes]."""
+_SLACK, _SHARE = 5e8, 1.2
+"""What libraries take beyond a job's own memory [bytes], and how much more it may take than was planned with."""
 _PATIENCE = 60.0
 """How much longer than allowed it lives if nobody ends it [s]."""
 
@@ -40,6 +40,7 @@ class Outcome(IntEnum):
     DONE = 0
     REFUSED = 2
     DISK_FULL = 3
+    MEMORY_FULL = 4
 
 
 @dataclass(frozen=True, eq=False)
@@ -173,7 +174,7 @@ def _limit_memory(most: float) -> None:
 
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
         if most != float("inf"):
-            limit = int(most + _SLACK)
+            limit = int(_SHARE * most + _SLACK)
             resource.setrlimit(resource.RLIMIT_DATA, (limit, limit))
 
 
@@ -181,6 +182,8 @@ def _run(arguments: Sequence[str]) -> int:
     faulthandler.enable()
     try:
         return _main(Path(arguments[0]))
+    except MemoryError:
+        return Outcome.MEMORY_FULL
     except OSError as error:
         if error.errno not in {errno.ENOSPC, errno.EDQUOT}:
             raise
