@@ -58,6 +58,9 @@ def linear_model(
 
     Coordinates: twists of rigid bodies, twists of the joints between elastic components (stage axes, at the joint), and each
     component's internal coordinates. Raises `DesignError` when the joined stage can move freely.
+
+    >>> linear_model.__name__  # tried on whole stages in tests/readings
+    'linear_model'
     """
     model = _joined(mechanism, assembly, parts)
     elastic, mass = dict(_stiffness(model)), dict(_inertia(model))
@@ -159,6 +162,10 @@ def group_names(component: Component) -> tuple[str, ...]:
     """Names under which a component's pieces count: links by their own, solids by their body's, in order.
 
     The same order in every copy, so that one copy's superelement serves all.
+
+    >>> from flexstage.readings.solid.bar import bar
+    >>> group_names(bar())
+    ('bar',)
     """
     return tuple(dict.fromkeys(piece.name if piece.body is None else piece.body for piece in component.pieces))
 

@@ -35,6 +35,11 @@ def cad(component: Component) -> Cad:
 
     Faces are named after joints: interfaces and those held by the ground. Raises `DesignError` for joints without a matching flat face and
     for pieces that do not form one solid.
+
+    >>> from flexstage.readings.solid.bar import bar
+    >>> drawing = cad(bar())
+    >>> round(drawing.shape.mass, 6), drawing.faces  # mm^3
+    (10000.0, ('end', 'foot'))
     """
     media = tuple(dict.fromkeys(piece.medium for piece in component.pieces))
     solids = [_fused([piece for piece in component.pieces if piece.medium == medium]) for medium in media]
@@ -86,14 +91,10 @@ def _name_face(shape: occ.TopoDS_Shape, joint: Joint) -> Finding | None:
     area = joint.area * MILLIMETRES**2
     nearest = min(flat, key=lambda face: abs(face.mass - area) / area + _away(face, origin) / np.sqrt(area), default=None)
     if nearest is None or _away(nearest, origin) > _TOLERANCE or abs(nearest.mass - area) > _AREA * area:
-        found = (
-            "no flat face there"
-            if nearest is None
-            else f"the likeliest face there has {nearest.mass:.4g} mm^2 instead of {area:.4g}, its centre {_away(nearest, origin):.3g} mm away"
-        )
-        return Finding(
-            joint.name, f"the end face of {joint.link} does not meet {joint.body}: {found}", "Move the outline to touch it fully"
-        )
+        likeliest = "" if nearest is None else f"the likeliest face there has {nearest.mass:.4g} mm^2 instead of {area:.4g}"
+        found = "no flat face there" if nearest is None else f"{likeliest}, its centre {_away(nearest, origin):.3g} mm away"
+        what = f"the end face of {joint.link} does not meet {joint.body}: {found}"
+        return Finding(joint.name, what, "Move the outline to touch it fully")
     nearest.name = joint.name
     return None
 
@@ -118,13 +119,23 @@ def _coordinates(point: occ.gp_Pnt) -> Array:
 
 
 def region(piece: Piece, points: Array) -> Array:
-    """Distance-like measure (n,) of points (n, 3) [m] from a piece: how far outside its bounding box they are, 0 inside [m]."""
+    """Distance-like measure (n,) of points (n, 3) [m] from a piece: how far outside its bounding box they are, 0 inside [m].
+
+    >>> from flexstage.readings.solid.bar import bar
+    >>> region(bar().pieces[0], np.array([[0.05, 0.0, 0.0], [0.05, 0.0, 0.007]])).round(9).tolist()
+    [0.0, 0.002]
+    """
     local = (points - piece.frame.position) @ piece.frame.rotation
     return np.max(np.maximum(np.abs(local) - half_extents(piece), 0.0), axis=1)
 
 
 def half_extents(piece: Piece) -> Array:
-    """Half sizes (3,) of a piece's bounding box in its own frame [m]."""
+    """Half sizes (3,) of a piece's bounding box in its own frame [m].
+
+    >>> from flexstage.readings.solid.bar import bar
+    >>> half_extents(bar().pieces[0]).round(9).tolist()
+    [0.05, 0.005, 0.005]
+    """
     if isinstance(piece.form, Imported):
         return 0.5 * np.real(np.array(piece.form.size))
     low, high = drawn(piece.form).bounding_box

@@ -16,6 +16,12 @@ def casing(link: PlacedLink) -> Array | None:
 
     B is the stated bending rigidity less the ceramic's E I; nothing along the axis, where the casing slides. `None` without a stated one.
     Raises `DesignError` when the stated rigidity is below the ceramic's own.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.mechanism.expand import expand
+    >>> law = casing(expand(double_triangle()).links["B1/pzt"])  # B 387.2 N m^2, of which the ceramic has 17.2
+    >>> float(law[0, 0]), round(float(law[4, 4]) * 0.162, 1)
+    (0.0, 370.0)
     """
     part = link.part
     if not isinstance(part, Piezo) or part.bending_rigidity is None:

@@ -81,7 +81,7 @@ def components(mechanism: Mechanism, cut: Cut = Cut.UNITS) -> tuple[Component, .
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> [part.name for part in components(double_triangle())][:4]
-    ['platform', 'B1/base', 'B1/pzt', 'B1/tip']
+    ['platform', 'B1/base', 'B1/tip', 'B1/pzt']
     """
     assembly = expand(mechanism)
     forms = _forms(assembly)
@@ -111,7 +111,13 @@ def link_joints(link: PlacedLink, form: Form) -> tuple[Joint, Joint]:
 
 
 def is_elastic(assembly: Assembly, body: str) -> bool:
-    """Whether a body has outlines: then it is a solid, else rigid."""
+    """Whether a body has outlines: then it is a solid, else rigid.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.mechanism.expand import expand
+    >>> is_elastic(expand(double_triangle()), "platform"), is_elastic(expand(double_triangle()), "ground")
+    (True, False)
+    """
     return body != GROUND and bool(assembly.bodies[body].solids)
 
 

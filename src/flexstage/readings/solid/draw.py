@@ -33,7 +33,12 @@ Curve = list[occ.TopoDS_Shape]
 
 
 def drawn(form: Form) -> occ.Solid:
-    """A form as a CAD solid at the origin [mm]: links along x, thin along y, width along z."""
+    """A form as a CAD solid at the origin [mm]: links along x, thin along y, width along z.
+
+    >>> from flexstage.parts.body import Block
+    >>> round(drawn(Block("steel", (0.01, 0.02, 0.03))).mass, 6)  # mm^3
+    6000.0
+    """
     if isinstance(form, Block):
         return _block(form)
     if isinstance(form, Cylinder):
@@ -50,7 +55,13 @@ def drawn(form: Form) -> occ.Solid:
 
 
 def moved(solid: occ.TopoDS_Shape, frame: Frame) -> occ.TopoDS_Shape:
-    """A solid drawn at the origin, moved into a frame given in metres."""
+    """A solid drawn at the origin, moved into a frame given in metres.
+
+    >>> from flexstage.parts.body import Block
+    >>> there = moved(drawn(Block("steel", (0.01, 0.01, 0.01))), Frame(np.eye(3), np.array([0.1, 0.0, 0.0])))
+    >>> round(there.center.x, 6)
+    100.0
+    """
     turn = Rotation.from_matrix(np.real(frame.rotation)).as_rotvec()
     angle = float(np.linalg.norm(turn))
     if angle > 0.0:

@@ -53,7 +53,15 @@ class Field:
 
 
 def field(meshed: Meshed, held: Iterable[str], order: int) -> Field:
-    """The displacement space of `order` on a mesh with named faces held."""
+    """The displacement space of `order` on a mesh with named faces held.
+
+    >>> from flexstage.readings.solid.bar import bar
+    >>> from flexstage.readings.solid.fineness import Fineness
+    >>> from flexstage.readings.solid.mesh import meshed
+    >>> space = field(meshed(bar(), Fineness(order=2)), ["foot"], 2)
+    >>> space.size == 3 * (space.size // 3) and not space.free.all()
+    True
+    """
     mesh = meshed.mesh
     pattern = "|".join(_escaped(name) for name in held)
     space = ngsolve.VectorH1(mesh, order=order, dirichlet=pattern) if pattern else ngsolve.VectorH1(mesh, order=order)
@@ -76,12 +84,31 @@ def _escaped(name: str) -> str:
 
 
 def strain(displacement: ngsolve.CoefficientFunction) -> ngsolve.CoefficientFunction:
-    """Small strain of a displacement, per mm."""
+    """Small strain of a displacement, per mm.
+
+    >>> from flexstage.readings.solid.bar import bar
+    >>> from flexstage.readings.solid.fineness import Fineness
+    >>> from flexstage.readings.solid.mesh import meshed
+    >>> space = field(meshed(bar(), Fineness(order=2)), ["foot"], 2)
+    >>> function = ngsolve.GridFunction(space.space)
+    >>> function.Set(ngsolve.CF((1e-3 * ngsolve.x, 0, 0)))
+    >>> round(ngsolve.Integrate(strain(function)[0, 0], space.meshed.mesh), 6)  # 1e-3 over 10 000 mm^3
+    10.0
+    """
     return 0.5 * (ngsolve.Grad(displacement) + ngsolve.Grad(displacement).trans)
 
 
 def stiffness(space: Field, elements: Array | None = None, *, assemble: bool = True) -> ngsolve.BilinearForm:
-    """int stress(u) : strain(v) dV [N/m], over some elements (mask) or all; without `assemble` for application only."""
+    """int stress(u) : strain(v) dV [N/m], over some elements (mask) or all; without `assemble` for application only.
+
+    >>> from flexstage.readings.solid.bar import bar
+    >>> from flexstage.readings.solid.fineness import Fineness
+    >>> from flexstage.readings.solid.mesh import meshed
+    >>> space = field(meshed(bar(), Fineness(order=2)), ["foot"], 2)
+    >>> forces = times(stiffness(space), rigid(space, Frame(np.eye(3), np.zeros(3))))
+    >>> bool(np.abs(forces).max() < 1e-3)  # N per m and rad, of a bar of 1e8 N/m
+    True
+    """
     u, v = space.space.TnT()
     form = ngsolve.BilinearForm(space.space, symmetric=True, nonassemble=not assemble)
     form += _PER_METRE * ngsolve.InnerProduct(space.stress(strain(u)), strain(v)) * _volume(elements)
@@ -89,7 +116,16 @@ def stiffness(space: Field, elements: Array | None = None, *, assemble: bool = T
 
 
 def inertia(space: Field, elements: Array | None = None, *, assemble: bool = True) -> ngsolve.BilinearForm:
-    """int rho u . v dV [kg], over some elements (mask) or all; without `assemble` for application only."""
+    """int rho u . v dV [kg], over some elements (mask) or all; without `assemble` for application only.
+
+    >>> from flexstage.readings.solid.bar import bar
+    >>> from flexstage.readings.solid.fineness import Fineness
+    >>> from flexstage.readings.solid.mesh import meshed
+    >>> space = field(meshed(bar(), Fineness(order=2)), ["foot"], 2)
+    >>> moved = rigid(space, Frame(np.eye(3), np.zeros(3)))[:, :1]
+    >>> round((moved.T @ times(inertia(space), moved)).item(), 9)  # the bar's 10 g
+    0.01
+    """
     u, v = space.space.TnT()
     form = ngsolve.BilinearForm(space.space, symmetric=True, nonassemble=not assemble)
     form += _PER_VOLUME * space.density * ngsolve.InnerProduct(u, v) * _volume(elements)
@@ -101,7 +137,16 @@ def _volume(elements: Array | None) -> object:
 
 
 def applied(form: ngsolve.BilinearForm, vectors: Array) -> Array:
-    """A form applied to columns (n, k), without a matrix."""
+    """A form applied to columns (n, k), without a matrix.
+
+    >>> from flexstage.readings.solid.bar import bar
+    >>> from flexstage.readings.solid.fineness import Fineness
+    >>> from flexstage.readings.solid.mesh import meshed
+    >>> space = field(meshed(bar(), Fineness(order=2)), ["foot"], 2)
+    >>> moved = rigid(space, Frame(np.eye(3), np.zeros(3)))[:, :1]
+    >>> round((moved.T @ applied(inertia(space, assemble=False), moved)).item(), 9)
+    0.01
+    """
     source, target = form.space.ndof, np.empty_like(vectors)
     x, y = ngsolve.BaseVector(source), ngsolve.BaseVector(source)
     for number in range(vectors.shape[1]):
@@ -112,7 +157,17 @@ def applied(form: ngsolve.BilinearForm, vectors: Array) -> Array:
 
 
 def stroke_force(space: Field, frame: Frame, length: float) -> Array:
-    """Forces (n,) of a unit free stroke: int C e0 : strain(v) dV with the imposed strain e0 = x x^T / length along the frame's x axis."""
+    """Forces (n,) of a unit free stroke: int C e0 : strain(v) dV with the imposed strain e0 = x x^T / length along the frame's x axis.
+
+    >>> from flexstage.readings.solid.bar import bar
+    >>> from flexstage.readings.solid.fineness import Fineness
+    >>> from flexstage.readings.solid.mesh import meshed
+    >>> space = field(meshed(bar(), Fineness(order=2)), ["foot"], 2)
+    >>> end = Frame(np.eye(3), np.array([0.1, 0.0, 0.0]))
+    >>> motion = factored(space, stiffness(space))(stroke_force(space, Frame(np.eye(3), np.zeros(3)), 0.1))
+    >>> round(float((mean_motion(space, end, "end") @ motion)[0]), 9)  # a unit stroke lengthens it by one
+    1.0
+    """
     axis = np.outer(frame.rotation[:, 0], frame.rotation[:, 0]) / length
     imposed = ngsolve.CoefficientFunction(tuple(axis.ravel()), dims=(3, 3))
     v = space.space.TestFunction()
@@ -127,6 +182,14 @@ def rigid(space: Field, frame: Frame, faces: str | None = None) -> Array:
     """The six rigid motions (n, 6) in a frame's axes about its origin; on some faces only if named.
 
     Translations of 1 m and rotations of 1 rad.
+
+    >>> from flexstage.readings.solid.bar import bar
+    >>> from flexstage.readings.solid.fineness import Fineness
+    >>> from flexstage.readings.solid.mesh import meshed
+    >>> space = field(meshed(bar(), Fineness(order=2)), ["foot"], 2)
+    >>> end = Frame(np.eye(3), np.array([0.1, 0.0, 0.0]))
+    >>> (mean_motion(space, end, "end") @ rigid(space, end)).round(9).tolist() == np.eye(6).tolist()
+    True
     """
     if faces is not None:
         return _interpolated(space, [_rigid_motion(frame, axis) for axis in range(6)], faces)
@@ -164,7 +227,15 @@ def _interpolated(space: Field, columns: list[ngsolve.CoefficientFunction], face
 
 
 def degrees_of(space: Field, elements: Array) -> Array:
-    """Which degrees of freedom (n,) belong to some of the elements (mask)."""
+    """Which degrees of freedom (n,) belong to some of the elements (mask).
+
+    >>> from flexstage.readings.solid.bar import bar
+    >>> from flexstage.readings.solid.fineness import Fineness
+    >>> from flexstage.readings.solid.mesh import meshed
+    >>> space = field(meshed(bar(), Fineness(order=2)), ["foot"], 2)
+    >>> bool(degrees_of(space, np.ones(space.meshed.mesh.ne, dtype=bool)).all())
+    True
+    """
     result = np.zeros(space.size, dtype=bool)
     for number in np.flatnonzero(elements):
         result[list(space.space.GetDofNrs(ngsolve.ElementId(ngsolve.VOL, int(number))))] = True
@@ -172,7 +243,16 @@ def degrees_of(space: Field, elements: Array) -> Array:
 
 
 def mean_motion(space: Field, frame: Frame, face: str) -> Array:
-    """Rows (6, n) of a face's mean twist: G^-1 int R^T u dS with G = int R^T R dS, R its rigid motions in a frame."""
+    """Rows (6, n) of a face's mean twist: G^-1 int R^T u dS with G = int R^T R dS, R its rigid motions in a frame.
+
+    >>> from flexstage.readings.solid.bar import bar
+    >>> from flexstage.readings.solid.fineness import Fineness
+    >>> from flexstage.readings.solid.mesh import meshed
+    >>> space = field(meshed(bar(), Fineness(order=2)), ["foot"], 2)
+    >>> end = Frame(np.eye(3), np.array([0.1, 0.0, 0.0]))
+    >>> mean_motion(space, end, "end").shape == (6, space.size)
+    True
+    """
     v = space.space.TestFunction()
     rows = np.empty((6, space.size))
     for axis in range(6):
@@ -184,7 +264,15 @@ def mean_motion(space: Field, frame: Frame, face: str) -> Array:
 
 
 def times(form: ngsolve.BilinearForm, vectors: Array) -> Array:
-    """An assembled form's matrix times columns (n, k)."""
+    """An assembled form's matrix times columns (n, k).
+
+    >>> from flexstage.readings.solid.bar import bar
+    >>> from flexstage.readings.solid.fineness import Fineness
+    >>> from flexstage.readings.solid.mesh import meshed
+    >>> space = field(meshed(bar(), Fineness(order=2)), ["foot"], 2)
+    >>> times(inertia(space), np.zeros((space.size, 2))).shape == (space.size, 2)
+    True
+    """
     x, y = form.mat.CreateRowVector(), form.mat.CreateColVector()
     result = np.empty_like(vectors)
     for number in range(vectors.shape[1]):
@@ -195,7 +283,17 @@ def times(form: ngsolve.BilinearForm, vectors: Array) -> Array:
 
 
 def shifted(space: Field, elastic: ngsolve.BilinearForm, mass: ngsolve.BilinearForm, shift: float) -> ngsolve.BilinearForm:
-    """Stiffness plus shift times inertia: definite without any support."""
+    """Stiffness plus shift times inertia: definite without any support.
+
+    >>> from flexstage.readings.solid.bar import bar
+    >>> from flexstage.readings.solid.fineness import Fineness
+    >>> from flexstage.readings.solid.mesh import meshed
+    >>> space = field(meshed(bar(), Fineness(order=2)), ["foot"], 2)
+    >>> elastic, mass = stiffness(space), inertia(space)
+    >>> moved = rigid(space, Frame(np.eye(3), np.zeros(3)))[:, :1]
+    >>> round((moved.T @ times(shifted(space, elastic, mass, 100.0), moved)).item(), 5)  # 100 / s^2 times 10 g
+    1.0
+    """
     u, v = space.space.TnT()
     form = ngsolve.BilinearForm(space.space, symmetric=True)
     form += ngsolve.InnerProduct(u, v) * ngsolve.dx
@@ -208,7 +306,17 @@ Solver = Callable[[Array], Array]
 
 
 def factored(space: Field, form: ngsolve.BilinearForm) -> Solver:
-    """Solve with a form's matrix on the free degrees of freedom: columns (n, k) of forces to columns of displacements, zero where held."""
+    """Solve with a form's matrix on the free degrees of freedom: columns (n, k) of forces to columns of displacements, zero where held.
+
+    >>> from flexstage.readings.solid.bar import bar
+    >>> from flexstage.readings.solid.fineness import Fineness
+    >>> from flexstage.readings.solid.mesh import meshed
+    >>> space = field(meshed(bar(), Fineness(order=2)), ["foot"], 2)
+    >>> end = Frame(np.eye(3), np.array([0.1, 0.0, 0.0]))
+    >>> mean = mean_motion(space, end, "end")
+    >>> round(1e-6 / float((mean @ factored(space, stiffness(space))(mean.T))[0, 0]), 6)  # E A / L, N/um
+    100.0
+    """
     inverse = form.mat.Inverse(space.space.FreeDofs(), inverse="sparsecholesky")
     x, y = form.mat.CreateColVector(), form.mat.CreateColVector()
 

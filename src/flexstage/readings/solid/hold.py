@@ -32,13 +32,29 @@ class Held:
 
 
 def is_rigid(component: Component, interface: Interface, hold: Hold) -> bool:
-    """Whether an interface stays plane: asked for, or a stack's end cap."""
+    """Whether an interface stays plane: asked for, or a stack's end cap.
+
+    >>> from flexstage.readings.solid.bar import bar
+    >>> is_rigid(bar(), bar().interfaces[0], Hold.RIGID), is_rigid(bar(), bar().interfaces[0], Hold.AVERAGED)
+    (True, False)
+    """
     stacks = [piece.name for piece in component.pieces if isinstance(piece.form, Piezo)]
     return hold is Hold.RIGID or interface.joint.link in stacks or isinstance(interface.footprint, Piezo)
 
 
 def held(component: Component, space: Field, forms: tuple[ngsolve.BilinearForm, ngsolve.BilinearForm], hold: Hold) -> Held:
-    """Hold a component's interfaces; `forms` are its stiffness and inertia, and `space` must hold its rigid and grounded faces."""
+    """Hold a component's interfaces; `forms` are its stiffness and inertia, and `space` must hold its rigid and grounded faces.
+
+    >>> from flexstage.readings.solid.bar import bar
+    >>> from flexstage.readings.solid.field import field, inertia, stiffness
+    >>> from flexstage.readings.solid.fineness import Fineness
+    >>> from flexstage.readings.solid.mesh import meshed
+    >>> space = field(meshed(bar(), Fineness(order=2)), ["foot"], 2)
+    >>> elastic = stiffness(space)
+    >>> faces = held(bar(), space, (elastic, inertia(space)), Hold.AVERAGED).faces
+    >>> round(float((faces.T @ times(elastic, faces))[0, 0]) * 1e-6, 6)  # E A / L, N/um
+    100.0
+    """
     elastic, mass = forms
     loose = [item for item in component.interfaces if not is_rigid(component, item, hold)]
     unsupported = len(loose) == len(component.interfaces) and not component.fixed

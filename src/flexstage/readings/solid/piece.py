@@ -89,7 +89,13 @@ def stack_medium(stack: Piezo) -> Medium:
 
 
 def drawable(link: PlacedLink) -> Form | Finding:
-    """The form of a link's part, or why it has none."""
+    """The form of a link's part, or why it has none.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.mechanism.expand import expand
+    >>> type(drawable(expand(double_triangle()).links["B1/front"])).__name__
+    'Neck'
+    """
     part: Part = link.part
     if isinstance(part, Restricted):
         return Finding(

@@ -47,6 +47,12 @@ def reduced(component: Component, reduction: Reduction, springs: Array | None = 
     With `springs` (6 m, 6 m) between its interfaces the modes kept are those of the component free at its interfaces and joined by the
     springs, in place of the fixed-interface modes: so a whole stage in one piece has its own modes, exactly. Its statics is then exact
     for strokes and wrenches on the platform only, which spares most of the motions of so large a mesh.
+
+    >>> from flexstage.readings.solid.bar import bar
+    >>> from flexstage.readings.solid.fineness import Fineness
+    >>> element = reduced(bar(), Reduction(Fineness(order=2)))
+    >>> round(float(element.stiffness["bar"][0, 0]) * 1e-6, 6)  # E A / L, N/um
+    100.0
     """
     return reduced_mesh(component, meshed(component, reduction.fineness), reduction, springs)
 
@@ -54,7 +60,14 @@ def reduced(component: Component, reduction: Reduction, springs: Array | None = 
 def reduced_mesh(
     component: Component, mesh: Meshed, reduction: Reduction, springs: Array | None = None, report: Report = silent
 ) -> Superelement:
-    """Assemble and reduce a component that is meshed already, telling how far it is."""
+    """Assemble and reduce a component that is meshed already, telling how far it is.
+
+    >>> from flexstage.readings.solid.bar import bar
+    >>> from flexstage.readings.solid.fineness import Fineness
+    >>> plan = Reduction(Fineness(order=2), modes=0)
+    >>> reduced_mesh(bar(), meshed(bar(), plan.fineness), plan).interfaces
+    1
+    """
     problem = _problem(component, mesh, reduction, report)
     report(Stage.REDUCING, 0.0)
     strokes = {str(number): force for number, force in _strokes(problem).items()}
@@ -84,7 +97,12 @@ def _strokes(problem: _Problem) -> dict[int, Array]:
 
 
 def groups(component: Component) -> dict[str, tuple[int, ...]]:
-    """Pieces that share a name in the model: every link by itself, all solids of a body together."""
+    """Pieces that share a name in the model: every link by itself, all solids of a body together.
+
+    >>> from flexstage.readings.solid.bar import bar
+    >>> groups(bar())
+    {'bar': (0,)}
+    """
     result: dict[str, tuple[int, ...]] = {}
     for number, piece in enumerate(component.pieces):
         name = piece.name if piece.body is None else piece.body
