@@ -10,8 +10,9 @@ from flexstage.base.number import Array
 
 @dataclass(frozen=True, eq=False)
 class Skin:
-    """The surface for pictures: `vertices` (v, 3) [m], `triangles` (t, 3), `motion` (v, 3, n) of the vertices per coordinate, `stress`
-    (v, 6, n) at them as xx, yy, zz, xy, yz, zx [Pa], and the piece (index) of each triangle.
+    """The surface for pictures: `vertices` (v, 3) [m] and `triangles` (t, 3), with the piece (index) behind each triangle.
+
+    `motion` (v, 3, n) of the vertices and `stress` (v, 6, n) at them as xx, yy, zz, xy, yz, zx [Pa], per coordinate.
     """
 
     vertices: Array
