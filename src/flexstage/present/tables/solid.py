@@ -51,8 +51,6 @@ def hinge_table(found: Mapping[str, SolidHinge]) -> Table:
                 for form, value, known in zip(forms, np.diag(hinge.found.compliance), hinge.separable, strict=True)
             ),
             percent(hinge.found.error, 2),
-            str(hinge.found.order),
-            str(hinge.found.freedoms),
         )
         for name, hinge in found.items()
     ]
@@ -61,7 +59,7 @@ def hinge_table(found: Mapping[str, SolidHinge]) -> Table:
         "Compliance about the centre of the hinge between the ends of its arcs, in its link frame. Error: of any entry, estimated. "
         f"{NO_VALUE}: it cannot be told from that of the blocks beside the hinge."
     )
-    return build("Hinges as solids", ["part", "links", *heads, Column("order"), Column("freedoms")], rows, notes=[note])
+    return build("Hinges as solids", ["part", "links", *heads], rows, notes=[note])
 
 
 def hinge_matrices(found: Mapping[str, SolidHinge]) -> Iterator[Table]:
@@ -87,15 +85,14 @@ def solid_unit_table(found: Resolved[dict[str, SolidUnit]]) -> Table:
             unit.copy,
             value_with_unit(unit.axial, "N/m"),
             " to ".join(value_with_unit(value, "N/m", 4) for value in unit.lateral),
-            number(unit.ideal_gain),
-            number(unit.gain),
+            f"{number(unit.gain)} of {number(unit.ideal_gain)}",
             percent(unit.loss if abs(unit.loss) > 1e-6 else 0.0),
             *_weakest(unit.stress),
             percent(max((error for figure, error in found.errors.items() if figure.startswith(f"{name}: ")), default=0.0), 2),
         )
         for name, unit in found.result.items()
     ]
-    heads = ["unit", "copy", Column("axial K_a"), Column("lateral K_l"), Column("ideal gain"), Column("gain"), Column("loss")]
+    heads = ["unit", "copy", Column("axial K_a"), Column("lateral K_l"), Column("gain"), Column("loss")]
     heads += ["weakest", Column("stress", "MPa"), Column("safety"), Column("error")]
     notes = [
         "Each unit alone, output on a rigid face. Stiffness: strokes held, all other motions of the output prevented.",
@@ -179,30 +176,45 @@ def verification_table(name: str, rows: tuple[Row, ...]) -> Table:
 
     >>> from flexstage.studies.verify import Row
     >>> verification_table("stage", (Row("stage", "mode 1", "Hz", 101.0, 100.0, 0.001),)).texts()[1]
-    ['mode 1', '-', '101 Hz', '-', '100 Hz', '0.1 %', '1 %', '-', 'theory will do']
+    ['mode 1', '101 Hz', '100 Hz', '0.1 %', '1 %', 'theory will do']
     """
+    columns: dict[str, list[str] | None] = {
+        "mapped": _values(rows, [row.mapped for row in rows]),
+        "theory": _values(rows, [row.theory for row in rows]),
+        "calibrated": _values(rows, [row.calibrated for row in rows]),
+        "FEA": _values(rows, [row.fea for row in rows]),
+        "FEA's error": [percent(row.error, 2) for row in rows],
+        "theory off": _differences([row.difference for row in rows]),
+        "calibrated off": _differences([row.calibrated_difference for row in rows]),
+    }
+    known = {head: texts for head, texts in columns.items() if texts is not None}
     lines = [
-        (
-            Cell(row.figure, Mark.STRONG),
-            *(_value(row, value) for value in (row.mapped, row.theory, row.calibrated, row.fea)),
-            percent(row.error, 2),
-            _signed(row.difference),
-            NO_VALUE if row.calibrated_difference is None else _signed(row.calibrated_difference),
-            Cell(row.trust.value, _MARKS[row.trust]),
-        )
-        for row in rows
+        (Cell(row.figure, Mark.STRONG), *(texts[number] for texts in known.values()), Cell(row.trust.value, _MARKS[row.trust]))
+        for number, row in enumerate(rows)
     ]
-    heads = ["figure", Column("mapped"), Column("theory"), Column("calibrated"), Column("FEA"), Column("FEA's error")]
-    heads += [Column("theory off"), Column("calibrated off"), "trust"]
+    heads = ["figure", *(Column(head) for head in known), "trust"]
     shared = [row.assurance for row in rows if row.assurance is not None]
-    notes = [f"Modes are paired by shape: modal assurance {min(shared):.3f} and more."] if shared else []
+    notes = [f"Modes are paired by shape: modal assurance {np.floor(1e3 * min(shared)) / 1e3:.3f} and more."] if shared else []
     return build(f"{name[:1].upper()}{name[1:]}: theory and finite elements", heads, lines, notes=notes)
+
+
+def _values(rows: tuple[Row, ...], values: list[float | None]) -> list[str] | None:
+    """A column of values, `None` where there is none at all."""
+    if all(value is None for value in values):
+        return None
+    return [_value(row, value) for row, value in zip(rows, values, strict=True)]
 
 
 def _value(row: Row, value: float | None) -> str:
     if value is None:
         return NO_VALUE
     return percent(value) if row.figure == "loss" else value_with_unit(value, row.unit)
+
+
+def _differences(values: list[float | None]) -> list[str] | None:
+    if all(value is None for value in values):
+        return None
+    return [NO_VALUE if value is None else _signed(value) for value in values]
 
 
 def _signed(share: float) -> str:
