@@ -31,6 +31,7 @@ from flexstage.readings.solid.stub import beam, circle, rectangle
 from flexstage.spatial.frame import identity, transport
 
 _SYMMETRY = 1e-8
+_LATTICE = 5
 _ATTEMPTS = (
     (1.0, 0.5, 1.2),
     (1.0, 0.5, 2.0),
@@ -216,11 +217,22 @@ def _attempt(drawn: Specimen, grading: float, curvature: float, order: int) -> n
         return "no elements came out"
     for degree in range(2, order + 1):
         mesh.Curve(degree)
-        points = mesh.MapToAllElements(ngsolve.IntegrationRule(ngsolve.TET, 2 * degree), ngsolve.VOL)
-        lowest = float(np.min(ngsolve.Det(ngsolve.specialcf.JacobianMatrix(3))(points)))
+        lowest = lowest_jacobian(mesh)
         if lowest <= 0.0:
             return f"a curved face turns an element inside out, Jacobian {lowest:.3g}"
     return mesh
+
+
+def lowest_jacobian(mesh: ngsolve.Mesh) -> float:
+    """The lowest Jacobian determinant [mm^3] at a lattice of points of every element, corners and edges included: they fold first.
+
+    >>> lowest_jacobian(hinge_mesh(Leaf("steel", 1e-3, 1e-3, 1e-3))) > 0.0
+    True
+    """
+    steps = range(_LATTICE + 1)
+    points = [(i / _LATTICE, j / _LATTICE, k / _LATTICE) for i in steps for j in steps for k in steps if i + j + k <= _LATTICE]
+    rule = ngsolve.IntegrationRule(points, [1.0] * len(points))
+    return float(np.min(ngsolve.Det(ngsolve.specialcf.JacobianMatrix(3))(mesh.MapToAllElements(rule, ngsolve.VOL))))
 
 
 def _profile_height(part: Hinge) -> float:
