@@ -12,16 +12,17 @@ if TYPE_CHECKING:
 
 
 class Bar:
-    """A bar that follows the steps it is told of."""
+    """A bar that follows the steps it is told of; `about` stands before each."""
 
     def __init__(self, shown: Any | None) -> None:
         self._shown = shown
         self._task = None if shown is None else shown.add_task("starting", total=1.0, left="")
+        self.about = ""
 
     def step(self, step: Step) -> None:
         """Show a step of a reduction."""
         left = "" if step.left is None else f"{_clock(step.left)} left"
-        self._show(step.text, step.fraction, left)
+        self._show(f"{self.about}{step.text}", step.fraction, left)
 
     def begin(self, text: str, fraction: float) -> None:
         """Show the beginning of something whose own steps are not told."""

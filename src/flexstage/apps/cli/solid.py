@@ -22,7 +22,9 @@ if TYPE_CHECKING:
     from flexstage.parts.material import Material
     from flexstage.present.page import Section
     from flexstage.present.table import Table
+    from flexstage.readings.solid.fineness import Reduction
     from flexstage.readings.solid.hinge import HingeSolid
+    from flexstage.readings.solid.parts import Parts
     from flexstage.studies.resolution import Resolution, Resolved
     from flexstage.studies.solid_hinge import HingePart, Hinges
     from flexstage.studies.solid_read import Solids
@@ -175,7 +177,13 @@ def _solids(shown: Bar) -> Solids:
     from flexstage.readings.solid.parts import Ways
     from flexstage.studies.solid_read import solids
 
-    return solids(Ways(Cache(), shown.step), _notice)
+    reduce = solids(Ways(Cache(), shown.step), _notice)
+
+    def told(mechanism: Mechanism, reduction: Reduction) -> Parts:
+        shown.about = f"order {reduction.fineness.order}, "
+        return reduce(mechanism, reduction)
+
+    return told
 
 
 def _hinges(mechanism: Mechanism, asked: Resolution, shown: Bar) -> Hinges:
