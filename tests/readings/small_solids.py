@@ -14,7 +14,7 @@ from flexstage.readings.solid.component import Component, components
 from flexstage.readings.solid.fineness import Fineness, Reduction
 from flexstage.readings.solid.reducing import Reducing
 
-COARSE = Reduction(Fineness(neck=2.5, block=2.5, order=2), modes=2)
+COARSE = Reduction(Fineness(neck=2.5, block=2.5, grading=0.6, order=2), modes=2)
 
 
 def propped(*lengths: float) -> Mechanism:
