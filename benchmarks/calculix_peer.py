@@ -28,7 +28,7 @@ from flexstage.readings.solid.fineness import Fineness
 from flexstage.readings.solid.mesh import Meshed
 from tests.elsewhere.calculix.deck import deck, printed_solution, program
 from tests.elsewhere.calculix.ours import Law, solved
-from tests.elsewhere.calculix.problems import CURVED, Problem, Solution, hinge, mesh_of, read_mesh
+from tests.elsewhere.calculix.problems import CURVED, Geometry, Problem, Solution, hinge, mesh_of, read_mesh, shape
 
 REPEATS = 2
 TARGET = 1e-3
@@ -64,7 +64,7 @@ def cost(command: Sequence[str], folder: Path) -> Cost:
 
 def _once(command: Sequence[str], folder: Path) -> Cost:
     start, peak = time.perf_counter(), 0.0
-    with (folder / "log").open("w") as log, subprocess.Popen(command, stdout=log, stderr=log) as process:
+    with (folder / "log").open("w") as log, subprocess.Popen(command, cwd=folder, stdout=log, stderr=log) as process:
         while process.poll() is None:
             peak = max(peak, _peak(process.pid))
             time.sleep(PERIOD)
@@ -99,7 +99,7 @@ def child(folder: Path, order: int) -> None:
     """What our process does."""
     problem = hinge()
     mesh = read_mesh(folder / "mesh.vol", problem)
-    mesh.mesh.Curve(order)
+    shape(mesh, Geometry("curved", order))
     found = solved(problem, mesh, Law(order))
     np.savez(folder / "ours.npz", compliance=found.compliance, frequencies=found.frequencies)
 
@@ -125,7 +125,7 @@ def main() -> None:
     reference = solved(problem, finest, Law(REFERENCE.order))
     with tempfile.TemporaryDirectory() as temporary:
         folder = Path(temporary)
-        fine.mesh.Curve(CURVED.order)
+        shape(fine, CURVED)
         second, peer = theirs(problem, fine, folder)
         first, equal = ours(fine, FINE.order, folder), found_by_child(folder)
         third, coarser = ours(coarse, COARSE.order, folder), found_by_child(folder)

@@ -18,7 +18,7 @@ pytest.importorskip("ngsolve", reason="the solid reading needs flexstage[solid]"
 from flexstage.readings.solid.mesh import Meshed
 from tests.elsewhere.calculix.deck import deck, printed_solution, program, run
 from tests.elsewhere.calculix.ours import Law, solved
-from tests.elsewhere.calculix.problems import GEOMETRIES, PROBLEMS, Geometry, Problem, Solution, mesh_of, read_mesh
+from tests.elsewhere.calculix.problems import GEOMETRIES, PROBLEMS, Geometry, Problem, Solution, mesh_of, read_mesh, shape
 from tests.elsewhere.calculix.stored import mesh_file, output_file
 
 PRINTED = 1e-6
@@ -36,8 +36,8 @@ class Case:
     printed: Callable[[Geometry], str]
 
     def peer(self, geometry: Geometry) -> Solution:
-        """CalculiX's solution; leaves the mesh curved as asked."""
-        self.mesh.mesh.Curve(geometry.order)
+        """CalculiX's solution; leaves the mesh shaped as asked."""
+        shape(self.mesh, geometry)
         return printed_solution(self.problem, self.mesh, self.printed(geometry))
 
 

@@ -20,6 +20,7 @@ from flexstage.parts.profile import Circular
 from flexstage.readings.solid.component import Component, components
 from flexstage.readings.solid.fineness import Fineness
 from flexstage.readings.solid.mesh import Meshed, meshed
+from flexstage.readings.solid.straighten import straighten
 
 NOTCH = Notch("steel", 1 * mm, 8 * mm, Circular(4 * mm))
 
@@ -92,16 +93,25 @@ def head() -> Problem:
 
 
 PROBLEMS: Mapping[str, Callable[[], Problem]] = {"hinge": hinge, "pair": pair, "head": head}
-FINENESS = Fineness(neck=3.0, block=1.5, order=2)
+FINENESS = Fineness(neck=2.0, block=1.5, order=2)
 
 
 def mesh_of(problem: Problem, fineness: Fineness = FINENESS) -> Meshed:
-    """A problem's mesh; `Curve` sets how its sides follow the drawing."""
+    """A problem's mesh, before `shape`."""
     return meshed(problem.component, fineness)
 
 
+def shape(mesh: Meshed, geometry: Geometry) -> None:
+    """Let a mesh follow its drawing as asked, but for elements that this would fold."""
+    mesh.mesh.UnsetDeformation()
+    mesh.mesh.Curve(geometry.order)
+    found = straighten(mesh.mesh, np.zeros(mesh.mesh.ne, dtype=bool))
+    if found is not None:
+        raise ValueError(found)
+
+
 def read_mesh(path: Path, problem: Problem) -> Meshed:
-    """A problem's mesh from a file that holds its drawing too; which piece owns an element is left out."""
+    """A problem's mesh, before `shape`, from a file that holds its drawing too; which piece owns an element is left out."""
     media = tuple(dict.fromkeys(piece.medium for piece in problem.component.pieces))
     mesh = ngsolve.Mesh(str(path))
     return Meshed(mesh, media, (problem.held, problem.loaded), np.zeros(mesh.ne, dtype=int))

@@ -9,7 +9,7 @@ import tempfile
 from pathlib import Path
 
 from tests.elsewhere.calculix.deck import deck, run
-from tests.elsewhere.calculix.problems import GEOMETRIES, PROBLEMS, mesh_of
+from tests.elsewhere.calculix.problems import GEOMETRIES, PROBLEMS, mesh_of, shape
 
 FOLDER = Path(__file__).with_name("stored")
 
@@ -31,7 +31,7 @@ def make() -> None:
         mesh = mesh_of(problem)
         mesh.mesh.ngmesh.Save(str(mesh_file(name)))
         for geometry in GEOMETRIES:
-            mesh.mesh.Curve(geometry.order)
+            shape(mesh, geometry)
             with tempfile.TemporaryDirectory() as folder:
                 Path(folder, "job.inp").write_text(deck(problem, mesh))
                 output_file(name, geometry.name).write_text(run(Path(folder), "job"))

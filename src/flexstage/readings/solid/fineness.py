@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import Enum
 
-ATTEMPTS = ((1.0, 1.0, 1.0), (1.0, 0.8, 1.0), (0.8, 1.0, 1.0), (1.0, 1.0, 1.4), (0.85, 0.6, 1.0), (0.7, 0.7, 1.4), (0.5, 0.8, 1.0))
+ATTEMPTS = ((1.0, 1.0, 1.0), (1.0, 0.7, 1.0), (0.8, 1.0, 1.0), (1.0, 1.0, 1.4), (0.85, 0.6, 1.0), (0.7, 0.7, 1.4), (0.5, 0.8, 1.0))
 """How the mesh is varied where the mesher fails: factors on all sizes, on the grading and on the segments per radius of curvature."""
 
 
@@ -19,7 +19,7 @@ class Fineness:
 
     neck: float = 1.5
     block: float = 1.5
-    grading: float = 0.6
+    grading: float = 0.8
     order: int = 3
 
 

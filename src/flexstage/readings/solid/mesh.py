@@ -4,25 +4,35 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import ngsolve
 import numpy as np
 from netgen import occ
+from netgen.meshing import MeshingParameters
 
 from flexstage.base.finding import refuse
 from flexstage.base.number import Array
 from flexstage.parts.neck import Neck
 from flexstage.parts.notch import Notch
-from flexstage.parts.profile import Straight
-from flexstage.readings.solid.cad import Cad, cad, region
+from flexstage.parts.profile import Circular, Elliptic, Straight
+from flexstage.readings.solid.cad import Cad, cad, half_extents, region
 from flexstage.readings.solid.component import Component
 from flexstage.readings.solid.draw import MILLIMETRES
 from flexstage.readings.solid.fineness import ATTEMPTS, Fineness
-from flexstage.readings.solid.piece import Medium, Piece, thinnest
+from flexstage.readings.solid.piece import Medium, Piece, span, thinnest
 from flexstage.readings.solid.progress import Report, Stage, silent
+from flexstage.readings.solid.straighten import straighten
 
-_HINGE_CURVATURE = 3.0
+_HINGE_CURVATURE = 2.0
 _ROUND_CURVATURE = 1.5
+_NECK = 0.5
+"""Share of a link's length, about its middle, whose elements follow the drawing."""
+_THIN, _AROUND = 0.47, 0.7
+"""Elements where a hinge is thinnest are this share of those on its faces: two through the thickness instead of one make bending four times
+as accurate. So far along it, on both sides, in geometric means of radius and thickness."""
+_SLENDER = 0.4
+"""Share for straight necks: as wide as thick, they cost little."""
 _WITHIN = 1e-6
 """A face belongs to a piece when its centre is this near its bounding box [m]."""
 
@@ -40,8 +50,9 @@ class Meshed:
 def meshed(component: Component, fineness: Fineness, report: Report = silent, first: int = 0) -> Meshed:
     """Draw and mesh a component.
 
-    Where the mesher fails, or a curved face turns an element inside out, all sizes are shrunk and it is tried again, a few times; `first`
-    is the attempt to begin with, where an earlier one took the process down. Raises `DesignError` when none of that helps.
+    Elements that curved faces turn inside out get straight sides, near the ends of arcs. Where the mesher fails, or an element of a neck is
+    turned inside out, sizes and grading are varied and it is tried again, a few times; `first` is the attempt to begin with, where an
+    earlier one took the process down. Raises `DesignError` when none of that helps.
     """
     report(Stage.DRAWING, 0.0)
     drawing = cad(component)
@@ -52,16 +63,22 @@ def meshed(component: Component, fineness: Fineness, report: Report = silent, fi
         outcome = _attempted(
             drawing,
             fineness.order,
-            {"maxh": largest, "grading": grading * fineness.grading, "curvaturesafety": curvature * _curvature(component)},
+            {
+                "mp": _thinner(component.pieces, shrink * fineness.neck),
+                "maxh": largest,
+                "grading": grading * fineness.grading,
+                "curvaturesafety": curvature * _curvature(component),
+            },
         )
-        if isinstance(outcome, ngsolve.Mesh):
-            return Meshed(outcome, drawing.media, drawing.faces, owners(component.pieces, centroids(outcome)))
-        failure = outcome
+        result = outcome if isinstance(outcome, str) else _finished(component.pieces, drawing, outcome)
+        if isinstance(result, Meshed):
+            return result
+        failure = result
     raise _unmeshed(component, failure)
 
 
-def _attempted(drawing: Cad, order: int, sizes: Mapping[str, float]) -> ngsolve.Mesh | str:
-    """One attempt; else what went wrong."""
+def _attempted(drawing: Cad, order: int, sizes: Mapping[str, Any]) -> ngsolve.Mesh | str:
+    """One attempt, curved to the drawing; else what went wrong."""
     try:
         raw = occ.OCCGeometry(drawing.shape).GenerateMesh(**sizes)
     except Exception as error:  # noqa: BLE001 (netgen raises a bare NgException, and others for CAD it cannot read)
@@ -70,8 +87,19 @@ def _attempted(drawing: Cad, order: int, sizes: Mapping[str, float]) -> ngsolve.
     if mesh.ne == 0:
         return "no elements came out"
     mesh.Curve(order)
-    lowest = _lowest_jacobian(mesh)
-    return mesh if lowest > 0.0 else f"a curved face turns an element inside out, Jacobian {lowest:.3g}"
+    return mesh
+
+
+def _finished(pieces: tuple[Piece, ...], drawing: Cad, mesh: ngsolve.Mesh) -> Meshed | str:
+    """A mesh without folded elements, those of necks curved; else what is wrong with it."""
+    places = centroids(mesh)
+    owner = owners(pieces, places)
+    necks = np.zeros(len(places), dtype=bool)
+    for number, piece in enumerate(pieces):
+        if piece.body is None:
+            within = np.abs((places - piece.frame.position) @ piece.frame.rotation[:, 0]) < _NECK * half_extents(piece)[0]
+            necks |= within & (owner == number)
+    return straighten(mesh, necks) or Meshed(mesh, drawing.media, drawing.faces, owner)
 
 
 def _curvature(component: Component) -> float:
@@ -80,19 +108,47 @@ def _curvature(component: Component) -> float:
     return _HINGE_CURVATURE if hinged else _ROUND_CURVATURE
 
 
+def _thinner(pieces: tuple[Piece, ...], neck: float) -> MeshingParameters:
+    """Smaller elements about the thinnest line of each hinge with an arc."""
+    result = MeshingParameters()
+    for piece in pieces:
+        if isinstance(piece.form, (Notch, Neck)) and isinstance(piece.form.profile, (Circular, Elliptic)):
+            for point in _thin_points(piece.form, _THIN * neck) @ piece.frame.rotation.T + piece.frame.position:
+                x, y, z = (float(value) * MILLIMETRES for value in point)
+                result.RestrictH(x, y, z, h=_THIN * neck * thinnest(piece.form) * MILLIMETRES)
+    return result
+
+
+def _thin_points(form: Notch | Neck, share: float) -> Array:
+    """Points (n, 3) on both faces of a hinge around its thinnest line, in its frame [m]."""
+    thickness, width = (float(np.real(value)) for value in (form.thickness, form.thickness if form.width is None else form.width))
+    step = share * thinnest(form)
+    reach = _AROUND * np.sqrt(0.5 * span(form) * thickness)
+    along, across = (np.linspace(-half, half, 1 + int(np.ceil(2.0 * half / step))) for half in (reach, 0.5 * width))
+    return np.array([(x, y, z) for x in along for y in (-0.5 * thickness, 0.5 * thickness) for z in across])
+
+
 def _sized(component: Component, drawing: Cad, fineness: Fineness, shrink: float) -> float:
     """Set the faces' mesh sizes; return the largest size anywhere [mm]."""
     sizes = [shrink * _size(piece, fineness) for piece in component.pieces]
     for face in drawing.shape.faces:
-        centre = np.array([[face.center.x, face.center.y, face.center.z]]) / MILLIMETRES
-        near = [size for piece, size in zip(component.pieces, sizes, strict=True) if region(piece, centre)[0] <= _WITHIN]
-        if near:
-            face.maxh = min(near)
+        face.maxh = min(_near(component.pieces, sizes, face), default=max(sizes))
     return max(sizes)
 
 
+def _near(pieces: tuple[Piece, ...], sizes: list[float], face: occ.Face) -> list[float]:
+    """Sizes of the pieces a face belongs to: links it lies on as a whole, bodies that hold its centre."""
+    centre = np.array([[face.center.x, face.center.y, face.center.z]]) / MILLIMETRES
+    corners = np.array([[vertex.p.x, vertex.p.y, vertex.p.z] for vertex in face.vertices]).reshape(-1, 3) / MILLIMETRES
+    held = [region(piece, centre)[0] <= _WITHIN for piece in pieces]
+    # A wall of a block around the end of a hinge has its centre on the hinge.
+    whole = [piece.body is not None or bool(np.all(region(piece, corners) <= _WITHIN)) for piece in pieces]
+    return [size for size, centred, all_of_it in zip(sizes, held, whole, strict=True) if centred and all_of_it]
+
+
 def _size(piece: Piece, fineness: Fineness) -> float:
-    factor = fineness.neck if piece.body is None else fineness.block
+    slender = isinstance(piece.form, Neck) and isinstance(piece.form.profile, Straight)
+    factor = fineness.block if piece.body is not None else fineness.neck * (_SLENDER if slender else 1.0)
     return factor * thinnest(piece.form) * MILLIMETRES
 
 
@@ -103,12 +159,6 @@ def _unmeshed(component: Component, reason: str) -> Exception:
         f"no mesh could be made ({reason}); its thinnest piece is {thin.name} with {thinnest(thin.form) * MILLIMETRES:.4g} mm",
         "Ask for a finer mesh, or look for steps and slivers between outlines that are much smaller than the neck",
     )
-
-
-def _lowest_jacobian(mesh: ngsolve.Mesh) -> float:
-    """The lowest Jacobian determinant at the points of a rule of order four."""
-    points = mesh.MapToAllElements(ngsolve.IntegrationRule(ngsolve.TET, 4), ngsolve.VOL)
-    return float(np.min(ngsolve.Det(ngsolve.specialcf.JacobianMatrix(3))(points)))
 
 
 def centroids(mesh: ngsolve.Mesh) -> Array:
