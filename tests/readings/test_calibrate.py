@@ -11,9 +11,9 @@ import flexstage as fs
 from flexstage.base.finding import DesignError
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.cases.parallelogram import parallelogram
+from flexstage.mechanism.drawn import calibrated, drawn
 from flexstage.studies.calibrate import with_matrices
 from flexstage.studies.solid_hinge import distinct_hinges, solid_hinges
-from flexstage.studies.solid_read import calibrated, drawn
 from flexstage.studies.trust import Trust
 from flexstage.studies.verify import Row, hinge_rows, verdict
 from tests.readings.solid_studies import softened

@@ -9,12 +9,13 @@ import pytest
 
 import flexstage as fs
 from flexstage.base.finding import DesignError
+from flexstage.mechanism.drawn import drawn
 from flexstage.readings.linear.static import displacement
 from flexstage.readings.solid.fineness import Reduction
 from flexstage.studies.complete import platform_modes
 from flexstage.studies.paired import paired
 from flexstage.studies.resolution import Resolution, resolved
-from flexstage.studies.solid_read import drawn, read_solid, solids
+from flexstage.studies.solid_read import read_solid, solids
 from flexstage.studies.solid_stress import link_stress
 from flexstage.studies.solid_surface import magnification, mode_surfaces, stress_surfaces
 from tests.readings.small_solids import COARSE, propped

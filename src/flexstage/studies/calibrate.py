@@ -12,6 +12,7 @@ from flexstage.base.number import Array, stack
 from flexstage.beams.compliance import compliance
 from flexstage.beams.mass import mass
 from flexstage.mechanism.checks.orientation import is_round
+from flexstage.mechanism.drawn import calibrated
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.store import loads
@@ -19,7 +20,6 @@ from flexstage.mechanism.store.stand_in import KEPT, stood_in
 from flexstage.parts.given import Given, Origin
 from flexstage.spatial.frame import COMPONENTS
 from flexstage.studies.solid_hinge import STANDARD_HINGES, Hinges, SolidHinge, solid_hinges
-from flexstage.studies.solid_read import calibrated
 
 TAG = "derived FEA"
 _DIGITS = 7

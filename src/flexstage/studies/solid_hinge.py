@@ -12,6 +12,7 @@ from flexstage.base.digest import digest
 from flexstage.base.finding import refuse
 from flexstage.base.labelled import Matrix, ratio_units
 from flexstage.base.number import Array
+from flexstage.mechanism.drawn import drawn
 from flexstage.mechanism.expand import PlacedLink, expand
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.parts.leaf import Leaf
@@ -23,7 +24,7 @@ from flexstage.readings.solid.estimate import Accuracy
 from flexstage.readings.solid.hinge_cache import HingePart, kept_hinge
 from flexstage.readings.solid.parts import Ways
 from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNITS
-from flexstage.studies.solid_read import STANDARD_WAYS, Notice, drawn
+from flexstage.studies.solid_read import STANDARD_WAYS, Notice
 
 if TYPE_CHECKING:
     from flexstage.readings.solid.hinge import HingeSolid

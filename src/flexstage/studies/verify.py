@@ -11,6 +11,7 @@ from flexstage.analysis.statics import Statics, statics
 from flexstage.base.finding import DesignError
 from flexstage.base.number import Array
 from flexstage.beams.compliance import compliance
+from flexstage.mechanism.drawn import calibrated
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.readings.linear.model import LinearModel
@@ -22,7 +23,7 @@ from flexstage.studies.complete import platform_modes
 from flexstage.studies.paired import paired
 from flexstage.studies.resolution import DEFAULT, Resolution, Resolved, resolved
 from flexstage.studies.solid_hinge import STANDARD_HINGES, Hinges, SolidHinge, solid_hinges
-from flexstage.studies.solid_read import STANDARD_SOLIDS, Solids, calibrated
+from flexstage.studies.solid_read import STANDARD_SOLIDS, Solids
 from flexstage.studies.solid_stage import SolidStage, solid_stage
 from flexstage.studies.solid_unit import SolidUnit, solid_units
 from flexstage.studies.trust import Trust

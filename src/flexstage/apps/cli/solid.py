@@ -204,9 +204,9 @@ def _hinges(mechanism: Mechanism, asked: Resolution, shown: Bar) -> Hinges:
 def _checked(mechanism: Mechanism) -> Mechanism:
     """The stage, its outlines checked against each other before anything is meshed."""
     from flexstage.base.finding import require
+    from flexstage.mechanism.drawn import drawn
     from flexstage.readings.solid.apart import contact_apart
     from flexstage.readings.solid.install import require_solver
-    from flexstage.studies.solid_read import drawn
 
     require_solver()
     require(contact_apart(drawn(mechanism)))

@@ -100,9 +100,9 @@ def _write(path: Path, content: bytes, option: str) -> None:
 
 def _contents(mechanism: Mechanism, wanted: dict[str, Path | None], order: int, modes: int) -> Iterator[tuple[Path, str, bytes]]:
     """The files that are wanted, with their options, one after the other."""
+    from flexstage.mechanism.drawn import drawn
     from flexstage.readings.solid.fineness import Fineness
     from flexstage.readings.solid.install import require_solver
-    from flexstage.studies.solid_read import drawn
 
     require_solver()
     stage, fineness = drawn(mechanism), Fineness(order=order)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from flexstage.base.digest import digest
 from flexstage.base.finding import Finding
+from flexstage.mechanism.drawn import drawn
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.readings.linear.model import LinearModel
@@ -81,10 +82,13 @@ def solid_parts(
 ) -> SolidReading:
     """Read a stage as `solid` does, and return the reduced components as well: fields for pictures and stress, and notices.
 
+    Calibrated hinges are read as the shapes they stand for.
+
     >>> solid_parts.__name__
     'solid_parts'
     """
     ways = Ways(cache, progress, Limits(memory=memory))
-    reduced = reduce_parts(components(mechanism), reduction, ways)
-    model = linear_model(mechanism, expand(mechanism), reduced.parts, f"solid reading of {digest(mechanism, physics=True)[:16]}")
+    shape = drawn(mechanism)
+    reduced = reduce_parts(components(shape), reduction, ways)
+    model = linear_model(shape, expand(shape), reduced.parts, f"solid reading of {digest(shape, physics=True)[:16]}")
     return SolidReading(model, reduced.parts, reduction, reduced.notices)
