@@ -8,7 +8,7 @@ from functools import partial
 
 from flexstage.base.finding import nearest, refuse
 from flexstage.cases.bridge import bridge
-from flexstage.cases.double_triangle import SM_REF_A, SM_REF_B, double_triangle
+from flexstage.cases.double_triangle import SM_REF_A, SM_REF_B, SM_REF_B_REFITTED, double_triangle
 from flexstage.cases.hexapod import hexapod
 from flexstage.cases.parallelogram import parallelogram
 from flexstage.cases.tip_tilt import TipTilt, tip_tilt
@@ -30,6 +30,9 @@ CASES: Mapping[str, Case] = {
         partial(double_triangle, SM_REF_B), "six axes: three direct units inside, three levers outside (Shin & Moon), buildable"
     ),
     "double-triangle-a": Case(partial(double_triangle, SM_REF_A), "the same stage for checking formulas; cannot be built"),
+    "double-triangle-refitted": Case(
+        partial(double_triangle, SM_REF_B_REFITTED), "the buildable stage with neck and lever notch fitted by FEA instead of beam theory"
+    ),
     "parallelogram": Case(parallelogram, "one axis: a platform on two leaves, pushed by one stack"),
     "xy-stage": Case(xy_stage, "two axes: four carriages on leaves around a platform, two of them driven"),
     "xy-stage-floating": Case(partial(xy_stage, XYStage(driven=1)), "the XY stage with one stack only: under-actuated"),
