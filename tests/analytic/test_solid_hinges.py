@@ -157,22 +157,22 @@ WHOLE = (2.91198e-6, 3.14493e-5, 4.58567e-6)
 ALONE = (1.586e-6, 7.06e-6, 4.306e-6)
 
 
-def checked_b12(accuracy, tolerance, own):
+def checked_b12(accuracy, tolerance, own, symmetry):
     found = hinge_compliance(NOTCH, STEEL, accuracy, stub=10 * MM)
     whole, alone = (np.diag(each)[[0, 1, 5]] * PER_NEWTON_MM[[0, 1, 5]] for each in (found.whole, found.compliance))
     expect(whole, WHOLE, tolerance)
     expect(alone, ALONE, own)
     scale = np.sqrt(np.diag(found.whole))
     off = found.whole / np.outer(scale, scale) - np.eye(6)
-    assert np.max(np.abs(off)) < 1e-3
+    assert np.max(np.abs(off)) < symmetry
 
 
 def test_a_notch_in_three_dimensions_quickly():
     """C_y alone is a small difference of lever arms: it has four times the error of the whole."""
-    checked_b12(Accuracy(error=0.0, orders=(4, 4), meshes=1), 0.01, 0.04)
+    checked_b12(Accuracy(error=0.0, orders=(4, 4), meshes=1), 0.01, 0.04, 1e-3)
 
 
 @pytest.mark.full
 def test_a_notch_in_three_dimensions():
-    """B12 to 0.3 %, with its blocks and alone; alone the reference's C_y is a difference of numbers known to 0.05 %."""
-    checked_b12(Accuracy(error=0.0, orders=(5, 5), meshes=2), 0.003, 0.01)
+    """B12 to 0.3 %, with its blocks and alone; symmetric as the reference's, whose off-diagonals are below 4e-5."""
+    checked_b12(Accuracy(error=0.0, orders=(5, 5), meshes=2), 0.003, 0.003, 1e-4)
