@@ -32,9 +32,9 @@ from tests.elsewhere.calculix.problems import CURVED, Geometry, Problem, Solutio
 
 REPEATS = 2
 TARGET = 1e-3
-FINE = Fineness(neck=0.3, block=1.0, order=2)
+FINE = Fineness(neck=0.5, block=1.0, order=2)
 COARSE = Fineness(neck=3.0, block=3.0, order=3)
-REFERENCE = Fineness(neck=1.2, block=1.5, order=4)
+REFERENCE = Fineness(neck=1.5, block=1.5, order=4)
 PERIOD = 0.005
 """Seconds between two looks at a process's memory."""
 KILOBYTES = 1024.0

@@ -2,7 +2,7 @@
 
 `ccx` runs where it is on the PATH ("run"); what it printed once is compared everywhere, on the meshes stored with it ("stored"). Elements
 of order two are the same polynomials in both codes, so static answers agree to the seven digits that are printed, curved or not.
-Frequencies differ by CalculiX's four-point mass: by 4e-4 at most here, and not at all when ours takes the same points.
+Frequencies differ by CalculiX's four-point mass: by 1e-4 at most here, and not at all when ours takes the same points.
 """
 
 from __future__ import annotations
