@@ -29,8 +29,8 @@ _ROUND_CURVATURE = 1.5
 _NECK = 0.5
 """Share of a link's length, about its middle, whose elements follow the drawing."""
 _THIN, _AROUND = 0.47, 0.7
-"""Elements where a hinge is thinnest are this share of those on its faces: two through the thickness instead of one make bending four times
-as accurate. So far along it, on both sides, in geometric means of radius and thickness."""
+"""Elements where a hinge is thinnest are this share of those on its faces: about two through the thickness, as bending wants. So far along
+it, on both sides, in geometric means of radius and thickness."""
 _SLENDER = 0.4
 """Share for straight necks: as wide as thick, they cost little."""
 _WITHIN = 1e-6
