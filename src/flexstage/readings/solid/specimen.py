@@ -81,6 +81,10 @@ def specimen(part: Hinge, stub: float, size: float) -> Specimen:
     """Draw a hinge with stubs of a given length [m]; elements at the neck are `size` times its thickness.
 
     A notch, leaf or rectangular neck is thin along y and wide along z; a round one is revolved about x.
+
+    >>> bar = specimen(Leaf("steel", 1e-3, 1e-3, 2e-3), 0.0, 1.0)
+    >>> round(bar.solid.mass, 9), sorted(face.name for face in bar.solid.faces if face.name)
+    (2.0, ['end', 'start'])
     """
     if isinstance(part, Rod):
         side = _Side(0.5 * _mm(part.diameter), Straight(part.length), 0.0)
