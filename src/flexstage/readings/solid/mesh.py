@@ -53,6 +53,12 @@ def meshed(component: Component, fineness: Fineness, report: Report = silent, fi
     Elements that curved faces turn inside out get straight sides, near the ends of arcs. Where the mesher fails, or an element of a neck is
     turned inside out, sizes and grading are varied and it is tried again, a few times; `first` is the attempt to begin with, where an
     earlier one took the process down. Raises `DesignError` when none of that helps.
+
+    >>> from flexstage.readings.solid.bar import bar
+    >>> from flexstage.readings.solid.fineness import Fineness
+    >>> whole = meshed(bar(), Fineness(order=2))
+    >>> round(ngsolve.Integrate(1, whole.mesh), 6), whole.faces  # mm^3
+    (10000.0, ('end', 'foot'))
     """
     report(Stage.DRAWING, 0.0)
     drawing = cad(component)
@@ -162,13 +168,25 @@ def _unmeshed(component: Component, reason: str) -> Exception:
 
 
 def centroids(mesh: ngsolve.Mesh) -> Array:
-    """Vertex means of all elements (n, 3) [m]."""
+    """Vertex means of all elements (n, 3) [m].
+
+    >>> from flexstage.readings.solid.bar import bar
+    >>> from flexstage.readings.solid.fineness import Fineness
+    >>> found = centroids(meshed(bar(), Fineness(order=2)).mesh)
+    >>> bool(np.all((0.0 < found[:, 0]) & (found[:, 0] < 0.1)))
+    True
+    """
     corners = np.array([vertex.point for vertex in mesh.vertices])
     members = np.array([[vertex.nr for vertex in element.vertices] for element in mesh.Elements(ngsolve.VOL)])
     return corners[members].mean(axis=1) / MILLIMETRES
 
 
 def owners(pieces: tuple[Piece, ...], points: Array) -> Array:
-    """The piece (index) each point belongs to: the nearest by bounding box, links before bodies where both hold it."""
+    """The piece (index) each point belongs to: the nearest by bounding box, links before bodies where both hold it.
+
+    >>> from flexstage.readings.solid.bar import bar
+    >>> owners(bar().pieces, np.array([[0.05, 0.0, 0.0]])).tolist()
+    [0]
+    """
     away = np.stack([region(piece, points) - (1e-9 if piece.body is None else 0.0) for piece in pieces])
     return np.argmin(away, axis=0)
