@@ -248,6 +248,8 @@ def test_an_interruption_ends_everything(folder: Path) -> None:
 
 
 SCRIPT = """
+import signal
+signal.signal(signal.SIGINT, signal.default_int_handler)  # what a shell runs in the background ignores it, children too
 import sys
 sys.path.insert(0, {root!r})
 from flexstage.readings.solid.reducing import Reducing, fewest_elements

@@ -20,7 +20,7 @@ Band = Annotated[
 
 
 def mapping(design: Design, *, reading: Theory = Reading.IDEAL, changes: Changes = None, json: Json = None) -> None:
-    """Mappings R_a and R_s, mobility, redundant constraints.
+    """Mappings R_a and R_s, mobility, redundancy.
 
     R_a: strokes per platform motion. R_s: gauge readings per platform motion.
 

@@ -87,7 +87,7 @@ def verify(
     json: Json = None,
     report: Report = None,
 ) -> None:
-    """Compare theory with finite elements, and say which to trust where.
+    """Compare theory with finite elements: which to trust?
 
     Hinges, units and the whole stage: the paper's springs, the lumped reading, the lumped reading with calibrated hinges, and FEA with its
     own error. Rows that calibrated parts touch are not independent of FEA.
@@ -120,7 +120,7 @@ def calibrate(
     order: Order = None,
     json: Json = None,
 ) -> None:
-    """Replace the hinges of beam theory by their 6x6 from finite elements.
+    """Give hinges their 6x6 from finite elements.
 
     The lumped reading of the written file has FEA's accuracy in its hinges. Comments stay; the drawn hinges are kept beside.
     """
