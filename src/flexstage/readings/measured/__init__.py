@@ -1,0 +1,1 @@
+"""Measured reading: records of tests to spectra to modes."""
