@@ -1,0 +1,106 @@
+"""Poly-reference least-squares complex frequency-domain estimator (pLSCF): poles of rising order from frequency responses."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.base.number import Array
+
+_SPAN = 1.0
+"""Angle, in units of pi, that the band takes on the unit circle: the rest keeps the band's two ends apart."""
+
+
+@dataclass(frozen=True, eq=False)
+class Poles:
+    """Poles of one order: `values` (k,) in rad/s, Re < 0, Im > 0; `participation` (k, m), each row of unit length."""
+
+    order: int
+    values: Array
+    participation: Array
+
+    @property
+    def frequencies(self) -> Array:
+        """Natural frequencies |pole|/(2 pi) in Hz."""
+        return np.abs(self.values) / (2.0 * np.pi)
+
+    @property
+    def damping(self) -> Array:
+        """Damping ratios -Re(pole)/|pole|."""
+        return -np.real(self.values) / np.abs(self.values)
+
+
+def lscf(frequencies: Array, responses: Array, weights: Array, orders: range) -> tuple[Poles, ...]:
+    """Poles of every order from responses H (f, p, m) at evenly spaced `frequencies` in Hz, with weights (f, p) of the outputs.
+
+    A right matrix fraction H = B(z) A(z)^-1 with common denominator, complex coefficients and z = exp(s T), the band mapped to half a
+    circle (Peeters, Van der Auweraer, Guillaume & Leuridan, Shock Vib. 11 (2004) 395). Poles are unwrapped about the band's middle, and a
+    pole's participation is the left null vector of A there: near it A^-1 is v w^H / (z - z_r), and the rows of H follow w^H. Only stable
+    poles within the band are returned.
+
+    >>> lines = np.linspace(8.0, 12.0, 81)
+    >>> one = 1.0 / (2j * np.pi * lines - (-1.0 + 2j * np.pi * 10.0))
+    >>> found = lscf(lines, one[:, None, None], np.ones((81, 1)), range(1, 2))[0]
+    >>> round(float(found.values[0].real), 2), round(float(found.values[0].imag / (2 * np.pi)), 3)
+    (-1.0, 10.0)
+    """
+    step = (frequencies[-1] - frequencies[0]) * len(frequencies) / (len(frequencies) - 1)
+    period = _SPAN / (2.0 * step)
+    count = responses.shape[2]
+    highest = max(orders)
+    normal = [_products(responses[:, output], weights[:, output], highest) for output in range(responses.shape[1])]
+    found: list[Poles] = []
+    for order in orders:
+        size = order + 1
+        reduced = sum(_reduced(products, size) for products in normal)
+        found.append(_poles(reduced, order, count, (frequencies[0], frequencies[-1], period)))
+    return tuple(found)
+
+
+def _products(rows: Array, weight: Array, highest: int) -> tuple[Array, Array, Array]:
+    """Lag sums of w^2, w^2 H and w^2 H^H H over the band: the normal equations are Toeplitz in the powers of z."""
+    lines = len(rows)
+    angles = _SPAN * np.pi * np.arange(lines) / lines
+    lags = np.exp(1j * np.outer(np.arange(-highest, highest + 1), angles))
+    squared = weight**2
+    power = squared[:, None, None] * np.conj(rows[:, :, None]) * rows[:, None, :]
+    count = rows.shape[1]
+    return lags @ squared, lags @ (squared[:, None] * rows), (lags @ power.reshape(lines, -1)).reshape(-1, count, count)
+
+
+def _reduced(products: tuple[Array, Array, Array], size: int) -> Array:
+    """T - S^H R^-1 S of one output: the numerator eliminated."""
+    weight, crossed, power = products
+    middle = (len(weight) - 1) // 2
+    lag = middle + np.arange(size)[None, :] - np.arange(size)[:, None]
+    count = crossed.shape[1]
+    own, mixed = weight[lag], -crossed[lag].reshape(size, size * count)
+    full = power[lag].transpose(0, 2, 1, 3).reshape(size * count, size * count)
+    return full - np.conj(mixed.T) @ np.linalg.solve(own, mixed)
+
+
+def _poles(reduced: Array, order: int, count: int, band: tuple[float, float, float]) -> Poles:
+    """Roots of det A, with the coefficient of the lowest power fixed: then mathematical poles come out unstable."""
+    low, high, period = band
+    rest = reduced[count:, count:]
+    solved = -np.linalg.lstsq(rest, reduced[count:, :count], rcond=None)[0]
+    coefficients = np.concatenate([np.eye(count), solved]).reshape(order + 1, count, count)
+    # x = 1/z turns the fixed coefficient into the leading one; A^T acts on the left null vectors of A.
+    companion = np.zeros((order * count, order * count), dtype=complex)
+    companion[count:, :-count] = np.eye((order - 1) * count)
+    companion[:count] = -np.concatenate([coefficients[power].T for power in range(1, order + 1)], axis=1)
+    roots, vectors = np.linalg.eig(companion)
+    return _physical(1.0 / roots[roots != 0.0], vectors[-count:, roots != 0.0].T, order, (low, high, period))
+
+
+def _physical(roots: Array, vectors: Array, order: int, band: tuple[float, float, float]) -> Poles:
+    low, high, period = band
+    middle = 0.5 * _SPAN * np.pi
+    angle = np.angle(roots * np.exp(-1j * middle)) + middle
+    values = np.log(np.abs(roots)) / period + 1j * (angle / period + 2.0 * np.pi * low)
+    inside = (values.imag >= 2.0 * np.pi * low) & (values.imag <= 2.0 * np.pi * high)
+    kept = np.flatnonzero((values.real < 0.0) & inside)
+    kept = kept[np.argsort(values.imag[kept])]
+    length = np.linalg.norm(vectors[kept], axis=1, keepdims=True)
+    return Poles(order, values[kept], vectors[kept] / np.where(length > 0.0, length, 1.0))
