@@ -1,0 +1,78 @@
+"""Modes that repeat: a platform of six frequencies beside many equal oscillators, every answer known."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from flexstage.analysis.modes import modes
+from flexstage.readings.linear.model import Channel, Contribution, LinearModel
+from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
+
+PLATFORM = np.array([1.0, 2.0, 3.0, 4.0, 5.0, 6.0])
+"""Frequencies of the platform's six freedoms, in rad/s."""
+
+
+def beside_oscillators(count: int, rate: float, turn: np.ndarray | None = None) -> LinearModel:
+    """Unit masses: a platform on six springs of its own, and `count` oscillators that are all alike.
+
+    With `turn` (n, n) orthogonal, the same system in coordinates q = turn q'.
+    """
+    size = 6 + count
+    change = np.eye(size) if turn is None else turn
+    bodies = {"platform": slice(0, 6)} | {f"post {number + 1}": slice(6 + number, 7 + number) for number in range(count)}
+    rates = np.concatenate([PLATFORM, np.full(count, rate)])
+    return LinearModel(
+        coordinates=tuple(f"q{number}" for number in range(size)),
+        stiffness={name: Contribution(change[rows], np.diag(rates[rows] ** 2)) for name, rows in bodies.items()},
+        inertia={name: Contribution(change[rows], np.eye(len(rates[rows]))) for name, rows in bodies.items()},
+        inputs=(),
+        force=np.zeros((size, 0)),
+        imposed={},
+        outputs=tuple(Channel(f"platform.{part}", unit) for part, unit in zip(COMPONENTS, TWIST_UNITS, strict=True)),
+        output=change[:6],
+        feedthrough=np.zeros((6, 0)),
+        rigid=np.zeros((size, 6)),
+        rigid_output=np.zeros((6, 6)),
+        base_inertia=np.zeros((size, 6)),
+        damping=None,
+        idle=(),
+        provenance="by hand",
+    )
+
+
+@pytest.mark.parametrize("count", [2, 5, 6, 7, 12])
+@pytest.mark.parametrize("rate", [4.0, 3.5])  # one of the platform's own frequencies, and none of them
+def test_clusters_of_any_size(count: int, rate: float) -> None:
+    """More equal modes than the platform has motions leave the platform's six as they are, and every shape an eigenvector."""
+    turn, _ = np.linalg.qr(np.random.default_rng(count).normal(size=(6 + count, 6 + count)))
+    model = beside_oscillators(count, rate, turn)
+    found = modes(model)
+    expected = np.sort(np.concatenate([PLATFORM, np.full(count, rate)])) / (2.0 * np.pi)
+    np.testing.assert_allclose(found.frequencies, expected, rtol=1e-9)
+    np.testing.assert_allclose(found.shapes.T @ model.inertia_matrix @ found.shapes, np.eye(6 + count), atol=1e-9)
+    squares = (2.0 * np.pi * expected) ** 2
+    np.testing.assert_allclose(found.shapes.T @ model.stiffness_matrix @ found.shapes, np.diag(squares), atol=1e-8)
+    np.testing.assert_allclose(found.share.sum(), 6.0, rtol=1e-9)  # the platform's energy over all modes: it has six freedoms
+
+
+@pytest.mark.parametrize("count", [7, 12])
+def test_the_platforms_modes_are_told_from_many_equal_ones(count: int) -> None:
+    """Seven and more posts at 3.5 rad/s hide none of the platform's six modes, nor lend them their names."""
+    found = modes(beside_oscillators(count, 3.5))
+    np.testing.assert_allclose(found.platform_frequencies, PLATFORM / (2.0 * np.pi), rtol=1e-9)
+    assert [found.names[index] for index in found.platform] == ["x", "y", "z", "tilt", "tilt", "yaw"]
+    assert len(found.local) == count
+    assert all("local" in found.names[index] for index in found.local)
+
+
+def test_small_clusters_follow_the_platforms_axes() -> None:
+    """A platform of equal frequencies in x and y, turned by an arbitrary basis, is shown along x and along y."""
+    turn, _ = np.linalg.qr(np.random.default_rng(1).normal(size=(8, 8)))
+    model = beside_oscillators(2, 9.0, turn)
+    stiffness = dict(model.stiffness)
+    stiffness["platform"] = Contribution(turn[:6], np.diag([1.0, 1.0, 9.0, 16.0, 25.0, 36.0]))
+    found = modes(replace(model, stiffness=stiffness))
+    np.testing.assert_allclose(np.abs(found.platform_shapes[:2, :2]), np.eye(2), atol=1e-9)

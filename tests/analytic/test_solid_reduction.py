@@ -1,0 +1,46 @@
+"""A bar reduced to one interface against closed forms: statics whatever is kept, frequencies with few modes."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.linalg import eigh
+
+from flexstage.readings.solid.bar import bar
+from flexstage.readings.solid.fineness import Fineness, Reduction
+from flexstage.readings.solid.mesh import meshed
+from flexstage.readings.solid.reduce import reduced_mesh
+from flexstage.readings.solid.superelement import Superelement
+
+AXIAL = 100e6
+"""E A / L of the bar [N/m]."""
+WAVE = np.sqrt(100e9 / 1000.0)
+"""Speed of sound sqrt(E / rho) [m/s]."""
+LENGTH = 0.1
+MESH = meshed(bar(), Fineness(order=2))
+
+
+def element(modes: int) -> Superelement:
+    return reduced_mesh(bar(), MESH, Reduction(Fineness(order=2), modes=modes))
+
+
+@pytest.mark.parametrize("modes", [0, 6])
+def test_own_weight_along_the_bar(modes: int) -> None:
+    """Spread over the mass, F moves the free end by F L / 2 E A and the mean by F L / 3 E A, without any mode kept too."""
+    found = element(modes)
+    mean = found.bodies["bar"][0]
+    motion = np.linalg.solve(found.stiffness["bar"], mean)
+    assert motion[0] * AXIAL == pytest.approx(1.0 / 2.0, rel=1e-6)
+    assert mean @ motion * AXIAL == pytest.approx(1.0 / 3.0, rel=1e-6)
+
+
+def test_frequencies_of_the_cantilever() -> None:
+    """Along, c / 4 L; bending, that of Euler's beam (1.8751^2) less what shear and turning sections take at L = 10 h."""
+    found = element(12)
+    values, shapes = eigh(found.stiffness["bar"], found.inertia["bar"])
+    frequencies = np.sqrt(values) / (2.0 * np.pi)
+    along = shapes[0] ** 2 * AXIAL / values > 0.05
+    np.testing.assert_allclose(frequencies[along][:1], WAVE / (4.0 * LENGTH), rtol=1e-3)
+    euler = 1.8751041**2 * WAVE * np.sqrt(0.01**2 / 12.0) / LENGTH**2 / (2.0 * np.pi)
+    np.testing.assert_allclose(frequencies[:2], euler, rtol=0.01)
+    assert np.all(frequencies[:2] < euler)
