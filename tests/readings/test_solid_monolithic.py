@@ -8,9 +8,15 @@ import numpy as np
 import pytest
 
 from flexstage.analysis.modes import modes
+from flexstage.cases.registry import case
+from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import PLATFORM
+from flexstage.parts.piezo import Piezo
 from flexstage.readings.linear.static import static_gain
+from flexstage.readings.solid.assemble import linear_model
+from flexstage.readings.solid.component import Component, Cut, components, groups
 from flexstage.readings.solid.monolithic import monolithic
+from flexstage.readings.solid.superelement import Skin, Superelement
 from flexstage.spatial.frame import COMPONENTS
 from tests.readings.solids import COARSE, read
 
@@ -34,3 +40,40 @@ def test_gain_of_the_stroke_agrees(whole):
     """The stroke's static gain does not care where the stage was cut, to 1e-3."""
     cut, one = (static_gain(model, TWIST, model.strokes).values[0, 0] for model in whole)
     assert cut == pytest.approx(one, rel=1e-3)
+
+
+def on_its_joints(component: Component) -> Superelement:
+    """A superelement without inner coordinates whose interfaces stand on springs: for what does not depend on elements."""
+    size = 6 * len(component.interfaces)
+    names = groups(component)
+    links = [piece for piece in component.pieces if piece.body is None]
+    stacks = [piece.name for piece in links if isinstance(piece.form, Piezo)]
+    none = np.zeros(0)
+    return Superelement(
+        interfaces=len(component.interfaces),
+        stiffness=dict.fromkeys(names, np.eye(size)),
+        inertia=dict.fromkeys(names, np.zeros((size, size))),
+        bodies=dict.fromkeys(component.bodies, np.zeros((6, size))),
+        body_inertia=dict.fromkeys(component.bodies, np.eye(6)),
+        resultants={piece.name: np.zeros((6, size)) for piece in links},
+        strokes=dict.fromkeys(stacks, np.zeros(size)),
+        free_strokes=dict.fromkeys(stacks, np.zeros(size)),
+        rigid=np.zeros((size, 6)),
+        carried=np.zeros((size, 6)),
+        skin=Skin(*[none] * 5),
+        freedoms=size,
+        elements=1,
+    )
+
+
+def test_every_casing_couples_its_own_end_faces_and_no_others():
+    """Six stacks with casings in one mesh: none of them resists the whole stage's rigid motion, or feels another stack's ends."""
+    stage = case("double-triangle")
+    (whole,) = components(stage, Cut.NONE)
+    model = linear_model(stage, expand(stage), ((whole, on_its_joints(whole)),), "on its joints")
+    casings = {name: item for name, item in model.stiffness.items() if name.endswith("(casing)")}
+    assert len(casings) == 6
+    for name, item in casings.items():
+        felt = {model.coordinates[index].rpartition(".")[0].partition(":")[0] for index in np.flatnonzero(np.any(item.operator, axis=0))}
+        assert felt == {name.removesuffix(" (casing)")}
+        assert np.abs(item.operator @ model.rigid).max() < 1e-9, name

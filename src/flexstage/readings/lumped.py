@@ -23,12 +23,24 @@ from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.mechanism.moving_mass import moving_inertia
 from flexstage.parts.material import Material
 from flexstage.parts.part import Part, Restricted
+from flexstage.readings.linear.channels import (
+    Motions,
+    absolute,
+    gauge_rows,
+    imposed_strokes,
+    input_channels,
+    loaded_places,
+    output_channels,
+    place_twists,
+    seen_places,
+)
 from flexstage.readings.linear.elimination import eliminate, pivoted
-from flexstage.readings.linear.model import Channel, Contribution, LinearModel, assembled, gathered
-from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNITS, Frame, seen_at
+from flexstage.readings.linear.model import Contribution, LinearModel, assembled, gathered
+from flexstage.spatial.frame import seen_at
 
 _SINGULAR = 1e-11
 _ROUNDING = 1e-12
+_STRETCHED: Array = np.eye(6)[0]
 
 _Value = TypeVar("_Value")
 
@@ -51,6 +63,11 @@ class _Stage:
     locked: tuple[Array, ...]
     rigid: Array
 
+    @property
+    def motions(self) -> Motions:
+        bodies = {name: self.order.selector(name) for name in self.assembly.bodies}
+        return Motions(bodies, lambda body, frame: twist_at(self.assembly, self.order, body, frame))
+
 
 def lumped(mechanism: Mechanism, masses: Masses = Masses.ALL) -> LinearModel:
     """Read a stage as rigid bodies on 6x6 links.
@@ -67,20 +84,20 @@ def lumped(mechanism: Mechanism, masses: Masses = Masses.ALL) -> LinearModel:
     size = stage.order.size
     basis, coordinates, idle = _reduced(stage, size)
     inertia = _inertia(mechanism, stage, masses)
-    channels, output, feedthrough = _outputs(stage)
-    inputs, force, imposed = _inputs(stage)
+    force, imposed = _inputs(stage)
+    output, feedthrough = _outputs(stage, imposed)
     return LinearModel(
         coordinates=coordinates,
         stiffness={name: _through(item, basis) for name, item in stage.strains.items()},
         inertia={name: _through(item, basis) for name, item in inertia.items()},
-        inputs=inputs,
+        inputs=input_channels(stage.assembly),
         force=_project(force, basis),
         imposed=imposed,
-        outputs=channels,
+        outputs=output_channels(stage.assembly),
         output=output if basis is None else output @ basis,
         feedthrough=feedthrough,
         rigid=_rigid_coordinates(stage, coordinates),
-        rigid_output=_rigid_output(stage, channels, output),
+        rigid_output=_rigid_output(stage, output),
         base_inertia=_project(_carried(stage, inertia), basis),
         damping=mechanism.damping,
         idle=idle,
@@ -232,53 +249,21 @@ def _carried(stage: _Stage, inertia: Mapping[str, Contribution]) -> Array:
     return gathered(inertia, seen) if inertia else np.zeros((stage.order.size, 6))
 
 
-def _inputs(stage: _Stage) -> tuple[tuple[Channel, ...], Array, dict[str, Array]]:
+def _inputs(stage: _Stage) -> tuple[Array, dict[str, Array]]:
     drives = stage.assembly.actuators
-    places = [(PLATFORM, stage.order.selector(PLATFORM))]
-    places += [(name, twist_at(stage.assembly, stage.order, body, _at(point))) for name, (body, point) in stage.assembly.points.items()]
-    channels = [Channel(name, "m") for name in drives]
-    channels += [Channel(f"{name}.{force}", unit) for name, _ in places for force, unit in zip(FORCES, WRENCH_UNITS, strict=True)]
-    columns = _spread((np.zeros((stage.order.size, len(drives))), *(_transposed(rows) for _, rows in places)))
-    imposed: dict[str, Array] = {}
-    for number, link in enumerate(drives.values()):
-        imposed[link] = np.zeros((6, len(channels)))
-        imposed[link][0, number] = 1.0
-    return tuple(channels), np.concatenate(columns, axis=-1), imposed
+    wrenches = [_transposed(rows) for rows in place_twists(loaded_places(stage.assembly), stage.motions)]
+    columns = _spread((np.zeros((stage.order.size, len(drives))), *wrenches))
+    return np.concatenate(columns, axis=-1), imposed_strokes(stage.assembly, dict.fromkeys(drives.values(), _STRETCHED))
 
 
-def _at(point: Array) -> Frame:
-    return Frame(np.eye(3), point)
-
-
-def _outputs(stage: _Stage) -> tuple[tuple[Channel, ...], Array, Array]:
-    """Twists of platform, points and all bodies, gauge readings, and stress resultants at every link's centre in its frame."""
-    assembly, order = stage.assembly, stage.order
-    seen = {PLATFORM: order.selector(PLATFORM)}
-    seen |= {name: twist_at(assembly, order, body, _at(point)) for name, (body, point) in assembly.points.items()}
-    seen |= {name: order.selector(name) for name in assembly.bodies if name != PLATFORM}
-    channels = [Channel(f"{name}.{part}", unit) for name in seen for part, unit in zip(COMPONENTS, TWIST_UNITS, strict=True)]
-    rows = list(seen.values())
-    for name, gauge in assembly.gauges.items():
-        ends = [twist_at(assembly, order, body, gauge.frame)[..., :1, :] for body in (gauge.body, gauge.base)]
-        rows.append(gauge.sign * (ends[0] - ends[1]))
-        channels.append(Channel(name, "m"))
-    passed = [np.zeros((len(channels), _input_count(assembly)))]
-    drives = {link: number for number, link in enumerate(assembly.actuators.values())}
+def _outputs(stage: _Stage, imposed: Mapping[str, Array]) -> tuple[Array, Array]:
+    rows = [*place_twists(seen_places(stage.assembly), stage.motions), *gauge_rows(stage.assembly, stage.motions)]
+    inputs = len(input_channels(stage.assembly))
+    passed = [np.zeros((row.shape[-2], inputs)) for row in rows]
     for name, item in stage.strains.items():
         rows.append(item.law @ item.operator)
-        passed.append(np.zeros((6, _input_count(assembly))) if name not in drives else _own_force(assembly, item, drives[name]))
-        channels += [Channel(f"{name}.{force}", unit) for force, unit in zip(FORCES, WRENCH_UNITS, strict=True)]
-    return tuple(channels), np.concatenate(_spread(tuple(rows)), axis=-2), np.concatenate(_spread(tuple(passed)), axis=-2)
-
-
-def _input_count(assembly: Assembly) -> int:
-    return len(assembly.actuators) + 6 * (1 + len(assembly.points))
-
-
-def _own_force(assembly: Assembly, item: Contribution, drive: int) -> Array:
-    imposed = np.zeros((6, _input_count(assembly)))
-    imposed[0, drive] = 1.0
-    return -item.law @ imposed
+        passed.append(-item.law @ imposed[name] if name in imposed else np.zeros((6, inputs)))
+    return np.concatenate(_spread(tuple(rows)), axis=-2), np.concatenate(_spread(tuple(passed)), axis=-2)
 
 
 def _rigid_coordinates(stage: _Stage, coordinates: tuple[str, ...]) -> Array:
@@ -286,10 +271,8 @@ def _rigid_coordinates(stage: _Stage, coordinates: tuple[str, ...]) -> Array:
     return stage.rigid[..., [places[name] for name in coordinates], :]
 
 
-def _rigid_output(stage: _Stage, channels: tuple[Channel, ...], output: Array) -> Array:
-    """Outputs when everything moves with the ground: absolute twists do, gauges and links do not feel it."""
-    absolute = np.array([channel.name.rpartition(".")[2] in COMPONENTS for channel in channels])
-    return np.where(absolute[:, None], output @ stage.rigid, 0.0)
+def _rigid_output(stage: _Stage, output: Array) -> Array:
+    return np.where(absolute(stage.assembly)[:, None], output @ stage.rigid, 0.0)
 
 
 def _transposed(matrix: Array) -> Array:

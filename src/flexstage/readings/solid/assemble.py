@@ -13,11 +13,22 @@ from flexstage.mechanism.expand import Assembly, PlacedLink
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
 from flexstage.mechanism.moving_mass import carried, moving_inertia
 from flexstage.parts.piezo import Piezo
-from flexstage.readings.linear.model import Channel, Contribution, LinearModel, assembled
-from flexstage.readings.solid.casing import casing
-from flexstage.readings.solid.component import Component, is_elastic
+from flexstage.readings.linear.channels import (
+    Motions,
+    absolute,
+    gauge_rows,
+    imposed_strokes,
+    input_channels,
+    loaded_places,
+    output_channels,
+    place_twists,
+    seen_places,
+)
+from flexstage.readings.linear.model import Contribution, LinearModel, assembled
+from flexstage.readings.solid.casing import casing, end_faces_apart
+from flexstage.readings.solid.component import Component, groups, is_elastic
 from flexstage.readings.solid.superelement import Superelement
-from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNITS, Frame, rigid_inertia, seen_at, transport, turned
+from flexstage.spatial.frame import COMPONENTS, Frame, rigid_inertia, seen_at, transport, turned
 
 _SINGULAR = 1e-13
 
@@ -50,6 +61,10 @@ class _Model:
             return np.zeros((6, self.size))
         return seen_at(frame, self.assembly.bodies[body].reference) @ self.twists[body]
 
+    @property
+    def motions(self) -> Motions:
+        return Motions(self.twists, self.twist)
+
 
 def linear_model(
     mechanism: Mechanism, assembly: Assembly, parts: tuple[tuple[Component, Superelement], ...], provenance: str
@@ -65,22 +80,20 @@ def linear_model(
     model = _joined(mechanism, assembly, parts)
     elastic, mass = dict(_stiffness(model)), dict(_inertia(model))
     _check_held(model, elastic)
-    channels, output, feedthrough = _outputs(model)
-    inputs, force, imposed = _inputs(model)
-    rigid = _rigid(model)
-    absolute = np.array([channel.name.rpartition(".")[2] in COMPONENTS for channel in channels])
+    force, imposed = _inputs(model)
+    output, feedthrough = _outputs(model, imposed)
     return LinearModel(
         coordinates=model.names,
         stiffness=elastic,
         inertia=mass,
-        inputs=inputs,
+        inputs=input_channels(assembly),
         force=force,
         imposed=imposed,
-        outputs=channels,
+        outputs=output_channels(assembly),
         output=output,
         feedthrough=feedthrough,
-        rigid=rigid,
-        rigid_output=np.where(absolute[:, None], _rigid_outputs(model, channels), 0.0),
+        rigid=_rigid(model),
+        rigid_output=_rigid_outputs(model),
         base_inertia=_carried(model),
         damping=mechanism.damping,
         idle=(),
@@ -158,44 +171,24 @@ def _operator(assembly: Assembly, component: Component, element: Superelement, b
     return result
 
 
-def group_names(component: Component) -> tuple[str, ...]:
-    """Names under which a component's pieces count: links by their own, solids by their body's, in order.
-
-    The same order in every copy, so that one copy's superelement serves all.
-
-    >>> from flexstage.readings.solid.bar import bar
-    >>> group_names(bar())
-    ('bar',)
-    """
-    return tuple(dict.fromkeys(piece.name if piece.body is None else piece.body for piece in component.pieces))
-
-
 def _links(component: Component) -> tuple[str, ...]:
     return tuple(piece.name for piece in component.pieces if piece.body is None)
 
 
 def _stiffness(model: _Model) -> Iterator[tuple[str, Contribution]]:
     for item in model.placed:
-        for name, law in zip(group_names(item.component), item.element.stiffness.values(), strict=True):
+        for name, law in zip(groups(item.component), item.element.stiffness.values(), strict=True):
             label = name if name in model.assembly.links else f"{name} (body)"
             yield label, Contribution(item.operator, law, _loss_factor(model, name))
     for name, link in model.assembly.links.items():
         law = casing(link)
         if law is not None:
-            yield f"{name} (casing)", Contribution(_across(model, link), law, _loss_factor(model, name))
+            yield f"{name} (casing)", Contribution(_across(_holder(model, name), link), law, _loss_factor(model, name))
 
 
-def _across(model: _Model, link: PlacedLink) -> Array:
-    """Relative twist (6, N) of a lone link's two end faces, second against first, at its centre in its frame."""
-    item = next(item for item in model.placed if link.name in _links(item.component))
-    rows = np.zeros((6, model.size))
-    for number, interface in enumerate(item.component.interfaces):
-        joint = interface.joint
-        at = Frame(item.component.place.rotation, item.component.place.point(joint.frame.position))
-        twist = turned(at.rotation) @ item.operator[6 * number : 6 * number + 6]
-        sign = 1.0 if joint.body == link.joins[1] else -1.0
-        rows += sign * seen_at(link.frame, at.position) @ twist
-    return rows
+def _across(item: Placed, link: PlacedLink) -> Array:
+    """Relative twist (6, N) of a stack's two end faces."""
+    return end_faces_apart(item.component, link) @ item.operator[: 6 * item.element.interfaces]
 
 
 def _loss_factor(model: _Model, name: str) -> float:
@@ -210,7 +203,7 @@ def _loss_factor(model: _Model, name: str) -> float:
 
 def _inertia(model: _Model) -> Iterator[tuple[str, Contribution]]:
     for item in model.placed:
-        for number, (name, law) in enumerate(zip(group_names(item.component), item.element.inertia.values(), strict=True)):
+        for number, (name, law) in enumerate(zip(groups(item.component), item.element.inertia.values(), strict=True)):
             if name in model.assembly.links:
                 yield f"{name} (link)", Contribution(item.operator, law)
             else:
@@ -251,61 +244,35 @@ def _check_held(model: _Model, elastic: Mapping[str, Contribution]) -> None:
         )
 
 
-def _inputs(model: _Model) -> tuple[tuple[Channel, ...], Array, dict[str, Array]]:
+def _inputs(model: _Model) -> tuple[Array, dict[str, Array]]:
     drives = model.assembly.actuators
-    places = [(PLATFORM, model.twists[PLATFORM])]
-    places += [(name, model.twist(body, Frame(np.eye(3), point))) for name, (body, point) in model.assembly.points.items()]
-    channels = [Channel(name, "m") for name in drives]
-    channels += [Channel(f"{name}.{part}", unit) for name, _ in places for part, unit in zip(FORCES, WRENCH_UNITS, strict=True)]
-    force = np.hstack([np.zeros((model.size, len(drives))), *(rows.T for _, rows in places)])
-    imposed: dict[str, Array] = {}
-    for number, link in enumerate(drives.values()):
-        free = _stroke(model, link)[1]
-        imposed[link] = np.zeros((len(free), len(channels)))
-        imposed[link][:, number] = free
-    return tuple(channels), force, imposed
+    wrenches = [rows.T for rows in place_twists(loaded_places(model.assembly), model.motions)]
+    force = np.hstack([np.zeros((model.size, len(drives))), *wrenches])
+    return force, imposed_strokes(model.assembly, {link: _stroke(model, link) for link in drives.values()})
 
 
-def _stroke(model: _Model, link: str) -> tuple[Placed, Array]:
-    item = next(item for item in model.placed if link in _links(item.component))
+def _stroke(model: _Model, link: str) -> Array:
+    """What a link's unit stroke imposes on its component's coordinates (n,)."""
+    item = _holder(model, link)
     number = [name for name in _links(item.component) if isinstance(model.assembly.links[name].part, Piezo)].index(link)
-    return item, list(item.element.free_strokes.values())[number]
+    return list(item.element.free_strokes.values())[number]
 
 
-def _outputs(model: _Model) -> tuple[tuple[Channel, ...], Array, Array]:
-    """Twists of platform, points and all bodies, gauge readings, and stress resultants at every link's centre in its frame."""
-    assembly = model.assembly
-    seen = {PLATFORM: model.twists[PLATFORM]}
-    seen |= {name: model.twist(body, Frame(np.eye(3), point)) for name, (body, point) in assembly.points.items()}
-    seen |= {name: model.twists[name] for name in assembly.bodies if name != PLATFORM}
-    channels = [Channel(f"{name}.{part}", unit) for name in seen for part, unit in zip(COMPONENTS, TWIST_UNITS, strict=True)]
-    rows = list(seen.values())
-    for name, gauge in assembly.gauges.items():
-        ends = [model.twist(body, gauge.frame)[:1] for body in (gauge.body, gauge.base)]
-        rows.append(gauge.sign * (ends[0] - ends[1]))
-        channels.append(Channel(name, "m"))
-    inputs = len(assembly.actuators) + 6 * (1 + len(assembly.points))
-    passed = [np.zeros((len(channels), inputs))]
-    for name in assembly.links:
-        own, through = _resultant(model, name, inputs)
-        rows.append(own)
-        passed.append(through)
-        channels += [Channel(f"{name}.{force}", unit) for force, unit in zip(FORCES, WRENCH_UNITS, strict=True)]
-    return tuple(channels), np.vstack(rows), np.vstack(passed)
+def _holder(model: _Model, link: str) -> Placed:
+    return next(item for item in model.placed if link in _links(item.component))
 
 
-def _resultant(model: _Model, name: str, inputs: int) -> tuple[Array, Array]:
-    item = next(item for item in model.placed if name in _links(item.component))
-    rows = list(item.element.resultants.values())[_links(item.component).index(name)]
-    total = rows @ item.operator
-    law = casing(model.assembly.links[name])
-    if law is not None:
-        total = total + law @ _across(model, model.assembly.links[name])
-    through = np.zeros((6, inputs))
-    drives = list(model.assembly.actuators.values())
-    if name in drives:
-        through[:, drives.index(name)] = -rows @ _stroke(model, name)[1]
-    return total, through
+def _outputs(model: _Model, imposed: Mapping[str, Array]) -> tuple[Array, Array]:
+    rows = [*place_twists(seen_places(model.assembly), model.motions), *gauge_rows(model.assembly, model.motions)]
+    inputs = len(input_channels(model.assembly))
+    passed = [np.zeros((len(row), inputs)) for row in rows]
+    for name, link in model.assembly.links.items():
+        item = _holder(model, name)
+        law, sleeve = list(item.element.resultants.values())[_links(item.component).index(name)], casing(link)
+        own = law @ item.operator
+        rows.append(own if sleeve is None else own + sleeve @ _across(item, link))
+        passed.append(-law @ imposed[name] if name in imposed else np.zeros((6, inputs)))
+    return np.vstack(rows), np.vstack(passed)
 
 
 def _rigid(model: _Model) -> Array:
@@ -323,16 +290,11 @@ def _rigid(model: _Model) -> Array:
     return result
 
 
-def _rigid_outputs(model: _Model, channels: tuple[Channel, ...]) -> Array:
-    """Absolute twists when everything moves with the ground."""
+def _rigid_outputs(model: _Model) -> Array:
+    """Outputs (p, 6) when everything moves with the ground: absolute twists do."""
     centre = model.assembly.bodies[PLATFORM].reference
-    places = {name: body.reference for name, body in model.assembly.bodies.items()}
-    places |= {name: point for name, (_, point) in model.assembly.points.items()}
-    result = np.zeros((len(channels), 6))
-    for number, channel in enumerate(channels):
-        owner, _, part = channel.name.rpartition(".")
-        if owner in places and part in COMPONENTS:
-            result[number] = transport(places[owner] - centre)[COMPONENTS.index(part)]
+    result = np.zeros((len(output_channels(model.assembly)), 6))
+    result[absolute(model.assembly)] = np.vstack([transport(place.point - centre) for place in seen_places(model.assembly).values()])
     return result
 
 

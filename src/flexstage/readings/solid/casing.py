@@ -8,7 +8,9 @@ from flexstage.base.finding import refuse
 from flexstage.base.number import Array
 from flexstage.mechanism.expand import PlacedLink
 from flexstage.parts.piezo import Piezo
+from flexstage.readings.solid.component import Component
 from flexstage.readings.solid.piece import stack_medium
+from flexstage.spatial.frame import seen_at
 
 
 def casing(link: PlacedLink) -> Array | None:
@@ -38,3 +40,24 @@ def casing(link: PlacedLink) -> Array | None:
     extra = stated - own
     across, bending = 12.0 * extra / length**3, extra / length
     return np.diag([0.0, across, across, bending / (1.0 + float(np.real(part.poisson))), bending, bending])
+
+
+def end_faces_apart(component: Component, link: PlacedLink) -> Array:
+    """Relative twist (6, 6 m) of a stack's end faces, second against first, at its centre in its frame, by the component's interfaces.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.mechanism.expand import expand
+    >>> from flexstage.readings.solid.component import components
+    >>> stage = parallelogram()
+    >>> stack = next(part for part in components(stage) if part.name == "B/pzt")
+    >>> apart = end_faces_apart(stack, expand(stage).links["B/pzt"])
+    >>> [float(value) for value in apart[0, [0, 6]]]  # along the stack
+    [-1.0, 1.0]
+    """
+    frame = next(piece.frame for piece in component.pieces if piece.name == link.name)
+    rows = np.zeros((6, 6 * len(component.interfaces)))
+    for number, item in enumerate(component.interfaces):
+        if item.joint.link == link.name:
+            sign = 1.0 if item.joint.body == link.joins[1] else -1.0
+            rows[:, 6 * number : 6 * number + 6] = sign * seen_at(frame, item.joint.frame.position)
+    return rows

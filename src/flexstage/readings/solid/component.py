@@ -94,6 +94,22 @@ def components(mechanism: Mechanism, cut: Cut = Cut.UNITS) -> tuple[Component, .
     return tuple(_component(graph, nodes, frames) for nodes in members.values())
 
 
+def groups(component: Component) -> dict[str, tuple[int, ...]]:
+    """Pieces that count under one name, in order: every link by itself, all solids of a body together.
+
+    The order is the same in every copy, so that one copy's superelement serves all.
+
+    >>> from flexstage.readings.solid.bar import bar
+    >>> groups(bar())
+    {'bar': (0,)}
+    """
+    result: dict[str, tuple[int, ...]] = {}
+    for number, piece in enumerate(component.pieces):
+        name = piece.name if piece.body is None else piece.body
+        result[name] = (*result.get(name, ()), number)
+    return result
+
+
 def link_joints(link: PlacedLink, form: Form) -> tuple[Joint, Joint]:
     """The joints of a link: its first body at the end face towards -x of the link frame, its second at +x.
 

@@ -147,13 +147,18 @@ def applied(form: ngsolve.BilinearForm, vectors: Array) -> Array:
     >>> round((moved.T @ applied(inertia(space, assemble=False), moved)).item(), 9)
     0.01
     """
-    source, target = form.space.ndof, np.empty_like(vectors)
-    x, y = ngsolve.BaseVector(source), ngsolve.BaseVector(source)
+    return _by_columns(form.Apply, vectors)
+
+
+def _by_columns(operator: Callable[[ngsolve.BaseVector, ngsolve.BaseVector], object], vectors: Array) -> Array:
+    """Columns (n, k) that an operator, which writes to its second vector, makes of columns (n, k)."""
+    x, y = ngsolve.BaseVector(len(vectors)), ngsolve.BaseVector(len(vectors))
+    result = np.empty_like(vectors)
     for number in range(vectors.shape[1]):
         x.FV().NumPy()[:] = vectors[:, number]
-        form.Apply(x, y)
-        target[:, number] = y.FV().NumPy()
-    return target
+        operator(x, y)
+        result[:, number] = y.FV().NumPy()
+    return result
 
 
 def stroke_force(space: Field, frame: Frame, length: float) -> Array:
@@ -273,13 +278,7 @@ def times(form: ngsolve.BilinearForm, vectors: Array) -> Array:
     >>> times(inertia(space), np.zeros((space.size, 2))).shape == (space.size, 2)
     True
     """
-    x, y = form.mat.CreateRowVector(), form.mat.CreateColVector()
-    result = np.empty_like(vectors)
-    for number in range(vectors.shape[1]):
-        x.FV().NumPy()[:] = vectors[:, number]
-        y.data = form.mat * x
-        result[:, number] = y.FV().NumPy()
-    return result
+    return _by_columns(form.mat.Mult, vectors)
 
 
 def shifted(space: Field, elastic: ngsolve.BilinearForm, mass: ngsolve.BilinearForm, shift: float) -> ngsolve.BilinearForm:
@@ -318,15 +317,8 @@ def factored(space: Field, form: ngsolve.BilinearForm) -> Solver:
     100.0
     """
     inverse = form.mat.Inverse(space.space.FreeDofs(), inverse="sparsecholesky")
-    x, y = form.mat.CreateColVector(), form.mat.CreateColVector()
 
     def solve(forces: Array) -> Array:
-        columns = forces if forces.ndim == 2 else forces[:, None]
-        result = np.empty_like(columns)
-        for number in range(columns.shape[1]):
-            x.FV().NumPy()[:] = columns[:, number]
-            y.data = inverse * x
-            result[:, number] = y.FV().NumPy()
-        return result if forces.ndim == 2 else result[:, 0]
+        return _by_columns(inverse.Mult, forces) if forces.ndim == 2 else _by_columns(inverse.Mult, forces[:, None])[:, 0]
 
     return solve

@@ -23,7 +23,7 @@ from flexstage.parts.notch import Notch
 from flexstage.parts.profile import Filleted
 from flexstage.parts.rod import Rod
 from flexstage.readings.solid.estimate import Accuracy, change, remaining
-from flexstage.readings.solid.field import Field, applied, factored, field, rigid, stiffness
+from flexstage.readings.solid.field import Field, applied, factored, field, rigid, stiffness, times
 from flexstage.readings.solid.mesh import Meshed
 from flexstage.readings.solid.piece import Medium, medium, span
 from flexstage.readings.solid.specimen import END, START, Hinge, Specimen, added, specimen
@@ -172,20 +172,10 @@ def _space(mesh: ngsolve.Mesh, own: Medium, order: int) -> Field:
 def _law(part: Hinge, space: Field) -> Array:
     """Stiffness (6, 6) of the whole specimen: energies of the motions that move one outer face and hold the other."""
     form, motion = stiffness(space), rigid(space, identity(), faces=END)
-    motion -= factored(space, form)(_times(form, motion))
+    motion -= factored(space, form)(times(form, motion))
     law = motion.T @ applied(stiffness(space, assemble=False), motion)  # by strains: the rounding of K u drowns a thin leaf
     _require_symmetric(part, law)
     return _symmetric(law)
-
-
-def _times(form: ngsolve.BilinearForm, vectors: Array) -> Array:
-    x, y = form.mat.CreateRowVector(), form.mat.CreateColVector()
-    result = np.empty_like(vectors)
-    for number in range(vectors.shape[1]):
-        x.FV().NumPy()[:] = vectors[:, number]
-        y.data = form.mat * x
-        result[:, number] = y.FV().NumPy()
-    return result
 
 
 def hinge_mesh(part: Hinge, stub: float | None = None, factor: float = 1.0, order: int = 5) -> ngsolve.Mesh:

@@ -11,13 +11,12 @@ from flexstage.mechanism.mechanism import Mechanism
 from flexstage.readings.linear.model import LinearModel
 from flexstage.readings.solid.assemble import linear_model
 from flexstage.readings.solid.cache import Cache
-from flexstage.readings.solid.casing import casing
+from flexstage.readings.solid.casing import casing, end_faces_apart
 from flexstage.readings.solid.component import Component, Cut, components
 from flexstage.readings.solid.fineness import Reduction
 from flexstage.readings.solid.parts import Ways, reduce_parts
 from flexstage.readings.solid.progress import Progress
 from flexstage.readings.solid.remote import Limits
-from flexstage.spatial.frame import Frame, seen_at
 
 _CACHE, _STANDARD = Cache(), Reduction(modes=18)
 
@@ -54,16 +53,6 @@ def _springs(assembly: Assembly, component: Component) -> Array:
     for piece in component.pieces:
         law = None if piece.body is not None else casing(assembly.links[piece.name])
         if law is not None:
-            across = _across(component, piece.name, piece.frame, assembly.links[piece.name].joins[1])
+            across = end_faces_apart(component, assembly.links[piece.name])
             total += across.T @ law @ across
     return total
-
-
-def _across(component: Component, link: str, frame: Frame, second: str) -> Array:
-    """Relative twist (6, 6 m) of a link's end faces, second against first, at its centre in its frame."""
-    rows = np.zeros((6, 6 * len(component.interfaces)))
-    for number, item in enumerate(component.interfaces):
-        if item.joint.link == link:
-            sign = 1.0 if item.joint.body == second else -1.0
-            rows[:, 6 * number : 6 * number + 6] = sign * seen_at(frame, item.joint.frame.position)
-    return rows

@@ -16,7 +16,7 @@ from scipy.sparse.linalg import LinearOperator, eigsh
 from flexstage.base.number import Array
 from flexstage.mechanism.mechanism import PLATFORM
 from flexstage.parts.piezo import Piezo
-from flexstage.readings.solid.component import Component
+from flexstage.readings.solid.component import Component, groups
 from flexstage.readings.solid.field import Field, Solver, applied, degrees_of, field, inertia, rigid, stiffness, stroke_force, times
 from flexstage.readings.solid.fineness import Reduction
 from flexstage.readings.solid.hold import held, is_rigid
@@ -94,20 +94,6 @@ def _strokes(problem: _Problem) -> dict[int, Array]:
         for number, piece in enumerate(problem.component.pieces)
         if isinstance(piece.form, Piezo)
     }
-
-
-def groups(component: Component) -> dict[str, tuple[int, ...]]:
-    """Pieces that share a name in the model: every link by itself, all solids of a body together.
-
-    >>> from flexstage.readings.solid.bar import bar
-    >>> groups(bar())
-    {'bar': (0,)}
-    """
-    result: dict[str, tuple[int, ...]] = {}
-    for number, piece in enumerate(component.pieces):
-        name = piece.name if piece.body is None else piece.body
-        result[name] = (*result.get(name, ()), number)
-    return result
 
 
 def _elements(problem: _Problem, name: str) -> Array:
