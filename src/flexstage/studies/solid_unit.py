@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
 from flexstage.analysis.statics import statics
 from flexstage.base.finding import refuse
-from flexstage.base.labelled import Matrix
 from flexstage.base.number import Array
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
@@ -21,6 +19,7 @@ from flexstage.readings.solid.fineness import Reduction
 from flexstage.spatial.frame import COMPONENTS
 from flexstage.studies.solid_read import STANDARD_REDUCTION, STANDARD_SOLIDS, SolidRead, Solids, read_solid
 from flexstage.studies.solid_stress import LinkStress, link_stress
+from flexstage.studies.unit_output import UnitOutput
 from flexstage.studies.units import as_vector, driven_units
 
 _TWIST = tuple(f"platform.{name}" for name in COMPONENTS)
@@ -28,23 +27,13 @@ _STEPS = 5
 
 
 @dataclass(frozen=True, eq=False)
-class SolidUnit:
-    """One unit alone, in its own frame, by the solid reading.
+class SolidUnit(UnitOutput):
+    """One unit alone by the solid reading.
 
-    `direction` (3,) is that of its output; `stiffness` 6x6 at the output, strokes held; `axial` and `lateral` [N/m] its translations along
-    and across the direction, all else held (lateral: softest, stiffest). With the output guided along the direction and not loaded: `gain`
-    output per stroke, `ideal_gain`, `loss`; `strokes` (k,) [m] up to the stack's full one with `outputs` (k,) [m], linear; `stress` at
-    every link at the full stroke. `motion` (N,) are the coordinates of `read` at the full stroke, for pictures.
+    With its output guided along the direction and not loaded: `strokes` (k,) [m] up to the stack's full one with `outputs` (k,) [m],
+    linear; `stress` at every link at the full stroke. `motion` (N,) are the coordinates of `read` at the full stroke, for pictures.
     """
 
-    unit: str
-    copy: str
-    direction: Array
-    stiffness: Matrix
-    axial: float
-    lateral: tuple[float, float]
-    gain: float
-    ideal_gain: float
     strokes: Array
     stress: LinkStress
     motion: Array
@@ -69,16 +58,6 @@ class SolidUnit:
     def outputs(self) -> Array:
         """Outputs (k,) [m] of the strokes."""
         return self.gain * self.strokes
-
-    @property
-    def figures(self) -> Mapping[str, float]:
-        """What an error is estimated of, in SI."""
-        return {
-            "axial stiffness": self.axial,
-            "softest lateral stiffness": self.lateral[0],
-            "stiffest lateral stiffness": self.lateral[1],
-            "gain": self.gain,
-        }
 
 
 def solid_units(mechanism: Mechanism, reduction: Reduction = STANDARD_REDUCTION, reduce: Solids = STANDARD_SOLIDS) -> dict[str, SolidUnit]:
@@ -110,9 +89,6 @@ def _unit(mechanism: Mechanism, names: tuple[str, str], direction: Array, how: t
     stiffness = statics(read.model).stiffness
     along = np.concatenate([direction, np.zeros(3)])
     driven = static_gain(read.model, _TWIST, (copy,)).values[:, 0]
-    block = stiffness.values[:3, :3]
-    across = np.linalg.svd(direction[None, :])[2][1:]
-    lateral = np.linalg.eigvalsh(across @ block @ across.T)
     axial = float(along @ stiffness.values @ along)
     gain = float(along @ stiffness.values @ driven) / axial
     guide = stiffness.values @ (along * gain - driven)
@@ -123,8 +99,6 @@ def _unit(mechanism: Mechanism, names: tuple[str, str], direction: Array, how: t
         copy=copy,
         direction=direction,
         stiffness=stiffness,
-        axial=axial,
-        lateral=(float(lateral[0]), float(lateral[1])),
         gain=gain,
         ideal_gain=float(direction @ ideal(isolate(mechanism, copy, guide=as_vector(direction))).jacobian[:3, 0]),
         strokes=full * np.arange(1, _STEPS + 1) / _STEPS,

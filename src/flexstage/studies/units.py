@@ -9,7 +9,6 @@ import numpy as np
 from flexstage.analysis.lost_motion import lost_motion
 from flexstage.analysis.statics import statics
 from flexstage.base.finding import DesignError
-from flexstage.base.labelled import Matrix
 from flexstage.base.number import Array, Vector
 from flexstage.mechanism.expand import copies, expand
 from flexstage.mechanism.mechanism import Mechanism
@@ -19,30 +18,21 @@ from flexstage.readings.linear.static import static_gain
 from flexstage.readings.lumped import lumped
 from flexstage.readings.mapped import LeverStiffness, computed_stiffness, lever_stiffness
 from flexstage.studies.omitted import Omitted, lever_theory, omitted
+from flexstage.studies.unit_output import UnitOutput
 
 _DISPLACEMENTS = ("platform.x", "platform.y", "platform.z")
 _FORCES = ("platform.fx", "platform.fy", "platform.fz")
 
 
 @dataclass(frozen=True, eq=False)
-class UnitResult:
-    """One unit alone, in its own frame, by the lumped reading.
+class UnitResult(UnitOutput):
+    """One unit alone by the lumped reading.
 
-    `direction` (3,) is that of its output; `stiffness` 6x6 at the output, all other freedoms held, strokes held; `axial` and `lateral`
-    [N/m] its translations along and across the direction (lateral: softest, stiffest). With the output guided along the direction:
-    `gain` output per stroke, `ideal_gain`, `loss`, `load_compliance` [m/N]. `series` is its stiffness in actuator coordinates for the
-    mapped reading (`None` where that reading refuses). For a lever unit, `lever` are its springs and `omitted` says what Eq. 3
+    With its output guided along the direction: `loss` and `load_compliance` [m/N]. `series` is its stiffness in actuator coordinates for
+    the mapped reading (`None` where that reading refuses). For a lever unit, `lever` are its springs and `omitted` says what Eq. 3
     leaves out of its gain, freedom by freedom.
     """
 
-    unit: str
-    copy: str
-    direction: Array
-    stiffness: Matrix
-    axial: float
-    lateral: tuple[float, float]
-    gain: float
-    ideal_gain: float
     loss: float
     load_compliance: float
     series: float | None
@@ -95,10 +85,6 @@ def as_vector(direction: Array) -> Vector:
 
 
 def _unit(mechanism: Mechanism, copy: str, unit: str, direction: Array) -> UnitResult:
-    alone = statics(lumped(isolate(mechanism, copy))).stiffness
-    block = alone.values[:3, :3]
-    across = np.linalg.svd(direction[None, :])[2][1:]
-    lateral = np.linalg.eigvalsh(across @ block @ across.T)
     guided = isolate(mechanism, copy, guide=as_vector(direction))
     model, kinematics = lumped(guided), ideal(guided)
     gain = direction @ static_gain(model, _DISPLACEMENTS, (copy,)).values[:, 0]
@@ -110,9 +96,7 @@ def _unit(mechanism: Mechanism, copy: str, unit: str, direction: Array) -> UnitR
         unit=unit,
         copy=copy,
         direction=direction,
-        stiffness=alone,
-        axial=float(direction @ block @ direction),
-        lateral=(float(lateral[0]), float(lateral[1])),
+        stiffness=statics(lumped(isolate(mechanism, copy))).stiffness,
         gain=float(gain),
         ideal_gain=float(ideal_gain),
         loss=float(lost_motion(kinematics, model).loss.values[0, 0]),

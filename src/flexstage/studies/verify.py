@@ -187,7 +187,7 @@ def unit_rows(mechanism: Mechanism, matched: Mechanism, found: Resolved[dict[str
     theory, better = units(mechanism), units(matched)
     for name, unit in found.result.items():
         touched = _touched(mechanism, name)
-        first, second = _unit_figures(theory[name]), _unit_figures(better[name])
+        first, second = theory[name].figures, better[name].figures
         simple = _mapped_unit(theory[name])
         for figure, value in unit.figures.items():
             dimension = "1" if figure == "gain" else "N/m"
@@ -206,15 +206,6 @@ def unit_rows(mechanism: Mechanism, matched: Mechanism, found: Resolved[dict[str
             error = found.errors.get(f"{name}: gain", 0.0) * (1.0 - unit.loss) / unit.loss
             values = (theory[name].loss, unit.loss, error)
             yield Row(f"unit {name}", "loss", "1", *values, calibrated=better[name].loss, calibration=touched)
-
-
-def _unit_figures(unit: UnitResult) -> dict[str, float]:
-    return {
-        "axial stiffness": unit.axial,
-        "softest lateral stiffness": unit.lateral[0],
-        "stiffest lateral stiffness": unit.lateral[1],
-        "gain": unit.gain,
-    }
 
 
 def _mapped_unit(unit: UnitResult) -> dict[str, float]:
