@@ -59,7 +59,8 @@ class SolidHinge:
     def separable(self) -> tuple[bool, ...]:
         """Whether each direct compliance can be told from that of the stubs beside the hinge: they have at most 90 % of the whole.
 
-        Stubs of a wide notch twist far less than Saint-Venant's beams, which are taken off.
+        In torsion a wide notch is stiffer than its stubs, which are taken off as beams held from warping (Vlasov): a small difference of
+        two larger numbers, and beams are too rough for it.
         """
         whole, own = (np.diag(each) for each in (self.found.whole, self.found.compliance))
         return tuple(bool(value) for value in own >= (1.0 - _MOST_STUB) * whole)
