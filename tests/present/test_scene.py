@@ -14,6 +14,7 @@ from flexstage.cases.double_triangle import SM_REF_A, double_triangle
 from flexstage.present.plan import plan_figure
 from flexstage.present.scene.facet import Facet, Kind, Paint, extruded, loft, rectangle
 from flexstage.present.scene.hidden import visible
+from flexstage.present.scene.inner import outer
 from flexstage.present.scene.order import farthest_first, partition
 from flexstage.present.scene.stage import displaced, largest_motion, scene
 from flexstage.present.scene.view import Side, ordered, unsplit, view
@@ -92,6 +93,23 @@ def painted(polygons: list[Array], shown: list[bool]) -> Array:
                 inside &= (b[0] - a[0]) * (y - a[1]) - (b[1] - a[1]) * (x - a[0]) >= 0.0
             result[inside] = index
     return result
+
+
+def _box(name: str, low: tuple[float, float, float], high: tuple[float, float, float]) -> list[Facet]:
+    corners = 0.5 * (np.array(low) + high) + extruded(np.array([-0.5, 0.5]), [rectangle(1.0, 1.0)] * 2) * (np.array(high) - low)
+    return loft(corners, Paint(Kind.PLATFORM, ("platform", "platform"), name))
+
+
+def test_faces_between_outlines_of_a_body_are_left_out() -> None:
+    """Of a plate with a smaller lug below and a strip along a part of its side, twice the two contacts; the skin stays closed."""
+    plate, lug = _box("plate", (0, 0, 0), (6, 4, 1)), _box("lug", (1, 1, -2), (3, 2, 0))
+    strip, apart = _box("strip", (2, 4, 0), (7, 5, 1)), _box("apart", (0, 0, 2), (6, 4, 3))  # the strip stands over the plate's end
+    everything = plate + lug + strip + apart
+    skin = outer(everything)
+    assert sum(map(area, everything)) - sum(map(area, skin)) == pytest.approx(2.0 * (2.0 * 1.0 + 4.0 * 1.0))
+    flux = sum(float((f.points[0] @ f.normal) * area(f)) for f in skin) / 3.0
+    assert flux == pytest.approx(6 * 4 * 1 + 2 * 1 * 2 + 5 * 1 * 1 + 6 * 4 * 1)
+    assert outer(plate + apart) == plate + apart
 
 
 @settings(max_examples=60)

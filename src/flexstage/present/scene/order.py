@@ -43,7 +43,7 @@ def partition(facets: Sequence[Facet], size: float) -> Partition | None:
         if side == 0:
             here.append(facet)
         elif side == 2:
-            first, second = _split(facet, distance)
+            first, second = split(facet, distance)
             before.append(first)
             behind.append(second)
         else:
@@ -73,8 +73,14 @@ def _trial(divider: Facet, points: Array, starts: Array, tolerance: float) -> tu
     return float(cost), normal, np.where(ahead & back, 2, ahead.astype(int) - back.astype(int)), distance
 
 
-def _split(facet: Facet, distance: Array) -> tuple[Facet, Facet]:
-    """The parts of a facet before and behind a plane at signed distances of its points."""
+def split(facet: Facet, distance: Array) -> tuple[Facet, Facet]:
+    """The parts of a facet before and behind a plane at signed distances (n,) of its points; they know the whole.
+
+    >>> from flexstage.present.scene.facet import Kind, Paint, line
+    >>> halves = split(line(np.array([[-1.0, 0, 0], [1.0, 0, 0]]), Paint(Kind.BODY, ("a", "b"))), np.array([-1.0, 1.0]))
+    >>> [half.points[:, 0].tolist() for half in halves]
+    [[0.0, 1.0], [-1.0, 0.0]]
+    """
     return _clipped(facet, distance), _clipped(facet, -distance)
 
 

@@ -12,6 +12,7 @@ from flexstage.mechanism.expand import Assembly, PlacedBody, PlacedGauge, Placed
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
 from flexstage.parts.part import is_actuator
 from flexstage.present.scene.facet import Facet, Kind, Paint, circle, cross, extruded, line, loft, rectangle
+from flexstage.present.scene.inner import outer
 from flexstage.present.scene.order import Partition, partition
 from flexstage.present.scene.primitives import part_facets, part_length, part_section, solid_facets
 from flexstage.spatial.frame import Frame, axes
@@ -162,6 +163,8 @@ def _body(body: PlacedBody, joints: list[Array], size: float) -> list[Facet]:
     if not body.solids:
         return _bars(joints, paint, _BAR * size)
     facets = _solids(body.solids, paint)
+    if paint.kind is Kind.PLATFORM:  # it is seen through
+        facets = outer(facets)
     points = np.concatenate([facet.points for facet in facets])
     return facets + list(_legs(points, joints, paint, size))
 
