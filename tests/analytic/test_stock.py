@@ -7,8 +7,9 @@ from dataclasses import asdict
 import pytest
 
 from flexstage.cases.double_triangle import double_triangle
-from flexstage.cases.stock import ALUMINIUM
+from flexstage.cases.stock import ALUMINIUM, GLASS_CERAMIC, STEEL
 from flexstage.mechanism.store import loads
+from flexstage.parts.material import Material
 
 # The stacks of the case are as long as its unit needs, and their casings are computed from that length.
 OWN = {"length", "mass", "bending_rigidity", "source"}
@@ -21,9 +22,13 @@ def catalogued(section: str, like: str) -> dict[str, object]:
     return {name: value for name, value in asdict(getattr(stage, section)["one"]).items() if value is not None}
 
 
-def test_aluminium() -> None:
-    expected = {name: value for name, value in catalogued("materials", "7075-T6").items() if name not in OWN}
-    assert {name: getattr(ALUMINIUM, name) for name in expected} == expected
+@pytest.mark.parametrize(
+    ("material", "like"), [(ALUMINIUM, "7075-T6"), (STEEL, "17-4PH"), (GLASS_CERAMIC, "Zerodur")], ids=["7075", "17-4", "glass"]
+)
+def test_materials(material: Material, like: str) -> None:
+    expected = {name: value for name, value in catalogued("materials", like).items() if name not in OWN}
+    assert {"young", "poisson", "density", "expansion"} <= set(expected)
+    assert {name: getattr(material, name) for name in expected} == expected
 
 
 @pytest.mark.parametrize(("part", "like"), [("stack_horizontal", "PSt 1000/10/150 VS18"), ("stack_vertical", "PSt 1000/16/200 VS25")])

@@ -16,6 +16,24 @@ from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
 
 _PLATFORM_TWIST = tuple(f"platform.{name}" for name in COMPONENTS)
 INTERNAL = "internal stress"
+_NOISE = 1e-9
+
+
+class Shares(dict[str, Array]):
+    """Shares (...) of one whole by name."""
+
+    def __str__(self) -> str:
+        """The first design's shares, largest first, four digits; what rounding left (below 1e-9 of the largest) is not shown.
+
+        >>> print(Shares({"foot.rz": np.array(0.01), "pzt.x": np.array(1e-17), "pivot.rz": np.array(0.25)}))
+        pivot.rz  0.25
+        foot.rz   0.01
+        """
+        first = {name: float(np.ravel(np.real(share))[0]) for name, share in self.items()}
+        ranked = sorted(first, key=lambda name: -abs(first[name]))
+        shown = [name for name in ranked if abs(first[name]) > _NOISE * abs(first[ranked[0]])]
+        width = max(map(len, shown), default=0)
+        return "\n".join(f"{name:{width}}  {first[name]:.4g}" for name in shown)
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,10 +55,10 @@ class LostMotion:
     length: float
     provenance: str
 
-    def of(self, actuator: str) -> dict[str, Array]:
+    def of(self, actuator: str) -> Shares:
         """Budget of an actuator's own loss by part: shares that add up to the loss."""
         index = self.loss.rows.index(actuator)
-        return {name: share.values[..., index, index] for name, share in self.budget.items()}
+        return Shares({name: share.values[..., index, index] for name, share in self.budget.items()})
 
 
 def lost_motion(kinematics: Kinematics, model: LinearModel) -> LostMotion:

@@ -5,7 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from flexstage.base.number import Array
+
+_ROUNDING = 1e-15
+"""Of the largest entry: what is smaller is printed as 0."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,6 +73,7 @@ class Matrix:
         B1  1      -0.025
         """
         first = self.values[(0,) * (self.values.ndim - 2)]
+        first = np.where(np.abs(first) < _ROUNDING * np.max(np.abs(first), initial=0.0), 0.0, first)
         columns, rows, cells = self._units()
         lines = [["", *(_with(name, unit) for name, unit in zip(self.columns, columns, strict=True))]]
         for name, unit, values, own in zip(self.rows, rows, first, cells, strict=True):

@@ -1,4 +1,7 @@
-"""Materials, stacks and gauges that several shipped cases are made of."""
+"""Materials, stacks and gauges that several shipped cases are made of.
+
+What the catalogue states of a material is taken from there, so that it has one source (`tests/analytic/test_stock.py`).
+"""
 
 from __future__ import annotations
 
@@ -20,22 +23,22 @@ ALUMINIUM = Material(
 )
 
 STEEL = Material(
-    young=196 * GPa,
-    poisson=0.27,
-    density=7800.0,
+    young=200 * GPa,
+    poisson=0.285,
+    density=7750.0,
     yield_stress=1170 * MPa,
     expansion=10.8e-6,
     loss_factor=0.002,
-    source="17-4 PH, H900, typical; loss factor assumed",
+    source="17-4PH, H900; yield stress typical, loss factor assumed",
 )
 
 GLASS_CERAMIC = Material(
-    young=90.3 * GPa,
+    young=91 * GPa,
     poisson=0.24,
     density=2530.0,
     expansion=0.02e-6,
     loss_factor=0.001,
-    source="low-expansion glass ceramic, typical; loss factor assumed",
+    source="Zerodur glass ceramic; loss factor assumed",
 )
 
 SLIM_STACK = Piezo(
@@ -81,7 +84,7 @@ GAUGE = Gauge(
 )
 
 SOURCES: Mapping[str, str] = {
-    "handbook": "typical handbook value of the alloy",
+    "handbook": "typical handbook value of the material, that of the shipped catalogue",
     "typical": "typical of the maker's class of part; put the data sheet of the part you buy in its place",
     "layout": "a layout that fits, chosen here",
 }
