@@ -10,8 +10,12 @@ from flexstage.base.number import Array
 from flexstage.readings.measured.lines import Cells, expanded, nodes
 
 _CHUNK = 4_000_000
+_FREE = 1e-9
 _STEPS = 60
-_CONVERGED = 1e-4
+_CONVERGED = 1e-3
+_NEGLIGIBLE = 1e-5
+_NOISE_LINES = 400
+_SILENT = 1e-14
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,11 +35,12 @@ class Modal:
 
 @dataclass(frozen=True, eq=False)
 class Band:
-    """Data of one band: its cells, the noise variance of every output per line in every cell (p, c), and the degree of the polynomial."""
+    """Data of one band: its cells, the noise variance of every output per line in every cell (p, c), and the functions (c, b, 6) that stand
+    for what lies outside: Legendre coefficients in every cell."""
 
     cells: Cells
     variance: Array
-    degree: int
+    background: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,37 +72,41 @@ def fit(band: Band, start: Modal) -> Fit:
     The residual is analytic in all parameters, so that complex least squares apply: noise is circular and independent between lines and
     outputs.
     """
-    modal = start
-    damping, cost = 1e-3, np.inf
+    modal, damping = start, 1e-3
     sums = _sums(band, modal.poles)
     cost = _cost(sums, modal)
+    if not len(modal.poles):
+        return Fit(modal, cost, np.zeros((0, 0)), converged=True)
     information, gradient = _normal(sums, modal)
     for _ in range(_STEPS):
-        scale = np.real(np.diagonal(information))
-        scale = np.maximum(scale, 1e-12 * np.max(scale))
-        step = np.linalg.solve(information + damping * np.diag(scale), gradient)
-        gain = float(np.real(np.vdot(step, gradient)))
-        trial = _moved(modal, step)
+        if _step(information, gradient, _FREE)[1] < _CONVERGED:
+            return Fit(modal, cost, information, converged=True)
+        trial = _moved(modal, _step(information, gradient, damping)[0])
         trial_sums = _sums(band, trial.poles)
         trial_cost = _cost(trial_sums, trial)
         if trial_cost <= cost and np.all(trial.poles.real < 0.0):
             modal, sums, cost = trial, trial_sums, trial_cost
             information, gradient = _normal(sums, modal)
-            damping = max(damping * 0.1, 1e-9)
-            if gain < _CONVERGED:
-                return Fit(modal, cost, information, converged=True)
+            damping = max(damping * 0.1, _FREE)
         elif damping > 1e8:
             break
         else:
             damping *= 10.0
-    return Fit(modal, cost, information, converged=gain < 1.0)
+    return Fit(modal, cost, information, converged=False)
+
+
+def _step(information: Array, gradient: Array, damping: float) -> tuple[Array, float]:
+    """A damped Newton step and the fall of the cost it promises."""
+    scale = np.real(np.diagonal(information))
+    scale = np.maximum(scale, 1e-12 * np.max(scale))
+    step = np.linalg.solve(information + damping * np.diag(scale), gradient)
+    return step, float(np.real(np.vdot(step, gradient)))
 
 
 def shaped(band: Band, poles: Array, participation: Array) -> Modal:
     """Shapes by linear least squares for given poles and participations of the inputs; transients begin at nought."""
-    inputs = band.cells.cross.shape[2] - 1
-    full = np.zeros((len(poles), inputs + band.cells.blocks), dtype=complex)
-    full[:, :inputs] = participation
+    full = np.zeros((len(poles), band.cells.width), dtype=complex)
+    full[:, : participation.shape[1]] = participation
     sums = _sums(band, poles)
     count = len(poles)
     shapes = np.empty((len(sums.power), count), dtype=complex)
@@ -112,15 +121,13 @@ def residual_power(band: Band, modal: Modal) -> Array:
     """Power (p, c) that modes and polynomial leave in every cell."""
     cells = band.cells
     functions = _functions(band, modal.poles)[:, : len(modal.poles)]
-    polynomials = _polynomials(band)
+    polynomials = band.background
     values = _coefficients(band, modal)
     every = np.concatenate([functions, polynomials], axis=1)
-    inputs = cells.cross.shape[2] - 1
     left = np.empty_like(band.variance)
-    for block in range(cells.blocks):
+    for block, columns in enumerate(cells.columns):
         chosen = cells.block == block
-        columns = [*range(inputs), inputs + block]
-        inside = np.einsum("cfa,ofn->ocan", every[chosen], values[:, :, columns], optimize=True)
+        inside = np.einsum("cfa,ofn->ocan", every[chosen], values[:, :, list(columns)], optimize=True)
         crossed = np.einsum("ocan,cano->oc", np.conj(inside), cells.cross[chosen], optimize=True)
         own = np.einsum("ocan,canbm,ocbm->oc", np.conj(inside), cells.own[chosen], inside, optimize=True)
         left[:, chosen] = cells.power[chosen].T - 2.0 * crossed.real + own.real
@@ -128,36 +135,65 @@ def residual_power(band: Band, modal: Modal) -> Array:
 
 
 def _functions(band: Band, poles: Array) -> Array:
-    """Legendre coefficients (c, 2k, 5) in every cell of 1/(j f - p) and of its derivative by p."""
+    """Legendre coefficients (c, 2k, 6) in every cell of 1/(j f - p) and of its derivative by p."""
     away = 1.0 / (1j * nodes(band.cells.low, band.cells.high)[:, None, :] - poles[:, None])
     return expanded(np.concatenate([away, away**2], axis=1))
 
 
-def _polynomials(band: Band) -> Array:
-    low, high = np.min(band.cells.low), np.max(band.cells.high)
-    x = (2.0 * nodes(band.cells.low, band.cells.high) - low - high) / (high - low)
-    return expanded(np.moveaxis(np.polynomial.legendre.legvander(x, band.degree), -1, 1)).astype(complex)
+def noise(band: Band, modal: Modal) -> Array:
+    """Noise variance per line of every output in every cell (p, c), from what modes and background leave: means over 400 lines or more."""
+    power, cells = residual_power(band, modal), band.cells
+    outputs, total = len(power), int(np.sum(cells.count))
+    used = band.background.shape[1] * cells.width + len(modal.poles) * (1.0 + cells.width / outputs)
+    free = max(0.1, 1.0 - used / total)
+    found = np.empty_like(power)
+    for block in range(len(cells.columns)):
+        chosen = np.flatnonzero(cells.block == block)
+        lines = np.cumsum(cells.count[chosen])
+        parts = max(1, int(lines[-1]) // _NOISE_LINES)
+        place = np.minimum((lines - 1) * parts // int(lines[-1]), parts - 1)
+        for part in np.unique(place):
+            members = chosen[place == part]
+            mean = np.sum(power[:, members], axis=1) / (np.sum(cells.count[members]) * free)
+            found[:, members] = mean[:, None]
+    signal = np.sum(cells.power, axis=0)[:, None] / total
+    return np.maximum(found, _SILENT * signal)
+
+
+def background(cells: Cells, outside: Array, degree: int = 3) -> Array:
+    """An orthonormal basis (c, b, 6) of polynomials up to `degree` and of the tails 1/(j f - p) of the poles `outside` (Hz).
+
+    Directions that add less than 1e-5 to it are left out.
+    """
+    points = nodes(cells.low, cells.high)
+    x = (2.0 * points - np.min(cells.low) - np.max(cells.high)) / (np.max(cells.high) - np.min(cells.low))
+    tails = 1.0 / (1j * points[:, :, None] - outside)
+    every = np.concatenate([np.polynomial.legendre.legvander(x, degree), tails], axis=2)
+    weight = np.sqrt(np.repeat(cells.count / points.shape[1], points.shape[1]))
+    rows = every.reshape(-1, every.shape[2])
+    rows = rows / np.linalg.norm(rows * weight[:, None], axis=0)
+    left, values, _ = np.linalg.svd(rows * weight[:, None], full_matrices=False)
+    kept = left[:, values > _NEGLIGIBLE * values[0]] / weight[:, None]
+    return expanded(np.moveaxis(kept.reshape(*points.shape, -1), 2, 1))
 
 
 def _raw(band: Band, functions: Array) -> _Sums:
-    """Sums before elimination, over the functions (c, f, 5), inputs and transients of all blocks."""
+    """Sums before elimination, over the functions (c, f, 6), inputs and transients of all blocks."""
     cells, weights = band.cells, 1.0 / band.variance
-    inputs, outputs = cells.cross.shape[2] - 1, cells.cross.shape[3]
-    count, total = functions.shape[1], inputs + cells.blocks
+    outputs, count, total = cells.cross.shape[3], functions.shape[1], cells.width
     gram = np.zeros((outputs, count, total, count, total), dtype=complex)
     cross = np.zeros((outputs, count, total), dtype=complex)
-    together = max(1, _CHUNK // (count * (inputs + 1)) ** 2)
-    for block in range(cells.blocks):
-        columns = [*range(inputs), inputs + block]
+    for block, columns in enumerate(cells.columns):
+        together = max(1, _CHUNK // (count * len(columns)) ** 2)
         every = np.flatnonzero(cells.block == block)
         for start in range(0, len(every), together):
             chosen = every[start : start + together]
             products = _products(functions[chosen], cells.own[chosen])
-            shape = (outputs, count, inputs + 1, count, inputs + 1)
+            shape = (outputs, count, len(columns), count, len(columns))
             part = (weights[:, chosen] @ products.reshape(len(chosen), -1)).reshape(shape)
             gram[np.ix_(range(outputs), range(count), columns, range(count), columns)] += part
             weighted = cells.cross[chosen] * weights[:, chosen].T[:, None, None, :]
-            cross[:, :, columns] += np.einsum("cfa,cano->ofn", np.conj(functions[chosen]), weighted, optimize=True)
+            cross[:, :, list(columns)] += np.einsum("cfa,cano->ofn", np.conj(functions[chosen]), weighted, optimize=True)
     return _Sums(gram, cross, np.sum(weights * cells.power.T, axis=1))
 
 
@@ -171,7 +207,7 @@ def _products(functions: Array, own: Array) -> Array:
 
 
 def _sums(band: Band, poles: Array) -> _Sums:
-    functions = np.concatenate([_functions(band, poles), _polynomials(band)], axis=1)
+    functions = np.concatenate([_functions(band, poles), band.background], axis=1)
     raw = _raw(band, functions)
     kept = 2 * len(poles)
     outputs, count, total = raw.cross.shape
@@ -195,7 +231,7 @@ def _sums(band: Band, poles: Array) -> _Sums:
 def _coefficients(band: Band, modal: Modal) -> Array:
     """Factors (p, f, n) of the modes' functions and, best for them, of the polynomials."""
     count = len(modal.poles)
-    functions = np.concatenate([_functions(band, modal.poles)[:, :count], _polynomials(band)], axis=1)
+    functions = np.concatenate([_functions(band, modal.poles)[:, :count], band.background], axis=1)
     raw = _raw(band, functions)
     outputs, every, total = raw.cross.shape
     size = count * total

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from enum import Enum
 
@@ -168,3 +168,29 @@ def _accumulated(record: Record, size: int, segments: Segments, tell: Tell | Non
         if tell is not None:
             tell(min(1.0, averages * hop / max(1, record.length - size + hop)))
     return total, averages
+
+
+def pooled(parts: Sequence[Spectra]) -> Spectra:
+    """Spectra of several records together, weighted by their averages; an input that a record lacks was at rest in it.
+
+    Inputs are put in the order in which they first occur. All must have the same lines and outputs.
+
+    >>> pooled([example_spectra(), example_spectra()]).averages
+    14
+    """
+    inputs = tuple({channel.name: channel for part in parts for channel in part.inputs}.values())
+    names = [channel.name for channel in inputs]
+    first = parts[0]
+    count, outputs = len(inputs), len(first.outputs)
+    xx = np.zeros((len(first.frequencies), count, count), dtype=complex)
+    yx = np.zeros((len(first.frequencies), outputs, count), dtype=complex)
+    yy = np.zeros((len(first.frequencies), outputs, outputs), dtype=complex)
+    averages = sum(part.averages for part in parts)
+    for part in parts:
+        places = [names.index(channel.name) for channel in part.inputs]
+        share = part.averages / averages
+        xx[:, np.array(places)[:, None], places] += share * part.xx
+        yx[:, :, places] += share * part.yx
+        yy += share * part.yy
+    independent = sum(part.independent for part in parts)
+    return Spectra(first.frequencies, inputs, first.outputs, xx, yx, yy, averages=averages, independent=independent, segments=first.segments)

@@ -1,0 +1,79 @@
+"""Bands of frequency: where poles are searched for, which candidates are fitted together, and over which lines."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.base.number import Array
+
+_RATIO, _SHARED = 3.0, 1.3
+_TOGETHER, _REACH = 12.0, 24.0
+_MOST = 12
+
+
+@dataclass(frozen=True)
+class Extent:
+    """Limits of a band in Hz, and the numbers of the candidates that belong to it."""
+
+    low: float
+    high: float
+    members: tuple[int, ...]
+
+
+def sweeps(low: float, high: float) -> list[tuple[float, float]]:
+    """Bands that cover `low` to `high` in Hz, each up to three times its lower end, each sharing a part with the next.
+
+    >>> [(round(a), round(b)) for a, b in sweeps(10.0, 200.0)]
+    [(10, 36), (27, 99), (73, 200)]
+    """
+    count = max(1, int(np.ceil(np.log(high / low) / np.log(_RATIO))))
+    limits = np.geomspace(low, high, count + 1)
+    half = np.sqrt(_SHARED)
+    return [(max(low, a / half), min(high, b * half)) for a, b in zip(limits[:-1], limits[1:], strict=True)]
+
+
+def extents(poles: Array, low: float, high: float) -> list[Extent]:
+    """Bands for poles (k,) in Hz, by rising frequency: those whose gap is below 12 times their half-widths are fitted together.
+
+    A band reaches 24 half-widths beyond its outer poles, within `low` and `high`, and ends between groups in proportion to half-widths.
+
+    >>> found = extents(np.array([-1 + 100j, -1 + 101j, -1 + 200j]), 1.0, 300.0)
+    >>> [(round(band.low), round(band.high), band.members) for band in found]
+    [(76, 125, (0, 1)), (176, 224, (2,))]
+    """
+    frequencies, widths = poles.imag, -poles.real
+    groups: list[list[int]] = []
+    for index in range(len(poles)):
+        if groups and frequencies[index] - frequencies[index - 1] < _TOGETHER * (widths[index] + widths[index - 1]):
+            groups[-1].append(index)
+        else:
+            groups.append([index])
+    groups = [part for group in groups for part in _divided(group, frequencies)]
+    return [_extent(poles, group, low, high) for group in groups]
+
+
+def _divided(group: list[int], frequencies: Array) -> list[list[int]]:
+    """A group of more modes than are fitted at once, cut at its widest gaps."""
+    if len(group) <= _MOST:
+        return [group]
+    cut = 1 + int(np.argmax(np.diff(frequencies[group])))
+    return _divided(group[:cut], frequencies) + _divided(group[cut:], frequencies)
+
+
+def _extent(poles: Array, group: list[int], low: float, high: float) -> Extent:
+    frequencies, widths = poles.imag, -poles.real
+    bottom = min(frequencies[index] - _REACH * widths[index] for index in group)
+    top = max(frequencies[index] + _REACH * widths[index] for index in group)
+    first, last = group[0], group[-1]
+    if first > 0:
+        bottom = max(bottom, _between(frequencies, widths, first - 1))
+    if last + 1 < len(poles):
+        top = min(top, _between(frequencies, widths, last))
+    return Extent(max(low, bottom), min(high, top), tuple(group))
+
+
+def _between(frequencies: Array, widths: Array, index: int) -> float:
+    gap = frequencies[index + 1] - frequencies[index]
+    return float(frequencies[index] + gap * widths[index] / (widths[index] + widths[index + 1]))

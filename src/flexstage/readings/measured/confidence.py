@@ -1,0 +1,98 @@
+"""What the data say of an estimate: standard deviations from Fisher's information, and whether a mode is there at all."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.base.number import Array
+from flexstage.readings.measured.likelihood import Band, Fit, Modal, fit
+
+NORMAL_95 = 1.959964
+"""Half the width of a 95 % interval, in standard deviations."""
+_DOUBTFUL = 50.0
+
+
+@dataclass(frozen=True, eq=False)
+class Deviations:
+    """Standard deviations: `frequencies` (k,) in Hz, `damping` (k,) of the ratios, `shapes` (p, k) of each part, real and imaginary, of
+    shapes whose largest component is 1."""
+
+    frequencies: Array
+    damping: Array
+    shapes: Array
+
+
+def deviations(found: Fit, inflation: float = 1.0) -> Deviations:
+    """Standard deviations of a fit by the Cramer-Rao bound, the inverse of Fisher's information; variances times `inflation`.
+
+    Parameters are complex and analytic: the covariance of real and of imaginary parts is half the inverse. The scale shared between a shape
+    and its participation is not determined and is taken out by holding the largest participation.
+    """
+    covariance = inflation * _covariance(found)
+    modal = found.modal
+    count, outputs = len(modal.poles), len(modal.shapes)
+    size = np.abs(modal.poles)
+    ratio = -modal.poles.real / size
+    variance = 0.5 * np.real(np.diagonal(covariance)[:count])
+    first = count + count * modal.participation.shape[1]
+    shapes = np.empty((outputs, count))
+    for mode in range(count):
+        places = first + np.arange(outputs) * count + mode
+        shapes[:, mode] = _shape_deviation(modal.shapes[:, mode], covariance[np.ix_(places, places)])
+    return Deviations(np.sqrt(variance), np.sqrt(variance * (1.0 - ratio**2)) / size, shapes)
+
+
+def significance(band: Band, found: Fit, limit: float) -> Array:
+    """How strongly (k,) the data ask for each mode, as chi-square with `freedoms` degrees where that mode is not in the stage.
+
+    Wald's statistic, 2 phi^H C^-1 phi of the mode's shape; where it is below fifty times `limit`, twice the fall of the log-likelihood when
+    the mode is left out and the others are fitted anew (Wilks 1938).
+    """
+    covariance = _covariance(found)
+    modal = found.modal
+    count, outputs = len(modal.poles), len(modal.shapes)
+    first = count + count * modal.participation.shape[1]
+    strength = np.empty(count)
+    for mode in range(count):
+        places = first + np.arange(outputs) * count + mode
+        shape = modal.shapes[:, mode]
+        own = covariance[np.ix_(places, places)]
+        scale = np.sqrt(np.maximum(np.real(np.diagonal(own)), 1e-300))
+        inverse = np.linalg.pinv(own / np.outer(scale, scale), rcond=1e-10, hermitian=True)
+        strength[mode] = 2.0 * np.real(np.vdot(shape / scale, inverse @ (shape / scale)))
+        if strength[mode] < _DOUBTFUL * limit:
+            strength[mode] = min(strength[mode], 2.0 * (fit(band, modal.without(mode)).cost - found.cost))
+    return strength
+
+
+def freedoms(modal: Modal) -> int:
+    """Real parameters a mode adds: pole, shape and participation but for a common factor.
+
+    >>> freedoms(Modal(np.zeros(1), np.zeros((1, 6)), np.zeros((6, 1))))
+    24
+    """
+    return 2 * (len(modal.shapes) + modal.participation.shape[1])
+
+
+def _covariance(found: Fit) -> Array:
+    """Inverse of the information with each mode's largest participation held; rows and columns held are nought."""
+    count, total = found.modal.participation.shape
+    largest = np.argmax(np.abs(found.modal.participation), axis=1)
+    held = count + np.arange(count) * total + largest
+    free = np.setdiff1d(np.arange(len(found.information)), held)
+    inner = found.information[np.ix_(free, free)]
+    scale = 1.0 / np.sqrt(np.maximum(np.real(np.diagonal(inner)), 1e-300))
+    inverse = np.linalg.pinv(inner * np.outer(scale, scale), rcond=1e-13, hermitian=True) * np.outer(scale, scale)
+    covariance = np.zeros_like(found.information)
+    covariance[np.ix_(free, free)] = inverse
+    return covariance
+
+
+def _shape_deviation(shape: Array, covariance: Array) -> Array:
+    """Deviations of shape / (its largest component), by the first-order rule."""
+    largest = int(np.argmax(np.abs(shape)))
+    turn = np.eye(len(shape), dtype=complex) / shape[largest]
+    turn[:, largest] -= shape / shape[largest] ** 2
+    return np.sqrt(np.maximum(0.5 * np.real(np.diagonal(turn @ covariance @ np.conj(turn.T))), 0.0))

@@ -1,0 +1,197 @@
+"""The evidence for modes, whatever it comes from: responses to take candidates from, and lines to fit modes to."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from flexstage.base.finding import Finding, require
+from flexstage.base.number import Array
+from flexstage.readings.measured.lines import Lines, block_count, record_lines
+from flexstage.readings.measured.record import Channel, Record, Responses
+from flexstage.readings.measured.spectra import Segments, Spectra, Tell, pooled, spectra
+from flexstage.readings.measured.transfer import h1, multiple_coherence, noise_density
+
+_SEGMENTS = 24.0
+_PER_INPUT = 3.0
+_LONGEST = 32_768
+_HIGHEST = 0.42
+_LOWEST_LINES = 3
+
+
+@dataclass(frozen=True, eq=False)
+class Evidence:
+    """`responses` in the channels' own units with weights (f, p) of its outputs; `lines()` gives the lines of all blocks, their inputs and
+    outputs divided by `input_scale` (m,) and `output_scale` (p,), with noise `density` (f, p) per line on `responses.frequencies`.
+
+    `band` is what the data can show, in Hz; `inflation` the factor on variances for neighbouring lines that are not independent; `coherence`
+    the multiple coherence (f, p), absent where there is none.
+    """
+
+    where: str
+    responses: Responses
+    weights: Array
+    lines: Callable[[], Iterable[Lines]]
+    input_scale: Array
+    output_scale: Array
+    density: Array
+    rate: float
+    band: tuple[float, float]
+    inflation: float = 1.0
+    coherence: Array | None = None
+    averages: float = 0.0
+
+    def variance(self, low: float, high: float) -> Array:
+        """A first guess of the noise variance (p,) per line of the outputs, divided by their scales: the median over the band."""
+        inside = (self.responses.frequencies >= low) & (self.responses.frequencies <= high)
+        chosen = self.density[inside] if np.any(inside) else self.density
+        floor = 1e-10 * np.max(self.density, axis=0)
+        return np.maximum(np.median(chosen, axis=0), floor) / self.output_scale**2
+
+
+def evidence(what: Record | Responses | Sequence[Record], segments: Segments | None, tell: Tell | None = None) -> Evidence:
+    """The evidence in a record, in several records of one stage, or in an analyser's responses."""
+    if isinstance(what, Responses):
+        return _of_responses(what)
+    records = (what,) if isinstance(what, Record) else tuple(what)
+    require(_findings(records))
+    chosen = segments if segments is not None else _segments(records)
+    together = pooled([_driven(spectra(record, chosen, _part(tell, index, 2 * len(records)))) for index, record in enumerate(records)])
+    return _of_records(records, together, tell)
+
+
+def _of_records(records: tuple[Record, ...], known: Spectra, tell: Tell | None) -> Evidence:
+    first = known.frequencies[1] * _LOWEST_LINES
+    band = (float(first), float(_HIGHEST * records[0].rate))
+    inside = known.band(*band)
+    responses = h1(known)
+    noise = noise_density(known)
+    scales = [np.sqrt(np.mean(np.real(np.diagonal(part, axis1=1, axis2=2)), axis=0) * records[0].rate / 2.0) for part in (inside.xx, inside.yy)]
+    names = [channel.name for channel in known.inputs]
+    input_scale, output_scale = (np.where(scale > 0.0, scale, 1.0) for scale in scales)
+
+    def lines() -> Iterable[Lines]:
+        column = len(names)
+        for index, record in enumerate(records):
+            kept = record.select([channel.name for channel in record.channels if channel in record.outputs or channel.name in names])
+            places = tuple(names.index(channel.name) for channel in kept.inputs)
+            for block in record_lines(kept, places, column, _part(tell, len(records) + index, 2 * len(records))):
+                yield _scaled(block, input_scale, output_scale)
+            column += block_count(kept)
+
+    weights = 1.0 / np.sqrt(np.maximum(noise, 1e-12 * np.max(noise, axis=0) + 1e-300))
+    source = records[0].source or records[0].name or "record"
+    return Evidence(
+        where=source,
+        responses=replace(responses, source=source),
+        weights=weights,
+        lines=lines,
+        input_scale=input_scale,
+        output_scale=output_scale,
+        density=noise * records[0].rate / 2.0,
+        rate=records[0].rate,
+        band=band,
+        coherence=multiple_coherence(known),
+        averages=known.independent,
+    )
+
+
+def _scaled(lines: Lines, input_scale: Array, output_scale: Array) -> Lines:
+    factors = [input_scale[column] if column < len(input_scale) else 1.0 for column in lines.columns]
+    return replace(lines, drive=lines.drive / np.array(factors), outputs=lines.outputs / output_scale)
+
+
+def _segments(records: tuple[Record, ...]) -> Segments:
+    """Long segments resolve sharp resonances, many average noise: as many as inputs need, two dozen at least."""
+    inputs = len({channel.name for record in records for channel in record.inputs})
+    shortest = min(record.duration for record in records)
+    needed = max(_SEGMENTS, _PER_INPUT * inputs) / len(records)
+    seconds = min(shortest / max(4.0, needed), _LONGEST / records[0].rate)
+    return Segments(max(seconds, min(shortest, 16.0 / records[0].rate)))
+
+
+def _driven(known: Spectra) -> Spectra:
+    """Without inputs that were at rest all the time."""
+    power = np.sum(np.real(np.diagonal(known.xx, axis1=1, axis2=2)), axis=0)
+    kept = np.flatnonzero(power > 0.0)
+    inputs = tuple(known.inputs[index] for index in kept)
+    return replace(known, inputs=inputs, xx=known.xx[:, kept[:, None], kept], yx=known.yx[:, :, kept])
+
+
+def _of_responses(known: Responses) -> Evidence:
+    steps = np.diff(known.frequencies)
+    require(_response_findings(known, steps))
+    output_scale = np.sqrt(np.mean(np.abs(known.values) ** 2, axis=(0, 2)))
+    output_scale = np.where(output_scale > 0.0, output_scale, 1.0)
+    count = known.values.shape[2]
+    rough = np.abs(np.diff(known.values, 2, axis=0)) ** 2 / 6.0
+    density = np.repeat(np.median(rough, axis=(0, 2))[None, :], len(known.frequencies), axis=0)
+    density = np.maximum(density, 1e-12 * output_scale**2)
+
+    def lines() -> Iterable[Lines]:
+        for index in range(count):
+            yield Lines(known.frequencies, np.ones((len(steps) + 1, 1), dtype=complex), known.values[:, :, index] / output_scale, (index,))
+
+    step = float(np.mean(steps))
+    return Evidence(
+        where=known.source or known.name or "responses",
+        responses=known,
+        weights=1.0 / np.sqrt(density),
+        lines=lines,
+        input_scale=np.ones(count),
+        output_scale=output_scale,
+        density=density,
+        rate=2.0 * float(known.frequencies[-1]),
+        band=(float(max(known.frequencies[0], _LOWEST_LINES * step)), float(known.frequencies[-1])),
+        inflation=_INFLATION.get(known.window.lower(), 1.0),
+        averages=float(known.averages or 0),
+    )
+
+
+_INFLATION = {"hann": 1.94, "hanning": 1.94, "hamming": 1.74, "blackman": 2.66}
+"""Sum over lines of the squared correlation of a window's lines: 1 + 2 (4/9 + 1/36) = 1.94 for Hann's."""
+
+
+def _response_findings(known: Responses, steps: Array) -> list[Finding]:
+    where = known.source or known.name or "responses"
+    if len(steps) < 15:
+        return [Finding(where, f"there are {len(steps) + 1} lines", "Give responses at 16 frequencies or more")]
+    if not np.all(np.isfinite(known.values)):
+        return [Finding(where, f"{int(np.sum(~np.isfinite(known.values)))} values are not numbers", "Leave those channels or lines out")]
+    if np.max(np.abs(steps - np.mean(steps))) > 1e-3 * np.mean(steps):
+        what = f"lines are {np.min(steps):.6g} to {np.max(steps):.6g} Hz apart"
+        return [Finding(where, what, "Give responses at evenly spaced frequencies")]
+    return []
+
+
+def _findings(records: tuple[Record, ...]) -> list[Finding]:
+    if not records:
+        return [Finding("records", "there is none", "Give a record")]
+    first = records[0]
+    found: list[Finding] = []
+    for record in records:
+        where = record.source or record.name or "record"
+        if not record.inputs:
+            found.append(Finding(where, "no channel is an input", "Say which channels are inputs"))
+        if not record.outputs:
+            found.append(Finding(where, "no channel is an output", "Say which channels are outputs"))
+        if record.rate != first.rate:
+            found.append(Finding(where, f"it is sampled at {record.rate:g} Hz, the first at {first.rate:g} Hz", "Sample all alike"))
+        names, wanted = ({channel.name for channel in each.outputs} for each in (record, first))
+        if names != wanted:
+            what = f"its outputs are {', '.join(sorted(names))}, those of the first {', '.join(sorted(wanted))}"
+            found.append(Finding(where, what, "Name outputs alike in all records"))
+    return found
+
+
+def _part(tell: Tell | None, index: int, count: int) -> Tell | None:
+    if tell is None:
+        return None
+    return lambda share: tell((index + share) / count)
+
+
+def used_channels(known: Evidence) -> tuple[tuple[Channel, ...], tuple[Channel, ...]]:
+    """Outputs and inputs of the evidence."""
+    return known.responses.outputs, known.responses.inputs

@@ -1,0 +1,242 @@
+"""Modes from records, found without a hand: candidates by pLSCF, then maximum likelihood on the records' transforms."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from flexstage.base.finding import Finding, require
+from flexstage.base.number import Array
+from flexstage.readings.measured.bands import Extent, extents, sweeps
+from flexstage.readings.measured.caution import warnings
+from flexstage.readings.measured.cluster import Candidate, Stabilisation, alike, merged, stabilisation
+from flexstage.readings.measured.confidence import Deviations, deviations, freedoms, significance
+from flexstage.readings.measured.evidence import Evidence, evidence
+from flexstage.readings.measured.identified import Identified
+from flexstage.readings.measured.likelihood import Band, Fit, Modal, background, fit, noise, shaped
+from flexstage.readings.measured.lines import Cells, edges, gathered
+from flexstage.readings.measured.lscf import lscf
+from flexstage.readings.measured.record import Record, Responses
+from flexstage.readings.measured.residues import modal_sum, remainder
+from flexstage.readings.measured.spectra import Segments, Tell
+
+_ONCE_IN = 1e-9
+_SURE = 1.0 / 3.0
+_LARGEST = 72
+_LONGEST = 40
+_ROUNDS = 2
+
+
+@dataclass(frozen=True)
+class Search:
+    """What is searched for: modes with frequencies in `band` (Hz; absent: all the record can show) and damping ratios up to
+    `highest_damping`; `segments` of the spectra that candidates are taken from (absent: chosen by the record's length)."""
+
+    band: tuple[float, float] | None = None
+    highest_damping: float = 0.1
+    segments: Segments | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class _Found:
+    """The modes of one band, with deviations and significance, and the outputs' noise variance per line (p,)."""
+
+    fit: Fit
+    deviations: Deviations
+    significance: Array
+    noise: Array
+
+
+def identify(what: Record | Responses | Sequence[Record], search: Search = Search(), tell: Tell | None = None) -> Identified:  # noqa: B008
+    """Natural frequencies, damping, shapes and participations, with 95 % intervals, and whether they are there at all.
+
+    `what` is a record, or several of the same stage (six with one actuator each are put together as one test), or responses of an analyser.
+    Candidates are the stable poles of pLSCF on H1; each group of near ones is then fitted by maximum likelihood to the transform of the whole
+    record, its transient included, so that there is neither window nor leakage: outputs' noise is taken as independent between outputs and
+    of slowly varying density, inputs as exact (Pintelon & Schoukens 2012, ch. 9 and 10). A mode is kept if leaving it out costs more
+    likelihood than noise would once in 1e9, and if its damping is known to a third. Linear, time-invariant stages. Raises `DesignError` for
+    inputs that are not independent, no outputs, records that do not fit together or are too short.
+    """
+    known = evidence(what, search.segments, tell)
+    band = _band(known, search)
+    diagrams, candidates = _candidates(known, band, search)
+    found = _fitted(known, candidates, band, search)
+    return _result(known, band, diagrams, found)
+
+
+def _band(known: Evidence, search: Search) -> tuple[float, float]:
+    low, high = known.band
+    if search.band is None:
+        return low, high
+    asked = search.band
+    if asked[0] < asked[1] and asked[0] < high and asked[1] > low:
+        return max(low, asked[0]), min(high, asked[1])
+    what = f"modes between {asked[0]:g} and {asked[1]:g} Hz are asked for; the data reach from {low:.4g} to {high:.4g} Hz"
+    require([Finding(known.where, what, "Ask for a band within, or record faster or longer")])
+    return low, high
+
+
+def _candidates(known: Evidence, band: tuple[float, float], search: Search) -> tuple[tuple[Stabilisation, ...], tuple[Candidate, ...]]:
+    diagrams: list[Stabilisation] = []
+    candidates: list[Candidate] = []
+    inputs = known.responses.values.shape[2]
+    for low, high in sweeps(*band):
+        inside = (known.responses.frequencies >= low) & (known.responses.frequencies <= high)
+        highest = min(_LONGEST, max(3, _LARGEST // inputs), int(np.sum(inside)) // (2 + 2 * inputs))
+        if highest < 2:
+            continue
+        lowest = max(1, highest // 4)
+        orders = range(lowest, highest + 1, max(1, (highest - lowest) // 10))
+        values, weights = known.responses.values[inside], known.weights[inside]
+        diagram, found = stabilisation(lscf(known.responses.frequencies[inside], values, weights, orders), search.highest_damping)
+        diagrams.append(diagram)
+        candidates += found
+    return tuple(diagrams), merged(tuple(candidates))
+
+
+def _fitted(known: Evidence, candidates: tuple[Candidate, ...], band: tuple[float, float], search: Search) -> list[_Found]:
+    if not candidates:
+        return []
+    poles = np.array([candidate.pole for candidate in candidates])
+    groups = extents(poles, *band)
+    bounds = [edges(poles, group.low, group.high) for group in groups]
+    every = gathered(known.lines(), bounds)
+    return [
+        found
+        for group, cells in zip(groups, every, strict=True)
+        if (found := _group(known, cells, candidates, group, search)) is not None
+    ]
+
+
+def _group(known: Evidence, cells: Cells, candidates: tuple[Candidate, ...], group: Extent, search: Search) -> _Found | None:
+    """The modes of one group of candidates: fitted, freed of what is not significant, fitted anew with the noise that is left."""
+    poles = np.array([candidate.pole for candidate in candidates])
+    members = list(group.members)
+    outside = np.concatenate([np.delete(poles, members), np.conj(poles)])
+    variance = np.repeat(known.variance(group.low, group.high)[:, None], len(cells.low), axis=1)
+    band = Band(cells, variance, background(cells, outside))
+    if np.sum(cells.count) < 2 * cells.own.shape[2] * band.background.shape[1]:
+        return None
+    participation = np.array([candidates[index].participation for index in members])
+    found = _pruned(band, fit(band, shaped(band, poles[members], participation)), group, search)
+    for _ in range(_ROUNDS):
+        band = replace(band, variance=noise(band, found.modal))
+        found = _pruned(band, fit(band, found.modal), group, search)
+    if not len(found.modal.poles):
+        return None
+    limit = _limit(found.modal)
+    return _Found(found, deviations(found, known.inflation), significance(band, found, limit) / limit, np.mean(band.variance, axis=1))
+
+
+def _limit(modal: Modal) -> float:
+    from scipy.stats import chi2
+
+    return float(chi2.isf(_ONCE_IN, freedoms(modal)))
+
+
+def _pruned(band: Band, found: Fit, group: Extent, search: Search) -> Fit:
+    """Leave out, one at a time and the least significant first, what is no mode."""
+    while len(found.modal.poles):
+        worst = _worst(band, found, group, search)
+        if worst is None:
+            return found
+        found = fit(band, found.modal.without(worst))
+    return found
+
+
+def _worst(band: Band, found: Fit, group: Extent, search: Search) -> int | None:
+    poles = found.modal.poles
+    ratio = -poles.real / np.abs(poles)
+    spread = deviations(found)
+    strange = (ratio > search.highest_damping) | (poles.imag < group.low) | (poles.imag > group.high) | (spread.damping > _SURE * ratio)
+    if np.any(strange):
+        return int(np.argmax(np.where(strange, spread.damping / ratio, -1.0)))
+    doubles = _doubles(found.modal)
+    strength = significance(band, found, _limit(found.modal))
+    strength = np.where(doubles, 0.0, strength)
+    least = int(np.argmin(strength))
+    return least if strength[least] < _limit(found.modal) else None
+
+
+def _doubles(modal: Modal) -> Array:
+    """Modes that repeat another one: same pole within a tenth of its half-width, same shape and participation; the weaker of both."""
+    size = np.linalg.norm(modal.shapes, axis=0) * np.linalg.norm(modal.participation, axis=1)
+    found = np.zeros(len(size), dtype=bool)
+    for first in range(len(size)):
+        for second in range(first):
+            near = abs(modal.poles[first] - modal.poles[second]) < -0.1 * modal.poles[first].real
+            same = alike(modal.shapes[:, first], modal.shapes[:, second]) > 0.98
+            if near and same and alike(modal.participation[first], modal.participation[second]) > 0.98:
+                found[first if size[first] < size[second] else second] = True
+    return found
+
+
+def _result(known: Evidence, band: tuple[float, float], diagrams: tuple[Stabilisation, ...], found: list[_Found]) -> Identified:
+    inputs, outputs = len(known.input_scale), len(known.output_scale)
+    modal = _joined([part.fit.modal for part in found], inputs, outputs)
+    spread = [np.concatenate([getattr(part.deviations, name) for part in found] or [np.zeros(0)]) for name in ("frequencies", "damping")]
+    wide = np.concatenate([part.deviations.shapes for part in found] or [np.zeros((outputs, 0))], axis=1)
+    strength = np.concatenate([part.significance for part in found] or [np.zeros(0)])
+    order = np.argsort(np.abs(modal.poles))
+    poles, (shapes, participation, wide) = modal.poles[order], _in_units(known, modal, wide, order)
+    inside = (known.responses.frequencies >= band[0]) & (known.responses.frequencies <= band[1])
+    lines = known.responses.frequencies[inside]
+    rest = known.responses.values[inside] - modal_sum(lines, 2.0 * np.pi * poles, shapes, participation)
+    close = _close(poles)
+    return Identified(
+        frequencies=np.abs(poles),
+        damping=-poles.real / np.abs(poles),
+        shapes=shapes,
+        participation=participation,
+        frequency_deviations=spread[0][order],
+        damping_deviations=spread[1][order],
+        shape_deviations=wide,
+        significance=strength[order],
+        outputs=known.responses.outputs,
+        inputs=known.responses.inputs,
+        close=close,
+        residuals=remainder(lines, rest, known.weights[inside]),
+        responses=known.responses,
+        stabilisation=diagrams,
+        band=band,
+        noise=np.median(known.density[inside], axis=0) * 2.0 / known.rate,
+        warnings=warnings(known, poles, close),
+        provenance=f"identified from {known.where}: pLSCF, then maximum likelihood",
+    )
+
+
+def _joined(parts: list[Modal], inputs: int, outputs: int) -> Modal:
+    return Modal(
+        np.concatenate([part.poles for part in parts] or [np.zeros(0, dtype=complex)]),
+        np.concatenate([part.participation[:, :inputs] for part in parts] or [np.zeros((0, inputs), dtype=complex)]),
+        np.concatenate([part.shapes for part in parts] or [np.zeros((outputs, 0), dtype=complex)], axis=1),
+    )
+
+
+def _in_units(known: Evidence, modal: Modal, wide: Array, order: Array) -> tuple[Array, Array, Array]:
+    """Shapes (largest component 1), participations in rad/s and units of the channels, deviations of the shapes."""
+    shapes = modal.shapes * known.output_scale[:, None]
+    if not shapes.shape[1]:
+        return shapes, modal.participation / known.input_scale, wide
+    scaled = np.argmax(np.abs(modal.shapes), axis=0)
+    every = np.arange(shapes.shape[1])
+    relative = shapes / shapes[scaled, every]
+    wide = wide * (known.output_scale[:, None] / known.output_scale[scaled])
+    largest = np.argmax(np.abs(relative), axis=0)
+    turn = relative[largest, every]
+    participation = 2.0 * np.pi * modal.participation / known.input_scale * (shapes[scaled, every] * turn)[:, None]
+    return (relative / turn)[:, order], participation[order], (wide / np.abs(turn))[:, order]
+
+
+def _close(poles: Array) -> tuple[tuple[int, ...], ...]:
+    """Modes nearer to the next than the mean of their half-widths, in groups."""
+    groups: list[list[int]] = []
+    for index in range(len(poles)):
+        before = groups[-1][-1] if groups else None
+        if before is not None and abs(poles[index].imag - poles[before].imag) < -0.5 * (poles[index] + poles[before]).real:
+            groups[-1].append(index)
+        else:
+            groups.append([index])
+    return tuple(tuple(group) for group in groups if len(group) > 1)

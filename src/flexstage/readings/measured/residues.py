@@ -1,0 +1,57 @@
+"""Frequency responses from modes: the sum over modes, and what modes outside the band leave (least-squares frequency domain, LSFD)."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from flexstage.base.number import Array
+
+
+def modal_sum(frequencies: Array, poles: Array, shapes: Array, participation: Array) -> Array:
+    """H (f, p, m) = sum of shape participation / (j w - pole) and its conjugate partner, poles (k,) in rad/s, frequencies in Hz.
+
+    Heylen, Lammens & Sas, Modal Analysis Theory and Testing, 1997, A.1. Shapes (p, k), participation (k, m).
+
+    >>> one = modal_sum(np.array([0.0]), np.array([-1.0 + 10j]), np.array([[1.0]]), np.array([[-0.5j]]))
+    >>> round(one.item().real, 6)
+    0.09901
+    """
+    omega = 2j * np.pi * np.asarray(frequencies)
+    values = np.zeros((len(omega), len(shapes), participation.shape[1]), dtype=complex)
+    for pole, shape, row in zip(poles, shapes.T, participation, strict=True):
+        residue = np.outer(shape, row)
+        values += residue / (omega - pole)[:, None, None] + np.conj(residue) / (omega - np.conj(pole))[:, None, None]
+    return values
+
+
+def remainder(frequencies: Array, rest: Array, weights: Array) -> Array:
+    """Lower and upper residual (2, p, m): rest (f, p, m) = lower / w^2 + upper, least squares with weights (f, p), frequencies above 0.
+
+    They stand for modes below and above the band: mass and stiffness lines; real, as at frequencies where those modes hardly damp.
+
+    >>> lines = np.array([1.0, 2.0, 3.0])
+    >>> remainder(lines, 5.0 + 1.0 / (2 * np.pi * lines[:, None, None]) ** 2, np.ones((3, 1))).round(9).ravel().tolist()
+    [1.0, 5.0]
+    """
+    terms = _terms(frequencies)
+    found = np.empty((2, *rest.shape[1:]))
+    for output in range(rest.shape[1]):
+        weight = weights[:, output, None]
+        scale = np.linalg.norm(weight * terms, axis=0)
+        solved = np.linalg.lstsq(weight * terms / scale, weight * rest[:, output].real, rcond=None)[0]
+        found[:, output] = solved / scale[:, None]
+    return found
+
+
+def remainder_sum(frequencies: Array, residuals: Array) -> Array:
+    """The part (f, p, m) of a response that lower and upper residual (2, p, m) stand for.
+
+    >>> remainder_sum(np.array([1.0]), np.array([[[0.0]], [[5.0]]])).ravel().tolist()
+    [5.0]
+    """
+    return np.tensordot(_terms(frequencies), residuals, axes=1)
+
+
+def _terms(frequencies: Array) -> Array:
+    omega = 2.0 * np.pi * np.maximum(np.asarray(frequencies, dtype=float), 1e-300)
+    return np.stack([omega**-2.0, np.ones_like(omega)], axis=1)
