@@ -109,7 +109,8 @@ that is recorded agrees."""
 _ABSENT = """\
 * What the paper does not print: R_a and R_s, masses, radii, damping, the values of its Figs. 11 and 12.
 * Large deflections (elastica, beam constraint model), the load term and centre shift of cross-axis pivots: every elastic reading is linear.
-* 3-D finite elements of whole stages and records of tests: these readings are not part of this version."""
+* Records of tests: that reading is not part of this version.
+* 3-D finite elements of whole stages: they are compared in `tests/readings`."""
 
 _TREE = """\
 ```{toctree}
