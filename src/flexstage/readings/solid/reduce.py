@@ -17,6 +17,7 @@ from flexstage.base.number import Array
 from flexstage.mechanism.mechanism import PLATFORM
 from flexstage.parts.piezo import Piezo
 from flexstage.readings.solid.component import Component, groups
+from flexstage.readings.solid.contribution import contributions
 from flexstage.readings.solid.field import Field, Solver, applied, degrees_of, field, inertia, rigid, stiffness, stroke_force, times
 from flexstage.readings.solid.fineness import Reduction
 from flexstage.readings.solid.hold import held, is_rigid
@@ -166,25 +167,24 @@ def _projected(problem: _Problem, basis: Array, strokes: Mapping[str, Array], re
     moving: dict[str, Array] = {}
     resultants: dict[str, Array] = {}
     names = groups(component)
-    for number, name in enumerate(names):
+    wholes = {name: _elements(problem, name) for name in names}
+    for number, part in enumerate(contributions(space, wholes, basis)):
         report(Stage.PROJECTING, number / len(names))
-        elements = _elements(problem, name)
-        forces = applied(stiffness(space, elements, assemble=False), basis)
-        momentum = applied(inertia(space, elements, assemble=False), basis)
-        elastic[name], mass[name] = _symmetric(basis.T @ forces), _symmetric(basis.T @ momentum)
+        name = part.name
+        elastic[name], mass[name] = _symmetric(part.strained.T @ part.forces), _symmetric(part.motions.T @ part.momenta)
         if name in component.bodies:
             motion = rigid(space, Frame(np.eye(3), component.bodies[name]))
-            own = motion.T @ applied(inertia(space, elements, assemble=False), motion)
-            bodies[name], moving[name] = np.linalg.solve(own, motion.T @ momentum), _symmetric(own)
+            own = motion.T @ applied(inertia(space, wholes[name], assemble=False), motion)
+            bodies[name], moving[name] = np.linalg.solve(own, motion[part.rows].T @ part.momenta), _symmetric(own)
         else:
-            resultants[name] = _sections(problem, names[name][0]).T @ forces
+            resultants[name] = _sections(problem, names[name][0])[part.rows].T @ part.forces
     everything = rigid(space, identity())
     carried = basis.T @ times(problem.inertia, everything)
     projected = {int(number): basis.T @ force for number, force in strokes.items()}
     return Superelement(
         interfaces=len(component.interfaces),
-        stiffness=elastic,
-        inertia=mass,
+        stiffness={name: elastic[name] for name in names},
+        inertia={name: mass[name] for name in names},
         bodies=bodies,
         body_inertia=moving,
         resultants=resultants,
