@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from itertools import pairwise
 
 import numpy as np
 
-from flexstage.base.finding import Finding
+from flexstage.base.finding import DesignError, Finding, refuse
 from flexstage.base.number import Array
 
 _LISTED = 5
@@ -77,7 +77,7 @@ def read_clock(times: Iterable[Array], where: str) -> Clock | list[Finding]:
     """The clock of times in s, given in blocks; or the findings that keep it from being one: too few, none, repeated, not evenly spaced.
 
     Times may be rounded: single steps may differ by a quarter from the usual one, and the rate is that of all of them. A step of more than
-    one and a half is a gap and divides the record in stretches (`gap_findings` tells of them). Times that were printed with few digits
+    one and a half is a gap and divides the record in stretches. Times that were printed with few digits
     give the roundest rate they allow.
 
     >>> read_clock([np.array([0.0, 0.1, 0.2]), np.array([0.3])], "a.csv")
@@ -97,22 +97,47 @@ def read_clock(times: Iterable[Array], where: str) -> Clock | list[Finding]:
     return Clock(nominal(1.0 / mean, uncertainty), known.first, tuple(pairwise(edges)))
 
 
-def gap_findings(clock: Clock, times: list[float], where: str) -> list[Finding]:
-    """A finding for the gaps of a clock; `times` are the first times of its stretches, as many as are known.
+@dataclass(frozen=True)
+class Told:
+    """What is told of times beside them: the rate the file states, if any, and whether gaps may be passed over."""
 
-    >>> str(gap_findings(Clock(10.0, 0.0, ((0, 3), (3, 5))), [0.0, 0.7], "a.csv")[0])[:75]
-    'a.csv: there is 1 gap between samples, before 0.7 s. The longest stretch wi'
+    rate: float | None = None
+    allow_gaps: bool = False
+
+
+def settled(times: Iterable[Array], at: Callable[[int], float], told: Told, where: str) -> Clock:
+    """The clock of times in s, given in blocks and, for the message of gaps, one by one; raises `DesignError` with what is wrong with it.
+
+    A rate that the file states beside the times holds where they agree within a thousandth.
+
+    >>> times = np.array([0.0, 0.1, 0.2, 0.7, 0.8])
+    >>> settled([times], lambda number: float(times[number]), Told(allow_gaps=True), "a.csv").longest
+    (0, 3)
+    >>> settled([times], lambda number: float(times[number]), Told(), "a.csv")
+    Traceback (most recent call last):
+    flexstage.base.finding.DesignError: a.csv: there is 1 gap between samples, before 0.7 s. The longest stretch without gaps has 3 ...
     """
+    clock = read_clock(times, where)
+    if isinstance(clock, list):
+        raise DesignError(clock)
+    if len(clock.stretches) > 1 and not told.allow_gaps:
+        raise DesignError([_gaps(clock, [at(start) for start, _ in clock.stretches[1 : 1 + _LISTED]], where)])
+    if told.rate is not None and abs(told.rate / clock.rate - 1.0) > 1e-3:
+        raise refuse(
+            where, f"its times say {clock.rate:g} Hz, the file also states {told.rate:g} Hz", "State the rate that is right (rate)"
+        )
+    return Clock(told.rate or clock.rate, clock.start, clock.stretches)
+
+
+def _gaps(clock: Clock, times: list[float], where: str) -> Finding:
     gaps = len(clock.stretches) - 1
-    if gaps == 0:
-        return []
-    listed = ", ".join(f"{time:.6g} s" for time in times[1 : 1 + _LISTED])
+    listed = ", ".join(f"{time:.6g} s" for time in times)
     start, stop = clock.longest
     what = (
         f"there {'is 1 gap' if gaps == 1 else f'are {gaps} gaps'} between samples, before {listed}{' and more' if gaps > _LISTED else ''}"
     )
     length = f"{stop - start} samples ({(stop - start) / clock.rate:.4g} s)"
-    return [Finding(where, what, f'The longest stretch without gaps has {length}: allow "gaps" to use it alone')]
+    return Finding(where, what, f'The longest stretch without gaps has {length}: allow "gaps" to use it alone')
 
 
 def _advance(known: _Steps, block: Array) -> None:

@@ -52,7 +52,7 @@ class Allow(Enum):
     SLOW = "slow"
     """Use a record sampled too slowly for the highest mode, up to half its rate."""
     NAMES = "names"
-    """Leave out channels whose names the stage does not have."""
+    """Leave out channels that are neither inputs nor outputs, or that the stage does not have."""
     INCOMPLETE = "incomplete"
     """Leave out outputs whose responses to some inputs are missing."""
 

@@ -14,9 +14,9 @@ from typing import Protocol, TypeAlias
 
 import numpy as np
 
-from flexstage.base.finding import DesignError, refuse
+from flexstage.base.finding import refuse
 from flexstage.base.number import Array
-from flexstage.readings.measured.clock import Clock, gap_findings, read_clock
+from flexstage.readings.measured.clock import Clock, Told, settled
 from flexstage.readings.measured.options import Allow, Options, assigned, numbered, wanted
 from flexstage.readings.measured.record import Channel, InMemory, Record, Role, Samples
 from flexstage.readings.measured.unit import plain_unit
@@ -257,18 +257,10 @@ def _axis(variable: Variable, length: int) -> int:
 def _clock(time: Variable | None, stated: float | None, options: Options, contents: Contents) -> Clock:
     if time is None or options.rate:
         return Clock(float(stated or 0.0), 0.0, ((0, 0),))
-    where = f"{contents.where}: {time.name}"
-    scale = _time_scale(time)
-    clock = read_clock((block * scale for block in pieces(time)), where)
-    if isinstance(clock, list):
-        raise DesignError(clock)
-    if len(clock.stretches) > 1 and Allow.GAPS not in options.allow:
-        source = time.samples(int(np.argmax(time.shape)))
-        times = [float(source.read(start, start + 1)[0, 0]) * scale for start, _ in clock.stretches[:8]]
-        raise DesignError(gap_findings(clock, times, where))
-    if stated is not None and abs(stated / clock.rate - 1.0) > 1e-3:
-        raise refuse(where, f"its times say {clock.rate:g} Hz, the file also states {stated:g} Hz", "State the rate that is right (rate)")
-    return Clock(stated or clock.rate, clock.start, clock.stretches)
+    scale, source = _time_scale(time), time.samples(int(np.argmax(time.shape)))
+    told = Told(stated, allow_gaps=Allow.GAPS in options.allow)
+    blocks = (block * scale for block in pieces(time))
+    return settled(blocks, lambda number: float(source.read(number, number + 1)[0, 0]) * scale, told, f"{contents.where}: {time.name}")
 
 
 def _time_scale(time: Variable) -> float:

@@ -12,7 +12,7 @@ import numpy as np
 
 from flexstage.base.finding import DesignError, Finding, require
 from flexstage.base.number import Array
-from flexstage.readings.measured.clock import Clock, gap_findings, read_clock
+from flexstage.readings.measured.clock import Clock, Told, settled
 from flexstage.readings.measured.options import Allow, Kind, Options, assigned, matches, numbered, wanted
 from flexstage.readings.measured.record import Channel, Record, Responses, Role, Samples
 from flexstage.readings.measured.uff.function import COHERENCE, KINDS
@@ -149,15 +149,10 @@ def _clock(path: Path, name: str, found: DataSet, options: Options) -> Clock:
         return Clock(function.rate, function.first, ((0, found.values.length),))
     if options.rate:
         return Clock(options.rate, 0.0, ((0, found.values.length),))
-    where, length = f"{path}: {name}", found.values.length
-    clock = read_clock((found.values.read(start, min(start + _BLOCK, length))[:, 0] for start in range(0, length, _BLOCK)), where)
-    if isinstance(clock, list):
-        raise DesignError(clock)
-    if len(clock.stretches) > 1 and Allow.GAPS not in options.allow:
-        raise DesignError(
-            gap_findings(clock, [float(found.values.read(start, start + 1)[0, 0]) for start, _ in clock.stretches[:8]], where)
-        )
-    return clock
+    values, length = found.values, found.values.length
+    blocks = (values.read(start, min(start + _BLOCK, length))[:, 0] for start in range(0, length, _BLOCK))
+    told = Told(allow_gaps=Allow.GAPS in options.allow)
+    return settled(blocks, lambda number: float(values.read(number, number + 1)[0, 0]), told, f"{path}: {name}")
 
 
 def _responses(path: Path, found: list[DataSet], coherences: list[DataSet], options: Options) -> Responses:

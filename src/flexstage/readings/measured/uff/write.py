@@ -72,7 +72,7 @@ def _write_record(stream: BinaryIO, record: Record, *, binary: bool) -> None:
     starts: list[int] = []
     position = 0
     for number, channel in enumerate(record.channels):
-        own = f"flexstage {channel.role.value}; rate {record.rate!r} Hz; start {record.start!r} s"
+        own = f"flexstage {channel.role.value}; rate {float(record.rate)!r} Hz; start {float(record.start)!r} s"
         ordinate = Axis(kinds[channel.role], "", channel.unit)
         texts, place = (channel.name, record.name[:_LONGEST], "", "", own), (channel.name, number + 1, 0)
         axes = (Axis(17, "time", "s"), ordinate, _EMPTY)
