@@ -173,8 +173,29 @@ def test_bad_options_are_refused(flexstage: Command, arguments: tuple[str, ...],
 
 
 @pytest.mark.parametrize(
-    "arguments", [("analyze", "stage.toml"), ("modes",), ("modes", "stage.toml", "--reading", "solid"), ("new",), ("plan", "stage.toml")]
+    ("arguments", "said"),
+    [
+        (
+            ("analyse", "stage.toml", "--reading", "solid"),
+            '--reading: "solid" is none of ideal, mapped, lumped. Solids have commands of their own: flexstage solid, flexstage verify.',
+        ),
+        (("modes", "stage.toml", "--reading", "lumpd"), '--reading: "lumpd" is none of ideal, mapped, lumped.'),
+        (("solid", "stage.toml", "--what", "hinges"), '--what: "hinges" is none of hinge, unit, stage.'),
+    ],
 )
+def test_words_that_are_no_choice_are_told_in_one_line(flexstage: Command, arguments: tuple[str, ...], said: str) -> None:
+    ended = flexstage(*arguments)
+    assert ended.code == 2
+    assert ended.out == ""
+    assert ended.err == f"error: {said}\n"
+
+
+@pytest.mark.parametrize("reading", ["ideal", "mapped", "lumped"])
+def test_words_that_are_a_choice_are_taken(flexstage: Command, reading: str) -> None:
+    assert flexstage("mapping", "stage.toml", "--reading", reading, "--json", "-").document["reading"] == reading
+
+
+@pytest.mark.parametrize("arguments", [("analyze", "stage.toml"), ("modes",), ("new",), ("plan", "stage.toml")])
 def test_wrong_usage_is_told(flexstage: Command, arguments: tuple[str, ...]) -> None:
     ended = flexstage(*arguments)
     assert ended.code == 2

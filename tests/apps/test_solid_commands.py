@@ -2,10 +2,16 @@
 
 from __future__ import annotations
 
+import os
+import signal
+import subprocess
+import sys
+import time
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 import flexstage as fs
@@ -16,6 +22,7 @@ from flexstage.readings.solid.progress import Step
 from flexstage.studies import resolution
 from tests.apps.command import Command, command_in
 from tests.apps.test_documents import ENVELOPE, page_section
+from tests.readings.small_solids import propped
 from tests.readings.solid_studies import COARSE, small, small_unit
 
 
@@ -146,8 +153,87 @@ def test_interruption_writes_nothing(command: Command, tmp_path: Path, monkeypat
 
     monkeypatch.setattr("flexstage.studies.verify.solid_stage", interrupted)
     ended = command("solid", "stage.toml", "--json", "out.json", "--report", "out.html")
-    assert ended.code == 130
+    assert ended.code == 2
     assert sorted(path.name for path in tmp_path.iterdir()) == ["stage.toml"]
+
+
+PROGRAM = """
+import signal
+signal.signal(signal.SIGINT, signal.default_int_handler)  # what a shell runs in the background ignores it
+from flexstage.apps.cli import main
+main()
+"""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="sends the signal of a keyboard")
+def test_an_interruption_ends_with_code_two_and_the_same_command_resumes(tmp_path: Path) -> None:
+    drawn = propped(6e-3, 7e-3)
+    links = {name.replace(" ", "_"): replace(link, part=link.part.replace(" ", "_")) for name, link in drawn.links.items()}
+    parts = {name.replace(" ", "_"): part for name, part in drawn.parts.items()}
+    fs.dump(replace(drawn, parts=parts, links=links), tmp_path / "stage.toml")
+    (tmp_path / "temporary").mkdir()
+    environment = os.environ | {"FLEXSTAGE_CACHE": str(tmp_path / "cache"), "TMPDIR": str(tmp_path / "temporary")}
+    words = [sys.executable, "-c", PROGRAM, "solid", "stage.toml", "--order", "2", "--json", "out.json"]
+    with subprocess.Popen(words, cwd=tmp_path, env=environment, stderr=subprocess.PIPE, text=True) as process:
+        while not list((tmp_path / "cache").glob("*.superelement")) and process.poll() is None:
+            time.sleep(0.02)
+        process.send_signal(signal.SIGINT)
+        _, said = process.communicate()
+    assert process.returncode == 2
+    assert said == "Interrupted; nothing was written. Finished parts are kept in the cache: the same command resumes from there.\n"
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["cache", "stage.toml", "temporary"]
+    assert not list((tmp_path / "temporary").iterdir())
+    kept = {path.name for path in (tmp_path / "cache").iterdir()}
+    assert not any(name.endswith(".part") for name in kept)
+    done = subprocess.run(words, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    assert kept < {path.name for path in (tmp_path / "cache").iterdir()}
+    assert (tmp_path / "out.json").is_file()
+
+
+@pytest.mark.parametrize(
+    ("memory", "said"),
+    [
+        ("8", '--memory: found "8" without a unit. Write for example "8 GB".'),
+        ("0 GB", "--memory: 0 GB is no memory to plan with."),
+        ("-1 GB", "--memory: -1 GB is no memory to plan with."),
+        ("8 mm", '--memory: found "8 mm", a length, where a size of memory is expected.'),
+    ],
+)
+def test_impossible_memory_is_refused_at_once(command: Command, memory: str, said: str) -> None:
+    for words in (("solid", "stage.toml"), ("verify", "stage.toml"), ("calibrate", "stage.toml", "-o", "out.toml")):
+        ended = command(*words, "--memory", memory)
+        assert ended.code == 2
+        assert said in ended.err
+
+
+@pytest.mark.parametrize("scope", ["hinge", "stage"])
+def test_too_little_memory_is_refused_by_name(command: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, scope: str) -> None:
+    monkeypatch.setenv("FLEXSTAGE_CACHE", str(tmp_path / "cache"))
+    ended = command("solid", "stage.toml", "--what", scope, "--memory", "1 MB")
+    assert ended.code == 2
+    assert "0.001 GB are there" in ended.err
+    assert "leaf: its coarsest mesh needs" in ended.err if scope == "hinge" else "left: its reduction at order 2 needs" in ended.err
+
+
+def test_memory_is_the_limit_of_all_that_is_computed(command: Command, monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[float | None] = []
+    monkeypatch.setattr("flexstage.studies.verify.verify", lambda *_: pytest.fail("computed"))
+    monkeypatch.setattr("flexstage.studies.solid_read.solids", lambda ways, _: asked.append(ways.limits.memory))
+    monkeypatch.setattr("flexstage.studies.solid_hinge.hinges", lambda _accuracy, _order, ways, _notice: asked.append(ways.limits.memory))
+    with pytest.raises(pytest.fail.Exception):
+        command("verify", "stage.toml", "--memory", "3 GB")
+    assert asked == [3e9, 3e9]
+
+
+def test_outlines_that_do_not_meet_are_named(command: Command, tmp_path: Path) -> None:
+    stage = fs.case("parallelogram")
+    left = replace(stage.links["left"], at=tuple(np.add(stage.links["left"].at, (0.0, 2e-5, 0.0)).tolist()))
+    fs.dump(replace(stage, links={**stage.links, "left": left}), tmp_path / "apart.toml")
+    ended = command("solid", "apart.toml", "--json", "out.json")
+    assert ended.code == 2
+    assert "left: its end face is 20 um away from platform" in ended.err
+    assert not (tmp_path / "out.json").exists()
 
 
 def test_the_bar_is_silent_without_a_terminal(capfd: Any) -> None:
@@ -155,5 +241,4 @@ def test_the_bar_is_silent_without_a_terminal(capfd: Any) -> None:
 
     with bar() as shown:
         shown.step(Step("lever: meshing", 0.5, 70.0))
-        shown.begin("hinge 1 of 2", 0.0)
     assert capfd.readouterr() == ("", "")

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
-from typing import Any
 
 import numpy as np
 
@@ -16,6 +14,8 @@ from flexstage.parts.body import Body, Inertia
 from flexstage.parts.material import Material
 from flexstage.readings.solid.fineness import Fineness, Reduction
 from flexstage.readings.solid.hinge import HingeSolid
+from flexstage.readings.solid.hinge_cache import HingePart
+from flexstage.studies.solid_hinge import Hinges
 from flexstage.studies.solid_stage import SolidStage, solid_stage
 from flexstage.studies.solid_unit import SolidUnit, solid_units
 
@@ -41,16 +41,16 @@ def small_unit() -> SolidUnit:
     return solid_units(small(), COARSE)["drive"]
 
 
-def softened(factor: float, *, error: float = 0.001, stubs: float = 0.0) -> Callable[[Any, Material], HingeSolid]:
+def softened(factor: float, *, error: float = 0.001, stubs: float = 0.0) -> Hinges:
     """Hinges as beam theory has them, softer by a factor: stands in for finite elements where only what is made of them is tested.
 
     `stubs` is their share of the whole twist about x.
     """
 
-    def compute(part: Any, material: Material) -> HingeSolid:
+    def one(part: HingePart, material: Material) -> HingeSolid:
         own = factor * compliance(part, material)
         whole = own.copy()
         whole[3, 3] = own[3, 3] / (1.0 - stubs)
         return HingeSolid(own, np.linalg.inv(own), error, np.full(6, error), whole, 0.0, 1000, 100, 3)
 
-    return compute
+    return lambda forms: {name: one(*form) for name, form in forms.items()}

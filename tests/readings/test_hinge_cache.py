@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import fields
+from collections.abc import Callable
+from dataclasses import fields, replace
 from pathlib import Path
 
 import numpy as np
@@ -17,8 +18,10 @@ from flexstage.parts.rod import Rod
 from flexstage.readings.solid.cache import Cache
 from flexstage.readings.solid.estimate import Accuracy
 from flexstage.readings.solid.hinge import HingeSolid, hinge_compliance
-from flexstage.readings.solid.hinge_cache import kept_hinge
+from flexstage.readings.solid.hinge_cache import HingePart, kept_hinges
 from flexstage.readings.solid.parts import Ways
+from flexstage.readings.solid.progress import Step
+from flexstage.readings.solid.remote import Limits
 
 ROD = Rod("steel", 8 * mm, 3 * mm)
 ROUGH = Accuracy(error=0.5, orders=(2, 3), meshes=1)
@@ -29,20 +32,24 @@ def same(one: HingeSolid, other: HingeSolid) -> bool:
     return all(np.array_equal(a, b) if isinstance(a, np.ndarray) else a == b for a, b in pairs)
 
 
+def kept(part: HingePart, ways: Ways, notice: Callable[[Finding], None] | None = None) -> HingeSolid:
+    return kept_hinges({"prop": (part, STEEL)}, ROUGH, ways, notice)["prop"]
+
+
 def test_kept_computed_and_plain_hinges_are_the_same(tmp_path: Path) -> None:
     ways, notices = Ways(Cache(tmp_path)), list[Finding]()
-    computed = kept_hinge(ROD, STEEL, ROUGH, ways, notices.append)
+    computed = kept(ROD, ways, notices.append)
     plain = hinge_compliance(ROD, STEEL, ROUGH)
     size = np.sqrt(np.diag(plain.compliance))
     assert np.max(np.abs(computed.compliance - plain.compliance) / np.outer(size, size)) < 1e-9  # rounding of another process
     assert computed.freedoms == plain.freedoms
     (path,) = tmp_path.iterdir()
-    kept = path.read_bytes()
-    assert same(kept_hinge(ROD, STEEL, ROUGH, ways, notices.append), computed)
+    before = path.read_bytes()
+    assert same(kept(ROD, ways, notices.append), computed)
     assert notices == []
-    path.write_bytes(kept.replace(b"1", b"2", 1))
-    assert same(kept_hinge(ROD, STEEL, ROUGH, ways, notices.append), computed)
-    assert path.read_bytes() == kept
+    path.write_bytes(before.replace(b"1", b"2", 1))
+    assert same(kept(ROD, ways, notices.append), computed)
+    assert path.read_bytes() == before
     (notice,) = notices
     assert "cannot be read (it does not have the checksum it states)" in notice.what
 
@@ -52,5 +59,36 @@ def test_what_is_refused_there_is_refused_here() -> None:
     with pytest.raises(DesignError) as plain:
         hinge_compliance(bad, STEEL, ROUGH)
     with pytest.raises(DesignError) as caught:
-        kept_hinge(bad, STEEL, ROUGH, Ways(None))
-    assert caught.value.findings == plain.value.findings
+        kept(bad, Ways(None))
+    assert caught.value.findings == tuple(replace(each, where="prop") for each in plain.value.findings)
+
+
+def test_hinges_are_computed_side_by_side_each_once(tmp_path: Path) -> None:
+    steps: list[Step] = []
+    other = Rod("steel", 10 * mm, 3 * mm)
+    forms = {"short": (ROD, STEEL), "long": (other, STEEL), "alike": (ROD, STEEL)}
+    ways = Ways(Cache(tmp_path), steps.append, Limits(workers=2))
+    found = kept_hinges(forms, ROUGH, ways)
+    assert list(found) == ["short", "long", "alike"]
+    assert found["alike"] is found["short"]
+    assert found["long"].compliance[0, 0] > 1.1 * found["short"].compliance[0, 0]
+    assert any("short: " in step.text and "long: " in step.text for step in steps)
+    assert not any("alike" in step.text for step in steps)
+    assert steps[-1].fraction == 1.0
+    assert len(list(tmp_path.iterdir())) == 2
+
+
+def test_a_hinge_that_is_done_is_kept_when_another_is_interrupted(tmp_path: Path) -> None:
+    def interrupted(_step: Step) -> None:
+        if list(tmp_path.glob("*.hinge")):
+            raise KeyboardInterrupt
+
+    forms = {"short": (ROD, STEEL), "long": (Rod("steel", 10 * mm, 3 * mm), STEEL)}
+    with pytest.raises(KeyboardInterrupt):
+        kept_hinges(forms, ROUGH, Ways(Cache(tmp_path), interrupted, Limits(workers=1)))
+    assert len(list(tmp_path.iterdir())) == 1
+
+
+def test_too_little_memory_is_told_by_name() -> None:
+    with pytest.raises(DesignError, match=r"prop: its coarsest mesh needs about .* GB at order 3, and 0\.001 GB are there"):
+        kept(ROD, Ways(None, limits=Limits(memory=1e6)))

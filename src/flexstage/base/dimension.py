@@ -23,11 +23,14 @@ centi- = 1e-2 = c-
 kilo- = 1e3 = k-
 mega- = 1e6 = M-
 giga- = 1e9 = G-
+mebi- = 1048576 = Mi-
+gibi- = 1073741824 = Gi-
 meter = [length] = m = metre
 gram = [mass] = g
 second = [time] = s
 kelvin = [temperature] = K
 radian = [angle] = rad
+byte = [memory] = B
 ampere = [current] = A
 pi = 3.1415926535897932384626433832795028841971693993751
 degree = pi / 180 * radian = deg = °

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias
 
@@ -21,7 +21,7 @@ from flexstage.parts.neck import Neck
 from flexstage.parts.notch import Notch
 from flexstage.parts.rod import Rod
 from flexstage.readings.solid.estimate import Accuracy
-from flexstage.readings.solid.hinge_cache import HingePart, kept_hinge
+from flexstage.readings.solid.hinge_cache import HingeForm, HingePart, kept_hinges
 from flexstage.readings.solid.parts import Ways
 from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNITS
 from flexstage.studies.solid_read import STANDARD_WAYS, Notice
@@ -31,8 +31,8 @@ if TYPE_CHECKING:
 
 _MOST_STUB = 0.9
 
-Hinges: TypeAlias = "Callable[[HingePart, Material], HingeSolid]"
-"""Computes one hinge: plainly, or from a cache and telling its progress."""
+Hinges: TypeAlias = "Callable[[Mapping[str, HingeForm]], Mapping[str, HingeSolid]]"
+"""Computes hinges by name: plainly, or from a cache and telling its progress."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,15 +72,15 @@ class SolidHinge:
 
 
 def hinges(accuracy: float = 0.01, order: int | None = None, ways: Ways = STANDARD_WAYS, notice: Notice | None = None) -> Hinges:
-    """Hinges computed to an accuracy with elements of at most an `order` (never less than three), each once, by the cache of `ways`.
+    """Hinges computed to an accuracy with elements of at most an `order` (never less than three), each once, side by side, by `ways`.
 
     >>> hinges().__name__
     'compute'
     """
     asked = Accuracy(error=accuracy) if order is None else Accuracy(error=accuracy, orders=(2, max(3, order)))
 
-    def compute(part: HingePart, material: Material) -> HingeSolid:
-        return kept_hinge(part, material, asked, ways, notice)
+    def compute(forms: Mapping[str, HingeForm]) -> Mapping[str, HingeSolid]:
+        return kept_hinges(forms, asked, ways, notice)
 
     return compute
 
@@ -126,4 +126,5 @@ def solid_hinges(mechanism: Mechanism, compute: Hinges = STANDARD_HINGES) -> dic
     found = distinct_hinges(mechanism)
     if not found:
         raise refuse("links", "none of them is a notch, neck, leaf or rod", "Only these have a 6x6 that can be computed")
-    return {name: SolidHinge(name, links, form, material, compute(form, material)) for name, (form, material, links) in found.items()}
+    solved = compute({name: (form, material) for name, (form, material, _) in found.items()})
+    return {name: SolidHinge(name, links, form, material, solved[name]) for name, (form, material, links) in found.items()}

@@ -13,9 +13,9 @@ from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.readings.linear.model import LinearModel
 from flexstage.readings.solid.assemble import Placed, linear_model, placed_parts
-from flexstage.readings.solid.component import components
 from flexstage.readings.solid.fineness import Reduction
 from flexstage.readings.solid.parts import Parts, Ways, reduce_parts
+from flexstage.readings.solid.sound import sound_components
 
 Solids: TypeAlias = Callable[[Mechanism, Reduction], Parts]
 """Reduces the components of a stage."""
@@ -50,14 +50,14 @@ class SolidRead:
 
 
 def solids(ways: Ways = STANDARD_WAYS, notice: Notice | None = None) -> Solids:
-    """Reduces components by `ways`: from a cache, telling the progress; `notice` is told what is to be said about the cache.
+    """Checks outlines and reduces components by `ways`: from a cache, telling the progress; `notice` is told what is to be said about it.
 
     >>> solids()(Mechanism("nothing"), Reduction())
     ()
     """
 
     def reduce(mechanism: Mechanism, reduction: Reduction) -> Parts:
-        found = reduce_parts(components(mechanism), reduction, ways)
+        found = reduce_parts(sound_components(mechanism, ways.cache), reduction, ways)
         for finding in found.notices:
             (notice or _ignore)(finding)
         return found.parts
@@ -78,7 +78,7 @@ STANDARD_REDUCTION = Reduction()
 def read_solid(mechanism: Mechanism, reduction: Reduction, reduce: Solids) -> SolidRead:
     """Read a stage as solids; calibrated hinges as the shapes they stand for.
 
-    Raises `DesignError` for parts without a shape, and when the stage can move freely.
+    Raises `DesignError` for parts without a shape, outlines that do not meet, overlap or leave slivers, and when the stage can move freely.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.mechanism.restrict import restrict

@@ -17,7 +17,7 @@ def main() -> None:
 
 
 def run(arguments: Sequence[str]) -> int:
-    """Run a command line and return its exit code: 0 done, 1 requirement missed (`--strict`), 2 bad input, 70 a fault of flexstage."""
+    """Run a command line and return its exit code: 0 done, 1 requirement missed (`--strict`), 2 bad input or interrupted, 70 a fault."""
     return guarded(lambda: _run(list(arguments)))
 
 

@@ -24,10 +24,6 @@ class Bar:
         left = "" if step.left is None else f"{_clock(step.left)} left"
         self._show(f"{self.about}{step.text}", step.fraction, left)
 
-    def begin(self, text: str, fraction: float) -> None:
-        """Show the beginning of something whose own steps are not told."""
-        self._show(text, fraction, "")
-
     def _show(self, text: str, fraction: float, left: str) -> None:
         if self._shown is not None:
             self._shown.update(self._task, description=text, completed=fraction, left=left)

@@ -11,7 +11,8 @@ from contextlib import contextmanager
 from flexstage.apps.cli.speech import tell, warn
 from flexstage.base.finding import DesignError
 
-DONE, MISSED, BAD_INPUT, FAULT, INTERRUPTED = 0, 1, 2, 70, 130
+DONE, MISSED, BAD_INPUT, INTERRUPTED, FAULT = 0, 1, 2, 2, 70
+_FRAMEWORKS_INTERRUPTED = 130
 _DEBUG = "FLEXSTAGE_DEBUG"
 _THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
 
@@ -25,7 +26,7 @@ def guarded(action: Callable[[], object]) -> int:
             action()
             sys.stdout.flush()
     except SystemExit as end:
-        if end.code == INTERRUPTED:  # the command line's framework turns the interruption into this
+        if end.code == _FRAMEWORKS_INTERRUPTED:  # the command line's framework turns the interruption into this
             return _interrupted()
         return end.code if isinstance(end.code, int) else DONE if end.code is None else MISSED
     except DesignError as error:
@@ -44,7 +45,7 @@ def guarded(action: Callable[[], object]) -> int:
 
 
 def _interrupted() -> int:
-    tell("Interrupted; nothing was written. Solids that were finished are kept: the same command goes on from there.")
+    tell("Interrupted; nothing was written. Finished parts are kept in the cache: the same command resumes from there.")
     return INTERRUPTED
 
 

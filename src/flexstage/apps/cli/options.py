@@ -7,12 +7,22 @@ from typing import Annotated, TypeAlias
 
 import typer
 
+from flexstage.apps.cli.choice import choice, choices
 from flexstage.studies.reading import Reading
+
+_OTHERWISE = {"solid": "Solids have commands of their own: flexstage solid, flexstage verify"}
 
 Design: TypeAlias = Annotated[Path, typer.Argument(help="Design file (TOML).", metavar="STAGE.TOML", show_default=False)]
 
 Theory: TypeAlias = Annotated[
-    Reading, typer.Option("--reading", help="Theory to read the stage by: rigid bodies, the paper's axial springs, or lumped 6x6 hinges.")
+    Reading,
+    typer.Option(
+        "--reading",
+        parser=choice("--reading", Reading, _OTHERWISE),
+        metavar=choices(Reading),
+        autocompletion=lambda: [each.value for each in Reading],
+        help="Theory to read the stage by: rigid bodies, the paper's axial springs, or lumped 6x6 hinges.",
+    ),
 ]
 
 Changes: TypeAlias = Annotated[

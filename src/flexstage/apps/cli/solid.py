@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
@@ -11,6 +11,7 @@ import typer
 
 from flexstage.apps.cli.answer import Asked, answer, tell_missing
 from flexstage.apps.cli.bar import Bar, bar
+from flexstage.apps.cli.choice import choice, choices
 from flexstage.apps.cli.options import Changes, Design, Json
 from flexstage.apps.cli.output import STDOUT, output_findings, write
 from flexstage.apps.cli.speech import tell, warn
@@ -19,17 +20,27 @@ from flexstage.studies.what import What
 if TYPE_CHECKING:
     from flexstage.base.finding import Finding
     from flexstage.mechanism.mechanism import Mechanism
-    from flexstage.parts.material import Material
     from flexstage.present.page import Section
     from flexstage.present.table import Table
     from flexstage.readings.solid.fineness import Reduction
     from flexstage.readings.solid.hinge import HingeSolid
-    from flexstage.readings.solid.parts import Parts
+    from flexstage.readings.solid.hinge_cache import HingeForm
+    from flexstage.readings.solid.parts import Parts, Ways
     from flexstage.studies.resolution import Resolution, Resolved
-    from flexstage.studies.solid_hinge import HingePart, Hinges
+    from flexstage.studies.solid_hinge import Hinges
     from flexstage.studies.solid_read import Solids
     from flexstage.studies.verify import Verification
 
+Scope: TypeAlias = Annotated[
+    What,
+    typer.Option(
+        "--what",
+        parser=choice("--what", What),
+        metavar=choices(What),
+        autocompletion=lambda: [each.value for each in What],
+        help="Every distinct hinge, every distinct unit alone, or the whole stage.",
+    ),
+]
 Accuracy: TypeAlias = Annotated[
     str, typer.Option("--accuracy", metavar="SHARE", help="Relative error to reach in stiffness, gain and frequency.")
 ]
@@ -40,7 +51,32 @@ Order: TypeAlias = Annotated[
 Report: TypeAlias = Annotated[
     Path | None, typer.Option("--report", metavar="FILE", help="Write a self-contained HTML report with pictures.", show_default=False)
 ]
+Memory: TypeAlias = Annotated[
+    str | None,
+    typer.Option(
+        "--memory",
+        metavar="SIZE",
+        help='Memory to plan with, e.g. "8 GB". Default: 90 % of what the machine has left.',
+        show_default=False,
+    ),
+]
 _DEFAULT_ACCURACY = "1 %"
+
+
+@dataclass(frozen=True)
+class _Wishes:
+    """The resolution asked for, and the memory to plan with [bytes] (absent: what the machine has left)."""
+
+    resolution: Resolution
+    memory: float | None
+
+    def ways(self, shown: Bar) -> Ways:
+        """By the cache of the user, with the progress shown."""
+        from flexstage.readings.solid.cache import Cache
+        from flexstage.readings.solid.parts import Ways
+        from flexstage.readings.solid.remote import Limits
+
+        return Ways(Cache(), shown.step, Limits(memory=self.memory))
 
 
 @dataclass(frozen=True)
@@ -55,9 +91,10 @@ class _Found:
 def solid(
     design: Design,
     *,
-    what: Annotated[What, typer.Option("--what", help="Every distinct hinge, every distinct unit alone, or the whole stage.")] = What.STAGE,
+    what: Scope = What.STAGE,
     accuracy: Accuracy = _DEFAULT_ACCURACY,
     order: Order = None,
+    memory: Memory = None,
     changes: Changes = None,
     json: Json = None,
     report: Report = None,
@@ -68,8 +105,8 @@ def solid(
 
     What was reduced once is kept and not computed again.
     """
+    asked = _wishes(accuracy, order, memory)
     mechanism = _opened(design, changes, [("--json", json), ("--report", report)])
-    asked = _resolution(accuracy, order)
     with bar() as shown:
         found = _STUDIES[what](mechanism, asked, shown)
     if report is not None:
@@ -83,6 +120,7 @@ def verify(
     *,
     accuracy: Accuracy = _DEFAULT_ACCURACY,
     order: Order = None,
+    memory: Memory = None,
     changes: Changes = None,
     json: Json = None,
     report: Report = None,
@@ -92,21 +130,21 @@ def verify(
     Hinges, units and the whole stage: the paper's springs, the lumped reading, the lumped reading with calibrated hinges, and FEA with its
     own error. Rows that calibrated parts touch are not independent of FEA.
     """
+    asked = _wishes(accuracy, order, memory)
     mechanism = _opened(design, changes, [("--json", json), ("--report", report)])
-    asked = _resolution(accuracy, order)
     from flexstage.present.documents.solid import verification_body
     from flexstage.present.sections.solid import hinge_section, stage_solid_section, unit_section, verification_section
     from flexstage.studies.verify import verify as verified
 
     with bar() as shown:
-        found = verified(_checked(mechanism), asked, _solids(shown), _hinges(mechanism, asked, shown))
+        found = verified(mechanism, asked.resolution, _solids(asked, shown), _hinges(asked, shown))
     if report is not None:
         units = None if found.units is None else unit_section(found.units)
         stage = None if found.stage is None else stage_solid_section(found.stage)
         _write_report(report, mechanism, iter([verification_section(found), hinge_section(found.hinges), units, stage]))
     for each in (found.units, found.stage):
         if each is not None:
-            _tell_error(each, asked)
+            _tell_error(each, asked.resolution)
     tell_missing(found.missing)
     if _shows(json, report):
         answer(Asked("verify", mechanism, None, json), lambda: verification_body(found), lambda: _verification_tables(found))
@@ -118,6 +156,7 @@ def calibrate(
     output: Annotated[Path, typer.Option("--output", "-o", metavar="STAGE.TOML", help="Design file to write.", show_default=False)],
     accuracy: Accuracy = _DEFAULT_ACCURACY,
     order: Order = None,
+    memory: Memory = None,
     json: Json = None,
 ) -> None:
     """Give hinges their 6x6 from finite elements.
@@ -127,7 +166,7 @@ def calibrate(
     from flexstage.base.finding import require
 
     require(output_findings([("--output", output), ("--json", json)], design))
-    asked = _resolution(accuracy, order)
+    asked = _wishes(accuracy, order, memory)
     from flexstage.mechanism.store import loads
     from flexstage.mechanism.store.file import read_text
     from flexstage.present.documents.solid import calibration_body
@@ -137,7 +176,7 @@ def calibrate(
     text = read_text(design)
     mechanism = loads(text, where=str(design))
     with bar() as shown:
-        found = calibrated(text, _hinges(mechanism, asked, shown), where=str(design))
+        found = calibrated(text, _hinges(asked, shown), where=str(design))
     write(output, found.text, "--output")
     for hinge in found.hinges.values():
         if hinge.found.finding is not None:
@@ -156,7 +195,7 @@ def _opened(design: Path, changes: list[str] | None, outputs: list[tuple[str, st
     return changed(load(design), changes or ())
 
 
-def _resolution(accuracy: str, order: int | None) -> Resolution:
+def _wishes(accuracy: str, order: int | None, memory: str | None) -> _Wishes:
     from flexstage.base.finding import refuse
     from flexstage.base.quantity import RATIO
     from flexstage.base.unit import parse
@@ -165,19 +204,33 @@ def _resolution(accuracy: str, order: int | None) -> Resolution:
     share = parse(accuracy, RATIO, where="--accuracy")
     if not 1e-6 <= share < 1.0:
         raise refuse("--accuracy", f"{accuracy} is no relative error to ask for", 'Give one between 0.0001 % and 100 %, e.g. "1 %"')
-    return Resolution(share, order)
+    return _Wishes(Resolution(share, order), _size(memory))
 
 
 def _notice(finding: Finding) -> None:
     warn(str(finding))
 
 
-def _solids(shown: Bar) -> Solids:
-    from flexstage.readings.solid.cache import Cache
-    from flexstage.readings.solid.parts import Ways
+def _size(memory: str | None) -> float | None:
+    """The size of memory stated [bytes]."""
+    from flexstage.base.finding import refuse
+    from flexstage.base.quantity import Quantity
+    from flexstage.base.unit import parse
+
+    if memory is None:
+        return None
+    size = parse(memory, Quantity("size of memory", "B", "GB", "8 GB"), where="--memory")
+    if size <= 0.0:
+        raise refuse("--memory", f"{memory} is no memory to plan with", 'Give what may be used, e.g. "8 GB"')
+    return size
+
+
+def _solids(asked: _Wishes, shown: Bar) -> Solids:
+    from flexstage.readings.solid.install import require_solver
     from flexstage.studies.solid_read import solids
 
-    reduce = solids(Ways(Cache(), shown.step), _notice)
+    require_solver()
+    reduce = solids(asked.ways(shown), _notice)
 
     def told(mechanism: Mechanism, reduction: Reduction) -> Parts:
         shown.about = f"order {reduction.fineness.order}, "
@@ -186,40 +239,25 @@ def _solids(shown: Bar) -> Solids:
     return told
 
 
-def _hinges(mechanism: Mechanism, asked: Resolution, shown: Bar) -> Hinges:
-    from flexstage.studies.solid_hinge import distinct_hinges, hinges
+def _hinges(asked: _Wishes, shown: Bar) -> Hinges:
+    from flexstage.studies.solid_hinge import hinges
 
-    count = len(distinct_hinges(mechanism))
-    compute = hinges(asked.accuracy, asked.order, notice=_notice)
-    done: list[HingePart] = []
+    compute = hinges(asked.resolution.accuracy, asked.resolution.order, asked.ways(shown), _notice)
 
-    def told(part: HingePart, material: Material) -> HingeSolid:
-        shown.begin(f"hinge {len(done) + 1} of {count}", len(done) / count)
-        done.append(part)
-        return compute(part, material)
+    def told(forms: Mapping[str, HingeForm]) -> Mapping[str, HingeSolid]:
+        shown.about = "hinges, "
+        return compute(forms)
 
     return told
 
 
-def _checked(mechanism: Mechanism) -> Mechanism:
-    """The stage, its outlines checked against each other before anything is meshed."""
-    from flexstage.base.finding import require
-    from flexstage.mechanism.drawn import drawn
-    from flexstage.readings.solid.apart import contact_apart
-    from flexstage.readings.solid.install import require_solver
-
-    require_solver()
-    require(contact_apart(drawn(mechanism)))
-    return mechanism
-
-
-def _hinge_study(mechanism: Mechanism, asked: Resolution, shown: Bar) -> _Found:
+def _hinge_study(mechanism: Mechanism, asked: _Wishes, shown: Bar) -> _Found:
     from flexstage.present.documents.solid import hinges_body
     from flexstage.present.sections.solid import hinge_section
     from flexstage.present.tables.solid import hinge_matrices, hinge_table
     from flexstage.studies.solid_hinge import solid_hinges
 
-    found = solid_hinges(mechanism, _hinges(mechanism, asked, shown))
+    found = solid_hinges(mechanism, _hinges(asked, shown))
     for hinge in found.values():
         if hinge.found.finding is not None:
             warn(f"{hinge.part}: {hinge.found.finding.what}. {hinge.found.finding.advice}.")
@@ -230,18 +268,14 @@ def _hinge_study(mechanism: Mechanism, asked: Resolution, shown: Bar) -> _Found:
     )
 
 
-def _unit_study(mechanism: Mechanism, asked: Resolution, shown: Bar) -> _Found:
-    from flexstage.mechanism.restrict import isolate
+def _unit_study(mechanism: Mechanism, asked: _Wishes, shown: Bar) -> _Found:
     from flexstage.present.documents.solid import solid_units_body
     from flexstage.present.sections.solid import unit_section
     from flexstage.present.tables.solid import command_table, solid_unit_table, stress_table
-    from flexstage.studies.units import driven_units
     from flexstage.studies.verify import units_solid
 
-    for copy, _ in driven_units(mechanism).values():
-        _checked(isolate(mechanism, copy))
-    found = units_solid(mechanism, asked, _solids(shown))
-    _tell_error(found, asked)
+    found = units_solid(mechanism, asked.resolution, _solids(asked, shown))
+    _tell_error(found, asked.resolution)
 
     def tables() -> Iterator[Table | None]:
         yield solid_unit_table(found)
@@ -252,7 +286,7 @@ def _unit_study(mechanism: Mechanism, asked: Resolution, shown: Bar) -> _Found:
     return _Found(lambda: solid_units_body(found), tables, lambda: iter([unit_section(found)]))
 
 
-def _stage_study(mechanism: Mechanism, asked: Resolution, shown: Bar) -> _Found:
+def _stage_study(mechanism: Mechanism, asked: _Wishes, shown: Bar) -> _Found:
     from flexstage.present.documents.solid import solid_stage_body
     from flexstage.present.sections.solid import stage_solid_section
     from flexstage.present.tables.modes import mode_table
@@ -260,8 +294,8 @@ def _stage_study(mechanism: Mechanism, asked: Resolution, shown: Bar) -> _Found:
     from flexstage.present.tables.statics import direction_table, principal_table, stiffness_table
     from flexstage.studies.verify import stage_solid
 
-    found = stage_solid(_checked(mechanism), asked, _solids(shown))
-    _tell_error(found, asked)
+    found = stage_solid(mechanism, asked.resolution, _solids(asked, shown))
+    _tell_error(found, asked.resolution)
     stage = found.result
 
     def tables() -> Iterator[Table | None]:

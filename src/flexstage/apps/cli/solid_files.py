@@ -124,9 +124,10 @@ def _contents(mechanism: Mechanism, wanted: dict[str, Path | None], order: int, 
 def _check_contact(stage: Mechanism, *, meshed: bool) -> None:
     """Findings keep a stage from being meshed; drawn it may be all the same, to be mended in CAD."""
     from flexstage.base.finding import require
-    from flexstage.readings.solid.apart import contact_apart
+    from flexstage.readings.solid.cache import Cache
+    from flexstage.readings.solid.sound import stage_findings
 
-    findings = contact_apart(stage)
+    findings = stage_findings(stage, Cache())
     if meshed:
         require(findings)
     for finding in findings:

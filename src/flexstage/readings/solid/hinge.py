@@ -6,7 +6,7 @@ taken off as beams, so that what the roots of the arcs yield remains with the hi
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -24,8 +24,10 @@ from flexstage.parts.profile import Filleted
 from flexstage.parts.rod import Rod
 from flexstage.readings.solid.estimate import Accuracy, change, remaining
 from flexstage.readings.solid.field import Field, applied, factored, field, rigid, stiffness, times
+from flexstage.readings.solid.memory import Counts
 from flexstage.readings.solid.mesh import Meshed
 from flexstage.readings.solid.piece import Medium, medium, span
+from flexstage.readings.solid.progress import Report, Stage, silent
 from flexstage.readings.solid.specimen import END, START, Hinge, Specimen, added, specimen
 from flexstage.readings.solid.stub import beam, circle, rectangle
 from flexstage.spatial.frame import identity, transport
@@ -78,7 +80,20 @@ class _Solve:
     order: int
 
 
-def hinge_compliance(part: Hinge, material: Material, accuracy: Accuracy | None = None, stub: float | None = None) -> HingeSolid:
+@dataclass(frozen=True, eq=False)
+class Told:
+    """Who is told how far a hinge is, and who is asked whether there is room for its first mesh (nobody, unless stated)."""
+
+    report: Report = silent
+    ask: Callable[[Counts], None] = lambda _counts: None
+
+
+_NOBODY = Told()
+
+
+def hinge_compliance(
+    part: Hinge, material: Material, accuracy: Accuracy | None = None, stub: float | None = None, told: Told = _NOBODY
+) -> HingeSolid:
     """The 6x6 of a notch, neck, leaf or rod by finite elements, to the accuracy asked for (1 % unless told).
 
     Energies: with one outer face held and the other moved rigidly by e_i about the centre, K_ij = u_i . K u_j; C = K^-1 - sum over stubs of
@@ -87,7 +102,7 @@ def hinge_compliance(part: Hinge, material: Material, accuracy: Accuracy | None 
 
     Linear elasticity; the stubs' outer faces stay plane. How much of the blocks counts as root is a convention: C_x depends on the stub's
     length by 1-3 %, C_y by some 10 %, and C_rx of a hinge several times wider than high by a factor. Raises `DesignError` for a part
-    without a shape, for a batch, and where no mesh can be made.
+    without a shape, for a batch, and where no mesh can be made. `told` hears of every mesh and solve.
 
     >>> from flexstage.parts.profile import Straight
     >>> steel = Material(young=200e9, poisson=0.3, density=7750.0)
@@ -103,7 +118,7 @@ def hinge_compliance(part: Hinge, material: Material, accuracy: Accuracy | None 
     taken = _stubs(part, length, own)
     found: list[Array] = []
     last = None
-    for last in _solves(part, length, own, asked):
+    for last in _solves(part, length, own, asked, told):
         found.append(_symmetric(np.linalg.inv(last.stiffness)) - taken)
         if _error(part, found) <= asked.error:
             break
@@ -152,15 +167,19 @@ def _named(part: Hinge) -> str:
     return f"the {type(part).__name__.lower()}"
 
 
-def _solves(part: Hinge, stub: float, own: Medium, asked: Accuracy) -> Iterator[_Solve]:
+def _solves(part: Hinge, stub: float, own: Medium, asked: Accuracy, told: Told) -> Iterator[_Solve]:
     """Solves of rising order on one mesh, then of the highest on finer ones, until the next would have too many freedoms."""
     lowest, highest = asked.orders
     for refinement in range(asked.meshes):
+        told.report(Stage.MESHING, 0.0)
         mesh = hinge_mesh(part, stub, asked.shrink**refinement, highest)
+        if refinement == 0:
+            told.ask(Counts(mesh.nv, mesh.nedge, mesh.nface, mesh.ne))
         for order in range(lowest if refinement == 0 else highest, highest + 1):
             space = _space(mesh, own, order)
             if space.size > asked.freedoms:
                 return
+            told.report(Stage.FACTORISING, 0.0)
             yield _Solve(_law(part, space), space.size, mesh.ne, order)
 
 

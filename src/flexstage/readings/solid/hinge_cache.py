@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Callable
-from dataclasses import asdict, dataclass, fields
+from collections.abc import Callable, Mapping
+from dataclasses import asdict, dataclass, fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
@@ -22,8 +22,8 @@ from flexstage.parts.rod import Rod
 from flexstage.readings.solid.cache import folder_of
 from flexstage.readings.solid.estimate import Accuracy
 from flexstage.readings.solid.install import require_solver
+from flexstage.readings.solid.memory import Counts, needed
 from flexstage.readings.solid.parts import Ways
-from flexstage.readings.solid.progress import Stage
 from flexstage.readings.solid.remote import work_all
 from flexstage.readings.solid.store import versions
 from flexstage.readings.solid.worker import Call, Job
@@ -32,51 +32,84 @@ if TYPE_CHECKING:
     from flexstage.readings.solid.hinge import HingeSolid
 
 HingePart: TypeAlias = Notch | Neck | Leaf | Rod
+HingeForm: TypeAlias = tuple[HingePart, Material]
+"""What a hinge is computed from."""
 _ARRAYS = ("compliance", "stiffness", "changes", "whole")
 
 
 @dataclass(frozen=True, eq=False)
 class Hinging(Job):
-    """A hinge to compute in a process of its own."""
+    """A hinge to compute in a process of its own, under the name it has for the user."""
 
+    called: str
     part: HingePart
     material: Material
     asked: Accuracy
 
     @property
     def name(self) -> str:
-        """What kind of hinge it is."""
-        return f"the {type(self.part).__name__.lower()}"
+        """The hinge's name."""
+        return self.called
+
+    @property
+    def order(self) -> int:
+        """The lowest order that an error can be estimated at."""
+        return min(self.asked.orders[0] + 1, self.asked.orders[1])
+
+    def needed(self, counts: Counts) -> float:
+        """Memory of the first solves [bytes]; at higher orders as much is taken as there is."""
+        return needed(counts, self.order, 6)
+
+    def refusal(self, counts: Counts, limit: float) -> Finding | None:
+        """Why its coarsest mesh does not fit."""
+        if self.needed(counts) <= limit:
+            return None
+        what = f"its coarsest mesh needs about {self.needed(counts) / 1e9:.3g} GB at order {self.order}, and {limit / 1e9:.3g} GB are there"
+        return Finding(self.name, what, "Free memory, or let it have more")
 
     def work(self, call: Call) -> bytes:
-        """Compute it; the 6x6 as kept."""
-        from flexstage.readings.solid.hinge import hinge_compliance
+        """Compute it; the 6x6 as kept. What is refused is told by the name it has for the user."""
+        from flexstage.readings.solid.hinge import Told, hinge_compliance
 
-        call.report(Stage.MESHING, 0.0)
-        return _encoded(hinge_compliance(self.part, self.material, self.asked))
+        try:
+            return _encoded(hinge_compliance(self.part, self.material, self.asked, told=Told(call.report, call.ask)))
+        except DesignError as error:
+            kind = f"the {type(self.part).__name__.lower()}"
+            raise DesignError(replace(each, where=each.where.replace(kind, self.name, 1)) for each in error.findings) from None
 
 
-def kept_hinge(
-    part: HingePart, material: Material, asked: Accuracy, ways: Ways, notice: Callable[[Finding], None] | None = None
-) -> HingeSolid:
-    """The 6x6 of a hinge from the cache, else computed in a process of its own and kept. The solver is needed only where it is not there.
+def kept_hinges(
+    forms: Mapping[str, HingeForm], asked: Accuracy, ways: Ways, notice: Callable[[Finding], None] | None = None
+) -> dict[str, HingeSolid]:
+    """The 6x6 of hinges by name, from the cache, else computed in processes of their own, side by side, each kept as soon as it is done.
 
-    `notice` is told of a file that is damaged, and of one that could not be kept; neither is fatal.
+    The solver is needed only for those that are not there. `notice` is told of a file that is damaged, and of one that could not be kept;
+    neither is fatal. Raises `DesignError` with all that could not be computed.
 
-    >>> kept_hinge.__name__
-    'kept_hinge'
+    >>> kept_hinges({}, Accuracy(), Ways())
+    {}
     """
     tell = notice or (lambda _: None)
-    path = None if ways.cache is None else folder_of(ways.cache) / f"{_key(part, material, asked)}-{versions('hinge').digest}.hinge"
-    found = None if path is None else _read(path, tell)
-    if found is not None:
-        return found
-    require_solver()
-    results: list[bytes] = []
-    work_all([Hinging(part, material, asked)], lambda _job, data: results.append(data), ways.limits)
-    if path is not None:
-        _keep(path, results[0], tell)
-    return _decoded(results[0])
+    keys = {name: _key(*form, asked) for name, form in forms.items()}
+    paths = {key: _path(key, ways) for key in keys.values()}
+    found = {key: None if path is None else _read(path, tell) for key, path in paths.items()}
+    first = {key: name for name, key in reversed(keys.items())}
+    missing = [Hinging(name, *forms[name], asked) for name, key in keys.items() if found[key] is None and first[key] == name]
+
+    def take(job: Hinging, data: bytes) -> None:
+        key = keys[job.name]
+        found[key] = _decoded(data)
+        if (path := paths[key]) is not None:
+            _keep(path, data, tell)
+
+    if missing:
+        require_solver()
+        work_all(missing, take, ways.limits, ways.progress)
+    return {name: hinge for name, key in keys.items() if (hinge := found[key]) is not None}
+
+
+def _path(key: str, ways: Ways) -> Path | None:
+    return None if ways.cache is None else folder_of(ways.cache) / f"{key}-{versions('hinge').digest}.hinge"
 
 
 def _key(part: HingePart, material: Material, asked: Accuracy) -> str:

@@ -12,11 +12,12 @@ from flexstage.readings.linear.model import LinearModel
 from flexstage.readings.solid.assemble import linear_model
 from flexstage.readings.solid.cache import Cache
 from flexstage.readings.solid.casing import casing, end_faces_apart
-from flexstage.readings.solid.component import Component, Cut, components
+from flexstage.readings.solid.component import Component, Cut
 from flexstage.readings.solid.fineness import Reduction
 from flexstage.readings.solid.parts import Ways, reduce_parts
 from flexstage.readings.solid.progress import Progress
 from flexstage.readings.solid.remote import Limits
+from flexstage.readings.solid.sound import sound_components
 
 _CACHE, _STANDARD = Cache(), Reduction(modes=18)
 
@@ -41,7 +42,7 @@ def monolithic(
     flexstage.base.finding.DesignError: ...
     """
     assembly = expand(mechanism)
-    parts = components(mechanism, Cut.NONE)
+    parts = sound_components(mechanism, cache, Cut.NONE)
     springs = {part.name: _springs(assembly, part) for part in parts}
     whole = reduce_parts(parts, reduction, Ways(cache, progress, Limits(memory=memory)), springs)
     return linear_model(mechanism, assembly, whole.parts, f"monolithic solid reading of {digest(mechanism, physics=True)[:16]}")

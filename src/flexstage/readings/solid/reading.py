@@ -13,11 +13,12 @@ from flexstage.mechanism.mechanism import Mechanism
 from flexstage.readings.linear.model import LinearModel
 from flexstage.readings.solid.assemble import linear_model
 from flexstage.readings.solid.cache import Cache
-from flexstage.readings.solid.component import Component, components
+from flexstage.readings.solid.component import Component
 from flexstage.readings.solid.fineness import Reduction
 from flexstage.readings.solid.parts import Parts, Ways, reduce_parts
 from flexstage.readings.solid.progress import Progress
 from flexstage.readings.solid.remote import Limits
+from flexstage.readings.solid.sound import sound_components
 from flexstage.readings.solid.superelement import Superelement
 
 _CACHE, _STANDARD = Cache(), Reduction()
@@ -58,8 +59,9 @@ def solid(
 
     Same names of inputs and outputs as `lumped`. Every component is drawn, meshed and reduced once, in a process of its own, and kept in
     the `cache` (`None`: neither looked up nor kept). `progress` is told what is done, the fraction and the seconds left; `memory` [bytes]
-    bounds what is planned with (absent: what the machine has left). Raises `DesignError` for links without a shape, outlines that do not
-    meet, meshes that cannot be made, too little memory or time, and stages that move freely. What is to be said about the cache is warned.
+    bounds what is planned with (absent: what the machine has left). Raises `DesignError` for links without a shape, for gaps, overlaps and
+    slivers of outlines, all by name before anything is meshed, for meshes that cannot be made, too little memory or time, and stages that
+    move freely. What is to be said about the cache is warned.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> solid(parallelogram(), memory=1e6, cache=None)
@@ -89,6 +91,6 @@ def solid_parts(
     """
     ways = Ways(cache, progress, Limits(memory=memory))
     shape = drawn(mechanism)
-    reduced = reduce_parts(components(shape), reduction, ways)
+    reduced = reduce_parts(sound_components(shape, cache), reduction, ways)
     model = linear_model(shape, expand(shape), reduced.parts, f"solid reading of {digest(shape, physics=True)[:16]}")
     return SolidReading(model, reduced.parts, reduction, reduced.notices)
