@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -74,18 +75,21 @@ def stabilisation(found: tuple[Poles, ...], highest_damping: float) -> tuple[Sta
     return diagram, tuple(_candidate(track) for track in tracks if len(track.orders) >= needed)
 
 
-def merged(candidates: tuple[Candidate, ...]) -> tuple[Candidate, ...]:
+def merged(sweeps: Iterable[tuple[Candidate, ...]]) -> tuple[Candidate, ...]:
     """Candidates of overlapping bands without doubles, by rising frequency; of doubles the one found in more orders stays.
 
-    >>> twice = (Candidate(-1 + 100j, np.array([1.0]), 3), Candidate(-1.1 + 100.1j, np.array([1.0]), 5))
+    Candidates of one band are never doubles of one another: a pole of each order belongs to one of them only.
+
+    >>> twice = [(Candidate(-1 + 100j, np.array([1.0]), 3),), (Candidate(-1.1 + 100.1j, np.array([1.0]), 5),)]
     >>> [candidate.orders for candidate in merged(twice)]
     [5]
     """
-    kept: list[Candidate] = []
-    for candidate in sorted(candidates, key=lambda each: -each.orders):
-        if not any(_double(candidate, other) for other in kept):
-            kept.append(candidate)
-    return tuple(sorted(kept, key=lambda each: each.pole.imag))
+    kept: list[tuple[int, Candidate]] = []
+    numbered = [(number, candidate) for number, sweep in enumerate(sweeps) for candidate in sweep]
+    for number, candidate in sorted(numbered, key=lambda each: -each[1].orders):
+        if not any(sweep != number and _double(candidate, other) for sweep, other in kept):
+            kept.append((number, candidate))
+    return tuple(sorted((candidate for _, candidate in kept), key=lambda each: each.pole.imag))
 
 
 def alike(first: Array, second: Array) -> float:

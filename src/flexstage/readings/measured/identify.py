@@ -21,12 +21,14 @@ from flexstage.readings.measured.lscf import lscf
 from flexstage.readings.measured.record import Record, Responses
 from flexstage.readings.measured.residues import modal_sum, remainder
 from flexstage.readings.measured.spectra import Segments, Tell
+from flexstage.readings.measured.unexplained import SURPRISING, excess, suggested
 
 _ONCE_IN = 1e-9
 _SURE = 1.0 / 3.0
 _LARGEST = 72
 _LONGEST = 40
 _ROUNDS = 2
+_MOST_MODES = 24
 
 
 @dataclass(frozen=True)
@@ -80,7 +82,7 @@ def _band(known: Evidence, search: Search) -> tuple[float, float]:
 
 def _candidates(known: Evidence, band: tuple[float, float], search: Search) -> tuple[tuple[Stabilisation, ...], tuple[Candidate, ...]]:
     diagrams: list[Stabilisation] = []
-    candidates: list[Candidate] = []
+    candidates: list[tuple[Candidate, ...]] = []
     inputs = known.responses.values.shape[2]
     for low, high in sweeps(*band):
         inside = (known.responses.frequencies >= low) & (known.responses.frequencies <= high)
@@ -92,8 +94,8 @@ def _candidates(known: Evidence, band: tuple[float, float], search: Search) -> t
         values, weights = known.responses.values[inside], known.weights[inside]
         diagram, found = stabilisation(lscf(known.responses.frequencies[inside], values, weights, orders), search.highest_damping)
         diagrams.append(diagram)
-        candidates += found
-    return tuple(diagrams), merged(tuple(candidates))
+        candidates.append(found)
+    return tuple(diagrams), merged(candidates)
 
 
 def _fitted(known: Evidence, candidates: tuple[Candidate, ...], band: tuple[float, float], search: Search) -> list[_Found]:
@@ -124,6 +126,7 @@ def _group(known: Evidence, cells: Cells, candidates: tuple[Candidate, ...], gro
     for _ in range(_ROUNDS):
         band = replace(band, variance=noise(band, found.modal))
         found = _pruned(band, fit(band, found.modal), group, search)
+        found = _extended(band, found, group, search)
     if not len(found.modal.poles):
         return None
     limit = _limit(found.modal)
@@ -143,6 +146,19 @@ def _pruned(band: Band, found: Fit, group: Extent, search: Search) -> Fit:
         if worst is None:
             return found
         found = fit(band, found.modal.without(worst))
+    return found
+
+
+def _extended(band: Band, found: Fit, group: Extent, search: Search) -> Fit:
+    """Add modes, one at a time, where the data hold more than those found explain, as long as that is significant."""
+    while len(found.modal.poles) < _MOST_MODES:
+        place = int(np.argmax(score := excess(band, found.modal)))
+        if score[place] < SURPRISING:
+            return found
+        more = _pruned(band, fit(band, suggested(band, found.modal, place)), group, search)
+        if len(more.modal.poles) <= len(found.modal.poles) or more.cost > found.cost:
+            return found
+        band, found = replace(band, variance=noise(band, more.modal)), more
     return found
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -118,20 +119,23 @@ def shaped(band: Band, poles: Array, participation: Array) -> Modal:
 
 
 def residual_power(band: Band, modal: Modal) -> Array:
-    """Power (p, c) that modes and polynomial leave in every cell."""
-    cells = band.cells
-    functions = _functions(band, modal.poles)[:, : len(modal.poles)]
-    polynomials = band.background
-    values = _coefficients(band, modal)
-    every = np.concatenate([functions, polynomials], axis=1)
-    left = np.empty_like(band.variance)
-    for block, columns in enumerate(cells.columns):
-        chosen = cells.block == block
-        inside = np.einsum("cfa,ofn->ocan", every[chosen], values[:, :, list(columns)], optimize=True)
+    """Power (p, c) that modes and background leave in every cell."""
+    cells, left = band.cells, np.empty_like(band.variance)
+    for chosen, inside in explained(band, modal):
         crossed = np.einsum("ocan,cano->oc", np.conj(inside), cells.cross[chosen], optimize=True)
         own = np.einsum("ocan,canbm,ocbm->oc", np.conj(inside), cells.own[chosen], inside, optimize=True)
         left[:, chosen] = cells.power[chosen].T - 2.0 * crossed.real + own.real
     return left
+
+
+def explained(band: Band, modal: Modal) -> Iterator[tuple[Array, Array]]:
+    """Block by block, the numbers of its cells and the factors (p, c, 6, n) of Z in them that modes and background amount to."""
+    count = len(modal.poles)
+    every = np.concatenate([_functions(band, modal.poles)[:, :count], band.background], axis=1)
+    values = _coefficients(band, modal)
+    for block, columns in enumerate(band.cells.columns):
+        chosen = np.flatnonzero(band.cells.block == block)
+        yield chosen, np.einsum("cfa,ofn->ocan", every[chosen], values[:, :, list(columns)], optimize=True)
 
 
 def _functions(band: Band, poles: Array) -> Array:
