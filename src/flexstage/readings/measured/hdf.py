@@ -14,9 +14,9 @@ from flexstage.base.finding import refuse
 from flexstage.base.number import Array
 from flexstage.readings.measured.aside import aside
 from flexstage.readings.measured.record import Record, Responses
-from flexstage.readings.measured.variables import Attribute, Contents, Variable
+from flexstage.readings.measured.variables import OWN_FORM, Attribute, Contents, Variable, complex_of
 
-RECORD_FORM, RESPONSES_FORM = "flexstage record 1", "flexstage responses 1"
+RESPONSES_FORM = "flexstage responses 1"
 BLOCK = 65_536
 _COMPLEX_FIELDS = (("r", "i"), ("real", "imag"))
 _NUMBERS = "fiub"
@@ -191,7 +191,7 @@ def _variables(path: Path, name: str, dataset: Any, attributes: dict[str, Attrib
 
 def _as_complex(values: Array) -> Array:
     names = values.dtype.names
-    return values[names[0]] + 1j * values[names[1]] if names in _COMPLEX_FIELDS else values
+    return complex_of(values[names[0]], values[names[1]]) if names in _COMPLEX_FIELDS else values
 
 
 def write_hdf(path: str | os.PathLike[str], what: Record | Responses) -> None:
@@ -218,7 +218,7 @@ def write_hdf(path: str | os.PathLike[str], what: Record | Responses) -> None:
 
 
 def _write_record(file: Any, record: Record) -> None:
-    file.attrs.update({"format": RECORD_FORM, "rate": float(record.rate), "start": float(record.start), "name": record.name})
+    file.attrs.update({"format": OWN_FORM, "rate": float(record.rate), "start": float(record.start), "name": record.name})
     shape = (record.length, len(record.channels))
     samples = file.create_dataset(
         "samples", shape, dtype="<f8", chunks=(max(1, min(record.length, BLOCK // 4)), shape[1]) if record.length else None

@@ -207,8 +207,11 @@ def _clipped(record: Record, channel: Channel, numbers: Numbers, place: str) -> 
         what = f"it has {round(numbers.levels) + 1} levels between {span}: its resolution is too coarse"
         yield Fault(Allow.CLIPPED, channel.name, Finding(place, what, 'Record with a smaller range, or allow "clipped" to use it as it is'))
         return
-    ends = {"highest": (numbers.at_high, numbers.next_high, numbers.high), "least": (numbers.at_low, numbers.next_low, numbers.low)}
-    for end, (at, after, value) in ends.items():
+    ends = (
+        ("highest", numbers.at_high if numbers.flat_high else 0, numbers.next_high, numbers.high),
+        ("least", numbers.at_low if numbers.flat_low else 0, numbers.next_low, numbers.low),
+    )
+    for end, at, after, value in ends:
         if at >= _PILE and at > _PILE_RATIO * after:
             what = f"it is clipped: {at} or more of {record.length} samples are exactly its {end} value, {value:.6g}{unit}"
             yield Fault(

@@ -13,9 +13,9 @@ import numpy as np
 from flexstage.base.finding import refuse
 from flexstage.base.number import Array
 from flexstage.readings.measured.aside import aside
-from flexstage.readings.measured.hdf import BLOCK, RECORD_FORM, RESPONSES_FORM, Stored, opened
+from flexstage.readings.measured.hdf import BLOCK, RESPONSES_FORM, Stored, opened
 from flexstage.readings.measured.record import Channel, Record, Responses
-from flexstage.readings.measured.variables import Attribute, Contents, Held, Variable
+from flexstage.readings.measured.variables import OWN_FORM, Attribute, Contents, Held, Variable
 
 _LARGEST = 2**31 - 1
 _HEAD = 512
@@ -177,7 +177,7 @@ def write_mat(path: str | os.PathLike[str], what: Record | Responses, *, version
 def _fields(what: Record | Responses) -> Iterator[tuple[str, Any]]:
     """Names and values of a file's variables but for the samples."""
     if isinstance(what, Record):
-        yield from {"format": RECORD_FORM, "name": what.name, "rate": float(what.rate), "start": float(what.start)}.items()
+        yield from {"format": OWN_FORM, "name": what.name, "rate": float(what.rate), "start": float(what.start)}.items()
         yield from _described("", what.channels)
         yield "roles", tuple(channel.role.value for channel in what.channels)
         return

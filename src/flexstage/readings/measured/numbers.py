@@ -18,9 +18,9 @@ _KEPT = 2048
 class Numbers:
     """What the samples of one channel are like.
 
-    `broken` samples are not numbers, the first is number `first_broken`. `rms` is about the mean. `at_low` samples (or more) are equal to the least
-    value, `next_low` to the one above it; so for the highest. `levels` is the range over the smallest
-    step. From sample `still_from` the value stays the same for `still` samples, longer than anywhere else.
+    `broken` samples are not numbers, the first is number `first_broken`. `rms` is about the mean. `at_low` samples (or more) are equal to
+    the least value, `next_low` to the one above it, `flat_low` says whether two in a row are; so for the highest. `levels` is the range
+    over the smallest step. From sample `still_from` the value stays the same for `still` samples, longer than anywhere else.
     """
 
     broken: int
@@ -31,8 +31,10 @@ class Numbers:
     high: float
     at_low: int
     next_low: int
+    flat_low: bool
     at_high: int
     next_high: int
+    flat_high: bool
     levels: float
     still_from: int
     still: int
@@ -62,6 +64,8 @@ class _State:
     run: Array
     still: Array
     still_from: Array
+    pair_low: Array
+    pair_high: Array
     spectra: Array
     tops: Array
     bottoms: Array
@@ -105,6 +109,8 @@ def _fresh(record: Record) -> _State:
         run=np.zeros(size, dtype=int),
         still=np.zeros(size, dtype=int),
         still_from=np.zeros(size, dtype=int),
+        pair_low=np.full(size, np.inf),
+        pair_high=np.full(size, -np.inf),
         spectra=np.zeros((lines, len(inputs), len(inputs)), dtype=complex),
         tops=np.full((0, size), -np.inf),
         bottoms=np.full((0, size), np.inf),
@@ -163,6 +169,9 @@ def _standstill(state: _State, values: Array, column: int) -> None:
     """The longest run of equal values, and the smallest step between unequal ones."""
     whole = np.concatenate([[state.last[column]], values])
     steps = np.abs(np.diff(whole))
+    pairs = values[steps == 0.0]
+    state.pair_low[column] = min(float(state.pair_low[column]), float(pairs.min(initial=np.inf)))
+    state.pair_high[column] = max(float(state.pair_high[column]), float(pairs.max(initial=-np.inf)))
     moves = np.flatnonzero(~(steps == 0.0))
     unequal = steps[moves][np.isfinite(steps[moves])]
     state.step[column] = min(float(state.step[column]), float(unequal.min(initial=np.inf)))
@@ -200,8 +209,10 @@ def _numbers(state: _State, column: int) -> Numbers:
         high=high,
         at_low=at_low,
         next_low=next_low,
+        flat_low=bool(state.pair_low[column] == low),
         at_high=at_high,
         next_high=next_high,
+        flat_high=bool(state.pair_high[column] == high),
         levels=(high - low) / float(state.step[column]) if np.isfinite(state.step[column]) else 0.0,
         still_from=int(state.still_from[column]),
         still=int(state.still[column]),

@@ -13,7 +13,7 @@ from flexstage.base.number import Array
 from flexstage.readings.measured.options import Options, assigned, numbered, wanted
 from flexstage.readings.measured.record import Channel, Responses, Role
 from flexstage.readings.measured.unit import plain_unit
-from flexstage.readings.measured.variables import Contents, Held, Variable, frequency_axis, plain_name, vector_length
+from flexstage.readings.measured.variables import Contents, Held, Variable, complex_of, frequency_axis, plain_name, vector_length
 
 RESPONSES = re.compile(
     r"(.*_)?(h|h[0-9v]|h_?[0-9]+(_[0-9]+)?|hf|frfs?|tfs?|transfer|responses?|receptance|compliance|mobility|inertance)(_.*)?"
@@ -84,7 +84,8 @@ def _joined(variables: Iterable[Variable]) -> list[Held]:
     pairs = [(both["re"], both["im"]) for both in halves.values() if both.keys() == {"re", "im"} and both["re"].shape == both["im"].shape]
     stems = (re.sub(r"_?(re|real)$", "", real.name, flags=re.IGNORECASE) for real, _ in pairs)
     return [
-        Held(name, real.whole() + 1j * imaginary.whole(), real.attributes) for name, (real, imaginary) in zip(stems, pairs, strict=True)
+        Held(name, complex_of(real.whole(), imaginary.whole()), real.attributes)
+        for name, (real, imaginary) in zip(stems, pairs, strict=True)
     ]
 
 

@@ -23,6 +23,8 @@ from flexstage.readings.measured.unit import plain_unit
 
 Attribute: TypeAlias = str | float | tuple[str, ...]
 _BLOCK = 262_144
+OWN_FORM = "flexstage record 1"
+"""What files written here say of themselves: their `samples` are (n, channels), however few."""
 
 TIMES = re.compile(r"t|t_s|times?(_s|_domain|_vector|_axis)?|tvec|timestamps?|zeit")
 RATES = re.compile(r"fs|f_s|sr|rate|rate_hz|(time_)?sampl(e|ing)_?(rate|frequency)|fsamp(le)?")
@@ -144,6 +146,17 @@ class SideBySide:
         return np.hstack([source.read(start, stop) for source in self.sources])
 
 
+def complex_of(real: Array, imaginary: Array) -> Array:
+    """The complex array of two real ones, to the bit: a sum would lose the sign of zeros.
+
+    >>> complex_of(np.array([-0.0]), np.array([2.0])).tolist()
+    [(-0+2j)]
+    """
+    whole = np.empty(real.shape, dtype=complex)
+    np.real(whole)[...], np.imag(whole)[...] = real, imaginary
+    return whole
+
+
 def plain_name(name: str) -> str:
     """The last part of a path in small letters, anything else than letters and digits as `_`; a unit in brackets left out.
 
@@ -198,7 +211,7 @@ def record_of(contents: Contents, options: Options) -> Record | None:
     chosen = _candidates(contents, time, options)
     if not chosen:
         return None
-    length = _length(contents.where, chosen, time)
+    length = _length(contents, chosen, time)
     axes = [(variable, _axis(variable, length)) for variable in chosen if length in variable.shape]
     clock = _clock(time, stated, options, contents)
     channels, samples = _channels(contents, axes), SideBySide(tuple(variable.samples(axis) for variable, axis in axes))
@@ -239,14 +252,18 @@ def frequency_axis(contents: Contents) -> Variable | None:
     return next((each for each in called if rises(each)), None)
 
 
-def _length(where: str, chosen: list[Variable], time: Variable | None) -> int:
-    """How many samples the record has: as many as times, else as all arrays share."""
+def _length(contents: Contents, chosen: list[Variable], time: Variable | None) -> int:
+    """How many samples the record has: as many as times, else as all arrays share along their longer axis."""
+    if OWN_FORM in contents.text("format") and time is None:
+        return next((each.shape[0] for each in chosen if each.name == "samples"), max(chosen[0].shape))
     counts = Counter(max(variable.shape) for variable in chosen)
     expected = next(iter(counts)) if time is None else vector_length(time)
     near = [count for count in counts if count != expected and (time is None or abs(count - expected) <= 0.02 * expected)]
     if near or not any(expected in variable.shape for variable in chosen):
         sizes = ", ".join(f"{variable.name} {max(variable.shape)}" for variable in ([time] if time else []) + chosen[:12])
-        raise refuse(where, f"its arrays differ in length: {sizes}", "Give all as many samples, or name those that are channels (only)")
+        raise refuse(
+            contents.where, f"its arrays differ in length: {sizes}", "Give all as many samples, or name those that are channels (only)"
+        )
     return expected
 
 

@@ -17,7 +17,7 @@ from flexstage.readings.measured.record import Channel, Record, Responses, Role
 from flexstage.readings.measured.stored import responses_of
 from flexstage.readings.measured.table.layout import Layout, layout_of
 from flexstage.readings.measured.table.values import TableSamples, indexed
-from flexstage.readings.measured.variables import FREQUENCIES, TIMES, Contents, Held, plain_name
+from flexstage.readings.measured.variables import FREQUENCIES, TIMES, Contents, Held, complex_of, plain_name
 
 OWN = re.compile(r"flexstage record; rate (?P<rate>\S+) Hz; start (?P<start>\S+) s; samples (?P<count>\d+)")
 """The comment that heads records written here: what times of a column do not say to the bit."""
@@ -144,7 +144,7 @@ def _responses(path: Path, layout: Layout, samples: TableSamples, options: Optio
     columns = values[:, 1:].reshape(*shape, -1)
     held = (
         lines,
-        Held("responses", columns[..., 0] + 1j * columns[..., 1]),
+        Held("responses", complex_of(columns[..., 0], columns[..., 1])),
         *([Held("coherence", columns[..., 2])] if columns.shape[-1] > 2 else []),
     )
     texts = {f"{side[:-1]}_{kind}": each for side in ("outputs", "inputs") for kind, each in _side(layout, side)}

@@ -17,7 +17,7 @@ from flexstage.readings.measured.options import Allow, Kind, Options, assigned, 
 from flexstage.readings.measured.record import Channel, Record, Responses, Role, Samples
 from flexstage.readings.measured.uff.function import COHERENCE, KINDS
 from flexstage.readings.measured.uff.scan import DataSet, scan
-from flexstage.readings.measured.variables import SideBySide
+from flexstage.readings.measured.variables import SideBySide, complex_of
 
 OWN = re.compile(r"flexstage (?P<role>input|output|unknown); rate (?P<rate>\S+) Hz; start (?P<start>\S+) s")
 """The fifth line of text of functions written here: what the head's few digits cannot hold."""
@@ -234,7 +234,7 @@ def _sides(
 
 def _complex(found: DataSet) -> Array:
     columns = found.values.read(0, found.values.length)[:, -2 if found.function.is_complex else -1 :]
-    return columns[:, 0] + 1j * columns[:, 1] if found.function.is_complex else columns[:, 0].astype(complex)
+    return complex_of(columns[:, 0], columns[:, 1]) if found.function.is_complex else columns[:, 0].astype(complex)
 
 
 def _frequencies(path: Path, found: list[DataSet]) -> Array:
@@ -252,7 +252,8 @@ def _frequencies(path: Path, found: list[DataSet]) -> Array:
 
 def _axis(found: DataSet) -> Array:
     function, numbers = found.function, np.arange(found.values.length)
-    if own := OWN_RESPONSE.match(function.texts[4]):
+    own = OWN_RESPONSE.match(function.texts[4])
+    if own and function.is_even:
         return float(own["first"]) + float(own["step"]) * numbers
     if function.is_even:
         return function.first + numbers / function.rate

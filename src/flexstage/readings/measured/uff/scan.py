@@ -167,9 +167,9 @@ def _next_mark(stream: BinaryIO, start: int) -> int:
 def _printed(path: Path, stream: BinaryIO, line: int, function: Function) -> DataSet:
     start, layout = stream.tell(), Layout.of(function)
     first = stream.readline()
-    length = len(first)
+    length = max(len(first), sum(layout.widths) + 1)  # the only line may be short
     values = PrintedValues(path, start, function.count, layout, length)
-    if length and values.fits(first) and _closes(stream, values.end):
+    if first and values.fits(first) and _closes(stream, values.end):
         stream.seek(values.end)
         _skip(stream)
         return DataSet(function, values, line)

@@ -106,7 +106,7 @@ def _encoded(numbers: Array, *, binary: bool) -> bytes:
 
 def _write_responses(stream: BinaryIO, responses: Responses, *, binary: bool) -> None:
     first, step = _even(responses.frequencies)
-    own = f"flexstage response; first {first!r} Hz; step {step!r} Hz; averages {responses.averages or 0}" if step else "flexstage"
+    own = f"flexstage response; first {first!r} Hz; step {step!r} Hz; averages {responses.averages or 0}"
     for row, output in enumerate(responses.outputs):
         for column, input_ in enumerate(responses.inputs):
             texts = (output.name, input_.name, responses.name[:_LONGEST], responses.window[:_LONGEST], own)
