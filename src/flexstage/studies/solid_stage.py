@@ -17,6 +17,7 @@ from flexstage.base.number import Array
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.readings.linear.static import displacement
 from flexstage.readings.solid.fineness import Reduction
+from flexstage.spatial.frame import COMPONENTS
 from flexstage.studies.complete import platform_modes
 from flexstage.studies.solid_read import STANDARD_REDUCTION, STANDARD_SOLIDS, SolidRead, Solids, read_solid
 from flexstage.studies.solid_stress import LinkStress, link_stress
@@ -46,16 +47,8 @@ class SolidStage:
     @property
     def figures(self) -> Mapping[str, float]:
         """What an error is estimated of, in SI."""
-        held, free = (item.principal for item in (self.statics.held, self.statics.free))
         frequencies = {f"platform mode {number + 1}": float(value) for number, value in enumerate(self.modes.platform_frequencies)}
-        return {
-            "stiffest in plane, others held": float(held[0]),
-            "softest in plane, others held": float(held[1]),
-            "stiffest in plane, others free": float(free[0]),
-            "softest in plane, others free": float(free[1]),
-            **{name: float(self.statics.stiffness.values[index, index]) for index, name in _DIAGONAL.items()},
-            **frequencies,
-        }
+        return stiffness_figures(self.statics) | frequencies
 
     @property
     def flexible(self) -> Array:
@@ -63,7 +56,22 @@ class SolidStage:
         return np.sqrt(1.0 - self.blocks) - 1.0
 
 
-_DIAGONAL = {2: "stiffness z", 3: "stiffness rx", 4: "stiffness ry", 5: "stiffness rz"}
+def stiffness_figures(found: Statics) -> dict[str, float]:
+    """The platform's stiffness as readings are compared by it: principal values in plane, and along and about the other axes [SI].
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.readings.mapped import mapped
+    >>> round(stiffness_figures(statics(mapped(double_triangle())))["stiffest in plane, others held"] / 1e6, 2)  # N/um
+    15.45
+    """
+    held, free = found.held.principal, found.free.principal
+    return {
+        "stiffest in plane, others held": float(held[0]),
+        "softest in plane, others held": float(held[1]),
+        "stiffest in plane, others free": float(free[0]),
+        "softest in plane, others free": float(free[1]),
+        **{f"stiffness {COMPONENTS[index]}": float(found.stiffness.values[index, index]) for index in (2, 3, 4, 5)},
+    }
 
 
 def solid_stage(mechanism: Mechanism, reduction: Reduction = STANDARD_REDUCTION, reduce: Solids = STANDARD_SOLIDS) -> SolidStage:

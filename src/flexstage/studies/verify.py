@@ -7,9 +7,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from flexstage.analysis.statics import Statics, statics
+from flexstage.analysis.statics import statics
 from flexstage.base.finding import DesignError
-from flexstage.base.number import Array
 from flexstage.beams.compliance import compliance
 from flexstage.mechanism.drawn import calibrated
 from flexstage.mechanism.expand import expand
@@ -24,7 +23,7 @@ from flexstage.studies.paired import paired
 from flexstage.studies.resolution import DEFAULT, Resolution, Resolved, resolved
 from flexstage.studies.solid_hinge import STANDARD_HINGES, Hinges, SolidHinge, solid_hinges
 from flexstage.studies.solid_read import STANDARD_SOLIDS, Solids
-from flexstage.studies.solid_stage import SolidStage, solid_stage
+from flexstage.studies.solid_stage import SolidStage, solid_stage, stiffness_figures
 from flexstage.studies.solid_unit import SolidUnit, solid_units
 from flexstage.studies.trust import Trust
 from flexstage.studies.units import UnitResult, driven_units, units
@@ -232,8 +231,8 @@ def stage_rows(mechanism: Mechanism, matched: Mechanism, found: Resolved[SolidSt
     readings = {"theory": lumped(mechanism), "calibrated": lumped(matched), "mapped": _mapped(mechanism)}
     known = {name: model for name, model in readings.items() if model is not None}
     fea = found.result
-    tables = {name: _stiffness_figures(statics(model)) for name, model in known.items()}
-    for figure, value in _stiffness_figures(fea.statics).items():
+    tables = {name: stiffness_figures(statics(model)) for name, model in known.items()}
+    for figure, value in stiffness_figures(fea.statics).items():
         unit = "N m/rad" if figure.endswith(("rx", "ry", "rz")) else "N/m"
         extra = {name: table[figure] for name, table in tables.items() if np.isfinite(table[figure])}
         yield _stage_row((figure, unit, value), extra, found.errors.get(figure, 0.0), touched)
@@ -257,18 +256,6 @@ def _mapped(mechanism: Mechanism) -> LinearModel | None:
         return mapped(mechanism)
     except DesignError:
         return None
-
-
-def _stiffness_figures(found: Statics) -> dict[str, float]:
-    held, free = found.held.principal, found.free.principal
-    diagonal: Array = np.diag(found.stiffness.values)
-    return {
-        "stiffest in plane, others held": float(held[0]),
-        "softest in plane, others held": float(held[1]),
-        "stiffest in plane, others free": float(free[0]),
-        "softest in plane, others free": float(free[1]),
-        **{f"stiffness {COMPONENTS[index]}": float(diagonal[index]) for index in (2, 3, 4, 5)},
-    }
 
 
 def verdict(rows: tuple[Row, ...]) -> str:

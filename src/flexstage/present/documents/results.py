@@ -23,6 +23,7 @@ from flexstage.readings.linear.model import LinearModel
 from flexstage.readings.linear.static import static_gain
 from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
 from flexstage.studies.omitted import Omitted
+from flexstage.studies.unit_output import UnitOutput
 from flexstage.studies.units import UnitResult
 
 LISTED_MODES = 24
@@ -266,18 +267,31 @@ def _unit(unit: UnitResult) -> Document:
         }
     )
     return {
-        "copy": unit.copy,
-        "direction": unit.direction,
-        "axial_stiffness_n_per_m": unit.axial,
-        "lateral_stiffness_n_per_m": unit.lateral,
-        "ideal_gain": unit.ideal_gain,
-        "gain": unit.gain,
+        **output_body(unit),
         "loss": unit.loss,
         "load_compliance_m_per_n": unit.load_compliance,
         "mapped_stiffness_n_per_m": unit.series,
         "lever": lever,
         "omitted": None if unit.omitted is None else _omitted(unit.omitted),
         "stiffness": unit.stiffness.to_json(),
+    }
+
+
+def output_body(unit: UnitOutput) -> Document:
+    """What is said of a unit alone by whichever reading.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.studies.units import units
+    >>> list(output_body(units(double_triangle())["horizontal"]))[:3]
+    ['copy', 'direction', 'axial_stiffness_n_per_m']
+    """
+    return {
+        "copy": unit.copy,
+        "direction": unit.direction,
+        "axial_stiffness_n_per_m": unit.axial,
+        "lateral_stiffness_n_per_m": unit.lateral,
+        "ideal_gain": unit.ideal_gain,
+        "gain": unit.gain,
     }
 
 

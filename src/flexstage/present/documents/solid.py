@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from flexstage.present.documents.envelope import Document
-from flexstage.present.documents.results import modes_body, stiffness_body
+from flexstage.present.documents.results import modes_body, output_body, stiffness_body
 
 if TYPE_CHECKING:
     from flexstage.studies.calibrate import Calibration
@@ -54,12 +54,7 @@ def solid_units_body(found: Resolved[dict[str, SolidUnit]]) -> Document:
 
 def _unit(unit: SolidUnit) -> Document:
     return {
-        "copy": unit.copy,
-        "direction": unit.direction,
-        "axial_stiffness_n_per_m": unit.axial,
-        "lateral_stiffness_n_per_m": list(unit.lateral),
-        "ideal_gain": unit.ideal_gain,
-        "gain": unit.gain,
+        **output_body(unit),
         "loss": unit.loss,
         "load_compliance_m_per_n": unit.load_compliance,
         "stroke_m": unit.strokes,
