@@ -92,7 +92,7 @@ def read_clock(times: Iterable[Array], where: str) -> Clock | list[Finding]:
     if found is not None:
         return [found]
     mean = known.regular / known.steps
-    uncertainty = max(2.0 * known.resolution / known.regular, 1e-12)
+    uncertainty = max(known.resolution / known.regular, 1e-12)
     edges = [0, *(index for index, _, _ in known.jumps), known.count]
     return Clock(nominal(1.0 / mean, uncertainty), known.first, tuple(pairwise(edges)))
 

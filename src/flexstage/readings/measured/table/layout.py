@@ -25,7 +25,7 @@ _COMMENT = re.compile(r"\s*(#|%|//|\*)+\s?")
 _WITH_UNIT = re.compile(r"(?P<name>.*?)\s*[\[(](?P<unit>[^\[\]]*)[\])]")
 _WORD = re.compile(r"[^\s\[(]+(?:\s*[\[(][^\])]*[\])])?")
 _RATE = re.compile(
-    r"(?:sampl\w*[ _]*(?:rate|freq\w*)|fs|rate)\s*(?:\[\w+\]|\(\w+\))?\s*[:=;,\s]\s*([\d.]+(?:[eE][-+]?\d+)?)\s*(k?Hz)?", re.IGNORECASE
+    r"(?:\w*rate|sampl\w*[ _]*freq\w*|fs)\s*(?:\[\w+\]|\(\w+\))?\s*[:=;,\s]\s*(\d+(?:[.,]\d+)?(?:[eE][-+]?\d+)?)\s*(k?Hz)?", re.IGNORECASE
 )
 _EXAMPLE = 'Write a header such as "time [s], u1 [V], S1 [um]" as its first line'
 
@@ -157,8 +157,5 @@ def _rate(head: Iterable[str]) -> float | None:
     found = next((match for match in map(_RATE.search, head) if match), None)
     if found is None:
         return None
-    try:
-        value = float(found[1]) * (1000.0 if (found[2] or "").lower() == "khz" else 1.0)
-    except ValueError:
-        return None
-    return value if value > 0.0 else None
+    value = float(found[1].replace(",", ".")) * (1000.0 if (found[2] or "").lower() == "khz" else 1.0)
+    return value if 0.0 < value < float("inf") else None
