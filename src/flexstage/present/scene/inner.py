@@ -25,16 +25,18 @@ def outer(facets: Sequence[Facet]) -> list[Facet]:
     >>> len(low + high), len(outer(low + high))
     (12, 10)
     """
-    return [piece for facet in facets for piece in _less(facet, [other for other in facets if _covers(other, facet)])]
+    covers: list[list[Facet]] = [[] for _ in facets]
+    for one, other in np.argwhere(_against(facets)).tolist():
+        if facets[one].paint.name != facets[other].paint.name:
+            covers[one].append(facets[other])
+    return [piece for facet, own in zip(facets, covers, strict=True) for piece in _less(facet, own)]
 
 
-def _covers(other: Facet, facet: Facet) -> bool:
-    """Whether a facet of another outline lies in the facet's plane and looks the other way."""
-    if other.paint.name == facet.paint.name or min(len(other.points), len(facet.points)) < 3:
-        return False
-    return (
-        float(other.normal @ facet.normal) < -1.0 + 1e-9 and float(np.max(np.abs((other.points - facet.points[0]) @ facet.normal))) < _FLUSH
-    )
+def _against(facets: Sequence[Facet]) -> Array:
+    """Which facets (n, n) lie in one plane and look opposite ways."""
+    normals = np.array([facet.normal for facet in facets]).reshape(-1, 3)
+    offsets = np.array([facet.points[0] @ facet.normal for facet in facets])
+    return (normals @ normals.T < -1.0 + 1e-9) & (np.abs(offsets[:, None] + offsets) < _FLUSH)
 
 
 def _less(facet: Facet, covers: Sequence[Facet]) -> Iterator[Facet]:
