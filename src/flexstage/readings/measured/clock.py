@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 
 import numpy as np
 
 from flexstage.base.finding import DesignError, Finding, refuse
 from flexstage.base.number import Array
+from flexstage.readings.measured.record import Record
 
 _LISTED = 5
 
@@ -45,11 +46,12 @@ def printed_uncertainty(text: str) -> float:
 
 @dataclass(frozen=True)
 class Clock:
-    """What a column of times says: the rate in Hz, the first time in s, and stretches (start, stop) of samples without a gap."""
+    """What times say: the rate in Hz, the first time in s, stretches (start, stop) of samples without a gap, the times they start at."""
 
     rate: float
     start: float
     stretches: tuple[tuple[int, int], ...]
+    starts: tuple[float, ...] = ()
 
     @property
     def longest(self) -> tuple[int, int]:
@@ -81,7 +83,7 @@ def read_clock(times: Iterable[Array], where: str) -> Clock | list[Finding]:
     give the roundest rate they allow.
 
     >>> read_clock([np.array([0.0, 0.1, 0.2]), np.array([0.3])], "a.csv")
-    Clock(rate=10.0, start=0.0, stretches=((0, 4),))
+    Clock(rate=10.0, start=0.0, stretches=((0, 4),), starts=(0.0,))
     >>> read_clock([np.array([0.0, 0.1, 0.2, 0.7, 0.8])], "a.csv").stretches
     ((0, 3), (3, 5))
     """
@@ -93,8 +95,9 @@ def read_clock(times: Iterable[Array], where: str) -> Clock | list[Finding]:
         return [found]
     mean = known.regular / known.steps
     uncertainty = max(known.resolution / known.regular, 1e-12)
+    starts = (known.first, *(after for _, _, after in known.jumps))
     edges = [0, *(index for index, _, _ in known.jumps), known.count]
-    return Clock(nominal(1.0 / mean, uncertainty), known.first, tuple(pairwise(edges)))
+    return Clock(nominal(1.0 / mean, uncertainty), known.first, tuple(pairwise(edges)), starts)
 
 
 @dataclass(frozen=True)
@@ -126,7 +129,22 @@ def settled(times: Iterable[Array], at: Callable[[int], float], told: Told, wher
         raise refuse(
             where, f"its times say {clock.rate:g} Hz, the file also states {told.rate:g} Hz", "State the rate that is right (rate)"
         )
-    return Clock(told.rate or clock.rate, clock.start, clock.stretches)
+    return replace(clock, rate=told.rate or clock.rate)
+
+
+def longest_stretch(record: Record, clock: Clock) -> Record:
+    """The longest stretch of a record without gaps, with the time it starts at; the record where there are none.
+
+    >>> from flexstage.readings.measured.record import Channel, in_memory
+    >>> gap = Clock(1.0, 0.0, ((0, 1), (1, 3)), (0.0, 7.0))
+    >>> found = longest_stretch(in_memory([Channel("a")], 1.0, np.array([[1.0], [2.0], [3.0]])), gap)
+    >>> found.start, found.values[:, 0].tolist()
+    (7.0, [2.0, 3.0])
+    """
+    if len(clock.stretches) < 2:
+        return record
+    longest = clock.longest
+    return replace(record.part(*longest), start=clock.starts[clock.stretches.index(longest)])
 
 
 def _gaps(clock: Clock, times: list[float], where: str) -> Finding:

@@ -9,7 +9,8 @@ import numpy as np
 from flexstage.base.number import Array
 from flexstage.readings.measured.record import Record, Role
 
-_BLOCK = 65_536
+_BLOCK = 1 << 19
+"""Numbers in a block, of all channels together."""
 _SEGMENT = 1024
 _KEPT = 2048
 
@@ -85,7 +86,8 @@ def gather(record: Record) -> Gathered:
     ((0, 3), 1, 2, 2)
     """
     state = _fresh(record)
-    for block in record.blocks(_BLOCK):
+    rows = max(1, _BLOCK // len(record.channels) // _SEGMENT) * _SEGMENT
+    for block in record.blocks(rows):
         _advance(state, block)
     state.stretch = _longer(state.stretch, (state.whole_from, state.seen))
     spectra = state.spectra / max(1, state.segments)

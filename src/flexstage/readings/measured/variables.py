@@ -16,7 +16,7 @@ import numpy as np
 
 from flexstage.base.finding import refuse
 from flexstage.base.number import Array
-from flexstage.readings.measured.clock import Clock, Told, settled
+from flexstage.readings.measured.clock import Clock, Told, longest_stretch, settled
 from flexstage.readings.measured.options import Allow, Options, assigned, numbered, wanted
 from flexstage.readings.measured.record import Channel, InMemory, Record, Role, Samples
 from flexstage.readings.measured.unit import plain_unit
@@ -218,7 +218,7 @@ def record_of(contents: Contents, options: Options) -> Record | None:
     start = clock.start if time is not None else contents.number(STARTS) or 0.0
     whole = Record(assigned(channels, options, contents.where), clock.rate, samples, start, name=_name(contents), source=contents.where)
     record = whole.select(wanted(whole.names, options)) if options.only else whole
-    return record.part(*clock.longest) if len(clock.stretches) > 1 else record
+    return longest_stretch(record, clock)
 
 
 def _inverse(step: float | None) -> float | None:

@@ -112,15 +112,15 @@ def _form(lines: list[str]) -> tuple[str | None, str, int] | None:
             continue
         commas = any("," in field for field in filled)
         if not (commas and any("." in field for field in filled)):
-            return delimiter, "," if commas else ".", len(split[0])
+            trailing = delimiter is not None and all(not fields[-1] for fields in split)  # lines end with the delimiter
+            return delimiter, "," if commas else ".", len(split[0]) - trailing
     return None
 
 
 def _fields(line: str, delimiter: str | None) -> list[str]:
     if delimiter is None:
         return line.split()
-    fields = [field.strip() for field in next(csv.reader([line.strip("\r\n")], delimiter=delimiter, skipinitialspace=True), [])]
-    return fields[:-1] if len(fields) > 1 and not fields[-1] and line.rstrip().endswith(delimiter) else fields
+    return [field.strip() for field in next(csv.reader([line.strip("\r\n")], delimiter=delimiter, skipinitialspace=True), [])]
 
 
 def _header(head: list[str], delimiter: str | None, columns: int, path: Path) -> tuple[tuple[str, ...], tuple[str, ...]]:
@@ -143,6 +143,7 @@ def _candidates(head: list[str], delimiter: str | None, columns: int) -> Iterato
     for line in reversed(head):
         for each in dict.fromkeys((delimiter, ",", ";", "\t", None)):
             fields = [found[0] for found in _WORD.finditer(line)] if each is None else _fields(line, each)
+            fields = fields[:-1] if len(fields) == columns + 1 and not fields[-1] else fields
             if len(fields) == columns and any(re.search(r"[^\W\d]", field) for field in fields):
                 yield fields
                 break

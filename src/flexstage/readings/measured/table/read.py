@@ -11,7 +11,7 @@ import numpy as np
 
 from flexstage.base.finding import refuse
 from flexstage.base.number import Array
-from flexstage.readings.measured.clock import Clock, Told, settled
+from flexstage.readings.measured.clock import Clock, Told, longest_stretch, settled
 from flexstage.readings.measured.options import Allow, Options, assigned, wanted
 from flexstage.readings.measured.record import Channel, Record, Responses, Role
 from flexstage.readings.measured.stored import responses_of
@@ -56,7 +56,7 @@ def _samples(path: Path, layout: Layout, options: Options) -> TableSamples:
     own = next(filter(None, map(OWN.match, layout.comments)), None)
     cut = _cut(path, layout, lines.end)
     announced = int(own["count"]) if own else None
-    if cut is None and (announced is None or lines.count >= announced):
+    if cut is None and (announced is None or (lines.count >= announced and _terminated(path))):
         return whole
     unsure = lines.count - 1 if cut is not None or not _terminated(path) else lines.count
     if Allow.TRUNCATED in options.allow and unsure > 0:
@@ -71,8 +71,9 @@ def _cut(path: Path, layout: Layout, end: int) -> str | None:
     with path.open("rb") as stream:
         stream.seek(max(layout.start, end - 100_000))
         last = stream.read(end - stream.tell()).decode(layout.encoding, "replace").splitlines()
-    count = len(layout.fields(last[-1])) if last else 0
-    return f"its last line has {count} of {len(layout.names)} fields" if last and count < len(layout.names) else None
+    fields = layout.fields(last[-1]) if last else [""] * len(layout.names)
+    count = len(fields) if _terminated(path) or fields[-1] else len(fields) - 1
+    return f"its last line has {count} of {len(layout.names)} fields" if count < len(layout.names) else None
 
 
 def _terminated(path: Path) -> bool:
@@ -96,7 +97,7 @@ def _record(path: Path, layout: Layout, samples: TableSamples, options: Options)
     whole = assigned(channels, options, str(path))
     record = Record(whole, clock.rate, replace(samples, columns=columns), clock.start, name=_saying(layout, "name"), source=str(path))
     record = record.select(wanted(record.names, options)) if options.only else record
-    return record.part(*clock.longest) if len(clock.stretches) > 1 else record
+    return longest_stretch(record, clock)
 
 
 def _roles(layout: Layout, count: int) -> list[Role]:

@@ -12,7 +12,7 @@ import numpy as np
 
 from flexstage.base.finding import DesignError, Finding, require
 from flexstage.base.number import Array
-from flexstage.readings.measured.clock import Clock, Told, settled
+from flexstage.readings.measured.clock import Clock, Told, longest_stretch, settled
 from flexstage.readings.measured.options import Allow, Kind, Options, assigned, matches, numbered, wanted
 from flexstage.readings.measured.record import Channel, Record, Responses, Role, Samples
 from flexstage.readings.measured.uff.function import COHERENCE, KINDS
@@ -94,7 +94,7 @@ def _record(path: Path, histories: list[DataSet], options: Options) -> Record:
     samples = SideBySide(tuple(each.values if each.function.is_even else Column(each.values, 1) for _, each in chosen))
     channels = tuple(channel for channel in whole if channel.name in kept)
     record = Record(channels, clock.rate, samples, clock.start, name=_title(chosen[0][1]), source=str(path))
-    return record.part(*clock.longest) if len(clock.stretches) > 1 else record
+    return longest_stretch(record, clock)
 
 
 def _history_names(histories: list[DataSet]) -> tuple[str, ...]:

@@ -182,12 +182,16 @@ def _words(stream: BinaryIO, layout: Layout, function: Function) -> tuple[Array,
     """Values of any spacing, up to the mark; the last incomplete ones are left out."""
     chunks: list[Array] = []
     while (raw := stream.readline()) and raw.strip() != b"-1":
-        numbers = _numbers(raw, layout)
-        chunks.append(numbers if raw.endswith(b"\n") else numbers[:-1])  # the file breaks off, perhaps within the last number
+        chunks.append(_numbers(raw if raw.endswith(b"\n") else _without_last(raw), layout))
     numbers = np.concatenate(chunks) if chunks else np.zeros(0)
     count = min(function.count, len(numbers) // layout.columns)
     problem = f"it breaks off: it has {count} values where its head announces {function.count}" if count < function.count else None
     return numbers[: count * layout.columns].reshape(count, layout.columns), problem
+
+
+def _without_last(raw: bytes) -> bytes:
+    """A line without its last word: the file breaks off there, perhaps within a number."""
+    return re.sub(rb"\S+\s*$", b"", raw)
 
 
 def _numbers(raw: bytes, layout: Layout) -> Array:

@@ -1,0 +1,259 @@
+"""Bad files of tests: found, named, explained; what is left is used only when the user says so."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+import scipy.io
+
+from flexstage.base.finding import DesignError
+from flexstage.readings.measured.options import Allow, Kind, Options
+from flexstage.readings.measured.read import read
+from flexstage.readings.measured.record import Channel, Record, in_memory
+from flexstage.readings.measured.write import Form, write
+
+RATE = 100.0
+VALUES = np.random.default_rng(5).standard_normal((400, 2))
+CHANNELS = (Channel("u1", "V"), Channel("S1", "um"))
+
+
+def refusal(path: Path, options: Options | None = None) -> str:
+    with pytest.raises(DesignError) as refused:
+        read(path, options or Options())
+    for finding in refused.value.findings:
+        assert str(path) in finding.where  # the file is named
+        assert finding.advice
+    return str(refused.value)
+
+
+def allowing(*allowed: Allow) -> Options:
+    return Options(allow=frozenset(allowed))
+
+
+def plain(path: Path, form: Form) -> Path:
+    write(path, in_memory(CHANNELS, RATE, VALUES), form)
+    return path
+
+
+def kept(path: Path, options: Options) -> np.ndarray:
+    found = read(path, options)
+    assert isinstance(found, Record)
+    return found.values
+
+
+# --- no file, no record ---
+
+
+def test_what_is_no_record_is_told(tmp_path: Path) -> None:
+    assert "there is no such file" in refusal(tmp_path / "none.uff")
+    assert "cannot be read" in refusal(tmp_path)
+    for content, told in {
+        b"": "it is empty",
+        b"PK\x03\x04...": "spreadsheets",
+        b"TDSm....": "TDMS",
+        b"one\ntwo\n": "no line of numbers",
+        b"\x00\x01\x02\x03": "neither text",
+        "time,u1\n0,1\n".encode("utf-16"): "UTF-16",
+    }.items():
+        path = tmp_path / "a.dat"
+        path.write_bytes(content)
+        assert told in refusal(path), content
+
+
+def test_arrays_that_are_no_record_are_listed(tmp_path: Path) -> None:
+    path = tmp_path / "a.mat"
+    scipy.io.savemat(path, {"stiffness": np.eye(3)})
+    assert "stiffness (3, 3)" in refusal(path)
+    with h5py.File(tmp_path / "a.h5", "w") as file:
+        file["stiffness"] = np.eye(3)
+    assert "stiffness (3, 3)" in refusal(tmp_path / "a.h5")
+
+
+def test_the_other_kind_is_not_given_for_the_one_asked(tmp_path: Path) -> None:
+    for form, suffix in ((Form.UFF, "uff"), (Form.MAT, "mat"), (Form.CSV, "csv")):
+        refusal(plain(tmp_path / f"a.{suffix}", form), Options(kind=Kind.RESPONSES))
+
+
+def test_channels_that_no_one_has_are_named_with_the_nearest(tmp_path: Path) -> None:
+    path = plain(tmp_path / "a.uff", Form.UFF)
+    told = refusal(path, Options(inputs=("u2",), outputs=("S*",), units=(("S7", "um"),)))
+    assert "inputs u2: no channel is called so. There are S1, u1" in told
+    assert "units S7" in told
+    assert "named as an input and as an output" in refusal(path, Options(inputs=("u1",), outputs=("u*",)))
+
+
+# --- files that break off ---
+
+
+@pytest.mark.parametrize(("form", "suffix"), [(Form.UFF, "uff"), (Form.UFF_ASCII, "uff"), (Form.CSV, "csv")])
+def test_a_file_that_breaks_off_is_used_only_when_allowed(form: Form, suffix: str, tmp_path: Path) -> None:
+    path = plain(tmp_path / f"a.{suffix}", form)
+    whole = path.read_bytes()
+    path.write_bytes(whole[: int(0.8 * len(whole))])
+    told = refusal(path)
+    assert "breaks off" in told
+    assert '"truncated"' in told
+    found = kept(path, allowing(Allow.TRUNCATED))
+    assert 150 < len(found) < 400
+    np.testing.assert_allclose(found, VALUES[: len(found)], rtol=1e-11)
+
+
+@pytest.mark.parametrize(
+    ("form", "suffix"),
+    [
+        (form, suffix)
+        for form, suffix in (
+            (Form.UFF, "uff"),
+            (Form.UFF_ASCII, "uff"),
+            (Form.MAT, "mat"),
+            (Form.MAT_73, "mat"),
+            (Form.HDF5, "h5"),
+            (Form.CSV, "csv"),
+        )
+    ],
+)
+def test_a_file_cut_anywhere_is_refused_or_whole(form: Form, suffix: str, tmp_path: Path) -> None:
+    # At every cut a reason or the right numbers: never another error, never numbers that were not measured.
+    path = plain(tmp_path / f"a.{suffix}", form)
+    whole = path.read_bytes()
+    for cut in np.linspace(0, len(whole) - 1, 97).astype(int):
+        path.write_bytes(whole[:cut])
+        for options in (Options(), allowing(Allow.TRUNCATED)):
+            try:
+                found = read(path, options)
+                assert isinstance(found, Record)
+                values = found.values
+            except DesignError:
+                continue
+            columns = [found.names.index(channel.name) for channel in CHANNELS if channel.name in found.names]
+            np.testing.assert_allclose(values[:, columns], VALUES[: len(values), : len(columns)], rtol=1e-11, err_msg=str(cut))
+
+
+def test_hdf_that_breaks_off_says_how_far_it_goes(tmp_path: Path) -> None:
+    path = plain(tmp_path / "a.h5", Form.HDF5)
+    path.write_bytes(path.read_bytes()[:3000])
+    assert "eof = 3000" in refusal(path)
+
+
+def test_a_binary_universal_file_changed_as_text_is_told(tmp_path: Path) -> None:
+    path = plain(tmp_path / "a.uff", Form.UFF)
+    path.write_bytes(path.read_bytes().replace(b"\n", b"\r\n"))
+    refusal(path)
+
+
+def test_a_head_that_cannot_be_read_is_told_with_its_line(tmp_path: Path) -> None:
+    path = plain(tmp_path / "a.uff", Form.UFF_ASCII)
+    text = path.read_text()
+    path.write_text(text.replace("         4       400         1", "         4       4x0         1", 1))
+    assert "function 1 (line 2): record 7, the form of the data, cannot be read" in refusal(path)
+    path.write_text(text.replace("         4       400         1", "         3       400         1", 1))
+    assert "data type is 3" in refusal(path)
+
+
+# --- gaps, times ---
+
+
+def with_times(path: Path, times: np.ndarray) -> Path:
+    np.savetxt(path, np.column_stack([times, VALUES[: len(times)]]), header="time [s],u1 [V],S1 [um]", delimiter=",", comments="")
+    return path
+
+
+@pytest.mark.parametrize("suffix", ["csv", "mat", "h5"])
+def test_a_gap_divides_the_record(suffix: str, tmp_path: Path) -> None:
+    times = np.arange(400) / RATE
+    times[120:] += 0.5
+    path = tmp_path / f"a.{suffix}"
+    if suffix == "csv":
+        with_times(path, times)
+    elif suffix == "mat":
+        scipy.io.savemat(path, {"time": times, "u1": VALUES[:, 0], "S1": VALUES[:, 1]})
+    else:
+        with h5py.File(path, "w") as file:
+            for name, column in (("time", times), ("u1", VALUES[:, 0]), ("S1", VALUES[:, 1])):
+                file[name] = column
+    told = refusal(path)
+    assert "1 gap between samples, before 1.7 s" in told
+    assert "280 samples (2.8 s)" in told
+    found = read(path, Options(allow=frozenset({Allow.GAPS})))
+    assert isinstance(found, Record)
+    assert (found.rate, round(found.start, 9)) == (RATE, 1.7)
+    np.testing.assert_array_equal(found.select(["u1", "S1"]).values, VALUES[120:])
+
+
+def test_times_that_are_none_are_told(tmp_path: Path) -> None:
+    path = tmp_path / "a.csv"
+    assert "not evenly spaced" in refusal(with_times(path, np.cumsum(np.random.default_rng(0).exponential(0.01, 400))))
+    assert "do not rise" in refusal(with_times(path, np.round(np.arange(400) / 1e6, 3)))
+    broken = np.arange(400) / RATE
+    broken[7] = np.nan
+    assert "1 of 400 times are not numbers" in refusal(with_times(path, broken))
+    np.testing.assert_array_equal(kept(path, Options(rate=RATE)), VALUES)  # the rate that is stated holds
+
+
+def test_times_and_rate_that_disagree_are_told(tmp_path: Path) -> None:
+    path = tmp_path / "a.mat"
+    scipy.io.savemat(path, {"time": np.arange(400) / RATE, "fs": 128.0, "u1": VALUES[:, 0]})
+    assert "its times say 100 Hz, the file also states 128 Hz" in refusal(path)
+
+
+def test_arrays_of_different_lengths_are_told(tmp_path: Path) -> None:
+    path = tmp_path / "a.mat"
+    scipy.io.savemat(path, {"fs": RATE, "u1": VALUES[:, 0], "S1": VALUES[:399, 1]})
+    assert "u1 400, S1 399" in refusal(path)
+    assert kept(path, Options(only=("u1",))).shape == (400, 1)
+
+
+# --- CSV lines ---
+
+
+def lines_of(path: Path) -> list[str]:
+    return with_times(path, np.arange(400) / RATE).read_text().splitlines()
+
+
+def test_lines_that_cannot_be_read_are_named(tmp_path: Path) -> None:
+    path = tmp_path / "a.csv"
+    lines = lines_of(path)
+    lines[200] = lines[200].rpartition(",")[0] + ",OVERLOAD"
+    path.write_text("\n".join(lines))
+    found = read(path)
+    assert isinstance(found, Record)
+    with pytest.raises(DesignError, match=r"line 201, S1: \"OVERLOAD\" is not a number"):
+        _ = found.values
+    lines[200] = "1.99,1.0"
+    path.write_text("\n".join(lines))
+    with pytest.raises(DesignError, match=r"line 201: it has 2 of 3 fields"):
+        _ = kept(path, Options())
+
+
+def test_missing_fields_are_no_numbers(tmp_path: Path) -> None:
+    path = tmp_path / "a.csv"
+    lines = lines_of(path)
+    lines[200] = lines[200].rpartition(",")[0] + ","
+    lines[201] = lines[201].rpartition(",")[0] + ",NaN"
+    path.write_text("\n".join(lines))
+    values = kept(path, Options())
+    assert np.isnan(values[199:201, 1]).all()
+    assert np.isfinite(np.delete(values, [199, 200], axis=0)).all()
+
+
+def test_a_table_without_header_or_time_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "a.csv"
+    np.savetxt(path, VALUES, delimiter=",")
+    assert "2 columns have no header" in refusal(path)
+    np.savetxt(path, VALUES, delimiter=",", header="u1 [V],S1 [um]", comments="")
+    assert "none of its columns is time" in refusal(path)
+    np.testing.assert_array_equal(kept(path, Options(rate=50.0)), VALUES)
+
+
+# --- responses ---
+
+
+def test_responses_that_are_no_numbers_are_told(tmp_path: Path) -> None:
+    path = tmp_path / "a.mat"
+    values = np.ones((50, 2), complex)
+    values[3, 1] = np.nan
+    scipy.io.savemat(path, {"f": np.arange(50.0), "H": values})
+    assert "y2: 1 of 50 responses are not numbers" in refusal(path)
