@@ -22,27 +22,38 @@ class Extent:
     members: tuple[int, ...]
 
 
-def sweeps(low: float, high: float) -> list[tuple[float, float]]:
-    """Bands that cover `low` to `high` in Hz, each up to three times its lower end, each sharing a part with the next.
+@dataclass(frozen=True)
+class Sweep:
+    """A band from `low` to `high` in Hz that is searched at once, and the part of it, `first` to `last`, whose poles count."""
 
-    >>> [(round(a), round(b)) for a, b in sweeps(10.0, 200.0)]
-    [(10, 36), (27, 99), (73, 200)]
+    low: float
+    high: float
+    first: float
+    last: float
+
+
+def sweeps(low: float, high: float) -> list[Sweep]:
+    """Bands that cover `low` to `high` in Hz, each up to three times its lower end, each reaching a little into the next.
+
+    >>> [(round(band.low), round(band.first), round(band.last), round(band.high)) for band in sweeps(10.0, 200.0)]
+    [(10, 10, 27, 31), (24, 27, 74, 84), (65, 74, 200, 200)]
     """
     count = max(1, int(np.ceil(np.log(high / low) / np.log(_RATIO))))
     limits = np.geomspace(low, high, count + 1)
     half = np.sqrt(_SHARED)
-    return [(max(low, a / half), min(high, b * half)) for a, b in zip(limits[:-1], limits[1:], strict=True)]
+    return [Sweep(max(low, a / half), min(high, b * half), float(a), float(b)) for a, b in zip(limits[:-1], limits[1:], strict=True)]
 
 
-def extents(poles: Array, low: float, high: float) -> list[Extent]:
+def extents(poles: Array, low: float, high: float, *, resolution: float = 0.0) -> list[Extent]:
     """Bands for poles (k,) in Hz, by rising frequency: those whose gap is below 12 times their half-widths are fitted together.
 
-    A band reaches 24 half-widths beyond its outer poles, within `low` and `high`, and ends between groups in proportion to half-widths.
+    Half-widths below the lines' `resolution` count as that. A band reaches 24 half-widths beyond its outer poles, within `low` and `high`, and ends between groups in proportion to half-widths.
 
     >>> found = extents(np.array([-1 + 100j, -1 + 101j, -1 + 200j]), 1.0, 300.0)
     >>> [(round(band.low), round(band.high), band.members) for band in found]
     [(76, 125, (0, 1)), (176, 224, (2,))]
     """
+    poles = np.minimum(poles.real, -resolution) + 1j * poles.imag
     frequencies, widths = poles.imag, -poles.real
     groups: list[list[int]] = []
     for index in range(len(poles)):

@@ -12,6 +12,7 @@ from flexstage.readings.measured.lscf import Poles
 
 _NEAR = 0.02
 _ALIKE = 0.5
+_COINCIDENT = 0.3
 _SHARE = 0.4
 _STABLE_FREQUENCY, _STABLE_DAMPING, _STABLE_PARTICIPATION = 0.002, 0.05, 0.98
 
@@ -49,8 +50,9 @@ class _Track:
 def stabilisation(found: tuple[Poles, ...], highest_damping: float) -> tuple[Stabilisation, tuple[Candidate, ...]]:
     """The diagram of poles of rising order, and the candidates: poles that recur in two fifths of the orders or more.
 
-    A pole continues the nearest track of the orders below, nearest by distance in the complex plane and by participation; each track takes one
-    pole an order, so that close pairs remain two tracks.
+    A pole continues the nearest track of the orders below, nearest by distance in the complex plane and by participation; each track takes
+    one pole an order, so that close pairs remain two tracks. The participations of a repeated pair are any two of their plane, others in every
+    order: candidates are taken from one order as far as they are all in it.
 
     >>> one = [Poles(order, np.array([-0.1 + 10j]), np.ones((1, 1))) for order in range(1, 6)]
     >>> diagram, candidates = stabilisation(tuple(one), 0.1)
@@ -72,7 +74,9 @@ def stabilisation(found: tuple[Poles, ...], highest_damping: float) -> tuple[Sta
         stable=np.array([row[2] for row in rows], dtype=int),
     )
     needed = max(2, round(_SHARE * len(found)))
-    return diagram, tuple(_candidate(track) for track in tracks if len(track.orders) >= needed)
+    lasting = [track for track in tracks if len(track.orders) >= needed]
+    common = max((poles.order for poles in found), key=lambda order: (sum(order in track.orders for track in lasting), order))
+    return diagram, tuple(_candidate(track, common) for track in lasting)
 
 
 def merged(sweeps: Iterable[tuple[Candidate, ...]]) -> tuple[Candidate, ...]:
@@ -113,7 +117,8 @@ def _continued(tracks: list[_Track], values: Array, participations: Array, order
         for index, value in enumerate(values):
             away = abs(value - track.poles[-1]) / abs(value)
             similar = alike(participations[index], track.participations[-1])
-            if away < _NEAR and similar > _ALIKE:
+            coincident = abs(value - track.poles[-1]) < -_COINCIDENT * value.real
+            if away < _NEAR and (similar > _ALIKE or coincident):
                 pairs.append((away / _NEAR + 1.0 - similar, number, index))
     taken: set[int] = set()
     grown: set[int] = set()
@@ -139,10 +144,13 @@ def _grow(track: _Track, value: complex, participation: Array, order: int) -> No
     track.orders.append(order)
 
 
-def _candidate(track: _Track) -> Candidate:
-    """The member nearest to the median of the upper half of the orders."""
-    upper = slice(len(track.poles) // 2, None)
-    values = np.array(track.poles[upper])
-    middle = np.median(values.real) + 1j * np.median(values.imag)
-    index = len(track.poles) // 2 + int(np.argmin(np.abs(values - middle)))
+def _candidate(track: _Track, common: int) -> Candidate:
+    """The member of the common order; without one, that nearest to the median of the upper half of the orders."""
+    if common in track.orders:
+        index = track.orders.index(common)
+    else:
+        first = len(track.poles) // 2
+        values = np.array(track.poles[first:])
+        middle = np.median(values.real) + 1j * np.median(values.imag)
+        index = first + int(np.argmin(np.abs(values - middle)))
     return Candidate(track.poles[index], track.participations[index], len(track.orders))

@@ -9,9 +9,10 @@ import numpy as np
 
 from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array
-from flexstage.readings.measured.lines import Lines, block_count, record_lines
+from flexstage.readings.measured.lines import Cells, Lines, block_count, record_lines
 from flexstage.readings.measured.record import Channel, Record, Responses
-from flexstage.readings.measured.spectra import Segments, Spectra, Tell, pooled, spectra
+from flexstage.readings.measured.smear import SMEARING, Smear
+from flexstage.readings.measured.spectra import Segments, Spectra, Tell, Window, pooled, spectra
 from flexstage.readings.measured.transfer import h1, multiple_coherence, noise_density
 
 _SEGMENTS = 24.0
@@ -42,6 +43,13 @@ class Evidence:
     inflation: float = 1.0
     coherence: Array | None = None
     averages: float = 0.0
+    smear: Smear | None = None
+    resolution: float = 0.0
+    shaped: Callable[[Cells], Array] | None = None
+
+    def shape(self, cells: Cells) -> Array:
+        """How the noise variance goes over cells, (p, c), up to a factor of each output: as coherence says where it was stored, else even."""
+        return np.ones((len(self.output_scale), len(cells.low))) if self.shaped is None else self.shaped(cells)
 
     def variance(self, low: float, high: float) -> Array:
         """A first guess of the noise variance (p,) per line of the outputs, divided by their scales: the median over the band."""
@@ -95,6 +103,7 @@ def _of_records(records: tuple[Record, ...], known: Spectra, tell: Tell | None) 
         band=band,
         coherence=multiple_coherence(known),
         averages=known.independent,
+        resolution=max(1.0 / record.duration for record in records),
     )
 
 
@@ -135,6 +144,7 @@ def _of_responses(known: Responses) -> Evidence:
             yield Lines(known.frequencies, np.ones((len(steps) + 1, 1), dtype=complex), known.values[:, :, index] / output_scale, (index,))
 
     step = float(np.mean(steps))
+    window = next((each for each in Window if known.window.lower().startswith(each.value)), None)
     return Evidence(
         where=known.source or known.name or "responses",
         responses=known,
@@ -145,12 +155,24 @@ def _of_responses(known: Responses) -> Evidence:
         density=density,
         rate=2.0 * float(known.frequencies[-1]),
         band=(float(max(known.frequencies[0], _LOWEST_LINES * step)), float(known.frequencies[-1])),
-        inflation=_INFLATION.get(known.window.lower(), 1.0),
+        inflation=1.0 if window is None else _INFLATION[window],
         averages=float(known.averages or 0),
+        smear=Smear(window, 1.0 / step) if window in SMEARING else None,
+        resolution=step,
+        shaped=None if known.coherence is None else lambda cells: _coherent_shape(known, cells),
     )
 
 
-_INFLATION = {"hann": 1.94, "hanning": 1.94, "hamming": 1.74, "blackman": 2.66}
+def _coherent_shape(known: Responses, cells: Cells) -> Array:
+    """|H|^2 (1 - g^2) / g^2, to which an estimate's variance is proportional (Bendat & Piersol, ch. 9), at the cells' middles."""
+    share = np.clip(known.coherence if known.coherence is not None else np.ones(1), 1e-3, 1.0 - 1e-6)
+    power = np.abs(known.values) ** 2 * (1.0 - share) / share
+    column = np.array([columns[0] for columns in cells.columns])[cells.block]
+    line = np.clip(np.searchsorted(known.frequencies, cells.middle), 0, len(known.frequencies) - 1)
+    return np.maximum(power[line, :, column].T, 1e-12 * np.max(power, axis=(0, 2))[:, None])
+
+
+_INFLATION = {Window.BOXCAR: 1.0, Window.HANN: 1.94, Window.HAMMING: 1.74, Window.BLACKMAN: 2.66}
 """Sum over lines of the squared correlation of a window's lines: 1 + 2 (4/9 + 1/36) = 1.94 for Hann's."""
 
 

@@ -24,7 +24,7 @@ from flexstage.readings.measured.spectra import Segments, Tell
 from flexstage.readings.measured.unexplained import SURPRISING, excess, suggested
 
 _ONCE_IN = 1e-9
-_SURE = 1.0 / 3.0
+_SURE, _EVIDENT = 1.0 / 3.0, 3.0
 _LARGEST = 72
 _LONGEST = 40
 _ROUNDS = 2
@@ -58,7 +58,7 @@ def identify(what: Record | Responses | Sequence[Record], search: Search = Searc
     Candidates are the stable poles of pLSCF on H1; each group of near ones is then fitted by maximum likelihood to the transform of the whole
     record, its transient included, so that there is neither window nor leakage: outputs' noise is taken as independent between outputs and
     of slowly varying density, inputs as exact (Pintelon & Schoukens 2012, ch. 9 and 10). A mode is kept if leaving it out costs more
-    likelihood than noise would once in 1e9, and if its damping is known to a third. Linear, time-invariant stages. Raises `DesignError` for
+    likelihood than noise would once in 1e9, thrice that where its damping is not known to a third. Linear, time-invariant stages. Raises `DesignError` for
     inputs that are not independent, no outputs, records that do not fit together or are too short.
     """
     known = evidence(what, search.segments, tell)
@@ -84,8 +84,8 @@ def _candidates(known: Evidence, band: tuple[float, float], search: Search) -> t
     diagrams: list[Stabilisation] = []
     candidates: list[tuple[Candidate, ...]] = []
     inputs = known.responses.values.shape[2]
-    for low, high in sweeps(*band):
-        inside = (known.responses.frequencies >= low) & (known.responses.frequencies <= high)
+    for sweep in sweeps(*band):
+        inside = (known.responses.frequencies >= sweep.low) & (known.responses.frequencies <= sweep.high)
         highest = min(_LONGEST, max(3, _LARGEST // inputs), int(np.sum(inside)) // (2 + 2 * inputs))
         if highest < 2:
             continue
@@ -94,7 +94,7 @@ def _candidates(known: Evidence, band: tuple[float, float], search: Search) -> t
         values, weights = known.responses.values[inside], known.weights[inside]
         diagram, found = stabilisation(lscf(known.responses.frequencies[inside], values, weights, orders), search.highest_damping)
         diagrams.append(diagram)
-        candidates.append(found)
+        candidates.append(tuple(each for each in found if sweep.first + each.pole.real <= each.pole.imag <= sweep.last - each.pole.real))
     return tuple(diagrams), merged(candidates)
 
 
@@ -102,7 +102,7 @@ def _fitted(known: Evidence, candidates: tuple[Candidate, ...], band: tuple[floa
     if not candidates:
         return []
     poles = np.array([candidate.pole for candidate in candidates])
-    groups = extents(poles, *band)
+    groups = extents(poles, *band, resolution=known.resolution)
     bounds = [edges(poles, group.low, group.high) for group in groups]
     every = gathered(known.lines(), bounds)
     return [
@@ -117,8 +117,9 @@ def _group(known: Evidence, cells: Cells, candidates: tuple[Candidate, ...], gro
     poles = np.array([candidate.pole for candidate in candidates])
     members = list(group.members)
     outside = np.concatenate([np.delete(poles, members), np.conj(poles)])
-    variance = np.repeat(known.variance(group.low, group.high)[:, None], len(cells.low), axis=1)
-    band = Band(cells, variance, background(cells, outside))
+    shape = known.shape(cells)
+    variance = known.variance(group.low, group.high)[:, None] * shape / np.median(shape, axis=1, keepdims=True)
+    band = Band(cells, variance, background(cells, outside), known.smear, shape)
     if np.sum(cells.count) < 2 * cells.own.shape[2] * band.background.shape[1]:
         return None
     participation = np.array([candidates[index].participation for index in members])
@@ -163,17 +164,16 @@ def _extended(band: Band, found: Fit, group: Extent, search: Search) -> Fit:
 
 
 def _worst(band: Band, found: Fit, group: Extent, search: Search) -> int | None:
-    poles = found.modal.poles
+    poles, limit = found.modal.poles, _limit(found.modal)
     ratio = -poles.real / np.abs(poles)
     spread = deviations(found)
-    strange = (ratio > search.highest_damping) | (poles.imag < group.low) | (poles.imag > group.high) | (spread.damping > _SURE * ratio)
-    if np.any(strange):
-        return int(np.argmax(np.where(strange, spread.damping / ratio, -1.0)))
-    doubles = _doubles(found.modal)
-    strength = significance(band, found, _limit(found.modal))
-    strength = np.where(doubles, 0.0, strength)
-    least = int(np.argmin(strength))
-    return least if strength[least] < _limit(found.modal) else None
+    outside = (ratio > search.highest_damping) | (poles.imag < group.low) | (poles.imag > group.high)
+    if np.any(outside):
+        return int(np.argmax(np.where(outside, spread.damping / ratio, -1.0)))
+    strength = np.where(_doubles(found.modal), 0.0, significance(band, found, limit))
+    wanted = np.where(spread.damping > _SURE * ratio, _EVIDENT * limit, limit)
+    least = int(np.argmin(strength / wanted))
+    return least if strength[least] < wanted[least] else None
 
 
 def _doubles(modal: Modal) -> Array:

@@ -9,6 +9,7 @@ import numpy as np
 
 from flexstage.base.number import Array
 from flexstage.readings.measured.lines import Cells, expanded, nodes
+from flexstage.readings.measured.smear import Smear
 
 _CHUNK = 4_000_000
 _FREE = 1e-9
@@ -37,11 +38,14 @@ class Modal:
 @dataclass(frozen=True, eq=False)
 class Band:
     """Data of one band: its cells, the noise variance of every output per line in every cell (p, c), and the functions (c, b, 6) that stand
-    for what lies outside: Legendre coefficients in every cell."""
+    for what lies outside: Legendre coefficients in every cell. `smear` says how windows have smeared the lines, if they have; `shape`
+    (p, c) how the noise variance is known to go with frequency."""
 
     cells: Cells
     variance: Array
     background: Array
+    smear: Smear | None = None
+    shape: Array | float = 1.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -140,13 +144,16 @@ def explained(band: Band, modal: Modal) -> Iterator[tuple[Array, Array]]:
 
 def _functions(band: Band, poles: Array) -> Array:
     """Legendre coefficients (c, 2k, 6) in every cell of 1/(j f - p) and of its derivative by p."""
-    away = 1.0 / (1j * nodes(band.cells.low, band.cells.high)[:, None, :] - poles[:, None])
+    points = nodes(band.cells.low, band.cells.high)
+    if band.smear is not None:
+        return expanded(np.moveaxis(np.concatenate(band.smear.functions(points, poles), axis=2), 2, 1))
+    away = 1.0 / (1j * points[:, None, :] - poles[:, None])
     return expanded(np.concatenate([away, away**2], axis=1))
 
 
 def noise(band: Band, modal: Modal) -> Array:
     """Noise variance per line of every output in every cell (p, c), from what modes and background leave: means over 400 lines or more."""
-    power, cells = residual_power(band, modal), band.cells
+    power, cells = residual_power(band, modal) / band.shape, band.cells
     outputs, total = len(power), int(np.sum(cells.count))
     used = band.background.shape[1] * cells.width + len(modal.poles) * (1.0 + cells.width / outputs)
     free = max(0.1, 1.0 - used / total)
@@ -161,7 +168,7 @@ def noise(band: Band, modal: Modal) -> Array:
             mean = np.sum(power[:, members], axis=1) / (np.sum(cells.count[members]) * free)
             found[:, members] = mean[:, None]
     signal = np.sum(cells.power, axis=0)[:, None] / total
-    return np.maximum(found, _SILENT * signal)
+    return np.maximum(found * band.shape, _SILENT * signal)
 
 
 def background(cells: Cells, outside: Array, degree: int = 3) -> Array:
