@@ -14,11 +14,12 @@ from netgen import occ
 from scipy.spatial.transform import Rotation
 
 from flexstage.base.number import Array
+from flexstage.mechanism.outline import rise as cut_height
 from flexstage.parts.body import Block, Cylinder, Imported
 from flexstage.parts.leaf import Leaf
 from flexstage.parts.neck import Neck
 from flexstage.parts.notch import Notch
-from flexstage.parts.profile import Circular, Elliptic, Filleted, Profile, length
+from flexstage.parts.profile import Circular, Filleted, Profile, length
 from flexstage.readings.solid.imported import imported_shape
 from flexstage.readings.solid.piece import Form
 from flexstage.spatial.frame import Frame
@@ -125,21 +126,13 @@ def _extruded(thickness: object, profile: Profile, width: object) -> occ.Solid:
 
 def _ends(rise: float, profile: Profile) -> tuple[float, float]:
     """Half heights of the two end faces [mm]."""
-    height = rise + _mm(_cut_height(profile))
+    height = rise + _mm(cut_height(profile))
     return height, height
-
-
-def _cut_height(profile: Profile) -> object:
-    if isinstance(profile, Circular):
-        return profile.radius
-    if isinstance(profile, Elliptic):
-        return profile.across
-    return profile.radius if isinstance(profile, Filleted) else 0.0
 
 
 def _upper(rise: float, profile: Profile, side: float = 1.0) -> Curve:
     """The edge curve y = side (rise + w(x)) from one end face to the other, in the xy plane."""
-    half, height = 0.5 * _mm(length(profile)), rise + _mm(_cut_height(profile))
+    half, height = 0.5 * _mm(length(profile)), rise + _mm(cut_height(profile))
     if height == rise:
         return _polyline([(-half, side * rise), (half, side * rise)])
     curve, reach, end = _cut(rise, profile, side)
@@ -152,7 +145,7 @@ def _cut(rise: float, profile: Profile, side: float) -> tuple[Curve, float, floa
     """The curved part, shortened: its edges, how far it reaches along x and its height there [mm]."""
     if isinstance(profile, Filleted):
         return _filleted(rise, profile, side)
-    half, height = 0.5 * _mm(length(profile)), _mm(_cut_height(profile))
+    half, height = 0.5 * _mm(length(profile)), _mm(cut_height(profile))
     largest = float(np.arcsin(1.0 - _SHORTENED))
 
     def at(angle: float) -> tuple[float, float]:

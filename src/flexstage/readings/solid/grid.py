@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from flexstage.base.number import Array
-from flexstage.readings.solid.component import Component
-from flexstage.readings.solid.fineness import ATTEMPTS, Fineness
-from flexstage.readings.solid.worker import Call, Job
+from flexstage.readings.solid.fineness import Fineness
+from flexstage.readings.solid.reducing import ComponentJob
+from flexstage.readings.solid.worker import Call
 
 if TYPE_CHECKING:
     from flexstage.readings.solid.mesh import Meshed
@@ -33,24 +33,10 @@ class Grid:
 
 
 @dataclass(frozen=True, eq=False)
-class Gridding(Job):
-    """A component to mesh, wanted for `key`."""
+class Gridding(ComponentJob):
+    """A component to mesh as a grid."""
 
-    key: str
-    component: Component
     fineness: Fineness
-
-    attempts = len(ATTEMPTS)
-
-    @property
-    def name(self) -> str:
-        """The component's name."""
-        return self.component.name
-
-    @property
-    def weight(self) -> int:
-        """Number of pieces."""
-        return len(self.component.pieces)
 
     def work(self, call: Call) -> bytes:
         """The grid, stored as numpy does."""

@@ -12,10 +12,10 @@ from itertools import pairwise
 
 import ngsolve
 import numpy as np
-from netgen import occ
 
 from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.number import Array
+from flexstage.mechanism.outline import rise as cut_height
 from flexstage.parts.leaf import Leaf
 from flexstage.parts.material import Material
 from flexstage.parts.neck import Neck
@@ -25,10 +25,10 @@ from flexstage.parts.rod import Rod
 from flexstage.readings.solid.estimate import Accuracy, change, remaining
 from flexstage.readings.solid.field import Field, applied, factored, field, rigid, stiffness, times
 from flexstage.readings.solid.memory import Counts
-from flexstage.readings.solid.mesh import Meshed
+from flexstage.readings.solid.mesh import Meshed, generated
 from flexstage.readings.solid.piece import Medium, medium, span
 from flexstage.readings.solid.progress import Report, Stage, silent
-from flexstage.readings.solid.specimen import END, START, Hinge, Specimen, added, specimen
+from flexstage.readings.solid.specimen import END, START, Hinge, Specimen, specimen
 from flexstage.readings.solid.stub import beam, circle, rectangle
 from flexstage.spatial.frame import identity, transport
 
@@ -219,13 +219,9 @@ def hinge_mesh(part: Hinge, stub: float | None = None, factor: float = 1.0, orde
 
 
 def _attempt(drawn: Specimen, grading: float, curvature: float, order: int) -> ngsolve.Mesh | str:
-    try:
-        raw = occ.OCCGeometry(drawn.solid).GenerateMesh(maxh=drawn.largest, grading=grading, curvaturesafety=curvature)
-    except Exception as error:  # noqa: BLE001 (netgen raises a bare NgException, and others for CAD it cannot read)
-        return str(error)
-    mesh = ngsolve.Mesh(raw)
-    if mesh.ne == 0:
-        return "no elements came out"
+    mesh = generated(drawn.solid, {"maxh": drawn.largest, "grading": grading, "curvaturesafety": curvature})
+    if isinstance(mesh, str):
+        return mesh
     for degree in range(2, order + 1):
         mesh.Curve(degree)
         lowest = lowest_jacobian(mesh)
@@ -250,7 +246,7 @@ def lowest_jacobian(mesh: ngsolve.Mesh) -> float:
 
 
 def _profile_height(part: Hinge) -> float:
-    return 0.0 if isinstance(part, (Leaf, Rod)) else added(part.profile)
+    return 0.0 if isinstance(part, (Leaf, Rod)) else float(np.real(cut_height(part.profile)))
 
 
 def _stub_length(part: Hinge, stub: float | None) -> float:

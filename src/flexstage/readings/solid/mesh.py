@@ -85,15 +85,24 @@ def meshed(component: Component, fineness: Fineness, report: Report = silent, fi
 
 def _attempted(drawing: Cad, order: int, sizes: Mapping[str, Any]) -> ngsolve.Mesh | str:
     """One attempt, curved to the drawing; else what went wrong."""
+    mesh = generated(drawing.shape, sizes)
+    if isinstance(mesh, ngsolve.Mesh):
+        mesh.Curve(order)
+    return mesh
+
+
+def generated(shape: occ.TopoDS_Shape, sizes: Mapping[str, Any]) -> ngsolve.Mesh | str:
+    """A mesh [mm] of a drawing with the sizes the mesher is given; else what went wrong.
+
+    >>> generated(occ.Box(occ.Pnt(0, 0, 0), occ.Pnt(1, 1, 1)), {"maxh": 2.0}).ne > 0
+    True
+    """
     try:
-        raw = occ.OCCGeometry(drawing.shape).GenerateMesh(**sizes)
+        raw = occ.OCCGeometry(shape).GenerateMesh(**sizes)
     except Exception as error:  # noqa: BLE001 (netgen raises a bare NgException, and others for CAD it cannot read)
         return str(error)
     mesh = ngsolve.Mesh(raw)
-    if mesh.ne == 0:
-        return "no elements came out"
-    mesh.Curve(order)
-    return mesh
+    return mesh if mesh.ne else "no elements came out"
 
 
 def _finished(pieces: tuple[Piece, ...], drawing: Cad, mesh: ngsolve.Mesh) -> Meshed | str:

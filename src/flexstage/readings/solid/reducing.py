@@ -42,13 +42,11 @@ def _surface(form: Form) -> float:
 
 
 @dataclass(frozen=True, eq=False)
-class Reducing(Job):
-    """A component to reduce, stored for `key`; `springs` (6 m, 6 m) between its interfaces, for modes of a whole stage in one piece."""
+class ComponentJob(Job):
+    """A component to mesh, and what is made of it stored for `key`."""
 
     key: str
     component: Component
-    reduction: Reduction
-    springs: Array | None = None
 
     attempts = len(ATTEMPTS)
 
@@ -61,6 +59,14 @@ class Reducing(Job):
     def weight(self) -> int:
         """Number of pieces."""
         return len(self.component.pieces)
+
+
+@dataclass(frozen=True, eq=False)
+class Reducing(ComponentJob):
+    """A component to reduce; `springs` (6 m, 6 m) between its interfaces, for modes of a whole stage in one piece."""
+
+    reduction: Reduction
+    springs: Array | None = None
 
     @property
     def columns(self) -> int:

@@ -14,10 +14,11 @@ import numpy as np
 from netgen import occ
 
 from flexstage.base.number import Number
+from flexstage.mechanism.outline import rise as cut_height
 from flexstage.parts.leaf import Leaf
 from flexstage.parts.neck import Neck
 from flexstage.parts.notch import Notch
-from flexstage.parts.profile import Circular, Elliptic, Filleted, Profile, Straight, length
+from flexstage.parts.profile import Elliptic, Filleted, Profile, Straight, length
 from flexstage.parts.rod import Rod
 from flexstage.readings.solid.draw import MILLIMETRES
 
@@ -59,22 +60,11 @@ class _Side:
 
     @property
     def height(self) -> float:
-        return self.rise + _mm(added(self.profile))
+        return self.rise + _mm(cut_height(self.profile))
 
     @property
     def reach(self) -> float:
         return self.half + self.stub
-
-
-def added(profile: Profile) -> float:
-    """How much higher a profile is at its ends than at its neck, on each side [m].
-
-    >>> added(Circular(0.005)), added(Straight(0.01))
-    (0.005, 0.0)
-    """
-    if isinstance(profile, Circular | Filleted):
-        return float(np.real(profile.radius))
-    return float(np.real(profile.across)) if isinstance(profile, Elliptic) else 0.0
 
 
 def specimen(part: Hinge, stub: float, size: float) -> Specimen:
