@@ -21,7 +21,7 @@ _STILL, _STILL_SHARE = 32, 0.05
 _DEAD_BESIDE_OTHERS = 1e-5
 _PILE, _PILE_RATIO, _LEVELS = 8, 2.5, 16
 """A quantised sine, not clipped, has at most 2.4 times as many samples on its highest level as on the next."""
-_EXPLAINED = 0.9
+_EXPLAINED, _TIE = 0.9, 1e-6
 _SEGMENTS_AN_INPUT = 5
 _BROKEN_SHARE = 0.5
 
@@ -233,7 +233,7 @@ def _dependent(record: Record, found: Gathered, where: str) -> Iterator[Fault]:
     alive = [number for number in range(len(names)) if np.real(found.input_spectra[:, number, number]).sum() > 0.0]
     while len(alive) > 1 and found.segments >= _SEGMENTS_AN_INPUT * len(alive):
         shares = _unbiased(explained(found.input_spectra[:, alive][:, :, alive]), len(alive), found.segments)
-        worst = len(alive) - 1 - int(np.argmax(shares[::-1]))
+        worst = int(np.flatnonzero(shares >= shares.max() - _TIE)[-1])  # of those alike the last
         if shares[worst] < _EXPLAINED:
             return
         name = names[alive.pop(worst)]

@@ -72,6 +72,7 @@ class _State:
     bottoms: Array
     seen: int = 0
     segments: int = 0
+    segment: int = _SEGMENT
     whole_from: int = 0
     stretch: tuple[int, int] = (0, 0)
     inputs: list[int] = field(default_factory=list[int])
@@ -97,7 +98,7 @@ def gather(record: Record) -> Gathered:
 def _fresh(record: Record) -> _State:
     size = len(record.channels)
     inputs = [number for number, channel in enumerate(record.channels) if channel.role is Role.INPUT]
-    lines = _SEGMENT // 2 + 1
+    segment = _segment(record.length, len(inputs))
     return _State(
         count=np.zeros(size),
         mean=np.zeros(size),
@@ -113,11 +114,18 @@ def _fresh(record: Record) -> _State:
         still_from=np.zeros(size, dtype=int),
         pair_low=np.full(size, np.inf),
         pair_high=np.full(size, -np.inf),
-        spectra=np.zeros((lines, len(inputs), len(inputs)), dtype=complex),
+        spectra=np.zeros((segment // 2 + 1, len(inputs), len(inputs)), dtype=complex),
         tops=np.full((0, size), -np.inf),
         bottoms=np.full((0, size), np.inf),
         inputs=inputs,
+        segment=segment,
     )
+
+
+def _segment(length: int, inputs: int) -> int:
+    """Samples of a segment: 1024, in short records so few that 16 segments an input remain."""
+    most = max(2, length // (16 * max(1, inputs)))
+    return min(_SEGMENT, 1 << (most.bit_length() - 1))
 
 
 def _advance(state: _State, block: Array) -> None:
@@ -187,12 +195,13 @@ def _standstill(state: _State, values: Array, column: int) -> None:
 
 def _spectra(state: _State, inputs: Array) -> None:
     """Cross-spectra of the inputs, by segments with a Hann window; segments with gaps are left out."""
-    count = len(inputs) // _SEGMENT
+    size = state.segment
+    count = len(inputs) // size
     if inputs.shape[1] < 2 or not count:
         return
-    pieces = inputs[: count * _SEGMENT].reshape(count, _SEGMENT, -1)
+    pieces = inputs[: count * size].reshape(count, size, -1)
     pieces = pieces[np.isfinite(pieces).all(axis=(1, 2))]
-    window = np.hanning(_SEGMENT + 1)[:-1]
+    window = np.hanning(size + 1)[:-1]
     lines = np.fft.rfft((pieces - pieces.mean(axis=1, keepdims=True)) * window[:, None], axis=1)
     state.spectra += np.einsum("sfi,sfj->fij", lines.conj(), lines)
     state.segments += len(pieces)

@@ -7,7 +7,7 @@ the units their channels state, bit by bit as the file has them.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from enum import Enum
 from typing import Protocol
@@ -105,6 +105,25 @@ class Stretch:
         [[2.0], [3.0]]
         """
         return self.samples.read(self.start + min(start, self.length), self.start + min(stop, self.length))
+
+
+@dataclass(frozen=True, eq=False)
+class Watched:
+    """Other samples; `tell` is called with how far they were read, after each block."""
+
+    samples: Samples
+    tell: Callable[[int], None]
+
+    @property
+    def length(self) -> int:
+        """Number of samples of each channel."""
+        return self.samples.length
+
+    def read(self, start: int, stop: int) -> Array:
+        """Samples `start` to `stop`, the latter excluded; tells `stop`."""
+        found = self.samples.read(start, stop)
+        self.tell(min(stop, self.length))
+        return found
 
 
 @dataclass(frozen=True, eq=False)
@@ -252,6 +271,17 @@ class Responses:
         row = [channel.name for channel in self.outputs].index(output)
         column = [channel.name for channel in self.inputs].index(input)
         return self.values[:, row, column]
+
+
+def watched(record: Record, tell: Callable[[int], None]) -> Record:
+    """The record, telling how many samples were read whenever a block is: for bars of progress.
+
+    >>> told = []
+    >>> long = watched(in_memory([Channel("S1")], 1.0, np.zeros((5, 1))), told.append)
+    >>> sum(len(block) for block in long.blocks(2)), told
+    (5, [2, 4, 5])
+    """
+    return replace(record, samples=Watched(record.samples, tell))
 
 
 def in_memory(channels: Iterable[Channel], rate: float, values: Array) -> Record:
