@@ -63,7 +63,7 @@ def significance(band: Band, found: Fit, limit: float) -> Array:
         inverse = np.linalg.pinv(own / np.outer(scale, scale), rcond=1e-10, hermitian=True)
         strength[mode] = 2.0 * np.real(np.vdot(shape / scale, inverse @ (shape / scale)))
         if strength[mode] < _DOUBTFUL * limit:
-            strength[mode] = 2.0 * (fit(band, modal.without(mode)).cost - found.cost)
+            strength[mode] = 2.0 * (fit(band, modal.without(mode), found.cost + _DOUBTFUL * limit).cost - found.cost)
     return strength
 
 

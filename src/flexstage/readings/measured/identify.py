@@ -123,15 +123,14 @@ def _group(known: Evidence, cells: Cells, candidates: tuple[Candidate, ...], gro
     if np.sum(cells.count) < 2 * cells.own.shape[2] * band.background.shape[1]:
         return None
     participation = np.array([candidates[index].participation for index in members])
-    found = _pruned(band, fit(band, shaped(band, poles[members], participation)), group, search)
+    found, strength = _pruned(band, fit(band, shaped(band, poles[members], participation)), group, search)
     for _ in range(_ROUNDS):
         band = replace(band, variance=noise(band, found.modal))
-        found = _pruned(band, fit(band, found.modal), group, search)
-        found = _extended(band, found, group, search)
+        found, strength = _pruned(band, fit(band, found.modal), group, search)
+        band, found, strength = _extended(band, (found, strength), group, search)
     if not len(found.modal.poles):
         return None
-    limit = _limit(found.modal)
-    return _Found(found, deviations(found, known.inflation), significance(band, found, limit) / limit, np.mean(band.variance, axis=1))
+    return _Found(found, deviations(found, known.inflation), strength / _limit(found.modal), np.mean(band.variance, axis=1))
 
 
 def _limit(modal: Modal) -> float:
@@ -140,40 +139,44 @@ def _limit(modal: Modal) -> float:
     return float(chi2.isf(_ONCE_IN, freedoms(modal)))
 
 
-def _pruned(band: Band, found: Fit, group: Extent, search: Search) -> Fit:
-    """Leave out, one at a time and the least significant first, what is no mode."""
+def _pruned(band: Band, found: Fit, group: Extent, search: Search) -> tuple[Fit, Array]:
+    """Leave out, one at a time and the least significant first, what is no mode; and the significance of the modes left."""
     while len(found.modal.poles):
-        worst = _worst(band, found, group, search)
+        worst, strength = _worst(band, found, group, search)
         if worst is None:
-            return found
+            return found, strength
         found = fit(band, found.modal.without(worst))
-    return found
+    return found, np.zeros(0)
 
 
-def _extended(band: Band, found: Fit, group: Extent, search: Search) -> Fit:
+def _extended(band: Band, known: tuple[Fit, Array], group: Extent, search: Search) -> tuple[Band, Fit, Array]:
     """Add modes, one at a time, where the data hold more than those found explain, as long as that is significant."""
+    found, strength = known
     while len(found.modal.poles) < _MOST_MODES:
-        place = int(np.argmax(score := excess(band, found.modal)))
+        score = excess(band, found.modal)
+        place = int(np.argmax(score))
         if score[place] < SURPRISING:
-            return found
-        more = _pruned(band, fit(band, suggested(band, found.modal, place)), group, search)
+            break
+        more, grown = _pruned(band, fit(band, suggested(band, found.modal, place)), group, search)
         if len(more.modal.poles) <= len(found.modal.poles) or more.cost > found.cost:
-            return found
-        band, found = replace(band, variance=noise(band, more.modal)), more
-    return found
+            break
+        found, strength = more, grown
+        band = replace(band, variance=noise(band, found.modal))
+    return band, found, strength
 
 
-def _worst(band: Band, found: Fit, group: Extent, search: Search) -> int | None:
+def _worst(band: Band, found: Fit, group: Extent, search: Search) -> tuple[int | None, Array]:
+    """The mode that is least one, if there is such, and how significant each is."""
     poles, limit = found.modal.poles, _limit(found.modal)
     ratio = -poles.real / np.abs(poles)
     spread = deviations(found)
     outside = (ratio > search.highest_damping) | (poles.imag < group.low) | (poles.imag > group.high)
     if np.any(outside):
-        return int(np.argmax(np.where(outside, spread.damping / ratio, -1.0)))
+        return int(np.argmax(np.where(outside, spread.damping / ratio, -1.0))), np.zeros(len(poles))
     strength = np.where(_doubles(found.modal), 0.0, significance(band, found, limit))
     wanted = np.where(spread.damping > _SURE * ratio, _EVIDENT * limit, limit)
     least = int(np.argmin(strength / wanted))
-    return least if strength[least] < wanted[least] else None
+    return (least if strength[least] < wanted[least] else None), strength
 
 
 def _doubles(modal: Modal) -> Array:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -12,7 +12,8 @@ from flexstage.readings.measured.lines import Cells, expanded, nodes
 from flexstage.readings.measured.smear import Smear
 
 _CHUNK = 4_000_000
-_FREE = 1e-9
+_FREE, _SMALL = 1e-9, 1e-4
+_MIXING = 0.25
 _STEPS = 60
 _CONVERGED = 1e-3
 _NEGLIGIBLE = 1e-5
@@ -71,11 +72,11 @@ class _Sums:
     power: Array
 
 
-def fit(band: Band, start: Modal) -> Fit:
+def fit(band: Band, start: Modal, enough: float = np.inf) -> Fit:
     """The modes that maximise the likelihood, by Levenberg-Marquardt from `start`.
 
     The residual is analytic in all parameters, so that complex least squares apply: noise is circular and independent between lines and
-    outputs.
+    outputs. It stops early once the cost is above `enough` and promises to stay there.
     """
     modal, damping = start, 1e-3
     sums = _sums(band, modal.poles)
@@ -84,20 +85,28 @@ def fit(band: Band, start: Modal) -> Fit:
         return Fit(modal, cost, np.zeros((0, 0)), converged=True)
     information, gradient = _normal(sums, modal)
     for _ in range(_STEPS):
-        if _step(information, gradient, _FREE)[1] < _CONVERGED:
-            return Fit(modal, cost, information, converged=True)
+        promised = _step(information, gradient, _FREE)[1]
+        if promised < _CONVERGED or cost - promised > enough:
+            return _fitted(modal, cost, information, converged=promised < _CONVERGED)
         trial = _moved(modal, _step(information, gradient, damping)[0])
         trial_sums = _sums(band, trial.poles)
-        trial_cost = _cost(trial_sums, trial)
-        if trial_cost <= cost and np.all(trial.poles.real < 0.0):
-            modal, sums, cost = trial, trial_sums, trial_cost
+        fall = cost - _cost(trial_sums, trial)
+        if fall >= 0.0 and np.all(trial.poles.real < 0.0):
+            modal, sums, cost = trial, trial_sums, cost - fall
             information, gradient = _normal(sums, modal)
+            if fall < 0.1 * _CONVERGED and damping < _SMALL:
+                return _fitted(modal, cost, information, converged=True)
             damping = max(damping * 0.1, _FREE)
         elif damping > 1e8:
             break
         else:
             damping *= 10.0
-    return Fit(modal, cost, information, converged=False)
+    return _fitted(modal, cost, information, converged=False)
+
+
+def _fitted(modal: Modal, cost: float, information: Array, *, converged: bool) -> Fit:
+    own = len(modal.poles) + modal.participation.size + modal.shapes.size
+    return Fit(modal, cost, information[:own, :own], converged)
 
 
 def _step(information: Array, gradient: Array, damping: float) -> tuple[Array, float]:
@@ -142,15 +151,6 @@ def explained(band: Band, modal: Modal) -> Iterator[tuple[Array, Array]]:
         yield chosen, np.einsum("cfa,ofn->ocan", every[chosen], values[:, :, list(columns)], optimize=True)
 
 
-def _functions(band: Band, poles: Array) -> Array:
-    """Legendre coefficients (c, 2k, 6) in every cell of 1/(j f - p) and of its derivative by p."""
-    points = nodes(band.cells.low, band.cells.high)
-    if band.smear is not None:
-        return expanded(np.moveaxis(np.concatenate(band.smear.functions(points, poles), axis=2), 2, 1))
-    away = 1.0 / (1j * points[:, None, :] - poles[:, None])
-    return expanded(np.concatenate([away, away**2], axis=1))
-
-
 def noise(band: Band, modal: Modal) -> Array:
     """Noise variance per line of every output in every cell (p, c), from what modes and background leave: means over 400 lines or more."""
     power, cells = residual_power(band, modal) / band.shape, band.cells
@@ -188,6 +188,29 @@ def background(cells: Cells, outside: Array, degree: int = 3) -> Array:
     return expanded(np.moveaxis(kept.reshape(*points.shape, -1), 2, 1))
 
 
+def _functions(band: Band, poles: Array) -> Array:
+    """Legendre coefficients (c, f, 6) in every cell of 1/(j f - p), of its derivatives by p, and of products of near poles' functions."""
+    points, pairs = nodes(band.cells.low, band.cells.high), _pairs(poles)
+    if band.smear is not None:
+        middles = np.array([0.5 * (poles[first] + poles[second]) for first, second in pairs], dtype=complex)
+        both = band.smear.functions(points, np.concatenate([poles, middles]))
+        every = [both[0][:, :, : len(poles)], both[1][:, :, : len(poles)], both[1][:, :, len(poles) :]]
+        return expanded(np.moveaxis(np.concatenate(every, axis=2), 2, 1))
+    away = 1.0 / (1j * points[:, None, :] - poles[:, None])
+    products = [away[:, first] * away[:, second] for first, second in pairs]
+    return expanded(np.concatenate([away, away**2, *(each[:, None] for each in products)], axis=1))
+
+
+def _pairs(poles: Array) -> list[tuple[int, int]]:
+    """Poles nearer to one another than half a half-width: their shapes mix, and are turned within their plane by parameters of its own."""
+    return [
+        (first, second)
+        for second in range(len(poles))
+        for first in range(second)
+        if abs(poles[first] - poles[second]) < -_MIXING * (poles[first] + poles[second]).real
+    ]
+
+
 def _raw(band: Band, functions: Array) -> _Sums:
     """Sums before elimination, over the functions (c, f, 6), inputs and transients of all blocks."""
     cells, weights = band.cells, 1.0 / band.variance
@@ -218,9 +241,9 @@ def _products(functions: Array, own: Array) -> Array:
 
 
 def _sums(band: Band, poles: Array) -> _Sums:
-    functions = np.concatenate([_functions(band, poles), band.background], axis=1)
-    raw = _raw(band, functions)
-    kept = 2 * len(poles)
+    near = _functions(band, poles)
+    raw = _raw(band, np.concatenate([near, band.background], axis=1))
+    kept = near.shape[1]
     outputs, count, total = raw.cross.shape
     size = kept * total
     gram = raw.gram.reshape(outputs, count * total, count * total)
@@ -264,39 +287,49 @@ def _cost(sums: _Sums, modal: Modal) -> float:
     return float(np.sum(sums.power) - 2.0 * crossed.real + inside.real)
 
 
-def _jacobian(modal: Modal, output: int) -> Array:
-    """Derivatives (f n, parameters) of one output's factors by poles, participations and that output's shapes."""
+def _jacobian(modal: Modal, output: int, pairs: list[tuple[int, int]]) -> Array:
+    """Derivatives (f n, parameters) of one output's factors by poles, participations, that output's shapes, and mixing of near poles."""
     count, total = modal.participation.shape
     outputs = len(modal.shapes)
-    result = np.zeros((2 * count, total, count + count * total + outputs * count), dtype=complex)
+    base = count + count * total + outputs * count
+    result = np.zeros((2 * count + len(pairs), total, base + 2 * len(pairs)), dtype=complex)
     modes, entries = np.arange(count), np.arange(total)
     shape = modal.shapes[output]
     result[count + modes, :, modes] = shape[:, None] * modal.participation
     place = count + modes[:, None] * total + entries
     result[modes[:, None], entries, place] = shape[:, None]
     result[modes, :, count + count * total + output * count + modes] = modal.participation
-    return result.reshape(2 * count * total, -1)
+    for number, (first, second) in enumerate(pairs):
+        result[2 * count + number, :, base + 2 * number] = shape[first] * modal.participation[second]
+        result[2 * count + number, :, base + 2 * number + 1] = shape[second] * modal.participation[first]
+    return result.reshape(-1, result.shape[2])
 
 
 def _normal(sums: _Sums, modal: Modal) -> tuple[Array, Array]:
-    """Fisher information and gradient."""
+    """Fisher information and gradient, mixing included."""
     count, total = modal.participation.shape
     information, gradient = 0.0, 0.0
+    pairs = _pairs(modal.poles)
     for output in range(len(modal.shapes)):
-        jacobian = np.conj(_jacobian(modal, output).T)
-        gram = sums.gram[output].reshape(2 * count * total, -1)
+        jacobian = _jacobian(modal, output, pairs)
+        gram = sums.gram[output].reshape(len(jacobian), -1)
         values = (modal.shapes[output][:, None] * modal.participation).ravel()
-        gradient = gradient + jacobian @ (sums.cross[output].ravel() - gram[:, : count * total] @ values)
-        information = information + jacobian @ gram @ np.conj(jacobian.T)
+        gradient = gradient + np.conj(jacobian.T) @ (sums.cross[output].ravel() - gram[:, : count * total] @ values)
+        information = information + np.conj(jacobian.T) @ gram @ jacobian
     return np.asarray(information), np.asarray(gradient)
 
 
 def _moved(modal: Modal, step: Array) -> Modal:
+    """The modes after a step; where near poles are mixed, H = C (j f - A)^-1 B is brought back to modes by the eigenvectors of A."""
     count, total = modal.participation.shape
-    poles, participation, shapes = np.split(step, [count, count + count * total])
-    return replace(
-        modal,
-        poles=modal.poles + poles,
-        participation=modal.participation + participation.reshape(count, total),
-        shapes=modal.shapes + shapes.reshape(len(modal.shapes), count),
-    )
+    outputs = len(modal.shapes)
+    poles, participation, shapes, mixing = np.split(step, np.cumsum([count, count * total, outputs * count]))
+    matrix = np.diag(modal.poles + poles)
+    for (first, second), (one, other) in zip(_pairs(modal.poles), mixing.reshape(-1, 2), strict=True):
+        matrix[first, second] += one
+        matrix[second, first] += other
+    rows, columns = modal.participation + participation.reshape(count, total), modal.shapes + shapes.reshape(outputs, count)
+    if not len(mixing):
+        return Modal(np.diagonal(matrix), rows, columns)
+    values, vectors = np.linalg.eig(matrix)
+    return Modal(values, np.linalg.solve(vectors, rows), columns @ vectors)

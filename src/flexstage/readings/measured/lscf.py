@@ -41,7 +41,7 @@ def lscf(frequencies: Array, responses: Array, weights: Array, orders: range) ->
 
     >>> lines = np.linspace(8.0, 12.0, 81)
     >>> one = 1.0 / (2j * np.pi * lines - (-1.0 + 2j * np.pi * 10.0))
-    >>> found = lscf(lines, one[:, None, None], np.ones((81, 1)), range(1, 2))[0]
+    >>> found = lscf(lines, one[:, None, None], np.ones((81, 1)), range(2, 3))[0]
     >>> round(float(found.values[0].real), 2), round(float(found.values[0].imag / (2 * np.pi)), 3)
     (-1.0, 10.0)
     """
