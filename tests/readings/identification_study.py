@@ -85,8 +85,8 @@ def subspace_degrees(first: np.ndarray, second: np.ndarray) -> float:
 
 
 def bound(known: Truth, noise: float, seconds: float = 120.0, rate: float = 2048.0) -> np.ndarray:
-    """Cramer-Rao: least relative standard deviations (2, k) of frequencies and damping for anyone who knows that there are these modes, real
-    ones, and nothing else; white inputs of variance 1, known exactly."""
+    """Cramer-Rao: least relative standard deviations (2, k) of frequencies and damping for anyone who knows that there are these modes,
+    real ones, and nothing else; white inputs of variance 1, known exactly."""
     lines = np.arange(1.0, rate / 2.0, 0.125)
     response = known.response(lines)
     variance = noise**2 * np.mean(np.sum(np.abs(response) ** 2, axis=2), axis=0)

@@ -48,7 +48,7 @@ def truth(frequencies: tuple[float, ...] = WIDE, seed: int = 1, outputs: int = 6
     return Truth(np.array(frequencies), np.linspace(0.01, 0.02, count)[random.permutation(count)], shapes, participation)
 
 
-def record(  # noqa: PLR0913
+def record(
     known: Truth,
     seed: int,
     *,

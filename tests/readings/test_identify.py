@@ -132,7 +132,9 @@ def test_units_scale_shapes_and_participations_only():
     first, second = identify(made), identify(replace(made, samples=InMemory(values)))
     np.testing.assert_allclose(second.frequencies, first.frequencies, rtol=1e-6)
     np.testing.assert_allclose(second.shapes, first.shapes, atol=1e-5)
-    np.testing.assert_allclose(second.participation * 200.0 / 1e-9, first.participation, rtol=1e-4, atol=1e-6 * np.max(np.abs(first.participation)))
+    np.testing.assert_allclose(
+        second.participation * 200.0 / 1e-9, first.participation, rtol=1e-4, atol=1e-6 * np.max(np.abs(first.participation))
+    )
 
 
 def test_a_band_is_searched_alone():

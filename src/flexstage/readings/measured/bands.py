@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass
 
 import numpy as np
@@ -41,20 +42,21 @@ def sweeps(low: float, high: float) -> list[Sweep]:
     count = max(1, int(np.ceil(np.log(high / low) / np.log(_RATIO))))
     limits = np.geomspace(low, high, count + 1)
     half = np.sqrt(_SHARED)
-    return [Sweep(max(low, a / half), min(high, b * half), float(a), float(b)) for a, b in zip(limits[:-1], limits[1:], strict=True)]
+    return [Sweep(max(low, a / half), min(high, b * half), float(a), float(b)) for a, b in itertools.pairwise(limits)]
 
 
 def extents(poles: Array, low: float, high: float, *, resolution: float = 0.0) -> list[Extent]:
     """Bands for poles (k,) in Hz, by rising frequency: those whose gap is below 12 times their half-widths are fitted together.
 
-    Half-widths below the lines' `resolution` count as that. A band reaches 24 half-widths beyond its outer poles, within `low` and `high`, and ends between groups in proportion to half-widths.
+    Half-widths below the lines' `resolution` in Hz count as that. A band reaches 24 half-widths beyond its outer poles, within `low` and
+    `high`, and ends between groups in proportion to half-widths.
 
     >>> found = extents(np.array([-1 + 100j, -1 + 101j, -1 + 200j]), 1.0, 300.0)
     >>> [(round(band.low), round(band.high), band.members) for band in found]
     [(76, 125, (0, 1)), (176, 224, (2,))]
     """
-    poles = np.minimum(poles.real, -resolution) + 1j * poles.imag
-    frequencies, widths = poles.imag, -poles.real
+    poles = np.minimum(np.real(poles), -resolution) + 1j * np.imag(poles)
+    frequencies, widths = np.imag(poles), -np.real(poles)
     groups: list[list[int]] = []
     for index in range(len(poles)):
         if groups and frequencies[index] - frequencies[index - 1] < _TOGETHER * (widths[index] + widths[index - 1]):
@@ -74,7 +76,7 @@ def _divided(group: list[int], frequencies: Array) -> list[list[int]]:
 
 
 def _extent(poles: Array, group: list[int], low: float, high: float) -> Extent:
-    frequencies, widths = poles.imag, -poles.real
+    frequencies, widths = np.imag(poles), -np.real(poles)
     bottom = min(frequencies[index] - _REACH * widths[index] for index in group)
     top = max(frequencies[index] + _REACH * widths[index] for index in group)
     first, last = group[0], group[-1]

@@ -9,7 +9,13 @@ from flexstage.readings.measured.evidence import Evidence
 
 
 def warnings(known: Evidence, poles: Array, close: tuple[tuple[int, ...], ...]) -> tuple[str, ...]:
-    """Cautions about modes found at `poles` (Hz): none found at all, repeated ones that so few inputs or outputs cannot show."""
+    """Cautions about modes found at `poles` (Hz): none found at all, repeated ones that so few inputs or outputs cannot show.
+
+    >>> from flexstage.readings.measured.evidence import evidence
+    >>> from flexstage.readings.measured.example import POLE, one_mode_record
+    >>> warnings(evidence(one_mode_record(), None), np.array([POLE]), ())[0][:20]
+    'only u was driven: o'
+    """
     found: list[str] = []
     if not len(poles):
         found.append(_nothing(known))

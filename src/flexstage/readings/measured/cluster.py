@@ -51,8 +51,8 @@ def stabilisation(found: tuple[Poles, ...], highest_damping: float) -> tuple[Sta
     """The diagram of poles of rising order, and the candidates: poles that recur in two fifths of the orders or more.
 
     A pole continues the nearest track of the orders below, nearest by distance in the complex plane and by participation; each track takes
-    one pole an order, so that close pairs remain two tracks. The participations of a repeated pair are any two of their plane, others in every
-    order: candidates are taken from one order as far as they are all in it.
+    one pole an order, so that close pairs remain two tracks. The participations of a repeated pair are any two of their plane, others in
+    every order: candidates are taken from one order as far as they are all in it.
 
     >>> one = [Poles(order, np.array([-0.1 + 10j]), np.ones((1, 1))) for order in range(1, 6)]
     >>> diagram, candidates = stabilisation(tuple(one), 0.1)
@@ -70,7 +70,7 @@ def stabilisation(found: tuple[Poles, ...], highest_damping: float) -> tuple[Sta
     diagram = Stabilisation(
         orders=np.array([row[0] for row in rows], dtype=int),
         frequencies=np.abs(values),
-        damping=-values.real / np.maximum(np.abs(values), 1e-300),
+        damping=-np.real(values) / np.maximum(np.abs(values), 1e-300),
         stable=np.array([row[2] for row in rows], dtype=int),
     )
     needed = max(2, round(_SHARE * len(found)))
@@ -151,6 +151,6 @@ def _candidate(track: _Track, common: int) -> Candidate:
     else:
         first = len(track.poles) // 2
         values = np.array(track.poles[first:])
-        middle = np.median(values.real) + 1j * np.median(values.imag)
+        middle = np.median(np.real(values)) + 1j * np.median(np.imag(values))
         index = first + int(np.argmin(np.abs(values - middle)))
     return Candidate(track.poles[index], track.participations[index], len(track.orders))

@@ -16,8 +16,10 @@ _DOUBTFUL = 50.0
 
 @dataclass(frozen=True, eq=False)
 class Deviations:
-    """Standard deviations: `frequencies` (k,) in Hz, `damping` (k,) of the ratios, `shapes` (p, k) of each part, real and imaginary, of
-    shapes whose largest component is 1."""
+    """Standard deviations of modes: `frequencies` (k,) in Hz, `damping` (k,) of the ratios.
+
+    `shapes` (p, k) are those of each part, real and imaginary, of shapes whose largest component is 1.
+    """
 
     frequencies: Array
     damping: Array
@@ -29,12 +31,18 @@ def deviations(found: Fit, inflation: float = 1.0) -> Deviations:
 
     Parameters are complex and analytic: the covariance of real and of imaginary parts is half the inverse. The scale shared between a shape
     and its participation is not determined and is taken out by holding the largest participation.
+
+    >>> from flexstage.readings.measured.example import one_mode_band
+    >>> from flexstage.readings.measured.likelihood import fit
+    >>> spread = deviations(fit(*one_mode_band()))
+    >>> bool(spread.frequencies[0] < 0.005), bool(spread.damping[0] < 0.0005)
+    (True, True)
     """
     covariance = inflation * _covariance(found)
     modal = found.modal
     count, outputs = len(modal.poles), len(modal.shapes)
     size = np.abs(modal.poles)
-    ratio = -modal.poles.real / size
+    ratio = -np.real(modal.poles) / size
     variance = 0.5 * np.real(np.diagonal(covariance)[:count])
     first = count + count * modal.participation.shape[1]
     shapes = np.empty((outputs, count))
@@ -49,6 +57,11 @@ def significance(band: Band, found: Fit, limit: float) -> Array:
 
     Wald's statistic, 2 phi^H C^-1 phi of the mode's shape; where it is below fifty times `limit`, twice the fall of the log-likelihood when
     the mode is left out and the others are fitted anew (Wilks 1938).
+
+    >>> from flexstage.readings.measured.example import one_mode_band
+    >>> band, start = one_mode_band()
+    >>> bool(significance(band, fit(band, start), 50.0)[0] > 1000.0)
+    True
     """
     covariance = _covariance(found)
     modal = found.modal

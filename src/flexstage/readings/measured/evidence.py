@@ -10,7 +10,7 @@ import numpy as np
 from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array
 from flexstage.readings.measured.lines import Cells, Lines, block_count, record_lines
-from flexstage.readings.measured.record import Channel, Record, Responses
+from flexstage.readings.measured.record import Record, Responses
 from flexstage.readings.measured.smear import SMEARING, Smear
 from flexstage.readings.measured.spectra import Segments, Spectra, Tell, Window, pooled, spectra
 from flexstage.readings.measured.transfer import h1, multiple_coherence, noise_density
@@ -24,11 +24,12 @@ _LOWEST_LINES = 3
 
 @dataclass(frozen=True, eq=False)
 class Evidence:
-    """`responses` in the channels' own units with weights (f, p) of its outputs; `lines()` gives the lines of all blocks, their inputs and
-    outputs divided by `input_scale` (m,) and `output_scale` (p,), with noise `density` (f, p) per line on `responses.frequencies`.
+    """Responses for candidates and lines for the fit.
 
-    `band` is what the data can show, in Hz; `inflation` the factor on variances for neighbouring lines that are not independent; `coherence`
-    the multiple coherence (f, p), absent where there is none.
+    `responses` are in the channels' own units, with weights (f, p) of outputs; `lines()` gives the lines of all blocks, their inputs and
+    outputs divided by `input_scale` (m,) and `output_scale` (p,); `density` (f, p) is the noise per line, not divided. `band` is what the
+    data can show, in Hz; `inflation` the factor on variances for neighbouring lines that are not independent; `coherence` the multiple
+    coherence (f, p), absent where there is none; `resolution` the distance of lines in Hz.
     """
 
     where: str
@@ -48,7 +49,7 @@ class Evidence:
     shaped: Callable[[Cells], Array] | None = None
 
     def shape(self, cells: Cells) -> Array:
-        """How the noise variance goes over cells, (p, c), up to a factor of each output: as coherence says where it was stored, else even."""
+        """How the noise variance goes over cells, (p, c), up to a factor: as coherence says where it was stored, else even."""
         return np.ones((len(self.output_scale), len(cells.low))) if self.shaped is None else self.shaped(cells)
 
     def variance(self, low: float, high: float) -> Array:
@@ -60,7 +61,12 @@ class Evidence:
 
 
 def evidence(what: Record | Responses | Sequence[Record], segments: Segments | None, tell: Tell | None = None) -> Evidence:
-    """The evidence in a record, in several records of one stage, or in an analyser's responses."""
+    """The evidence in a record, in several records of one stage, or in an analyser's responses.
+
+    >>> from flexstage.readings.measured.example import one_mode_record
+    >>> round(evidence(one_mode_record(), None).band[1], 2)
+    26.88
+    """
     if isinstance(what, Responses):
         return _of_responses(what)
     records = (what,) if isinstance(what, Record) else tuple(what)
@@ -76,9 +82,8 @@ def _of_records(records: tuple[Record, ...], known: Spectra, tell: Tell | None) 
     inside = known.band(*band)
     responses = h1(known)
     noise = noise_density(known)
-    scales = [np.sqrt(np.mean(np.real(np.diagonal(part, axis1=1, axis2=2)), axis=0) * records[0].rate / 2.0) for part in (inside.xx, inside.yy)]
     names = [channel.name for channel in known.inputs]
-    input_scale, output_scale = (np.where(scale > 0.0, scale, 1.0) for scale in scales)
+    input_scale, output_scale = (_scale(part, records[0].rate) for part in (inside.xx, inside.yy))
 
     def lines() -> Iterable[Lines]:
         column = len(names)
@@ -105,6 +110,12 @@ def _of_records(records: tuple[Record, ...], known: Spectra, tell: Tell | None) 
         averages=known.independent,
         resolution=max(1.0 / record.duration for record in records),
     )
+
+
+def _scale(density: Array, rate: float) -> Array:
+    """Root mean square per line, 1 where there is nothing."""
+    found = np.sqrt(np.mean(np.real(np.diagonal(density, axis1=1, axis2=2)), axis=0) * rate / 2.0)
+    return np.where(found > 0.0, found, 1.0)
 
 
 def _scaled(lines: Lines, input_scale: Array, output_scale: Array) -> Lines:
@@ -212,8 +223,3 @@ def _part(tell: Tell | None, index: int, count: int) -> Tell | None:
     if tell is None:
         return None
     return lambda share: tell((index + share) / count)
-
-
-def used_channels(known: Evidence) -> tuple[tuple[Channel, ...], tuple[Channel, ...]]:
-    """Outputs and inputs of the evidence."""
-    return known.responses.outputs, known.responses.inputs

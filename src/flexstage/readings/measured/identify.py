@@ -33,8 +33,10 @@ _MOST_MODES = 24
 
 @dataclass(frozen=True)
 class Search:
-    """What is searched for: modes with frequencies in `band` (Hz; absent: all the record can show) and damping ratios up to
-    `highest_damping`; `segments` of the spectra that candidates are taken from (absent: chosen by the record's length)."""
+    """What is searched for: modes with frequencies in `band` (Hz; absent: all the record can show), damped no more than `highest_damping`.
+
+    `segments` are those of the spectra that candidates are taken from (absent: chosen by the record's length).
+    """
 
     band: tuple[float, float] | None = None
     highest_damping: float = 0.1
@@ -51,15 +53,20 @@ class _Found:
     noise: Array
 
 
-def identify(what: Record | Responses | Sequence[Record], search: Search = Search(), tell: Tell | None = None) -> Identified:  # noqa: B008
+def identify(what: Record | Responses | Sequence[Record], search: Search = Search(), tell: Tell | None = None) -> Identified:
     """Natural frequencies, damping, shapes and participations, with 95 % intervals, and whether they are there at all.
 
     `what` is a record, or several of the same stage (six with one actuator each are put together as one test), or responses of an analyser.
-    Candidates are the stable poles of pLSCF on H1; each group of near ones is then fitted by maximum likelihood to the transform of the whole
-    record, its transient included, so that there is neither window nor leakage: outputs' noise is taken as independent between outputs and
-    of slowly varying density, inputs as exact (Pintelon & Schoukens 2012, ch. 9 and 10). A mode is kept if leaving it out costs more
-    likelihood than noise would once in 1e9, thrice that where its damping is not known to a third. Linear, time-invariant stages. Raises `DesignError` for
-    inputs that are not independent, no outputs, records that do not fit together or are too short.
+    Candidates are the stable poles of pLSCF on H1; each group of near ones is then fitted by maximum likelihood to the transform of the
+    whole record, its transient included, so that there is neither window nor leakage: outputs' noise is taken as independent between
+    outputs and of slowly varying density, inputs as exact (Pintelon & Schoukens 2012, ch. 9 and 10). A mode is kept if leaving it out costs more
+    likelihood than noise would once in 1e9, thrice that where its damping is not known to a third. Linear, time-invariant stages. Raises
+    `DesignError` for inputs that are not independent, no outputs, records that do not fit together or are too short.
+
+    >>> from flexstage.readings.measured.example import one_mode_record
+    >>> found = identify(one_mode_record())
+    >>> found.frequencies.round(1).tolist(), found.damping.round(3).tolist()
+    ([10.0], [0.02])
     """
     known = evidence(what, search.segments, tell)
     band = _band(known, search)
@@ -106,9 +113,7 @@ def _fitted(known: Evidence, candidates: tuple[Candidate, ...], band: tuple[floa
     bounds = [edges(poles, group.low, group.high) for group in groups]
     every = gathered(known.lines(), bounds)
     return [
-        found
-        for group, cells in zip(groups, every, strict=True)
-        if (found := _group(known, cells, candidates, group, search)) is not None
+        found for group, cells in zip(groups, every, strict=True) if (found := _group(known, cells, candidates, group, search)) is not None
     ]
 
 
@@ -168,9 +173,9 @@ def _extended(band: Band, known: tuple[Fit, Array], group: Extent, search: Searc
 def _worst(band: Band, found: Fit, group: Extent, search: Search) -> tuple[int | None, Array]:
     """The mode that is least one, if there is such, and how significant each is."""
     poles, limit = found.modal.poles, _limit(found.modal)
-    ratio = -poles.real / np.abs(poles)
+    ratio = -np.real(poles) / np.abs(poles)
     spread = deviations(found)
-    outside = (ratio > search.highest_damping) | (poles.imag < group.low) | (poles.imag > group.high)
+    outside = (ratio > search.highest_damping) | (np.imag(poles) < group.low) | (np.imag(poles) > group.high)
     if np.any(outside):
         return int(np.argmax(np.where(outside, spread.damping / ratio, -1.0))), np.zeros(len(poles))
     strength = np.where(_doubles(found.modal), 0.0, significance(band, found, limit))
@@ -206,7 +211,7 @@ def _result(known: Evidence, band: tuple[float, float], diagrams: tuple[Stabilis
     close = _close(poles)
     return Identified(
         frequencies=np.abs(poles),
-        damping=-poles.real / np.abs(poles),
+        damping=-np.real(poles) / np.abs(poles),
         shapes=shapes,
         participation=participation,
         frequency_deviations=spread[0][order],

@@ -23,8 +23,10 @@ _SILENT = 1e-14
 
 @dataclass(frozen=True, eq=False)
 class Modal:
-    """Modes of a band: `poles` (k,) in Hz (pole in rad/s over 2 pi), `participation` (k, m+b) of the inputs and of the blocks' transients,
-    `shapes` (p, k). H = sum of shape participation / (j f - pole), and a polynomial for what lies outside."""
+    """Modes of a band: H = sum of shape participation / (j f - pole), beside what lies outside.
+
+    `poles` (k,) in Hz (rad/s over 2 pi), `participation` (k, m+b) of the inputs and of the blocks' transients, `shapes` (p, k).
+    """
 
     poles: Array
     participation: Array
@@ -38,9 +40,11 @@ class Modal:
 
 @dataclass(frozen=True, eq=False)
 class Band:
-    """Data of one band: its cells, the noise variance of every output per line in every cell (p, c), and the functions (c, b, 6) that stand
-    for what lies outside: Legendre coefficients in every cell. `smear` says how windows have smeared the lines, if they have; `shape`
-    (p, c) how the noise variance is known to go with frequency."""
+    """Data of one band: its cells, and the noise variance of every output per line in every cell (p, c).
+
+    `background` (c, b, 6) are the functions that stand for what lies outside, as Legendre coefficients in every cell. `smear` says how
+    windows have smeared the lines, if they have; `shape` (p, c) how the noise variance is known to go with frequency.
+    """
 
     cells: Cells
     variance: Array
@@ -64,8 +68,7 @@ class Fit:
 
 @dataclass(frozen=True, eq=False)
 class _Sums:
-    """Per output, with the polynomial eliminated: Gram matrix (p, f, n, f, n) of functions times inputs, products with data (p, f, n), and
-    data's own power (p,)."""
+    """Per output: Gram matrix (p, f, n, f, n) of functions times inputs, products with data (p, f, n), data's own power (p,)."""
 
     gram: Array
     cross: Array
@@ -77,6 +80,11 @@ def fit(band: Band, start: Modal, enough: float = np.inf) -> Fit:
 
     The residual is analytic in all parameters, so that complex least squares apply: noise is circular and independent between lines and
     outputs. It stops early once the cost is above `enough` and promises to stay there.
+
+    >>> from flexstage.readings.measured.example import one_mode_band
+    >>> found = fit(*one_mode_band())
+    >>> found.converged, round(float(abs(found.modal.poles[0])), 1)
+    (True, 10.0)
     """
     modal, damping = start, 1e-3
     sums = _sums(band, modal.poles)
@@ -91,7 +99,7 @@ def fit(band: Band, start: Modal, enough: float = np.inf) -> Fit:
         trial = _moved(modal, _step(information, gradient, damping)[0])
         trial_sums = _sums(band, trial.poles)
         fall = cost - _cost(trial_sums, trial)
-        if fall >= 0.0 and np.all(trial.poles.real < 0.0):
+        if fall >= 0.0 and np.all(np.real(trial.poles) < 0.0):
             modal, sums, cost = trial, trial_sums, cost - fall
             information, gradient = _normal(sums, modal)
             if fall < 0.1 * _CONVERGED and damping < _SMALL:
@@ -118,7 +126,12 @@ def _step(information: Array, gradient: Array, damping: float) -> tuple[Array, f
 
 
 def shaped(band: Band, poles: Array, participation: Array) -> Modal:
-    """Shapes by linear least squares for given poles and participations of the inputs; transients begin at nought."""
+    """Shapes by linear least squares for given poles and participations of the inputs; transients begin at nought.
+
+    >>> from flexstage.readings.measured.example import POLE, one_mode_band
+    >>> round(abs(shaped(one_mode_band()[0], np.array([POLE]), np.ones((1, 1))).shapes[0, 0]))
+    5
+    """
     full = np.zeros((len(poles), band.cells.width), dtype=complex)
     full[:, : participation.shape[1]] = participation
     sums = _sums(band, poles)
@@ -132,7 +145,13 @@ def shaped(band: Band, poles: Array, participation: Array) -> Modal:
 
 
 def residual_power(band: Band, modal: Modal) -> Array:
-    """Power (p, c) that modes and background leave in every cell."""
+    """Power (p, c) that modes and background leave in every cell.
+
+    >>> from flexstage.readings.measured.example import one_mode_band
+    >>> band, start = one_mode_band()
+    >>> bool(np.sum(residual_power(band, fit(band, start).modal)) < 0.1 * np.sum(band.cells.power))
+    True
+    """
     cells, left = band.cells, np.empty_like(band.variance)
     for chosen, inside in explained(band, modal):
         crossed = np.einsum("ocan,cano->oc", np.conj(inside), cells.cross[chosen], optimize=True)
@@ -142,7 +161,12 @@ def residual_power(band: Band, modal: Modal) -> Array:
 
 
 def explained(band: Band, modal: Modal) -> Iterator[tuple[Array, Array]]:
-    """Block by block, the numbers of its cells and the factors (p, c, 6, n) of Z in them that modes and background amount to."""
+    """Block by block, the numbers of its cells and the factors (p, c, 6, n) of Z in them that modes and background amount to.
+
+    >>> from flexstage.readings.measured.example import one_mode_band
+    >>> [len(chosen) for chosen, _ in explained(*one_mode_band())] == [len(one_mode_band()[0].cells.low)]
+    True
+    """
     count = len(modal.poles)
     every = np.concatenate([_functions(band, modal.poles)[:, :count], band.background], axis=1)
     values = _coefficients(band, modal)
@@ -152,7 +176,13 @@ def explained(band: Band, modal: Modal) -> Iterator[tuple[Array, Array]]:
 
 
 def noise(band: Band, modal: Modal) -> Array:
-    """Noise variance per line of every output in every cell (p, c), from what modes and background leave: means over 400 lines or more."""
+    """Noise variance per line of every output in every cell (p, c), from what modes and background leave: means over 400 lines or more.
+
+    >>> from flexstage.readings.measured.example import one_mode_band
+    >>> band, start = one_mode_band()
+    >>> bool(0.8 < noise(band, fit(band, start).modal)[0, 0] / band.variance[0, 0] < 1.2)
+    True
+    """
     power, cells = residual_power(band, modal) / band.shape, band.cells
     outputs, total = len(power), int(np.sum(cells.count))
     used = band.background.shape[1] * cells.width + len(modal.poles) * (1.0 + cells.width / outputs)
@@ -175,6 +205,10 @@ def background(cells: Cells, outside: Array, degree: int = 3) -> Array:
     """An orthonormal basis (c, b, 6) of polynomials up to `degree` and of the tails 1/(j f - p) of the poles `outside` (Hz).
 
     Directions that add less than 1e-5 to it are left out.
+
+    >>> from flexstage.readings.measured.example import one_mode_band
+    >>> background(one_mode_band()[0].cells, np.zeros(0), 1).shape[1:]
+    (2, 6)
     """
     points = nodes(cells.low, cells.high)
     x = (2.0 * points - np.min(cells.low) - np.max(cells.high)) / (np.max(cells.high) - np.min(cells.low))

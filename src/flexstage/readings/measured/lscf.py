@@ -53,7 +53,7 @@ def lscf(frequencies: Array, responses: Array, weights: Array, orders: range) ->
     found: list[Poles] = []
     for order in orders:
         size = order + 1
-        reduced = sum(_reduced(products, size) for products in normal)
+        reduced = np.sum([_reduced(products, size) for products in normal], axis=0)
         found.append(_poles(reduced, order, count, (frequencies[0], frequencies[-1], period)))
     return tuple(found)
 

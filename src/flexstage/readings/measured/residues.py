@@ -38,7 +38,7 @@ def remainder(frequencies: Array, rest: Array, weights: Array) -> Array:
     for output in range(rest.shape[1]):
         weight = weights[:, output, None]
         scale = np.linalg.norm(weight * terms, axis=0)
-        solved = np.linalg.lstsq(weight * terms / scale, weight * rest[:, output].real, rcond=None)[0]
+        solved = np.linalg.lstsq(weight * terms / scale, weight * np.real(rest[:, output]), rcond=None)[0]
         found[:, output] = solved / scale[:, None]
     return found
 

@@ -18,8 +18,11 @@ SMEARING = (Window.BOXCAR, Window.HANN)
 
 @dataclass(frozen=True)
 class Smear:
-    """Segments of `seconds` under a window. Under white noise the estimate's impulse response is the true one times the window's
-    autocorrelation r(t/T): divided out by fitting 1/(j f - p) smeared in the same way (physics of Halvorsen & Brown 1977)."""
+    """Segments of `seconds` under a window.
+
+    Under white noise the estimate's impulse response is the true one times the window's autocorrelation r(t/T): it is divided out by
+    fitting 1/(j f - p) smeared in the same way.
+    """
 
     window: Window
     seconds: float

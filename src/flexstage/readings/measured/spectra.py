@@ -193,4 +193,6 @@ def pooled(parts: Sequence[Spectra]) -> Spectra:
         yx[:, :, places] += share * part.yx
         yy += share * part.yy
     independent = sum(part.independent for part in parts)
-    return Spectra(first.frequencies, inputs, first.outputs, xx, yx, yy, averages=averages, independent=independent, segments=first.segments)
+    return Spectra(
+        first.frequencies, inputs, first.outputs, xx, yx, yy, averages=averages, independent=independent, segments=first.segments
+    )

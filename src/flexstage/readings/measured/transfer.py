@@ -30,8 +30,8 @@ def h1(spectra: Spectra) -> Responses:
 def h2(spectra: Spectra) -> Responses:
     """H2 = G_yy G_xy^-1, the estimate for noise at the inputs; a least-squares inverse where outputs outnumber inputs.
 
-    With fewer outputs than inputs there is no such estimate: a `DesignError`. It has more variance than H1 and is biased upwards by noise at
-    the outputs.
+    With fewer outputs than inputs there is no such estimate: a `DesignError`. It has more variance than H1 and is biased upwards by noise
+    at the outputs.
 
     >>> from flexstage.readings.measured.spectra import example_spectra
     >>> h2(example_spectra()).values[3].round(9).real.tolist()

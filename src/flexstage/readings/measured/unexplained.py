@@ -18,6 +18,12 @@ def excess(band: Band, modal: Modal) -> Array:
 
     What is left is fitted anew in every cell, by responses constant and linear in frequency: with noise alone the outputs' powers so
     explained, over the noise's, have mean and variance of the number of complex parameters.
+
+    >>> from flexstage.readings.measured.example import one_mode_band
+    >>> from flexstage.readings.measured.likelihood import fit
+    >>> band, start = one_mode_band()
+    >>> bool(np.max(excess(band, fit(band, start).modal)) < SURPRISING < np.max(excess(band, start)))
+    True
     """
     cells = band.cells
     found = np.zeros(len(cells.low))
@@ -31,13 +37,19 @@ def excess(band: Band, modal: Modal) -> Array:
 
 
 def suggested(band: Band, modal: Modal, cell: int) -> Modal:
-    """The modes and one more, begun from what is left in that cell: its strongest participation there."""
+    """The modes and one more, begun from what is left in that cell: its strongest participation there.
+
+    >>> from flexstage.readings.measured.example import one_mode_band
+    >>> band, start = one_mode_band()
+    >>> len(suggested(band, start, 0).poles)
+    2
+    """
     for chosen, inside in explained(band, modal):
         if cell not in chosen:
             continue
         own, rest = _left(band, chosen, inside)
         place = int(np.flatnonzero(chosen == cell)[0])
-        columns = [column for column in band.cells.columns[band.cells.block[cell]]]
+        columns = list(band.cells.columns[band.cells.block[cell]])
         size = len(columns)
         local = _solved(own, rest)[place, :size] / np.sqrt(band.variance[:, cell])
         row = np.linalg.svd(local)[0][:, 0]
@@ -45,7 +57,7 @@ def suggested(band: Band, modal: Modal, cell: int) -> Modal:
         participation[:-1] = modal.participation
         participation[-1, columns] = row
         middle = band.cells.middle[cell]
-        widths = -modal.poles.real / np.abs(modal.poles)
+        widths = -np.real(modal.poles) / np.abs(modal.poles)
         width = float(np.median(widths)) * middle if len(widths) else band.cells.high[cell] - band.cells.low[cell]
         return shaped(band, np.append(modal.poles, -_WIDTHS * width + 1j * middle), participation)
     return modal
