@@ -15,6 +15,7 @@ from flexstage.parts.material import Material
 from flexstage.readings.solid.fineness import Fineness, Reduction
 from flexstage.readings.solid.hinge import HingeSolid
 from flexstage.readings.solid.hinge_cache import HingePart
+from flexstage.readings.solid.roots import Roots
 from flexstage.studies.solid_hinge import Hinges
 from flexstage.studies.solid_stage import SolidStage, solid_stage
 from flexstage.studies.solid_unit import SolidUnit, solid_units
@@ -47,7 +48,7 @@ def softened(factor: float, *, error: float = 0.001, stubs: float = 0.0) -> Hing
     `stubs` is their share of the whole twist about x.
     """
 
-    def one(part: HingePart, material: Material) -> HingeSolid:
+    def one(part: HingePart, material: Material, _roots: Roots) -> HingeSolid:
         own = factor * compliance(part, material)
         whole = own.copy()
         whole[3, 3] = own[3, 3] / (1.0 - stubs)

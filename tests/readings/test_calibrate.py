@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -12,6 +13,13 @@ from flexstage.base.finding import DesignError
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.cases.parallelogram import parallelogram
 from flexstage.mechanism.drawn import calibrated, drawn
+from flexstage.mechanism.expand import expand
+from flexstage.mechanism.restrict import isolate
+from flexstage.readings.solid.hinge import HingeSolid
+from flexstage.readings.solid.hinge_cache import HingeForm
+from flexstage.readings.solid.piece import span
+from flexstage.readings.solid.roots import Roots
+from flexstage.spatial.frame import transport
 from flexstage.studies.calibrate import with_matrices
 from flexstage.studies.solid_hinge import distinct_hinges, solid_hinges
 from flexstage.studies.trust import Trust
@@ -21,8 +29,19 @@ from tests.readings.solid_studies import softened
 
 def test_every_hinge_is_found_once() -> None:
     found = distinct_hinges(double_triangle())
-    assert list(found) == ["neck", "foot_notch", "lever_notch", "pole_neck"]
-    assert found["neck"][2] == ("horizontal/back", "horizontal/front")
+    assert list(found) == ["neck-back", "neck-front", "foot_notch-back", "foot_notch-front", "lever_notch", "pole_neck"]
+    assert found["neck-back"].links == ("horizontal/back",)
+    assert found["pole_neck"].links == ("vertical/lower", "vertical/upper")
+
+
+def test_a_hinge_has_the_roots_that_its_link_has() -> None:
+    found = distinct_hinges(double_triangle())
+    roots = {name: (hinge.form.roots.first, hinge.form.roots.second) for name, hinge in found.items()}
+    assert roots["neck-back"] == (False, True)
+    assert roots["neck-front"] == (True, True)
+    assert roots["lever_notch"] == (True, False)  # from the lever to the ground
+    alone = distinct_hinges(isolate(double_triangle(), "B1"))
+    assert alone["neck-front"].form.roots == Roots(True, False)  # its output has no outline
 
 
 def test_a_copy_that_departs_is_a_hinge_of_its_own() -> None:
@@ -50,9 +69,35 @@ def test_mass_stays(stage: fs.Mechanism) -> None:
 def test_softer_hinges_are_read_softer() -> None:
     stage = parallelogram()
     after = fs.loads(fs.calibrate(fs.dumps(stage), softened(1.2)).text)
-    neck = fs.compliance(after.parts["neck"], None)
+    neck = fs.compliance(after.parts["neck-front"], None)
     np.testing.assert_allclose(np.diag(neck) / np.diag(fs.compliance(stage.parts["neck"], stage.materials["steel"])), 1.2, rtol=1e-5)
     assert fs.statics(fs.lumped(after)).held.principal[1] < fs.statics(fs.lumped(stage)).held.principal[1]
+
+
+def rooted(forms: Mapping[str, HingeForm]) -> dict[str, HingeSolid]:
+    """Hinges of beam theory with a spring in series at the second end where that alone has a root: what turns end for end shows."""
+    found = softened(1.0)(forms)
+    for name, form in forms.items():
+        assert form.roots.second or not form.roots.first
+        if form.roots == Roots(False, True):
+            end = transport(np.array([0.5 * span(form.part), 0.0, 0.0]))
+            more = found[name].compliance + 0.1 * end @ np.diag(np.diag(found[name].compliance)) @ end.T
+            found[name] = replace(found[name], compliance=more, stiffness=np.linalg.inv(more), whole=more)
+    return found
+
+
+def test_a_root_yields_at_its_own_end() -> None:
+    stage = double_triangle()
+    after = fs.loads(fs.calibrate(fs.dumps(stage), rooted).text)
+    assert {link.part for link in after.units["horizontal"].links.values()} == {"neck-back", "stack_horizontal", "neck-front"}
+    links = expand(after).links
+    for name, side in (("back", 1.0), ("pivot", -1.0)):
+        copy = "B1" if name == "back" else "B4"
+        part = links[f"{copy}/{name}"].part
+        assert isinstance(part, fs.Given)
+        matrix = np.array(part.compliance)
+        centre = matrix[1, 5] / matrix[5, 5]  # where a moment turns without shifting, seen from the centre
+        assert centre == pytest.approx(side * 0.1 / 1.1 * 0.5 * span(expand(stage).links[f"{copy}/{name}"].part), rel=1e-6)
 
 
 def test_comments_stay_and_the_drawn_hinges_are_kept() -> None:
@@ -61,9 +106,9 @@ def test_comments_stay_and_the_drawn_hinges_are_kept() -> None:
     assert "# The neck of the prototype." in after
     assert "# The drive." in after
     stage = fs.loads(after)
-    assert drawn(stage).parts["neck"] == parallelogram().parts["neck"]
-    assert calibrated(stage) == ("leaf", "neck")
-    assert stage.tags["parts.neck.compliance"].startswith("derived FEA")
+    assert drawn(stage).parts["neck-front"] == parallelogram().parts["neck"]
+    assert set(calibrated(stage)) == {"leaf", "neck-back", "neck-front"}
+    assert stage.tags["parts.neck-front.compliance"].startswith("derived FEA")
 
 
 def test_tags_of_the_drawn_hinge_follow_it() -> None:
@@ -102,8 +147,8 @@ def test_rows_that_calibrated_parts_touch_are_not_independent() -> None:
     assert verdict(tuple(rows)).startswith("Not independent")
 
 
-def test_with_matrices_is_what_the_file_says() -> None:
-    stage = parallelogram()
+@pytest.mark.parametrize("stage", [parallelogram(), double_triangle()])
+def test_with_matrices_is_what_the_file_says(stage: fs.Mechanism) -> None:
     same = with_matrices(stage, solid_hinges(stage, softened(1.1)))
     read = fs.loads(fs.calibrate(fs.dumps(stage), softened(1.1)).text)
     assert fs.digest(same, physics=True) == fs.digest(read, physics=True)

@@ -18,10 +18,11 @@ from flexstage.parts.rod import Rod
 from flexstage.readings.solid.cache import Cache
 from flexstage.readings.solid.estimate import Accuracy
 from flexstage.readings.solid.hinge import HingeSolid, hinge_compliance
-from flexstage.readings.solid.hinge_cache import HingePart, kept_hinges
+from flexstage.readings.solid.hinge_cache import HingeForm, HingePart, kept_hinges
 from flexstage.readings.solid.parts import Ways
 from flexstage.readings.solid.progress import Step
 from flexstage.readings.solid.remote import Limits
+from flexstage.readings.solid.roots import own_roots
 
 ROD = Rod("steel", 8 * mm, 3 * mm)
 ROUGH = Accuracy(error=0.5, orders=(2, 3), meshes=1)
@@ -32,8 +33,12 @@ def same(one: HingeSolid, other: HingeSolid) -> bool:
     return all(np.array_equal(a, b) if isinstance(a, np.ndarray) else a == b for a, b in pairs)
 
 
+def formed(part: HingePart) -> HingeForm:
+    return HingeForm(part, STEEL, own_roots(part))
+
+
 def kept(part: HingePart, ways: Ways, notice: Callable[[Finding], None] | None = None) -> HingeSolid:
-    return kept_hinges({"prop": (part, STEEL)}, ROUGH, ways, notice)["prop"]
+    return kept_hinges({"prop": formed(part)}, ROUGH, ways, notice)["prop"]
 
 
 def test_kept_computed_and_plain_hinges_are_the_same(tmp_path: Path) -> None:
@@ -66,7 +71,7 @@ def test_what_is_refused_there_is_refused_here() -> None:
 def test_hinges_are_computed_side_by_side_each_once(tmp_path: Path) -> None:
     steps: list[Step] = []
     other = Rod("steel", 10 * mm, 3 * mm)
-    forms = {"short": (ROD, STEEL), "long": (other, STEEL), "alike": (ROD, STEEL)}
+    forms = {"short": formed(ROD), "long": formed(other), "alike": formed(ROD)}
     ways = Ways(Cache(tmp_path), steps.append, Limits(workers=2))
     found = kept_hinges(forms, ROUGH, ways)
     assert list(found) == ["short", "long", "alike"]
@@ -83,7 +88,7 @@ def test_a_hinge_that_is_done_is_kept_when_another_is_interrupted(tmp_path: Path
         if list(tmp_path.glob("*.hinge")):
             raise KeyboardInterrupt
 
-    forms = {"short": (ROD, STEEL), "long": (Rod("steel", 10 * mm, 3 * mm), STEEL)}
+    forms = {"short": formed(ROD), "long": formed(Rod("steel", 10 * mm, 3 * mm))}
     with pytest.raises(KeyboardInterrupt):
         kept_hinges(forms, ROUGH, Ways(Cache(tmp_path), interrupted, Limits(workers=1)))
     assert len(list(tmp_path.iterdir())) == 1

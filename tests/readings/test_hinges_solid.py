@@ -17,6 +17,7 @@ from flexstage.parts.rod import Rod
 from flexstage.readings.solid.estimate import Accuracy
 from flexstage.readings.solid.hinge import hinge_compliance
 from flexstage.readings.solid.piece import medium
+from flexstage.readings.solid.roots import Roots
 from flexstage.readings.solid.stub import beam, circle, rectangle
 from flexstage.spatial.frame import transport
 
@@ -112,3 +113,26 @@ def test_torsion_of_stubs_is_vlasovs(width):
     found = hinge_compliance(Notch("m", 1.0 * MM, width * MM, Straight(size)), STEEL, Accuracy(error=0.0, orders=(4, 4), meshes=1))
     halves = 2.0 * beam(rectangle(1.0 * MM, width * MM), 0.5 * size, medium(STEEL))[3, 3]
     assert found.compliance[3, 3] == pytest.approx(halves, rel=0.06)
+
+
+def test_a_root_yields_as_a_punch_on_a_half_space_does() -> None:
+    """Rigid punch of the section's area, (1 - nu^2)/(2 a E): an upper bound, since the bar is welded on and yields sideways itself."""
+    bar = Neck("m", 1.0 * MM, Straight(5 * MM), width=1.0 * MM)
+    ways = (Roots(False, False), Roots(False, True), Roots(True, False), Roots(True, True))
+    rough = Accuracy(error=0.02, orders=(2, 4))
+    none, second, first, both = (hinge_compliance(bar, STEEL, rough, roots=roots).compliance for roots in ways)
+    punch = (1.0 - 0.3**2) / (2.0 * 1.0 * MM / np.sqrt(np.pi) * 200e9)
+    assert 0.65 * punch < second[0, 0] - none[0, 0] < punch
+    assert both[0, 0] - none[0, 0] == pytest.approx(2.0 * (second[0, 0] - none[0, 0]), rel=0.05)
+    mirror = np.diag([-1.0, 1.0, 1.0, 1.0, -1.0, -1.0])
+    size = np.sqrt(np.diag(second))
+    np.testing.assert_allclose(mirror @ first @ mirror / np.outer(size, size), second / np.outer(size, size), atol=0.02)
+    assert second[1, 5] < 0.0 < second[2, 4]  # the root at +x turns under a moment, and swings the centre
+
+
+def test_an_end_of_an_arc_may_be_held_rigid() -> None:
+    careful = Accuracy(error=0.0, orders=(4, 4), meshes=1)
+    held = hinge_compliance(NOTCH, STEEL, careful, roots=Roots(False, False)).compliance
+    free = hinge_compliance(NOTCH, STEEL, careful).compliance
+    assert np.all(np.diag(held)[[0, 2, 4, 5]] < np.diag(free)[[0, 2, 4, 5]])
+    assert held[5, 5] == pytest.approx(free[5, 5], rel=0.06)  # a notch bends where it is thin

@@ -14,9 +14,9 @@ from flexstage.beams.mass import mass
 from flexstage.mechanism.checks.orientation import is_round
 from flexstage.mechanism.drawn import calibrated
 from flexstage.mechanism.expand import expand
-from flexstage.mechanism.mechanism import Mechanism
+from flexstage.mechanism.mechanism import Link, Mechanism
 from flexstage.mechanism.store import loads
-from flexstage.mechanism.store.stand_in import KEPT, stood_in
+from flexstage.mechanism.store.stand_in import KEPT, StandIn, stood_in
 from flexstage.parts.given import Given, Origin
 from flexstage.spatial.frame import COMPONENTS
 from flexstage.studies.solid_hinge import STANDARD_HINGES, Hinges, SolidHinge, solid_hinges
@@ -57,7 +57,8 @@ def calibrate(text: str, compute: Hinges = STANDARD_HINGES, *, where: str = "tex
     found = solid_hinges(mechanism, compute)
     parts = given_parts(found)
     errors = max(hinge.found.error for hinge in found.values())
-    return Calibration(found, parts, stood_in(text, parts, f"{TAG} within {100.0 * errors:.2g} %", where=where))
+    stands = {name: StandIn(part, found[name].links) for name, part in parts.items()}
+    return Calibration(found, parts, stood_in(text, stands, f"{TAG} within {100.0 * errors:.2g} %", where=where))
 
 
 def given_parts(found: Mapping[str, SolidHinge]) -> dict[str, Given]:
@@ -83,7 +84,7 @@ def given_parts(found: Mapping[str, SolidHinge]) -> dict[str, Given]:
             mass=_mass(hinge),
             origin=Origin.FEA,
             source=_source(hinge),
-            stands_for=name + KEPT,
+            stands_for=hinge.drawn.shared + KEPT,
         )
     require(findings)
     return parts
@@ -100,16 +101,16 @@ def with_matrices(mechanism: Mechanism, found: Mapping[str, SolidHinge]) -> Mech
     """
     require(_departing(mechanism))
     parts = given_parts(found)
-    kept = {name + KEPT: hinge.form for name, hinge in found.items()}
-    same = {other: parts[name] for name, hinge in found.items() for other in _alike(mechanism, hinge)}
-    return replace(mechanism, parts={**mechanism.parts, **kept, **same, **parts})
+    kept = {hinge.drawn.shared + KEPT: hinge.form for hinge in found.values()}
+    others = {name: part for name, part in mechanism.parts.items() if name + KEPT not in kept}
+    names = {link: name for name, hinge in found.items() for link in hinge.links}
+    units = {unit: replace(drawn, links=_renamed(drawn.links, names, f"{unit}/")) for unit, drawn in mechanism.units.items()}
+    return replace(mechanism, parts={**others, **kept, **parts}, units=units, links=_renamed(mechanism.links, names, "links."))
 
 
-def _alike(mechanism: Mechanism, hinge: SolidHinge) -> Iterator[str]:
-    """Parts under other names that are the same hinge."""
-    for link in expand(mechanism).links.values():
-        if link.drawn in hinge.links:
-            yield link.link.part
+def _renamed(links: Mapping[str, Link], names: Mapping[str, str], owner: str) -> dict[str, Link]:
+    """Links with the parts that stand in for theirs."""
+    return {name: replace(link, part=names.get(owner + name, link.part)) for name, link in links.items()}
 
 
 def _already(mechanism: Mechanism) -> Iterator[Finding]:
@@ -124,13 +125,25 @@ def _departing(mechanism: Mechanism) -> Iterator[Finding]:
             yield Finding(link.name, f"departs from its part {link.link.part}, whose 6x6 is shared", "Give that link a part of its own")
 
 
+_TURN = np.kron(np.eye(2), np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]]))
+"""A quarter turn about x."""
+_MIRRORS = tuple(np.diag(signs) for signs in ([1.0, -1, 1, -1, 1, -1], [1.0, 1, -1, -1, -1, 1], [-1.0, 1, 1, 1, -1, -1]))
+"""How twists are seen in mirrors across y, z and x."""
+
+
 def _clean(hinge: SolidHinge) -> Array:
     """The 6x6 with the symmetry of the drawn hinge, which its mesh has not quite.
 
-    Reflected in its three planes a hinge is itself, so that its 6x6 about the centre is diagonal; a round one is alike across its axis.
+    Reflected across y and z a hinge is itself, and across x if its roots are alike; a round one is alike all round. What cannot be told
+    from the stubs is as beam theory has it, alone.
     """
-    own = np.where(hinge.separable, np.diag(hinge.found.compliance), np.diag(compliance(hinge.form, hinge.material)))
-    return np.diag(own if not is_round(hinge.form) else [own[0], *2 * [np.mean(own[1:3])], own[3], *2 * [np.mean(own[4:])]])
+    matrix, known = np.array(hinge.found.compliance), np.array(hinge.separable)
+    matrix[~known] = matrix[:, ~known] = 0.0
+    matrix += np.diag(np.where(known, 0.0, np.diag(compliance(hinge.form, hinge.material))))
+    symmetries = [*(_MIRRORS if hinge.roots == hinge.roots.mirrored else _MIRRORS[:2]), *([_TURN] if is_round(hinge.form) else [])]
+    for symmetry in symmetries:
+        matrix = 0.5 * (matrix + symmetry @ matrix @ symmetry.T)
+    return matrix
 
 
 def _source(hinge: SolidHinge) -> str:

@@ -1,9 +1,13 @@
-"""The 6x6 of every distinct hinge of a stage, as a solid by itself."""
+"""The 6x6 of every distinct hinge of a stage, as a solid by itself, with the roots it has in the stage.
+
+The roots are part of a hinge: what a block yields where a hinge grows out of it no reading with rigid bodies has anywhere else. A part that
+is used with different roots is as many hinges.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
@@ -23,6 +27,7 @@ from flexstage.parts.rod import Rod
 from flexstage.readings.solid.estimate import Accuracy
 from flexstage.readings.solid.hinge_cache import HingeForm, HingePart, kept_hinges
 from flexstage.readings.solid.parts import Ways
+from flexstage.readings.solid.roots import Roots, roots_of
 from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNITS
 from flexstage.studies.solid_read import STANDARD_WAYS, Notice
 
@@ -30,20 +35,49 @@ if TYPE_CHECKING:
     from flexstage.readings.solid.hinge import HingeSolid
 
 _MOST_STUB = 0.9
+_END_FOR_END = np.diag([-1.0, 1.0, 1.0, 1.0, -1.0, -1.0])
+"""How a twist is seen in a mirror across x: hinges are symmetric but for their roots."""
 
 Hinges: TypeAlias = "Callable[[Mapping[str, HingeForm]], Mapping[str, HingeSolid]]"
 """Computes hinges by name: plainly, or from a cache and telling its progress."""
 
 
 @dataclass(frozen=True, eq=False)
-class SolidHinge:
-    """A distinct hinge: its `part` by name, the drawn `links` that are like it, and its 6x6 about its centre in the link frame."""
+class DrawnHinge:
+    """A distinct hinge: the `shared` part that it is, its form, and the drawn `links` that are like it."""
 
-    part: str
+    shared: str
+    form: HingeForm
     links: tuple[str, ...]
-    form: HingePart
-    material: Material
+
+
+@dataclass(frozen=True, eq=False)
+class SolidHinge:
+    """A distinct hinge by its name, as `drawn`, and its 6x6 about its centre in the link frame."""
+
+    name: str
+    drawn: DrawnHinge
     found: HingeSolid
+
+    @property
+    def links(self) -> tuple[str, ...]:
+        """The drawn links that are like it."""
+        return self.drawn.links
+
+    @property
+    def form(self) -> HingePart:
+        """The part."""
+        return self.drawn.form.part
+
+    @property
+    def material(self) -> Material:
+        """Its material."""
+        return self.drawn.form.material
+
+    @property
+    def roots(self) -> Roots:
+        """Which of its ends grow on blocks."""
+        return self.drawn.form.roots
 
     @property
     def compliance(self) -> Matrix:
@@ -89,28 +123,45 @@ STANDARD_HINGES = hinges()
 """To 1 %, by the cache of the user."""
 
 
-def distinct_hinges(mechanism: Mechanism) -> dict[str, tuple[HingePart, Material, tuple[str, ...]]]:
-    """Form, material and drawn links of every distinct hinge, by the name of its part (or of the copy that departs from it).
+def distinct_hinges(mechanism: Mechanism) -> dict[str, DrawnHinge]:
+    """Every distinct hinge of a stage.
+
+    It is called as its part is; where that has different roots at different links, `part-link`; a copy that departs, by its link's name.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> {name: links for name, (_, _, links) in distinct_hinges(double_triangle()).items()}["lever_notch"]
-    ('vertical/pivot',)
+    >>> found = distinct_hinges(double_triangle())
+    >>> list(found), found["lever_notch"].links
+    (['neck-back', 'neck-front', 'foot_notch-back', 'foot_notch-front', 'lever_notch', 'pole_neck'], ('vertical/pivot',))
     """
     shape = drawn(mechanism)
-    found: dict[str, tuple[str, list[PlacedLink]]] = {}
-    for link in expand(shape).links.values():
+    assembly = expand(shape)
+    found: dict[str, list[PlacedLink]] = {}
+    for link in assembly.links.values():
         if isinstance(link.part, (Notch, Neck, Leaf, Rod)) and link.material is not None:
-            key = f"{digest(link.part, physics=True)} {digest(link.material, physics=True)}"
-            name = link.link.part if link.part == shape.parts[link.link.part] else link.name
-            found.setdefault(key, (name, []))[1].append(link)
-    return {name: _hinge(links) for name, links in found.values()}
+            key = f"{digest(link.part, physics=True)} {digest(link.material, physics=True)} {roots_of(assembly, link)}"
+            found.setdefault(key, []).append(link)
+    alike = list(found.values())
+    return {_called(shape, links, alike): _hinge(links, roots_of(assembly, links[0])) for links in alike}
 
 
-def _hinge(links: list[PlacedLink]) -> tuple[HingePart, Material, tuple[str, ...]]:
+def _called(shape: Mechanism, links: list[PlacedLink], everything: list[list[PlacedLink]]) -> str:
+    first = links[0]
+    if first.part != shape.parts[first.link.part]:
+        return first.name
+    others = [each[0] for each in everything if each is not links and each[0].link.part == first.link.part]
+    same = [other for other in others if other.part == first.part]
+    if not same:
+        return first.link.part
+    unit, _, link = first.drawn.rpartition("/")
+    clear = all(other.drawn.rpartition("/")[2] != link for other in same)
+    return f"{first.link.part}-{link if clear else f'{unit}-{link}'}"
+
+
+def _hinge(links: list[PlacedLink], roots: Roots) -> DrawnHinge:
     first = links[0]
     assert isinstance(first.part, (Notch, Neck, Leaf, Rod))  # noqa: S101  distinct_hinges has asked
     assert first.material is not None  # noqa: S101
-    return first.part, first.material, tuple(dict.fromkeys(link.drawn for link in links))
+    return DrawnHinge(first.link.part, HingeForm(first.part, first.material, roots), tuple(dict.fromkeys(link.drawn for link in links)))
 
 
 def solid_hinges(mechanism: Mechanism, compute: Hinges = STANDARD_HINGES) -> dict[str, SolidHinge]:
@@ -126,5 +177,18 @@ def solid_hinges(mechanism: Mechanism, compute: Hinges = STANDARD_HINGES) -> dic
     found = distinct_hinges(mechanism)
     if not found:
         raise refuse("links", "none of them is a notch, neck, leaf or rod", "Only these have a 6x6 that can be computed")
-    solved = compute({name: (form, material) for name, (form, material, _) in found.items()})
-    return {name: SolidHinge(name, links, form, material, solved[name]) for name, (form, material, links) in found.items()}
+    solved = compute({name: _turned(hinge.form)[0] for name, hinge in found.items()})
+    return {name: SolidHinge(name, hinge, _back(solved[name], turned=_turned(hinge.form)[1])) for name, hinge in found.items()}
+
+
+def _turned(form: HingeForm) -> tuple[HingeForm, bool]:
+    """A hinge that grows on a block at its first end only is the one that does so at its second, turned end for end."""
+    turned = form.roots.first and not form.roots.second
+    return (form._replace(roots=form.roots.mirrored), True) if turned else (form, False)
+
+
+def _back(found: HingeSolid, *, turned: bool) -> HingeSolid:
+    if not turned:
+        return found
+    compliance, stiffness, whole = (_END_FOR_END @ each @ _END_FOR_END for each in (found.compliance, found.stiffness, found.whole))
+    return replace(found, compliance=compliance, stiffness=stiffness, whole=whole)

@@ -49,7 +49,7 @@ def units(mechanism: Mechanism) -> dict[str, UnitResult]:
     >>> round(units(double_triangle())["horizontal"].axial / 1e6, 2)  # N/um
     10.3
     """
-    return {unit: _unit(mechanism, copy, unit, direction) for unit, (copy, direction) in driven_units(mechanism).items()}
+    return {unit: unit_alone(mechanism, copy, unit, direction) for unit, (copy, direction) in driven_units(mechanism).items()}
 
 
 def driven_units(mechanism: Mechanism) -> dict[str, tuple[str, Array]]:
@@ -84,7 +84,13 @@ def as_vector(direction: Array) -> Vector:
     return (float(direction[0]), float(direction[1]), float(direction[2]))
 
 
-def _unit(mechanism: Mechanism, copy: str, unit: str, direction: Array) -> UnitResult:
+def unit_alone(mechanism: Mechanism, copy: str, unit: str, direction: Array) -> UnitResult:
+    """Analyse one copy of a unit alone, whose output moves along a direction (3,). One design.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> round(unit_alone(double_triangle(), "B4", "vertical", np.array([0.0, 0.0, 1.0])).gain, 1)
+    2.9
+    """
     guided = isolate(mechanism, copy, guide=as_vector(direction))
     model, kinematics = lumped(guided), ideal(guided)
     gain = direction @ static_gain(model, _DISPLACEMENTS, (copy,)).values[:, 0]

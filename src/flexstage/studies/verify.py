@@ -13,6 +13,7 @@ from flexstage.beams.compliance import compliance
 from flexstage.mechanism.drawn import calibrated
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
+from flexstage.mechanism.restrict import isolate
 from flexstage.readings.linear.model import LinearModel
 from flexstage.readings.lumped import lumped
 from flexstage.readings.mapped import mapped
@@ -26,7 +27,7 @@ from flexstage.studies.solid_read import STANDARD_SOLIDS, Solids
 from flexstage.studies.solid_stage import SolidStage, solid_stage, stiffness_figures
 from flexstage.studies.solid_unit import SolidUnit, solid_units
 from flexstage.studies.trust import Trust
-from flexstage.studies.units import UnitResult, driven_units, units
+from flexstage.studies.units import UnitResult, driven_units, unit_alone, units
 
 _CLOSE = 0.02
 
@@ -126,7 +127,7 @@ def verify(
         missing.setdefault("units", "none of the stage's units drives an output of its own by one actuator")
     rows = (
         *hinge_rows(mechanism, found),
-        *(() if alone is None else unit_rows(mechanism, matched, alone)),
+        *(() if alone is None else unit_rows(mechanism, _units_matched(mechanism, compute), alone)),
         *stage_rows(mechanism, matched, stage),
     )
     return Verification(mechanism, rows, found, alone, stage, missing)
@@ -176,14 +177,23 @@ def hinge_rows(mechanism: Mechanism, found: Mapping[str, SolidHinge]) -> Iterato
             yield Row(f"hinge {name}", f"compliance {axis}", unit, value, fea, float(hinge.errors[index]), calibration=touched)
 
 
-def unit_rows(mechanism: Mechanism, matched: Mechanism, found: Resolved[dict[str, SolidUnit]]) -> Iterator[Row]:
-    """K_a, K_l, gain and loss of every unit alone.
+def _units_matched(mechanism: Mechanism, compute: Hinges) -> dict[str, UnitResult]:
+    """Units alone with the FEA 6x6 of the hinges they have alone: an output without outlines holds the end of its hinge rigid."""
+    found: dict[str, UnitResult] = {}
+    for unit, (copy, direction) in driven_units(mechanism).items():
+        alone = isolate(mechanism, copy)
+        found[unit] = unit_alone(with_matrices(alone, solid_hinges(alone, compute)), copy, unit, direction)
+    return found
+
+
+def unit_rows(mechanism: Mechanism, better: Mapping[str, UnitResult], found: Resolved[dict[str, SolidUnit]]) -> Iterator[Row]:
+    """K_a, K_l, gain and loss of every unit alone; `better` are the units with calibrated hinges.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> list(unit_rows(double_triangle(), double_triangle(), Resolved({}, {}, 3)))
+    >>> list(unit_rows(double_triangle(), {}, Resolved({}, {}, 3)))
     []
     """
-    theory, better = units(mechanism), units(matched)
+    theory = units(mechanism)
     for name, unit in found.result.items():
         touched = _touched(mechanism, name)
         first, second = theory[name].figures, better[name].figures

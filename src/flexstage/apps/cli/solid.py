@@ -180,7 +180,7 @@ def calibrate(
     write(output, found.text, "--output")
     for hinge in found.hinges.values():
         if hinge.found.finding is not None:
-            warn(f"{hinge.part}: {hinge.found.finding.what}")
+            warn(f"{hinge.name}: {hinge.found.finding.what}")
     if str(output) != STDOUT:
         tell(f"Wrote {output}")
         answer(Asked("calibrate", mechanism, None, json), lambda: calibration_body(found), lambda: [calibration_table(found)])
@@ -260,7 +260,7 @@ def _hinge_study(mechanism: Mechanism, asked: _Wishes, shown: Bar) -> _Found:
     found = solid_hinges(mechanism, _hinges(asked, shown))
     for hinge in found.values():
         if hinge.found.finding is not None:
-            warn(f"{hinge.part}: {hinge.found.finding.what}. {hinge.found.finding.advice}.")
+            warn(f"{hinge.name}: {hinge.found.finding.what}. {hinge.found.finding.advice}.")
     return _Found(
         body=lambda: {"hinges": hinges_body(found)},
         tables=lambda: iter([hinge_table(found), *hinge_matrices(found)]),

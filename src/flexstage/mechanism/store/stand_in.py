@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import dataclass
 from typing import Any
 
 import tomlkit
@@ -22,7 +22,24 @@ from flexstage.parts.given import Given
 KEPT = "-drawn"
 
 
-def stood_in(text: str, parts: Mapping[str, Given], tag: str, *, where: str = "text") -> str:
+@dataclass(frozen=True, eq=False)
+class StandIn:
+    """A `given` part that stands for the drawn one its `stands_for` names, at the `links` (drawn addresses) that are listed."""
+
+    given: Given
+    links: tuple[str, ...]
+
+    @property
+    def drawn(self) -> str:
+        """The name that the drawn part had.
+
+        >>> StandIn(Given((), (), stands_for="neck-drawn"), ()).drawn
+        'neck'
+        """
+        return self.given.stands_for.removesuffix(KEPT)
+
+
+def stood_in(text: str, parts: Mapping[str, StandIn], tag: str, *, where: str = "text") -> str:
     """The text of a design file with given parts, by name, in the places of drawn ones, which are kept as `<name>-drawn`.
 
     The new matrices carry `tag`. Raises `DesignError` where links depart from such a part, and where the file's layout does not allow it.
@@ -30,7 +47,8 @@ def stood_in(text: str, parts: Mapping[str, Given], tag: str, *, where: str = "t
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.mechanism.store import dumps, loads
     >>> unit = tuple(tuple(1e-7 * (row == column) for column in range(6)) for row in range(6))
-    >>> text = stood_in(dumps(parallelogram()), {"leaf": Given(unit, free=())}, "derived test")
+    >>> leaf = StandIn(Given(unit, free=(), stands_for="leaf-drawn"), ("links.left", "links.right"))
+    >>> text = stood_in(dumps(parallelogram()), {"leaf": leaf}, "derived test")
     >>> loads(text).parts["leaf"].stands_for, "leaf-drawn" in loads(text).parts
     ('leaf-drawn', True)
     """
@@ -38,26 +56,31 @@ def stood_in(text: str, parts: Mapping[str, Given], tag: str, *, where: str = "t
     require(_clashes(before, parts))
     try:
         document = tomlkit.parse(text)
+        for name in dict.fromkeys(part.drawn for part in parts.values()):
+            document["parts"][name + KEPT] = document["parts"].pop(name)  # pyright: ignore[reportIndexIssue, reportAttributeAccessIssue]
+            _rename_tags(document, f"parts.{name}.", f"parts.{name}{KEPT}.")
         for name, part in parts.items():
-            _stand_in(document, name, replace(part, stands_for=name + KEPT), tag)
+            _stand_in(document, name, part, tag)
         after = tomlkit.dumps(document)
-    except TOMLKitError as error:
+    except (TOMLKitError, KeyError) as error:
         raise refuse(where, f"the file cannot be changed: {error}", "Write it anew with dump") from None
     found = checked(mechanism_from(parse_toml(after, where), shipped()))
-    if any(found.parts.get(name) != replace(part, stands_for=name + KEPT) for name, part in parts.items()):
+    if any(found.parts.get(name) != part.given for name, part in parts.items()):
         raise refuse(where, "its tables are laid out so that parts cannot be exchanged", "Write it anew with dump")
     return after
 
 
-def _clashes(mechanism: Mechanism, parts: Mapping[str, Given]) -> list[Finding]:
+def _clashes(mechanism: Mechanism, parts: Mapping[str, StandIn]) -> list[Finding]:
+    drawn = {part.drawn for part in parts.values()}
+    taken = {name + KEPT: name for name in drawn} | {name: part.drawn for name, part in parts.items() if name != part.drawn}
     found = [
-        Finding(f"parts.{name}{KEPT}", "there is a part of this name", f"Rename it: the drawn {name} is to be kept under it")
-        for name in parts
-        if name + KEPT in mechanism.parts
+        Finding(f"parts.{name}", "there is a part of this name", f"Rename it: the name is needed for the {old} that is calibrated")
+        for name, old in taken.items()
+        if name in mechanism.parts
     ]
     links = [(f"{unit}/{name}", link.part) for unit, drawn in mechanism.units.items() for name, link in drawn.links.items()]
     links += [(name, link.part) for name, link in mechanism.links.items()]
-    touched = {address: part for address, part in links if part in parts}
+    touched = {address: part for address, part in links if part in drawn}
     for key in mechanism.changes:
         ends = [address for address in touched if f"/{key}".partition(".")[0].endswith(f"/{address.rpartition('/')[2]}")]
         if ends:
@@ -66,19 +89,19 @@ def _clashes(mechanism: Mechanism, parts: Mapping[str, Given]) -> list[Finding]:
     return found
 
 
-def _stand_in(document: Any, name: str, part: Given, tag: str) -> None:
-    parts = document["parts"]
-    drawn = parts[name]
-    node: Any = child(child(node_of(Mechanism), Mechanism(""), "parts"), {name: part}, name)
+def _stand_in(document: Any, name: str, part: StandIn, tag: str) -> None:
+    node: Any = child(child(node_of(Mechanism), Mechanism(""), "parts"), {name: part.given}, name)
     table = tomlkit.table()
-    values = plain(node, part, f"parts.{name}")
+    values = plain(node, part.given, f"parts.{name}")
     for key, value in values.items():
         table[key] = _lines(value) if key == "compliance" else value
     table[TAGS] = tomlkit.inline_table()
     table[TAGS].update({"compliance": tag})
-    parts[name] = table
-    parts[name + KEPT] = drawn
-    _rename_tags(document, f"parts.{name}.", f"parts.{name}{KEPT}.")
+    document["parts"][name] = table
+    for address in part.links if name != part.drawn else ():
+        unit, _, link = address.rpartition("/")
+        owner = document["units"][unit] if unit else document
+        owner["links"][link.removeprefix("links.")]["part"] = name
 
 
 def _lines(rows: Any) -> Any:

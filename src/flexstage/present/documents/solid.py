@@ -29,6 +29,7 @@ def hinges_body(found: Mapping[str, SolidHinge]) -> Document:
     return {
         name: {
             "links": list(hinge.links),
+            "roots": {"first": hinge.roots.first, "second": hinge.roots.second},
             "compliance": hinge.compliance.to_json(),
             "stiffness": hinge.stiffness.to_json(),
             "separable": list(hinge.separable),

@@ -36,16 +36,17 @@ _MARKS = {
 
 
 def hinge_table(found: Mapping[str, SolidHinge]) -> Table:
-    """Every distinct hinge: the six direct compliances about its centre, and the error estimated.
+    """Every distinct hinge: what it grows on, the six direct compliances about its centre, and the error estimated.
 
-    >>> hinge_table({}).texts()[0][:3]
-    ['part', 'links', 'x [um/N]']
+    >>> hinge_table({}).texts()[0][:4]
+    ['part', 'links', 'ends on', 'x [um/N]']
     """
     forms = [preferred("m/N")] * 3 + [preferred("rad/(N m)")] * 3
     rows = [
         (
             Cell(name, Mark.STRONG),
             ", ".join(hinge.links),
+            ", ".join("block" if grows else "rigid" for grows in (hinge.roots.first, hinge.roots.second)),
             *(
                 number(form.factor * value, 5) if known else NO_VALUE
                 for form, value, known in zip(forms, np.diag(hinge.found.compliance), hinge.separable, strict=True)
@@ -57,9 +58,10 @@ def hinge_table(found: Mapping[str, SolidHinge]) -> Table:
     heads = [*(Column(axis, form.unit) for axis, form in zip(_AXES, forms, strict=True)), Column("error")]
     note = (
         "Compliance about the centre of the hinge between the ends of its arcs, in its link frame. Error: of any entry, estimated. "
+        "Where a hinge ends on a block, it includes what the block yields at its root; the ground and bodies without outlines are rigid. "
         f"{NO_VALUE}: it cannot be told from that of the blocks beside the hinge."
     )
-    return build("Hinges as solids", ["part", "links", *heads], rows, notes=[note])
+    return build("Hinges as solids", ["part", "links", "ends on", *heads], rows, notes=[note])
 
 
 def hinge_matrices(found: Mapping[str, SolidHinge]) -> Iterator[Table]:

@@ -27,7 +27,8 @@ from flexstage.spatial.frame import Frame
 MILLIMETRES = 1e3
 """CAD units per metre."""
 
-_SHORTENED = 0.03
+SHORTENED = 0.03
+"""By how much of their radius arcs stop short of an end face they would touch without an angle."""
 _STATIONS = 33
 
 Curve = list[occ.TopoDS_Shape]
@@ -146,7 +147,7 @@ def _cut(rise: float, profile: Profile, side: float) -> tuple[Curve, float, floa
     if isinstance(profile, Filleted):
         return _filleted(rise, profile, side)
     half, height = 0.5 * _mm(length(profile)), _mm(cut_height(profile))
-    largest = float(np.arcsin(1.0 - _SHORTENED))
+    largest = float(np.arcsin(1.0 - SHORTENED))
 
     def at(angle: float) -> tuple[float, float]:
         return half * np.sin(angle), side * (rise + height * (1.0 - np.cos(angle)))
@@ -158,7 +159,7 @@ def _cut(rise: float, profile: Profile, side: float) -> tuple[Curve, float, floa
 
 def _filleted(rise: float, profile: Filleted, side: float) -> tuple[Curve, float, float]:
     radius, half = _mm(profile.radius), 0.5 * _mm(profile.length)
-    straight, largest = half - radius, float(np.arcsin(1.0 - _SHORTENED))
+    straight, largest = half - radius, float(np.arcsin(1.0 - SHORTENED))
 
     def at(angle: float, sign: float) -> tuple[float, float]:
         return sign * (straight + radius * np.sin(angle)), side * (rise + radius * (1.0 - np.cos(angle)))

@@ -1,7 +1,7 @@
 """A hinge by three-dimensional elasticity: its 6x6 between the ends of its arcs, with an estimate of its error.
 
-The hinge stands between rigid outer faces, with one stub of its full height on each side where its profile rises to one; the stubs are then
-taken off as beams, so that what the roots of the arcs yield remains with the hinge. Prismatic hinges stand between rigid faces directly.
+The hinge stands between rigid outer faces, with a stub of the block on each side that it grows on; the stubs are then taken off as beams,
+so that what its roots yield remains with the hinge. An end without a root is held rigid itself.
 """
 
 from __future__ import annotations
@@ -19,17 +19,18 @@ from flexstage.mechanism.outline import rise as cut_height
 from flexstage.parts.leaf import Leaf
 from flexstage.parts.material import Material
 from flexstage.parts.neck import Neck
-from flexstage.parts.notch import Notch
 from flexstage.parts.profile import Filleted
 from flexstage.parts.rod import Rod
+from flexstage.readings.solid.draw import SHORTENED
 from flexstage.readings.solid.estimate import Accuracy, change, remaining
 from flexstage.readings.solid.field import Field, applied, factored, field, rigid, stiffness, times
 from flexstage.readings.solid.memory import Counts
 from flexstage.readings.solid.mesh import Meshed, generated
 from flexstage.readings.solid.piece import Medium, medium, span
 from flexstage.readings.solid.progress import Report, Stage, silent
-from flexstage.readings.solid.specimen import END, START, Hinge, Specimen, specimen
-from flexstage.readings.solid.stub import beam, circle, rectangle
+from flexstage.readings.solid.roots import Roots, own_roots
+from flexstage.readings.solid.specimen import END, START, Hinge, Specimen, missing, seat, specimen
+from flexstage.readings.solid.stub import Section, beam, circle, rectangle
 from flexstage.spatial.frame import identity, transport
 
 _SYMMETRY = 1e-8
@@ -92,13 +93,20 @@ _NOBODY = Told()
 
 
 def hinge_compliance(
-    part: Hinge, material: Material, accuracy: Accuracy | None = None, stub: float | None = None, told: Told = _NOBODY
+    part: Hinge,
+    material: Material,
+    accuracy: Accuracy | None = None,
+    stub: float | None = None,
+    told: Told = _NOBODY,
+    *,
+    roots: Roots | None = None,
 ) -> HingeSolid:
     """The 6x6 of a notch, neck, leaf or rod by finite elements, to the accuracy asked for (1 % unless told).
 
     Energies: with one outer face held and the other moved rigidly by e_i about the centre, K_ij = u_i . K u_j; C = K^-1 - sum over stubs of
     X C_stub X^T. The order is raised, then the mesh refined, until the error estimated from the last changes (`estimate.remaining`) is
-    within `accuracy.error`. `stub` [m] is each stub's length, the hinge's full height unless told; prismatic hinges have none.
+    within `accuracy.error`. `roots` say which ends grow on blocks (unless told: both of a profile that rises, none of a prismatic hinge),
+    `stub` [m] how long a stub is: the hinge's full height, and five times the `grain` of a prismatic hinge, as much wider on each side.
 
     Linear elasticity; the stubs' outer faces stay plane. How much of the blocks counts as root is a convention: C_x depends on the stub's
     length by 1-3 %, C_y by some 10 %, and C_rx of a hinge several times wider than high by a factor. Raises `DesignError` for a part
@@ -114,11 +122,11 @@ def hinge_compliance(
     asked = accuracy or Accuracy()
     require(_refusals(part))
     own = medium(material)
-    length = _stub_length(part, stub)
-    taken = _stubs(part, length, own)
+    lengths = _stub_lengths(part, stub, roots or own_roots(part))
+    taken = _stubs(part, lengths, own)
     found: list[Array] = []
     last = None
-    for last in _solves(part, length, own, asked, told):
+    for last in _solves(part, lengths, own, asked, told):
         found.append(_symmetric(np.linalg.inv(last.stiffness)) - taken)
         if _error(part, found) <= asked.error:
             break
@@ -132,7 +140,7 @@ def hinge_compliance(
         error=error,
         changes=np.abs(np.diag(alone - found[-2]) / np.diag(alone)) if len(found) > 1 else np.full(6, np.inf),
         whole=alone + taken,
-        stub=length,
+        stub=max(lengths),
         freedoms=last.freedoms,
         elements=last.elements,
         order=last.order,
@@ -167,12 +175,12 @@ def _named(part: Hinge) -> str:
     return f"the {type(part).__name__.lower()}"
 
 
-def _solves(part: Hinge, stub: float, own: Medium, asked: Accuracy, told: Told) -> Iterator[_Solve]:
+def _solves(part: Hinge, stubs: tuple[float, float], own: Medium, asked: Accuracy, told: Told) -> Iterator[_Solve]:
     """Solves of rising order on one mesh, then of the highest on finer ones, until the next would have too many freedoms."""
     lowest, highest = asked.orders
     for refinement in range(asked.meshes):
         told.report(Stage.MESHING, 0.0)
-        mesh = hinge_mesh(part, stub, asked.shrink**refinement, highest)
+        mesh = _mesh(part, stubs, asked.shrink**refinement, highest)
         if refinement == 0:
             told.ask(Counts(mesh.nv, mesh.nedge, mesh.nface, mesh.ne))
         for order in range(lowest if refinement == 0 else highest, highest + 1):
@@ -207,10 +215,13 @@ def hinge_mesh(part: Hinge, stub: float | None = None, factor: float = 1.0, orde
     >>> hinge_mesh(Neck("steel", 1e-3, Straight(1e-3), width=1e-3)).GetMaterials()
     ('medium 0',)
     """
-    length = _stub_length(part, stub)
+    return _mesh(part, _stub_lengths(part, stub, own_roots(part)), factor, order)
+
+
+def _mesh(part: Hinge, stubs: tuple[float, float], factor: float, order: int) -> ngsolve.Mesh:
     reason = "the mesher was not asked"
     for shrink, grading, curvature in _ATTEMPTS:
-        drawn = specimen(part, length, factor * shrink)
+        drawn = specimen(part, stubs, factor * shrink)
         outcome = _attempt(drawn, grading, curvature / factor, order)
         if isinstance(outcome, ngsolve.Mesh):
             return outcome
@@ -249,27 +260,42 @@ def _profile_height(part: Hinge) -> float:
     return 0.0 if isinstance(part, (Leaf, Rod)) else float(np.real(cut_height(part.profile)))
 
 
-def _stub_length(part: Hinge, stub: float | None) -> float:
+def _stub_lengths(part: Hinge, stub: float | None, roots: Roots) -> tuple[float, float]:
+    """Lengths [m] of the stubs of both ends, nought where there is none."""
     rise = _profile_height(part)
-    if rise == 0.0 or isinstance(part, (Leaf, Rod)):
-        return 0.0
-    return float(np.real(part.thickness)) + 2.0 * rise if stub is None else stub
+    usual = seat(part)[2] if isinstance(part, (Leaf, Rod)) or rise == 0.0 else float(np.real(part.thickness)) + 2.0 * rise
+    length = usual if stub is None else stub
+    return length if roots.first else 0.0, length if roots.second else 0.0
 
 
-def _stubs(part: Hinge, length: float, own: Medium) -> Array:
-    """Compliance (6, 6) of both stubs about the hinge's centre."""
-    if length == 0.0 or not isinstance(part, (Notch, Neck)):
-        return np.zeros((6, 6))
-    rise = 2.0 * _profile_height(part)
+def _stubs(part: Hinge, lengths: tuple[float, float], own: Medium) -> Array:
+    """Compliance (6, 6) of both stubs about the hinge's centre, less that of what the specimen lacks at ends without one."""
+    total, lacks = np.zeros((6, 6)), 0.0 if isinstance(part, (Leaf, Rod)) else missing(part.profile)
+    for sign, length in zip((-1.0, 1.0), lengths, strict=True):
+        if length > 0.0:
+            total += _seen(beam(_stub_section(part, 1.0), length, own), sign * 0.5 * (span(part) + length))
+        elif lacks > 0.0:
+            cut = 1.0 - float(np.cos(np.arcsin(1.0 - SHORTENED)))
+            total -= _seen(beam(_stub_section(part, cut), lacks, own), sign * 0.5 * (span(part) - lacks))
+    return total
+
+
+def _seen(compliance: Array, away: float) -> Array:
+    """A compliance about a point `away` [m] along x, about the centre."""
+    shift = transport(np.array([away, 0.0, 0.0]))
+    return shift @ compliance @ shift.T
+
+
+def _stub_section(part: Hinge, share: float) -> Section:
+    """The section where the profile has risen by a `share` of what it rises to."""
+    rise = 2.0 * share * _profile_height(part)
+    if isinstance(part, (Leaf, Rod)) or rise == 0.0:
+        high, wide, _ = seat(part)
+        return circle(high) if isinstance(part, Rod) or part.width is None else rectangle(high, wide)
     height = float(np.real(part.thickness)) + rise
     if part.width is None:
-        section = circle(height)
-    else:
-        width = float(np.real(part.width)) + (rise if isinstance(part, Neck) else 0.0)
-        section = rectangle(height, width)
-    alone, away = beam(section, length, own), 0.5 * (span(part) + length)
-    shifts = [transport(np.array([sign * away, 0.0, 0.0])) for sign in (-1.0, 1.0)]
-    return sum((shift @ alone @ shift.T for shift in shifts), np.zeros((6, 6)))
+        return circle(height)
+    return rectangle(height, float(np.real(part.width)) + (rise if isinstance(part, Neck) else 0.0))
 
 
 def _symmetric(matrix: Array) -> Array:

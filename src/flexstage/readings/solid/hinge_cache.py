@@ -7,7 +7,7 @@ import json
 from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, fields, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -25,6 +25,7 @@ from flexstage.readings.solid.install import require_solver
 from flexstage.readings.solid.memory import Counts, needed
 from flexstage.readings.solid.parts import Ways
 from flexstage.readings.solid.remote import work_all
+from flexstage.readings.solid.roots import Roots
 from flexstage.readings.solid.store import versions
 from flexstage.readings.solid.worker import Call, Job
 
@@ -32,8 +33,16 @@ if TYPE_CHECKING:
     from flexstage.readings.solid.hinge import HingeSolid
 
 HingePart: TypeAlias = Notch | Neck | Leaf | Rod
-HingeForm: TypeAlias = tuple[HingePart, Material]
-"""What a hinge is computed from."""
+
+
+class HingeForm(NamedTuple):
+    """What a hinge is computed from: its shape, its material, and which of its ends grow on blocks."""
+
+    part: HingePart
+    material: Material
+    roots: Roots
+
+
 _ARRAYS = ("compliance", "stiffness", "changes", "whole")
 
 
@@ -42,8 +51,7 @@ class Hinging(Job):
     """A hinge to compute in a process of its own, under the name it has for the user."""
 
     called: str
-    part: HingePart
-    material: Material
+    form: HingeForm
     asked: Accuracy
 
     @property
@@ -72,9 +80,10 @@ class Hinging(Job):
         from flexstage.readings.solid.hinge import Told, hinge_compliance
 
         try:
-            return _encoded(hinge_compliance(self.part, self.material, self.asked, told=Told(call.report, call.ask)))
+            told = Told(call.report, call.ask)
+            return _encoded(hinge_compliance(self.form.part, self.form.material, self.asked, told=told, roots=self.form.roots))
         except DesignError as error:
-            kind = f"the {type(self.part).__name__.lower()}"
+            kind = f"the {type(self.form.part).__name__.lower()}"
             raise DesignError(replace(each, where=each.where.replace(kind, self.name, 1)) for each in error.findings) from None
 
 
@@ -90,11 +99,11 @@ def kept_hinges(
     {}
     """
     tell = notice or (lambda _: None)
-    keys = {name: _key(*form, asked) for name, form in forms.items()}
+    keys = {name: _key(form, asked) for name, form in forms.items()}
     paths = {key: _path(key, ways) for key in keys.values()}
     found = {key: None if path is None else _read(path, tell) for key, path in paths.items()}
     first = {key: name for name, key in reversed(keys.items())}
-    missing = [Hinging(name, *forms[name], asked) for name, key in keys.items() if found[key] is None and first[key] == name]
+    missing = [Hinging(name, forms[name], asked) for name, key in keys.items() if found[key] is None and first[key] == name]
 
     def take(job: Hinging, data: bytes) -> None:
         key = keys[job.name]
@@ -112,9 +121,9 @@ def _path(key: str, ways: Ways) -> Path | None:
     return None if ways.cache is None else folder_of(ways.cache) / f"{key}-{versions('hinge').digest}.hinge"
 
 
-def _key(part: HingePart, material: Material, asked: Accuracy) -> str:
-    stiffness = (float(np.real(material.young)), float(np.real(material.poisson)))
-    return hashlib.sha256(f"{digest(part, physics=True)} {stiffness} {asked}".encode()).hexdigest()[:32]
+def _key(form: HingeForm, asked: Accuracy) -> str:
+    stiffness = (float(np.real(form.material.young)), float(np.real(form.material.poisson)))
+    return hashlib.sha256(f"{digest(form.part, physics=True)} {stiffness} {form.roots} {asked}".encode()).hexdigest()[:32]
 
 
 def _read(path: Path, tell: Callable[[Finding], None]) -> HingeSolid | None:
