@@ -19,7 +19,7 @@ from flexstage.mechanism.outline import rise as cut_height
 from flexstage.parts.leaf import Leaf
 from flexstage.parts.neck import Neck
 from flexstage.parts.notch import Notch
-from flexstage.parts.profile import Circular, Elliptic, Filleted, Profile, Straight, length
+from flexstage.parts.profile import Elliptic, Filleted, Profile, Straight, length
 from flexstage.parts.rod import Rod
 from flexstage.readings.solid.draw import MILLIMETRES, SHORTENED
 
@@ -91,6 +91,7 @@ class _Side:
 def missing(profile: Profile) -> float:
     """How much of a hinge's length [m] is left out at an end without a stub.
 
+    >>> from flexstage.parts.profile import Circular
     >>> round(missing(Circular(0.005)), 9), missing(Straight(0.01))
     (0.00015, 0.0)
     """
