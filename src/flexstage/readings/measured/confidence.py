@@ -43,7 +43,7 @@ def deviations(found: Fit, inflation: float = 1.0) -> Deviations:
     count, outputs = len(modal.poles), len(modal.shapes)
     size = np.abs(modal.poles)
     ratio = -np.real(modal.poles) / size
-    variance = 0.5 * np.real(np.diagonal(covariance)[:count])
+    variance = 0.5 * np.maximum(np.real(np.diagonal(covariance)[:count]), 0.0)
     first = count + count * modal.participation.shape[1]
     shapes = np.empty((outputs, count))
     for mode in range(count):

@@ -18,7 +18,8 @@ _STEPS = 60
 _CONVERGED = 1e-3
 _NEGLIGIBLE = 1e-5
 _NOISE_LINES = 400
-_SILENT = 1e-14
+_SILENT = 1e-10
+"""Cells hold responses to five digits: noise is not taken for less."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,9 +98,9 @@ def fit(band: Band, start: Modal, enough: float = np.inf) -> Fit:
         if promised < _CONVERGED or cost - promised > enough:
             return _fitted(modal, cost, information, converged=promised < _CONVERGED)
         trial = _moved(modal, _step(information, gradient, damping)[0])
-        trial_sums = _sums(band, trial.poles)
-        fall = cost - _cost(trial_sums, trial)
-        if fall >= 0.0 and np.all(np.real(trial.poles) < 0.0):
+        trial_sums = _sums(band, trial.poles) if np.all(np.real(trial.poles) < 0.0) else None
+        fall = -np.inf if trial_sums is None else cost - _cost(trial_sums, trial)
+        if trial_sums is not None and fall >= 0.0:
             modal, sums, cost = trial, trial_sums, cost - fall
             information, gradient = _normal(sums, modal)
             if fall < 0.1 * _CONVERGED and damping < _SMALL:
@@ -197,8 +198,7 @@ def noise(band: Band, modal: Modal) -> Array:
             members = chosen[place == part]
             mean = np.sum(power[:, members], axis=1) / (np.sum(cells.count[members]) * free)
             found[:, members] = mean[:, None]
-    signal = np.sum(cells.power, axis=0)[:, None] / total
-    return np.maximum(found * band.shape, _SILENT * signal)
+    return np.maximum(found * band.shape, _SILENT * cells.power.T / cells.count)
 
 
 def background(cells: Cells, outside: Array, degree: int = 3) -> Array:

@@ -109,7 +109,7 @@ def edges(poles: Array, low: float, high: float) -> Array:
     while found[-1] < high:
         away = float(np.min(np.abs(1j * found[-1] - poles)))
         found.append(found[-1] + 2.0 * _FINENESS / (1.0 + _FINENESS) * away)
-    return low + (np.array(found) - low) * (high - low) / (found[-1] - low)
+    return np.array([*found[:-1], high])
 
 
 def gathered(blocks: Iterable[Lines], bounds: Sequence[Array]) -> list[Cells]:

@@ -12,7 +12,7 @@ from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.number import Array
 from flexstage.readings.measured.record import Channel, Record
 
-_BATCH = 8_000_000
+_BATCH = 2_000_000
 
 Tell = Callable[[float], None]
 """Told the share of the work that is done, 0 to 1."""

@@ -9,7 +9,7 @@ from flexstage.base.number import Array
 from flexstage.readings.measured.record import Responses
 from flexstage.readings.measured.spectra import Spectra
 
-_DEPENDENT = 1e-9
+_DEPENDENT, _NOTHING = 1e-9, 1e-15
 
 
 def h1(spectra: Spectra) -> Responses:
@@ -23,7 +23,9 @@ def h1(spectra: Spectra) -> Responses:
     [[3.0]]
     """
     require(dependent_inputs(spectra))
-    values = np.swapaxes(np.linalg.solve(np.swapaxes(spectra.xx, 1, 2), np.swapaxes(spectra.yx, 1, 2)), 1, 2)
+    # Lines without any input, such as the mean's, have no response: a trace of power keeps them at nought.
+    trace = _NOTHING * np.real(np.mean(_diagonal(spectra.xx))) * np.eye(spectra.xx.shape[1])
+    values = np.swapaxes(np.linalg.solve(np.swapaxes(spectra.xx + trace, 1, 2), np.swapaxes(spectra.yx, 1, 2)), 1, 2)
     return _responses(spectra, values, "H1")
 
 
