@@ -60,7 +60,7 @@ def planted(folder: Path, imports: dict[str, str]) -> Path:
         ("readings/solid/install.py", "flexstage.beams"),
         ("beams/leaf.py", "flexstage.readings.solid.install"),
         ("beams/leaf.py", "flexstage.readings.linear"),
-        ("readings/measured.py", "flexstage.readings.ideal"),
+        ("readings/measured/record.py", "flexstage.readings.ideal"),
         ("readings/linear/__init__.py", "flexstage.readings.lumped"),
     ],
 )

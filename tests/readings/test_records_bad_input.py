@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from pathlib import Path
 
 import h5py
@@ -10,10 +11,13 @@ import pytest
 import scipy.io
 
 from flexstage.base.finding import DesignError
+from flexstage.readings.measured.health import examine
 from flexstage.readings.measured.options import Allow, Kind, Options
 from flexstage.readings.measured.read import read
-from flexstage.readings.measured.record import Channel, Record, in_memory
+from flexstage.readings.measured.record import Channel, Record, Responses, in_memory
 from flexstage.readings.measured.write import Form, write
+from tests.conftest import FULL
+from tests.roundtrip.records import awkward_responses
 
 RATE = 100.0
 VALUES = np.random.default_rng(5).standard_normal((400, 2))
@@ -257,3 +261,40 @@ def test_responses_that_are_no_numbers_are_told(tmp_path: Path) -> None:
     values[3, 1] = np.nan
     scipy.io.savemat(path, {"f": np.arange(50.0), "H": values})
     assert "y2: 1 of 50 responses are not numbers" in refusal(path)
+
+
+# --- files damaged anywhere ---
+
+
+def damaged(whole: bytes, draw: np.random.Generator) -> bytes:
+    """Some bytes changed, left out, repeated or cut off, more often near the head."""
+    content = bytearray(whole)
+    for _ in range(draw.integers(1, 4)):
+        place = int(draw.integers(0, min(len(content), 1200) if draw.random() < 0.6 else len(content)))
+        length = int(draw.integers(1, 30))
+        change = draw.integers(0, 4)
+        if change == 0:
+            content[place] = int(draw.integers(0, 256))
+        elif change == 1:
+            content[place] = b"0123456789-+.,;: \n#eE"[int(draw.integers(0, 21))]
+        elif change == 2:
+            del content[place : place + length]
+        else:
+            content[place:place] = content[place : place + length]
+        content = content or bytearray(b"x")
+    return bytes(content)
+
+
+@pytest.mark.parametrize("form", list(Form))
+@pytest.mark.parametrize("kind", [Record, Responses])
+def test_a_file_damaged_anywhere_is_refused_or_read(form: Form, kind: type, tmp_path: Path) -> None:
+    path = tmp_path / {Form.MAT: "a.mat", Form.MAT_73: "a.mat", Form.HDF5: "a.h5", Form.CSV: "a.csv"}.get(form, "a.uff")
+    write(path, in_memory(CHANNELS, RATE, VALUES[:60]) if kind is Record else awkward_responses(), form)
+    whole, draw = path.read_bytes(), np.random.default_rng(list(Form).index(form))
+    for _ in range(2000 if FULL else 60):
+        path.write_bytes(damaged(whole, draw))
+        for options in (Options(), Options(allow=frozenset(Allow), rate=50.0)):
+            with contextlib.suppress(DesignError):
+                found = read(path, options)
+                if isinstance(found, Record):
+                    examine(found)

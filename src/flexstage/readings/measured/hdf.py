@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Generator, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from flexstage.base.finding import refuse
+from flexstage.base.finding import DesignError, refuse
 from flexstage.base.number import Array
 from flexstage.readings.measured.aside import aside
 from flexstage.readings.measured.record import Record, Responses
@@ -50,16 +51,9 @@ class Stored:
         return self._read(tuple(reversed(chosen)) if self.turned else tuple(chosen))
 
     def _read(self, chosen: tuple[slice, ...]) -> Array:
-        import h5py
-
-        try:
-            with h5py.File(self.path, "r") as file:
-                found: Any = file[self.dataset or self.name]
-                values = np.asarray(found[chosen])
-        except (OSError, KeyError) as error:
-            raise refuse(
-                f"{self.path}: {self.name}", f"it cannot be read ({error})", "The file is damaged or was replaced: export it anew"
-            ) from None
+        with opened(self.path) as file:
+            found: Any = file[self.dataset or self.name]
+            values = np.asarray(found[chosen])
         values = _as_complex(values[self.column]) if self.column else _as_complex(values)
         return values.T if self.turned else values
 
@@ -108,22 +102,42 @@ def hdf_contents(path: Path) -> Contents:
         return Contents(str(path), tuple(variables), texts, own)
 
 
-def opened(path: Path) -> Any:
-    """The file, open for reading. Raises `DesignError` where it is no HDF5 file or breaks off."""
+@contextmanager
+def opened(path: Path) -> Generator[Any]:
+    """The file, open for reading. Raises `DesignError` where it is no HDF5 file, breaks off, or proves damaged while it is read.
+
+    >>> import h5py, tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     h5py.File(Path(folder) / "a.h5", "w").close()
+    ...     with opened(Path(folder) / "a.h5") as file:
+    ...         file.mode
+    'r'
+    """
     import h5py
 
     try:
-        return h5py.File(path, "r")
-    except OSError as error:
+        with h5py.File(path, "r") as file:
+            yield file
+    except DesignError:
+        raise
+    except Exception as error:  # noqa: BLE001 damaged files make the library stumble in ways of all kinds
         said = str(error)
         if "truncated file" in said:
             numbers = said.partition("truncated file: ")[2].rstrip(")") or said
             raise refuse(str(path), f"the file breaks off ({numbers})", "HDF5 cannot be read in part: copy or export it anew") from None
-        raise refuse(str(path), f"it cannot be opened as HDF5 ({said})", "Check the file, or export it anew") from None
+        raise refuse(
+            str(path), f"it cannot be read as HDF5 ({said or type(error).__name__})", "Check the file, or export it anew"
+        ) from None
 
 
 def attributes_of(thing: Any) -> dict[str, Attribute]:
-    """Attributes of a file, group or array as texts, floats and tuples of texts; others are left out."""
+    """Attributes of a file, group or array as texts, floats and tuples of texts; others are left out.
+
+    >>> class Thing:
+    ...     attrs = {"fs": np.array([50]), "unit": b"um", "names": np.array([b"a", b"b"]), "matrix": np.eye(2)}
+    >>> attributes_of(Thing())
+    {'fs': 50.0, 'unit': 'um', 'names': ('a', 'b')}
+    """
     found: dict[str, Attribute] = {}
     for name, value in thing.attrs.items():
         plain = _plain(value)

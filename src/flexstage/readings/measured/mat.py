@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import zlib
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
@@ -14,6 +13,7 @@ from flexstage.base.finding import refuse
 from flexstage.base.number import Array
 from flexstage.readings.measured.aside import aside
 from flexstage.readings.measured.hdf import BLOCK, RESPONSES_FORM, Stored, opened
+from flexstage.readings.measured.mat_tags import tag_problem
 from flexstage.readings.measured.record import Channel, Record, Responses
 from flexstage.readings.measured.variables import OWN_FORM, Attribute, Contents, Held, Variable
 
@@ -69,16 +69,16 @@ def _with_siblings(name: str, value: Variable, arrays: list[tuple[str, Variable]
 
 def _version_5(path: Path) -> list[tuple[str, Any]]:
     import scipy.io
-    from scipy.io.matlab import MatReadError
 
+    advice = "It breaks off or is damaged: copy or save it anew (MAT files of version 5 cannot be read in part)"
+    problem = tag_problem(path)
+    if problem is not None:
+        raise refuse(str(path), f"it cannot be read as a MAT file ({problem}); it has {path.stat().st_size} bytes", advice)
     try:
         content = scipy.io.loadmat(path, appendmat=False)
-    except (MatReadError, ValueError, TypeError, KeyError, IndexError, OSError, zlib.error, NotImplementedError, MemoryError) as error:
-        size = path.stat().st_size
-        said = f"it cannot be read as a MAT file ({error or type(error).__name__}); it has {size} bytes"
-        raise refuse(
-            str(path), said, "It breaks off or is damaged: copy or save it anew (MAT files of version 5 cannot be read in part)"
-        ) from None
+    except Exception as error:  # noqa: BLE001 damaged files make scipy stumble in ways of all kinds
+        said = f"it cannot be read as a MAT file ({error or type(error).__name__}); it has {path.stat().st_size} bytes"
+        raise refuse(str(path), said, advice) from None
     return [each for name, value in content.items() if not name.startswith("__") for each in _flat(name, value)]
 
 

@@ -88,8 +88,9 @@ def gather(record: Record) -> Gathered:
     """
     state = _fresh(record)
     rows = max(1, _BLOCK // len(record.channels) // _SEGMENT) * _SEGMENT
-    for block in record.blocks(rows):
-        _advance(state, block)
+    with np.errstate(over="ignore", invalid="ignore"):  # numbers near the largest double have no square
+        for block in record.blocks(rows):
+            _advance(state, block)
     state.stretch = _longer(state.stretch, (state.whole_from, state.seen))
     spectra = state.spectra / max(1, state.segments)
     return Gathered(tuple(_numbers(state, column) for column in range(len(record.channels))), state.stretch, spectra, state.segments)

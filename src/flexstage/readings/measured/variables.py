@@ -178,7 +178,11 @@ def vector_length(variable: Variable) -> int:
 
 
 def pieces(variable: Variable) -> Iterator[Array]:
-    """A vector in blocks."""
+    """A vector in blocks.
+
+    >>> [block.tolist() for block in pieces(Held("t", np.array([[1.0, 2.0]])))]
+    [[1.0, 2.0]]
+    """
     source = variable.samples(int(np.argmax(variable.shape)))
     for start in range(0, source.length, _BLOCK):
         yield source.read(start, min(start + _BLOCK, source.length))[:, 0]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 from collections.abc import Iterator
 from dataclasses import replace
@@ -19,9 +20,10 @@ from flexstage.readings.measured.table.layout import Layout, layout_of
 from flexstage.readings.measured.table.values import TableSamples, indexed
 from flexstage.readings.measured.variables import FREQUENCIES, TIMES, Contents, Held, complex_of, plain_name
 
-OWN = re.compile(r"flexstage record; rate (?P<rate>\S+) Hz; start (?P<start>\S+) s; samples (?P<count>\d+)")
+_FLOAT = r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?"
+OWN = re.compile(rf"flexstage record; rate (?P<rate>{_FLOAT}) Hz; start (?P<start>{_FLOAT}) s; samples (?P<count>\d+)")
 """The comment that heads records written here: what times of a column do not say to the bit."""
-OWN_RESPONSES = re.compile(r"flexstage responses; outputs (?P<outputs>\d+); inputs (?P<inputs>\d+); averages (?P<averages>\d+)")
+OWN_RESPONSES = re.compile(r"flexstage responses; outputs \d+; inputs \d+; averages (?P<averages>\d+)")
 SAYING = {"name": "name: ", "roles": "roles: ", "window": "window: ", "inputs": "inputs: ", "outputs": "outputs: "}
 _TIME_SCALES = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "ns": 1e-9, "min": 60.0, "h": 3600.0}
 _BLOCK = 65_536
@@ -134,32 +136,35 @@ def _responses(path: Path, layout: Layout, samples: TableSamples, options: Optio
     values = samples.read(0, samples.length)
     lines = Held("frequency", values[:, 0] * (1e3 if layout.units[0] == "kHz" else 1.0))
     if own is None:
-        held = (Held(name, values[:, number]) for number, name in enumerate(layout.names) if number)
-        found = responses_of(Contents(str(path), (lines, *held)), options)
-        if found is None:
-            raise refuse(
-                str(path), "it has frequencies but no responses", 'Give columns of real and imaginary parts: "H_re [um/V]", "H_im [um/V]"'
-            )
-        return found
-    shape = (samples.length, int(own["outputs"]), int(own["inputs"]))
-    columns = values[:, 1:].reshape(*shape, -1)
-    held = (
-        lines,
-        Held("responses", complex_of(columns[..., 0], columns[..., 1])),
-        *([Held("coherence", columns[..., 2])] if columns.shape[-1] > 2 else []),
-    )
-    texts = {f"{side[:-1]}_{kind}": each for side in ("outputs", "inputs") for kind, each in _side(layout, side)}
-    texts |= {kind: (_saying(layout, kind),) for kind in ("name", "window")}
-    return responses_of(Contents(str(path), (*held, Held("averages", np.array(float(own["averages"])))), texts), options) or _impossible()
+        columns = (Held(name, values[:, number]) for number, name in enumerate(layout.names) if number)
+        found = responses_of(Contents(str(path), (lines, *columns)), options)
+    else:
+        found = responses_of(_own_contents(path, layout, (lines, values), own), options)
+    if found is None:
+        advice = 'Give rising frequencies, and columns of real and imaginary parts: "H_re [um/V]", "H_im [um/V]"'
+        raise refuse(str(path), "it has a column of frequencies but no responses", advice)
+    return found
 
 
-def _side(layout: Layout, side: str) -> Iterator[tuple[str, tuple[str, ...]]]:
-    import json
+def _own_contents(path: Path, layout: Layout, numbers: tuple[Held, Array], own: re.Match[str]) -> Contents:
+    """Frequencies, responses and coherence of a file written here, with names and units from its comments."""
+    lines, values = numbers
+    sides = {side: _side(layout, side) for side in ("outputs", "inputs")}
+    outputs, inputs, width = len(sides["outputs"]), len(sides["inputs"]), values.shape[1] - 1
+    parts = width // max(1, outputs * inputs)
+    if parts not in (2, 3) or parts * outputs * inputs != width:
+        raise refuse(str(path), f"{width} columns do not hold the responses of {outputs} outputs to {inputs} inputs", "Write the file anew")
+    columns = values[:, 1:].reshape(-1, outputs, inputs, parts)
+    held = [lines, Held("responses", complex_of(columns[..., 0], columns[..., 1])), Held("averages", np.array(float(own["averages"])))]
+    held += [Held("coherence", columns[..., 2])] if parts == 3 else []
+    texts = {f"{side[:-1]}_names": tuple(name for name, _ in pairs) for side, pairs in sides.items()}
+    texts |= {f"{side[:-1]}_units": tuple(unit for _, unit in pairs) for side, pairs in sides.items()}
+    return Contents(str(path), tuple(held), texts | {kind: (_saying(layout, kind),) for kind in ("name", "window")})
 
-    said = json.loads(_saying(layout, side) or "[]")
-    yield "names", tuple(name for name, _ in said)
-    yield "units", tuple(unit for _, unit in said)
 
-
-def _impossible() -> Responses:
-    raise ValueError("frequencies and responses were given")
+def _side(layout: Layout, side: str) -> list[tuple[str, str]]:
+    """Names and units of outputs or inputs, as the comment says them."""
+    try:
+        return [(str(name), str(unit)) for name, unit in json.loads(_saying(layout, side))]
+    except (ValueError, TypeError):
+        return []

@@ -19,9 +19,10 @@ from flexstage.readings.measured.uff.function import COHERENCE, KINDS
 from flexstage.readings.measured.uff.scan import DataSet, scan
 from flexstage.readings.measured.variables import SideBySide, complex_of
 
-OWN = re.compile(r"flexstage (?P<role>input|output|unknown); rate (?P<rate>\S+) Hz; start (?P<start>\S+) s")
+_FLOAT = r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?"
+OWN = re.compile(rf"flexstage (?P<role>input|output|unknown); rate (?P<rate>{_FLOAT}) Hz; start (?P<start>{_FLOAT}) s")
 """The fifth line of text of functions written here: what the head's few digits cannot hold."""
-OWN_RESPONSE = re.compile(r"flexstage response; first (?P<first>\S+) Hz; step (?P<step>\S+) Hz; averages (?P<averages>\d+)")
+OWN_RESPONSE = re.compile(rf"flexstage response; first (?P<first>{_FLOAT}) Hz; step (?P<step>{_FLOAT}) Hz; averages (?P<averages>\d+)")
 _BLOCK = 262_144
 
 
