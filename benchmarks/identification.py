@@ -2,8 +2,8 @@
 
 Every seed draws other shapes and another record: 120 s at 2048 Hz, six inputs at once. Errors are the worst of six modes; the bound beside
 them is the Cramer-Rao bound of whoever knows that there are six real modes and nothing else, its worst of six drawn from it. Ten seeds, or
-200 with FLEXSTAGE_TESTS=full. Targets: medians within 0.05 % in frequency, 3 % in damping, MAC above 0.99, planes of pairs within 5 degrees;
-95 % intervals that hold 90 to 98.5 % a parameter and 93 to 97 % of all; modes that are not there in at most 2 % of records.
+200 with FLEXSTAGE_TESTS=full. Targets: medians within 0.05 % in frequency, 3 % in damping, MAC above 0.99, planes of pairs within 5
+degrees; 95 % intervals that hold 90 to 98.5 % a parameter and 93 to 97 % of all; modes that are not there in at most 2 % of records.
 """
 
 from __future__ import annotations

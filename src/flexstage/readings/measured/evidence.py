@@ -20,6 +20,7 @@ _PER_INPUT = 3.0
 _LONGEST = 32_768
 _HIGHEST = 0.42
 _LOWEST_LINES = 3
+_RUNNING = 10
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,7 +72,7 @@ def evidence(what: Record | Responses | Sequence[Record], segments: Segments | N
         return _of_responses(what)
     records = (what,) if isinstance(what, Record) else tuple(what)
     require(_findings(records))
-    chosen = segments if segments is not None else _segments(records)
+    chosen = segments if segments is not None else chosen_segments(records)
     together = pooled([_driven(spectra(record, chosen, _part(tell, index, 2 * len(records)))) for index, record in enumerate(records)])
     return _of_records(records, together, tell)
 
@@ -123,13 +124,29 @@ def _scaled(lines: Lines, input_scale: Array, output_scale: Array) -> Lines:
     return replace(lines, drive=lines.drive / np.array(factors), outputs=lines.outputs / output_scale)
 
 
-def _segments(records: tuple[Record, ...]) -> Segments:
-    """Long segments resolve sharp resonances, many average noise: as many as inputs need, two dozen at least."""
+def chosen_segments(records: Sequence[Record], wanted: float = _SEGMENTS) -> Segments:
+    """Long segments resolve sharp resonances, many average noise: as many as `wanted`, and three for each input.
+
+    >>> from flexstage.readings.measured.example import one_mode_record
+    >>> chosen_segments([one_mode_record(seconds=48.0)]).seconds
+    2.0
+    """
     inputs = len({channel.name for record in records for channel in record.inputs})
     shortest = min(record.duration for record in records)
-    needed = max(_SEGMENTS, _PER_INPUT * inputs) / len(records)
+    needed = max(wanted, _PER_INPUT * inputs) / len(records)
     seconds = min(shortest / max(4.0, needed), _LONGEST / records[0].rate)
     return Segments(max(seconds, min(shortest, 16.0 / records[0].rate)))
+
+
+def whole(records: Sequence[Record]) -> Segments:
+    """One segment without a window, as long as the shortest record: what a blow or a burst asks for.
+
+    >>> from flexstage.readings.measured.example import one_mode_record
+    >>> whole([one_mode_record(seconds=48.0)]).seconds
+    48.0
+    """
+    shortest = min(record.duration for record in records)
+    return Segments(min(shortest, _LONGEST / records[0].rate), 0.0, Window.BOXCAR)
 
 
 def _driven(known: Spectra) -> Spectra:
@@ -175,9 +192,15 @@ def _of_responses(known: Responses) -> Evidence:
 
 
 def _coherent_shape(known: Responses, cells: Cells) -> Array:
-    """|H|^2 (1 - g^2) / g^2, to which an estimate's variance is proportional (Bendat & Piersol, ch. 9), at the cells' middles."""
+    """|H|^2 (1 - g^2) / g^2, to which an estimate's variance is proportional (Bendat & Piersol, ch. 9), at the cells' middles.
+
+    The running median over 21 lines: a single line that stands out is no noise.
+    """
     share = np.clip(known.coherence if known.coherence is not None else np.ones(1), 1e-3, 1.0 - 1e-6)
     power = np.abs(known.values) ** 2 * (1.0 - share) / share
+    reach = min(_RUNNING, len(power) - 1)
+    padded = np.pad(power, ((reach, reach), (0, 0), (0, 0)), mode="reflect")
+    power = np.median(np.lib.stride_tricks.sliding_window_view(padded, 2 * reach + 1, axis=0), axis=-1)
     column = np.array([columns[0] for columns in cells.columns])[cells.block]
     line = np.clip(np.searchsorted(known.frequencies, cells.middle), 0, len(known.frequencies) - 1)
     return np.maximum(power[line, :, column].T, 1e-12 * np.max(power, axis=(0, 2))[:, None])

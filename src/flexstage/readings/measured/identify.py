@@ -13,7 +13,7 @@ from flexstage.readings.measured.bands import Extent, extents, sweeps
 from flexstage.readings.measured.caution import warnings
 from flexstage.readings.measured.cluster import Candidate, Stabilisation, alike, merged, stabilisation
 from flexstage.readings.measured.confidence import Deviations, deviations, freedoms, significance
-from flexstage.readings.measured.evidence import Evidence, evidence
+from flexstage.readings.measured.evidence import Evidence, chosen_segments, evidence, whole
 from flexstage.readings.measured.identified import Identified
 from flexstage.readings.measured.likelihood import Band, Fit, Modal, background, fit, noise, shaped
 from flexstage.readings.measured.lines import Cells, edges, gathered
@@ -28,6 +28,7 @@ _SURE, _EVIDENT = 1.0 / 3.0, 3.0
 _LARGEST = 72
 _LONGEST = 40
 _ROUNDS = 2
+_FEW = 5.0
 _MOST_MODES = 24
 
 
@@ -68,6 +69,17 @@ def identify(what: Record | Responses | Sequence[Record], search: Search = Searc
     >>> found.frequencies.round(1).tolist(), found.damping.round(3).tolist()
     ([10.0], [0.02])
     """
+    found = _identified(what, search, tell)
+    if len(found.frequencies) or search.segments is not None or isinstance(what, Responses):
+        return found
+    # Resonances sharper than the segments resolve leave no stable pole, and a blow falls into the first of them alone: look once more.
+    records = [what] if isinstance(what, Record) else list(what)
+    longer = chosen_segments(records, _FEW) if len(found.inputs) > 1 else whole(records)
+    again = _identified(what, replace(search, segments=longer), tell)
+    return again if len(again.frequencies) else found
+
+
+def _identified(what: Record | Responses | Sequence[Record], search: Search, tell: Tell | None) -> Identified:
     known = evidence(what, search.segments, tell)
     band = _band(known, search)
     diagrams, candidates = _candidates(known, band, search)

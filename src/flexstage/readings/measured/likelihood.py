@@ -17,7 +17,7 @@ _MIXING = 0.25
 _STEPS = 60
 _CONVERGED = 1e-3
 _NEGLIGIBLE = 1e-5
-_NOISE_LINES = 400
+_NOISE_LINES = 100
 _SILENT = 1e-10
 """Cells hold responses to five digits: noise is not taken for less."""
 
@@ -177,7 +177,7 @@ def explained(band: Band, modal: Modal) -> Iterator[tuple[Array, Array]]:
 
 
 def noise(band: Band, modal: Modal) -> Array:
-    """Noise variance per line of every output in every cell (p, c), from what modes and background leave: means over 400 lines or more.
+    """Noise variance per line of every output in every cell (p, c), from what modes and background leave: means over 100 lines or more.
 
     >>> from flexstage.readings.measured.example import one_mode_band
     >>> band, start = one_mode_band()
