@@ -166,6 +166,8 @@ def _datasets(file: Any) -> Iterator[tuple[str, Any]]:
 
     found: list[tuple[str, Any]] = []
     file.visititems(lambda name, thing: found.append((name, thing)) if isinstance(thing, h5py.Dataset) else None)
+    if any(isinstance(name, bytes) for name, _ in found):
+        raise ValueError("a name in it is no text")
     return iter(found)
 
 
@@ -224,7 +226,7 @@ def write_hdf(path: str | os.PathLike[str], what: Record | Responses) -> None:
     """
     import h5py
 
-    with aside(path) as place, h5py.File(place, "w") as file:
+    with aside(path) as place, h5py.File(place, "w", libver=("v110", "v110")) as file:  # its metadata have check sums
         if isinstance(what, Record):
             _write_record(file, what)
         else:

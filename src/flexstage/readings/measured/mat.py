@@ -109,7 +109,14 @@ def _cell(name: str, array: Array) -> Iterator[tuple[str, Any]]:
 
 def _version_73(path: Path) -> list[tuple[str, Any]]:
     with opened(path) as file:
-        return [each for name in file if name != _REFERENCES for each in _node(path, file, name, file[name])]
+        return [each for name in map(_text_of, file) if name != _REFERENCES for each in _node(path, file, name, file[name])]
+
+
+def _text_of(name: str | bytes) -> str:
+    """A name; those that are no UTF-8 come as bytes, and no array is found by them."""
+    if isinstance(name, bytes):
+        raise ValueError(f"a name in it is no text: {name!r}")
+    return name
 
 
 def _node(path: Path, file: Any, name: str, node: Any) -> Iterator[tuple[str, Any]]:
