@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.linalg import eigh
 
 from flexstage.readings.solid.bar import bar
-from flexstage.readings.solid.fineness import Fineness, Hold, Reduction
+from flexstage.readings.solid.fineness import WARPS, Fineness, Hold, Reduction
 from flexstage.readings.solid.mesh import meshed
+from flexstage.readings.solid.piece import Medium
 from flexstage.readings.solid.reduce import reduced_mesh
 from flexstage.readings.solid.superelement import Superelement
 
@@ -53,3 +56,22 @@ def test_a_face_held_by_its_mean_is_the_softer_bound() -> None:
     assert np.linalg.eigvalsh(more)[0] > -1e-9
     assert more[3, 3] > 1e-4  # in torsion a free square end warps
     assert soft[0, 0] * AXIAL == pytest.approx(1.0, rel=1e-6)
+
+
+def test_a_face_that_yields_lies_between() -> None:
+    """Pulled evenly, an end that may warp as quadratic functions contracts; one that stays plane does not, and is stiffer."""
+    part = bar()
+    solid = replace(part.pieces[0], medium=Medium(young=100e9, poisson=0.3, density=1000.0))
+    free = replace(part, pieces=(solid,), interfaces=(replace(part.interfaces[0], yields=True),))
+    plan = Reduction(Fineness(order=2), modes=0)
+    mesh = meshed(free, plan.fineness)
+    found = reduced_mesh(free, mesh, plan)
+    assert found.warps == WARPS
+    stiff = np.linalg.inv(reduced_mesh(replace(free, interfaces=part.interfaces), mesh, plan).stiffness["bar"])[0, 0] * AXIAL
+    pull = np.zeros(found.size)
+    pull[0] = 1.0
+    pull[[6 + 3, 6 + 5]] = 1.0 / 12.0  # the mean of (y / h)^2 and of (z / h)^2 over the end: what spreads the pull evenly
+    yielding = pull @ np.linalg.solve(found.stiffness["bar"], pull) * AXIAL
+    assert stiff < yielding < 1.0
+    # The foot is held plane; so was the end, which is now free to contract: half of what was lost is back.
+    assert 1.0 - yielding == pytest.approx(0.5 * (1.0 - stiff), rel=0.1)

@@ -51,6 +51,7 @@ def on_its_joints(component: Component) -> Superelement:
     none = np.zeros(0)
     return Superelement(
         interfaces=len(component.interfaces),
+        warps=0,
         stiffness=dict.fromkeys(names, np.eye(size)),
         inertia=dict.fromkeys(names, np.zeros((size, size))),
         bodies=dict.fromkeys(component.bodies, np.zeros((6, size))),

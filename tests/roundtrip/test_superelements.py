@@ -29,6 +29,7 @@ def superelement(seed: int, size: int = 8) -> Superelement:
     groups = ('B1/back "a"', "B1/förder", "B1/front\n")
     return Superelement(
         interfaces=1,
+        warps=0,
         stiffness={name: numbers(size, size) for name in groups},
         inertia={name: numbers(size, size) for name in reversed(groups)},
         bodies={groups[1]: numbers(6, size)},

@@ -26,7 +26,8 @@ from flexstage.readings.linear.channels import (
 )
 from flexstage.readings.linear.model import Contribution, LinearModel, assembled
 from flexstage.readings.solid.casing import casing, end_faces_apart
-from flexstage.readings.solid.component import Component, groups, is_elastic
+from flexstage.readings.solid.component import Component, Interface, Joint, groups, is_elastic
+from flexstage.readings.solid.fineness import WARPS
 from flexstage.readings.solid.superelement import Superelement
 from flexstage.spatial.frame import COMPONENTS, Frame, rigid_inertia, seen_at, transport, turned
 
@@ -71,8 +72,8 @@ def linear_model(
 ) -> LinearModel:
     """Join reduced components to a model.
 
-    Coordinates: twists of rigid bodies, twists of the joints between elastic components (stage axes, at the joint), and each
-    component's internal coordinates. Raises `DesignError` when the joined stage can move freely.
+    Coordinates: twists of rigid bodies, twists of the joints between elastic components (stage axes, at the joint), warps of their faces
+    (in the joint's own axes), and each component's internal coordinates. Raises `DesignError` when the joined stage can move freely.
 
     >>> linear_model.__name__  # tried on whole stages in tests/readings
     'linear_model'
@@ -148,9 +149,19 @@ def _coordinates(assembly: Assembly, parts: tuple[tuple[Component, Superelement]
             joint = item.joint
             if joint.name not in blocks and is_elastic(assembly, joint.body):
                 add(joint.name, [f"{joint.name}.{name}" for name in COMPONENTS])
-        inner = element.size - 6 * element.interfaces
+            if _yielding(item, element) and _warps(joint) not in blocks:
+                add(_warps(joint), [f"{joint.name}.warp{number + 1}" for number in range(WARPS)])
+        inner = element.size - element.joined
         add(_inside(component), [f"{component.name}~{number + 1}" for number in range(inner)])
     return blocks, tuple(names)
+
+
+def _yielding(item: Interface, element: Superelement) -> bool:
+    return item.yields and element.warps > 0
+
+
+def _warps(joint: Joint) -> str:
+    return f"{joint.name} warps"
 
 
 def _inside(component: Component) -> str:
@@ -167,7 +178,11 @@ def _operator(assembly: Assembly, component: Component, element: Superelement, b
         else:
             at = component.place.point(joint.frame.position)
             result[rows, blocks[joint.body]] = turn @ transport(at - assembly.bodies[joint.body].reference)
-    result[6 * element.interfaces :, blocks[_inside(component)]] = np.eye(element.size - 6 * element.interfaces)
+    yielding = [item.joint for item in component.interfaces if _yielding(item, element)]
+    for number, joint in enumerate(yielding):
+        start = 6 * element.interfaces + WARPS * number
+        result[start : start + WARPS, blocks[_warps(joint)]] = np.eye(WARPS)
+    result[element.joined :, blocks[_inside(component)]] = np.eye(element.size - element.joined)
     return result
 
 

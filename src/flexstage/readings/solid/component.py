@@ -36,11 +36,15 @@ class Joint:
 
 @dataclass(frozen=True, eq=False)
 class Interface:
-    """A joint as a component sees it: on its own end face, or (`footprint`) printed on its body by another component's link."""
+    """A joint as a component sees it: on its own end face, or (`footprint`) printed on its body by another component's link.
+
+    It `yields` where both sides are elastic: the face may deform, both sides alike. End caps of stacks and rigid bodies keep it plane.
+    """
 
     joint: Joint
     footprint: Form | None = None
     stamp: Frame | None = None
+    yields: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -190,7 +194,7 @@ def _component(graph: _Graph, nodes: list[str], frames: Mapping[str, Frame]) -> 
         name=name,
         pieces=tuple(Piece(piece.name, piece.form, piece.medium, _seen(piece.frame, place), piece.body) for piece in pieces),
         interfaces=tuple(
-            Interface(_placed(item.joint, place), item.footprint, None if item.stamp is None else _seen(item.stamp, place))
+            replace(item, joint=_placed(item.joint, place), stamp=None if item.stamp is None else _seen(item.stamp, place))
             for item in (*own, *foreign)
         ),
         fixed=tuple(_placed(joint, place) for joint in fixed),
@@ -217,13 +221,17 @@ def _link_pieces(graph: _Graph, links: list[str]) -> Iterator[Piece]:
 def _own_joints(graph: _Graph, links: list[str], owner: str) -> tuple[list[Interface], list[Joint]]:
     ends = [joint for name in links for joint in graph.joints[name]]
     joints = [joint for joint in ends if graph.owner.get(joint.body) != owner or isinstance(graph.forms[joint.link], Piezo)]
-    free = [Interface(joint) for joint in joints if joint.body != GROUND]
+    free = [Interface(joint, yields=_yields(graph, joint)) for joint in joints if joint.body != GROUND]
     return free, [joint for joint in joints if joint.body == GROUND]
+
+
+def _yields(graph: _Graph, joint: Joint) -> bool:
+    return is_elastic(graph.assembly, joint.body) and not isinstance(graph.forms[joint.link], Piezo)
 
 
 def _footprints(graph: _Graph, bodies: list[str], owner: str) -> list[Interface]:
     return [
-        Interface(joint, graph.forms[joint.link], graph.assembly.links[joint.link].frame)
+        Interface(joint, graph.forms[joint.link], graph.assembly.links[joint.link].frame, yields=_yields(graph, joint))
         for pair in graph.joints.values()
         for joint in pair
         if joint.body in bodies and graph.owner[joint.link] != owner

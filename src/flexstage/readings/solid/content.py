@@ -34,7 +34,7 @@ def _pieces(component: Component) -> Iterator[str]:
         yield f"piece {_form(piece.form)} {piece.medium} {_frame(piece.frame)} {owner};"
     for item in component.interfaces:
         stamp = "" if item.footprint is None or item.stamp is None else f"{_form(item.footprint)} {_frame(item.stamp)}"
-        yield f"joint {_frame(item.joint.frame)} {stamp};"
+        yield f"joint {_frame(item.joint.frame)} {stamp} {item.yields};"
     for joint in component.fixed:
         yield f"fixed {_frame(joint.frame)};"
     for at in component.bodies.values():

@@ -205,6 +205,29 @@ def rigid(space: Field, frame: Frame, faces: str | None = None) -> Array:
     return np.stack([motion.T.ravel() for motion in motions], axis=1)
 
 
+def warped(space: Field, frame: Frame, size: float, faces: str) -> Array:
+    """The twelve motions (n, 12) of a face across a frame's x axis that are linear or quadratic over it, and not rigid.
+
+    With y and z over `size` [m]: in-plane strains and shear; u_x, u_y and u_z as y^2, y z and z^2, in the frame's axes.
+
+    >>> from flexstage.readings.solid.bar import bar
+    >>> from flexstage.readings.solid.fineness import Fineness
+    >>> from flexstage.readings.solid.mesh import meshed
+    >>> space = field(meshed(bar(), Fineness(order=2)), ["foot"], 2)
+    >>> end = Frame(np.eye(3), np.array([0.1, 0.0, 0.0]))
+    >>> from flexstage.readings.solid.fineness import WARPS
+    >>> warped(space, end, 0.01, "end").shape == (space.size, WARPS)
+    True
+    """
+    arm = [coordinate * (1.0 / MILLIMETRES) - float(at) for coordinate, at in zip(_coordinates(), frame.position, strict=True)]
+    across = [sum(float(c) * a for c, a in zip(frame.rotation[:, k], arm, strict=True)) * (1.0 / size) for k in (1, 2)]
+    y, z = across
+    square = (y * y, y * z, z * z)
+    local = [(0, y, 0), (0, 0, z), (0, z, y), *(tuple(f if k == axis else 0 for k in range(3)) for axis in range(3) for f in square)]
+    turn = ngsolve.CoefficientFunction(tuple(frame.rotation.ravel().tolist()), dims=(3, 3))
+    return _interpolated(space, [turn * ngsolve.CoefficientFunction(each) for each in local], faces)
+
+
 def _rigid_motion(frame: Frame, axis: int) -> ngsolve.CoefficientFunction:
     direction = frame.rotation[:, axis % 3]
     if axis < 3:

@@ -9,6 +9,10 @@ ATTEMPTS = ((1.0, 1.0, 1.0), (1.0, 0.7, 1.0), (0.8, 1.0, 1.0), (1.0, 1.0, 1.4), 
 """How the mesh is varied where the mesher fails: factors on all sizes, on the grading and on the segments per radius of curvature."""
 
 
+WARPS = 12
+"""Motions of an interface face that are linear or quadratic over it, and not rigid."""
+
+
 @dataclass(frozen=True)
 class Fineness:
     """How fine to mesh and of which polynomial `order`, that of the curved geometry included.
@@ -24,7 +28,7 @@ class Fineness:
 
 
 class Hold(Enum):
-    """How interface faces follow their twist."""
+    """How interface faces between elastic bodies follow: held to a twist and quadratic warps, or by their mean twist only."""
 
     RIGID = "rigid"
     AVERAGED = "averaged"

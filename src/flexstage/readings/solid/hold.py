@@ -1,7 +1,7 @@
-"""Interfaces held: faces that stay plane (rigid), or whose mean motion counts while they warp freely (averaged).
+"""Interfaces held: faces that move rigidly and warp as quadratic functions, or whose mean motion counts while they warp freely (averaged).
 
-A rigid face is stiffer than the joint it stands for, an averaged one softer: the two bracket what cutting there costs. The end caps of
-stacks are rigid always.
+What is held is stiffer than the joint it stands for, an averaged face softer: the two bracket what cutting there costs. The end caps of
+stacks and faces on rigid bodies stay plane always.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ import numpy as np
 from flexstage.base.number import Array
 from flexstage.parts.piezo import Piezo
 from flexstage.readings.solid.component import Component, Interface
-from flexstage.readings.solid.field import Field, Solver, factored, mean_motion, rigid, shifted, times
+from flexstage.readings.solid.field import Field, Solver, factored, mean_motion, rigid, shifted, times, warped
 from flexstage.readings.solid.fineness import Hold
 from flexstage.spatial.frame import Frame
 
@@ -25,9 +25,10 @@ _SHIFT = (2.0 * np.pi * 10.0) ** 2
 
 @dataclass(frozen=True, eq=False)
 class Held:
-    """Motions (n, 6 m) of unit interface twists, and the solver for loads within with all interface twists zero."""
+    """Motions (n, 6 m) of unit interface twists and (n, w) of unit warps of faces, and the solver for loads within with all of them zero."""
 
     faces: Array
+    warps: Array
     solve: Solver
 
 
@@ -60,7 +61,8 @@ def held(component: Component, space: Field, forms: tuple[ngsolve.BilinearForm, 
     unsupported = len(loose) == len(component.interfaces) and not component.fixed
     plain = factored(space, shifted(space, elastic, mass, _SHIFT) if unsupported else elastic)
     if not loose:
-        return Held(_rigid_faces(component.interfaces, space, elastic, plain), plain)
+        faces = _moved_faces(component.interfaces, space, elastic, plain)
+        return Held(faces, _warped_faces([item for item in component.interfaces if item.yields], space, elastic, plain), plain)
     means = np.vstack([mean_motion(space, _frame(item), item.joint.name) for item in loose])
     carried = plain(means.T)
     gain = np.linalg.inv(means @ carried)
@@ -70,16 +72,22 @@ def held(component: Component, space: Field, forms: tuple[ngsolve.BilinearForm, 
         return motion - carried @ (gain @ (means @ motion))
 
     free = np.split(carried @ gain, len(loose), axis=1)
-    columns = [free[loose.index(item)] if item in loose else _rigid_faces([item], space, elastic, solve) for item in component.interfaces]
-    return Held(np.hstack(columns), solve)
+    columns = [free[loose.index(item)] if item in loose else _moved_faces([item], space, elastic, solve) for item in component.interfaces]
+    return Held(np.hstack(columns), np.zeros((space.size, 0)), solve)
 
 
-def _rigid_faces(interfaces: Sequence[Interface], space: Field, elastic: ngsolve.BilinearForm, solve: Solver) -> Array:
-    """One face moved rigidly and all others held: u = R - K_ff^-1 K R."""
-    columns = []
-    for item in interfaces:
-        moved = rigid(space, _frame(item), faces=item.joint.name)
-        columns.append(moved - solve(times(elastic, moved)))
+def _moved_faces(interfaces: Sequence[Interface], space: Field, elastic: ngsolve.BilinearForm, solve: Solver) -> Array:
+    return _carried(space, [rigid(space, _frame(item), faces=item.joint.name) for item in interfaces], elastic, solve)
+
+
+def _warped_faces(interfaces: Sequence[Interface], space: Field, elastic: ngsolve.BilinearForm, solve: Solver) -> Array:
+    moved = [warped(space, item.joint.frame, float(np.sqrt(item.joint.area)), item.joint.name) for item in interfaces]
+    return _carried(space, moved, elastic, solve)
+
+
+def _carried(space: Field, moved: Sequence[Array], elastic: ngsolve.BilinearForm, solve: Solver) -> Array:
+    """One face moved and all others held: u = R - K_ff^-1 K R."""
+    columns = [motion - solve(times(elastic, motion)) for motion in moved]
     return np.hstack(columns) if columns else np.zeros((space.size, 0))
 
 

@@ -1,6 +1,6 @@
 """Reduction of a component by Craig and Bampton's method (AIAA J. 6, 1313, 1968), with attachment motions for the loads within.
 
-u = sum of rigid motions of the interface faces and their static continuation + fixed-interface modes + static response, faces held, to a
+u = sum of rigid motions and warps of the interface faces and their static continuation + fixed-interface modes + static response, faces held, to a
 wrench on each body and to each stroke: statics under these loads is that of the full model, whatever the number of modes.
 """
 
@@ -39,6 +39,7 @@ class _Problem:
     stiffness: ngsolve.BilinearForm
     inertia: ngsolve.BilinearForm
     faces: Array
+    warps: Array
     solve: Solver
 
 
@@ -75,7 +76,7 @@ def reduced_mesh(
     loaded = [PLATFORM] if springs is not None and PLATFORM in component.bodies else list(component.bodies)
     loads = [_wrenches(problem, body) for body in loaded] + [force[:, None] for force in strokes.values()]
     inner = _independent(problem, [_modes(problem, reduction.modes, springs), *(problem.solve(load) for load in loads)])
-    basis = np.hstack([problem.faces, inner])
+    basis = np.hstack([problem.faces, problem.warps, inner])
     return _projected(problem, basis, strokes, report)
 
 
@@ -86,7 +87,7 @@ def _problem(component: Component, mesh: Meshed, reduction: Reduction, report: R
     elastic, mass = stiffness(space), inertia(space)
     report(Stage.FACTORISING, 0.0)
     interfaces = held(component, space, (elastic, mass), reduction.hold)
-    return _Problem(component, space, elastic, mass, interfaces.faces, interfaces.solve)
+    return _Problem(component, space, elastic, mass, interfaces.faces, interfaces.warps, interfaces.solve)
 
 
 def _strokes(problem: _Problem) -> dict[int, Array]:
@@ -183,13 +184,14 @@ def _projected(problem: _Problem, basis: Array, strokes: Mapping[str, Array], re
     projected = {int(number): basis.T @ force for number, force in strokes.items()}
     return Superelement(
         interfaces=len(component.interfaces),
+        warps=problem.warps.shape[1],
         stiffness={name: elastic[name] for name in names},
         inertia={name: mass[name] for name in names},
         bodies=bodies,
         body_inertia=moving,
         resultants=resultants,
         strokes={component.pieces[number].name: force for number, force in projected.items()},
-        free_strokes={component.pieces[number].name: _free_stroke(component, number, force) for number, force in projected.items()},
+        free_strokes={component.pieces[number].name: _free_stroke(problem, number, force) for number, force in projected.items()},
         rigid=_rigid_coordinates(component, basis.shape[1]),
         carried=carried,
         skin=skin(space, basis),
@@ -209,14 +211,14 @@ def _sections(problem: _Problem, number: int) -> Array:
     return rigid(problem.field, piece.frame) * beyond[:, None]
 
 
-def _free_stroke(component: Component, number: int, force: Array) -> Array:
+def _free_stroke(problem: _Problem, number: int, force: Array) -> Array:
     """Coordinates that strain a stack as its unconstrained stroke does: its end caps moved apart by the stroke, and what follows within.
 
     Internal coordinates are orthonormal in energy with the interfaces held, so the response to the stroke's force is that force itself.
     """
-    piece = component.pieces[number]
-    result = np.array(force)
-    result[: 6 * len(component.interfaces)] = 0.0
+    component = problem.component
+    piece, result = component.pieces[number], np.array(force)
+    result[: problem.faces.shape[1] + problem.warps.shape[1]] = 0.0
     ends = [(place, item.joint.frame) for place, item in enumerate(component.interfaces) if item.joint.link == piece.name]
     for place, frame in ends:
         outward = float(np.sign((frame.position - piece.frame.position) @ piece.frame.rotation[:, 0]))

@@ -8,7 +8,7 @@ from flexstage.base.finding import Finding
 from flexstage.base.number import Array
 from flexstage.parts.piezo import Piezo
 from flexstage.readings.solid.component import Component
-from flexstage.readings.solid.fineness import ATTEMPTS, Fineness, Reduction
+from flexstage.readings.solid.fineness import ATTEMPTS, WARPS, Fineness, Reduction
 from flexstage.readings.solid.memory import Counts, needed, refusal
 from flexstage.readings.solid.piece import Form, Piece, span, thinnest
 from flexstage.readings.solid.store import written
@@ -73,7 +73,8 @@ class Reducing(ComponentJob):
         """Coordinates its superelement will have at most."""
         part = self.component
         stacks = sum(isinstance(piece.form, Piezo) for piece in part.pieces)
-        return 6 * (len(part.interfaces) + len(part.bodies)) + stacks + self.reduction.modes
+        warps = WARPS * sum(item.yields for item in part.interfaces)
+        return 6 * (len(part.interfaces) + len(part.bodies)) + warps + stacks + self.reduction.modes
 
     def needed(self, counts: Counts) -> float:
         """Memory of the reduction [bytes]."""

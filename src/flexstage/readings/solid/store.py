@@ -76,7 +76,7 @@ def method_files(method: str = "reduce") -> tuple[Path, ...]:
 def written(element: Superelement, key: str, made: Versions) -> bytes:
     """A superelement as the bytes of a file, for the content `key` and the versions it was made by.
 
-    >>> small = Superelement(0, {}, {}, {}, {}, {}, {}, {}, np.zeros((0, 6)), np.zeros((0, 6)), Skin(*[np.zeros(0)] * 5), 3, 1)
+    >>> small = Superelement(0, 0, {}, {}, {}, {}, {}, {}, {}, np.zeros((0, 6)), np.zeros((0, 6)), Skin(*[np.zeros(0)] * 5), 3, 1)
     >>> read(written(small, "key", versions()), "key").freedoms
     3
     """

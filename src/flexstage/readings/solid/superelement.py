@@ -24,7 +24,7 @@ class Skin:
 
 @dataclass(frozen=True, eq=False)
 class Superelement:
-    """A component reduced, in its own axes: six coordinates an interface (its twist, at its own point), then `internal` ones.
+    """A component reduced, in its own axes: six coordinates an interface (its twist, at its own point), `warps` of faces, internal ones.
 
     `stiffness` and `inertia` per piece group (links and bodies by position in the component), (n, n). `bodies` (6, n) mean twists and
     `body_inertia` (6, 6) the inertia they carry (what is left of `inertia` is elastic motion within the body),
@@ -34,6 +34,7 @@ class Superelement:
     """
 
     interfaces: int
+    warps: int
     stiffness: Mapping[str, Array]
     inertia: Mapping[str, Array]
     bodies: Mapping[str, Array]
@@ -46,6 +47,11 @@ class Superelement:
     skin: Skin
     freedoms: int
     elements: int
+
+    @property
+    def joined(self) -> int:
+        """Number of coordinates it shares with what it is joined to: all but the internal ones."""
+        return 6 * self.interfaces + self.warps
 
     @property
     def size(self) -> int:
