@@ -71,6 +71,18 @@ def test_intervals_cover_the_truth_as_often_as_they_say(case: int):
     assert 0.93 <= np.mean(inside) <= 0.97
 
 
+def test_errors_are_as_large_as_stated_where_unmeasured_forces_shake_the_stage():
+    """Their noise is large at resonances, and one and the same at all outputs."""
+    known = truth()
+    scores = []
+    for seed in range(SEEDS if FULL else 4):
+        made, shaken = record(known, seed), record(known, 20_000 + seed, noise=0.0)
+        values = made.values.copy()
+        values[:, 6:] += 0.1 * shaken.values[:, 6:]
+        scores.append(compared(known, identify(replace(made, samples=InMemory(values)))).scores)
+    assert 0.75 < np.sqrt(np.mean(np.array(scores) ** 2)) < 1.3
+
+
 def test_pure_noise_gives_no_mode_and_says_so():
     for seed in range(SEEDS if FULL else 3):
         found = identify(_noise(seed))

@@ -26,8 +26,10 @@ class Deviations:
     shapes: Array
 
 
-def deviations(found: Fit, inflation: float = 1.0) -> Deviations:
+def deviations(found: Fit, inflation: float = 1.0, scatter: Array | None = None) -> Deviations:
     """Standard deviations of a fit by the Cramer-Rao bound, the inverse of Fisher's information; variances times `inflation`.
+
+    With the gradient's covariance `scatter`, S, they are those of I^-1 S I^-1: right for noise correlated between outputs too (White 1982).
 
     Parameters are complex and analytic: the covariance of real and of imaginary parts is half the inverse. The scale shared between a shape
     and its participation is not determined and is taken out by holding the largest participation.
@@ -38,7 +40,7 @@ def deviations(found: Fit, inflation: float = 1.0) -> Deviations:
     >>> bool(spread.frequencies[0] < 0.005), bool(spread.damping[0] < 0.0005)
     (True, True)
     """
-    covariance = inflation * _covariance(found)
+    covariance = inflation * _covariance(found, scatter)
     modal = found.modal
     count, outputs = len(modal.poles), len(modal.shapes)
     size = np.abs(modal.poles)
@@ -89,7 +91,7 @@ def freedoms(modal: Modal) -> int:
     return 2 * (len(modal.shapes) + modal.participation.shape[1])
 
 
-def _covariance(found: Fit) -> Array:
+def _covariance(found: Fit, scatter: Array | None = None) -> Array:
     """Inverse of the information with each mode's largest participation held; rows and columns held are nought."""
     count, total = found.modal.participation.shape
     largest = np.argmax(np.abs(found.modal.participation), axis=1)
@@ -98,6 +100,8 @@ def _covariance(found: Fit) -> Array:
     inner = found.information[np.ix_(free, free)]
     scale = 1.0 / np.sqrt(np.maximum(np.real(np.diagonal(inner)), 1e-300))
     inverse = np.linalg.pinv(inner * np.outer(scale, scale), rcond=1e-13, hermitian=True) * np.outer(scale, scale)
+    if scatter is not None:
+        inverse = inverse @ scatter[np.ix_(free, free)] @ inverse
     covariance = np.zeros_like(found.information)
     covariance[np.ix_(free, free)] = inverse
     return covariance

@@ -15,7 +15,7 @@ from flexstage.readings.measured.cluster import Candidate, Stabilisation, alike,
 from flexstage.readings.measured.confidence import Deviations, deviations, freedoms, significance
 from flexstage.readings.measured.evidence import Evidence, chosen_segments, evidence, whole
 from flexstage.readings.measured.identified import Identified
-from flexstage.readings.measured.likelihood import Band, Fit, Modal, background, fit, noise, shaped
+from flexstage.readings.measured.likelihood import Band, Fit, Modal, background, fit, noise, scatter, shaped
 from flexstage.readings.measured.lines import Cells, edges, gathered
 from flexstage.readings.measured.lscf import lscf
 from flexstage.readings.measured.record import Record, Responses
@@ -59,10 +59,11 @@ def identify(what: Record | Responses | Sequence[Record], search: Search = Searc
 
     `what` is a record, or several of the same stage (six with one actuator each are put together as one test), or responses of an analyser.
     Candidates are the stable poles of pLSCF on H1; each group of near ones is then fitted by maximum likelihood to the transform of the
-    whole record, its transient included, so that there is neither window nor leakage: outputs' noise is taken as independent between
-    outputs and of slowly varying density, inputs as exact (Pintelon & Schoukens 2012, ch. 9 and 10). A mode is kept if leaving it out costs
-    more likelihood than noise would once in 1e9, thrice that where its damping is not known to a third. Linear, time-invariant stages.
-    Raises `DesignError` for inputs that are not independent, no outputs, records that do not fit together or are too short.
+    whole record, its transient included, so that there is neither window nor leakage: inputs are taken as exact, outputs' noise as of
+    slowly varying density; intervals hold for noise correlated between outputs too (Pintelon & Schoukens 2012, ch. 9 and 10). A mode is kept if
+    leaving it out costs more likelihood than noise would once in 1e9, thrice that where its damping is not known to a third. Linear,
+    time-invariant stages. Raises `DesignError` for inputs that are not independent, no outputs, records that do not fit together or are too
+    short.
 
     >>> from flexstage.readings.measured.example import one_mode_record
     >>> found = identify(one_mode_record())
@@ -147,7 +148,12 @@ def _group(known: Evidence, cells: Cells, candidates: tuple[Candidate, ...], gro
         band, found, strength = _extended(band, (found, strength), group, search)
     if not len(found.modal.poles):
         return None
-    return _Found(found, deviations(found, known.inflation), strength / _limit(found.modal), np.mean(band.variance, axis=1))
+    return _Found(
+        found,
+        deviations(found, known.inflation, scatter(band, found.modal)),
+        strength / _limit(found.modal),
+        np.mean(band.variance, axis=1),
+    )
 
 
 def _limit(modal: Modal) -> float:

@@ -146,18 +146,20 @@ def shaped(band: Band, poles: Array, participation: Array) -> Modal:
 
 
 def residual_power(band: Band, modal: Modal) -> Array:
-    """Power (p, c) that modes and background leave in every cell.
+    """Powers and cross powers (p, p, c) of what modes and background leave in every cell, the first output's conjugate.
 
     >>> from flexstage.readings.measured.example import one_mode_band
     >>> band, start = one_mode_band()
-    >>> bool(np.sum(residual_power(band, fit(band, start).modal)) < 0.1 * np.sum(band.cells.power))
+    >>> bool(np.sum(residual_power(band, fit(band, start).modal).real) < 0.1 * np.sum(band.cells.own_power))
     True
     """
-    cells, left = band.cells, np.empty_like(band.variance)
+    cells = band.cells
+    left = np.moveaxis(cells.power.copy(), 0, 2)
     for chosen, inside in explained(band, modal):
-        crossed = np.einsum("ocan,cano->oc", np.conj(inside), cells.cross[chosen], optimize=True)
-        own = np.einsum("ocan,canbm,ocbm->oc", np.conj(inside), cells.own[chosen], inside, optimize=True)
-        left[:, chosen] = cells.power[chosen].T - 2.0 * crossed.real + own.real
+        crossed = np.einsum("ocan,canp->opc", np.conj(inside), cells.cross[chosen], optimize=True)
+        half = np.einsum("canbm,pcbm->canp", cells.own[chosen], inside, optimize=True)
+        own = np.einsum("ocan,canp->opc", np.conj(inside), half, optimize=True)
+        left[:, :, chosen] += own - crossed - np.conj(np.swapaxes(crossed, 0, 1))
     return left
 
 
@@ -184,10 +186,57 @@ def noise(band: Band, modal: Modal) -> Array:
     >>> bool(0.8 < noise(band, fit(band, start).modal)[0, 0] / band.variance[0, 0] < 1.2)
     True
     """
-    power, cells = residual_power(band, modal) / band.shape, band.cells
-    outputs, total = len(power), int(np.sum(cells.count))
-    used = band.background.shape[1] * cells.width + len(modal.poles) * (1.0 + cells.width / outputs)
-    free = max(0.1, 1.0 - used / total)
+    cells = band.cells
+    power = np.real(np.einsum("ooc->oc", residual_power(band, modal))) / band.shape
+    found = _pooled(power, cells) / _free(band, modal)
+    return np.maximum(found * band.shape, _SILENT * cells.own_power.T / cells.count)
+
+
+def scatter(band: Band, modal: Modal) -> Array:
+    """Covariance of the gradient, noise of outputs correlated as what is left shows: with it, deviations hold for noise of that kind too.
+
+    The middle of the sandwich estimator (White 1982); for noise independent between outputs it tends to the information. Of the parameters
+    of `Fit.information`.
+
+    >>> from flexstage.readings.measured.example import one_mode_band
+    >>> found = fit(*one_mode_band())
+    >>> bool(0.7 < abs(scatter(one_mode_band()[0], found.modal)[0, 0] / found.information[0, 0]) < 1.3)
+    True
+    """
+    cells, outputs = band.cells, len(modal.shapes)
+    left = np.conj(residual_power(band, modal))
+    noise = _pooled(left.reshape(-1, left.shape[2]), cells).reshape(left.shape) / _free(band, modal)
+    weights = (noise / band.variance[:, None, :] / band.variance[None, :, :]).reshape(outputs**2, -1)
+    near = _functions(band, modal.poles)
+    functions = np.concatenate([near, band.background], axis=1)
+    size = near.shape[1] * cells.width
+    own = _raw(band, functions).gram.reshape(outputs, functions.shape[1] * cells.width, -1)
+    full = [_with_background(own[output], _jacobian(modal, output, _pairs(modal.poles)), size) for output in range(outputs)]
+    gram = _gram(cells, weights, functions).reshape(outputs, outputs, len(own[0]), -1)
+    kept = len(modal.poles) + modal.participation.size + modal.shapes.size
+    total = np.zeros((full[0].shape[1],) * 2, dtype=complex)
+    for first in range(outputs):
+        for second in range(outputs):
+            total += np.conj(full[first].T) @ gram[first, second] @ full[second]
+    return total[:kept, :kept]
+
+
+def _with_background(gram: Array, jacobian: Array, size: int) -> Array:
+    """Derivatives of all factors: those of the background follow the modes'."""
+    scale = 1.0 / np.sqrt(np.real(np.diagonal(gram)[size:]))
+    inner = gram[size:, size:] * np.outer(scale, scale) + 1e-13 * np.eye(len(scale))
+    rest = -np.linalg.solve(inner, (gram[size:, :size] @ jacobian) * scale[:, None]) * scale[:, None]
+    return np.concatenate([jacobian, rest])
+
+
+def _free(band: Band, modal: Modal) -> float:
+    """Share of the lines that the fit has not used up."""
+    used = band.background.shape[1] * band.cells.width + len(modal.poles) * (1.0 + band.cells.width / len(modal.shapes))
+    return max(0.1, 1.0 - used / float(np.sum(band.cells.count)))
+
+
+def _pooled(power: Array, cells: Cells) -> Array:
+    """Means per line of powers (q, c), over neighbouring cells of 100 lines or more together."""
     found = np.empty_like(power)
     for block in range(len(cells.columns)):
         chosen = np.flatnonzero(cells.block == block)
@@ -196,9 +245,8 @@ def noise(band: Band, modal: Modal) -> Array:
         place = np.minimum((lines - 1) * parts // int(lines[-1]), parts - 1)
         for part in np.unique(place):
             members = chosen[place == part]
-            mean = np.sum(power[:, members], axis=1) / (np.sum(cells.count[members]) * free)
-            found[:, members] = mean[:, None]
-    return np.maximum(found * band.shape, _SILENT * cells.power.T / cells.count)
+            found[:, members] = (np.sum(power[:, members], axis=1) / np.sum(cells.count[members]))[:, None]
+    return found
 
 
 def background(cells: Cells, outside: Array, degree: int = 3) -> Array:
@@ -248,21 +296,27 @@ def _pairs(poles: Array) -> list[tuple[int, int]]:
 def _raw(band: Band, functions: Array) -> _Sums:
     """Sums before elimination, over the functions (c, f, 6), inputs and transients of all blocks."""
     cells, weights = band.cells, 1.0 / band.variance
-    outputs, count, total = cells.cross.shape[3], functions.shape[1], cells.width
-    gram = np.zeros((outputs, count, total, count, total), dtype=complex)
-    cross = np.zeros((outputs, count, total), dtype=complex)
+    cross = np.zeros((len(weights), functions.shape[1], cells.width), dtype=complex)
+    for block, columns in enumerate(cells.columns):
+        chosen = np.flatnonzero(cells.block == block)
+        weighted = cells.cross[chosen] * weights[:, chosen].T[:, None, None, :]
+        cross[:, :, list(columns)] += np.einsum("cfa,cano->ofn", np.conj(functions[chosen]), weighted, optimize=True)
+    return _Sums(_gram(cells, weights, functions), cross, np.sum(weights * cells.own_power.T, axis=1))
+
+
+def _gram(cells: Cells, weights: Array, functions: Array) -> Array:
+    """Gram matrices (w, f, n, f, n) of functions times inputs, summed over cells with weights (w, c)."""
+    rows, count, total = len(weights), functions.shape[1], cells.width
+    gram = np.zeros((rows, count, total, count, total), dtype=complex)
     for block, columns in enumerate(cells.columns):
         together = max(1, _CHUNK // (count * len(columns)) ** 2)
         every = np.flatnonzero(cells.block == block)
         for start in range(0, len(every), together):
             chosen = every[start : start + together]
             products = _products(functions[chosen], cells.own[chosen])
-            shape = (outputs, count, len(columns), count, len(columns))
-            part = (weights[:, chosen] @ products.reshape(len(chosen), -1)).reshape(shape)
-            gram[np.ix_(range(outputs), range(count), columns, range(count), columns)] += part
-            weighted = cells.cross[chosen] * weights[:, chosen].T[:, None, None, :]
-            cross[:, :, list(columns)] += np.einsum("cfa,cano->ofn", np.conj(functions[chosen]), weighted, optimize=True)
-    return _Sums(gram, cross, np.sum(weights * cells.power.T, axis=1))
+            part = (weights[:, chosen] @ products.reshape(len(chosen), -1)).reshape(rows, count, len(columns), count, len(columns))
+            gram[np.ix_(range(rows), range(count), columns, range(count), columns)] += part
+    return gram
 
 
 def _products(functions: Array, own: Array) -> Array:

@@ -40,7 +40,7 @@ class Cells:
     """Sums over cells of frequency: `low` and `high` (c,) in Hz, the block (c,) and number of lines (c,) of each.
 
     With Z = P_a(x) U_i, the Legendre polynomials a = 0..5 times the block's drive: `own` (c, 6, n, 6, n) = Z^H Z, `cross` (c, 6, n, p) =
-    Z^H Y, `power` (c, p) = diag Y^H Y. A block's drive has the columns `columns[block]` of all `width` of them.
+    Z^H Y, `power` (c, p, p) = Y^H Y. A block's drive has the columns `columns[block]` of all `width` of them.
     """
 
     low: Array
@@ -51,6 +51,11 @@ class Cells:
     cross: Array
     power: Array
     columns: tuple[tuple[int, ...], ...]
+
+    @property
+    def own_power(self) -> Array:
+        """Power (c, p) of every output in every cell."""
+        return np.real(np.diagonal(self.power, axis1=1, axis2=2))
 
     @property
     def width(self) -> int:
@@ -103,7 +108,7 @@ def edges(poles: Array, low: float, high: float) -> Array:
     """Limits in Hz of cells between `low` and `high`, a fraction of the distance to the nearest of `poles` (in Hz, complex).
 
     >>> edges(np.array([-1.0 + 10j]), 9.0, 11.0).round(2).tolist()
-    [9.0, 9.48, 9.85, 10.19, 10.56, 11.0]
+    [9.0, 9.57, 10.0, 10.4, 10.83, 11.0]
     """
     found = [low]
     while found[-1] < high:
@@ -142,7 +147,7 @@ def _band_sums(lines: Lines, limits: Array, number: int) -> list[tuple[Array, ..
         shape = (DEGREE + 1, len(lines.columns))
         own = (np.conj(terms.T) @ terms).reshape(*shape, *shape)
         cross = (np.conj(terms.T) @ outputs).reshape(*shape, -1)
-        found.append((low, high, np.array(number), np.array(stop - start), own, cross, np.sum(np.abs(outputs) ** 2, axis=0)))
+        found.append((low, high, np.array(number), np.array(stop - start), own, cross, np.conj(outputs.T) @ outputs))
     return found
 
 
