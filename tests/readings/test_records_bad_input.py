@@ -136,6 +136,14 @@ def test_a_file_cut_anywhere_is_refused_or_whole(form: Form, suffix: str, tmp_pa
             np.testing.assert_allclose(values[:, columns], VALUES[: len(values), : len(columns)], rtol=1e-11, err_msg=str(cut))
 
 
+def test_a_table_cut_within_its_last_number_is_told(tmp_path: Path) -> None:
+    # Every field is there and every line; only our own comment of how many samples there are, and the missing end of line, tell.
+    path = plain(tmp_path / "a.csv", Form.CSV)
+    path.write_bytes(path.read_bytes()[:-4])
+    assert "breaks off" in refusal(path)
+    np.testing.assert_array_equal(kept(path, allowing(Allow.TRUNCATED)), VALUES[:-1])
+
+
 def test_hdf_that_breaks_off_says_how_far_it_goes(tmp_path: Path) -> None:
     path = plain(tmp_path / "a.h5", Form.HDF5)
     path.write_bytes(path.read_bytes()[:3000])
