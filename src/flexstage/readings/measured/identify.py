@@ -60,9 +60,9 @@ def identify(what: Record | Responses | Sequence[Record], search: Search = Searc
     `what` is a record, or several of the same stage (six with one actuator each are put together as one test), or responses of an analyser.
     Candidates are the stable poles of pLSCF on H1; each group of near ones is then fitted by maximum likelihood to the transform of the
     whole record, its transient included, so that there is neither window nor leakage: inputs are taken as exact, outputs' noise as of
-    slowly varying density; intervals hold for noise correlated between outputs too (Pintelon & Schoukens 2012, ch. 9 and 10). A mode is kept if
-    leaving it out costs more likelihood than noise would once in 1e9, thrice that where its damping is not known to a third. Linear,
-    time-invariant stages. Raises `DesignError` for inputs that are not independent, no outputs, records that do not fit together or are too
+    slowly varying density; intervals hold for noise correlated between outputs too (Pintelon & Schoukens 2012, ch. 9 and 10). A mode is
+    kept if leaving it out costs more likelihood than noise would once in 1e9, thrice that where its damping is not known to a third.
+    Linear, time-invariant stages. Raises `DesignError` for inputs that are not independent, no outputs, records that do not fit together or are too
     short.
 
     >>> from flexstage.readings.measured.example import one_mode_record
