@@ -62,8 +62,8 @@ def identify(what: Record | Responses | Sequence[Record], search: Search = Searc
     whole record, its transient included, so that there is neither window nor leakage: inputs are taken as exact, outputs' noise as of
     slowly varying density; intervals hold for noise correlated between outputs too (Pintelon & Schoukens 2012, ch. 9 and 10). A mode is
     kept if leaving it out costs more likelihood than noise would once in 1e9, thrice that where its damping is not known to a third.
-    Linear, time-invariant stages. Raises `DesignError` for inputs that are not independent, no outputs, records that do not fit together or are too
-    short.
+    Linear, time-invariant stages. Raises `DesignError` for inputs that are not independent, no outputs, records that do not fit together or
+    are too short.
 
     >>> from flexstage.readings.measured.example import one_mode_record
     >>> found = identify(one_mode_record())
