@@ -25,7 +25,7 @@ _SHIFT = (2.0 * np.pi * 10.0) ** 2
 
 @dataclass(frozen=True, eq=False)
 class Held:
-    """Motions (n, 6 m) of unit interface twists and (n, w) of unit warps of faces, and the solver for loads within with all of them zero."""
+    """Motions (n, 6 m) of unit interface twists, (n, w) of unit warps of faces, and the solver for loads within with all of them zero."""
 
     faces: Array
     warps: Array

@@ -33,6 +33,8 @@ _THIN, _AROUND = 0.47, 0.7
 it, on both sides, in geometric means of radius and thickness."""
 _SLENDER = 0.4
 """Share for straight necks: as wide as thick, they cost little."""
+_PRINT = 1.0 / 3.0
+"""Elements under another component's end face over the root of its area, at a neck of one: a small one presses a root into the body."""
 _WITHIN = 1e-6
 """A face belongs to a piece when its centre is this near its bounding box [m]."""
 
@@ -146,8 +148,10 @@ def _thin_points(form: Notch | Neck, share: float) -> Array:
 def _sized(component: Component, drawing: Cad, fineness: Fineness, shrink: float) -> float:
     """Set the faces' mesh sizes; return the largest size anywhere [mm]."""
     sizes = [shrink * _size(piece, fineness) for piece in component.pieces]
+    prints = {item.joint.name: _PRINT * fineness.neck * shrink * item.joint.area**0.5 for item in component.interfaces if item.footprint}
     for face in drawing.shape.faces:
-        face.maxh = min(_near(component.pieces, sizes, face), default=max(sizes))
+        own = min(_near(component.pieces, sizes, face), default=max(sizes))
+        face.maxh = min(own, prints.get(face.name or "", own / MILLIMETRES) * MILLIMETRES)
     return max(sizes)
 
 

@@ -1,7 +1,7 @@
 """Reduction of a component by Craig and Bampton's method (AIAA J. 6, 1313, 1968), with attachment motions for the loads within.
 
-u = sum of rigid motions and warps of the interface faces and their static continuation + fixed-interface modes + static response, faces held, to a
-wrench on each body and to each stroke: statics under these loads is that of the full model, whatever the number of modes.
+u = sum of rigid motions and warps of the interface faces and their static continuation + fixed-interface modes + static response, faces
+held, to a wrench on each body and to each stroke: statics under these loads is that of the full model, whatever the number of modes.
 """
 
 from __future__ import annotations
