@@ -1,8 +1,8 @@
 """The shipped stage by substructures and in one mesh: time and memory from nothing, time with the units in the cache, six platform modes.
 
-Each run is a process of its own with the workers it starts; memory is the largest sum over all of them. Both read the same description with the
-same fineness at order two, but each draws its own mesh: what the frequencies differ by is the cut and the meshes'. The run in one mesh
-takes some minutes and 7 GB. Targets: 3 times less time and memory, 50 times less time from the cache, frequencies within 0.5 %.
+Each run is a process of its own with the workers it starts; memory is the largest sum over all of them. Both read the same description
+with the same fineness at order two, but each draws its own mesh: what the frequencies differ by is the cut and the meshes'. The run in one
+mesh takes some minutes and 7 GB. Targets: 3 times less time and memory, 50 times less time from the cache, frequencies within 0.5 %.
 """
 
 from __future__ import annotations
