@@ -35,7 +35,7 @@ test: setup-dev ## the tests
 
 check-all: setup-dev ## the tests with full counts and sizes; writes docs/validation
 	FLEXSTAGE_TESTS=full $(BIN)/python -m pytest -n $(JOBS)
-	$(BIN)/python -m tools.validation
+	$(BIN)/python -m tools.validation --solids
 
 validation: setup-dev ## compute docs/validation anew: every number against its authority
 	$(BIN)/python -m tools.validation

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from importlib.metadata import version
 from pathlib import Path
 
-from tools.validation import assemblies, codes, costs, hinges, laws, sets, single_units, table_1
+from tools.validation import assemblies, codes, costs, hinges, laws, sets, single_units, solids, table_1
 from tools.validation.row import Row, Section, Verdict, table
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
@@ -47,11 +47,16 @@ def chapters() -> list[Chapter]:
     ]
 
 
-def write(found: Iterable[Chapter]) -> None:
-    """Write all pages and the one that sums them up."""
+def solid_chapter() -> Chapter:
+    """Compute the page of solids, which takes some minutes."""
+    return Chapter(_SOLIDS, "The paper's stage as solids", _SOLID_TEXT, tuple(solids.sections()))
+
+
+def write(found: Iterable[Chapter], more: Iterable[Chapter] = ()) -> None:
+    """Write all pages and the one that sums them up; it only names the pages of `more`."""
     found = list(found)
     (DOCS / "validation").mkdir(exist_ok=True)
-    for chapter in found:
+    for chapter in (*found, *more):
         (DOCS / "validation" / f"{chapter.name}.md").write_text(chapter.markdown(), encoding="utf-8")
     (DOCS / "validation.md").write_text(summary(found), encoding="utf-8")
 
@@ -61,6 +66,7 @@ def summary(found: list[Chapter]) -> str:
     heads = ("authority", "compared", "agree", "disagree, recorded", "disagree")
     lines = [(f"[{chapter.title}](validation/{chapter.name}.md)", *_counts(chapter.rows)) for chapter in found]
     lines.append(("**all**", *_counts(tuple(row for chapter in found for row in chapter.rows))))
+    lines.append((f"[The paper's stage as solids](validation/{_SOLIDS}.md)", "see page", "", "", ""))
     recorded = [row for chapter in found for row in chapter.rows if row.verdict is Verdict.RECORDED]
     apart = table(("quantity", "source", "reference", "ours", "unit", "difference"), [row.cells()[:6] for row in recorded])
     parts = ["# Validation", _INTRODUCTION, _made_by(), table(heads, lines), "## What does not agree", _APART, apart]
@@ -125,6 +131,11 @@ validation/codes
 validation/laws
 ```"""
 
+_SOLIDS = "solids"
+_SOLID_TEXT = (
+    "Three-dimensional finite elements of order three against the paper's figures, and against the lumped reading whose hinges have their "
+    "6x6 from finite elements. `make check-all` computes this page; it takes some minutes unless the parts are in the cache."
+)
 _PAPER = """\
 Shin & Moon, *Static and Dynamic Analyses of a 6-DOF Ultra-Precision Parallel Mechanism*: what it prints, and what follows from that by
 arithmetic. Where hinges are needed, they are those of the two parameter sets that complete the paper ([sets](sets.md))."""

@@ -127,7 +127,7 @@ def verify(
         missing.setdefault("units", "none of the stage's units drives an output of its own by one actuator")
     rows = (
         *hinge_rows(mechanism, found),
-        *(() if alone is None else unit_rows(mechanism, _units_matched(mechanism, compute), alone)),
+        *(() if alone is None else unit_rows(mechanism, units_matched(mechanism, compute), alone)),
         *stage_rows(mechanism, matched, stage),
     )
     return Verification(mechanism, rows, found, alone, stage, missing)
@@ -177,8 +177,12 @@ def hinge_rows(mechanism: Mechanism, found: Mapping[str, SolidHinge]) -> Iterato
             yield Row(f"hinge {name}", f"compliance {axis}", unit, value, fea, float(hinge.errors[index]), calibration=touched)
 
 
-def _units_matched(mechanism: Mechanism, compute: Hinges) -> dict[str, UnitResult]:
-    """Units alone with the FEA 6x6 of the hinges they have alone: an output without outlines holds the end of its hinge rigid."""
+def units_matched(mechanism: Mechanism, compute: Hinges = STANDARD_HINGES) -> dict[str, UnitResult]:
+    """Units alone with the FEA 6x6 of the hinges they have alone: an output without outlines holds the end of its hinge rigid.
+
+    >>> units_matched.__name__
+    'units_matched'
+    """
     found: dict[str, UnitResult] = {}
     for unit, (copy, direction) in driven_units(mechanism).items():
         alone = isolate(mechanism, copy)
