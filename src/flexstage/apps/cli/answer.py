@@ -20,10 +20,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Asked:
-    """What was asked: the kind of document, of which description, by which reading, and where JSON goes (`None`: nowhere)."""
+    """What was asked: the kind of document, of which description (`None`: of none), by which reading, where JSON goes (`None`: nowhere)."""
 
     kind: str
-    mechanism: Mechanism
+    mechanism: Mechanism | None
     reading: Reading | None
     json: str | None
 

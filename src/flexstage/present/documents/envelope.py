@@ -20,8 +20,8 @@ FORMAT = "flexstage result 1"
 Document: TypeAlias = dict[str, Any]
 
 
-def enveloped(kind: str, mechanism: Mechanism, reading: Reading | None, body: Mapping[str, Any]) -> Document:
-    """A document: what it is, of which description, by which reading and version, then its `body`.
+def enveloped(kind: str, mechanism: Mechanism | None, reading: Reading | None, body: Mapping[str, Any]) -> Document:
+    """A document: what it is, of which description (absent: of a record alone), by which reading and version, then its `body`.
 
     >>> enveloped("mapping", Mechanism("stage"), None, {"mobility": 6})["name"]
     'stage'
@@ -30,9 +30,9 @@ def enveloped(kind: str, mechanism: Mechanism, reading: Reading | None, body: Ma
         "format": FORMAT,
         "kind": kind,
         "version": flexstage.__version__,
-        "name": mechanism.name,
+        "name": None if mechanism is None else mechanism.name,
         "reading": None if reading is None else reading.value,
-        "physics_digest": digest(mechanism, physics=True),
+        "physics_digest": None if mechanism is None else digest(mechanism, physics=True),
         **body,
     }
 

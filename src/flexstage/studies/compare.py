@@ -1,0 +1,285 @@
+"""Theory, FEA and experiment side by side (the paper's Fig. 12): modes paired by shape at the sensors, repeated ones as a subspace."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from flexstage.analysis.modes import Modes, clusters
+from flexstage.base.finding import Finding, nearest, require
+from flexstage.base.number import Array, first_design
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.readings.linear.model import LinearModel
+from flexstage.readings.measured.identified import Identified
+from flexstage.studies.complete import platform_modes, read
+from flexstage.studies.fea_modes import FeaModes
+from flexstage.studies.measured_shapes import si_shapes
+from flexstage.studies.paired import Pair, paired
+from flexstage.studies.reading import Reading
+
+_REPEATED = 0.01
+_FAR = 0.3
+_PAIRED = 0.5
+_TRUSTED = 0.9
+
+
+@dataclass(frozen=True)
+class Measured:
+    """A mode of the experiment as it is compared: its number (from 0), frequency [Hz] and damping ratio with their 95 % intervals."""
+
+    number: int
+    frequency: float
+    interval: tuple[float, float]
+    damping: float
+    damping_interval: tuple[float, float]
+
+
+@dataclass(frozen=True)
+class ComparedMode:
+    """One platform mode by theory, by FEA and in the experiment, frequencies in Hz.
+
+    `number` counts the platform's modes from 1. `assurance` is the modal assurance of theory and experiment at the sensors, of repeated
+    modes the share of the measured shape within theory's subspace; `fea_assurance` that of theory and FEA by the platform's motion.
+    """
+
+    number: int
+    name: str
+    theory: float
+    fea: float | None = None
+    fea_error: float | None = None
+    fea_assurance: float | None = None
+    experiment: Measured | None = None
+    assurance: float | None = None
+
+    @property
+    def difference(self) -> float | None:
+        """Theory over experiment less one."""
+        return None if self.experiment is None else self.theory / self.experiment.frequency - 1.0
+
+    @property
+    def fea_difference(self) -> float | None:
+        """FEA over experiment less one."""
+        return None if self.experiment is None or self.fea is None else self.fea / self.experiment.frequency - 1.0
+
+    @property
+    def uncertainty(self) -> float | None:
+        """Half of the experiment's 95 % interval, relative."""
+        if self.experiment is None:
+            return None
+        low, high = self.experiment.interval
+        return 0.5 * (high - low) / self.experiment.frequency
+
+
+@dataclass(frozen=True)
+class RepeatedModes:
+    """Modes that theory has together (numbers from 1), and the largest angle [rad] between their subspace and the one measured.
+
+    `angle` is absent where the experiment shows fewer of them than there are.
+    """
+
+    numbers: tuple[int, ...]
+    seen: int
+    angle: float | None
+
+
+@dataclass(frozen=True, eq=False)
+class Compared:
+    """Theory, FEA and experiment mode by mode.
+
+    `unpaired` are modes of the experiment without a partner among the platform's; `sensors` the outputs shapes are compared at;
+    `warnings` say what the experiment cannot tell and which pairings not to rely on.
+    """
+
+    rows: tuple[ComparedMode, ...]
+    repeated: tuple[RepeatedModes, ...]
+    unpaired: tuple[Measured, ...]
+    sensors: tuple[str, ...]
+    reading: Reading
+    experiment: Identified
+    fea: FeaModes | None
+    warnings: tuple[str, ...]
+    provenance: str
+
+
+def compare(mechanism: Mechanism, experiment: Identified, fea: FeaModes | None = None, *, reading: Reading = Reading.LUMPED) -> Compared:
+    """Compare the platform's modes by theory, by FEA where given, and as identified in a test.
+
+    Shapes are compared at the record's outputs that are outputs of the stage too, by modal assurance (Allemang & Brown 1982), measured
+    shapes by their real part. Each platform mode gets the measured mode most like it, all pairs chosen together; modes that theory has
+    within 1 % are one subspace, in which every basis is as good. A distance in frequency counts little, so that shapes that the
+    sensors cannot tell apart go to the nearer mode. Raises `DesignError` where no output has a name of the stage's.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.readings.measured.example import one_mode_record
+    >>> from flexstage.readings.measured.identify import identify
+    >>> compare(double_triangle(), identify(one_mode_record()))
+    Traceback (most recent call last):
+        ...
+    flexstage.base.finding.DesignError: y: the stage has no output of this name, ...
+    """
+    model = read(mechanism, reading)
+    require([] if model is not None else [Finding("reading", "rigid bodies have no modes", "Compare with lumped or mapped")])
+    assert model is not None  # noqa: S101  refused above
+    theory = platform_modes(mechanism, model)
+    sensors = shared_sensors(model, experiment)
+    own, seen = _sensed(model, theory, sensors), _weighted(si_shapes(experiment, sensors), model, sensors)
+    groups = clusters(first_design(theory.platform_frequencies, 1), _REPEATED)
+    pairs, likeness = _pairs(theory, experiment, groups, (own, seen))
+    rows = _rows(theory, experiment, pairs, likeness)
+    rows = rows if fea is None else _with_fea(rows, theory, fea, model)
+    paired_numbers = set(pairs.values())
+    unpaired = tuple(_measured(experiment, index) for index in range(len(experiment.frequencies)) if index not in paired_numbers)
+    repeated = tuple(_repeated(group, pairs, own, seen) for group in groups if len(group) > 1)
+    return Compared(
+        rows=rows,
+        repeated=repeated,
+        unpaired=unpaired,
+        sensors=sensors,
+        reading=reading,
+        experiment=experiment,
+        fea=fea,
+        warnings=(*experiment.warnings, *_cautions(rows, repeated, sensors)),
+        provenance=f"{theory.provenance}; {experiment.provenance}",
+    )
+
+
+def shared_sensors(model: LinearModel, experiment: Identified) -> tuple[str, ...]:
+    """The record's outputs that are outputs of the model too; raises `DesignError` where there is none.
+
+    >>> shared_sensors.__name__
+    'shared_sensors'
+    """
+    known = {channel.name for channel in model.outputs}
+    found = tuple(channel.name for channel in experiment.outputs if channel.name in known)
+    gauges = [name for name in known if "." not in name]
+    require(
+        Finding(channel.name, "the stage has no output of this name, nor of any other of the record", nearest(channel.name, gauges))
+        for channel in experiment.outputs
+        if not found
+    )
+    return found
+
+
+def _sensed(model: LinearModel, theory: Modes, sensors: Sequence[str]) -> Array:
+    """Theory's platform modes at the sensors (p, 6), of unit length."""
+    shapes = first_design(theory.shapes, 2)[:, list(theory.platform)]
+    rows = first_design(model.output, 2)[list(model.output_index(tuple(sensors)))]
+    return _weighted(rows @ shapes, model, sensors)
+
+
+def _weighted(shapes: Array, model: LinearModel, sensors: Sequence[str]) -> Array:
+    """Shapes of unit length; angles weighted so that the platform's radius of gyration makes lengths of them."""
+    units = {channel.name: channel.unit for channel in model.outputs}
+    weight = np.array([_radius(model) if units[name] == "rad" else 1.0 for name in sensors])
+    scaled = weight[:, None] * shapes
+    return scaled / np.maximum(np.linalg.norm(scaled, axis=0), 1e-300)
+
+
+def _radius(model: LinearModel) -> float:
+    item = model.inertia.get("platform")
+    if item is None or item.law.shape[-2:] != (6, 6):
+        return 0.1
+    law = first_design(item.law, 2)
+    return float(np.sqrt(np.mean(np.diag(law)[3:]) / np.mean(np.diag(law)[:3])))
+
+
+def _pairs(theory: Modes, experiment: Identified, groups: list[list[int]], both: tuple[Array, Array]) -> tuple[dict[int, int], Array]:
+    """The measured mode of each platform mode, and how alike all are (6, k): the share of a measured shape within the mode's subspace."""
+    from scipy.optimize import linear_sum_assignment
+
+    own, seen = both
+    frequencies = first_design(theory.platform_frequencies, 1)
+    likeness = np.zeros((own.shape[1], seen.shape[1]))
+    for group in groups:
+        basis = _basis(own[:, group])
+        likeness[group] = np.sum((basis.T @ seen) ** 2, axis=0)
+    if not likeness.size:
+        return {}, likeness
+    apart = np.abs(np.log(experiment.frequencies[None, :] / frequencies[:, None]))
+    first, second = linear_sum_assignment(-(likeness - _FAR * apart))
+    found = {i: j for i, j in zip(first.tolist(), second.tolist(), strict=True) if likeness[i, j] >= _PAIRED}
+    return _in_order(found, groups), likeness
+
+
+def _in_order(found: dict[int, int], groups: list[list[int]]) -> dict[int, int]:
+    """Within a subspace the lower measured frequency goes to the lower mode."""
+    ordered: dict[int, int] = {}
+    for group in groups:
+        members = sorted(found[index] for index in group if index in found)
+        ordered |= dict(zip(group, members, strict=False))
+    return ordered
+
+
+def _basis(shapes: Array) -> Array:
+    """An orthonormal basis of what shapes span; shapes that the sensors see alike count once."""
+    left, size, _ = np.linalg.svd(shapes, full_matrices=False)
+    return left[:, size > 1e-3 * size[0]]
+
+
+def _rows(theory: Modes, experiment: Identified, pairs: dict[int, int], likeness: Array) -> tuple[ComparedMode, ...]:
+    frequencies = first_design(theory.platform_frequencies, 1)
+    return tuple(
+        ComparedMode(
+            number=number + 1,
+            name=theory.names[index],
+            theory=float(frequencies[number]),
+            experiment=_measured(experiment, pairs[number]) if number in pairs else None,
+            assurance=float(likeness[number, pairs[number]]) if number in pairs else None,
+        )
+        for number, index in enumerate(theory.platform)
+    )
+
+
+def _measured(experiment: Identified, index: int) -> Measured:
+    (low, high), (least, most) = experiment.frequency_intervals[index].tolist(), experiment.damping_intervals[index].tolist()
+    return Measured(index, float(experiment.frequencies[index]), (low, high), float(experiment.damping[index]), (least, most))
+
+
+def _with_fea(rows: tuple[ComparedMode, ...], theory: Modes, fea: FeaModes, model: LinearModel) -> tuple[ComparedMode, ...]:
+    pairs = paired(theory, fea.modes, model)
+    return tuple(
+        replace(row, fea=pair.frequency, fea_error=_error(fea, pair), fea_assurance=pair.assurance)
+        if (pair := pairs.get(theory.platform[row.number - 1])) is not None
+        else row
+        for row in rows
+    )
+
+
+def _error(fea: FeaModes, pair: Pair) -> float | None:
+    return fea.errors[fea.modes.platform.index(pair.index)] if fea.errors else None
+
+
+def _repeated(group: list[int], pairs: dict[int, int], own: Array, seen: Array) -> RepeatedModes:
+    members = [pairs[index] for index in group if index in pairs]
+    numbers = tuple(index + 1 for index in group)
+    if len(members) < len(group):
+        return RepeatedModes(numbers, len(members), None)
+    first, second = _basis(own[:, group]), _basis(seen[:, members])
+    if first.shape != second.shape:
+        return RepeatedModes(numbers, len(members), None)
+    cosines = np.linalg.svd(first.T @ second, compute_uv=False)
+    return RepeatedModes(numbers, len(members), float(np.arccos(np.clip(cosines[-1], 0.0, 1.0))))
+
+
+def _cautions(rows: tuple[ComparedMode, ...], repeated: tuple[RepeatedModes, ...], sensors: tuple[str, ...]) -> list[str]:
+    found: list[str] = []
+    if len(sensors) < len(rows):
+        found.append(
+            f"shapes are compared at {len(sensors)} sensors ({', '.join(sensors)}): fewer than modes, so that modes may look alike."
+        )
+    doubtful = [row for row in rows if row.assurance is not None and row.assurance < _TRUSTED]
+    found += [
+        f"mode {row.number} ({row.name}): modal assurance {row.assurance:.2f}: the pairing is not to be relied on." for row in doubtful
+    ]
+    for group in repeated:
+        names = " and ".join(str(number) for number in group.numbers)
+        if 0 < group.seen < len(group.numbers):
+            found.append(
+                f"modes {names} are repeated; the experiment shows {group.seen} of {len(group.numbers)}: drive other actuators too."
+            )
+    lost = [row for row in rows if row.experiment is None]
+    if lost:
+        found.append(f"not found in the experiment: {', '.join(f'{row.number} ({row.name}, {row.theory:.4g} Hz)' for row in lost)}.")
+    return found
