@@ -74,6 +74,8 @@ _ROOMS = {
     "studies.judge": "judge",
     "studies.budget": "budget",
     "studies.difference": "difference",
+    "studies.rig.rig": "rig",
+    "studies.rig.setup": "Amplifier AntiAlias NoiseDrive Recorded RigSetup Sensing Tap",
     "present.report": "report",
 }
 _HOME = {name: room for room, names in _ROOMS.items() for name in names.split()}

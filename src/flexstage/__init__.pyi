@@ -261,6 +261,18 @@ from flexstage.studies.resolution import (
     Resolution as Resolution,
     Resolved as Resolved,
 )
+from flexstage.studies.rig.rig import (
+    rig as rig,
+)
+from flexstage.studies.rig.setup import (
+    Amplifier as Amplifier,
+    AntiAlias as AntiAlias,
+    NoiseDrive as NoiseDrive,
+    Recorded as Recorded,
+    RigSetup as RigSetup,
+    Sensing as Sensing,
+    Tap as Tap,
+)
 from flexstage.studies.sensitivities import (
     Sensitivities as Sensitivities,
     sensitivities as sensitivities,

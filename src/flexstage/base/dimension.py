@@ -44,6 +44,7 @@ hertz = 1 / second = Hz
 coulomb = ampere * second = C
 volt = watt / ampere = V
 farad = coulomb / volt = F
+ohm = volt / ampere
 bar = 1e5 * pascal
 minute = 60 * second = min
 hour = 3600 * second = h

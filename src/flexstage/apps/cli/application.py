@@ -7,7 +7,7 @@ from typing import Any
 
 import typer
 
-from flexstage.apps.cli import about, analyses, design, reach, solid, solid_files, whole
+from flexstage.apps.cli import about, analyses, design, reach, rig, solid, solid_files, whole
 
 app = typer.Typer(
     help="Design and proof of flexure-based ultra-precision positioning stages.",
@@ -21,6 +21,7 @@ app = typer.Typer(
 _FILES = "Design files"
 _WHOLE = "The whole stage"
 _SINGLE = "One analysis"
+_TESTS = "Tests of a stage"
 _INSTALLATION = "Installation"
 
 COMMANDS: tuple[tuple[str, str, Callable[..., Any], str], ...] = (
@@ -44,6 +45,7 @@ COMMANDS: tuple[tuple[str, str, Callable[..., Any], str], ...] = (
     (_SINGLE, "drift", reach.drift, "flexstage drift stage.toml --ground none"),
     (_SINGLE, "sensitivities", reach.sensitivities, "flexstage sensitivities stage.toml --parameter parts.neck.thickness"),
     (_SINGLE, "budget", reach.budget, "flexstage budget stage.toml --command z=150um --temperature 0.1K"),
+    (_TESTS, "rig", rig.rig, "flexstage rig stage.toml --seconds 10 --noise 1um --drift 5nm -o record.uff"),
     (_INSTALLATION, "doctor", about.doctor, "flexstage doctor --mend"),
     (_INSTALLATION, "version", about.version, "flexstage version"),
 )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+import time
 from collections.abc import Generator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
@@ -17,12 +18,18 @@ class Bar:
     def __init__(self, shown: Any | None) -> None:
         self._shown = shown
         self._task = None if shown is None else shown.add_task("starting", total=1.0, left="")
+        self._begun = time.monotonic()
         self.about = ""
 
     def step(self, step: Step) -> None:
         """Show a step of a reduction."""
         left = "" if step.left is None else f"{_clock(step.left)} left"
         self._show(f"{self.about}{step.text}", step.fraction, left)
+
+    def share(self, text: str, share: float) -> None:
+        """Show the share of a work that is done, and how long the rest takes at its pace."""
+        left = (time.monotonic() - self._begun) * (1.0 / share - 1.0) if share > 0.0 else 0.0
+        self._show(f"{self.about}{text}", share, f"{_clock(left)} left" if share > 0.0 else "")
 
     def _show(self, text: str, fraction: float, left: str) -> None:
         if self._shown is not None:

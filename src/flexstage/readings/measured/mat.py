@@ -179,6 +179,8 @@ def write_mat(path: str | os.PathLike[str], what: Record | Responses, *, version
         values["samples"] = what.values
     with aside(path) as place, place.open("wb") as stream:
         scipy.io.savemat(stream, values, oned_as="column")
+        stream.seek(0)  # scipy writes the time into the head: the same record is to be the same file
+        stream.write(b"MATLAB 5.0 MAT-file, Platform: any".ljust(116))
 
 
 def _fields(what: Record | Responses) -> Iterator[tuple[str, Any]]:

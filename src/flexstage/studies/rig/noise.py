@@ -1,0 +1,48 @@
+"""Random numbers by stream and block: any block of any stream, in any order, is always the same."""
+
+from __future__ import annotations
+
+from enum import IntEnum
+
+import numpy as np
+
+from flexstage.base.number import Array
+
+
+class Stream(IntEnum):
+    """What random numbers are for."""
+
+    DRIVE = 0
+    GAUGE = 1
+    DRIFT = 2
+    DRIFT_ENDS = 3
+
+
+def white(seed: int, stream: tuple[Stream, int], block: int, size: int) -> Array:
+    """White Gaussian noise (size,) of unit variance: that block of that stream, a kind and a channel's number. Blocks count from -1.
+
+    >>> first = white(7, (Stream.DRIVE, 0), 0, 3)
+    >>> bool(np.all(first == white(7, (Stream.DRIVE, 0), 0, 3))), bool(np.any(first == white(7, (Stream.DRIVE, 1), 0, 3)))
+    (True, False)
+    """
+    return _generator(seed, stream, block + 1).standard_normal(size)
+
+
+def walk(seed: int, channel: int, block: int, size: int) -> Array:
+    """That block (size,) of a random walk of unit steps which goes on from block to block.
+
+    The walk's values at the blocks' ends are drawn first, each block is the bridge between two of them: so no block needs the ones before.
+
+    >>> steps = np.diff(np.concatenate([walk(7, 0, block, 1000) for block in range(4)]))
+    >>> 0.9 < float(np.std(steps)) < 1.1, bool(np.max(np.abs(steps)) < 5.0)
+    (True, True)
+    """
+    ends = np.sqrt(size) * _generator(seed, (Stream.DRIFT_ENDS, channel), 0).standard_normal(block + 1)
+    free = np.cumsum(white(seed, (Stream.DRIFT, channel), block, size))
+    share = np.arange(1, size + 1) / size
+    return np.sum(ends[:-1]) + free - share * (free[-1] - ends[-1])
+
+
+def _generator(seed: int, stream: tuple[Stream, int], number: int) -> np.random.Generator:
+    kind, channel = stream
+    return np.random.Generator(np.random.PCG64(np.random.SeedSequence(seed, spawn_key=(int(kind), channel, number))))

@@ -1,0 +1,95 @@
+"""How a virtual test is set up: noise, amplifier, filter, gauges, clock. Light: the command line names the choices without loading more."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from enum import Enum
+
+
+class Tap(Enum):
+    """Where the recorded inputs are taken from."""
+
+    MONITOR = "monitor"
+    """Behind the amplifier and through the same filter as the gauges: amplifier and filter cancel in the frequency response."""
+    COMMAND = "command"
+    """Before the amplifier, not filtered: amplifier and filter are part of the frequency response."""
+
+
+class Recorded(Enum):
+    """What the recorded inputs are numbers of."""
+
+    STROKE = "stroke"
+    """Free stroke in um."""
+    VOLTAGE = "voltage"
+    """Voltage in V, counted from the bias."""
+
+
+@dataclass(frozen=True)
+class NoiseDrive:
+    """Gaussian noise that drives the actuators, each its own.
+
+    `stroke` is the rms of the commanded free stroke [m], or `voltage` that of the command [V]; without either it is 1 % of each stack's
+    full stroke. The density is flat within `band` (low, high) [Hz] and falls to nought from `low` to `low`/2 and from `high` to 1.25 `high`
+    (absent: 0 to 0.4 times the sampling rate). `actuators` names those that are driven (absent: all); only they are recorded.
+    """
+
+    stroke: float | None = None
+    voltage: float | None = None
+    band: tuple[float, float] | None = None
+    actuators: tuple[str, ...] | None = None
+
+
+@dataclass(frozen=True)
+class Amplifier:
+    """A voltage amplifier on the stack's capacitance C: first order, absent all of this it is ideal.
+
+    `bandwidth` [Hz] as stated, or that of the output `resistance` R [ohm], 1/(2 pi R C). `current` [A] is the largest it gives: a test
+    whose peaks ask for more is refused, since a saturated amplifier is not linear.
+    """
+
+    bandwidth: float | None = None
+    resistance: float | None = None
+    current: float | None = None
+
+
+@dataclass(frozen=True)
+class AntiAlias:
+    """Butterworth filter of every recorded analogue channel: `order` (0: none) and `corner` [Hz] (absent: 0.4 times the sampling rate)."""
+
+    order: int = 8
+    corner: float | None = None
+
+
+@dataclass(frozen=True)
+class Sensing:
+    """What gauges add: white noise of `density` [m/Hz^0.5], steps of `resolution` [m], and `drift`.
+
+    Where absent, density and resolution are those each gauge of the design states (none stated: none). `drift` is a random walk, its
+    standard deviation after a minute [m].
+    """
+
+    density: float | None = None
+    resolution: float | None = None
+    drift: float = 0.0
+
+
+@dataclass(frozen=True)
+class RigSetup:
+    """A test: `seconds` long, sampled at `rate` [Hz], with the random numbers of `seed`.
+
+    Without a rate it is the least power of two that is ten times the highest platform mode. The same set-up of the same stage gives
+    the same record, to the bit.
+
+    >>> RigSetup(seconds=10.0).filter.order
+    8
+    """
+
+    seconds: float
+    rate: float | None = None
+    seed: int = 0
+    drive: NoiseDrive = field(default_factory=NoiseDrive)
+    amplifier: Amplifier = field(default_factory=Amplifier)
+    filter: AntiAlias = field(default_factory=AntiAlias)
+    sensing: Sensing = field(default_factory=Sensing)
+    tap: Tap = Tap.MONITOR
+    recorded: Recorded = Recorded.STROKE
