@@ -22,7 +22,7 @@ from flexstage.mechanism.locate import locate
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.readings.ideal import ideal
 from flexstage.readings.linear.eigen import Eigen, eigen
-from flexstage.readings.linear.model import LinearModel
+from flexstage.readings.linear.model import Contributions, LinearModel
 from flexstage.readings.lumped import lumped
 from flexstage.studies.attempt import Attempts
 
@@ -81,13 +81,13 @@ def sensitivities(
     True
     """
     names = addresses(mechanism) if parameters is None else parameters
-    require(_not_numbers(mechanism, names))
+    require(not_numbers(mechanism, names))
     solved = eigen(lumped(mechanism))
     solved = Eigen(solved.values[:modes], solved.shapes[:, :modes])
     groups = clusters(solved.values, cluster)
     attempt = Attempts()
     actuators = attempt.of("lost_motion", lambda: ideal(mechanism).mapping.rows) or ()
-    chunks = list(_chunks(mechanism, names))
+    chunks = list(steppable(mechanism, names))
     batches = (stepped(mechanism, tuple(names[position] for position in chunk)) for chunk in chunks)
     pieces = [_piece(batch, len(chunk), (solved, groups), gains=bool(actuators)) for batch, chunk in zip(batches, chunks, strict=True)]
     back = np.argsort([position for chunk in chunks for position in chunk])
@@ -112,7 +112,13 @@ def sensitivities(
     )
 
 
-def _not_numbers(mechanism: Mechanism, names: tuple[str, ...]) -> Iterator[Finding]:
+def not_numbers(mechanism: Mechanism, names: tuple[str, ...]) -> Iterator[Finding]:
+    """Those addresses that are not a single number the description states.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> [str(each) for each in not_numbers(double_triangle(), ("bodies.platform.mass",))]
+    ['bodies.platform.mass: the description does not state it. State it, or choose another number.']
+    """
     for name in names:
         place = locate(mechanism, name)
         if not isinstance(place.node, NumberNode):
@@ -124,8 +130,13 @@ def _not_numbers(mechanism: Mechanism, names: tuple[str, ...]) -> Iterator[Findi
             yield Finding(name, "the description does not state it", "State it, or choose another number")
 
 
-def _chunks(mechanism: Mechanism, names: tuple[str, ...]) -> Iterator[list[int]]:
-    """Positions of parameters that can be stepped together: a departure hides the number it departs from, so each level goes alone."""
+def steppable(mechanism: Mechanism, names: tuple[str, ...]) -> Iterator[list[int]]:
+    """Positions of parameters that can be stepped together: a departure hides the number it departs from, so each level goes alone.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> list(steppable(double_triangle(), ("parts.neck.thickness", "horizontal/front.thickness", "materials.steel.young")))
+    [[0, 2], [1]]
+    """
     level = [0 if "/" not in name else 1 if name.partition("/")[0] in mechanism.units else 2 for name in names]
     for wanted in range(3):
         members = [position for position, found in enumerate(level) if found == wanted]
@@ -156,21 +167,36 @@ def _piece(batch: Mechanism, count: int, modes: tuple[Eigen, list[list[int]]], *
     if not gains:
         return slopes, np.zeros((count, 0))
     loss = lost_motion(ideal(batch), model).loss.values
-    diagonal = np.imag(np.diagonal(loss, axis1=-2, axis2=-1)) / _STEP
+    diagonal = slope(np.diagonal(loss, axis1=-2, axis2=-1))
     return slopes, np.broadcast_to(diagonal, (count, diagonal.shape[-1]))
 
 
 def _slopes(model: LinearModel, solved: Eigen, group: list[int], count: int) -> Array:
     shapes = solved.shapes[:, group]
     value = solved.values[group].mean()
-    change = _projected(model.stiffness, shapes) - value * _projected(model.inertia, shapes)
+    change = projected(model.stiffness, shapes) - value * projected(model.inertia, shapes)
     return np.linalg.eigvalsh(np.broadcast_to(change, (count, len(group), len(group))))
 
 
-def _projected(contributions: object, shapes: Array) -> Array:
-    """Phi^T dA Phi of a matrix given as contributions, without forming it."""
+def projected(contributions: Contributions, shapes: Array) -> Array:
+    """Phi^T dA Phi (p, k, k) of a stepped description's matrix, given as contributions and not formed, for shapes (n, k).
+
+    >>> from flexstage.readings.linear.model import Contribution
+    >>> one = np.ones((1, 1))
+    >>> projected({"a": Contribution(one, one + 3e-20j)}, 2.0 * one).round(9).tolist()
+    [[12.0]]
+    """
     total = np.zeros((shapes.shape[1], shapes.shape[1]))
-    for item in contributions.values():  # type: ignore[attr-defined]
+    for item in contributions.values():
         seen = item.operator @ shapes
-        total = total + np.imag(np.swapaxes(seen, -1, -2) @ item.law @ seen) / _STEP
+        total = total + slope(np.swapaxes(seen, -1, -2) @ item.law @ seen)
     return total
+
+
+def slope(values: Array) -> Array:
+    """Derivatives in the values of a stepped description.
+
+    >>> slope(np.array([1.0 + 2e-20j])).round(9).tolist()
+    [2.0]
+    """
+    return np.imag(values) / _STEP

@@ -1,0 +1,71 @@
+"""Tags of single values put into a design file's text: comments, order and everything else stay as they are."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import tomlkit
+from tomlkit.exceptions import TOMLKitError
+
+from flexstage.base.finding import refuse
+from flexstage.mechanism.address import tag_of
+from flexstage.mechanism.grammar import TAGS
+from flexstage.mechanism.locate import locate
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.mechanism.store.catalogue import shipped
+from flexstage.mechanism.store.decode import mechanism_from
+from flexstage.mechanism.store.file import parse_toml
+
+
+def retagged(text: str, tags: Mapping[str, str], *, where: str = "text") -> str:
+    """Return a design file's text with tags at some addresses, in the tables of the values, those of departures in `[tags]`.
+
+    Raises `DesignError` where the file's layout does not allow it.
+
+    >>> text = 'format = "flexstage 1"' + chr(10) + 'name = "a"' + chr(10) + 'mode_limit = "1 kHz"  # enough' + chr(10)
+    >>> print(retagged(text, {"mode_limit": "derived test"}))
+    format = "flexstage 1"
+    name = "a"
+    mode_limit = "1 kHz"  # enough
+    <BLANKLINE>
+    [tags]
+    mode_limit = "derived test"
+    <BLANKLINE>
+    """
+    mechanism = mechanism_from(parse_toml(text, where), shipped())
+    for address, tag in tags.items():
+        text = _tagged(text, mechanism, address, tag, where)
+    return text
+
+
+def _tagged(text: str, mechanism: Mechanism, address: str, tag: str, where: str) -> str:
+    """Beside the value if the file is laid out so that it can stand there, else in the table of all tags."""
+    path = () if locate(mechanism, address).owners else locate(mechanism, address).path
+    for depth in (len(path), 0) if path else (0,):
+        try:
+            document = tomlkit.parse(text)
+            _put(document, path[:depth], locate(mechanism, address).address, tag)
+            found = tomlkit.dumps(document)
+            now = mechanism_from(parse_toml(found, where), shipped())
+        except (TOMLKitError, ValueError):  # findings are ValueErrors
+            continue
+        if tag_of(now, address) == tag and now.changes == mechanism.changes and _same_physics(now, mechanism):
+            return found
+    raise refuse(address, "no tag can be put there: the file's tables are laid out otherwise", "Write it anew with dump")
+
+
+def _same_physics(first: Mechanism, second: Mechanism) -> bool:
+    from flexstage.base.digest import digest
+
+    return digest(first, physics=True) == digest(second, physics=True)
+
+
+def _put(document: Any, path: tuple[str, ...], address: str, tag: str) -> None:
+    table, depth = document, 0
+    while depth < len(path) - 1 and isinstance(table.get(path[depth]), Mapping):
+        table, depth = table[path[depth]], depth + 1
+    key = ".".join(path[depth:]) or address
+    if TAGS not in table:
+        table[TAGS] = tomlkit.inline_table() if depth else tomlkit.table()
+    table[TAGS][key] = tag

@@ -1,0 +1,87 @@
+"""Bayesian least squares: residuals in standard deviations of the data, parameters in those of their priors."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Generic, TypeVar
+
+import numpy as np
+
+from flexstage.base.finding import DesignError, refuse
+from flexstage.base.number import Array
+
+_State = TypeVar("_State")
+
+_MOST_STEPS = 40
+_HALVINGS = 8
+_STILL = 1e-5
+"""Of a prior standard deviation: a step shorter than that ends the search."""
+
+
+@dataclass(frozen=True)
+class Problem(Generic[_State]):
+    """What is fitted: `state` at parameters from the state before, its weighted `residuals` (n,) and their `slopes` (n, P).
+
+    Residuals are data less theory over the data's standard deviation, slopes those of theory; parameters have the unit matrix as prior.
+    """
+
+    state: Callable[[Array, _State], _State]
+    residuals: Callable[[_State], Array]
+    slopes: Callable[[_State], Array]
+
+
+@dataclass(frozen=True, eq=False)
+class Fitted(Generic[_State]):
+    """The most probable parameters (P,), the state there, its residuals (n,) and slopes (n, P), and how many steps led there."""
+
+    parameters: Array
+    state: _State
+    residuals: Array
+    slopes: Array
+    steps: int
+
+
+def fitted(problem: Problem[_State], start: Array, state: _State) -> Fitted[_State]:
+    """Minimise |r(u)|^2 + |u|^2 by Gauss-Newton steps, halved until they lead down.
+
+    Raises `DesignError` where no end is found, or steps lead to designs that cannot be read.
+
+    >>> line = Problem(lambda u, _: u, lambda u: 3.0 * (1.0 - u), lambda u: np.array([[3.0]]))
+    >>> fitted(line, np.zeros(1), np.zeros(1)).parameters.round(9).tolist()  # 9 / (9 + 1)
+    [0.9]
+    """
+    here, residuals = start, problem.residuals(state)
+    for count in range(_MOST_STEPS):
+        slopes = problem.slopes(state)
+        step = _step(slopes, residuals, here)
+        taken = _down(problem, (here, state, residuals), step) if np.all(np.isfinite(step)) else None
+        if taken is not None:
+            here, state, residuals = taken
+        elif not np.max(np.abs(step)) < 100.0 * _STILL:
+            break
+        if taken is None or np.max(np.abs(step)) < _STILL:
+            return Fitted(here, state, residuals, problem.slopes(state), count + 1)
+    what = f"after {count + 1} steps the parameters still move by {np.max(np.abs(step)):.2g} prior standard deviations"
+    raise refuse("update", what, "State narrower priors, free fewer numbers, or begin with a design nearer to the test")
+
+
+def _step(slopes: Array, residuals: Array, here: Array) -> Array:
+    stacked = np.concatenate([slopes, np.eye(len(here))])
+    return np.linalg.lstsq(stacked, np.concatenate([residuals, -here]), rcond=None)[0]
+
+
+def _down(problem: Problem[_State], now: tuple[Array, _State, Array], step: Array) -> tuple[Array, _State, Array] | None:
+    """The first of ever shorter steps that lowers the cost; `None` where none does."""
+    here, state, residuals = now
+    cost = float(residuals @ residuals + here @ here)
+    for halving in range(_HALVINGS):
+        there = here + step * 0.5**halving
+        try:
+            reached = problem.state(there, state)
+        except DesignError:
+            continue
+        found = problem.residuals(reached)
+        if float(found @ found + there @ there) < cost:  # false for NaN too
+            return there, reached, found
+    return None

@@ -1,0 +1,27 @@
+"""The design file of an updated stage: the text given, with the new values and where they are from; comments stay."""
+
+from __future__ import annotations
+
+from flexstage.mechanism.store import patch
+from flexstage.mechanism.store.retag import retagged
+from flexstage.studies.update import Told, Updated
+
+_DIGITS = 7
+
+
+def updated_text(text: str, found: Updated, record: str, *, where: str = "text") -> str:
+    """The text of the stage's design file with the values after the update, each tagged `derived update RECORD` with its deviation.
+
+    Raises `DesignError` where the file's layout does not allow it.
+
+    >>> updated_text.__name__
+    'updated_text'
+    """
+    values = {name: float(f"{value:.{_DIGITS}g}") for name, value in zip(found.parameters, found.after.tolist(), strict=True)}
+    tags = {name: _tag(found, index, record) for index, name in enumerate(found.parameters)}
+    return retagged(patch(text, values, where=where), tags, where=where)
+
+
+def _tag(found: Updated, index: int, record: str) -> str:
+    known = f"+- {100.0 * found.deviations[index]:.2g} %" if found.told[index] is not Told.NOT else f"not identifiable from {found.data}"
+    return f"derived update {record}, {known}"
