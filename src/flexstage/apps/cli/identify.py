@@ -59,9 +59,9 @@ def identify(  # noqa: PLR0913 (its options)
     Bad channels are named and explained, and used only as far as --allow says.
     """
     said = Said(inputs, outputs, only, units, rate, kind, allow, band, resolution)
-    _writable(records, stage, [("--json", json), ("--report", report)])
+    writable(records, stage, [("--json", json), ("--report", report)])
     mechanism = None if stage is None else _loaded(stage)
-    seen = _identified(said, records, None if mechanism is None else elastic_model(mechanism, Reading.LUMPED))
+    seen = identified(said, records, None if mechanism is None else elastic_model(mechanism, Reading.LUMPED))
     shapes = None if mechanism is None else _shapes(mechanism, seen)
     if report is not None:
         from flexstage.present.measured_report import identify_report
@@ -109,10 +109,10 @@ def compare(  # noqa: PLR0913 (its options)
     FEA is shown where the cache holds all of it, else with --fea.
     """
     said = Said(inputs, outputs, only, units, rate, kind, allow, band, resolution)
-    _writable(record, design, [("--json", json), ("--report", report)])
+    writable(record, design, [("--json", json), ("--report", report)])
     mechanism = _loaded(design, changes)
     model = elastic_model(mechanism, reading)
-    seen = _identified(said, record, model, highest=_highest(mechanism, model))
+    seen = identified(said, record, model, highest=_highest(mechanism, model))
     from flexstage.present.documents.measured import compare_body
     from flexstage.present.sections.measured import compare_tables
     from flexstage.studies.compare import compare as compared
@@ -128,7 +128,7 @@ def compare(  # noqa: PLR0913 (its options)
         answer(Asked("compare", mechanism, reading, json), lambda: compare_body(found), lambda: compare_tables(found)[:-1])
 
 
-def _writable(records: list[Path], design: Path | None, outputs: list[tuple[str, str | Path | None]]) -> None:
+def writable(records: list[Path], design: Path | None, outputs: list[tuple[str, str | Path | None]]) -> None:
     """Raises `DesignError` where an output cannot be written, or would overwrite a record or the design."""
     from flexstage.base.finding import Finding, require
 
@@ -148,7 +148,7 @@ def _loaded(design: Path, changes: list[str] | None = None) -> Mechanism:
     return changed(load(design), changes or ())
 
 
-def _identified(said: Said, records: list[Path], model: LinearModel | None, highest: float | None = None) -> Identification:
+def identified(said: Said, records: list[Path], model: LinearModel | None, highest: float | None = None) -> Identification:
     """The modes of the records, each caution told."""
     options, search, needs = said.options(), said.search(), said.needs(model, highest)
     from flexstage.studies.identification import identification, sound
