@@ -215,16 +215,65 @@ from flexstage.readings.lumped import (
 from flexstage.readings.mapped import (
     mapped as mapped,
 )
+from flexstage.readings.measured.health import (
+    Needs as Needs,
+    examine as examine,
+    usable as usable,
+)
+from flexstage.readings.measured.identified import (
+    Identified as Identified,
+)
+from flexstage.readings.measured.identify import (
+    Search as Search,
+    identify as identify,
+)
+from flexstage.readings.measured.options import (
+    Allow as Allow,
+    Kind as Kind,
+    Options as Options,
+)
+from flexstage.readings.measured.read import (
+    read_record as read_record,
+)
+from flexstage.readings.measured.record import (
+    Channel as Channel,
+    InMemory as InMemory,
+    Record as Record,
+    Responses as Responses,
+    Role as Role,
+    in_memory as in_memory,
+)
+from flexstage.readings.measured.spectra import (
+    Segments as Segments,
+    Spectra as Spectra,
+    Window as Window,
+    spectra as spectra,
+)
+from flexstage.readings.measured.transfer import (
+    h1 as h1,
+    h2 as h2,
+    multiple_coherence as multiple_coherence,
+    ordinary_coherence as ordinary_coherence,
+    spectral_ratio as spectral_ratio,
+)
+from flexstage.readings.measured.unit import (
+    in_si as in_si,
+    responses_in_si as responses_in_si,
+)
+from flexstage.readings.measured.write import (
+    Form as Form,
+    write_record as write_record,
+)
 from flexstage.readings.solid.cache import (
     Cache as Cache,
+)
+from flexstage.readings.solid.estimate import (
+    Accuracy as Accuracy,
 )
 from flexstage.readings.solid.fineness import (
     Fineness as Fineness,
     Hold as Hold,
     Reduction as Reduction,
-)
-from flexstage.readings.solid.estimate import (
-    Accuracy as Accuracy,
 )
 from flexstage.readings.solid.hinge import (
     HingeSolid as HingeSolid,
@@ -242,6 +291,10 @@ from flexstage.studies.calibrate import (
     Calibration as Calibration,
     calibrate as calibrate,
 )
+from flexstage.studies.compare import (
+    Compared as Compared,
+    compare as compare,
+)
 from flexstage.studies.complete import (
     Analysis as Analysis,
     Reading as Reading,
@@ -250,8 +303,17 @@ from flexstage.studies.complete import (
 from flexstage.studies.difference import (
     difference as difference,
 )
+from flexstage.studies.fea_modes import (
+    FeaModes as FeaModes,
+    fea_modes as fea_modes,
+    kept_fea_modes as kept_fea_modes,
+)
 from flexstage.studies.judge import (
     judge as judge,
+)
+from flexstage.studies.measured_shapes import (
+    StageShapes as StageShapes,
+    stage_shapes as stage_shapes,
 )
 from flexstage.studies.omitted import (
     Omitted as Omitted,
@@ -292,6 +354,17 @@ from flexstage.studies.solid_unit import (
 from flexstage.studies.units import (
     UnitResult as UnitResult,
     units as units,
+)
+from flexstage.studies.update import (
+    Told as Told,
+    Updated as Updated,
+    update as update,
+)
+from flexstage.studies.update_free import (
+    Known as Known,
+)
+from flexstage.studies.update_text import (
+    updated_text as updated_text,
 )
 from flexstage.studies.verify import (
     Verification as Verification,

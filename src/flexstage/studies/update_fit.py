@@ -17,6 +17,8 @@ _MOST_STEPS = 40
 _HALVINGS = 8
 _STILL = 1e-5
 """Of a prior standard deviation: a step shorter than that ends the search."""
+_NEAR = 1e-3
+"""A step shorter than that ends it too, where none lowers the cost: rounding is all that is left."""
 
 
 @dataclass(frozen=True)
@@ -52,17 +54,20 @@ def fitted(problem: Problem[_State], start: Array, state: _State) -> Fitted[_Sta
     [0.9]
     """
     here, residuals = start, problem.residuals(state)
-    for count in range(_MOST_STEPS):
-        slopes = problem.slopes(state)
+    slopes = problem.slopes(state)
+    length, count = np.inf, 0
+    while count < _MOST_STEPS:
         step = _step(slopes, residuals, here)
-        taken = _down(problem, (here, state, residuals), step) if np.all(np.isfinite(step)) else None
+        count, length = count + 1, float(np.max(np.abs(step)))
+        taken = _down(problem, (here, state, residuals), step) if np.isfinite(length) else None
+        if taken is None and not length < _NEAR:
+            break
         if taken is not None:
             here, state, residuals = taken
-        elif not np.max(np.abs(step)) < 100.0 * _STILL:
-            break
-        if taken is None or np.max(np.abs(step)) < _STILL:
-            return Fitted(here, state, residuals, problem.slopes(state), count + 1)
-    what = f"after {count + 1} steps the parameters still move by {np.max(np.abs(step)):.2g} prior standard deviations"
+            slopes = problem.slopes(state)
+        if taken is None or length < _STILL:
+            return Fitted(here, state, residuals, slopes, count)
+    what = f"after {count} steps the numbers still move by {length:.2g} prior standard deviations"
     raise refuse("update", what, "State narrower priors, free fewer numbers, or begin with a design nearer to the test")
 
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import typer
 
-from flexstage.apps.cli import about, analyses, design, reach, rig, solid, solid_files, whole
+from flexstage.apps.cli import about, analyses, design, identify, reach, rig, solid, solid_files, update, whole
 
 app = typer.Typer(
     help="Design and proof of flexure-based ultra-precision positioning stages.",
@@ -46,6 +46,14 @@ COMMANDS: tuple[tuple[str, str, Callable[..., Any], str], ...] = (
     (_SINGLE, "sensitivities", reach.sensitivities, "flexstage sensitivities stage.toml --parameter parts.neck.thickness"),
     (_SINGLE, "budget", reach.budget, "flexstage budget stage.toml --command z=150um --temperature 0.1K"),
     (_TESTS, "rig", rig.rig, "flexstage rig stage.toml --seconds 10 --noise 1um --drift 5nm -o record.uff"),
+    (_TESTS, "identify", identify.identify, "flexstage identify record.uff --stage stage.toml --report modes.html"),
+    (_TESTS, "compare", identify.compare, "flexstage compare stage.toml --record record.uff --report compared.html"),
+    (
+        _TESTS,
+        "update",
+        update.update,
+        'flexstage update stage.toml --record record.uff --free "neck.thickness, steel.density" -o updated.toml',
+    ),
     (_INSTALLATION, "doctor", about.doctor, "flexstage doctor --mend"),
     (_INSTALLATION, "version", about.version, "flexstage version"),
 )

@@ -7,6 +7,7 @@ from typing import Any
 
 import tomlkit
 from tomlkit.exceptions import TOMLKitError
+from tomlkit.items import InlineTable
 
 from flexstage.base.finding import refuse
 from flexstage.mechanism.address import tag_of
@@ -66,6 +67,11 @@ def _put(document: Any, path: tuple[str, ...], address: str, tag: str) -> None:
     while depth < len(path) - 1 and isinstance(table.get(path[depth]), Mapping):
         table, depth = table[path[depth]], depth + 1
     key = ".".join(path[depth:]) or address
-    if TAGS not in table:
-        table[TAGS] = tomlkit.inline_table() if depth else tomlkit.table()
+    old = table.get(TAGS)
+    if depth and (old is None or isinstance(old, InlineTable)):  # made anew: what was taken out of the old one left blanks
+        table[TAGS] = tomlkit.inline_table()
+        table[TAGS].update({**(old or {}), key: tag})
+        return
+    if old is None:
+        table[TAGS] = tomlkit.table()
     table[TAGS][key] = tag
