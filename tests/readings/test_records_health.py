@@ -213,4 +213,4 @@ def test_stored_responses_are_examined() -> None:
     found = Responses(lines, CHANNELS[3:], CHANNELS[:3], np.ones((101, 3, 3), complex), np.full((101, 3, 3), 0.9), source="frf.mat")
     assert responses_findings(found, replace(STAGE, highest=150.0)) == []
     wrong = replace(found, coherence=1.2 * np.ones((101, 3, 3)), frequencies=lines[::-1], inputs=(*CHANNELS[:2], Channel("x", "V")))
-    assert [fault.kind for fault in responses_findings(wrong, STAGE)] == [Allow.NAMES, None, None]
+    assert [fault.kind for fault in responses_findings(wrong, STAGE)] == [Allow.NAMES, None, Allow.CLIPPED]

@@ -23,6 +23,7 @@ _REPEATED = 0.01
 _FAR = 0.3
 _PAIRED = 0.5
 _TRUSTED = 0.9
+_TURNED = np.deg2rad(20.0)
 
 
 @dataclass(frozen=True)
@@ -279,6 +280,10 @@ def _cautions(rows: tuple[ComparedMode, ...], repeated: tuple[RepeatedModes, ...
             found.append(
                 f"modes {names} are repeated; the experiment shows {group.seen} of {len(group.numbers)}: drive other actuators too."
             )
+    for group in repeated:
+        if group.angle is not None and group.angle > _TURNED:
+            names, angle = " and ".join(map(str, group.numbers)), f"{np.rad2deg(group.angle):.0f}"
+            found.append(f"modes {names} are repeated; what was measured of them lies up to {angle} degrees off their subspace.")
     lost = [row for row in rows if row.experiment is None]
     if lost:
         found.append(f"not found in the experiment: {', '.join(f'{row.number} ({row.name}, {row.theory:.4g} Hz)' for row in lost)}.")

@@ -120,6 +120,8 @@ def _sound_responses(responses: Responses, allow: frozenset[Allow], needs: Needs
     faults = responses_findings(responses, needs)
     require(fault.finding for fault in faults if fault.kind not in allow)
     dropped = {fault.channel for fault in faults if fault.kind is Allow.NAMES}
+    if responses.coherence is not None:
+        responses = replace(responses, coherence=np.clip(np.nan_to_num(responses.coherence), 0.0, 1.0))
     if not dropped:
         return responses
     rows = [index for index, channel in enumerate(responses.outputs) if channel.name not in dropped]

@@ -134,16 +134,19 @@ def responses_findings(responses: Responses, needs: Needs = _NEEDS) -> list[Faul
     elif needs.highest is not None and needs.highest > frequencies[-1]:
         what = f"its responses end at {frequencies[-1]:g} Hz, the highest mode is at {needs.highest:g} Hz"
         faults.append(Fault(Allow.SLOW, "", Finding(where, what, 'Measure a wider band, or allow "slow" to use what there is')))
-    if responses.coherence is not None and not np.all((responses.coherence >= 0.0) & (responses.coherence <= 1.0 + 1e-6)):
-        high, low = float(np.nanmax(responses.coherence)), float(np.nanmin(responses.coherence))
-        faults.append(
-            Fault(
-                None,
-                "",
-                Finding(where, f"its coherence runs from {low:g} to {high:g}", "Coherence lies between 0 and 1: check what was exported"),
-            )
-        )
+    if responses.coherence is not None:
+        faults += _coherence(responses.coherence, where)
     return faults
+
+
+def _coherence(coherence: Array, where: str) -> Iterator[Fault]:
+    """Some analysers write values above 1 where they averaged little."""
+    outside = int(np.sum(~((coherence >= 0.0) & (coherence <= 1.0 + 1e-6))))
+    if outside:
+        low, high = float(np.nanmin(coherence)), float(np.nanmax(coherence))
+        what = f"its coherence runs from {low:g} to {high:g}, outside 0 to 1 in {outside} of {coherence.size} values"
+        advice = 'Check what was exported, or allow "clipped" to cut it off there'
+        yield Fault(Allow.CLIPPED, "", Finding(where, what, advice))
 
 
 def _samples(record: Record, found: Gathered, where: str) -> Iterator[Fault]:

@@ -42,7 +42,7 @@ class Allow(Enum):
     DEAD = "dead"
     """Leave out channels that are dead, constant or stand still."""
     CLIPPED = "clipped"
-    """Use clipped and coarsely quantised channels as they are."""
+    """Use clipped and coarsely quantised channels as they are; cut a stored coherence off at 0 and 1."""
     UNITS = "units"
     """Use numbers whose unit is missing or unknown as they are."""
     DEPENDENT = "dependent"

@@ -125,3 +125,7 @@ def _wanted(path: Path, found: Record | Responses, options: Options) -> Record |
     if options.kind not in (None, kind):
         raise refuse(str(path), f"it holds a {kind.value}, not what is asked for ({options.kind.value})", f'Ask for "{kind.value}"')
     return found
+
+
+read_record = read
+"""`read` under the name it has in `flexstage` itself."""

@@ -78,3 +78,7 @@ def write(path: str | os.PathLike[str], what: Record | Responses, form: Form | N
         write_hdf(path, what)
     else:
         write_table(path, what)
+
+
+write_record = write
+"""`write` under the name it has in `flexstage` itself."""

@@ -1,0 +1,268 @@
+"""The commands `identify` and `compare`: documents, tables, reports, and everything that can be wrong with a record."""
+
+from __future__ import annotations
+
+import re
+import xml.etree.ElementTree as ET
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from flexstage.base.digest import digest
+from flexstage.cases.double_triangle import double_triangle
+from flexstage.mechanism.store import load
+from flexstage.readings.lumped import lumped
+from flexstage.readings.measured.record import Channel, InMemory, Record, Role, in_memory
+from flexstage.readings.measured.write import write
+from flexstage.studies.complete import platform_modes
+from tests.apps.command import Command
+from tests.readings.stage_records import stage_record
+
+
+@pytest.fixture(scope="module")
+def record() -> Record:
+    return stage_record(double_triangle())
+
+
+@pytest.fixture
+def recorded(flexstage: Command, tmp_path: Path, record: Record) -> Command:
+    """The command line in a folder with stage.toml and record.uff."""
+    write(tmp_path / "record.uff", record)
+    return flexstage
+
+
+def test_identify_gives_a_document(recorded: Command) -> None:
+    ended = recorded("identify", "record.uff", "--stage", "stage.toml", "--json", "-")
+    assert ended.code == 0, ended.err
+    document = ended.document
+    assert (document["kind"], document["name"], document["reading"]) == ("identify", "double triangle", None)
+    assert document["physics_digest"] == digest(load("stage.toml"), physics=True)
+    assert [each["kind"] for each in document["test"]] == ["record"]
+    known = platform_modes(double_triangle(), lumped(double_triangle())).platform_frequencies
+    assert [mode["frequency_hz"] for mode in document["modes"]] == pytest.approx(known.tolist(), rel=5e-4)
+    for mode in document["modes"]:
+        low, high = mode["frequency_interval_hz"]
+        assert low < mode["frequency_hz"] < high
+        assert set(mode["shape"]) == {"S1", "S2", "S3", "S4", "S5", "S6"}
+        assert set(mode["participation"]) == {"B1", "B2", "B3", "B4", "B5", "B6"}
+    assert document["close"] == [[1, 2], [5, 6]]
+    assert document["shapes"]["rows"] == ["S1", "S2", "S3", "S4", "S5", "S6"]
+    assert len(document["platform"]["twists"]) == 6
+    assert document["spectra"]["averages"] > 6
+
+
+def test_identify_without_a_stage(recorded: Command) -> None:
+    document = recorded("identify", "record.uff", "--json", "-").document
+    assert document["name"] is None
+    assert document["physics_digest"] is None
+    assert "platform" not in document
+    assert len(document["modes"]) == 6
+
+
+def test_tables_are_shown(recorded: Command) -> None:
+    ended = recorded("identify", "record.uff")
+    assert ended.code == 0
+    for text in ("What was measured", "20 s at 1024 Hz", "Modes found", "95 % interval", "Shapes of the modes"):
+        assert text in ended.out
+
+
+def test_a_band_is_kept_to(recorded: Command) -> None:
+    document = recorded("identify", "record.uff", "--band", "120 Hz", "0.16 kHz", "--json", "-").document
+    assert [round(mode["frequency_hz"]) for mode in document["modes"]] == [126, 144]
+    assert document["band_hz"] == [120.0, 160.0]
+
+
+def test_a_resolution_is_kept_to(recorded: Command) -> None:
+    document = recorded("identify", "record.uff", "--resolution", "2 Hz", "--json", "-").document
+    assert document["spectra"]["resolution_hz"] == 2.0
+
+
+def pictures(page: str) -> list[str]:
+    return re.findall(r"<svg.*?</svg>", page, flags=re.DOTALL)
+
+
+def test_the_report_stands_alone(recorded: Command, tmp_path: Path) -> None:
+    ended = recorded("identify", "record.uff", "--stage", "stage.toml", "--report", "modes.html")
+    assert ended.code == 0, ended.err
+    page = (tmp_path / "modes.html").read_text()
+    for title in ("Modes found", "Shapes on the stage", "Responses", "Coherence", "Stabilisation"):
+        assert f"<h2>{title}</h2>" in page
+    assert "http://" not in page.replace("http://www.w3.org", "")
+    drawn = pictures(page)
+    assert len(drawn) == 6 + 4  # shapes; responses, estimators, coherence, stabilisation
+    for each in drawn:
+        ET.fromstring(each)  # noqa: S314  our own text
+    assert "NaN" not in page
+    assert "nan" not in "".join(drawn)
+
+
+def test_the_report_of_a_comparison(recorded: Command, tmp_path: Path) -> None:
+    ended = recorded("compare", "stage.toml", "--record", "record.uff", "--report", "compared.html")
+    assert ended.code == 0, ended.err
+    page = (tmp_path / "compared.html").read_text()
+    assert page.index("<h2>Theory and experiment</h2>") < page.index("<h2>Modes found</h2>")
+    assert len(pictures(page)) == 6 + 5
+
+
+def test_compare_gives_a_document(recorded: Command) -> None:
+    ended = recorded("compare", "stage.toml", "--record", "record.uff", "--json", "-")
+    assert ended.code == 0, ended.err
+    document = ended.document
+    assert (document["kind"], document["reading"]) == ("compare", "lumped")
+    assert [mode["name"] for mode in document["modes"]] == ["tilt", "tilt", "z", "yaw", "x", "y"]
+    for mode in document["modes"]:
+        assert abs(mode["theory_over_experiment"]) < 5e-4
+        assert mode["modal_assurance"] > 0.99
+        assert mode["fea_hz"] is None
+    assert [group["modes"] for group in document["repeated"]] == [[1, 2], [5, 6]]
+    assert "--fea" in ended.err
+
+
+def test_compare_takes_changes_and_readings(recorded: Command) -> None:
+    softer = recorded("compare", "stage.toml", "--record", "record.uff", "--set", "horizontal/front.thickness=1.4mm", "--json", "-")
+    assert softer.document["modes"][3]["theory_over_experiment"] < -0.002
+    mapped = recorded("compare", "stage.toml", "--record", "record.uff", "--reading", "mapped", "--json", "-")
+    assert mapped.document["reading"] == "mapped"
+    assert recorded("compare", "stage.toml", "--record", "record.uff", "--reading", "ideal").code == 2
+
+
+def test_records_of_single_actuators_are_put_together(flexstage: Command, tmp_path: Path) -> None:
+    names = [f"B{number}.csv" for number in range(1, 7)]
+    for number, name in enumerate(names):
+        write(tmp_path / name, stage_record(double_triangle(), seed=10 + number, seconds=12.0, active=(number,)))
+    whole = flexstage("identify", *names, "--json", "-").document
+    known = platform_modes(double_triangle(), lumped(double_triangle())).platform_frequencies
+    assert [mode["frequency_hz"] for mode in whole["modes"]] == pytest.approx(known.tolist(), rel=1e-3)
+    alone = flexstage("identify", names[0], "--json", "-")
+    assert "only B1 was driven" in alone.err
+    assert "one combination only" in alone.document["warnings"][0]
+
+
+def test_noise_gives_no_mode_and_says_so(flexstage: Command, tmp_path: Path) -> None:
+    channels = [Channel("u1", "V", Role.INPUT), Channel("y1", "um", Role.OUTPUT), Channel("y2", "um", Role.OUTPUT)]
+    write(tmp_path / "noise.csv", in_memory(channels, 512.0, np.random.default_rng(2).standard_normal((8192, 3))))
+    ended = flexstage("identify", "noise.csv", "--report", "noise.html")
+    assert ended.code == 0
+    assert "no mode stands out of the noise" in ended.err
+    assert "No mode was found" in ended.out
+    assert "no mode stands out of the noise" in (tmp_path / "noise.html").read_text()
+
+
+def changed(column: str, change: Callable[[np.ndarray], Any]) -> Callable[[Record], Record]:
+    def made(record: Record) -> Record:
+        values = record.values.copy()
+        values[:, record.names.index(column)] = change(values[:, record.names.index(column)])
+        return replace(record, samples=InMemory(values))
+
+    return made
+
+
+def with_gap(values: np.ndarray) -> np.ndarray:
+    values[5000:5100] = np.nan
+    return values
+
+
+def without_unit(record: Record) -> Record:
+    return replace(record, channels=tuple(replace(each, unit="") if each.name == "S3" else each for each in record.channels))
+
+
+def copied_input(record: Record) -> Record:
+    values = record.values.copy()
+    values[:, 1] = 2.0 * values[:, 0]
+    return replace(record, samples=InMemory(values))
+
+
+def renamed(record: Record) -> Record:
+    return replace(record, channels=tuple(replace(each, name="S9") if each.name == "S3" else each for each in record.channels))
+
+
+FAULTS: dict[str, tuple[Callable[[Record], Record], str, str]] = {
+    "gap": (changed("S2", with_gap), "S2: 100 of 20480 samples are not numbers", "gaps"),
+    "dead": (changed("S2", lambda values: 0.0 * values), "S2: it is zero throughout", "dead"),
+    "clipped": (changed("S2", lambda values: np.clip(values, -0.5 * np.std(values), 0.5 * np.std(values))), "S2: it is clipped", "clipped"),
+    "unit": (without_unit, "S3: no unit is stated", "units"),
+    "dependent": (copied_input, "is explained by the other inputs", "dependent"),
+    "name": (renamed, "S9: the stage has no output of this name", "names"),
+}
+
+
+@pytest.mark.parametrize("fault", FAULTS)
+def test_faults_are_named_and_used_only_when_allowed(flexstage: Command, tmp_path: Path, record: Record, fault: str) -> None:
+    change, told, allowed = FAULTS[fault]
+    write(tmp_path / "bad.h5", change(record))
+    arguments = ("identify", "bad.h5", "--stage", "stage.toml", "--json", "-")
+    ended = flexstage(*arguments)
+    assert ended.code == 2
+    assert ended.out == ""
+    assert told in ended.err
+    assert "Traceback" not in ended.err
+    cured = flexstage(*arguments, "--allow", allowed)
+    assert cured.code == 0, cured.err
+    assert cured.document["modes"]
+
+
+def test_units_can_be_stated(flexstage: Command, tmp_path: Path, record: Record) -> None:
+    write(tmp_path / "bare.h5", without_unit(record))
+    ended = flexstage("identify", "bare.h5", "--units", "S*=um", "--json", "-")
+    assert ended.code == 0, ended.err
+    assert {each["unit"] for each in ended.document["test"][0]["outputs"]} == {"um"}
+
+
+def test_sampling_below_twice_the_highest_mode(flexstage: Command, tmp_path: Path, record: Record) -> None:
+    write(tmp_path / "slow.h5", replace(record, rate=300.0))
+    ended = flexstage("compare", "stage.toml", "--record", "slow.h5")
+    assert ended.code == 2
+    assert "300 Hz, less than twice the highest mode at 173" in ended.err
+
+
+def test_all_files_are_looked_at(flexstage: Command, tmp_path: Path, record: Record) -> None:
+    write(tmp_path / "dead.h5", FAULTS["dead"][0](record))
+    write(tmp_path / "bare.h5", without_unit(record))
+    ended = flexstage("identify", "dead.h5", "bare.h5")
+    assert ended.code == 2
+    assert "dead.h5: S2: it is zero" in ended.err
+    assert "bare.h5: S3: no unit" in ended.err
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [
+        (("nowhere.uff",), "there is no such file"),
+        (("stage.toml",), "stage.toml"),
+        (("record.uff", "--allow", "everything"), '"everything" is none of truncated, gaps'),
+        (("record.uff", "--kind", "film"), '"film" is none of record, responses'),
+        (("record.uff", "--kind", "responses"), "record.uff"),
+        (("record.uff", "--units", "um"), "names no channel and unit"),
+        (("record.uff", "--rate", "fast"), "--rate"),
+        (("record.uff", "--rate", "0 Hz"), "--rate"),
+        (("record.uff", "--band", "200 Hz", "100 Hz"), "is no band"),
+        (("record.uff", "--band", "2 kHz", "3 kHz"), "less than twice the highest mode"),
+        (("record.uff", "--resolution", "0.1 Hz"), "averages at a resolution of 0.1 Hz"),
+        (("record.uff", "--inputs", "X*"), "no channel is called so"),
+        (("record.uff", "--inputs", "B1", "--outputs", "B1"), "as an input and as an output"),
+        (("record.uff", "--only", "S*"), "is an input"),
+        (("record.uff", "--stage", "nowhere.toml"), "nowhere.toml"),
+        (("record.uff", "--report", "record.uff"), "a record that is read"),
+        (("record.uff", "--report", "no/folder.html"), "cannot be written"),
+        (("record.uff", "--stage", "stage.toml", "--report", "stage.toml"), "the design file"),
+        (("record.uff", "--json", "-", "--report", "-"), "stdout"),
+    ],
+)
+def test_bad_input_is_told(recorded: Command, arguments: tuple[str, ...], told: str) -> None:
+    ended = recorded("identify", *arguments)
+    assert ended.code == 2, ended.err
+    assert ended.out == ""
+    assert told in ended.err
+    assert "Traceback" not in ended.err
+
+
+def test_a_truncated_file_is_told(recorded: Command, tmp_path: Path) -> None:
+    whole = (tmp_path / "record.uff").read_bytes()
+    (tmp_path / "cut.uff").write_bytes(whole[: len(whole) // 2])
+    ended = recorded("identify", "cut.uff")
+    assert ended.code == 2
+    assert "cut.uff" in ended.err

@@ -1,0 +1,154 @@
+"""Theory against experiment: records of a known stage give its differences back, whatever their channels' order, units and signs."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from flexstage.analysis.modes import modal_assurance
+from flexstage.base.finding import DesignError
+from flexstage.cases.double_triangle import double_triangle
+from flexstage.mechanism.address import assign
+from flexstage.readings.ideal import ideal
+from flexstage.readings.lumped import lumped
+from flexstage.readings.measured.identified import Identified
+from flexstage.readings.measured.record import Channel, InMemory, Record, in_memory
+from flexstage.studies.compare import Compared, compare
+from flexstage.studies.complete import platform_modes
+from flexstage.studies.fea_modes import FeaModes
+from flexstage.studies.identification import identification, sound
+from flexstage.studies.measured_shapes import stage_shapes
+from tests.readings.stage_records import stage_record
+
+STAGE = double_triangle()
+BUILT = assign(STAGE, "horizontal/front.thickness=1.8mm")
+"""The stage as it was made: not as it was drawn."""
+
+
+def identified(record: Record) -> Identified:
+    return identification(sound([record])).found
+
+
+@pytest.fixture(scope="module")
+def record() -> Record:
+    return stage_record(BUILT)
+
+
+@pytest.fixture(scope="module")
+def experiment(record: Record) -> Identified:
+    return identified(record)
+
+
+@pytest.fixture(scope="module")
+def compared(experiment: Identified) -> Compared:
+    return compare(STAGE, experiment)
+
+
+def expected() -> np.ndarray:
+    drawn, built = (platform_modes(each, lumped(each)).platform_frequencies for each in (STAGE, BUILT))
+    return drawn / built - 1.0
+
+
+def test_the_stage_differs_as_it_was_made_to(compared: Compared) -> None:
+    assert max(abs(expected())) > 0.005
+    for row, known in zip(compared.rows, expected(), strict=True):
+        assert row.difference == pytest.approx(known, abs=3.0 * row.uncertainty + 1e-12)
+        assert row.uncertainty < 1e-3
+        assert row.assurance > 0.99
+
+
+def test_repeated_modes_are_one_plane(compared: Compared) -> None:
+    assert [group.numbers for group in compared.repeated] == [(1, 2), (5, 6)]
+    for group in compared.repeated:
+        assert group.seen == 2
+        assert group.angle < np.deg2rad(3.0)
+    assert compared.unpaired == ()
+    assert compared.warnings == ()
+
+
+def test_channels_are_told_by_name(record: Record, compared: Compared) -> None:
+    turned = record.select(record.names[::-1])
+    again = compare(STAGE, identified(turned))
+    for row, known in zip(again.rows, compared.rows, strict=True):
+        assert row.experiment.frequency == pytest.approx(known.experiment.frequency, rel=1e-5)
+        assert row.assurance == pytest.approx(known.assurance, abs=1e-3)
+
+
+def test_units_do_not_matter(record: Record, compared: Compared) -> None:
+    values = record.values.copy()
+    values[:, record.names.index("S2")] *= 1e-3
+    channels = tuple(replace(each, unit="mm") if each.name == "S2" else each for each in record.channels)
+    again = compare(STAGE, identified(replace(record, channels=channels, samples=InMemory(values))))
+    assert [row.assurance for row in again.rows] == pytest.approx([row.assurance for row in compared.rows], abs=1e-3)
+
+
+def test_a_gauge_the_wrong_way_round_shows(record: Record) -> None:
+    values = record.values.copy()
+    values[:, record.names.index("S4")] *= -1.0
+    again = compare(STAGE, identified(replace(record, samples=InMemory(values))))
+    assert min(row.assurance or 0.0 for row in again.rows) < 0.9
+    assert any("assurance" in text or "not found" in text for text in again.warnings)
+
+
+def test_fea_stands_beside_them(experiment: Identified, compared: Compared) -> None:
+    softer = assign(STAGE, "vertical/pivot.thickness=0.9mm")
+    model = lumped(softer)
+    errors = (0.001,) * 6
+    found = compare(STAGE, experiment, FeaModes(platform_modes(softer, model), model, 3, errors))
+    known = platform_modes(softer, model).platform_frequencies
+    assert sorted(row.fea for row in found.rows) == pytest.approx(sorted(known.tolist()))
+    assert [row.experiment for row in found.rows] == [row.experiment for row in compared.rows]
+    assert all(row.fea_assurance > 0.9 and row.fea_error == 0.001 for row in found.rows)
+
+
+def test_one_actuator_shows_one_of_a_pair() -> None:
+    # The two tilts of this stage are driven by the vertical units alike: one alone drives one combination.
+    found = compare(STAGE, identified(stage_record(BUILT, active=(3,))))
+    assert any("only B4 was driven" in text for text in found.warnings)
+    assert any("repeated" in text or "not found" in text for text in found.warnings)
+
+
+def test_too_few_gauges_are_told(record: Record) -> None:
+    few = identified(record.select(["B1", "B2", "B3", "B4", "B5", "B6", "S4", "S5", "S6"]))
+    found = compare(STAGE, few)
+    assert any("3 sensors" in text for text in found.warnings)
+    assert "3 of the 6 motions" in stage_shapes(ideal(STAGE), few).missing
+
+
+def test_names_that_are_none_of_the_stage(record: Record) -> None:
+    renamed = replace(record, channels=tuple(Channel(f"probe {each.name}", each.unit, each.role) for each in record.channels))
+    with pytest.raises(DesignError, match="no output of this name"):
+        compare(STAGE, identified(renamed))
+
+
+def test_noise_alone_is_compared_with_nothing() -> None:
+    silent = stage_record(STAGE)
+    noise = np.random.default_rng(5).standard_normal(silent.values.shape)
+    found = compare(STAGE, identified(in_memory(silent.channels, silent.rate, noise)))
+    assert all(row.experiment is None for row in found.rows)
+    assert any("no mode stands out" in text for text in found.warnings)
+    assert any("not found in the experiment: 1 (tilt" in text for text in found.warnings)
+
+
+def test_shapes_move_the_platform_as_the_model_does(experiment: Identified) -> None:
+    """Through R_s^-1 the measured shapes are the platform's own, modes that are not repeated one by one."""
+    found = stage_shapes(ideal(STAGE), experiment)
+    model = lumped(BUILT)
+    known = platform_modes(BUILT, model).platform_shapes
+    mass = model.inertia["platform"].law
+    alike = modal_assurance(found.twists["platform"], known, mass).values
+    assert alike[2, 2] > 0.99
+    assert alike[3, 3] > 0.99
+    assert np.allclose(alike[:2, :2].sum(axis=1), 1.0, atol=0.02)
+    assert found.explained == pytest.approx(np.ones(6), abs=1e-9)
+
+
+def test_bodies_move_with_the_platform(experiment: Identified) -> None:
+    found = stage_shapes(ideal(STAGE), experiment)
+    kinematics = ideal(STAGE)
+    names = [f"B4/pole.{axis}" for axis in ("x", "y", "z", "rx", "ry", "rz")]
+    rows = kinematics.bodies[[kinematics.body_coordinates.index(name) for name in names]]
+    platform = np.linalg.lstsq(kinematics.motion, found.twists["platform"], rcond=None)[0]
+    assert found.twists["B4/pole"] == pytest.approx(rows @ platform, abs=1e-12)
