@@ -80,7 +80,7 @@ def rooted(forms: Mapping[str, HingeForm]) -> dict[str, HingeSolid]:
     for name, form in forms.items():
         assert form.roots.second or not form.roots.first
         if form.roots == Roots(False, True):
-            end = transport(np.array([0.5 * span(form.part), 0.0, 0.0]))
+            end = transport(np.array([-0.5 * span(form.part), 0.0, 0.0]))  # from the second end to the centre
             more = found[name].compliance + 0.1 * end @ np.diag(np.diag(found[name].compliance)) @ end.T
             found[name] = replace(found[name], compliance=more, stiffness=np.linalg.inv(more), whole=more)
     return found
@@ -91,7 +91,7 @@ def test_a_root_yields_at_its_own_end() -> None:
     after = fs.loads(fs.calibrate(fs.dumps(stage), rooted).text)
     assert {link.part for link in after.units["horizontal"].links.values()} == {"neck-back", "stack_horizontal", "neck-front"}
     links = expand(after).links
-    for name, side in (("back", 1.0), ("pivot", -1.0)):
+    for name, side in (("back", -1.0), ("pivot", 1.0)):
         copy = "B1" if name == "back" else "B4"
         part = links[f"{copy}/{name}"].part
         assert isinstance(part, fs.Given)

@@ -136,3 +136,12 @@ def test_an_end_of_an_arc_may_be_held_rigid() -> None:
     free = hinge_compliance(NOTCH, STEEL, careful).compliance
     assert np.all(np.diag(held)[[0, 2, 4, 5]] < np.diag(free)[[0, 2, 4, 5]])
     assert held[5, 5] == pytest.approx(free[5, 5], rel=0.06)  # a notch bends where it is thin
+
+
+def test_a_root_of_an_arc_turns_where_it_is() -> None:
+    """The rotation that a root adds, seen from the centre, turns about a point near that end: stubs are taken off where they stand."""
+    careful = Accuracy(error=0.0, orders=(4, 4), meshes=1)
+    held, rooted = (hinge_compliance(NOTCH, STEEL, careful, roots=Roots(False, end)).compliance for end in (False, True))
+    for sideways, about, sign in ((1, 5, -1.0), (2, 4, 1.0)):
+        more = rooted[about, about] - held[about, about]
+        assert 1.0 * MM < sign * rooted[sideways, about] / more < 3.0 * MM

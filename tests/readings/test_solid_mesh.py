@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -9,6 +11,7 @@ pytest.importorskip("ngsolve", reason="the solid reading needs flexstage[solid]"
 
 import ngsolve
 
+from flexstage.base.finding import DesignError
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.mechanism.mechanism import Link, Mechanism
 from flexstage.parts.body import Body
@@ -97,3 +100,11 @@ def test_bending_is_within_one_percent_of_a_higher_order(part: str) -> None:
     np.testing.assert_allclose(third[[0, 1, 2, 4, 5]], fourth[[0, 1, 2, 4, 5]], rtol=1e-2)
     np.testing.assert_allclose(third[3], fourth[3], rtol=1.5e-2)
     assert np.all(third < fourth)
+
+
+def test_a_neck_too_thin_to_follow_is_named_at_once() -> None:
+    notch = replace(STAGE.parts["lever_notch"], thickness=1e-6)
+    link = Link(("ground", "platform"), "notch", (0.0, 0.0, 0.0), (1.0, 0.0, 0.0), bends=(0.0, 0.0, 1.0))
+    stage = Mechanism("hinge", STAGE.materials, {"notch": notch}, {"platform": Body(mass=1.0)}, {"hinge": link})
+    with pytest.raises(DesignError, match=r"hinge: its 0\.001 mm are too thin to mesh over 50\.3 x"):
+        meshed(components(stage)[0], Fineness())

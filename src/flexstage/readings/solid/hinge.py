@@ -282,7 +282,7 @@ def _stubs(part: Hinge, lengths: tuple[float, float], own: Medium) -> Array:
 
 def _seen(compliance: Array, away: float) -> Array:
     """A compliance about a point `away` [m] along x, about the centre."""
-    shift = transport(np.array([away, 0.0, 0.0]))
+    shift = transport(np.array([-away, 0.0, 0.0]))
     return shift @ compliance @ shift.T
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,7 +11,7 @@ import numpy as np
 from netgen import occ
 from netgen.meshing import MeshingParameters
 
-from flexstage.base.finding import refuse
+from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.number import Array
 from flexstage.parts.neck import Neck
 from flexstage.parts.notch import Notch
@@ -35,6 +35,8 @@ _SLENDER = 0.4
 """Share for straight necks: as wide as thick, they cost little."""
 _PRINT = 1.0 / 3.0
 """Elements under another component's end face over the root of its area, at a neck of one: a small one presses a root into the body."""
+_MOST = 3e5
+"""Elements that may cover one link."""
 _WITHIN = 1e-6
 """A face belongs to a piece when its centre is this near its bounding box [m]."""
 
@@ -62,6 +64,7 @@ def meshed(component: Component, fineness: Fineness, report: Report = silent, fi
     >>> round(ngsolve.Integrate(1, whole.mesh), 6), whole.faces  # mm^3
     (10000.0, ('end', 'foot'))
     """
+    require(_too_thin(component, fineness))
     report(Stage.DRAWING, 0.0)
     drawing = cad(component)
     failure = "the mesher was not asked"
@@ -83,6 +86,19 @@ def meshed(component: Component, fineness: Fineness, report: Report = silent, fi
             return result
         failure = result
     raise _unmeshed(component, failure)
+
+
+def _too_thin(component: Component, fineness: Fineness) -> Iterator[Finding]:
+    """Links so thin for their length and width that elements of their size would never end."""
+    for piece in component.pieces:
+        size = _size(piece, fineness) / MILLIMETRES
+        sides = sorted(2.0 * half_extents(piece))
+        count = sides[1] * sides[2] / size**2
+        if piece.body is None and count > _MOST:
+            over = " x ".join(f"{side * MILLIMETRES:.4g}" for side in (sides[2], sides[1]))
+            what = f"its {thinnest(piece.form) * MILLIMETRES:.3g} mm are too thin to mesh over {over} mm"
+            more = f"that takes some {count:.1g} elements of {size * MILLIMETRES:.3g} mm, {_MOST:.1g} are allowed"
+            yield Finding(piece.name, f"{what}: {more}", "Check the thickness, or ask for larger elements (Fineness.neck)")
 
 
 def _attempted(drawing: Cad, order: int, sizes: Mapping[str, Any]) -> ngsolve.Mesh | str:
