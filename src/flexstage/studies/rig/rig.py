@@ -61,7 +61,7 @@ def simulated(
     found = chain(model, plan, law)
     require(range_findings(plan, found))
     scale = plan.volts if setup.recorded is Recorded.VOLTAGE else np.full(len(plan.actuators), _MICROMETRE)
-    source = f"{mechanism.name or 'stage'}; {model.provenance}; {found.note}; seed {setup.seed}"
+    source = f"seed {setup.seed}; {found.note}; {mechanism.name or 'stage'}; {model.provenance}"  # forms cut names: what matters first
     return Simulated(plan, found, scale, _MICROMETRE, source, tell)
 
 
@@ -71,8 +71,8 @@ def as_record(test: Simulated) -> Record:
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.readings.mapped import mapped
     >>> stage = double_triangle()
-    >>> as_record(simulated(stage, mapped(stage), RigSetup(seconds=1.0))).name.rpartition("; ")[2]
-    'seed 0'
+    >>> as_record(simulated(stage, mapped(stage), RigSetup(seconds=1.0))).name.partition("; ")[0]
+    'rig: seed 0'
     """
     return Record(_channels(test.plan), test.plan.rate, test, name=f"rig: {test.source}", source="virtual test rig")
 

@@ -1,0 +1,134 @@
+"""The command `rig`: records in every form, the options heard, bad input named, nothing left behind when it is interrupted."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import flexstage as fs
+from flexstage.readings.measured.read import read
+from flexstage.readings.measured.record import Record
+from flexstage.studies.rig.samples import Simulated
+from tests.apps.command import Command
+
+SHORT = ("rig", "stage.toml", "--seconds", "2", "--reading", "mapped")
+
+
+def record(path: Path) -> Record:
+    found = read(path)
+    assert isinstance(found, Record)
+    return found
+
+
+@pytest.mark.parametrize("name", ["record.uff", "record.mat", "record.h5", "record.csv"])
+def test_a_record_is_that_of_the_rig_in_python(flexstage: Command, tmp_path: Path, name: str) -> None:
+    ended = flexstage(*SHORT, "--seed", "7", "--rate", "1kHz", "--drift", "5nm", "-o", name)
+    assert ended.code == 0, ended.err
+    assert f"Wrote {name}" in ended.err
+    found = record(tmp_path / name)
+    stage = fs.load(tmp_path / "stage.toml")
+    made = fs.rig(stage, fs.mapped(stage), fs.RigSetup(seconds=2.0, rate=1000.0, seed=7, sensing=fs.Sensing(drift=5e-9)))
+    np.testing.assert_array_equal(found.values, made.values)
+    assert found.rate == 1000.0
+    assert [each.name for each in found.inputs] == ["B1", "B2", "B3", "B4", "B5", "B6"]
+    assert [each.name for each in found.outputs] == ["S1", "S2", "S3", "S4", "S5", "S6"]
+    assert found.name.startswith("rig: seed 7; modal damping 0.01; double triangle")
+
+
+def test_every_option_is_heard(flexstage: Command, tmp_path: Path) -> None:
+    options = {
+        "--noise": "2V",
+        "--band": ("10 Hz", "400 Hz"),
+        "--filter-order": "4",
+        "--filter-corner": "500 Hz",
+        "--gauge-noise": "0.1 nm/Hz^0.5",
+        "--resolution": "1 nm",
+        "--tap": "command",
+        "--inputs": "voltage",
+        "--rate": "2 kHz",
+    }
+    words = [word for key, value in options.items() for word in (key, *((value,) if isinstance(value, str) else value))]
+    several = ("--actuator", "B1", "--actuator", "B5", "--amplifier", "1kohm", "--amplifier", "0.1 A")
+    ended = flexstage(*SHORT, *words, *several, "-o", "record.h5")
+    assert ended.code == 0, ended.err
+    stage = fs.load(tmp_path / "stage.toml")
+    setup = fs.RigSetup(
+        seconds=2.0,
+        rate=2000.0,
+        drive=fs.NoiseDrive(voltage=2.0, band=(10.0, 400.0), actuators=("B1", "B5")),
+        amplifier=fs.Amplifier(resistance=1000.0, current=0.1),
+        filter=fs.AntiAlias(4, 500.0),
+        sensing=fs.Sensing(density=1e-10, resolution=1e-9),
+        tap=fs.Tap.COMMAND,
+        recorded=fs.Recorded.VOLTAGE,
+    )
+    np.testing.assert_array_equal(record(tmp_path / "record.h5").values, fs.rig(stage, fs.mapped(stage), setup).values)
+    assert "slowest amplifier or gauge 122.4 Hz" in " ".join(ended.out.split())
+
+
+def test_the_table_gives_the_rms_to_expect(flexstage: Command, tmp_path: Path) -> None:
+    ended = flexstage("rig", "stage.toml", "--seconds", "60", "--reading", "mapped", "-o", "record.h5")
+    (line,) = (line.split() for line in ended.out.splitlines() if line.split()[:1] == ["S4"])
+    assert line[1:3] == ["output", "um"]
+    found = np.std(record(tmp_path / "record.h5").select(["S4"]).values)
+    assert float(line[3]) == pytest.approx(found, rel=0.05)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "texts"),
+    [
+        (("--seconds", "0"), ("seconds", "0 s")),
+        (("--seconds", "-3"), ("seconds", "-3 s")),
+        (("--rate", "0 Hz"), ("rate", "0 Hz")),
+        (("--rate", "300 Hz"), ("300 Hz", "twice the highest platform mode, 176.7 Hz")),
+        (("--rate", "300"), ("--rate", "without a unit")),
+        (("--noise", "50um"), ("B1", "6 x 50 um", "-75 um to 75 um")),
+        (("--noise", "1kg"), ("--noise", "displacement", "voltage")),
+        (("--actuator", "B11"), ("actuator B11", "B1")),
+        (("--amplifier", "5 s"), ("--amplifier", "frequency", "resistance", "current")),
+        (("--band", "100 Hz", "50 Hz"), ("band", "100 Hz to 50 Hz")),
+        (("--gauge-noise", "1 nm"), ("--gauge-noise", "noise density")),
+        (("--drift", "2"), ("--drift", "without a unit")),
+        (("--reading", "ideal"), ("--reading ideal", "no modes")),
+        (("--tap", "both"), ("--tap", "monitor, command")),
+        (("-o", "record.xyz"), ("record.xyz", ".uff")),
+        (("-o", "nowhere/record.uff"), ("no folder nowhere",)),
+        (("-o", "stage.toml"), ("the design file",)),
+    ],
+)
+def test_bad_input_is_named_and_nothing_written(
+    flexstage: Command, tmp_path: Path, arguments: tuple[str, ...], texts: tuple[str, ...]
+) -> None:
+    ended = flexstage(*SHORT, "-o", "record.uff", *arguments)
+    assert ended.code == 2
+    assert ended.out == ""
+    assert all(text in ended.err for text in texts), ended.err
+    assert "Traceback" not in ended.err
+    assert [path.name for path in tmp_path.iterdir()] == ["stage.toml"]
+
+
+def test_all_that_is_wrong_is_told_at_once(flexstage: Command) -> None:
+    ended = flexstage(*SHORT, "-o", "record.uff", "--noise", "1kg", "--rate", "fast", "--drift", "2")
+    assert ended.err.startswith("error: 3 findings")
+    ended = flexstage("rig", "stage.toml", "-o", "record.uff", "--seconds", "0", "--rate", "10 Hz", "--actuator", "B9")
+    assert ended.err.startswith("error: 3 findings")
+
+
+@pytest.mark.parametrize("name", ["record.uff", "record.mat", "record.h5", "record.csv"])
+def test_an_interrupted_test_leaves_nothing(flexstage: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str) -> None:
+    computed = Simulated._computed
+
+    def interrupted(self: Simulated, number: int) -> object:
+        if number == 2:
+            raise KeyboardInterrupt
+        return computed(self, number)
+
+    (tmp_path / name).write_text("old")
+    monkeypatch.setattr(Simulated, "_computed", interrupted)
+    ended = flexstage("rig", "stage.toml", "--seconds", "60", "--reading", "mapped", "-o", name)
+    assert ended.code == 2
+    assert ended.err.startswith("Interrupted; nothing was written.")
+    assert (tmp_path / name).read_text() == "old"
+    assert sorted(path.name for path in tmp_path.iterdir()) == sorted([name, "stage.toml"])
