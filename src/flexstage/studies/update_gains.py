@@ -24,7 +24,7 @@ _SKIPPED = 2
 _FEWEST = 8
 _NEIGHBOURS = 1.94
 """Lines per independent one: Hann's neighbours share (2/3)^2 and (1/6)^2 of their variance on either side."""
-_LENGTH, _VOLTAGE = dimension_of("m").powers, dimension_of("V").powers
+_LENGTH, _VOLTAGE = dimension_of("m"), dimension_of("V")
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,9 +102,9 @@ def _size(mechanism: Mechanism, channel: Channel) -> float:
     if unit_problem(channel.unit) is not None:
         return float("nan")
     unit = dimension_of(channel.unit)
-    if unit.powers == _LENGTH:
-        return float(unit.size)
+    if unit.powers == _LENGTH.powers:
+        return float(unit.size / _LENGTH.size)
     known = stacks(mechanism)
-    if unit.powers == _VOLTAGE and channel.name in known:
-        return float(unit.size) / volts_per_metre(known[channel.name])
+    if unit.powers == _VOLTAGE.powers and channel.name in known:
+        return float(unit.size / _VOLTAGE.size) / volts_per_metre(known[channel.name])
     return float("nan")
