@@ -20,12 +20,12 @@ from flexstage.present.figures.measured import (
     stabilisation_figure,
 )
 from flexstage.present.measured_report import identify_report
-from flexstage.present.tables.compare import compare_table, off_cell, repeated_table, unpaired_table
+from flexstage.present.tables.compare import compare_table, further_table, off_cell, repeated_table
 from flexstage.present.tables.measured import identified_table, interval_texts, measured_shape_table
 from flexstage.readings.lumped import lumped
 from flexstage.readings.measured.record import Channel, Responses, Role, in_memory
 from flexstage.readings.measured.transfer import h1
-from flexstage.studies.compare import compare
+from flexstage.studies.compare import FurtherMode, compare
 from flexstage.studies.complete import platform_modes
 from flexstage.studies.fea_modes import FeaModes
 from flexstage.studies.identification import Identification, identification
@@ -69,6 +69,7 @@ def test_peaks_survive_thinning(seen: Identification) -> None:
 def test_coherence_is_the_one_of_the_spectra(seen: Identification) -> None:
     figure = coherence_figure(seen.found, seen.multiple)
     assert len(figure.axes) == 6
+    assert seen.spectra is not None
     for axes in figure.axes:
         assert len(axes.lines) == 7
         multiple, *ordinary = (np.asarray(line.get_ydata()) for line in reversed(axes.lines))
@@ -135,9 +136,10 @@ def test_the_table_says_what_was_found(seen: Identification) -> None:
 
 def test_modes_without_a_partner_are_listed(seen: Identification) -> None:
     found = compare(STAGE, seen.found)
-    assert unpaired_table(found) is None
-    extra = replace(found, unpaired=(found.rows[0].experiment,))
-    table = unpaired_table(extra)
+    assert further_table(found) is None
+    assert found.rows[0].experiment is not None
+    extra = replace(found, further=(FurtherMode(found.rows[0].experiment),))
+    table = further_table(extra)
     assert table is not None
     assert table.texts()[1][0] == "1"
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -20,7 +20,8 @@ from flexstage.studies.paired import Pair, paired
 from flexstage.studies.reading import Reading
 
 _REPEATED = 0.01
-_FAR = 0.3
+_FAR, _FARTHEST = 0.3, np.log(1.6)
+_SILENT = 1e-6
 _PAIRED = 0.5
 _TRUSTED = 0.9
 _TURNED = np.deg2rad(20.0)
@@ -85,17 +86,27 @@ class RepeatedModes:
     angle: float | None
 
 
+@dataclass(frozen=True)
+class FurtherMode:
+    """A measured mode that is none of the platform's, with the local mode of theory [Hz] it is paired with, where there is one."""
+
+    experiment: Measured
+    name: str | None = None
+    theory: float | None = None
+    assurance: float | None = None
+
+
 @dataclass(frozen=True, eq=False)
 class Compared:
     """Theory, FEA and experiment mode by mode.
 
-    `unpaired` are modes of the experiment without a partner among the platform's; `sensors` the outputs shapes are compared at;
+    `further` are measured modes without a partner among the platform's; `sensors` the outputs shapes are compared at;
     `warnings` say what the experiment cannot tell and which pairings not to rely on.
     """
 
     rows: tuple[ComparedMode, ...]
     repeated: tuple[RepeatedModes, ...]
-    unpaired: tuple[Measured, ...]
+    further: tuple[FurtherMode, ...]
     sensors: tuple[str, ...]
     reading: Reading
     experiment: Identified
@@ -108,9 +119,10 @@ def compare(mechanism: Mechanism, experiment: Identified, fea: FeaModes | None =
     """Compare the platform's modes by theory, by FEA where given, and as identified in a test.
 
     Shapes are compared at the record's outputs that are outputs of the stage too, by modal assurance (Allemang & Brown 1982), measured
-    shapes by their real part. Each platform mode gets the measured mode most like it, all pairs chosen together; modes that theory has
+    shapes by their real part. Each mode gets the measured mode most like it, all pairs chosen together; modes that theory has
     within 1 % are one subspace, in which every basis is as good. A distance in frequency counts little, so that shapes that the
-    sensors cannot tell apart go to the nearer mode. Raises `DesignError` where no output has a name of the stage's.
+    sensors cannot tell apart go to the nearer mode; modes that are more than 1.6 times apart are no pair, nor such with an assurance
+    below 0.5. Measured modes may also be theory's local ones. Raises `DesignError` where no output has a name of the stage's.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.readings.measured.example import one_mode_record
@@ -125,18 +137,18 @@ def compare(mechanism: Mechanism, experiment: Identified, fea: FeaModes | None =
     assert model is not None  # noqa: S101  refused above
     theory = platform_modes(mechanism, model)
     sensors = shared_sensors(model, experiment)
-    own, seen = _sensed(model, theory, sensors), _weighted(si_shapes(experiment, sensors), model, sensors)
-    groups = clusters(first_design(theory.platform_frequencies, 1), _REPEATED)
-    pairs, likeness = _pairs(theory, experiment, groups, (own, seen))
+    candidates = _candidates(theory, experiment)
+    seen = _weighted(si_shapes(experiment, sensors), model, sensors)
+    own = _sensed(model, theory, candidates, sensors)
+    groups = _groups(theory, candidates)
+    pairs, likeness = _pairs(first_design(theory.frequencies, 1)[list(candidates)], experiment, groups, (own, seen))
     rows = _rows(theory, experiment, pairs, likeness)
     rows = rows if fea is None else _with_fea(rows, theory, fea, model)
-    paired_numbers = set(pairs.values())
-    unpaired = tuple(_measured(experiment, index) for index in range(len(experiment.frequencies)) if index not in paired_numbers)
-    repeated = tuple(_repeated(group, pairs, own, seen) for group in groups if len(group) > 1)
+    repeated = tuple(_repeated(group, pairs, own, seen) for group in groups if len(group) > 1 and group[-1] < len(rows))
     return Compared(
         rows=rows,
         repeated=repeated,
-        unpaired=unpaired,
+        further=tuple(_further(theory, candidates, experiment, (pairs, likeness))),
         sensors=sensors,
         reading=reading,
         experiment=experiment,
@@ -163,11 +175,27 @@ def shared_sensors(model: LinearModel, experiment: Identified) -> tuple[str, ...
     return found
 
 
-def _sensed(model: LinearModel, theory: Modes, sensors: Sequence[str]) -> Array:
-    """Theory's platform modes at the sensors (p, 6), of unit length."""
-    shapes = first_design(theory.shapes, 2)[:, list(theory.platform)]
-    rows = first_design(model.output, 2)[list(model.output_index(tuple(sensors)))]
-    return _weighted(rows @ shapes, model, sensors)
+def _candidates(theory: Modes, experiment: Identified) -> tuple[int, ...]:
+    """Theory's modes that a measured one may be: the platform's first, then all others as far up as was measured."""
+    frequencies = first_design(theory.frequencies, 1)
+    highest = float(np.exp(_FARTHEST)) * max(experiment.frequencies, default=0.0)
+    others = (index for index in range(len(frequencies)) if index not in theory.platform and frequencies[index] < highest)
+    return (*theory.platform, *others)
+
+
+def _groups(theory: Modes, candidates: tuple[int, ...]) -> list[list[int]]:
+    """Candidates that are one subspace, the platform's and others apart, by their place."""
+    frequencies, count = first_design(theory.frequencies, 1)[list(candidates)], len(theory.platform)
+    others = clusters(frequencies[count:], _REPEATED)
+    return [*clusters(frequencies[:count], _REPEATED), *([count + index for index in group] for group in others)]
+
+
+def _sensed(model: LinearModel, theory: Modes, candidates: tuple[int, ...], sensors: Sequence[str]) -> Array:
+    """Theory's modes at the sensors (p, n), of unit length; zero where the sensors do not feel a mode."""
+    shapes = first_design(theory.shapes, 2)[:, list(candidates)]
+    seen = first_design(model.output, 2)[list(model.output_index(tuple(sensors)))] @ shapes
+    size = np.linalg.norm(seen, axis=0)
+    return np.where(size > _SILENT * np.max(size), _weighted(seen, model, sensors), 0.0)
 
 
 def _weighted(shapes: Array, model: LinearModel, sensors: Sequence[str]) -> Array:
@@ -186,12 +214,11 @@ def _radius(model: LinearModel) -> float:
     return float(np.sqrt(np.mean(np.diag(law)[3:]) / np.mean(np.diag(law)[:3])))
 
 
-def _pairs(theory: Modes, experiment: Identified, groups: list[list[int]], both: tuple[Array, Array]) -> tuple[dict[int, int], Array]:
-    """The measured mode of each platform mode, and how alike all are (6, k): the share of a measured shape within the mode's subspace."""
+def _pairs(frequencies: Array, experiment: Identified, groups: list[list[int]], both: tuple[Array, Array]) -> tuple[dict[int, int], Array]:
+    """The measured mode of each of theory's, and how alike all are (n, k): the share of a measured shape within the mode's subspace."""
     from scipy.optimize import linear_sum_assignment
 
     own, seen = both
-    frequencies = first_design(theory.platform_frequencies, 1)
     likeness = np.zeros((own.shape[1], seen.shape[1]))
     for group in groups:
         basis = _basis(own[:, group])
@@ -199,8 +226,9 @@ def _pairs(theory: Modes, experiment: Identified, groups: list[list[int]], both:
     if not likeness.size:
         return {}, likeness
     apart = np.abs(np.log(experiment.frequencies[None, :] / frequencies[:, None]))
-    first, second = linear_sum_assignment(-(likeness - _FAR * apart))
-    found = {i: j for i, j in zip(first.tolist(), second.tolist(), strict=True) if likeness[i, j] >= _PAIRED}
+    fitting = (likeness >= _PAIRED) & (apart <= _FARTHEST)
+    first, second = linear_sum_assignment(np.where(fitting, _FAR * apart - likeness, 0.0))
+    found = {i: j for i, j in zip(first.tolist(), second.tolist(), strict=True) if fitting[i, j]}
     return _in_order(found, groups), likeness
 
 
@@ -216,7 +244,7 @@ def _in_order(found: dict[int, int], groups: list[list[int]]) -> dict[int, int]:
 def _basis(shapes: Array) -> Array:
     """An orthonormal basis of what shapes span; shapes that the sensors see alike count once."""
     left, size, _ = np.linalg.svd(shapes, full_matrices=False)
-    return left[:, size > 1e-3 * size[0]]
+    return left[:, size > max(1e-3 * float(size[0]), 1e-300)]
 
 
 def _rows(theory: Modes, experiment: Identified, pairs: dict[int, int], likeness: Array) -> tuple[ComparedMode, ...]:
@@ -236,6 +264,21 @@ def _rows(theory: Modes, experiment: Identified, pairs: dict[int, int], likeness
 def _measured(experiment: Identified, index: int) -> Measured:
     (low, high), (least, most) = experiment.frequency_intervals[index].tolist(), experiment.damping_intervals[index].tolist()
     return Measured(index, float(experiment.frequencies[index]), (low, high), float(experiment.damping[index]), (least, most))
+
+
+def _further(
+    theory: Modes, candidates: tuple[int, ...], experiment: Identified, found: tuple[dict[int, int], Array]
+) -> Iterator[FurtherMode]:
+    pairs, likeness = found
+    partners = {measured: place for place, measured in pairs.items()}
+    for index in range(len(experiment.frequencies)):
+        place = partners.get(index)
+        if place is None:
+            yield FurtherMode(_measured(experiment, index))
+        elif place >= len(theory.platform):
+            mode = candidates[place]
+            frequency = float(first_design(theory.frequencies, 1)[mode])
+            yield FurtherMode(_measured(experiment, index), theory.names[mode], frequency, float(likeness[place, index]))
 
 
 def _with_fea(rows: tuple[ComparedMode, ...], theory: Modes, fea: FeaModes, model: LinearModel) -> tuple[ComparedMode, ...]:

@@ -126,7 +126,7 @@ def _platform(shapes: StageShapes) -> Document:
 
 
 def compare_body(found: Compared) -> Document:
-    """Theory, FEA and experiment mode by mode, subspaces of repeated modes, measured modes without a partner.
+    """Theory, FEA and experiment mode by mode, subspaces of repeated modes, further measured modes.
 
     >>> compare_body.__name__
     'compare_body'
@@ -134,7 +134,10 @@ def compare_body(found: Compared) -> Document:
     return {
         "modes": [compared_mode_body(row) for row in found.rows],
         "repeated": [{"modes": list(group.numbers), "seen": group.seen, "largest_angle_rad": group.angle} for group in found.repeated],
-        "unpaired": [_measured(seen) for seen in found.unpaired],
+        "further": [
+            {"experiment": _measured(mode.experiment), "name": mode.name, "theory_hz": mode.theory, "modal_assurance": mode.assurance}
+            for mode in found.further
+        ],
         "sensors": list(found.sensors),
         "fea_order": None if found.fea is None else found.fea.order,
         "warnings": list(found.warnings),

@@ -20,7 +20,7 @@ from flexstage.present.page import Abreast, Block, Picture, Prose, Section, fold
 from flexstage.present.scene.pictures import moved_picture
 from flexstage.present.scene.stage import Scene, largest_motion
 from flexstage.present.table import Table
-from flexstage.present.tables.compare import compare_table, repeated_table, unpaired_table
+from flexstage.present.tables.compare import compare_table, further_table, repeated_table
 from flexstage.present.tables.measured import (
     identified_table,
     measured_shape_table,
@@ -152,4 +152,4 @@ def compare_tables(found: Compared) -> tuple[Table | None, ...]:
     >>> compare_tables.__name__
     'compare_tables'
     """
-    return compare_table(found), repeated_table(found), unpaired_table(found), warning_table(found.warnings)
+    return compare_table(found), repeated_table(found), further_table(found), warning_table(found.warnings)

@@ -26,7 +26,7 @@ def compare_table(found: Compared) -> Table:
     heads += [Column("experiment", "Hz"), Column("95 % interval", "Hz"), Column("theory off")]
     heads += [Column("FEA off")] if with_fea else []
     heads += [Column("MAC"), *([Column("MAC of FEA")] if with_fea else [])]
-    heads += [Column("damping", "%"), Column("95 % interval", "%")]
+    heads += [Column("damping", "%")]
     notes = ["Off: relative to the experiment, which had damping; theory and FEA are undamped."]
     notes += ["MAC: modal assurance of theory and experiment at the sensors; of repeated modes, within their subspace."]
     notes += _fea_notes(found)
@@ -39,7 +39,7 @@ def _line(row: ComparedMode, *, with_fea: bool) -> list[Content]:
     line: list[Content] = [Cell(str(row.number), Mark.STRONG), row.name, _hertz(row.theory), *fea, *_experiment(row.experiment)]
     line += [off_cell(row.difference, row.uncertainty), *([off_cell(row.fea_difference, row.uncertainty)] if with_fea else [])]
     line += [_assurance(row.assurance), *([_assurance(row.fea_assurance)] if with_fea else [])]
-    return [*line, *_damping(row.experiment)]
+    return [*line, _damping(row.experiment)[0]]
 
 
 def _experiment(seen: Measured | None) -> list[Content]:
@@ -108,15 +108,26 @@ def repeated_table(found: Compared) -> Table | None:
     return build("Repeated modes", heads, rows, notes=[note])
 
 
-def unpaired_table(found: Compared) -> Table | None:
-    """Modes of the experiment that are none of the platform's six; `None` where there is none.
+def further_table(found: Compared) -> Table | None:
+    """Measured modes that are none of the platform's, beside the local modes of theory they may be; `None` where there is none.
 
-    >>> unpaired_table.__name__
-    'unpaired_table'
+    >>> further_table.__name__
+    'further_table'
     """
-    if not found.unpaired:
+    if not found.further:
         return None
-    rows = [(Cell(str(seen.number + 1), Mark.STRONG), *_experiment(seen), *_damping(seen)) for seen in found.unpaired]
-    heads = ["mode of the record", Column("frequency", "Hz"), Column("95 % interval", "Hz"), Column("damping", "%")]
-    note = "They may be modes of single units, of the ground or of what carries the stage."
-    return build("Measured modes without a partner", [*heads, Column("95 % interval", "%")], rows, notes=[note])
+    rows = [
+        (
+            Cell(str(mode.experiment.number + 1), Mark.STRONG),
+            *_experiment(mode.experiment),
+            _damping(mode.experiment)[0],
+            mode.name or NO_VALUE,
+            _hertz(mode.theory),
+            _assurance(mode.assurance),
+        )
+        for mode in found.further
+    ]
+    heads = ["mode of the record", Column("experiment", "Hz"), Column("95 % interval", "Hz"), Column("damping", "%")]
+    heads += ["theory's nearest", Column("theory", "Hz"), Column("MAC")]
+    note = "Modes of single units, of the ground or of what carries the stage; by the sensors alone local modes are told less surely."
+    return build("Further measured modes", heads, rows, notes=[note])

@@ -22,7 +22,7 @@ def recorded_table(test: Sequence[Record] | Responses) -> Table:
 
     >>> from flexstage.readings.measured.example import one_mode_record
     >>> recorded_table((one_mode_record(),)).texts()[1]
-    ['record', 'u', 'y', '64 s at 64 Hz']
+    ['record', 'u [V]', 'y [um]', '64 s at 64 Hz']
     """
     if isinstance(test, Responses):
         low, high = float(test.frequencies[0]), float(test.frequencies[-1])
@@ -89,7 +89,7 @@ def interval_texts(values: Array, intervals: Array) -> list[tuple[str, str]]:
     """Values with as many decimals as their intervals ask for, and those intervals.
 
     >>> interval_texts(np.array([118.01234]), np.array([[118.0101, 118.0145]]))
-    [('118.012', '118.010 to 118.015')]
+    [('118.0123', '118.0101 to 118.0145')]
     """
     found: list[tuple[str, str]] = []
     for value, (low, high) in zip(values, intervals, strict=True):
@@ -137,4 +137,6 @@ def motion_explained_text(explained: Array) -> str:
     >>> motion_explained_text(np.array([0.999, 1.0]))
     'The motion drawn explains 99.9 % or more of every measured shape.'
     """
+    if float(np.min(explained)) > 1.0 - 1e-9:
+        return "As many outputs as freedoms: nothing could contradict the motion drawn."
     return f"The motion drawn explains {percent(np.floor(1e3 * float(np.min(explained))) / 1e3)} or more of every measured shape."
