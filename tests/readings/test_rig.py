@@ -27,6 +27,7 @@ from flexstage.readings.measured.write import write
 from flexstage.studies.complete import platform_modes
 from flexstage.studies.rig.chain import butterworth, density_shape
 from flexstage.studies.rig.rig import as_record, simulated
+from tests.readings.solid_studies import small, small_stage
 
 FINE = fs.Sensing(resolution=0.0)
 """Gauges without steps, and as the shipped stage states none, without noise."""
@@ -249,3 +250,14 @@ def test_structural_damping_becomes_equivalent_ratios_and_says_so() -> None:
     found = identify(record, Search(band=(80.0, 200.0)))
     ratios = modal_ratios(model, eigen(model), StructuralDamping())[list(platform_modes(mechanism, model).platform)]
     np.testing.assert_allclose(found.damping, ratios, rtol=0.01)
+
+
+def test_the_solid_reading_is_a_plant_like_any_other() -> None:
+    mechanism, read_as_solid = small(), small_stage().read.model
+    setup = fs.RigSetup(seconds=5.0, rate=16_384.0, sensing=fs.Sensing(density=1e-11, resolution=0.0))
+    found = identify(fs.rig(mechanism, read_as_solid, setup))
+    assert len(found.frequencies) == 1  # one stack and one gauge along it: of all modes they see the guided one
+    ways = [fs.modes(model).frequencies for model in (read_as_solid, fs.lumped(mechanism))]
+    by_solids, by_lumps = (float(np.min(np.abs(each / found.frequencies[0] - 1.0))) for each in ways)
+    assert by_solids < 1e-4
+    assert by_lumps > 1e-2
