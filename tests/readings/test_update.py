@@ -205,7 +205,7 @@ def test_the_new_file_keeps_comments_and_says_where_values_are_from() -> None:
     [
         ((), Known(), "no number is free"),
         (("neck.thicknes",), Known(), "The nearest name is thickness"),
-        (("front.thickness",), Known(), "front"),
+        (("front.thickness",), Known(), "Write horizontal/front.thickness or vertical/front.thickness"),
         (("horizontal/frnt.thickness",), Known(), "The nearest name is front"),
         (("parts.neck",), Known(), "not a single number"),
         (("platform.mass",), Known(), "the body's mass follows from its solids"),

@@ -61,9 +61,7 @@ def free(mechanism: Mechanism, names: Sequence[str], known: Known = DEFAULT) -> 
     >>> free(double_triangle(), ["lever_notch.thickness"]).names
     ('parts.lever_notch.thickness',)
     """
-    require(_error_findings(known))
-    require(_address_findings(mechanism, (*names, *known.priors)))
-    require(_number_findings(mechanism, names))
+    require([*_error_findings(known), *_address_findings(mechanism, names, tuple(known.priors))])
     full = tuple(locate(mechanism, name).address for name in names)
     own = {canonical(mechanism, name): share for name, share in known.priors.items()}
     require(Finding(f"prior of {name}", "it is not among the free numbers", nearest(name, full)) for name in own if name not in full)
@@ -92,16 +90,28 @@ def _error_findings(known: Known) -> list[Finding]:
     return [Finding(where, f"{share:g} is none", advice) for where, share in stated.items() if not 1e-6 <= share <= 1.0]
 
 
-def _address_findings(mechanism: Mechanism, names: Sequence[str]) -> list[Finding]:
+def _address_findings(mechanism: Mechanism, names: Sequence[str], priors: Sequence[str]) -> list[Finding]:
     if not names:
         return [Finding("free", "no number is free", "Name at least one, e.g. parts.neck.thickness")]
     findings: list[Finding] = []
-    for name in names:
+    lost: set[str] = set()
+    for name in (*names, *priors):
         try:
             locate(mechanism, name)
         except DesignError as error:
-            findings += error.findings
-    return findings
+            findings += [_of_link(mechanism, finding) for finding in error.findings]
+            lost.add(name)
+    return [*findings, *_number_findings(mechanism, [name for name in names if name not in lost])]
+
+
+def _of_link(mechanism: Mechanism, finding: Finding) -> Finding:
+    """Which links are meant where an address begins with the name of one."""
+    link, _, rest = finding.where.strip().partition(".")
+    units = [unit for unit, drawn in mechanism.units.items() if link in drawn.links]
+    if not units or not rest:
+        return finding
+    what = f'"{link}" is a link of {len(units)} units' if len(units) > 1 else f'"{link}" is a link of a unit'
+    return replace(finding, what=what, advice=f"Write {' or '.join(f'{unit}/{link}.{rest}' for unit in units)}")
 
 
 def _number_findings(mechanism: Mechanism, names: Sequence[str]) -> list[Finding]:

@@ -40,7 +40,7 @@ def update_table(found: Updated) -> Table:
             number(100.0 * float(found.prior[index]), 2),
             number(100.0 * float(found.deviations[index]), 2),
             percent(float(found.left[index]), 2),
-            Cell(found.verdicts[index], _MARKS[found.told[index]]),
+            Cell(found.verdicts[index].partition("; ")[0], _MARKS[found.told[index]]),
         )
         for index, name in enumerate(found.parameters)
     ]
@@ -52,6 +52,8 @@ def update_table(found: Updated) -> Table:
     gains = "" if known.gain_error is None else f", gains {percent(known.gain_error, 3)}"
     errors = f"Stated or assumed errors: theory's frequencies {percent(known.model_error, 3)}{gains}; +- is one standard deviation."
     notes = ["Variance left: of the prior's. At most 10 % is identified, at most 20 % weakly, more is the prior's word.", errors]
+    parted = [(name, verdict.partition("; ")[2]) for name, verdict in zip(found.parameters, found.verdicts, strict=True)]
+    notes += [f"{name}: {rest}." for name, rest in parted if rest]
     return build("Numbers after the test", heads, rows, notes=notes, provenance=found.provenance)
 
 
