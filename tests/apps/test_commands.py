@@ -18,8 +18,11 @@ from flexstage.apps.cli.application import COMMANDS
 from flexstage.apps.cli.installation import self_test
 from flexstage.apps.cure import MakeFolder
 from flexstage.apps.doctor import Row, Verdict
+from flexstage.cases.double_triangle import double_triangle
+from flexstage.readings.measured.write import write
 from flexstage.studies import complete
 from tests.apps.command import Command, design_in
+from tests.readings.stage_records import stage_record
 
 PROCESS = [sys.executable, "-c", "from flexstage.apps.cli import main; main()"]
 NAMES = [name for _, name, _, _ in COMMANDS]
@@ -40,6 +43,8 @@ def test_examples_run(flexstage: Command, tmp_path: Path, example: str) -> None:
         (tmp_path / "stage.toml").unlink()
     if words[1] == "import":
         occ.Box(occ.Pnt(0, 0, 0), occ.Pnt(10, 20, 30)).WriteStep(str(tmp_path / "part.step"))
+    if "record.uff" in words and words[1] != "rig":
+        write(tmp_path / "record.uff", stage_record(double_triangle()))
     ended = flexstage(*words[1:])
     assert ended.code == 0, ended.err
     assert ended.out or "Wrote" in ended.err
