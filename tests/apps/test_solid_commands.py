@@ -38,11 +38,15 @@ def command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfdbinary: Any) -
 def test_hinges(command: Command) -> None:
     found = command("solid", "stage.toml", "--what", "hinge", "--accuracy", "5 %", "--json", "-").document
     assert found["kind"] == "solid"
-    assert set(found["hinges"]) == {"leaf", "neck"}
-    neck = found["hinges"]["neck"]
-    assert neck["links"] == ["drive/back", "drive/front"]
-    assert neck["compliance"]["values"][0][0] == pytest.approx(7.44e-9, rel=0.03)
-    assert neck["error"] < 0.05
+    assert set(found["hinges"]) == {"leaf", "neck-back", "neck-front"}
+    back, front = (found["hinges"][f"neck-{end}"] for end in ("back", "front"))
+    assert back["links"] == ["drive/back"]
+    assert (back["roots"], front["roots"]) == ({"first": False, "second": True}, {"first": True, "second": False})
+    first, second = (np.array(neck["compliance"]["values"]) for neck in (back, front))
+    np.testing.assert_allclose(np.diag(second), np.diag(first), rtol=1e-9)  # one is the other turned end for end
+    assert second[1, 5] == pytest.approx(-first[1, 5], rel=1e-9)
+    assert 0.93 * 7.44e-9 < first[0, 0] < 7.44e-9  # that of the neck with both roots, to 3 %
+    assert back["error"] < 0.05
 
 
 def test_units(command: Command, tmp_path: Path) -> None:
@@ -83,7 +87,7 @@ def test_calibration_is_told_from_theory(command: Command, tmp_path: Path) -> No
     rows = command("verify", "calibrated.toml", "--accuracy", "5 %", "--json", "-").document["rows"]
     assert {row["trust"] for row in rows} == {"not independent"}
     axial = next(row for row in rows if row["figure"] == "axial stiffness")
-    assert axial["calibration"] == ["neck"]
+    assert axial["calibration"] == ["neck-back", "neck-front"]
     assert abs(axial["difference"]) < 0.01
 
 
