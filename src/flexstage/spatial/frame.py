@@ -83,6 +83,16 @@ def transport(arm: Array) -> Array:
     return result
 
 
+def mirror(axis: int) -> Array:
+    """The 6x6 that shows a twist in a mirror across an axis (0, 1, 2) at the origin: v reversed along it, w reversed across it.
+
+    >>> mirror(0).diagonal().tolist()
+    [-1.0, 1.0, 1.0, 1.0, -1.0, -1.0]
+    """
+    along = np.arange(3) == axis
+    return np.diag(np.concatenate([np.where(along, -1.0, 1.0), np.where(along, 1.0, -1.0)]))
+
+
 def turned(rotation: Array) -> Array:
     """The 6x6 diag(R, R) that turns twists and wrenches from a frame of axes R to the outer axes.
 

@@ -18,7 +18,7 @@ from flexstage.mechanism.mechanism import Link, Mechanism
 from flexstage.mechanism.store import loads
 from flexstage.mechanism.store.stand_in import KEPT, StandIn, stood_in
 from flexstage.parts.given import Given, Origin
-from flexstage.spatial.frame import COMPONENTS
+from flexstage.spatial.frame import COMPONENTS, mirror, turned
 from flexstage.studies.solid_hinge import STANDARD_HINGES, Hinges, SolidHinge, solid_hinges
 
 TAG = "derived FEA"
@@ -125,10 +125,8 @@ def _departing(mechanism: Mechanism) -> Iterator[Finding]:
             yield Finding(link.name, f"departs from its part {link.link.part}, whose 6x6 is shared", "Give that link a part of its own")
 
 
-_TURN = np.kron(np.eye(2), np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]]))
+_TURN = turned(np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]]))
 """A quarter turn about x."""
-_MIRRORS = tuple(np.diag(signs) for signs in ([1.0, -1, 1, -1, 1, -1], [1.0, 1, -1, -1, -1, 1], [-1.0, 1, 1, 1, -1, -1]))
-"""How twists are seen in mirrors across y, z and x."""
 
 
 def _clean(hinge: SolidHinge) -> Array:
@@ -140,8 +138,8 @@ def _clean(hinge: SolidHinge) -> Array:
     matrix, known = np.array(hinge.found.compliance), np.array(hinge.separable)
     matrix[~known] = matrix[:, ~known] = 0.0
     matrix += np.diag(np.where(known, 0.0, np.diag(compliance(hinge.form, hinge.material))))
-    symmetries = [*(_MIRRORS if hinge.roots == hinge.roots.mirrored else _MIRRORS[:2]), *([_TURN] if is_round(hinge.form) else [])]
-    for symmetry in symmetries:
+    mirrors = [mirror(axis) for axis in ((0, 1, 2) if hinge.roots == hinge.roots.mirrored else (1, 2))]
+    for symmetry in [*mirrors, *([_TURN] if is_round(hinge.form) else [])]:
         matrix = 0.5 * (matrix + symmetry @ matrix @ symmetry.T)
     return matrix
 

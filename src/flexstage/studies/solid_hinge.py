@@ -28,15 +28,13 @@ from flexstage.readings.solid.estimate import Accuracy
 from flexstage.readings.solid.hinge_cache import HingeForm, HingePart, kept_hinges
 from flexstage.readings.solid.parts import Ways
 from flexstage.readings.solid.roots import Roots, roots_of
-from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNITS
+from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNITS, mirror
 from flexstage.studies.solid_read import STANDARD_WAYS, Notice
 
 if TYPE_CHECKING:
     from flexstage.readings.solid.hinge import HingeSolid
 
 _MOST_STUB = 0.9
-_END_FOR_END = np.diag([-1.0, 1.0, 1.0, 1.0, -1.0, -1.0])
-"""How a twist is seen in a mirror across x: hinges are symmetric but for their roots."""
 
 Hinges: TypeAlias = "Callable[[Mapping[str, HingeForm]], Mapping[str, HingeSolid]]"
 """Computes hinges by name: plainly, or from a cache and telling its progress."""
@@ -190,5 +188,6 @@ def _turned(form: HingeForm) -> tuple[HingeForm, bool]:
 def _back(found: HingeSolid, *, turned: bool) -> HingeSolid:
     if not turned:
         return found
-    compliance, stiffness, whole = (_END_FOR_END @ each @ _END_FOR_END for each in (found.compliance, found.stiffness, found.whole))
+    across = mirror(0)  # hinges are symmetric but for their roots
+    compliance, stiffness, whole = (across @ each @ across for each in (found.compliance, found.stiffness, found.whole))
     return replace(found, compliance=compliance, stiffness=stiffness, whole=whole)

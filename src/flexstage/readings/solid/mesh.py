@@ -164,10 +164,11 @@ def _thin_points(form: Notch | Neck, share: float) -> Array:
 def _sized(component: Component, drawing: Cad, fineness: Fineness, shrink: float) -> float:
     """Set the faces' mesh sizes; return the largest size anywhere [mm]."""
     sizes = [shrink * _size(piece, fineness) for piece in component.pieces]
-    prints = {item.joint.name: _PRINT * fineness.neck * shrink * item.joint.area**0.5 for item in component.interfaces if item.footprint}
+    scale = _PRINT * fineness.neck * shrink * MILLIMETRES
+    prints = {item.joint.name: scale * item.joint.area**0.5 for item in component.interfaces if item.footprint}
     for face in drawing.shape.faces:
         own = min(_near(component.pieces, sizes, face), default=max(sizes))
-        face.maxh = min(own, prints.get(face.name or "", own / MILLIMETRES) * MILLIMETRES)
+        face.maxh = min(own, prints.get(face.name or "", own))
     return max(sizes)
 
 
