@@ -10,7 +10,7 @@ import numpy as np
 from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array
 from flexstage.readings.measured.lines import Cells, Lines, block_count, record_lines
-from flexstage.readings.measured.record import Record, Responses
+from flexstage.readings.measured.record import Channel, Record, Responses
 from flexstage.readings.measured.smear import SMEARING, Smear
 from flexstage.readings.measured.spectra import Segments, Spectra, Tell, Window, pooled, spectra
 from flexstage.readings.measured.transfer import h1, multiple_coherence, noise_density
@@ -21,6 +21,8 @@ _LONGEST = 32_768
 _HIGHEST = 0.42
 _LOWEST_LINES = 3
 _RUNNING = 10
+_ROUNDING = 1e-13
+"""Relative error of sums of some thousand double numbers."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,7 +32,8 @@ class Evidence:
     `responses` are in the channels' own units, with weights (f, p) of outputs; `lines()` gives the lines of all blocks, their inputs and
     outputs divided by `input_scale` (m,) and `output_scale` (p,); `density` (f, p) is the noise per line, not divided. `band` is what the
     data can show, in Hz; `inflation` the factor on variances for neighbouring lines that are not independent; `coherence` the multiple
-    coherence (f, p), absent where there is none; `resolution` the distance of lines in Hz.
+    coherence (f, p), absent where there is none; `resolution` the distance of lines in Hz; `rounding` (p,) the variance per line, divided
+    by the scales, that rounding the samples leaves.
     """
 
     where: str
@@ -46,6 +49,7 @@ class Evidence:
     coherence: Array | None = None
     averages: float = 0.0
     smear: Smear | None = None
+    rounding: Array | float = 0.0
     resolution: float = 0.0
     shaped: Callable[[Cells], Array] | None = None
 
@@ -84,7 +88,8 @@ def _of_records(records: tuple[Record, ...], known: Spectra, tell: Tell | None) 
     responses = h1(known)
     noise = noise_density(known)
     names = [channel.name for channel in known.inputs]
-    input_scale, output_scale = (_scale(part, records[0].rate) for part in (inside.xx, inside.yy))
+    size = _scale(inside.yy, records[0].rate)
+    input_scale, output_scale = _divisor(_scale(inside.xx, records[0].rate)), _divisor(size)
 
     def lines() -> Iterable[Lines]:
         column = len(names)
@@ -109,14 +114,27 @@ def _of_records(records: tuple[Record, ...], known: Spectra, tell: Tell | None) 
         band=band,
         coherence=multiple_coherence(known),
         averages=known.independent,
+        rounding=_rounding(known.outputs, size),
         resolution=max(1.0 / record.duration for record in records),
     )
 
 
 def _scale(density: Array, rate: float) -> Array:
-    """Root mean square per line, 1 where there is nothing."""
-    found = np.sqrt(np.mean(np.real(np.diagonal(density, axis1=1, axis2=2)), axis=0) * rate / 2.0)
-    return np.where(found > 0.0, found, 1.0)
+    """Root mean square per line, nought where there is nothing."""
+    return np.sqrt(np.mean(np.real(np.diagonal(density, axis1=1, axis2=2)), axis=0) * rate / 2.0)
+
+
+def _divisor(scale: Array) -> Array:
+    return np.where(scale > 0.0, scale, 1.0)
+
+
+def _rounding(outputs: tuple[Channel, ...], scale: Array) -> Array:
+    """Rounding is relative to what was added up: to the largest of the channels of one unit, whatever this one shows of it.
+
+    An output that shows nothing at all says nothing either: its steps are unknown, and any variance will do.
+    """
+    largest = np.array([max(value for other, value in zip(outputs, scale, strict=True) if other.unit == each.unit) for each in outputs])
+    return np.where(scale > 0.0, (_ROUNDING * largest / _divisor(scale)) ** 2, 1.0)
 
 
 def _scaled(lines: Lines, input_scale: Array, output_scale: Array) -> Lines:
@@ -160,8 +178,8 @@ def _driven(known: Spectra) -> Spectra:
 def _of_responses(known: Responses) -> Evidence:
     steps = np.diff(known.frequencies)
     require(_response_findings(known, steps))
-    output_scale = np.sqrt(np.mean(np.abs(known.values) ** 2, axis=(0, 2)))
-    output_scale = np.where(output_scale > 0.0, output_scale, 1.0)
+    size = np.sqrt(np.mean(np.abs(known.values) ** 2, axis=(0, 2)))
+    output_scale = _divisor(size)
     count = known.values.shape[2]
     rough = np.abs(np.diff(known.values, 2, axis=0)) ** 2 / 6.0
     density = np.repeat(np.median(rough, axis=(0, 2))[None, :], len(known.frequencies), axis=0)
@@ -186,6 +204,7 @@ def _of_responses(known: Responses) -> Evidence:
         inflation=1.0 if window is None else _INFLATION[window],
         averages=float(known.averages or 0),
         smear=Smear(window, 1.0 / step) if window in SMEARING else None,
+        rounding=_rounding(known.outputs, size),
         resolution=step,
         shaped=None if known.coherence is None else lambda cells: _coherent_shape(known, cells),
     )

@@ -15,7 +15,7 @@ from flexstage.readings.measured.cluster import Candidate, Stabilisation, alike,
 from flexstage.readings.measured.confidence import Deviations, deviations, freedoms, significance
 from flexstage.readings.measured.evidence import Evidence, chosen_segments, evidence, whole
 from flexstage.readings.measured.identified import Identified
-from flexstage.readings.measured.likelihood import Band, Fit, Modal, background, fit, noise, scatter, shaped
+from flexstage.readings.measured.likelihood import Band, Fit, Modal, background, fit, noise, scatter, shaped, silence
 from flexstage.readings.measured.lines import Cells, edges, gathered
 from flexstage.readings.measured.lscf import lscf
 from flexstage.readings.measured.record import Record, Responses
@@ -137,7 +137,8 @@ def _group(known: Evidence, cells: Cells, candidates: tuple[Candidate, ...], gro
     outside = np.concatenate([np.delete(poles, members), np.conj(poles)])
     shape = known.shape(cells)
     variance = known.variance(group.low, group.high)[:, None] * shape / np.median(shape, axis=1, keepdims=True)
-    band = Band(cells, variance, background(cells, outside), known.smear, shape)
+    variance = np.maximum(variance, silence(cells, known.rounding))
+    band = Band(cells, variance, background(cells, outside), known.smear, shape, known.rounding)
     if np.sum(cells.count) < 2 * cells.own.shape[2] * band.background.shape[1]:
         return None
     participation = np.array([candidates[index].participation for index in members])

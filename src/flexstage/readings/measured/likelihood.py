@@ -18,8 +18,7 @@ _STEPS = 60
 _CONVERGED = 1e-3
 _NEGLIGIBLE = 1e-5
 _NOISE_LINES = 100
-_SILENT = 1e-10
-"""Cells hold responses to five digits: noise is not taken for less."""
+_DIGITS = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,8 +42,9 @@ class Modal:
 class Band:
     """Data of one band: its cells, and the noise variance of every output per line in every cell (p, c).
 
-    `background` (c, b, 6) are the functions that stand for what lies outside, as Legendre coefficients in every cell. `smear` says how
-    windows have smeared the lines, if they have; `shape` (p, c) how the noise variance is known to go with frequency.
+    `background` (c, b, 8) are the functions that stand for what lies outside, as Legendre coefficients in every cell. `smear` says how
+    windows have smeared the lines, if they have; `shape` (p, c) how the noise variance is known to go with frequency; `rounding` (p,) the
+    variance per line that rounding leaves.
     """
 
     cells: Cells
@@ -52,6 +52,7 @@ class Band:
     background: Array
     smear: Smear | None = None
     shape: Array | float = 1.0
+    rounding: Array | float = 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -164,7 +165,7 @@ def residual_power(band: Band, modal: Modal) -> Array:
 
 
 def explained(band: Band, modal: Modal) -> Iterator[tuple[Array, Array]]:
-    """Block by block, the numbers of its cells and the factors (p, c, 6, n) of Z in them that modes and background amount to.
+    """Block by block, the numbers of its cells and the factors (p, c, 8, n) of Z in them that modes and background amount to.
 
     >>> from flexstage.readings.measured.example import one_mode_band
     >>> [len(chosen) for chosen, _ in explained(*one_mode_band())] == [len(one_mode_band()[0].cells.low)]
@@ -189,7 +190,22 @@ def noise(band: Band, modal: Modal) -> Array:
     cells = band.cells
     power = np.real(np.einsum("ooc->oc", residual_power(band, modal))) / band.shape
     found = _pooled(power, cells) / _free(band, modal)
-    return np.maximum(found * band.shape, _SILENT * cells.own_power.T / cells.count)
+    return np.maximum(found * band.shape, silence(cells, band.rounding))
+
+
+def silence(cells: Cells, rounding: Array | float) -> Array:
+    """The least noise variance (p, c) per line that is believed, however still the record.
+
+    Cells hold responses to six digits. That error e is the same at all N lines: it does not average out, and with a variance of N e^2
+    times the power it cannot pass for a mode, and intervals are not narrower than it. `rounding` (p,) is the variance that rounding the
+    samples leaves where an output shows nothing else.
+
+    >>> from flexstage.readings.measured.example import one_mode_band
+    >>> cells = one_mode_band()[0].cells
+    >>> bool(silence(cells, 7.0).min() == 7.0), bool(np.all(silence(cells, 0.0) < 1e-8 * np.max(cells.own_power / cells.count[:, None])))
+    (True, True)
+    """
+    return np.maximum(_DIGITS**2 * np.sum(cells.count) * cells.own_power.T / cells.count, np.reshape(rounding, (-1, 1)))
 
 
 def scatter(band: Band, modal: Modal) -> Array:
@@ -250,13 +266,13 @@ def _pooled(power: Array, cells: Cells) -> Array:
 
 
 def background(cells: Cells, outside: Array, degree: int = 3) -> Array:
-    """An orthonormal basis (c, b, 6) of polynomials up to `degree` and of the tails 1/(j f - p) of the poles `outside` (Hz).
+    """An orthonormal basis (c, b, 8) of polynomials up to `degree` and of the tails 1/(j f - p) of the poles `outside` (Hz).
 
     Directions that add less than 1e-5 to it are left out.
 
     >>> from flexstage.readings.measured.example import one_mode_band
     >>> background(one_mode_band()[0].cells, np.zeros(0), 1).shape[1:]
-    (2, 6)
+    (2, 8)
     """
     points = nodes(cells.low, cells.high)
     x = (2.0 * points - np.min(cells.low) - np.max(cells.high)) / (np.max(cells.high) - np.min(cells.low))
@@ -271,7 +287,7 @@ def background(cells: Cells, outside: Array, degree: int = 3) -> Array:
 
 
 def _functions(band: Band, poles: Array) -> Array:
-    """Legendre coefficients (c, f, 6) in every cell of 1/(j f - p), of its derivatives by p, and of products of near poles' functions."""
+    """Legendre coefficients (c, f, 8) in every cell of 1/(j f - p), of its derivatives by p, and of products of near poles' functions."""
     points, pairs = nodes(band.cells.low, band.cells.high), _pairs(poles)
     if band.smear is not None:
         middles = np.array([0.5 * (poles[first] + poles[second]) for first, second in pairs], dtype=complex)
@@ -294,7 +310,7 @@ def _pairs(poles: Array) -> list[tuple[int, int]]:
 
 
 def _raw(band: Band, functions: Array) -> _Sums:
-    """Sums before elimination, over the functions (c, f, 6), inputs and transients of all blocks."""
+    """Sums before elimination, over the functions (c, f, 8), inputs and transients of all blocks."""
     cells, weights = band.cells, 1.0 / band.variance
     cross = np.zeros((len(weights), functions.shape[1], cells.width), dtype=complex)
     for block, columns in enumerate(cells.columns):

@@ -3,7 +3,7 @@
 A record's block of N samples, transformed without a window, obeys Y(f) = H(f) U(f) + T(f) + V(f) line by line, where T, the block's
 transient, has the poles of H (Pintelon & Schoukens, System Identification, 2nd ed., 2012, ch. 2): carried along as a response to one more
 "input" that is 1 at every line, it leaves no leakage. Within a cell, narrow beside the distance to the nearest pole, H is a polynomial of
-degree 5 to five digits; sums of products of the lines with its powers are sufficient then.
+degree 7 to six digits; sums of products of the lines with its powers are sufficient then.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from flexstage.base.number import Array
 from flexstage.readings.measured.record import Record
 from flexstage.readings.measured.spectra import Tell
 
-DEGREE = 5
+DEGREE = 7
 _FINENESS = 0.25
 _BLOCK = 12_000_000
 
@@ -39,7 +39,7 @@ class Lines:
 class Cells:
     """Sums over cells of frequency: `low` and `high` (c,) in Hz, the block (c,) and number of lines (c,) of each.
 
-    With Z = P_a(x) U_i, the Legendre polynomials a = 0..5 times the block's drive: `own` (c, 6, n, 6, n) = Z^H Z, `cross` (c, 6, n, p) =
+    With Z = P_a(x) U_i, the Legendre polynomials a = 0..7 times the block's drive: `own` (c, 8, n, 8, n) = Z^H Z, `cross` (c, 8, n, p) =
     Z^H Y, `power` (c, p, p) = Y^H Y. A block's drive has the columns `columns[block]` of all `width` of them.
     """
 
@@ -152,16 +152,16 @@ def _band_sums(lines: Lines, limits: Array, number: int) -> list[tuple[Array, ..
 
 
 def expanded(values: Array) -> Array:
-    """Legendre coefficients (..., 6) of functions known at the cells' `nodes` (..., 8).
+    """Legendre coefficients (..., 8) of functions known at the cells' `nodes` (..., 10).
 
-    >>> expanded(nodes(np.array([1.0]), np.array([3.0]))).round(12).tolist()
-    [[2.0, 1.0, 0.0, 0.0, 0.0, 0.0]]
+    >>> (expanded(nodes(np.array([1.0]), np.array([3.0]))).round(12) + 0.0).tolist()
+    [[2.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]]
     """
     return values @ _PROJECTION
 
 
 def nodes(low: Array, high: Array) -> Array:
-    """Frequencies (c, 8) in Hz at which functions are taken in each cell (Gauss's).
+    """Frequencies (c, 10) in Hz at which functions are taken in each cell (Gauss's).
 
     >>> nodes(np.array([1.0]), np.array([3.0])).mean().round(12).item()
     2.0

@@ -1,0 +1,105 @@
+"""Records at the limits of what can be identified: without any noise, with channels that do not move."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import flexstage as fs
+from flexstage.readings.measured.identify import Search, identify
+from flexstage.readings.measured.record import Channel, InMemory, Record, Responses
+from flexstage.studies.complete import platform_modes
+from tests.conftest import FULL
+from tests.readings.synthetic_records import record, truth
+
+SEEDS = 8 if FULL else 2
+BAND = Search(band=(80.0, 200.0))
+
+
+def singles(seed: int, *, seconds: float = 20.0) -> list[Record]:
+    """Six noiseless records, one actuator each."""
+    made = [record(truth(seed=1000 + seed), 6 * seed + index, active=(index,), noise=0.0, seconds=seconds) for index in range(6)]
+    return [each.select([f"u{index + 1}", *(channel.name for channel in each.outputs)]) for index, each in enumerate(made)]
+
+
+def changed(whole: Record, change: Callable[[np.ndarray], None]) -> Record:
+    values = whole.values.copy()
+    change(values)
+    return replace(whole, samples=InMemory(values))
+
+
+def still(values: np.ndarray) -> None:
+    values[:, 9] = 2.5
+
+
+def rounding(values: np.ndarray) -> None:
+    values[:, 9] = 2.5 + 1e-15 * np.random.default_rng(0).standard_normal(len(values))
+
+
+@pytest.mark.parametrize("seed", range(SEEDS))
+def test_without_noise_the_modes_are_right_to_seven_digits_and_none_is_added(seed: int) -> None:
+    known = truth(seed=1000 + seed)
+    parts = singles(seed)
+    for found in (identify(parts), identify(parts[0])):
+        np.testing.assert_allclose(found.frequencies, known.frequencies, rtol=2e-7)
+        np.testing.assert_allclose(found.damping, known.damping, rtol=1e-5)
+
+
+@pytest.mark.parametrize("noise", [0.0, 0.1])
+@pytest.mark.parametrize("change", [still, rounding])
+def test_a_gauge_that_does_not_move_says_nothing_and_spoils_nothing(noise: float, change: Callable[[np.ndarray], None]) -> None:
+    known, made = truth(), record(truth(), 1, seconds=20.0, noise=noise)
+    found, rest = identify(changed(made, change)), identify(made.select([name for name in made.names if name != "y4"]))
+    np.testing.assert_allclose(found.frequencies, rest.frequencies, rtol=1e-5)
+    assert np.max(np.abs(found.frequencies / known.frequencies - 1.0)) < (5e-5 if noise else 2e-7)
+    assert np.max(np.abs(found.shapes[3])) < 1e-9
+
+
+def test_nothing_that_moves_shows_no_mode() -> None:
+    def stop(values: np.ndarray) -> None:
+        values[:, 6:] = 2.5
+
+    found = identify(changed(record(truth(), 1, seconds=20.0), stop))
+    assert len(found.frequencies) == 0
+    assert "no mode stands out of the noise" in found.warnings[0]
+
+
+@pytest.mark.parametrize("resolution", [None, 0.0])
+@pytest.mark.parametrize("seed", range(SEEDS))
+def test_one_actuator_of_a_stage_with_a_gauge_it_does_not_move(resolution: float | None, seed: int) -> None:
+    """By the mapped reading B1 does not move S4 at all: it reads 0 under the gauge's steps, and rounding without them."""
+    mechanism = fs.case("double-triangle")
+    model = fs.mapped(mechanism)
+    setup = fs.RigSetup(
+        seconds=20.0, seed=6 * seed, drive=fs.NoiseDrive(stroke=0.5e-6, actuators=("B1",)), sensing=fs.Sensing(resolution=resolution)
+    )
+    found = identify(fs.rig(mechanism, model, setup), BAND)
+    expected = platform_modes(mechanism, model).platform_frequencies
+    np.testing.assert_allclose(found.frequencies, expected[[0, 3, 4]], rtol=2e-7 if resolution == 0.0 else 1e-5)
+
+
+def test_modes_beyond_the_band_do_not_come_back_into_it() -> None:
+    """Without noise the tails of the units' own modes from 215 Hz on are seen, and are no mode below 200 Hz."""
+    mechanism = fs.case("double-triangle")
+    model = fs.lumped(mechanism)
+    for seed in range(SEEDS):
+        sets = [
+            fs.RigSetup(seconds=20.0, seed=6 * seed + index, drive=drive, sensing=fs.Sensing(resolution=0.0))
+            for index, drive in enumerate(fs.NoiseDrive(stroke=0.5e-6, actuators=(f"B{index + 1}",)) for index in range(6))
+        ]
+        found = identify([fs.rig(mechanism, model, each) for each in sets], BAND)
+        np.testing.assert_allclose(found.frequencies, platform_modes(mechanism, model).platform_frequencies, rtol=1e-7)
+
+
+@pytest.mark.parametrize("inputs", [1, 6])
+def test_exact_responses_give_exact_modes(inputs: int) -> None:
+    known, lines = truth(), np.arange(60.0, 350.0, 0.25)
+    values = known.response(lines)[:, :, :inputs]
+    values[:, 3] = 0.0
+    channels = [tuple(Channel(f"{kind}{index}", "V") for index in range(count)) for kind, count in (("y", 6), ("u", inputs))]
+    found = identify(Responses(lines, channels[0], channels[1], values))
+    np.testing.assert_allclose(found.frequencies, known.frequencies, rtol=2e-7)
+    np.testing.assert_allclose(found.damping, known.damping, rtol=1e-4)
