@@ -1,7 +1,8 @@
-"""Records at the limits of what can be identified: without any noise, with channels that do not move."""
+"""Records at the limits of what can be identified: without any noise, with channels that do not move, too short."""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from dataclasses import replace
 
@@ -103,3 +104,44 @@ def test_exact_responses_give_exact_modes(inputs: int) -> None:
     found = identify(Responses(lines, channels[0], channels[1], values))
     np.testing.assert_allclose(found.frequencies, known.frequencies, rtol=2e-7)
     np.testing.assert_allclose(found.damping, known.damping, rtol=1e-4)
+
+
+@pytest.mark.parametrize("seconds", [0.5, 1.0, 2.0, 3.0])
+def test_short_records_miss_modes_and_say_so(seconds: float) -> None:
+    for seed in range(2 * SEEDS):
+        found = identify(record(truth(seed=1000 + seed), seed, seconds=seconds))
+        if len(found.frequencies) < 6:
+            assert any("may be missing" in each or "There are too few lines" in each for each in found.warnings)
+            assert any(f"lasts {seconds:g} s" in each for each in found.warnings)
+
+
+@pytest.mark.parametrize("seed", range(2 * SEEDS))
+def test_records_as_long_as_advised_show_all_modes(seed: int) -> None:
+    known, seconds = truth(seed=1000 + seed), 2.0
+    found = identify(record(known, seed, seconds=seconds))
+    while found.warnings:
+        advised = re.search(r"lasts [\d.]+ s: it takes ([\d.]+) s at least", found.warnings[0])
+        assert advised is not None
+        assert seconds < float(advised[1]) < 20.0
+        seconds = float(advised[1])
+        found = identify(record(known, seed, seconds=seconds))
+    np.testing.assert_allclose(found.frequencies, known.frequencies, rtol=1e-3)
+
+
+def test_a_band_that_cannot_be_searched_is_told() -> None:
+    made = record(truth(), 0, seconds=4.0)
+    low, high = (
+        next(each for each in identify(made, Search(band=band)).warnings if "are asked for" in each) for band in ((20, 300), (130, 1e3))
+    )
+    assert re.search(r"from 20 to 300 Hz are asked for; from 1\d\d.* to 300 Hz they could be looked for. Record longer", low)
+    assert "from 130 to 860.2 Hz they could be looked for. Record faster" in high
+
+
+def test_what_noise_hides_is_told_in_numbers() -> None:
+    values = record(truth(), 0, seconds=20.0)
+    alone = changed(
+        values, lambda each: each.__setitem__((slice(None), slice(6, 12)), np.random.default_rng(3).standard_normal((len(each), 6)))
+    )
+    assert "narrower than the 1.2 Hz between lines" in identify(alone).warnings[0]
+    assert "though inputs explain" not in identify(alone).warnings[0]
+    assert "no mode can be told, though inputs explain 39.5%" in identify(record(truth(), 0, seconds=1.0)).warnings[0]

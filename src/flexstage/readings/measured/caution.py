@@ -2,23 +2,22 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from flexstage.base.number import Array
+from flexstage.readings.measured.adequacy import Reach, not_searched, nothing_found, too_coarse
 from flexstage.readings.measured.evidence import Evidence
 
 
-def warnings(known: Evidence, poles: Array, close: tuple[tuple[int, ...], ...]) -> tuple[str, ...]:
-    """Cautions about modes found at `poles` (Hz): none found at all, repeated ones that so few inputs or outputs cannot show.
+def warnings(known: Evidence, poles: Array, close: tuple[tuple[int, ...], ...], reach: Reach) -> tuple[str, ...]:
+    """Cautions about modes found at `poles` (Hz): too few or too coarse lines, none found, repeated ones that so few channels cannot show.
 
+    >>> import numpy as np
     >>> from flexstage.readings.measured.evidence import evidence
     >>> from flexstage.readings.measured.example import POLE, one_mode_record
-    >>> warnings(evidence(one_mode_record(), None), np.array([POLE]), ())[0][:20]
+    >>> warnings(evidence(one_mode_record(), None), np.array([POLE]), (), Reach(1.0, 26.0))[0][:20]
     'only u was driven: o'
     """
-    found: list[str] = []
-    if not len(poles):
-        found.append(_nothing(known))
+    limits = (not_searched(known, reach), too_coarse(known, poles), None if len(poles) else nothing_found(known, reach))
+    found = [each for each in limits if each is not None]
     outputs, inputs = known.responses.values.shape[1:]
     listed = ", ".join(f"{abs(pole):.4g}" for pole in poles[:8]) + (" ..." if len(poles) > 8 else "")
     if inputs == 1 and len(poles):
@@ -33,16 +32,3 @@ def warnings(known: Evidence, poles: Array, close: tuple[tuple[int, ...], ...]) 
             near = ", ".join(f"{abs(poles[index]):.5g}" for index in group)
             found.append(f"as many modes as inputs or outputs lie together ({near} Hz): there may be more. Add inputs and outputs.")
     return tuple(found)
-
-
-def _nothing(known: Evidence) -> str:
-    if known.coherence is None:
-        return "no mode stands out of the noise."
-    low, high = known.band
-    inside = (known.responses.frequencies >= low) & (known.responses.frequencies <= high)
-    mean = float(np.mean(known.coherence[inside]))
-    chance = known.responses.values.shape[2] / max(known.averages, 1.0)
-    return (
-        f"no mode stands out of the noise: inputs explain {mean:.1%} of the outputs' power on the mean, and would explain {chance:.1%} of "
-        "noise that has nothing to do with them."
-    )

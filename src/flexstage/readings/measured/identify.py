@@ -9,6 +9,7 @@ import numpy as np
 
 from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array
+from flexstage.readings.measured.adequacy import Reach
 from flexstage.readings.measured.bands import Extent, extents, sweeps
 from flexstage.readings.measured.caution import warnings
 from flexstage.readings.measured.cluster import Candidate, Stabilisation, alike, merged, stabilisation
@@ -83,9 +84,9 @@ def identify(what: Record | Responses | Sequence[Record], search: Search = Searc
 def _identified(what: Record | Responses | Sequence[Record], search: Search, tell: Tell | None) -> Identified:
     known = evidence(what, search.segments, tell)
     band = _band(known, search)
-    diagrams, candidates = _candidates(known, band, search)
+    diagrams, candidates, reach = _candidates(known, band, search)
     found = _fitted(known, candidates, band, search)
-    return _result(known, band, diagrams, found)
+    return _result(known, band, diagrams, found, reach)
 
 
 def _band(known: Evidence, search: Search) -> tuple[float, float]:
@@ -100,7 +101,11 @@ def _band(known: Evidence, search: Search) -> tuple[float, float]:
     return low, high
 
 
-def _candidates(known: Evidence, band: tuple[float, float], search: Search) -> tuple[tuple[Stabilisation, ...], tuple[Candidate, ...]]:
+def _candidates(
+    known: Evidence, band: tuple[float, float], search: Search
+) -> tuple[tuple[Stabilisation, ...], tuple[Candidate, ...], Reach]:
+    """Candidates, and the band that was searched: where lines are few, no polynomial can be fitted to them."""
+    low, high = 0.0, 0.0
     diagrams: list[Stabilisation] = []
     candidates: list[tuple[Candidate, ...]] = []
     inputs = known.responses.values.shape[2]
@@ -109,13 +114,14 @@ def _candidates(known: Evidence, band: tuple[float, float], search: Search) -> t
         highest = min(_LONGEST, max(3, _LARGEST // inputs), int(np.sum(inside)) // (2 + 2 * inputs))
         if highest < 2:
             continue
+        low, high = low or sweep.first, sweep.last
         lowest = max(1, highest // 4)
         orders = range(lowest, highest + 1, max(1, (highest - lowest) // 10))
         values, weights = known.responses.values[inside], known.weights[inside]
         diagram, found = stabilisation(lscf(known.responses.frequencies[inside], values, weights, orders), search.highest_damping)
         diagrams.append(diagram)
         candidates.append(tuple(each for each in found if sweep.first + each.pole.real <= each.pole.imag <= sweep.last - each.pole.real))
-    return tuple(diagrams), merged(candidates)
+    return tuple(diagrams), merged(candidates), Reach(low, high, search.band)
 
 
 def _fitted(known: Evidence, candidates: tuple[Candidate, ...], band: tuple[float, float], search: Search) -> list[_Found]:
@@ -216,7 +222,9 @@ def _doubles(modal: Modal) -> Array:
     return found
 
 
-def _result(known: Evidence, band: tuple[float, float], diagrams: tuple[Stabilisation, ...], found: list[_Found]) -> Identified:
+def _result(
+    known: Evidence, band: tuple[float, float], diagrams: tuple[Stabilisation, ...], found: list[_Found], reach: Reach
+) -> Identified:
     inputs, outputs = len(known.input_scale), len(known.output_scale)
     modal = _joined([part.fit.modal for part in found], inputs, outputs)
     spread = [np.concatenate([getattr(part.deviations, name) for part in found] or [np.zeros(0)]) for name in ("frequencies", "damping")]
@@ -245,7 +253,7 @@ def _result(known: Evidence, band: tuple[float, float], diagrams: tuple[Stabilis
         stabilisation=diagrams,
         band=band,
         noise=np.median(known.density[inside], axis=0) * 2.0 / known.rate,
-        warnings=warnings(known, poles, close),
+        warnings=warnings(known, poles, close, reach),
         provenance=f"identified from {known.where}: pLSCF, then maximum likelihood",
     )
 
