@@ -29,8 +29,9 @@ def record() -> Record:
 
 
 @pytest.fixture
-def recorded(flexstage: Command, tmp_path: Path, record: Record) -> Command:
-    """The command line in a folder with stage.toml and record.uff."""
+def recorded(flexstage: Command, tmp_path: Path, record: Record, monkeypatch: pytest.MonkeyPatch) -> Command:
+    """The command line in a folder with stage.toml and record.uff, and an empty cache: other tests may have kept this stage's FEA."""
+    monkeypatch.setenv("FLEXSTAGE_CACHE", str(tmp_path / "cache"))
     write(tmp_path / "record.uff", record)
     return flexstage
 
