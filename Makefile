@@ -30,8 +30,8 @@ demo: setup-runtime ## analyse the shipped stage: tables here, the report in dem
 	@test -f demo/stage.toml || $(BIN)/flexstage new demo/stage.toml
 	$(BIN)/flexstage analyse demo/stage.toml --report demo/report.html
 
-test: setup-dev ## the tests
-	$(BIN)/python -m pytest -n $(JOBS)
+test: setup-dev ## the tests, but for the examples of the documentation
+	$(BIN)/python -m pytest -n $(JOBS) --ignore=tests/docs
 
 check-all: setup-dev ## the tests with full counts and sizes; writes docs/validation
 	FLEXSTAGE_TESTS=full $(BIN)/python -m pytest -n $(JOBS)

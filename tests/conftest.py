@@ -23,6 +23,11 @@ settings.register_profile("full", max_examples=2000, deadline=None, derandomize=
 settings.load_profile("full" if FULL else "default")
 
 
+def examples(count: int) -> settings:
+    """Settings of a test whose random examples are costly: so many in the quick tests, ten times as many in the full ones."""
+    return settings(max_examples=10 * count if FULL else count)
+
+
 @pytest.fixture(scope="session", autouse=True)
 def _one_blas_thread():
     with threadpool_limits(limits=1):

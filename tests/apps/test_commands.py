@@ -26,7 +26,10 @@ from tests.readings.stage_records import stage_record
 
 PROCESS = [sys.executable, "-c", "from flexstage.apps.cli import main; main()"]
 NAMES = [name for _, name, _, _ in COMMANDS]
-EXAMPLES = [example for _, name, _, example in COMMANDS if name != "doctor"]
+LONG = ("verify", "solid", "calibrate", "identify", "compare")
+"""Commands whose examples take minutes on the shipped stage, or whose reports have tests of their own: run in full only."""
+
+EXAMPLES = [pytest.param(example, marks=pytest.mark.full if name in LONG else ()) for _, name, _, example in COMMANDS if name != "doctor"]
 
 
 @pytest.mark.parametrize("name", NAMES)

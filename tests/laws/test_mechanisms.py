@@ -144,7 +144,7 @@ def test_transmissibility_is_that_of_a_moved_floor(mechanism, ratio):
 def rounding_of_values(model):
     """What rounding may do to eigenvalues, relative to each: that of the solutions, and 4 n eps lambda_i / lambda_1.
 
-    They are the inverse of the eigenvalues of L^-1 M L^-T, which a backward stable solver gives to n eps of the largest of *them*, 1/lambda_1
+    They are the inverse of the eigenvalues of L^-1 M L^-T, which a backward stable solver gives to n eps of their largest, 1/lambda_1
     (Golub and Van Loan, Matrix Computations, 2013, section 8.1): the highest modes are the least accurate ones.
     """
     values = eigen(model).values[:6]

@@ -24,6 +24,7 @@ def unit(name: str, order: int):
     return stiffness, static_gain(model, TWIST, (name,)).values[:, 0]
 
 
+@pytest.mark.full
 def test_horizontal_unit_has_the_stated_stiffness():
     """10.30 N/um along its axis; within 0.5 %; the sharp corners of its necks converge slowly."""
     stiffness, _ = unit("B1", order=4)

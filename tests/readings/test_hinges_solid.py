@@ -36,6 +36,7 @@ def test_it_is_public():
     assert fs.hinge_compliance is hinge_compliance
 
 
+@pytest.mark.full
 def test_the_accuracy_asked_is_reached_and_true():
     """1 % asked: the estimate is within it, and the difference from a much finer solve within the estimate."""
     part = Neck("m", 1.0 * MM, Circular(2.0 * MM))
@@ -115,18 +116,24 @@ def test_torsion_of_stubs_is_vlasovs(width):
     assert found.compliance[3, 3] == pytest.approx(halves, rel=0.06)
 
 
-def test_a_root_yields_as_a_punch_on_a_half_space_does() -> None:
-    """Rigid punch of the section's area, (1 - nu^2)/(2 a E): an upper bound, since the bar is welded on and yields sideways itself."""
+@pytest.mark.parametrize(
+    ("rough", "agreed"),
+    [(Accuracy(error=0.0, orders=(3, 3), meshes=1), 0.05), pytest.param(Accuracy(error=0.02, orders=(2, 4)), 0.02, marks=pytest.mark.full)],
+)
+def test_a_root_yields_as_a_punch_on_a_half_space_does(rough: Accuracy, agreed: float) -> None:
+    """Rigid punch of the section's area, (1 - nu^2)/(2 a E): an upper bound, since the bar is welded on and yields sideways itself.
+
+    Two ends mirror each other as far as two meshes agree.
+    """
     bar = Neck("m", 1.0 * MM, Straight(5 * MM), width=1.0 * MM)
     ways = (Roots(False, False), Roots(False, True), Roots(True, False), Roots(True, True))
-    rough = Accuracy(error=0.02, orders=(2, 4))
     none, second, first, both = (hinge_compliance(bar, STEEL, rough, roots=roots).compliance for roots in ways)
     punch = (1.0 - 0.3**2) / (2.0 * 1.0 * MM / np.sqrt(np.pi) * 200e9)
     assert 0.65 * punch < second[0, 0] - none[0, 0] < punch
     assert both[0, 0] - none[0, 0] == pytest.approx(2.0 * (second[0, 0] - none[0, 0]), rel=0.05)
     mirror = np.diag([-1.0, 1.0, 1.0, 1.0, -1.0, -1.0])
     size = np.sqrt(np.diag(second))
-    np.testing.assert_allclose(mirror @ first @ mirror / np.outer(size, size), second / np.outer(size, size), atol=0.02)
+    np.testing.assert_allclose(mirror @ first @ mirror / np.outer(size, size), second / np.outer(size, size), atol=agreed)
     assert second[1, 5] < 0.0 < second[2, 4]  # the root at +x turns under a moment, and swings the centre
 
 

@@ -92,7 +92,7 @@ def test_the_lever_needs_few_elements(lever: tuple[Component, Meshed]) -> None:
     assert lever[1].mesh.ne < 14_000
 
 
-@pytest.mark.parametrize("part", ["foot_notch", "pole_neck", "neck"])
+@pytest.mark.parametrize("part", [*(pytest.param(part, marks=pytest.mark.full) for part in ("foot_notch", "pole_neck")), "neck"])
 def test_bending_is_within_one_percent_of_a_higher_order(part: str) -> None:
     """Order three against order four; torsion of the straight neck, of few elements, within 1.5 %."""
     component = alone(part)

@@ -177,7 +177,7 @@ def test_a_mesh_without_end_is_refused_before_it_is_made(folder: Path) -> None:
     assert {step.text for step in seen} <= {"prop 1: starting", "done"}
 
 
-@pytest.mark.parametrize("neck", [0.5, 1.0, 2.5])
+@pytest.mark.parametrize("neck", [pytest.param(0.5, marks=pytest.mark.full), 1.0, 2.5])
 def test_no_mesh_has_fewer_elements_than_expected(neck: float) -> None:
     from flexstage.readings.solid.mesh import meshed
 

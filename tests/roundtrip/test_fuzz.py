@@ -8,20 +8,21 @@ import sys
 from pathlib import Path
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from flexstage.base.finding import DesignError, Finding
 from flexstage.cases.registry import CASES
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.store import dumps, load, loads, tidied
+from tests.conftest import examples
 from tests.roundtrip.designs import TEXT
 from tests.roundtrip.mutation import mutated, noise
 
 DESIGNS = (TEXT, *(dumps(tidied(case.build())) for case in CASES.values()))
 
 
-@settings(max_examples=1000)
+@examples(300)
 @given(st.integers(min_value=0), st.sampled_from(DESIGNS))
 def test_an_altered_design_is_read_or_refused(seed: int, design: str) -> None:
     assert all(finding.where and finding.what and finding.advice for finding in findings(mutated(design, chance(seed))))

@@ -8,13 +8,14 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from flexstage.base.finding import DesignError
 from flexstage.cases.registry import CASES
 from flexstage.mechanism.address import addresses, get, set_value, tag_of
 from flexstage.mechanism.store import dumps, loads, patch, tidied, write
+from tests.conftest import examples
 from tests.roundtrip.designs import TEXT
 
 
@@ -58,7 +59,7 @@ def test_absent_values_are_added() -> None:
 
 
 @pytest.mark.parametrize("name", ["double-triangle", "bridge"])
-@settings(max_examples=60)
+@examples(15)
 @given(data=st.data())
 def test_any_number_of_a_case_can_be_patched(name: str, data: st.DataObject) -> None:
     stage = tidied(CASES[name].build())

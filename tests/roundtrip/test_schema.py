@@ -16,6 +16,7 @@ from flexstage.base.unit import parse
 from flexstage.cases.registry import CASES
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.store import dumps, schema
+from tests.conftest import examples
 from tests.roundtrip.designs import TEXT, mechanisms
 
 SCHEMA = schema()
@@ -90,6 +91,7 @@ def test_shipped_cases_fit(name: str) -> None:
     assert fits(dumps(CASES[name].build()))
 
 
+@examples(50)
 @given(mechanisms())
 def test_any_description_fits_but_for_its_bounds(mechanism: Mechanism) -> None:
     assert fits(dumps(mechanism), UNBOUNDED)

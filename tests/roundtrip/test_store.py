@@ -20,6 +20,7 @@ from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.store import dump, dumps, load, loads, shipped, tidied
 from flexstage.parts.rod import Rod
+from tests.conftest import examples
 from tests.roundtrip.designs import mechanisms
 
 START = 'format = "flexstage 1"\nname = "a"\n'
@@ -34,6 +35,7 @@ def order(value: Any) -> Any:
     return [order(item) for item in value] if isinstance(value, tuple) else None
 
 
+@examples(50)
 @given(mechanisms())
 def test_any_description_survives_its_file(mechanism: Mechanism) -> None:
     read = loads(dumps(mechanism), checked=False)
