@@ -16,12 +16,12 @@ unexport PYTHONPATH PYTHONHOME
 
 COMPILE := $(BIN)/uv pip compile -q --universal --python-version 3.11 --generate-hashes --no-header --no-annotate --no-emit-index-url
 
-.PHONY: help demo test check-all bench lint style format types contracts docs examples validation pictures lock setup-runtime setup-dev
+.PHONY: help demo test check-all bench lint style format types contracts docs examples validation pictures lock setup-runtime setup-dev setup-oracles
 
 help: ## list the targets
 	@sed -n 's/^\([a-z-]*\):.*## /  make \1\t/p' $(MAKEFILE_LIST) | expand -t 20
 
-setup-runtime setup-dev: setup-%:
+setup-runtime setup-dev setup-oracles: setup-%:
 	@test -n "$(PYTHON)" || { echo "flexstage needs Python 3.11 or newer with venv; none was found on the PATH." >&2; exit 1; }
 	@$(PYTHON) tools/setup.py $*
 
@@ -33,8 +33,9 @@ demo: setup-runtime ## analyse the shipped stage: tables here, the report in dem
 test: setup-dev ## the tests, but for the examples of the documentation
 	$(BIN)/python -m pytest -n $(JOBS) --ignore=tests/docs
 
-check-all: setup-dev ## the tests with full counts and sizes; writes docs/validation
+check-all: setup-oracles ## the tests with full counts and sizes, other programs beside ours; writes docs/validation
 	FLEXSTAGE_TESTS=full $(BIN)/python -m pytest -n $(JOBS)
+	$(BIN)/python benchmarks/oracles.py
 	$(BIN)/python -m tools.validation --solids
 
 validation: setup-dev ## compute docs/validation anew: every number against its authority
@@ -43,7 +44,7 @@ validation: setup-dev ## compute docs/validation anew: every number against its 
 pictures: setup-dev ## draw the pictures of the documentation anew
 	$(BIN)/python -m tools.pictures
 
-bench: setup-dev ## times and ratios, one process each
+bench: setup-oracles ## times and ratios, one process each
 	@for each in $(wildcard benchmarks/*.py); do echo "== $$each" && $(BIN)/python $$each || exit 1; done
 
 lint: style types contracts ## style, types and import contracts
@@ -71,3 +72,4 @@ examples: setup-dev ## run every example of README.md and docs
 lock: setup-dev ## pin the requirements anew (newer versions: make lock UPGRADE=--upgrade)
 	$(COMPILE) $(UPGRADE) pyproject.toml requirements/build.in --extra dev -o requirements/dev.txt
 	$(COMPILE) pyproject.toml requirements/build.in --extra solid --extra tables -c requirements/dev.txt -o requirements/runtime.txt
+	$(COMPILE) pyproject.toml --extra oracles -c requirements/dev.txt -o requirements/oracles.txt

@@ -1,4 +1,4 @@
-"""Bring .venv to the state the lock files ask for: `python tools/setup.py runtime|dev`.
+"""Bring .venv to the state the lock files ask for: `python tools/setup.py runtime|dev|oracles`.
 
 Run by the Makefile with any Python 3.11 or newer; standard library only. A stamp within .venv says what was installed, so that a second run
 only checks that every file is still there. Whatever is broken (half-made, moved, files lost) is made anew rather than repaired.
@@ -26,12 +26,14 @@ from flexstage.apps.installed import packages  # noqa: E402
 VENV = ROOT / ".venv"
 PYTHON = VENV / "bin" / "python"
 COMMAND = VENV / "bin" / "flexstage"
-COVERS = {"runtime": ("runtime",), "dev": ("dev", "runtime")}
-"""What the installation of a lock file also satisfies."""
+LOCKS = {"runtime": ("runtime",), "dev": ("dev",), "oracles": ("dev", "oracles")}
+"""The lock files that are installed, in this order; a later one pins nothing otherwise than an earlier one."""
+COVERS = {"runtime": ("runtime",), "dev": ("dev", "runtime"), "oracles": ("oracles", "dev", "runtime")}
+"""What an installation also satisfies."""
 
 
 def main(wanted: str) -> int:
-    """Set up for the lock file `wanted`; return the exit code."""
+    """Set up what is `wanted`; return the exit code."""
     with (ROOT / "pyproject.toml").open() as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)  # two makes at a time take turns
         if is_current(wanted):
@@ -52,8 +54,9 @@ def set_up(wanted: str) -> None:
         make_venv()
     for stamp in VENV.glob("*.stamp"):
         stamp.unlink()
-    print(f"Installing the packages of requirements/{wanted}.txt ...", flush=True)
-    pip("--require-hashes", "-r", str(ROOT / "requirements" / f"{wanted}.txt"))
+    for lock in LOCKS[wanted]:
+        print(f"Installing the packages of requirements/{lock}.txt ...", flush=True)
+        pip("--require-hashes", "-r", str(ROOT / "requirements" / f"{lock}.txt"))
     pip("--no-deps", "--no-build-isolation", "-e", str(ROOT))
     if said := quadmath.provide(site_packages()):
         print(f"NGSolve, the solver of the solid reading, may not load: {said}. Everything else works.", file=sys.stderr)
@@ -122,16 +125,16 @@ def interpreter_runs() -> bool:
 
 
 def digest(wanted: str) -> str:
-    """What .venv depends on: the lock file, the package's metadata and the interpreter."""
+    """What .venv depends on: the lock files, the package's metadata and the interpreter."""
     state = hashlib.sha256()
-    for path in (ROOT / "requirements" / f"{wanted}.txt", ROOT / "pyproject.toml"):
+    for path in (*(ROOT / "requirements" / f"{lock}.txt" for lock in LOCKS[wanted]), ROOT / "pyproject.toml"):
         state.update(path.read_bytes())
     state.update(str(sys.version_info[:2]).encode())
     return state.hexdigest()
 
 
 def stamp_path(wanted: str) -> Path:
-    """Where it is written that a lock file was installed."""
+    """Where it is written what was installed."""
     return VENV / f"{wanted}.stamp"
 
 
