@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator, Sequence
+from collections import Counter
+from collections.abc import Generator, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -130,14 +131,21 @@ def opened_records(paths: Sequence[Path], options: Options) -> list[Record | Res
     from flexstage.readings.measured.read import read
 
     found: list[Record | Responses] = []
-    findings: list[Finding] = []
-    for path in paths:
+    findings = list(_twice(paths))
+    for path in dict.fromkeys(paths):
         try:
             found.append(read(path, options))
         except DesignError as error:
             findings += error.findings
     require(findings)
     return found
+
+
+def _twice(paths: Sequence[Path]) -> Iterator[Finding]:
+    counts = Counter(path.resolve() for path in paths)
+    for path in {path.resolve(): path for path in paths}.values():
+        if (count := counts[path.resolve()]) > 1:
+            yield Finding(str(path), f"it is given {count} times", "Give every record once: it would count as so many tests")
 
 
 @contextmanager

@@ -69,7 +69,7 @@ def update(  # noqa: PLR0913 (its options)
     """
     said = Said(inputs, outputs, only, units, rate, kind, allow, band, resolution)
     writable(record, design, [("--output", output), ("--json", json)])
-    known = _known(prior or [], model_error, gain_error if gain else None)
+    known = _known(prior or [], model_error, gain_error, gain=gain)
     from flexstage.mechanism.store import loads
     from flexstage.mechanism.store.file import read_text
     from flexstage.present.documents.update import update_body
@@ -99,18 +99,19 @@ def _names(texts: Sequence[str]) -> tuple[str, ...]:
     return tuple(name.strip() for text in texts for name in text.split(",") if name.strip())
 
 
-def _known(priors: Sequence[str], model_error: str, gain_error: str | None) -> Known:
+def _known(priors: Sequence[str], model_error: str, gain_error: str, *, gain: bool) -> Known:
     from flexstage.studies.update_free import DEFAULT, Known
 
     shares: dict[str, float] = {}
     for text in priors:
         name, _, share = (part.strip() for part in text.rpartition("="))
         shares[name] = _share(f"--prior {name}".strip(), share)
+    gains = _share("--gain-error", gain_error)  # looked at even where it is not used: a slip is told
     return Known(
         prior=shares.pop("", DEFAULT.prior),
         priors=shares,
         model_error=_share("--model-error", model_error),
-        gain_error=None if gain_error is None else _share("--gain-error", gain_error),
+        gain_error=gains if gain else None,
     )
 
 

@@ -6,10 +6,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from flexstage.base.finding import Finding
 from flexstage.base.number import Array
 from flexstage.readings.measured.evidence import Evidence
 
 _BEYOND_CHANCE = 1.5
+_FEWEST = 8
 
 
 @dataclass(frozen=True)
@@ -39,6 +41,21 @@ def line_distance(known: Evidence) -> float:
     0.374
     """
     return float(known.responses.frequencies[1] - known.responses.frequencies[0])
+
+
+def few_lines(known: Evidence, band: tuple[float, float], count: int) -> list[Finding]:
+    """A finding where a band has fewer than eight lines: no polynomial of order 2 can be fitted to them, not even with one input.
+
+    >>> from flexstage.readings.measured.evidence import evidence
+    >>> from flexstage.readings.measured.example import one_mode_record
+    >>> print(few_lines(evidence(one_mode_record(), None), (10.0, 10.5), 1)[0])
+    record: from 10 to 10.5 Hz there is 1 of the lines 0.374 Hz apart; it takes 8. Ask for a wider band, or record longer.
+    """
+    if count >= _FEWEST:
+        return []
+    are = "is 1" if count == 1 else f"are {count}"
+    what = f"from {band[0]:.4g} to {band[1]:.4g} Hz there {are} of the lines {line_distance(known):.3g} Hz apart; it takes {_FEWEST}"
+    return [Finding(known.where, what, "Ask for a wider band, or record longer")]
 
 
 def too_coarse(known: Evidence, poles: Array) -> str | None:

@@ -13,7 +13,7 @@ import numpy as np
 
 from flexstage.base.finding import DesignError, refuse
 from flexstage.base.number import Array
-from flexstage.readings.measured.aside import aside
+from flexstage.readings.measured.hdf_written import hdf_written
 from flexstage.readings.measured.record import Record, Responses
 from flexstage.readings.measured.variables import OWN_FORM, Attribute, Contents, Variable, complex_of
 
@@ -224,9 +224,7 @@ def write_hdf(path: str | os.PathLike[str], what: Record | Responses) -> None:
     ...         file["samples"][:, 0].tolist(), file["samples"].attrs["names"].tolist(), float(file.attrs["rate"])
     ([0.1, 0.2], ['S1'], 3.0)
     """
-    import h5py
-
-    with aside(path) as place, h5py.File(place, "w", libver=("v110", "v110")) as file:  # its metadata have check sums
+    with hdf_written(path, version="v110") as file:  # its metadata have check sums
         if isinstance(what, Record):
             _write_record(file, what)
         else:

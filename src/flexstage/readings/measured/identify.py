@@ -9,7 +9,7 @@ import numpy as np
 
 from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array
-from flexstage.readings.measured.adequacy import Reach
+from flexstage.readings.measured.adequacy import Reach, few_lines
 from flexstage.readings.measured.bands import Extent, extents, sweeps
 from flexstage.readings.measured.caution import warnings
 from flexstage.readings.measured.cluster import Candidate, Stabilisation, alike, merged, stabilisation
@@ -95,7 +95,10 @@ def _band(known: Evidence, search: Search) -> tuple[float, float]:
         return low, high
     asked = search.band
     if asked[0] < asked[1] and asked[0] < high and asked[1] > low:
-        return max(low, asked[0]), min(high, asked[1])
+        chosen = max(low, asked[0]), min(high, asked[1])
+        lines = known.responses.frequencies
+        require(few_lines(known, chosen, int(np.sum((lines >= chosen[0]) & (lines <= chosen[1])))))
+        return chosen
     what = f"modes between {asked[0]:g} and {asked[1]:g} Hz are asked for; the data reach from {low:.4g} to {high:.4g} Hz"
     require([Finding(known.where, what, "Ask for a band within, or record faster or longer")])
     return low, high

@@ -13,6 +13,7 @@ from flexstage.base.finding import refuse
 from flexstage.base.number import Array
 from flexstage.readings.measured.aside import aside
 from flexstage.readings.measured.hdf import BLOCK, RESPONSES_FORM, Stored, opened
+from flexstage.readings.measured.hdf_written import hdf_written
 from flexstage.readings.measured.mat_tags import tag_problem
 from flexstage.readings.measured.record import Channel, Record, Responses
 from flexstage.readings.measured.variables import OWN_FORM, Attribute, Contents, Held, Variable
@@ -211,16 +212,12 @@ def _cells(texts: tuple[str, ...]) -> Array:
 
 
 def _write_73(path: str | os.PathLike[str], what: Record | Responses) -> None:
-    import h5py
-
-    with aside(path) as place:
-        with h5py.File(place, "w", userblock_size=_HEAD) as file:
-            for name, value in _fields(what):
-                _put(file, name, value)
-            if isinstance(what, Record):
-                _put_samples(file, what)
-        with place.open("r+b") as stream:
-            stream.write(b"MATLAB 7.3 MAT-file, Platform: any, HDF5 schema 1.00 .".ljust(116) + bytes(8) + b"\x00\x02IM")
+    head = b"MATLAB 7.3 MAT-file, Platform: any, HDF5 schema 1.00 .".ljust(116) + bytes(8) + b"\x00\x02IM"
+    with hdf_written(path, head=head.ljust(_HEAD, b"\x00")) as file:
+        for name, value in _fields(what):
+            _put(file, name, value)
+        if isinstance(what, Record):
+            _put_samples(file, what)
 
 
 def _put(file: Any, name: str, value: Any) -> Any:

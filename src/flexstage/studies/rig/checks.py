@@ -124,7 +124,7 @@ def plan_findings(plan: Plan) -> Iterator[Finding]:
 
 
 def range_findings(plan: Plan, chain: Chain) -> Iterator[Finding]:
-    """Peaks of six rms that pass the strokes, the amplifiers' current or the gauges' range.
+    """Peaks of six rms that pass the strokes, the amplifiers' current or the gauges' range, or that no gauge sees for its steps.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.readings.mapped import mapped
@@ -147,8 +147,19 @@ def range_findings(plan: Plan, chain: Chain) -> Iterator[Finding]:
         if limit is not None and _PEAK * rms > limit:
             what = f"peaks of 6 x {rms:.4g} A rms pass the amplifier's {limit:.4g} A"
             yield Finding(name, what, "Drive less, in a narrower band, or with a stronger amplifier")
+    yield from _gauge_findings(plan, chain)
+
+
+def _gauge_findings(plan: Plan, chain: Chain) -> Iterator[Finding]:
     walked = plan.setup.sensing.drift * np.sqrt(plan.length / plan.rate / 60.0)
     for name, rms, span in zip(plan.gauges, np.hypot(chain.output_rms, walked), plan.ranges, strict=True):
         if _PEAK * rms > 0.5 * span:
             what = f"peaks of 6 x {1e6 * rms:.4g} um rms pass half its range of {1e6 * span:.4g} um"
             yield Finding(name, what, "Drive less, let it drift less, or take a gauge of larger range")
+    seen = np.hypot(chain.output_rms, walked)
+    if np.all(_PEAK * seen < 0.5 * plan.steps):
+        best = int(np.argmin(plan.steps / np.maximum(seen, 1e-300)))
+        what = (
+            f"peaks of 6 x {1e6 * seen[best]:.4g} um rms stay within half a step of {1e6 * plan.steps[best]:.4g} um, and so at the others"
+        )
+        yield Finding(plan.gauges[best], what, "Drive more, or take gauges of finer resolution: all readings would stand still")
