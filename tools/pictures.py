@@ -1,4 +1,4 @@
-"""The pictures of the documentation, drawn anew from the shipped stage: `make pictures` writes docs/pictures/*.svg.
+"""The pictures of the documentation, drawn anew from the shipped stage: `make pictures` writes docs/pictures.
 
 Run with `--png FOLDER` to look at them: the same pictures as PNG.
 """
@@ -8,6 +8,7 @@ from __future__ import annotations
 import argparse
 import re
 from collections.abc import Callable, Mapping
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -22,15 +23,23 @@ from flexstage.beams.closed_forms import (
     smith_toroid_rotation_stiffness,
 )
 from flexstage.cases.double_triangle import double_triangle
+from flexstage.mechanism.address import get, set_value
 from flexstage.present.figures.budget import loss_figure
+from flexstage.present.figures.compare import compare_figure
 from flexstage.present.figures.directional import directional_figure
 from flexstage.present.figures.export import to_png, to_svg
+from flexstage.present.figures.measured import stabilisation_figure
+from flexstage.present.figures.skin import skin_figure
 from flexstage.present.figures.style import FULL, INK, PAPER, SERIES, canvas, styled
 from flexstage.present.plan import plan_figure
 from flexstage.present.scene.facet import Facet, Kind
 from flexstage.present.scene.stage import Scene, displaced, largest_motion, scene
 from flexstage.present.scene.view import Side, draw, ordered, outline, triad, view, write
+from flexstage.readings.solid.fineness import Fineness, Reduction
 from flexstage.spatial.frame import COMPONENTS
+from flexstage.studies.complete import platform_modes
+from flexstage.studies.solid_read import STANDARD_SOLIDS, read_solid
+from flexstage.studies.solid_surface import mode_surfaces
 from tests.analytic import test_paros_weisbord, test_smith_toroid
 from tests.analytic.hinges import UNIT, circular, diagonal, error
 
@@ -165,14 +174,48 @@ def neck_errors() -> dict[str, list[tuple[float, float]]]:
     return curves
 
 
+_THICKNESS = "parts.neck.thickness"
+
+
+@cache
+def _tested() -> fs.Identified:
+    """Modes from a test on the virtual rig of a stage whose horizontal necks came out 5 % too thick."""
+    stage = double_triangle()
+    built = set_value(stage, _THICKNESS, 1.05 * get(stage, _THICKNESS))
+    setup = fs.RigSetup(seconds=60.0, seed=1, drive=fs.NoiseDrive(stroke=0.5 * fs.um), sensing=fs.Sensing(density=5.0 * fs.nm))
+    return fs.identify(fs.rig(built, fs.lumped(built), setup), fs.Search(band=(80.0, 220.0)))
+
+
+def stabilisation() -> Any:
+    """The stabilisation diagram of that test."""
+    return stabilisation_figure(_tested())
+
+
+def compared() -> Any:
+    """That test beside the theory of the stage as designed."""
+    return compare_figure(fs.compare(double_triangle(), _tested()))
+
+
+def solid() -> Any:
+    """The first mode of the stage as a solid, by elements of order two, coloured by displacement."""
+    read = read_solid(double_triangle(), Reduction(Fineness(order=2)), STANDARD_SOLIDS)
+    found = platform_modes(double_triangle(), read.model)
+    return skin_figure(mode_surfaces(read, found.shapes[:, found.platform[0]]), "")
+
+
 DRAWN: Mapping[str, tuple[Callable[[], Any], str]] = {
     "stage": (stage, "the double-triangular stage from above the corner, from above, from the front and from the right"),
     "plan": (plan, "dimensioned plan of the double-triangular stage"),
     "polar": (polar, "stiffness of the double-triangular stage in the plane by direction: circles"),
     "budget": (budget, "lost motion of the six actuators by hinge"),
     "modes": (modes, "shapes of the platform's six modes"),
+    "stabilisation": (stabilisation, "poles over the order of the model; those that stay become modes"),
+    "compared": (compared, "frequencies of six modes by theory and as measured, and how far theory is off"),
     "hinge-errors": (hinge_errors, "error of beam theory against finite elements over thickness over radius"),
 }
+
+RASTER: Mapping[str, Callable[[], Any]] = {"solid": solid}
+"""Pictures of thousands of triangles."""
 
 
 def standing_alone(svg: str) -> str:
@@ -185,9 +228,11 @@ def standing_alone(svg: str) -> str:
 def main() -> None:
     """Write all pictures."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--png", type=Path, help="folder for PNGs to look at, instead of the pages' SVGs")
+    parser.add_argument("--png", type=Path, help="folder for PNGs to look at, instead of the pages' pictures")
     folder = parser.parse_args().png
     with threadpool_limits(limits=1):
+        for name, figure in RASTER.items():
+            ((folder or PICTURES) / f"{name}.png").write_bytes(to_png(figure(), dots_per_inch=110))
         for name, (figure, said) in DRAWN.items():
             if folder:
                 (folder / f"{name}.png").write_bytes(to_png(figure()))

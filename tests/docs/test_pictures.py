@@ -11,7 +11,7 @@ from tests.analytic import test_paros_weisbord, test_smith_toroid
 from tests.analytic.hinges import PERCENT_DIGIT
 from tests.docs.pages import pages
 from tests.hygiene.source import ROOT, expect_none
-from tools.pictures import DRAWN, PICTURES, neck_errors, notch_errors
+from tools.pictures import DRAWN, PICTURES, RASTER, neck_errors, notch_errors
 
 LINK = re.compile(r"!?\[[^\]]*\]\((?!https?:|#)([^)#\s]+)[^)]*\)")
 
@@ -29,7 +29,9 @@ def test_links_and_pictures_exist():
 
 def test_pictures_are_drawn_and_shown():
     shown = {target.stem for _, target in _targets() if target.parent == PICTURES}
-    assert shown == set(DRAWN) == {path.stem for path in PICTURES.glob("*.svg")}
+    assert shown == {*DRAWN, *RASTER}
+    assert {path.stem for path in PICTURES.glob("*.svg")} == set(DRAWN)
+    assert {path.stem for path in PICTURES.glob("*.png")} == set(RASTER)
 
 
 @pytest.mark.parametrize("name", DRAWN)
