@@ -115,8 +115,9 @@ that is recorded agrees."""
 _ABSENT = """\
 * What the paper does not print: R_a and R_s, masses, radii, damping, the values of its Figs. 11 and 12.
 * Large deflections (elastica, beam constraint model), the load term and centre shift of cross-axis pivots: every elastic reading is linear.
-* Records of tests: that reading is not part of this version.
-* 3-D finite elements of whole stages: they are compared in `tests/readings`."""
+* Records of tests: modes found in them are held against known ones by `benchmarks/identification.py`, and beside other programs by
+  `benchmarks/oracles.py`; what they print stands on no page.
+* 3-D finite elements of other stages than the paper's: they are compared in `tests/readings`."""
 
 _TREE = """\
 ```{toctree}
@@ -129,6 +130,7 @@ validation/costs
 validation/hinges
 validation/codes
 validation/laws
+validation/solids
 ```"""
 
 _SOLIDS = "solids"
