@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from importlib.metadata import version
 from pathlib import Path
 
-from tools.validation import assemblies, codes, costs, hinges, laws, sets, single_units, solids, table_1
+from tools.validation import assemblies, codes, costs, hinges, laws, records, sets, single_units, solids, table_1
 from tools.validation.row import Row, Section, Verdict, table
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
@@ -42,6 +42,7 @@ def chapters() -> list[Chapter]:
         Chapter("sets", "The paper completed: parameter sets A and B", _SETS, tuple(sets.sections())),
         Chapter("costs", "What simpler theories omit", _COSTS, tuple(costs.sections())),
         Chapter("hinges", "Hinges and leaves", _HINGES, (*hinges.sections(), *assemblies.sections())),
+        Chapter("records", "Modes from records", _RECORDS, tuple(records.sections())),
         Chapter("codes", "Independent codes", _CODES, tuple(codes.sections())),
         Chapter("laws", "Laws on random stages", _LAWS, tuple(laws.sections())),
     ]
@@ -115,8 +116,6 @@ that is recorded agrees."""
 _ABSENT = """\
 * What the paper does not print: R_a and R_s, masses, radii, damping, the values of its Figs. 11 and 12.
 * Large deflections (elastica, beam constraint model), the load term and centre shift of cross-axis pivots: every elastic reading is linear.
-* Records of tests: modes found in them are held against known ones by `benchmarks/identification.py`, and beside other programs by
-  `benchmarks/oracles.py`; what they print stands on no page.
 * 3-D finite elements of other stages than the paper's: they are compared in `tests/readings`."""
 
 _TREE = """\
@@ -128,6 +127,7 @@ validation/paper
 validation/sets
 validation/costs
 validation/hinges
+validation/records
 validation/codes
 validation/laws
 validation/solids
@@ -154,6 +154,10 @@ A simpler theory leaves out elasticity that is there. Each omission has a price,
 _HINGES = """\
 Single hinges and small assemblies. The finite elements were computed independently of this project and converged below 0.01 % (plane Q9,
 axisymmetric, plate; the 3-D notch with p = 5). [Hinges](../hinges.md) says what each part models and what to expect of it."""
+
+_RECORDS = """\
+White noise in, noisy outputs, and the modes found in the record without a hand: beside those that it was made of. [Tests of a
+stage](../measured.md) tells how they are found."""
 
 _CODES = """\
 The same stages in codes that others wrote. What is shared and what is not stands above each table."""
