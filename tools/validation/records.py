@@ -23,8 +23,8 @@ def sections() -> list[Section]:
 
 def _made_up(study: Case) -> Section:
     text = (
-        f"Six modes, six simultaneous inputs, {study.seconds:g} s at 2048 Hz, white noise of {100.0 * study.noise:g} % of each output's rms; "
-        "one record. `benchmarks/identification.py` prints errors over many records beside the least that statistics allow."
+        f"Six modes, six simultaneous inputs, {study.seconds:g} s at 2048 Hz, white noise of {100.0 * study.noise:g} % of each "
+        "output's rms; one record. `benchmarks/identification.py` prints errors over many records beside the least that statistics allow."
     )
     return Section(f"Six modes, {study.name}", text, tuple(_rows(study)))
 
