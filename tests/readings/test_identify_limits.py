@@ -145,3 +145,32 @@ def test_what_noise_hides_is_told_in_numbers() -> None:
     assert "narrower than the 1.2 Hz between lines" in identify(alone).warnings[0]
     assert "though inputs explain" not in identify(alone).warnings[0]
     assert "no mode can be told, though inputs explain 39.5%" in identify(record(truth(), 0, seconds=1.0)).warnings[0]
+
+
+@pytest.mark.parametrize("seed", range(2 * SEEDS))
+def test_a_tone_from_outside_is_no_mode(seed: int) -> None:
+    """The mains at all gauges, a pump at one of them, louder than the stage: free oscillations, which no input drives."""
+    known = truth(seed=1000 + seed)
+
+    def hum(values: np.ndarray) -> None:
+        time = np.arange(len(values)) / 2048.0
+        values[:, 6:] += 0.3 * np.std(values[:, 6:], axis=0) * np.sin(2.0 * np.pi * 50.0 * time + 1.0)[:, None]
+        values[:, 8] += 3.0 * np.std(values[:, 8]) * np.sin(2.0 * np.pi * 150.02 * time)
+
+    found = identify(changed(record(known, seed, seconds=30.0), hum))
+    np.testing.assert_allclose(found.frequencies, known.frequencies, rtol=2e-4)
+
+
+@pytest.mark.parametrize("steps", [np.round, np.floor])
+@pytest.mark.parametrize("levels", [2.0, 5.0, 20.0])
+def test_steps_are_noise_however_they_are_counted(steps: Callable[[np.ndarray], np.ndarray], levels: float) -> None:
+    """Down to half the signal's rms, rounded or cut off: an offset of half a step is taken out with the mean."""
+    for seed in range(2 * SEEDS):
+        known = truth(seed=1000 + seed)
+
+        def count(values: np.ndarray) -> None:
+            step = np.std(values[:, 6:], axis=0) / levels
+            values[:, 6:] = steps(values[:, 6:] / step) * step
+
+        found = identify(changed(record(known, seed, seconds=30.0, noise=0.0), count))
+        np.testing.assert_allclose(found.frequencies, known.frequencies, rtol=5e-4)

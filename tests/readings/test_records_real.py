@@ -11,6 +11,7 @@ import pyuff
 import scipy.io
 
 from flexstage.base.finding import DesignError
+from flexstage.readings.measured.identify import identify
 from flexstage.readings.measured.options import Kind, Options
 from flexstage.readings.measured.read import read
 from flexstage.readings.measured.record import Record, Responses
@@ -79,6 +80,35 @@ def test_an_analysers_file_holds_a_frame_and_responses() -> None:
     for peak in (66.9, 212.2, 398.8):  # what its README says is seen
         near = np.flatnonzero(np.abs(averaged.frequencies - peak) < 2.0)
         assert abs(averaged.frequencies[near[np.argmax(size[near])]] - peak) < 0.4
+
+
+def test_modes_of_a_blow_by_the_analyser_and_by_its_time_frame() -> None:
+    """What is seen in its response: 34.05 and 212.1 Hz far above the lines around, a damped bump at 163 Hz with a dip of phase, one line at
+    66.9 Hz. 398.8 and 405.9 Hz are single lines of the scatter around an antiresonance, 2 to 3 standard deviations high.
+    """
+    averaged = read(FOLDER / "case1.mat", Options(kind=Kind.RESPONSES))
+    assert isinstance(averaged, Responses)
+    scores = {peak: _standing_out(averaged, peak) for peak in (34.05, 66.9, 212.1, 398.8, 405.9)}
+    assert min(scores[peak] for peak in (34.05, 66.9, 212.1)) > 15.0
+    assert max(scores[398.8], scores[405.9]) < 3.0
+    found = identify(averaged)
+    assert found.frequencies == pytest.approx([34.05, 162.6, 212.1], rel=2e-3)
+    assert found.damping[1] > 20.0 * found.damping[2]
+    assert any("further modes next to those found may be missing" in each for each in found.warnings)  # 66.9 Hz is narrower than a line
+    frame = identify(record("case1.mat", Options(kind=Kind.RECORD, inputs=("Time_chan_1",), units=(("Time_chan_*", "V"),))))
+    assert frame.frequencies == pytest.approx([163.1, 212.1], rel=2e-3)
+    np.testing.assert_allclose(frame.frequencies, found.frequencies[1:], rtol=5e-3)
+    np.testing.assert_allclose(frame.damping, found.damping[1:], rtol=0.1)
+
+
+def _standing_out(averaged: Responses, peak: float) -> float:
+    """How far the highest line within 0.4 Hz is from a cubic through 22 neighbours, in standard deviations of theirs."""
+    values, lines = averaged.values[:, 0, 0], averaged.frequencies
+    place = int(np.argmax(np.where(np.abs(lines - peak) < 0.4, np.abs(values), 0.0)))
+    near = np.r_[place - 12 : place - 1, place + 2 : place + 13]
+    cubic = np.polyfit(lines[near] - lines[place], values[near], 3)
+    rest = np.abs(values[near] - np.polyval(cubic, lines[near] - lines[place]))
+    return float(abs(values[place] - cubic[-1]) / np.sqrt(np.median(rest**2) / np.log(2.0)))
 
 
 def test_big_endian_with_its_step() -> None:

@@ -72,13 +72,34 @@ def significance(band: Band, found: Fit, limit: float) -> Array:
     strength = np.empty(count)
     for mode in range(count):
         places = first + np.arange(outputs) * count + mode
-        shape = modal.shapes[:, mode]
-        own = covariance[np.ix_(places, places)]
-        scale = np.sqrt(np.maximum(np.real(np.diagonal(own)), 1e-300))
-        inverse = np.linalg.pinv(own / np.outer(scale, scale), rcond=1e-10, hermitian=True)
-        strength[mode] = 2.0 * np.real(np.vdot(shape / scale, inverse @ (shape / scale)))
+        strength[mode] = _wald(modal.shapes[:, mode], covariance[np.ix_(places, places)])
         if strength[mode] < _DOUBTFUL * limit:
             strength[mode] = 2.0 * (fit(band, modal.without(mode), found.cost + _DOUBTFUL * limit).cost - found.cost)
+    return strength
+
+
+def drive_strength(band: Band, found: Fit) -> Array:
+    """How strongly (k,) the data ask for each mode to be driven by the inputs at all: chi-square with two degrees an input where it is not.
+
+    Wald's statistic of its participation in the inputs, held the largest component of its shape, and the transients' participation: a blow
+    at a record's begin cannot be told from them. A tone from outside, the mains' or a pump's, is an undamped mode to the transients alone.
+
+    >>> from flexstage.readings.measured.example import one_mode_band
+    >>> from flexstage.readings.measured.likelihood import fit
+    >>> band, start = one_mode_band()
+    >>> bool(drive_strength(band, fit(band, start))[0] > 1000.0)
+    True
+    """
+    modal = found.modal
+    count, total = modal.participation.shape
+    inputs = total if band.inputs is None else band.inputs
+    largest = np.argmax(np.abs(modal.shapes), axis=0)
+    transients = (count + np.arange(count)[:, None] * total + np.arange(inputs, total)).ravel()
+    covariance = _inverse(found.information, np.append(count * (1 + total) + largest * count + np.arange(count), transients))
+    strength = np.empty(count)
+    for mode in range(count):
+        places = count + mode * total + np.arange(inputs)
+        strength[mode] = _wald(modal.participation[mode, :inputs], covariance[np.ix_(places, places)])
     return strength
 
 
@@ -95,14 +116,23 @@ def _covariance(found: Fit, scatter: Array | None = None) -> Array:
     """Inverse of the information with each mode's largest participation held; rows and columns held are nought."""
     count, total = found.modal.participation.shape
     largest = np.argmax(np.abs(found.modal.participation), axis=1)
-    held = count + np.arange(count) * total + largest
-    free = np.setdiff1d(np.arange(len(found.information)), held)
-    inner = found.information[np.ix_(free, free)]
+    return _inverse(found.information, count + np.arange(count) * total + largest, scatter)
+
+
+def _wald(values: Array, covariance: Array) -> float:
+    scale = np.sqrt(np.maximum(np.real(np.diagonal(covariance)), 1e-300))
+    inverse = np.linalg.pinv(covariance / np.outer(scale, scale), rcond=1e-10, hermitian=True)
+    return float(2.0 * np.real(np.vdot(values / scale, inverse @ (values / scale))))
+
+
+def _inverse(information: Array, held: Array, scatter: Array | None = None) -> Array:
+    free = np.setdiff1d(np.arange(len(information)), held)
+    inner = information[np.ix_(free, free)]
     scale = 1.0 / np.sqrt(np.maximum(np.real(np.diagonal(inner)), 1e-300))
     inverse = np.linalg.pinv(inner * np.outer(scale, scale), rcond=1e-13, hermitian=True) * np.outer(scale, scale)
     if scatter is not None:
         inverse = inverse @ scatter[np.ix_(free, free)] @ inverse
-    covariance = np.zeros_like(found.information)
+    covariance = np.zeros_like(information)
     covariance[np.ix_(free, free)] = inverse
     return covariance
 

@@ -13,7 +13,7 @@ from flexstage.readings.measured.adequacy import Reach, few_lines
 from flexstage.readings.measured.bands import Extent, extents, sweeps
 from flexstage.readings.measured.caution import warnings
 from flexstage.readings.measured.cluster import Candidate, Stabilisation, alike, merged, stabilisation
-from flexstage.readings.measured.confidence import Deviations, deviations, freedoms, significance
+from flexstage.readings.measured.confidence import Deviations, deviations, drive_strength, freedoms, significance
 from flexstage.readings.measured.evidence import Evidence, chosen_segments, evidence, whole
 from flexstage.readings.measured.identified import Identified
 from flexstage.readings.measured.likelihood import Band, Fit, Modal, background, fit, noise, scatter, shaped, silence
@@ -147,7 +147,7 @@ def _group(known: Evidence, cells: Cells, candidates: tuple[Candidate, ...], gro
     shape = known.shape(cells)
     variance = known.variance(group.low, group.high)[:, None] * shape / np.median(shape, axis=1, keepdims=True)
     variance = np.maximum(variance, silence(cells, known.rounding))
-    band = Band(cells, variance, background(cells, outside), known.smear, shape, known.rounding)
+    band = Band(cells, variance, background(cells, outside), known.smear, shape, known.rounding, len(known.input_scale))
     if np.sum(cells.count) < 2 * cells.own.shape[2] * band.background.shape[1]:
         return None
     participation = np.array([candidates[index].participation for index in members])
@@ -170,6 +170,12 @@ def _limit(modal: Modal) -> float:
     from scipy.stats import chi2
 
     return float(chi2.isf(_ONCE_IN, freedoms(modal)))
+
+
+def _undriven(band: Band, modal: Modal) -> float:
+    from scipy.stats import chi2
+
+    return float(chi2.isf(_ONCE_IN, 2 * (modal.participation.shape[1] if band.inputs is None else band.inputs)))
 
 
 def _pruned(band: Band, found: Fit, group: Extent, search: Search) -> tuple[Fit, Array]:
@@ -207,6 +213,7 @@ def _worst(band: Band, found: Fit, group: Extent, search: Search) -> tuple[int |
     if np.any(outside):
         return int(np.argmax(np.where(outside, spread.damping / ratio, -1.0))), np.zeros(len(poles))
     strength = np.where(_doubles(found.modal), 0.0, significance(band, found, limit))
+    strength = np.minimum(strength, limit / _undriven(band, found.modal) * drive_strength(band, found))
     wanted = np.where(spread.damping > _SURE * ratio, _EVIDENT * limit, limit)
     least = int(np.argmin(strength / wanted))
     return (least if strength[least] < wanted[least] else None), strength

@@ -44,7 +44,7 @@ class Band:
 
     `background` (c, b, 8) are the functions that stand for what lies outside, as Legendre coefficients in every cell. `smear` says how
     windows have smeared the lines, if they have; `shape` (p, c) how the noise variance is known to go with frequency; `rounding` (p,) the
-    variance per line that rounding leaves.
+    variance per line that rounding leaves; `inputs` how many of the drive's columns are inputs (absent: all), transients follow.
     """
 
     cells: Cells
@@ -53,6 +53,7 @@ class Band:
     smear: Smear | None = None
     shape: Array | float = 1.0
     rounding: Array | float = 0.0
+    inputs: int | None = None
 
 
 @dataclass(frozen=True, eq=False)
