@@ -30,6 +30,7 @@ from flexstage.readings.solid.store import Versions
 TASK, PROGRESS, RESULT, FINDINGS = "task", "progress", "result", "findings"
 _SLACK, _SHARE = 5e8, 1.2
 """What libraries take beyond a job's own memory [bytes], and how much more it may take than was planned with."""
+_TRIES = 100
 _PATIENCE = 60.0
 """How much longer than allowed it lives if nobody ends it [s]."""
 
@@ -96,10 +97,28 @@ class Task:
     made: Versions
 
 
+@dataclass(frozen=True, eq=False)
+class _Parent:
+    """The process that asked: what it permits, whether it is gone, and who listens to it."""
+
+    permitted: threading.Semaphore
+    gone: threading.Event
+    listener: threading.Thread
+
+
 def _main(folder: Path) -> Outcome:
     """Work on the task in a folder; what is refused is left there as findings."""
+    parent = _watch_parent(folder)
     try:
-        _place(folder / RESULT, _work(folder))
+        return _outcome(folder, parent)
+    finally:
+        if parent.gone.is_set():
+            parent.listener.join()  # the folder is being taken away, which may be what failed here: the listener ends the process
+
+
+def _outcome(folder: Path, parent: _Parent) -> Outcome:
+    try:
+        _place(folder / RESULT, _work(folder, parent))
     except DesignError as error:
         told = [{"where": finding.where, "what": finding.what, "advice": finding.advice} for finding in error.findings]
         _place(folder / FINDINGS, json.dumps(told).encode())
@@ -119,14 +138,13 @@ def findings_in(folder: Path) -> tuple[Finding, ...]:
     return tuple(Finding(**item) for item in json.loads((folder / FINDINGS).read_bytes()))
 
 
-def _work(folder: Path) -> bytes:
-    permitted = _watch_parent(folder)
+def _work(folder: Path, parent: _Parent) -> bytes:
     report = _reporter(folder / PROGRESS)
     report(Stage.STARTING, 0.0)
     task: Task = pickle.loads((folder / TASK).read_bytes())  # noqa: S301 (written by the parent process, into a folder only it can write to)
     _limit_memory(task.memory)
     faulthandler.dump_traceback_later(task.seconds + _PATIENCE, exit=True)  # should compiled code keep the lock and the parent be gone
-    return task.job.work(Call(report, lambda counts: _ask(folder / PROGRESS, counts, permitted), task.attempt, task.made))
+    return task.job.work(Call(report, lambda counts: _ask(folder / PROGRESS, counts, parent.permitted), task.attempt, task.made))
 
 
 def _ask(path: Path, counts: Counts, permitted: threading.Semaphore) -> None:
@@ -150,21 +168,31 @@ def _place(path: Path, data: bytes) -> None:
     aside.replace(path)
 
 
-def _watch_parent(folder: Path) -> threading.Semaphore:
-    """Released by every byte of the standard input; this process ends with the parent, whose end of the pipe closes then.
+def _watch_parent(folder: Path) -> _Parent:
+    """Every byte of the standard input permits; this process ends with the parent, whose end of the pipe closes then.
 
     CAD, mesher and solver release the interpreter's lock while they work, so this thread is heard.
     """
-    permitted = threading.Semaphore(0)
+    permitted, gone = threading.Semaphore(0), threading.Event()
 
     def listen() -> None:
         while os.read(sys.stdin.fileno(), 1):
             permitted.release()
-        shutil.rmtree(folder, ignore_errors=True)
+        gone.set()
+        _take_away(folder)
         os._exit(1)
 
-    threading.Thread(target=listen, daemon=True).start()
-    return permitted
+    listener = threading.Thread(target=listen, daemon=True)
+    listener.start()
+    return _Parent(permitted, gone, listener)
+
+
+def _take_away(folder: Path) -> None:
+    """Remove a folder into which another thread may still be writing."""
+    for _ in range(_TRIES):
+        shutil.rmtree(folder, ignore_errors=True)
+        if not folder.exists():
+            return
 
 
 def _limit_memory(most: float) -> None:
