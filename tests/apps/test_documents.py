@@ -169,7 +169,10 @@ def test_numbers_that_are_not_finite_are_null_with_a_reason(flexstage: Command) 
     assert document["reasons"]["loads.actuators.B1.preload_n"] == "not a number"
 
 
-@pytest.mark.parametrize("name", sorted(CASES))
+ALIKE = ("double-triangle-a", "double-triangle-refitted", "tip-tilt-four")
+
+
+@pytest.mark.parametrize("name", [pytest.param(name, marks=pytest.mark.full if name in ALIKE else ()) for name in sorted(CASES)])
 def test_every_case_is_analysed(flexstage: Command, tmp_path: Path, name: str) -> None:
     design_in(tmp_path, name)
     ended = flexstage("analyse", "stage.toml", "--json", "out.json")
