@@ -13,6 +13,7 @@ import numpy as np
 
 from flexstage.base.finding import DesignError, refuse
 from flexstage.base.number import Array
+from flexstage.readings.measured.hdf_sound import require_sound
 from flexstage.readings.measured.hdf_written import hdf_written
 from flexstage.readings.measured.record import Record, Responses
 from flexstage.readings.measured.variables import OWN_FORM, Attribute, Contents, Variable, complex_of
@@ -77,7 +78,9 @@ class StoredSamples:
 
 
 def hdf_contents(path: Path) -> Contents:
-    """What an HDF5 file holds; nothing is read but texts and attributes. Raises `DesignError` where it is none or breaks off.
+    """What an HDF5 file holds; nothing is read but texts and attributes.
+
+    Raises `DesignError` where it is none, breaks off, or would take the library down.
 
     An array has the attributes of its groups too, but for names, which belong to the group.
 
@@ -89,6 +92,7 @@ def hdf_contents(path: Path) -> Contents:
     ...     [(each.name, dict(each.attributes)) for each in hdf_contents(Path(folder) / "a.h5").variables]
     [('test/u', {'fs': 50.0})]
     """
+    require_sound(path)
     with opened(path) as file:
         own = attributes_of(file)
         variables: list[Variable] = []

@@ -13,6 +13,7 @@ from flexstage.base.finding import refuse
 from flexstage.base.number import Array
 from flexstage.readings.measured.aside import aside
 from flexstage.readings.measured.hdf import BLOCK, RESPONSES_FORM, Stored, opened
+from flexstage.readings.measured.hdf_sound import require_sound
 from flexstage.readings.measured.hdf_written import hdf_written
 from flexstage.readings.measured.mat_tags import tag_problem
 from flexstage.readings.measured.record import Channel, Record, Responses
@@ -109,6 +110,7 @@ def _cell(name: str, array: Array) -> Iterator[tuple[str, Any]]:
 
 
 def _version_73(path: Path) -> list[tuple[str, Any]]:
+    require_sound(path)
     with opened(path) as file:
         return [each for name in map(_text_of, file) if name != _REFERENCES for each in _node(path, file, name, file[name])]
 
