@@ -147,9 +147,7 @@ def test_what_noise_hides_is_told_in_numbers() -> None:
     assert "no mode can be told, though inputs explain 39.5%" in identify(record(truth(), 0, seconds=1.0)).warnings[0]
 
 
-MISTAKEN = pytest.mark.xfail(
-    strict=True, reason="a loud tone beside the line spacing, 149.97 Hz here, passes for a mode in one of 16 records"
-)
+MISTAKEN = pytest.mark.xfail(strict=True, reason="a loud tone, seen at 149.97 Hz, passes for a mode in one of 16 records")
 
 
 @pytest.mark.parametrize("seed", [pytest.param(seed, marks=MISTAKEN if seed == 9 else ()) for seed in range(2 * SEEDS)])
