@@ -23,9 +23,9 @@ settings.register_profile("full", max_examples=2000, deadline=None, derandomize=
 settings.load_profile("full" if FULL else "default")
 
 
-def examples(count: int) -> settings:
-    """Settings of a test whose random examples are costly: so many in the quick tests, ten times as many in the full ones."""
-    return settings(max_examples=10 * count if FULL else count)
+def examples(quick: int, full: int) -> settings:
+    """Settings of a test whose random examples are costly: so many in the quick tests, and in the full ones."""
+    return settings(max_examples=full if FULL else quick)
 
 
 @pytest.fixture(scope="session", autouse=True)

@@ -22,7 +22,7 @@ from tests.roundtrip.mutation import mutated, noise
 DESIGNS = (TEXT, *(dumps(tidied(case.build())) for case in CASES.values()))
 
 
-@examples(300)
+@examples(300, 3000)
 @given(st.integers(min_value=0), st.sampled_from(DESIGNS))
 def test_an_altered_design_is_read_or_refused(seed: int, design: str) -> None:
     assert all(finding.where and finding.what and finding.advice for finding in findings(mutated(design, chance(seed))))

@@ -35,7 +35,7 @@ def order(value: Any) -> Any:
     return [order(item) for item in value] if isinstance(value, tuple) else None
 
 
-@examples(50)
+@examples(50, 2000)
 @given(mechanisms())
 def test_any_description_survives_its_file(mechanism: Mechanism) -> None:
     read = loads(dumps(mechanism), checked=False)

@@ -130,6 +130,16 @@ def not_numbers(mechanism: Mechanism, names: tuple[str, ...]) -> Iterator[Findin
             yield Finding(name, "the description does not state it", "State it, or choose another number")
 
 
+def departure(mechanism: Mechanism, name: str) -> int:
+    """What an address departs from: 0 nothing, 1 a part as all copies of a unit have it, 2 that as a single copy has it.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> [departure(double_triangle(), f"{place}.thickness") for place in ("parts.neck", "horizontal/front", "B1/front")]
+    [0, 1, 2]
+    """
+    return 0 if "/" not in name else 1 if name.partition("/")[0] in mechanism.units else 2
+
+
 def steppable(mechanism: Mechanism, names: tuple[str, ...]) -> Iterator[list[int]]:
     """Positions of parameters that can be stepped together: a departure hides the number it departs from, so each level goes alone.
 
@@ -137,7 +147,7 @@ def steppable(mechanism: Mechanism, names: tuple[str, ...]) -> Iterator[list[int
     >>> list(steppable(double_triangle(), ("parts.neck.thickness", "horizontal/front.thickness", "materials.steel.young")))
     [[0, 2], [1]]
     """
-    level = [0 if "/" not in name else 1 if name.partition("/")[0] in mechanism.units else 2 for name in names]
+    level = [departure(mechanism, name) for name in names]
     for wanted in range(3):
         members = [position for position, found in enumerate(level) if found == wanted]
         for start in range(0, len(members), _CHUNK):

@@ -208,15 +208,19 @@ def update(mechanism: Mechanism, experiment: Identified, names: Sequence[str], k
     raise refuse("update", what, "State narrower priors, or begin with a design nearer to the test (flexstage compare shows the pairs)")
 
 
+@dataclass(frozen=True, eq=False)
 class _Data:
-    """The data with their weights, and the problem they make of free numbers."""
+    """The data with their weights, and the problem they make of free numbers; `gains` is absent where they are not compared."""
 
-    def __init__(self, freed: Free, known: Known, rows: tuple[ModeRow, ...], gains: Gains | None) -> None:
-        self.freed, self.known, self.rows, self.gains = freed, known, rows, gains
-        self.frequency_error = np.hypot(np.array([row.deviation for row in rows]), known.model_error)
-        if gains is not None and known.gain_error is not None:
-            self.scale = np.max(np.abs(gains.values), axis=0)
-            self.gain_error = np.hypot(gains.deviations / self.scale, known.gain_error)
+    freed: Free
+    known: Known
+    rows: tuple[ModeRow, ...]
+    gains: Gains | None
+
+    @property
+    def frequency_error(self) -> Array:
+        """Relative standard deviations (rows,) of frequencies: of the test and of theory."""
+        return np.hypot(np.array([row.deviation for row in self.rows]), self.known.model_error)
 
     @property
     def problem(self) -> Problem[Design]:
@@ -229,7 +233,7 @@ class _Data:
         measured = np.array([row.frequency for row in self.rows])
         parts = [np.log(measured / design.frequencies) / self.frequency_error]
         if self.gains is not None:
-            parts.append(((self.gains.values - gains_of(design, self.gains)) / (self.scale * self.gain_error)).ravel())
+            parts.append(((self.gains.values - gains_of(design, self.gains)) / self._gain_errors(self.gains)).ravel())
         return np.concatenate(parts)
 
     def slopes(self, design: Design) -> Array:
@@ -238,7 +242,7 @@ class _Data:
         values = self.freed.deviations * np.array([get(design.mechanism, name) for name in names])
         parts = [frequency_slopes(design, names) * values / self.frequency_error[:, None]]
         if self.gains is not None:
-            weighted = gain_slopes(design, names, self.gains) * values / (self.scale * self.gain_error)[..., None]
+            weighted = gain_slopes(design, names, self.gains) * values / self._gain_errors(self.gains)[..., None]
             parts.append(weighted.reshape(-1, len(names)))
         return np.concatenate(parts)
 
@@ -249,10 +253,15 @@ class _Data:
         if self.gains is None:
             return
         first, last = gains_of(before, self.gains), gains_of(after, self.gains)
+        scale = self.gains.scale
+        errors = self._gain_errors(self.gains) / scale
         for (row, column), value in np.ndenumerate(self.gains.values):
             name = f"gain {self.gains.outputs[row]}/{self.gains.inputs[column]}"
-            numbers = (float(value), float(self.gain_error[row, column]), float(first[row, column]), float(last[row, column]))
-            yield Residual(name, "m/m", *numbers, float(self.scale[column]))
+            numbers = (float(value), float(errors[row, column]), float(first[row, column]), float(last[row, column]))
+            yield Residual(name, "m/m", *numbers, float(scale[column]))
+
+    def _gain_errors(self, gains: Gains) -> Array:
+        return gains.errors(self.known.gain_error or 0.0)
 
 
 def _updated(data: _Data, found: Fitted[Design], compared: Compared, steps: int) -> Updated:
@@ -274,7 +283,7 @@ def _updated(data: _Data, found: Fitted[Design], compared: Compared, steps: int)
         directions=directions.T,
         residuals=residuals,
         chi_square_before=float(start @ start),
-        chi_square=float(found.residuals @ found.residuals + found.parameters @ found.parameters),
+        chi_square=found.cost,
         steps=steps,
         known=data.known,
         mechanism=found.state.mechanism,
@@ -289,11 +298,10 @@ def _cautions(data: _Data, found: Fitted[Design], compared: Compared) -> Iterato
     from scipy.special import chdtrc
 
     freed, errors = data.freed, data.known
-    total = float(found.residuals @ found.residuals + found.parameters @ found.parameters)
-    if chdtrc(len(found.residuals), total) < _IMPROBABLE:
+    if chdtrc(len(found.residuals), found.cost) < _IMPROBABLE:
         yield (
-            f"chi-square is {total:.3g} with {len(found.residuals)} data: theory and test differ by more than the stated errors, and the "
-            f"intervals are too narrow: state a larger model error than {100.0 * errors.model_error:.2g} %, or free what else may be off."
+            f"chi-square is {found.cost:.3g} with {len(found.residuals)} data: theory and test differ by more than the stated errors, and "
+            f"the intervals are too narrow: state a larger model error than {100.0 * errors.model_error:.2g} %, or free what else may be off."
         )
     for name, moved, prior in zip(freed.names, found.parameters, freed.deviations, strict=True):
         if abs(moved) > _FAR:

@@ -43,6 +43,11 @@ class Fitted(Generic[_State]):
     slopes: Array
     steps: int
 
+    @property
+    def cost(self) -> float:
+        """Chi-square of data and priors, |r|^2 + |u|^2."""
+        return _cost(self.residuals, self.parameters)
+
 
 def fitted(problem: Problem[_State], start: Array, state: _State) -> Fitted[_State]:
     """Minimise |r(u)|^2 + |u|^2 by Gauss-Newton steps, halved until they lead down.
@@ -79,7 +84,7 @@ def _step(slopes: Array, residuals: Array, here: Array) -> Array:
 def _down(problem: Problem[_State], now: tuple[Array, _State, Array], step: Array) -> tuple[Array, _State, Array] | None:
     """The first of ever shorter steps that lowers the cost; `None` where none does."""
     here, state, residuals = now
-    cost = float(residuals @ residuals + here @ here)
+    cost = _cost(residuals, here)
     for halving in range(_HALVINGS):
         there = here + step * 0.5**halving
         try:
@@ -87,6 +92,10 @@ def _down(problem: Problem[_State], now: tuple[Array, _State, Array], step: Arra
         except DesignError:
             continue
         found = problem.residuals(reached)
-        if float(found @ found + there @ there) < cost:  # false for NaN too
+        if _cost(found, there) < cost:  # false for NaN too
             return there, reached, found
     return None
+
+
+def _cost(residuals: Array, parameters: Array) -> float:
+    return float(residuals @ residuals + parameters @ parameters)

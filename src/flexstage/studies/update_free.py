@@ -13,7 +13,7 @@ from flexstage.mechanism.address import get, quantity_of, set_value
 from flexstage.mechanism.grammar import NumberNode
 from flexstage.mechanism.locate import canonical, locate
 from flexstage.mechanism.mechanism import Mechanism
-from flexstage.studies.sensitivities import not_numbers
+from flexstage.studies.sensitivities import departure, not_numbers
 
 
 @dataclass(frozen=True)
@@ -65,7 +65,7 @@ def free(mechanism: Mechanism, names: Sequence[str], known: Known = DEFAULT) -> 
     full = tuple(locate(mechanism, name).address for name in names)
     own = {canonical(mechanism, name): share for name, share in known.priors.items()}
     require(Finding(f"prior of {name}", "it is not among the free numbers", nearest(name, full)) for name in own if name not in full)
-    ordered = sorted(full, key=lambda name: _level(mechanism, name))
+    ordered = sorted(full, key=lambda name: departure(mechanism, name))
     started = mechanism
     for name in ordered:
         started = set_value(started, name, get(mechanism, name))
@@ -76,11 +76,6 @@ def free(mechanism: Mechanism, names: Sequence[str], known: Known = DEFAULT) -> 
         values=np.array([float(np.real(get(mechanism, name))) for name in ordered]),
         deviations=np.array([own.get(name, known.prior) for name in ordered]),
     )
-
-
-def _level(mechanism: Mechanism, name: str) -> int:
-    """Departures of copies after those of all copies, these after what they depart from."""
-    return 0 if "/" not in name else 1 if name.partition("/")[0] in mechanism.units else 2
 
 
 def _error_findings(known: Known) -> list[Finding]:

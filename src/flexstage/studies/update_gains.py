@@ -36,6 +36,15 @@ class Gains:
     values: Array
     deviations: Array
 
+    @property
+    def scale(self) -> Array:
+        """The largest gain (m,) of each actuator."""
+        return np.max(np.abs(self.values), axis=0)
+
+    def errors(self, share: float) -> Array:
+        """Standard deviations (p, m) of noise and of a `share` of each actuator's largest gain."""
+        return np.hypot(self.deviations, share * self.scale)
+
 
 def measured_gains(mechanism: Mechanism, model: LinearModel, experiment: Identified, outputs: tuple[str, ...]) -> Gains:
     """Gains of the named outputs to the record's inputs that are strokes of the stage.

@@ -28,8 +28,9 @@ class Bar:
 
     def share(self, text: str, share: float) -> None:
         """Show the share of a work that is done, and how long the rest takes at its pace."""
-        left = (time.monotonic() - self._begun) * (1.0 / share - 1.0) if share > 0.0 else 0.0
-        self._show(f"{self.about}{text}", share, f"{_clock(left)} left" if share > 0.0 else "")
+        from flexstage.readings.solid.progress import Step, seconds_left
+
+        self.step(Step(text, share, seconds_left(share, time.monotonic() - self._begun)))
 
     def _show(self, text: str, fraction: float, left: str) -> None:
         if self._shown is not None:
