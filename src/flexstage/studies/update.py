@@ -300,8 +300,9 @@ def _cautions(data: _Data, found: Fitted[Design], compared: Compared) -> Iterato
     freed, errors = data.freed, data.known
     if chdtrc(len(found.residuals), found.cost) < _IMPROBABLE:
         yield (
-            f"chi-square is {found.cost:.3g} with {len(found.residuals)} data: theory and test differ by more than the stated errors, and "
-            f"the intervals are too narrow: state a larger model error than {100.0 * errors.model_error:.2g} %, or free what else may be off."
+            f"chi-square is {found.cost:.3g} with {len(found.residuals)} data: theory and test differ by more than the stated "
+            f"errors, and the intervals are too narrow: state a larger model error than {100.0 * errors.model_error:.2g} %, or free "
+            "what else may be off."
         )
     for name, moved, prior in zip(freed.names, found.parameters, freed.deviations, strict=True):
         if abs(moved) > _FAR:
