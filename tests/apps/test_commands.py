@@ -21,15 +21,25 @@ from flexstage.apps.doctor import Row, Verdict
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.readings.measured.write import write
 from flexstage.studies import complete
+from flexstage.studies.hysteresis_example import example_record
 from tests.apps.command import Command, design_in
 from tests.readings.stage_records import stage_record
 
 PROCESS = [sys.executable, "-c", "from flexstage.apps.cli import main; main()"]
 NAMES = [name for _, name, _, _ in COMMANDS]
-LONG = ("verify", "solid", "calibrate", "identify", "compare")
+LONG = ("verify", "solid", "calibrate", "identify", "compare", "loop")
 """Commands whose examples take minutes on the shipped stage, or whose reports have tests of their own: run in full only."""
 
 EXAMPLES = [pytest.param(example, marks=pytest.mark.full if name in LONG else ()) for _, name, _, example in COMMANDS if name != "doctor"]
+
+STUDY = """
+format = "flexstage study 1"
+case = "parallelogram"
+responses.f = "frequency.1"
+sweep = { sampling = "latin hypercube", designs = 16, seed = 3 }
+[variables]
+young = { of = "materials.aluminium.young", from = "-10 %", to = "10 %" }
+"""
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -48,6 +58,10 @@ def test_examples_run(flexstage: Command, tmp_path: Path, example: str) -> None:
         occ.Box(occ.Pnt(0, 0, 0), occ.Pnt(10, 20, 30)).WriteStep(str(tmp_path / "part.step"))
     if "record.uff" in words and words[1] != "rig":
         write(tmp_path / "record.uff", stage_record(double_triangle()))
+    if words[1] == "sweep":
+        (tmp_path / "study.toml").write_text(STUDY)
+    if words[1] == "hysteresis":
+        write(tmp_path / "stack.csv", example_record())
     ended = flexstage(*words[1:])
     assert ended.code == 0, ended.err
     assert ended.out or "Wrote" in ended.err
@@ -139,9 +153,12 @@ def test_the_entry_point_exits_with_the_code(tmp_path: Path) -> None:
     assert done.stderr.startswith("error: 1 finding")
 
 
-def test_a_reader_that_leaves_is_no_failure(tmp_path: Path) -> None:
+@pytest.mark.parametrize("unbuffered", ["", "1"])
+def test_a_reader_that_leaves_is_no_failure(tmp_path: Path, unbuffered: str) -> None:
+    """Python's buffer decides whether the pipe breaks while the command runs or after it."""
     design_in(tmp_path)
-    with subprocess.Popen([*PROCESS, "schema"], cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
+    environment = os.environ | {"PYTHONUNBUFFERED": unbuffered}
+    with subprocess.Popen([*PROCESS, "schema"], cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=environment) as process:
         assert process.stdout is not None
         assert process.stderr is not None
         process.stdout.read(1)

@@ -169,6 +169,7 @@ main()
 """
 
 
+@pytest.mark.full  # its twins: the reading that was stopped, of the cache; the interruptions of processes, and of the command above
 @pytest.mark.skipif(sys.platform != "linux", reason="sends the signal of a keyboard")
 def test_an_interruption_ends_with_code_two_and_the_same_command_resumes(tmp_path: Path) -> None:
     drawn = propped(6e-3, 7e-3)
@@ -177,7 +178,8 @@ def test_an_interruption_ends_with_code_two_and_the_same_command_resumes(tmp_pat
     fs.dump(replace(drawn, parts=parts, links=links), tmp_path / "stage.toml")
     (tmp_path / "temporary").mkdir()
     environment = os.environ | {"FLEXSTAGE_CACHE": str(tmp_path / "cache"), "TMPDIR": str(tmp_path / "temporary")}
-    words = [sys.executable, "-c", PROGRAM, "solid", "stage.toml", "--order", "2", "--json", "out.json"]
+    one = "import os; os.sched_setaffinity(0, list(os.sched_getaffinity(0))[:1])\n"  # one part after the other: the second is not yet done
+    words = [sys.executable, "-c", one + PROGRAM, "solid", "stage.toml", "--order", "2", "--json", "out.json"]
     with subprocess.Popen(words, cwd=tmp_path, env=environment, stderr=subprocess.PIPE, text=True) as process:
         while not list((tmp_path / "cache").glob("*.superelement")) and process.poll() is None:
             time.sleep(0.02)

@@ -70,7 +70,7 @@ def test_a_line_is_read():
 @pytest.mark.parametrize(
     ("key", "text", "told"),
     [
-        ("stroke.w", "at least 5 um", "nothing of this name can be required. Near to it are stroke"),
+        ("stroke.w", "at least 5 um", 'there is no measure called "stroke.w". Near to it are stroke'),
         ("safty", "at least 2", "The nearest name is safety"),
         ("frequency.platform.0", "at least 2 Hz", "frequency.platform"),
         ("loss.B7", "at most 2 %", "Near to it are loss.B"),

@@ -1,11 +1,17 @@
-"""Installed packages: are all their files there? Standard library only, so that it runs before anything is installed."""
+"""Installed packages: are all their files there? Standard library only, so that it runs before anything is installed.
+
+What installers wrote is read here and not by `importlib.metadata`: its backport, which some packages bring and which takes its place once
+it is imported, leaves out the files that are lost.
+"""
 
 from __future__ import annotations
 
+import csv
 import re
-from collections.abc import Iterable
+import sys
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from importlib.metadata import Distribution, PackageNotFoundError, distributions
+from email.parser import HeaderParser
 from pathlib import Path
 
 
@@ -36,7 +42,7 @@ def packages(folders: Iterable[Path | str]) -> dict[str, Package]:
     >>> packages([])
     {}
     """
-    found = (_package(each) for each in distributions(path=[str(folder) for folder in folders]))
+    found = (_package(each) for folder in folders for each in _records(Path(folder)))
     return {package.name: package for package in found if package}
 
 
@@ -46,27 +52,35 @@ def package(name: str) -> Package | None:
     >>> package("no such package") is None
     True
     """
+    records = (each for folder in sys.path for each in _records(Path(folder)))
+    named = (each for each in records if normalised(each.name.partition("-")[0]) == normalised(name))
+    return next((found for each in named if (found := _package(each))), None)
+
+
+def _records(folder: Path) -> Iterator[Path]:
+    """Folders in which installers keep what they know of each package."""
+    return (each for each in sorted(folder.glob("*.dist-info")) if each.is_dir())
+
+
+def _package(record: Path) -> Package | None:
+    """A package; half-removed ones leave a folder without metadata."""
     try:
-        return _package(Distribution.from_name(name))
-    except (PackageNotFoundError, ValueError):
+        metadata = HeaderParser().parsestr((record / "METADATA").read_text(encoding="utf-8"))
+    except OSError:
         return None
-
-
-def _package(distribution: Distribution) -> Package | None:
-    # Half-removed packages leave a folder without metadata: importlib.metadata then has no name to give.
-    metadata = distribution.metadata
-    if metadata is None or "Name" not in metadata or "Version" not in metadata:  # pyright: ignore[reportUnnecessaryComparison]
+    if "Name" not in metadata or "Version" not in metadata:
         return None
-    return Package(normalised(metadata["Name"]), metadata["Version"], _lost(distribution))
+    return Package(normalised(metadata["Name"]), metadata["Version"], _lost(record))
 
 
-def _lost(distribution: Distribution) -> int:
-    files = distribution.files
-    if files is None:
+def _lost(record: Path) -> int:
+    try:
+        rows = list(csv.reader((record / "RECORD").read_text(encoding="utf-8").splitlines()))
+    except OSError:
         return 1
     # Byte code is rewritten at will, and so is the record itself (pip writes it last, without a size).
-    checked = (file for file in files if file.suffix != ".pyc")
-    return sum(_is_lost(Path(str(file.locate())), file.size) for file in checked)
+    checked = [(row[0], row[2] if len(row) > 2 else "") for row in rows if row and not row[0].endswith(".pyc")]
+    return sum(_is_lost(record.parent / name, int(size) if size else None) for name, size in checked)
 
 
 def _is_lost(path: Path, size: int | None) -> bool:

@@ -77,6 +77,9 @@ _ALTERNATIVES: dict[type, tuple[str | None, str]] = {
     Polar: (None, "polar"),
     Pose: (None, "pose"),
 }
+TOLD_BY = "TOLD_BY"
+"""Class attribute of alternatives that do not stand above: the key that tells them apart, or None, and their name in a file."""
+
 _FILE_KEYS = {(Mechanism, "changes"): "change", (Mechanism, "requirements"): "require"}
 
 
@@ -113,6 +116,11 @@ class RowNode:
 
 
 @dataclass(frozen=True)
+class WholeNode:
+    """A whole number without unit."""
+
+
+@dataclass(frozen=True)
 class TextNode:
     """A text: a name or a remark."""
 
@@ -126,7 +134,7 @@ class ChoiceNode:
 
 @dataclass(frozen=True)
 class ListNode:
-    """Texts or choices in a row, `length` of them (None: any number)."""
+    """Texts, choices, numbers or tables in a row, `length` of them (None: any number)."""
 
     item: Node
     length: int | None
@@ -174,6 +182,7 @@ Node: TypeAlias = (
     | DirectionNode
     | MatrixNode
     | RowNode
+    | WholeNode
     | TextNode
     | ChoiceNode
     | ListNode
@@ -240,7 +249,8 @@ def _node(hint: Any) -> Node:
         return _annotated(hint)
     if origin in (types.UnionType, typing.Union):
         options = typing.get_args(hint)
-        return UnionNode(_ALTERNATIVES[options[0]][0], tuple((_ALTERNATIVES[option][1], RecordNode(option)) for option in options))
+        told = [_ALTERNATIVES.get(option) or getattr(option, TOLD_BY) for option in options]
+        return UnionNode(told[0][0], tuple((name, RecordNode(option)) for (_, name), option in zip(told, options, strict=True)))
     if origin is tuple:
         return _tuple(typing.get_args(hint))
     if isinstance(origin, type) and issubclass(origin, Mapping):
@@ -248,9 +258,9 @@ def _node(hint: Any) -> Node:
     return _named(hint)
 
 
-def _named(hint: type) -> TextNode | ChoiceNode | RecordNode:
-    if hint is str:
-        return TextNode()
+def _named(hint: type) -> TextNode | WholeNode | ChoiceNode | RecordNode:
+    if hint in (str, int):
+        return TextNode() if hint is str else WholeNode()
     return ChoiceNode(hint) if issubclass(hint, Enum) else RecordNode(hint)
 
 
@@ -271,7 +281,7 @@ def _tuple(items: tuple[Any, ...]) -> VectorNode | ListNode:
     nodes = [_node(item) for item in items if item is not Ellipsis]
     numbers = tuple(node for node in nodes if isinstance(node, NumberNode))
     if numbers:
-        return VectorNode(numbers)
+        return ListNode(numbers[0], None) if Ellipsis in items else VectorNode(numbers)
     return ListNode(_named(items[0]), None if Ellipsis in items else len(items))
 
 
@@ -328,13 +338,13 @@ def _members(node: Node, value: Any) -> Iterator[tuple[str, Node, Any]]:
     if isinstance(node, UnionNode):
         node = dict(node.options)[node.name_of(value)]
     if isinstance(node, RecordNode):
-        for name, slot in node.fields.items():
-            yield name, slot.node, getattr(value, name)
+        yield from ((name, slot.node, getattr(value, name)) for name, slot in node.fields.items())
     elif isinstance(node, TableNode):
-        for name, item in value.items():
-            yield name, node.item, item
+        yield from ((name, node.item, item) for name, item in value.items())
     elif isinstance(node, VectorNode):
         yield from zip(COMPONENTS, node.items, value, strict=False)
+    elif isinstance(node, ListNode):
+        yield from ((str(number), node.item, item) for number, item in enumerate(value, start=1))
     elif isinstance(node, MatrixNode):
         for row, column in itertools.combinations_with_replacement(range(6), 2):
             yield f"{COMPONENTS[row]}.{COMPONENTS[column]}", entry(row, column), value[row][column]

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from flexstage.apps.cli.output import STDOUT, write
+from flexstage.apps.cli.output import STDOUT, announced, write
 from flexstage.apps.cli.speech import tell
 from flexstage.base.finding import refuse
 from flexstage.studies.reading import Reading
@@ -36,7 +36,7 @@ def answer(asked: Asked, body: Callable[[], Document], tables: Callable[[], Iter
         write(asked.json, as_text(enveloped(asked.kind, asked.mechanism, asked.reading, body())) + "\n", "--json")
         if asked.json == STDOUT:
             return
-        tell(f"Wrote {asked.json}")
+        announced(f"Wrote {asked.json}")
     from flexstage.apps.cli.show import show
 
     show(table for table in tables() if table is not None)

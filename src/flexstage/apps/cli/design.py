@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from enum import Enum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 import flexstage
+from flexstage.apps.cli.choice import choice, choices
 from flexstage.apps.cli.options import Changes, Design, Json
-from flexstage.apps.cli.speech import say, tell, warn
+from flexstage.apps.cli.output import announced
+from flexstage.apps.cli.speech import say, warn
 
 if TYPE_CHECKING:
     from flexstage.base.finding import Finding
@@ -44,7 +47,7 @@ def new(
     if target.exists() and not force:
         require([Finding(str(target), "the file exists already", "Choose another name, or overwrite it with --force")])
     write(target, dumps(mechanism, {"": _heading(case, CASES[case].summary, str(target))}), str(target))
-    tell(f"Wrote {target} ({case}: {CASES[case].summary}). Next: flexstage analyse {target}")
+    announced(f"Wrote {target} ({case}: {CASES[case].summary}). Next: flexstage analyse {target}")
 
 
 def _heading(case: str, summary: str, target: str) -> str:
@@ -93,13 +96,26 @@ def _tell_sound(design: Path, mechanism: Mechanism, warnings: tuple[Finding, ...
     say(f"{design}: no findings{f', {len(warnings)} warnings' if warnings else ''}.")
 
 
-def schema() -> None:
-    """Print the JSON Schema of design files, for editors."""
+class File(Enum):
+    """Files that have a schema."""
+
+    DESIGN = "design"
+    LOOP = "loop"
+
+
+def schema(
+    *,
+    of: Annotated[
+        File, typer.Option("--of", parser=choice("--of", File), metavar=choices(File), help="Design files, or set-up files of loops.")
+    ] = File.DESIGN,
+) -> None:
+    """Print the JSON Schema of a kind of file, for editors."""
     from json import dumps
 
     from flexstage.mechanism.store import schema as design_schema
+    from flexstage.studies.loop.file import setup_schema
 
-    say(dumps(design_schema(), indent=1, ensure_ascii=False))
+    say(dumps(design_schema() if of is File.DESIGN else setup_schema(), indent=1, ensure_ascii=False))
 
 
 def plan(
@@ -122,7 +138,7 @@ def plan(
     from flexstage.present.scene.stage import scene
 
     write(output, drawing(plan_figure(mechanism, scene(mechanism)), ending), "--output")
-    tell(f"Wrote {output}")
+    announced(f"Wrote {output}")
 
 
 def catalogue(

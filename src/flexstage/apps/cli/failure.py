@@ -8,6 +8,7 @@ import warnings
 from collections.abc import Callable, Generator
 from contextlib import contextmanager
 
+from flexstage.apps.cli.output import together
 from flexstage.apps.cli.speech import tell, warn
 from flexstage.base.finding import DesignError
 
@@ -22,25 +23,31 @@ def guarded(action: Callable[[], object]) -> int:
     for name in _THREADS:  # many small matrices: a second thread costs more than it gives. Read when numpy is loaded.
         os.environ.setdefault(name, "1")
     try:
-        with _told_warnings():
+        with _told_warnings(), together():
             action()
             sys.stdout.flush()
     except SystemExit as end:
         if end.code == _FRAMEWORKS_INTERRUPTED:  # the command line's framework turns the interruption into this
             return _interrupted()
+        if isinstance(end.__context__, BrokenPipeError):  # and a reader that has gone into a code of failure
+            return _unread()
         return end.code if isinstance(end.code, int) else DONE if end.code is None else MISSED
     except DesignError as error:
         return _bad_input(error)
     except ModuleNotFoundError as error:
         return _missing(error)
     except BrokenPipeError:
-        # The reader has gone (`| head`). Nothing may be written at the interpreter's end either.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return DONE
+        return _unread()
     except KeyboardInterrupt:
         return _interrupted()
     except Exception as error:  # noqa: BLE001 (the last resort: a message instead of a traceback)
         return _fault(error)
+    return DONE
+
+
+def _unread() -> int:
+    """The reader has gone (`| head`). Nothing may be written at the interpreter's end either."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     return DONE
 
 

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from flexstage.apps.cli.output import output_findings
-from flexstage.apps.cli.speech import tell, warn
+from flexstage.apps.cli.output import announced, output_findings
+from flexstage.apps.cli.speech import warn
 from flexstage.base.finding import DesignError, Finding, require
 
 if TYPE_CHECKING:
@@ -58,4 +58,4 @@ def _part_cautions(mechanism: Mechanism) -> tuple[Finding, ...]:
 
 def announce(target: str | Path) -> None:
     """Say where an output went."""
-    tell(f"Wrote {target}")
+    announced(f"Wrote {target}")

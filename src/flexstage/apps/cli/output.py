@@ -5,12 +5,74 @@ from __future__ import annotations
 import os
 import sys
 import tempfile
-from collections.abc import Iterable, Iterator
+from collections.abc import Generator, Iterable, Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
 from pathlib import Path
+from typing import TYPE_CHECKING
 
+from flexstage.apps.cli.speech import tell
 from flexstage.base.finding import Finding, refuse
 
+if TYPE_CHECKING:
+    from flexstage.mechanism.store.file import Aside
+
 STDOUT = "-"
+_ENDED_WELL = (None, 0, 1)
+
+
+class _Pending:
+    """Outputs of one command written aside, and what is told once they are there."""
+
+    def __init__(self) -> None:
+        self.files: list[Aside] = []
+        self.texts: list[str] = []
+
+    def put(self) -> None:
+        for each in self.files:
+            each.put()
+        for text in self.texts:
+            tell(text)
+
+    def drop(self) -> None:
+        for each in self.files:
+            each.drop()
+
+
+# The command that runs decides when its outputs appear, however deep in it they are written: one value for the time of one command.
+_PENDING: ContextVar[_Pending | None] = ContextVar("outputs written aside", default=None)
+
+
+@contextmanager
+def together() -> Generator[None]:
+    """All files written inside appear together at its end, or none where it fails.
+
+    A command that ends by saying what was missed, or whose reader has gone, has not failed.
+    """
+    pending = _Pending()
+    token = _PENDING.set(pending)
+    try:
+        yield
+        pending.put()
+    except SystemExit as end:
+        if end.code in _ENDED_WELL:
+            pending.put()
+        raise
+    except BrokenPipeError:
+        pending.put()
+        raise
+    finally:
+        pending.drop()
+        _PENDING.reset(token)
+
+
+def announced(text: str) -> None:
+    """Say that a file was written, once it is there."""
+    pending = _PENDING.get()
+    if pending is None:
+        tell(text)
+    else:
+        pending.texts.append(text)
 
 
 def output_findings(wanted: Iterable[tuple[str, str | Path | None]], design: Path | None = None) -> Iterator[Finding]:
@@ -56,8 +118,8 @@ def _is_device(path: Path) -> bool:
 
 
 def write(target: str | Path, content: str | bytes, option: str) -> None:
-    """Write to a file (aside, then renamed), or to stdout for `-`. Raises `DesignError` where the disk refuses after all."""
-    from flexstage.mechanism.store.file import write as write_file
+    """Write to a file, aside and put in its place at the end of the command, or to stdout for `-`; raises where the disk refuses."""
+    from flexstage.mechanism.store.file import written_aside
 
     data = content.encode() if isinstance(content, str) else content
     if str(target) == STDOUT:
@@ -66,7 +128,11 @@ def write(target: str | Path, content: str | bytes, option: str) -> None:
         sys.stdout.buffer.flush()
         return
     if not _is_device(Path(target)):
-        write_file(target, data)
+        pending, waiting = _PENDING.get(), written_aside(target, data)
+        if pending is None:
+            waiting.put()
+        else:
+            pending.files.append(waiting)
         return
     try:
         Path(target).write_bytes(data)

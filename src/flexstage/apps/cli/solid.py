@@ -13,7 +13,7 @@ from flexstage.apps.cli.answer import Asked, answer, tell_missing
 from flexstage.apps.cli.bar import Bar, bar
 from flexstage.apps.cli.choice import choice, choices
 from flexstage.apps.cli.options import Changes, Design, Json
-from flexstage.apps.cli.output import STDOUT, output_findings, write
+from flexstage.apps.cli.output import STDOUT, announced, output_findings, write
 from flexstage.apps.cli.speech import tell, warn
 from flexstage.studies.what import What
 
@@ -182,7 +182,7 @@ def calibrate(
         if hinge.found.finding is not None:
             warn(f"{hinge.name}: {hinge.found.finding.what}")
     if str(output) != STDOUT:
-        tell(f"Wrote {output}")
+        announced(f"Wrote {output}")
         answer(Asked("calibrate", mechanism, None, json), lambda: calibration_body(found), lambda: [calibration_table(found)])
 
 
@@ -334,7 +334,7 @@ def _write_report(target: Path, mechanism: Mechanism, sections: Iterator[Section
 
     write(target, solid_report(mechanism, sections), "--report")
     if str(target) != STDOUT:
-        tell(f"Wrote {target}")
+        announced(f"Wrote {target}")
 
 
 def _shows(json: str | None, report: Path | None) -> bool:

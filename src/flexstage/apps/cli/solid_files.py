@@ -10,7 +10,8 @@ import typer
 
 from flexstage.apps.cli.bar import bar
 from flexstage.apps.cli.options import Changes, Design
-from flexstage.apps.cli.speech import tell, warn
+from flexstage.apps.cli.output import announced
+from flexstage.apps.cli.speech import warn
 
 if TYPE_CHECKING:
     from flexstage.mechanism.mechanism import Mechanism
@@ -95,7 +96,7 @@ def _write(path: Path, content: bytes, option: str) -> None:
 
     write(path, content, option)
     if str(path) != STDOUT:
-        tell(f"Wrote {path}")
+        announced(f"Wrote {path}")
 
 
 def _contents(mechanism: Mechanism, wanted: dict[str, Path | None], order: int, modes: int) -> Iterator[tuple[Path, str, bytes]]:

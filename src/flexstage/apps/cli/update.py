@@ -11,9 +11,9 @@ import typer
 from flexstage.apps.cli.answer import Asked, answer
 from flexstage.apps.cli.identify import identified, writable
 from flexstage.apps.cli.options import Design, Json
-from flexstage.apps.cli.output import STDOUT, write
+from flexstage.apps.cli.output import STDOUT, announced, write
 from flexstage.apps.cli.record import Allow, Band, Inputs, Kind, Only, Outputs, Rate, Resolution, Said, Units
-from flexstage.apps.cli.speech import tell, warn
+from flexstage.apps.cli.speech import warn
 from flexstage.studies.reading import Reading
 
 if TYPE_CHECKING:
@@ -91,7 +91,7 @@ def update(  # noqa: PLR0913 (its options)
     for caution in found.warnings[len(seen.found.warnings) :]:
         warn(caution)
     if str(output) != STDOUT:
-        tell(f"Wrote {output}")
+        announced(f"Wrote {output}")
         answer(Asked("update", mechanism, Reading.LUMPED, json), lambda: update_body(found), lambda: update_tables(found))
 
 

@@ -11,7 +11,7 @@ import typer
 from flexstage.apps.cli.answer import tell_missing
 from flexstage.apps.cli.failure import MISSED
 from flexstage.apps.cli.options import Changes, Design, Json, Theory
-from flexstage.apps.cli.output import STDOUT, output_findings, write
+from flexstage.apps.cli.output import STDOUT, announced, output_findings, write
 from flexstage.apps.cli.speech import tell, warn
 from flexstage.studies.reading import Reading
 
@@ -94,7 +94,7 @@ def _write_files(analysis: Analysis, compared: Comparison | None, files: tuple[P
 
 def _announce(target: str | Path) -> None:
     if str(target) != STDOUT:
-        tell(f"Wrote {target}")
+        announced(f"Wrote {target}")
 
 
 def _json_text(analysis: Analysis, compared: Comparison | None) -> str:

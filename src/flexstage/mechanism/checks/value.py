@@ -26,7 +26,7 @@ def value_findings(mechanism: Mechanism) -> Iterator[Finding]:
     """
     shapes: dict[tuple[int, ...], str] = {}
     for address, value, node in _all_numbers(mechanism):
-        yield from _number(address, value, node)
+        yield from number_findings(address, value, node)
         shapes.setdefault(np.shape(value), address)
     try:
         np.broadcast_shapes(*shapes)
@@ -53,7 +53,13 @@ def _all_numbers(mechanism: Mechanism) -> Iterator[tuple[str, Any, NumberNode]]:
         yield from numbers(locate(mechanism, key).node, value, f'change."{key}"')
 
 
-def _number(where: str, value: Any, node: NumberNode) -> Iterator[Finding]:
+def number_findings(where: str, value: Any, node: NumberNode) -> Iterator[Finding]:
+    """What is wrong with a number as a node says it should be.
+
+    >>> from flexstage.base.quantity import FREQUENCY, POSITIVE
+    >>> print(*number_findings("rate", 0.0, NumberNode(FREQUENCY, POSITIVE)))
+    rate: found 0 Hz, which is not greater than 0 Hz. Write for example "4 kHz".
+    """
     example = f'Write for example "{node.quantity.example}"'
     real = np.real(value)
     endless = ~np.isfinite(value)

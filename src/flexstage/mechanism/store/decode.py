@@ -5,13 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, TypeVar
 
 from flexstage.base.finding import DesignError, Finding, nearest, require
 from flexstage.base.number import Table
 from flexstage.base.quantity import RATIO
 from flexstage.base.unit import parse
 from flexstage.mechanism.checks import copy_findings
+from flexstage.mechanism.checks.value import number_findings
 from flexstage.mechanism.grammar import (
     DIRECTIONS,
     LIKE,
@@ -29,8 +30,10 @@ from flexstage.mechanism.grammar import (
     TextNode,
     UnionNode,
     VectorNode,
+    WholeNode,
     entry,
     node_of,
+    numbers,
 )
 from flexstage.mechanism.locate import locate
 from flexstage.mechanism.mechanism import Mechanism
@@ -38,7 +41,8 @@ from flexstage.mechanism.store.catalogue import Catalogue
 from flexstage.spatial.frame import COMPONENTS
 
 FORMAT = "flexstage 1"
-
+_FILES = {FORMAT: "a design file"}
+_Record = TypeVar("_Record")
 
 MOST_FINDINGS = 100
 
@@ -77,6 +81,8 @@ class Reader:
             return self._direction(raw, where)
         if isinstance(node, TextNode):
             return self._text(raw, where)
+        if isinstance(node, WholeNode):
+            return self._whole(raw, where)
         if isinstance(node, ChoiceNode):
             return self._choice(node, raw, where)
         if isinstance(node, (VectorNode, ListNode, MatrixNode)):
@@ -96,6 +102,10 @@ class Reader:
 
     def _text(self, raw: Any, where: str) -> Any:
         return raw if isinstance(raw, str) else self.refuse(where, f"found {_kind(raw)} where a text is expected", "Write it in quotes")
+
+    def _whole(self, raw: Any, where: str) -> Any:
+        whole = isinstance(raw, int) and not isinstance(raw, bool) and abs(raw) < 2**63
+        return raw if whole else self.refuse(where, f"found {_kind(raw)} where a whole number is expected", "Write it without quotes")
 
     def _choice(self, node: ChoiceNode, raw: Any, where: str) -> Any:
         choices = {str(choice.value): choice for choice in node.choices}
@@ -244,11 +254,37 @@ def mechanism_from(raw: dict[str, Any], catalogue: Catalogue) -> Mechanism:
     return mechanism
 
 
-def _mechanism(reader: Reader, raw: dict[str, Any]) -> Any:
+def record_from(record: type[_Record], raw: dict[str, Any], form: str) -> _Record:
+    """Return the record that a tree means whose `format` is to be `form`; raises `DesignError` with everything that is wrong with it.
+
+    Its fields are annotated as those of descriptions are.
+
+    >>> from flexstage.parts.rod import Rod
+    >>> record_from(Rod, {"format": "rod 1", "material": "steel", "length": "3 mm", "diameter": "1 mm"}, "rod 1").length
+    0.003
+    """
+    reader = Reader(Catalogue((), {}))
+    _check_format(reader, raw, form)
+    value: Any = _BAD
+    try:
+        value = reader.read(node_of(record), {key: part for key, part in raw.items() if key != "format"}, "")
+        for address, number, node in () if value is _BAD else numbers(node_of(record), value):
+            reader.note(number_findings(address, number, node))
+    except _EnoughError:
+        reader.findings.append(Finding("file", f"there are {MOST_FINDINGS} findings or more", "Mend these first"))
+    require(reader.findings)
+    return value
+
+
+def _check_format(reader: Reader, raw: dict[str, Any], form: str) -> None:
     found = raw.get("format")
-    if found != FORMAT:
+    if found != form:
         what = f"found {_kind(found)}" if found is not None else "the file does not say its format"
-        reader.refuse("format", what, f'The first line of a design file is format = "{FORMAT}"')
+        reader.refuse("format", what, f'The first line of {_FILES.get(form, "such a file")} is format = "{form}"')
+
+
+def _mechanism(reader: Reader, raw: dict[str, Any]) -> Any:
+    _check_format(reader, raw, FORMAT)
     body = {key: value for key, value in raw.items() if key not in ("format", "change")}
     mechanism = reader.read(node_of(Mechanism), body, "")
     if not isinstance(mechanism, Mechanism):
@@ -356,5 +392,5 @@ def _example(node: Node) -> str:
         return f'"{next(iter(node.choices)).value}"'
     if isinstance(node, UnionNode) and node.key:
         return f'{{ {node.key} = "{node.options[0][0]}", ... }}'
-    fixed: dict[type, str] = {DirectionNode: '"x"', TextNode: '"a name"', MatrixNode: '[["2.91 um/N", 0, 0, 0, 0, 0], ...]'}
+    fixed: dict[type, str] = {DirectionNode: '"x"', WholeNode: "1", TextNode: '"a name"', MatrixNode: '[["2.91 um/N", 0, 0, 0, 0, 0], ...]'}
     return fixed.get(type(node), "{ ... }")

@@ -7,6 +7,7 @@ import os
 import re
 import secrets
 import tomllib
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -69,6 +70,41 @@ def write(path: str | os.PathLike[str], content: str | bytes) -> Path:
     ...     write(f"{folder}/stage.toml", "name = 'a'").read_text()
     "name = 'a'"
     """
+    return written_aside(path, content).put()
+
+
+@dataclass(frozen=True)
+class Aside:
+    """A file written beside its `target`, whole, and not yet there; `where` is how the user named it."""
+
+    place: Path
+    target: Path
+    where: str
+
+    def put(self) -> Path:
+        """Rename it onto its target; raises `DesignError` if that cannot be."""
+        try:
+            self.place.replace(self.target)
+        except OSError as error:
+            raise _unwritable(self.where, error) from None
+        finally:
+            self.drop()
+        return self.target
+
+    def drop(self) -> None:
+        """Remove it, where it has not been put."""
+        self.place.unlink(missing_ok=True)
+
+
+def written_aside(path: str | os.PathLike[str], content: str | bytes) -> Aside:
+    """Write beside `path`, to be put there later, together with others; raises `DesignError` if it cannot be written.
+
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     waiting = written_aside(f"{folder}/stage.toml", "name = 'a'")
+    ...     (waiting.target.exists(), waiting.put().exists())
+    (False, True)
+    """
     where = os.fspath(path)
     try:
         target = Path(path).resolve()
@@ -76,15 +112,14 @@ def write(path: str | os.PathLike[str], content: str | bytes) -> Path:
             raise refuse(where, "this is a directory", "Name a file in it")
         if target.exists() and not target.is_file():
             raise refuse(where, "this is no regular file", "Name a file")
-        _replace(target, content.encode() if isinstance(content, str) else content)
+        return Aside(_aside(target, content.encode() if isinstance(content, str) else content), target, where)
     except (OSError, ValueError) as error:
         if isinstance(error, DesignError):
             raise
-        raise refuse(where, f"it cannot be written: {_reason(error)}", "Check the directory and its permissions") from None
-    return target
+        raise _unwritable(where, error) from None
 
 
-def _replace(target: Path, content: bytes) -> None:
+def _aside(target: Path, content: bytes) -> Path:
     mode = target.stat().st_mode & 0o777 if target.exists() else None
     if mode is not None and not os.access(target, os.W_OK):
         raise PermissionError(errno.EACCES, "the file is write-protected")
@@ -96,10 +131,14 @@ def _replace(target: Path, content: bytes) -> None:
             os.fsync(stream.fileno())
         if mode is not None:
             aside.chmod(mode)
-        aside.replace(target)
     except BaseException:
         aside.unlink(missing_ok=True)
         raise
+    return aside
+
+
+def _unwritable(where: str, error: OSError | ValueError) -> DesignError:
+    return refuse(where, f"it cannot be written: {_reason(error)}", "Check the directory and its permissions")
 
 
 def _reason(error: OSError | ValueError) -> str:

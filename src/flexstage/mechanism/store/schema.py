@@ -23,6 +23,7 @@ from flexstage.mechanism.grammar import (
     TextNode,
     UnionNode,
     VectorNode,
+    WholeNode,
     entry,
 )
 from flexstage.mechanism.mechanism import Mechanism
@@ -44,12 +45,22 @@ def schema() -> dict[str, Any]:
     >>> schema()["properties"]["mode_limit"]["examples"]
     ['4 kHz']
     """
+    return schema_of(Mechanism, FORMAT, "flexstage design")
+
+
+def schema_of(record: type, form: str, title: str) -> dict[str, Any]:
+    """Return the JSON Schema of a file that holds one record and says `format = form`.
+
+    >>> from flexstage.parts.rod import Rod
+    >>> schema_of(Rod, "rod 1", "rod")["properties"]["format"]
+    {'const': 'rod 1'}
+    """
     writer = _Writer(shipped())
-    root = writer.record(RecordNode(Mechanism))
-    properties = {"format": {"const": FORMAT}, **root.pop("properties")}
+    root = writer.record(RecordNode(record))
+    properties = {"format": {"const": form}, **root.pop("properties")}
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
-        "title": "flexstage design",
+        "title": title,
         **root,
         "required": ["format", *root["required"]],
         "properties": properties,
@@ -126,6 +137,8 @@ def _leaf(node: Node) -> dict[str, Any]:
         return {"enum": [choice.value for choice in node.choices], "description": _meaning(node.choices)}
     if isinstance(node, ChangesNode):
         return {"type": "object", "description": "Departures by address: unit/link.field of all copies, copy/link.field of one."}
+    if isinstance(node, WholeNode):
+        return {"type": "integer"}
     return {"type": "string"} if isinstance(node, TextNode) else {}
 
 

@@ -8,7 +8,6 @@ from __future__ import annotations
 import contextlib
 import hashlib
 import os
-import sys
 import tempfile
 import time
 from collections.abc import Iterator
@@ -18,6 +17,7 @@ from pathlib import Path
 import numpy as np
 
 from flexstage.base.finding import Finding
+from flexstage.base.folder import FOLDER_VARIABLE, cache_folder
 from flexstage.base.number import Array
 from flexstage.readings.solid.component import Component
 from flexstage.readings.solid.content import content
@@ -25,7 +25,6 @@ from flexstage.readings.solid.fineness import Reduction
 from flexstage.readings.solid.store import read, versions
 from flexstage.readings.solid.superelement import Superelement
 
-FOLDER_VARIABLE = "FLEXSTAGE_CACHE"
 _SUFFIX, _PART = ".superelement", ".part"
 _ABANDONED = 3600.0
 """Age of a half-written file [s] whose writer must be gone."""
@@ -58,16 +57,7 @@ def folder_of(cache: Cache) -> Path:
     """
     if cache.folder is not None:
         return cache.folder
-    stated = os.environ.get(FOLDER_VARIABLE)
-    return Path(stated).expanduser() if stated else _users() / "flexstage"
-
-
-def _users() -> Path:
-    if sys.platform == "win32":
-        return Path(os.environ.get("LOCALAPPDATA") or Path.home() / "AppData" / "Local")
-    if sys.platform == "darwin":
-        return Path.home() / "Library" / "Caches"
-    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
+    return cache_folder()
 
 
 def key_of(component: Component, reduction: Reduction, springs: Array | None = None) -> str:

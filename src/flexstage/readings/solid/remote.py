@@ -13,7 +13,6 @@ import pickle
 import shutil
 import signal
 import subprocess
-import sys
 import tempfile
 import time
 from collections import deque
@@ -22,6 +21,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import IO, Generic, TypeVar, cast
 
+from flexstage.base.child import command, cores, environment
 from flexstage.base.finding import Finding, refuse, require
 from flexstage.readings.solid.memory import Counts, available
 from flexstage.readings.solid.progress import Progress, Stage, Step, gathered, seconds_left
@@ -31,7 +31,6 @@ from flexstage.readings.solid.worker import FINDINGS, PROGRESS, RESULT, TASK, Jo
 _MOST_WORKERS = 2
 _PAUSE = 0.02
 _TELL_EVERY = 0.5
-_ONE_THREAD = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "NGS_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
 
 
 @dataclass(frozen=True)
@@ -77,8 +76,7 @@ def workers(limits: Limits) -> int:
     >>> workers(Limits(workers=1))
     1
     """
-    cores = len(os.sched_getaffinity(0)) if sys.platform == "linux" else (os.cpu_count() or 1)
-    return limits.workers or min(_MOST_WORKERS, cores)
+    return limits.workers or min(_MOST_WORKERS, cores())
 
 
 @dataclass(eq=False)
@@ -264,13 +262,13 @@ def _started(task: Task) -> tuple[Path, subprocess.Popen[bytes]]:
         (folder / TASK).write_bytes(pickle.dumps(task))
         with (folder / "log").open("wb") as log:
             process = subprocess.Popen(
-                [sys.executable, "-P", "-m", "flexstage.readings.solid.worker", str(folder)],
+                command("flexstage.readings.solid.worker", folder),
                 stdin=subprocess.PIPE,
                 bufsize=0,
                 stdout=log,
                 stderr=log,
                 cwd=folder,
-                env=_environment(),
+                env=environment(),
                 start_new_session=True,  # an interruption from the keyboard reaches the parent alone, which ends the child
             )
     except BaseException as error:
@@ -280,13 +278,6 @@ def _started(task: Task) -> tuple[Path, subprocess.Popen[bytes]]:
             raise _unstarted(task.job.name, error) from error
         raise
     return folder, process
-
-
-def _environment() -> dict[str, str]:
-    """One thread for every library; flexstage found where it is here, the user's own folder not searched."""
-    root = str(Path(__file__).resolve().parents[3])
-    paths = [root, *filter(None, [os.environ.get("PYTHONPATH")])]
-    return {**os.environ, **dict.fromkeys(_ONE_THREAD, "1"), "PYTHONPATH": os.pathsep.join(paths)}
 
 
 def _failed(child: _Child[AnyJob], code: int) -> Finding:

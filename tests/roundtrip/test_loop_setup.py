@@ -1,0 +1,173 @@
+"""The set-up file of a loop: its example holds, every key of it can be used, and what is wrong is told with file, line and key."""
+
+from __future__ import annotations
+
+import dataclasses
+import re
+import tomllib
+
+import pytest
+
+from flexstage.base.finding import DesignError
+from flexstage.mechanism.store import schema
+from flexstage.studies.loop.checks import setup_findings
+from flexstage.studies.loop.choices import Axes, Compensation, ControllerKind, Criterion
+from flexstage.studies.loop.file import FORMAT, example, load_setup, loads_setup, setup_schema
+from flexstage.studies.loop.setup import FileMotion, LoopSetup, NotchAt, RasterMotion, Shaking
+from tests.roundtrip.test_schema import Rules
+
+_HIDDEN = re.compile(r"# (?P<line>(?:\[\w+\]|\w+ = .*))$")
+
+
+def test_the_example_is_the_default() -> None:
+    assert loads_setup(example()) == LoopSetup()
+
+
+def test_the_example_shows_every_key() -> None:
+    properties = [("", setup_schema()), *setup_schema()["$defs"].items()]
+    keys = {key for _, node in properties for key in node.get("properties", {})} - {"tags", "ry", "rx", "y", "z"}
+    assert not [key for key in keys if not re.search(rf"\b{key}\b", example())]
+
+
+def test_every_line_of_the_example_can_be_used() -> None:
+    lines, table = example().splitlines(), ""
+    used = 0
+    for number, line in enumerate(lines):
+        hidden = _HIDDEN.match(line.partition("   #")[0].rstrip())
+        table = line if line.startswith("[") else table
+        if hidden is None or hidden["line"].startswith("kind") or hidden["line"].startswith("["):
+            continue
+        text = "\n".join([*lines[:number], line.removeprefix("# "), *lines[number + 1 :]])
+        if table == "[trajectory]":
+            kinds = [each for each in lines[:number] if each.startswith(("kind", "# kind"))]
+            text = _with_trajectory(text, kinds[-1].removeprefix("# "), line.removeprefix("# "))
+        if hidden["line"].startswith(('file = "stack', "width", "plant", "creep")):
+            text = text.replace("# [hysteresis]", "[hysteresis]")
+        assert Rules(setup_schema()).fits(tomllib.loads(text), setup_schema()), line
+        assert loads_setup(text) != LoopSetup() or "absent: 10 kHz" in line, line
+        used += 1
+    assert used > 30
+
+
+def _with_trajectory(text: str, kind: str, line: str) -> str:
+    return f"{text.partition('[trajectory]')[0]}[trajectory]\n{kind}\n{line}\n" + (
+        'file = "a.csv"\n' if '"file"' in kind and "file =" not in line else ""
+    )
+
+
+def test_a_full_file_means_what_it_says() -> None:
+    found = loads_setup(f"""
+format = "{FORMAT}"
+rate = "5 kHz"
+delay = "50 us"
+compensate = ["load", "hysteresis"]
+floor = {{ x = {{ criterion = "VC-D" }}, z = {{ frequencies = ["1 Hz", "10 Hz"], velocity = ["1 um/s/Hz^0.5", "0.1 um/s/Hz^0.5"] }} }}
+hysteresis = {{ file = "stack.json" }}
+[controller]
+kind = "pid"
+coordinates = "modal"
+bandwidth = "25 Hz"
+notches = [{{ frequency = "106 Hz" }}]
+[trajectory]
+kind = "raster"
+lines = 5
+""")
+    assert (found.rate, found.delay) == (5000.0, 50e-6)
+    assert found.compensate == (Compensation.LOAD, Compensation.HYSTERESIS)
+    assert found.floor.x == Shaking(criterion=Criterion.VC_D)
+    assert found.floor.z == Shaking(frequencies=(1.0, 10.0), velocity=(1e-6, 1e-7))
+    assert (found.controller.kind, found.controller.coordinates) == (ControllerKind.PID, Axes.MODAL)
+    assert found.controller.notches == (NotchAt(106.0),)
+    assert found.trajectory == RasterMotion(lines=5)
+    assert not list(setup_findings(found))
+
+
+def test_all_findings_come_at_once_with_file_line_and_key(tmp_path) -> None:
+    path = tmp_path / "loop.toml"
+    path.write_text(f"""format = "{FORMAT}"
+rate = 5000
+seed = 1.5
+
+[controller]
+kind = "pidd"
+bandwidth = "-3 Hz"
+notches = [{{ depth = 0.1 }}]
+
+[trajectory]
+kind = "steps"
+[gages]
+""")
+    with pytest.raises(DesignError) as caught:
+        load_setup(path)
+    told = [str(each).removeprefix(str(tmp_path) + "/") for each in caught.value.findings]
+    assert told[0].startswith("loop.toml: line 2: rate: found 5000 without a unit")
+    assert told[1].startswith("loop.toml: line 3: seed: found 1.5 where a whole number is expected")
+    assert any(each.startswith('loop.toml: line 6: controller.kind: found "pidd"') for each in told)
+    assert any("line 8: controller.notches: it has no frequency" in each for each in told)
+    assert any(each.startswith('loop.toml: line 11: trajectory.kind: found "steps". The nearest name is step') for each in told)
+    assert any(each.startswith("loop.toml: line 12: gages: this key is not known here. The nearest name is gauges") for each in told)
+
+
+def test_numbers_out_of_bounds_are_found() -> None:
+    with pytest.raises(DesignError, match=r"line 3: controller.bandwidth: found -3 Hz, which is not greater than 0 Hz"):
+        loads_setup(f'format = "{FORMAT}"\n[controller]\nbandwidth = "-3 Hz"')
+    with pytest.raises(DesignError, match=r"controller.notches.1.frequency: found 0 Hz"):
+        loads_setup(f'format = "{FORMAT}"\n[controller]\nnotches = [{{ frequency = "0 Hz" }}]')
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ('[amplifier]\nbandwidth = "1 kHz"\nresistance = "50 ohm"', "both its bandwidth and its resistance"),
+        ("[amplifier]\nbits = 64", "between 1 and 32"),
+        ("[gauges]\nfilter_order = 4", "no corner"),
+        ('[gauges]\nfilter_corner = "1 kHz"', "order 0 is no filter"),
+        ("[gauges]\nfilter_order = 99", "from 0 (none) to 20"),
+        ("[floor]\nx = {}", "nothing says how much"),
+        ('[floor]\nx = { criterion = "VC-A", velocity = ["1 um/s/Hz^0.5"] }', "criterion and velocity"),
+        ('[floor]\nx = { criterion = "VC-A", frequencies = ["1 Hz"] }', "its own frequencies"),
+        ('[floor]\nx = { frequencies = ["9 Hz", "1 Hz"], velocity = ["1 um/s/Hz^0.5"] }', "1 densities for 2"),
+        ('[floor]\nx = { frequencies = ["9 Hz", "1 Hz"], velocity = ["1 um/s/Hz^0.5", "1 um/s/Hz^0.5"] }', "do not ascend"),
+        ('[floor]\nx = { frequencies = ["1 Hz", "2 Hz"], velocity = ["0 um/s/Hz^0.5", "1 um/s/Hz^0.5"] }', "is 0"),
+        ('[controller]\nbandwidth = "20 Hz"\nintegral = "3 1/s"', "bandwidth asks for tuning, and integral is given"),
+        ('[controller]\nderivative = "1 ms"', "kind pi has none"),
+        ('[controller]\nkind = "lqg"\nproportional = 1', "kind lqg does not have it"),
+        ('[controller]\nkind = "none"\nbandwidth = "20 Hz"', "no loop to be tuned"),
+        ('compensate = ["hysteresis"]', "the stacks have none"),
+        ('compensate = ["load", "load"]', "stands 2 times"),
+        ("seed = -1", "0 or more"),
+        ('[trajectory]\nkind = "raster"\nlines = 0', "between 1"),
+        ('[trajectory]\nkind = "raster"\nfast = "y"', "both its axes are y"),
+        ('[trajectory]\nkind = "spiral"\nfirst = "y"', "both its axes are y"),
+        ('[trajectory]\nkind = "step"\nspeed = "1 mm/s"', "no acceleration and no jerk"),
+        ("modes = 0", "at least one"),
+    ],
+)  # fmt: skip
+def test_contradictions_are_found(text: str, told: str) -> None:
+    found = [str(each) for each in setup_findings(loads_setup(f'format = "{FORMAT}"\n{text}'))]
+    assert any(told in each for each in found), found
+
+
+def test_files_are_looked_for_from_the_set_up(tmp_path) -> None:
+    path = tmp_path / "loop.toml"
+    path.write_text(f'format = "{FORMAT}"\n[hysteresis]\nfile = "stack.json"\n[trajectory]\nkind = "file"\nfile = "paths/a.csv"')
+    found = load_setup(path)
+    assert found.hysteresis is not None
+    assert found.hysteresis.file == str(tmp_path.resolve() / "stack.json")
+    assert found.trajectory == FileMotion(str(tmp_path.resolve() / "paths/a.csv"))
+
+
+def test_the_schema_refuses_what_the_reader_refuses() -> None:
+    rules = Rules(setup_schema())
+    for text in ("rate = 5", 'floor = "VC-D"', '[controller]\nkind = "pidd"', '[trajectory]\nkind = "file"', "seed = 1.5"):
+        raw = tomllib.loads(f'format = "{FORMAT}"\n{text}')
+        assert not rules.fits(raw, setup_schema()), text
+        with pytest.raises(DesignError):
+            loads_setup(f'format = "{FORMAT}"\n{text}')
+
+
+def test_every_class_of_the_set_up_is_frozen() -> None:
+    assert dataclasses.is_dataclass(LoopSetup)
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        LoopSetup().rate = 3.0  # type: ignore[misc]
+    assert schema()["title"] == "flexstage design"
