@@ -10,7 +10,7 @@ import typer
 
 from flexstage.apps.cli.answer import Asked, answer, elastic_model
 from flexstage.apps.cli.options import Changes, Json, Theory
-from flexstage.apps.cli.output import STDOUT, output_findings, write
+from flexstage.apps.cli.output import STDOUT, announced, output_findings, write
 from flexstage.apps.cli.record import Allow, Band, Inputs, Kind, Only, Outputs, Rate, Resolution, Said, Units, opened_records, told
 from flexstage.apps.cli.speech import tell, warn
 from flexstage.studies.reading import Reading
@@ -70,11 +70,12 @@ def identify(  # noqa: PLR0913 (its options)
     if json is None and str(report) == STDOUT:
         return
     from flexstage.present.documents.measured import identify_body
-    from flexstage.present.tables.measured import identified_table, measured_shape_table, recorded_table
+    from flexstage.present.tables.measured import identified_table, measured_shape_table, peak_table, recorded_table
 
     def tables() -> Iterator[Table | None]:
         yield recorded_table(seen.test)
         yield identified_table(seen.found)
+        yield peak_table(seen.found.peaks)
         yield measured_shape_table(seen.found) if len(seen.found.frequencies) else None
 
     answer(Asked("identify", mechanism, None, json), lambda: identify_body(seen, shapes), tables)
@@ -204,4 +205,4 @@ def _computed(mechanism: Mechanism, compute: Callable[..., FeaModes]) -> FeaMode
 def _reported(target: Path, text: str) -> None:
     write(target, text, "--report")
     if str(target) != STDOUT:
-        tell(f"Wrote {target}")
+        announced(f"Wrote {target}")

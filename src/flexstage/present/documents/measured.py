@@ -31,6 +31,7 @@ def identify_body(seen: Identification, shapes: StageShapes | None = None) -> Do
         "test": recorded_body(seen.test),
         "modes": [mode_body(found, index) for index in range(len(found.frequencies))],
         "close": [[index + 1 for index in group] for group in found.close],
+        "peaks": [peak.to_json() for peak in found.peaks],
         "shapes": found.shape_matrix().to_json(),
         "band_hz": list(found.band),
         "spectra": _spectra(seen),

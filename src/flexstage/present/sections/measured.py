@@ -25,6 +25,7 @@ from flexstage.present.tables.measured import (
     identified_table,
     measured_shape_table,
     motion_explained_text,
+    peak_table,
     recorded_table,
     warning_table,
 )
@@ -48,7 +49,7 @@ def found_section(seen: Identification) -> Section | None:
     )
     found = seen.found
     shapes = measured_shape_table(found) if len(found.frequencies) else None
-    blocks = [recorded_table(seen.test), warning_table(found.warnings), identified_table(found), shapes]
+    blocks = [recorded_table(seen.test), warning_table(found.warnings), identified_table(found), peak_table(found.peaks), shapes]
     return section("Modes found", [*blocks, Prose(text)])
 
 

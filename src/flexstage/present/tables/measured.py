@@ -10,6 +10,7 @@ from flexstage.base.number import Array
 from flexstage.present.display import NO_VALUE, aligned, number, percent
 from flexstage.present.table import Cell, Column, Mark, Table, build
 from flexstage.readings.measured.identified import Identified
+from flexstage.readings.measured.peaks import Peak
 from flexstage.readings.measured.record import Channel, Record, Responses
 
 _COMPLEX = 0.1
@@ -118,6 +119,39 @@ def measured_shape_table(found: Identified) -> Table:
     notes = ["Rows in different units, as recorded."] if len(units) > 1 else []
     heads = ["output", *(Column(str(index + 1)) for index in range(shapes.shape[1]))]
     return build("Shapes of the modes", heads, rows, notes=notes)
+
+
+def peak_table(peaks: Sequence[Peak]) -> Table | None:
+    """Peaks that are seen and are no modes, with the reason; `None` where there are none.
+
+    >>> from flexstage.readings.measured.peaks import Doubt
+    >>> table = peak_table([Peak(50.0, Doubt.TONE, 1e-12, None, 0.1, ("S1", "S2"))])
+    >>> [] if table is None else table.texts()[1][:5]
+    ['50', 'S1, S2', 'below a line', '0.1', '1.0e-12']
+    """
+    if not peaks:
+        return None
+    rows = [
+        (
+            number(peak.frequency, 5),
+            ", ".join(peak.outputs) or NO_VALUE,
+            "below a line" if peak.width is None or peak.width < 1e-3 * peak.resolution else number(peak.width, 3),
+            number(peak.resolution, 3),
+            f"{peak.chance:.1e}",
+            Cell(peak.reason, Mark.WARN),
+        )
+        for peak in peaks
+    ]
+    heads = [
+        Column("frequency", "Hz"),
+        "seen in",
+        Column("width", "Hz"),
+        Column("lines apart", "Hz"),
+        Column("by chance"),
+        "why it is no mode",
+    ]
+    notes = ["By chance: how likely there would be as much without a mode. A mode needs 1e-9, and lines within its width."]
+    return build("Peaks seen, not confirmed as modes", heads, rows, notes=notes)
 
 
 def warning_table(warnings: Sequence[str]) -> Table | None:

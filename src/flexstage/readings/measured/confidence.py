@@ -12,6 +12,9 @@ from flexstage.readings.measured.likelihood import Band, Fit, Modal, fit
 NORMAL_95 = 1.959964
 """Half the width of a 95 % interval, in standard deviations."""
 _DOUBTFUL = 50.0
+_LINES = 3
+SAME = 0.1
+"""Share of the power by which inputs must differ from transients to be told from them."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,29 +81,50 @@ def significance(band: Band, found: Fit, limit: float) -> Array:
     return strength
 
 
-def drive_strength(band: Band, found: Fit) -> Array:
-    """How strongly (k,) the data ask for each mode to be driven by the inputs at all: chi-square with two degrees an input where it is not.
+def drive_strength(band: Band, found: Fit, once_in: float) -> Array:
+    """How strongly (k,) the data ask for each mode to be driven at all, over what noise would reach once in `once_in`.
 
-    Wald's statistic of its participation in the inputs, held the largest component of its shape, and the transients' participation: a blow
-    at a record's begin cannot be told from them. A tone from outside, the mains' or a pump's, is an undamped mode to the transients alone.
+    Wald's statistic of its participation in the inputs, held the largest component of its shape, and the transients' participation; where
+    the inputs are near the mode what transients are, a blow at a record's begin, the transients count as inputs. Modes that only together
+    explain anything fall through: each is free to take the other's part.
 
     >>> from flexstage.readings.measured.example import one_mode_band
     >>> from flexstage.readings.measured.likelihood import fit
     >>> band, start = one_mode_band()
-    >>> bool(drive_strength(band, fit(band, start))[0] > 1000.0)
+    >>> bool(drive_strength(band, fit(band, start), 1e-9)[0] > 100.0)
     True
     """
+    from scipy.stats import chi2
+
     modal = found.modal
     count, total = modal.participation.shape
     inputs = total if band.inputs is None else band.inputs
-    largest = np.argmax(np.abs(modal.shapes), axis=0)
-    transients = (count + np.arange(count)[:, None] * total + np.arange(inputs, total)).ravel()
-    covariance = _inverse(found.information, np.append(count * (1 + total) + largest * count + np.arange(count), transients))
+    largest = count * (1 + total) + np.argmax(np.abs(modal.shapes), axis=0) * count + np.arange(count)
     strength = np.empty(count)
+    driving = [total if _blow(band, pole, inputs) else inputs for pole in modal.poles]
     for mode in range(count):
-        places = count + mode * total + np.arange(inputs)
-        strength[mode] = _wald(modal.participation[mode, :inputs], covariance[np.ix_(places, places)])
+        transients = (count + np.arange(count)[:, None] * total + np.arange(driving[mode], total)).ravel()
+        covariance = _inverse(found.information, np.append(largest, transients))
+        places = count + mode * total + np.arange(driving[mode])
+        wald = _wald(modal.participation[mode, : driving[mode]], covariance[np.ix_(places, places)])
+        strength[mode] = wald / float(chi2.isf(once_in, 2 * driving[mode]))
     return strength
+
+
+def _blow(band: Band, pole: complex, inputs: int) -> bool:
+    """Whether the inputs near a pole are the same as transients, to a tenth of their power."""
+    cells = band.cells
+    if inputs == cells.width:
+        return False
+    order = np.argsort(np.abs(cells.middle - pole.imag))
+    near = order[: 1 + int(np.searchsorted(np.cumsum(cells.count[order]), _LINES * cells.width))]
+    gram = np.zeros((cells.width, cells.width), dtype=complex)
+    for cell in near:
+        columns = list(cells.columns[cells.block[cell]])
+        gram[np.ix_(columns, columns)] += cells.own[cell, 0, :, 0, :]
+    mixed = gram[:inputs, inputs:]
+    alike = np.conj(mixed.T) @ np.linalg.pinv(gram[:inputs, :inputs], rcond=1e-10, hermitian=True) @ mixed
+    return bool(np.real(np.trace(alike)) > (1.0 - SAME) * np.real(np.trace(gram[inputs:, inputs:])))
 
 
 def freedoms(modal: Modal) -> int:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 
@@ -13,6 +14,7 @@ from flexstage.readings.measured.lines import Cells, Lines, block_count, record_
 from flexstage.readings.measured.record import Channel, Record, Responses
 from flexstage.readings.measured.smear import SMEARING, Smear
 from flexstage.readings.measured.spectra import Segments, Spectra, Tell, Window, pooled, spectra
+from flexstage.readings.measured.tones import Tone, quieted
 from flexstage.readings.measured.transfer import h1, multiple_coherence, noise_density
 
 _SEGMENTS = 24.0
@@ -21,6 +23,7 @@ _LONGEST = 32_768
 _HIGHEST = 0.42
 _LOWEST_LINES = 3
 _RUNNING = 10
+_PASSES = 4  # for tones, for spectra, for the fit of modes, and to see what drives them
 _ROUNDING = 1e-13
 """Relative error of sums of some thousand double numbers."""
 
@@ -33,13 +36,14 @@ class Evidence:
     outputs divided by `input_scale` (m,) and `output_scale` (p,); `density` (f, p) is the noise per line, not divided. `band` is what the
     data can show, in Hz; `inflation` the factor on variances for neighbouring lines that are not independent; `coherence` the multiple
     coherence (f, p), absent where there is none; `resolution` the distance of lines in Hz; `rounding` (p,) the variance per line, divided
-    by the scales, that rounding the samples leaves.
+    by the scales, that rounding the samples leaves; `tones` those seen in outputs, the steady ones taken out; `stored` whether an
+    analyser made the responses.
     """
 
     where: str
     responses: Responses
     weights: Array
-    lines: Callable[[], Iterable[Lines]]
+    lines: Callable[..., Iterable[Lines]]
     input_scale: Array
     output_scale: Array
     density: Array
@@ -51,6 +55,8 @@ class Evidence:
     smear: Smear | None = None
     rounding: Array | float = 0.0
     resolution: float = 0.0
+    tones: tuple[Tone, ...] = ()
+    stored: bool = False
     shaped: Callable[[Cells], Array] | None = None
 
     def shape(self, cells: Cells) -> Array:
@@ -76,9 +82,12 @@ def evidence(what: Record | Responses | Sequence[Record], segments: Segments | N
         return _of_responses(what)
     records = (what,) if isinstance(what, Record) else tuple(what)
     require(_findings(records))
+    quiet = (quieted(record, _part(tell, index, _PASSES * len(records))) for index, record in enumerate(records))
+    records, tones = zip(*quiet, strict=True)
     chosen = segments if segments is not None else chosen_segments(records)
-    together = pooled([_driven(spectra(record, chosen, _part(tell, index, 2 * len(records)))) for index, record in enumerate(records)])
-    return _of_records(records, together, tell)
+    told = (_part(tell, len(records) + index, _PASSES * len(records)) for index in range(len(records)))
+    together = pooled([_driven(spectra(record, chosen, each)) for record, each in zip(records, told, strict=True)])
+    return replace(_of_records(records, together, tell), tones=tuple(itertools.chain(*tones)))
 
 
 def _of_records(records: tuple[Record, ...], known: Spectra, tell: Tell | None) -> Evidence:
@@ -91,12 +100,12 @@ def _of_records(records: tuple[Record, ...], known: Spectra, tell: Tell | None) 
     size = _scale(inside.yy, records[0].rate)
     input_scale, output_scale = _divisor(_scale(inside.xx, records[0].rate)), _divisor(size)
 
-    def lines() -> Iterable[Lines]:
+    def lines(number: int = 0) -> Iterable[Lines]:
         column = len(names)
-        for index, record in enumerate(records):
+        for index, record in enumerate(records, start=(2 + number) * len(records)):
             kept = record.select([channel.name for channel in record.channels if channel in record.outputs or channel.name in names])
             places = tuple(names.index(channel.name) for channel in kept.inputs)
-            for block in record_lines(kept, places, column, _part(tell, len(records) + index, 2 * len(records))):
+            for block in record_lines(kept, places, column, _part(tell, index, _PASSES * len(records))):
                 yield _scaled(block, input_scale, output_scale)
             column += block_count(kept)
 
@@ -185,7 +194,7 @@ def _of_responses(known: Responses) -> Evidence:
     density = np.repeat(np.median(rough, axis=(0, 2))[None, :], len(known.frequencies), axis=0)
     density = np.maximum(density, 1e-12 * output_scale**2)
 
-    def lines() -> Iterable[Lines]:
+    def lines(_: int = 0) -> Iterable[Lines]:
         for index in range(count):
             yield Lines(known.frequencies, np.ones((len(steps) + 1, 1), dtype=complex), known.values[:, :, index] / output_scale, (index,))
 
@@ -201,6 +210,7 @@ def _of_responses(known: Responses) -> Evidence:
         density=density,
         rate=2.0 * float(known.frequencies[-1]),
         band=(float(max(known.frequencies[0], _LOWEST_LINES * step)), float(known.frequencies[-1])),
+        stored=True,
         inflation=1.0 if window is None else _INFLATION[window],
         averages=float(known.averages or 0),
         smear=Smear(window, 1.0 / step) if window in SMEARING else None,

@@ -11,6 +11,7 @@ from flexstage.base.labelled import Matrix, ratio_units
 from flexstage.base.number import Array
 from flexstage.readings.measured.cluster import Stabilisation
 from flexstage.readings.measured.confidence import NORMAL_95
+from flexstage.readings.measured.peaks import Peak
 from flexstage.readings.measured.record import Channel, Responses
 from flexstage.readings.measured.residues import modal_sum, remainder_sum
 
@@ -23,7 +24,8 @@ class Identified:
     component 1; `participation` (k, m) complex, of the inputs: H = sum of shape participation / (j w - pole) + conjugate. `deviation` of
     shapes is that of real and of imaginary part. `significance` (k,) is the chi-square by which the data ask for the mode, over that which
     noise would pass once in 1e9. `close` lists modes nearer to one another than their half-widths: compare those by subspace. `noise` (p,)
-    is the outputs' noise density, in the outputs' unit squared per Hz. `warnings` say what the data cannot tell.
+    is the outputs' noise density, in the outputs' unit squared per Hz. `warnings` say what the data cannot tell; `peaks` are
+    seen and are no modes, or not with confidence.
     """
 
     frequencies: Array
@@ -44,6 +46,7 @@ class Identified:
     noise: Array
     warnings: tuple[str, ...]
     provenance: str
+    peaks: tuple[Peak, ...] = ()
 
     @property
     def poles(self) -> Array:
@@ -105,6 +108,7 @@ class Identified:
             "close": [[index + 1 for index in group] for group in self.close],
             "significance": self.significance.tolist(),
             "band_hz": list(self.band),
+            "peaks": [peak.to_json() for peak in self.peaks],
             "warnings": list(self.warnings),
             "provenance": self.provenance,
         }

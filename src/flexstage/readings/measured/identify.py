@@ -10,27 +10,24 @@ import numpy as np
 from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array
 from flexstage.readings.measured.adequacy import Reach, few_lines
-from flexstage.readings.measured.bands import Extent, extents, sweeps
-from flexstage.readings.measured.caution import warnings
-from flexstage.readings.measured.cluster import Candidate, Stabilisation, alike, merged, stabilisation
-from flexstage.readings.measured.confidence import Deviations, deviations, drive_strength, freedoms, significance
+from flexstage.readings.measured.bands import extents, sweeps
+from flexstage.readings.measured.caution import Modes, warnings
+from flexstage.readings.measured.cluster import Candidate, Stabilisation, merged, stabilisation
+from flexstage.readings.measured.driven import drives
 from flexstage.readings.measured.evidence import Evidence, chosen_segments, evidence, whole
+from flexstage.readings.measured.group import ONCE_IN, Found, Hunt, Lost, grouped
 from flexstage.readings.measured.identified import Identified
-from flexstage.readings.measured.likelihood import Band, Fit, Modal, background, fit, noise, scatter, shaped, silence
-from flexstage.readings.measured.lines import Cells, edges, gathered
+from flexstage.readings.measured.likelihood import Modal
+from flexstage.readings.measured.lines import edges, gathered
 from flexstage.readings.measured.lscf import lscf
+from flexstage.readings.measured.peaks import Left, peaks
 from flexstage.readings.measured.record import Record, Responses
 from flexstage.readings.measured.residues import modal_sum, remainder
 from flexstage.readings.measured.spectra import Segments, Tell
-from flexstage.readings.measured.unexplained import SURPRISING, excess, suggested
 
-_ONCE_IN = 1e-9
-_SURE, _EVIDENT = 1.0 / 3.0, 3.0
 _LARGEST = 72
 _LONGEST = 40
-_ROUNDS = 2
 _FEW = 5.0
-_MOST_MODES = 24
 
 
 @dataclass(frozen=True)
@@ -45,16 +42,6 @@ class Search:
     segments: Segments | None = None
 
 
-@dataclass(frozen=True, eq=False)
-class _Found:
-    """The modes of one band, with deviations and significance, and the outputs' noise variance per line (p,)."""
-
-    fit: Fit
-    deviations: Deviations
-    significance: Array
-    noise: Array
-
-
 def identify(what: Record | Responses | Sequence[Record], search: Search = Search(), tell: Tell | None = None) -> Identified:
     """Natural frequencies, damping, shapes and participations, with 95 % intervals, and whether they are there at all.
 
@@ -62,7 +49,9 @@ def identify(what: Record | Responses | Sequence[Record], search: Search = Searc
     Candidates are the stable poles of pLSCF on H1; each group of near ones is then fitted by maximum likelihood to the transform of the
     whole record, its transient included, so that there is neither window nor leakage: inputs are taken as exact, outputs' noise as of
     slowly varying density; intervals hold for noise correlated between outputs too (Pintelon & Schoukens 2012, ch. 9 and 10). A mode is
-    kept if leaving it out costs more likelihood than noise would once in 1e9, thrice that where its damping is not known to a third.
+    kept if leaving it out costs more likelihood than noise would once in 1e9, thrice that where its damping is not known to a third, and if
+    the recorded inputs drive it, whatever else does (an F-test at 1e-9). Tones that no input holds are taken out of the outputs before.
+    What is seen and is none of the modes is listed as `peaks`.
     Linear, time-invariant stages. Raises `DesignError` for inputs that are not independent, no outputs, records that do not fit together or
     are too short.
 
@@ -85,8 +74,9 @@ def _identified(what: Record | Responses | Sequence[Record], search: Search, tel
     known = evidence(what, search.segments, tell)
     band = _band(known, search)
     diagrams, candidates, reach = _candidates(known, band, search)
-    found = _fitted(known, candidates, band, search)
-    return _result(known, band, diagrams, found, reach)
+    lost: list[Lost] = []
+    found, refused, share = _driven(known, _fitted(known, candidates, band, search.highest_damping, lost))
+    return _result(known, (band, reach, diagrams), found, share, (refused, lost))
 
 
 def _band(known: Evidence, search: Search) -> tuple[float, float]:
@@ -127,116 +117,46 @@ def _candidates(
     return tuple(diagrams), merged(candidates), Reach(low, high, search.band)
 
 
-def _fitted(known: Evidence, candidates: tuple[Candidate, ...], band: tuple[float, float], search: Search) -> list[_Found]:
+def _fitted(
+    known: Evidence, candidates: tuple[Candidate, ...], band: tuple[float, float], highest_damping: float, lost: list[Lost]
+) -> list[Found]:
     if not candidates:
         return []
     poles = np.array([candidate.pole for candidate in candidates])
     groups = extents(poles, *band, resolution=known.resolution)
     bounds = [edges(poles, group.low, group.high) for group in groups]
-    every = gathered(known.lines(), bounds)
-    return [
-        found for group, cells in zip(groups, every, strict=True) if (found := _group(known, cells, candidates, group, search)) is not None
+    every = zip(groups, gathered(known.lines(), bounds), strict=True)
+    found = (grouped(known, cells, candidates, Hunt(group, highest_damping, lost)) for group, cells in every)
+    return [each for each in found if each is not None]
+
+
+def _driven(known: Evidence, fitted: list[Found]) -> tuple[list[Found], list[Lost], Array]:
+    """Modes that recorded inputs drive, resonances that they do not, and the share of each mode's motion that is not theirs.
+
+    What is refused stays in the fit: it takes the motion that is not the other modes'. Responses say nothing of what else shook the stage.
+    """
+    if not fitted or all(each.band.inputs == each.band.cells.width for each in fitted):
+        return fitted, [], np.zeros(sum(len(each.modal.poles) for each in fitted))
+    every = drives([(each.band, each.modal) for each in fitted], known.lines(1))
+    refused = [
+        Lost(complex(each.modal.poles[mode]), each.modal.shapes[:, mode], float(drive.chance[mode]))
+        for each, drive in zip(fitted, every, strict=True)
+        for mode in np.flatnonzero(drive.chance > ONCE_IN)
     ]
-
-
-def _group(known: Evidence, cells: Cells, candidates: tuple[Candidate, ...], group: Extent, search: Search) -> _Found | None:
-    """The modes of one group of candidates: fitted, freed of what is not significant, fitted anew with the noise that is left."""
-    poles = np.array([candidate.pole for candidate in candidates])
-    members = list(group.members)
-    outside = np.concatenate([np.delete(poles, members), np.conj(poles)])
-    shape = known.shape(cells)
-    variance = known.variance(group.low, group.high)[:, None] * shape / np.median(shape, axis=1, keepdims=True)
-    variance = np.maximum(variance, silence(cells, known.rounding))
-    band = Band(cells, variance, background(cells, outside), known.smear, shape, known.rounding, len(known.input_scale))
-    if np.sum(cells.count) < 2 * cells.own.shape[2] * band.background.shape[1]:
-        return None
-    participation = np.array([candidates[index].participation for index in members])
-    found, strength = _pruned(band, fit(band, shaped(band, poles[members], participation)), group, search)
-    for _ in range(_ROUNDS):
-        band = replace(band, variance=noise(band, found.modal))
-        found, strength = _pruned(band, fit(band, found.modal), group, search)
-        band, found, strength = _extended(band, (found, strength), group, search)
-    if not len(found.modal.poles):
-        return None
-    return _Found(
-        found,
-        deviations(found, known.inflation, scatter(band, found.modal)),
-        strength / _limit(found.modal),
-        np.mean(band.variance, axis=1),
-    )
-
-
-def _limit(modal: Modal) -> float:
-    from scipy.stats import chi2
-
-    return float(chi2.isf(_ONCE_IN, freedoms(modal)))
-
-
-def _undriven(band: Band, modal: Modal) -> float:
-    from scipy.stats import chi2
-
-    return float(chi2.isf(_ONCE_IN, 2 * (modal.participation.shape[1] if band.inputs is None else band.inputs)))
-
-
-def _pruned(band: Band, found: Fit, group: Extent, search: Search) -> tuple[Fit, Array]:
-    """Leave out, one at a time and the least significant first, what is no mode; and the significance of the modes left."""
-    while len(found.modal.poles):
-        worst, strength = _worst(band, found, group, search)
-        if worst is None:
-            return found, strength
-        found = fit(band, found.modal.without(worst))
-    return found, np.zeros(0)
-
-
-def _extended(band: Band, known: tuple[Fit, Array], group: Extent, search: Search) -> tuple[Band, Fit, Array]:
-    """Add modes, one at a time, where the data hold more than those found explain, as long as that is significant."""
-    found, strength = known
-    while len(found.modal.poles) < _MOST_MODES:
-        score = excess(band, found.modal)
-        place = int(np.argmax(score))
-        if score[place] < SURPRISING:
-            break
-        more, grown = _pruned(band, fit(band, suggested(band, found.modal, place)), group, search)
-        if len(more.modal.poles) <= len(found.modal.poles) or more.cost > found.cost:
-            break
-        found, strength = more, grown
-        band = replace(band, variance=noise(band, found.modal))
-    return band, found, strength
-
-
-def _worst(band: Band, found: Fit, group: Extent, search: Search) -> tuple[int | None, Array]:
-    """The mode that is least one, if there is such, and how significant each is."""
-    poles, limit = found.modal.poles, _limit(found.modal)
-    ratio = -np.real(poles) / np.abs(poles)
-    spread = deviations(found)
-    outside = (ratio > search.highest_damping) | (np.imag(poles) < group.low) | (np.imag(poles) > group.high)
-    if np.any(outside):
-        return int(np.argmax(np.where(outside, spread.damping / ratio, -1.0))), np.zeros(len(poles))
-    strength = np.where(_doubles(found.modal), 0.0, significance(band, found, limit))
-    strength = np.minimum(strength, limit / _undriven(band, found.modal) * drive_strength(band, found))
-    wanted = np.where(spread.damping > _SURE * ratio, _EVIDENT * limit, limit)
-    least = int(np.argmin(strength / wanted))
-    return (least if strength[least] < wanted[least] else None), strength
-
-
-def _doubles(modal: Modal) -> Array:
-    """Modes that repeat another one: same pole within a tenth of its half-width, same shape and participation; the weaker of both."""
-    size = np.linalg.norm(modal.shapes, axis=0) * np.linalg.norm(modal.participation, axis=1)
-    found = np.zeros(len(size), dtype=bool)
-    for first in range(len(size)):
-        for second in range(first):
-            near = abs(modal.poles[first] - modal.poles[second]) < -0.1 * modal.poles[first].real
-            same = alike(modal.shapes[:, first], modal.shapes[:, second]) > 0.98
-            if near and same and alike(modal.participation[first], modal.participation[second]) > 0.98:
-                found[first if size[first] < size[second] else second] = True
-    return found
+    kept = [each.only(np.flatnonzero(drive.chance <= ONCE_IN)) for each, drive in zip(fitted, every, strict=True)]
+    return kept, refused, np.concatenate([drive.elsewhere[drive.chance <= ONCE_IN] for drive in every])
 
 
 def _result(
-    known: Evidence, band: tuple[float, float], diagrams: tuple[Stabilisation, ...], found: list[_Found], reach: Reach
+    known: Evidence,
+    searched: tuple[tuple[float, float], Reach, tuple[Stabilisation, ...]],
+    found: list[Found],
+    share: Array,
+    doubted: tuple[list[Lost], list[Lost]],
 ) -> Identified:
+    band, reach, diagrams = searched
     inputs, outputs = len(known.input_scale), len(known.output_scale)
-    modal = _joined([part.fit.modal for part in found], inputs, outputs)
+    modal = _joined([part.modal for part in found], inputs, outputs)
     spread = [np.concatenate([getattr(part.deviations, name) for part in found] or [np.zeros(0)]) for name in ("frequencies", "damping")]
     wide = np.concatenate([part.deviations.shapes for part in found] or [np.zeros((outputs, 0))], axis=1)
     strength = np.concatenate([part.significance for part in found] or [np.zeros(0)])
@@ -263,7 +183,8 @@ def _result(
         stabilisation=diagrams,
         band=band,
         noise=np.median(known.density[inside], axis=0) * 2.0 / known.rate,
-        warnings=warnings(known, poles, close, reach),
+        warnings=warnings(known, Modes(poles, close, share[order]), reach),
+        peaks=peaks(known, Left(lines, rest, poles), *doubted),
         provenance=f"identified from {known.where}: pLSCF, then maximum likelihood",
     )
 

@@ -172,8 +172,7 @@ def explained(band: Band, modal: Modal) -> Iterator[tuple[Array, Array]]:
     >>> [len(chosen) for chosen, _ in explained(*one_mode_band())] == [len(one_mode_band()[0].cells.low)]
     True
     """
-    count = len(modal.poles)
-    every = np.concatenate([_functions(band, modal.poles)[:, :count], band.background], axis=1)
+    every = np.concatenate([resonances(band, modal.poles), band.background], axis=1)
     values = _coefficients(band, modal)
     for block, columns in enumerate(band.cells.columns):
         chosen = np.flatnonzero(band.cells.block == block)
@@ -287,6 +286,17 @@ def background(cells: Cells, outside: Array, degree: int = 3) -> Array:
     return expanded(np.moveaxis(kept.reshape(*points.shape, -1), 2, 1))
 
 
+def resonances(band: Band, poles: Array) -> Array:
+    """1/(j f - p) in every cell, as Legendre coefficients (c, k, 8).
+
+    >>> from flexstage.readings.measured.example import one_mode_band
+    >>> band, start = one_mode_band()
+    >>> resonances(band, start.poles).shape == (len(band.cells.low), 1, 8)
+    True
+    """
+    return _functions(band, poles)[:, : len(poles)]
+
+
 def _functions(band: Band, poles: Array) -> Array:
     """Legendre coefficients (c, f, 8) in every cell of 1/(j f - p), of its derivatives by p, and of products of near poles' functions."""
     points, pairs = nodes(band.cells.low, band.cells.high), _pairs(poles)
@@ -324,25 +334,28 @@ def _raw(band: Band, functions: Array) -> _Sums:
 def _gram(cells: Cells, weights: Array, functions: Array) -> Array:
     """Gram matrices (w, f, n, f, n) of functions times inputs, summed over cells with weights (w, c)."""
     rows, count, total = len(weights), functions.shape[1], cells.width
-    gram = np.zeros((rows, count, total, count, total), dtype=complex)
+    gram = np.zeros((rows, count, total, total, count), dtype=complex)
     for block, columns in enumerate(cells.columns):
         together = max(1, _CHUNK // (count * len(columns)) ** 2)
         every = np.flatnonzero(cells.block == block)
+        part = np.zeros((rows, (count * len(columns)) ** 2), dtype=complex)
         for start in range(0, len(every), together):
             chosen = every[start : start + together]
-            products = _products(functions[chosen], cells.own[chosen])
-            part = (weights[:, chosen] @ products.reshape(len(chosen), -1)).reshape(rows, count, len(columns), count, len(columns))
-            gram[np.ix_(range(rows), range(count), columns, range(count), columns)] += part
-    return gram
+            part += weights[:, chosen] @ _products(functions[chosen], cells.own[chosen])
+        part = part.reshape(rows, count, len(columns), len(columns), count)
+        if list(columns) == list(range(total)) and len(cells.columns) == 1:
+            gram = part
+        else:
+            gram[np.ix_(range(rows), range(count), columns, columns, range(count))] += part
+    return gram.swapaxes(3, 4)
 
 
 def _products(functions: Array, own: Array) -> Array:
-    """Gram matrices (c, f, n, f, n) of functions times inputs in every cell."""
+    """Gram matrices (c, f n n f) of functions times inputs in every cell: functions first and last, inputs between."""
     count, size, inputs = len(own), own.shape[1], own.shape[2]
     half = np.conj(functions) @ own.reshape(count, size, -1)
     half = half.reshape(count, -1, inputs, size, inputs).swapaxes(3, 4).reshape(count, -1, size)
-    full = half @ functions.swapaxes(1, 2)
-    return full.reshape(count, functions.shape[1], inputs, inputs, functions.shape[1]).swapaxes(3, 4)
+    return (half @ functions.swapaxes(1, 2)).reshape(count, -1)
 
 
 def _sums(band: Band, poles: Array) -> _Sums:
@@ -370,7 +383,7 @@ def _sums(band: Band, poles: Array) -> _Sums:
 def _coefficients(band: Band, modal: Modal) -> Array:
     """Factors (p, f, n) of the modes' functions and, best for them, of the polynomials."""
     count = len(modal.poles)
-    functions = np.concatenate([_functions(band, modal.poles)[:, :count], band.background], axis=1)
+    functions = np.concatenate([resonances(band, modal.poles), band.background], axis=1)
     raw = _raw(band, functions)
     outputs, every, total = raw.cross.shape
     size = count * total

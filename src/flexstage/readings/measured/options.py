@@ -54,7 +54,7 @@ class Allow(Enum):
     NAMES = "names"
     """Leave out channels that are neither inputs nor outputs, or that the stage does not have."""
     INCOMPLETE = "incomplete"
-    """Leave out outputs whose responses to some inputs are missing."""
+    """Leave out outputs whose responses to some inputs are missing, and coherence where the last response lacks its."""
 
 
 @dataclass(frozen=True)

@@ -7,6 +7,7 @@ from enum import IntEnum
 import numpy as np
 
 from flexstage.base.number import Array
+from flexstage.base.stream import generator
 
 
 class Stream(IntEnum):
@@ -45,4 +46,4 @@ def walk(seed: int, channel: int, block: int, size: int) -> Array:
 
 def _generator(seed: int, stream: tuple[Stream, int], number: int) -> np.random.Generator:
     kind, channel = stream
-    return np.random.Generator(np.random.PCG64(np.random.SeedSequence(seed, spawn_key=(int(kind), channel, number))))
+    return generator(seed, int(kind), channel, number)

@@ -200,3 +200,12 @@ def head(function: Function, *, binary_bytes: int | None = None) -> bytes:
     axes = (function.abscissa, function.ordinate, function.denominator, Axis(0, "", ""))
     lines += [f"{axis.kind:10d}{0:5d}{0:5d}{0:5d} {(axis.label or 'NONE')[:20]:20} {(axis.unit or 'NONE')[:20]:20}" for axis in axes]
     return ("\n".join(lines) + "\n").encode()
+
+
+def counted(text: str, number: int, count: int) -> str:
+    """A line of text with which function of how many this is: the format counts none.
+
+    >>> counted("hann", 3, 12)
+    'hann; function 3 of 12'
+    """
+    return f"{text}; function {number} of {count}" if text else f"function {number} of {count}"

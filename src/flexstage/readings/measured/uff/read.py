@@ -23,6 +23,8 @@ _FLOAT = r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?"
 OWN = re.compile(rf"flexstage (?P<role>input|output|unknown); rate (?P<rate>{_FLOAT}) Hz; start (?P<start>{_FLOAT}) s")
 """The fifth line of text of functions written here: what the head's few digits cannot hold."""
 OWN_RESPONSE = re.compile(rf"flexstage response; first (?P<first>{_FLOAT}) Hz; step (?P<step>{_FLOAT}) Hz; averages (?P<averages>\d+)")
+COUNTED = re.compile(r"(?P<text>.*?)(?:; )?function (?P<number>\d+) of (?P<count>\d+)")
+"""The fourth line of text of functions written here: how many there are, which the format does not say."""
 _BLOCK = 262_144
 
 
@@ -54,7 +56,7 @@ def read_uff(path: Path, options: Options) -> tuple[Record | None, Responses | N
     """
     found, findings = scan(path)
     truncated = [Finding(_where(path, each), each.problem, _ADVICE) for each in found if each.problem is not None]
-    require([*findings, *(truncated if Allow.TRUNCATED not in options.allow else ())])
+    require([*findings, *([*truncated, *_missing(path, found)] if Allow.TRUNCATED not in options.allow else ())])
     histories = [each for each in found if each.function.is_time]
     responses = [each for each in found if each.function.is_response]
     if not histories and not responses:
@@ -65,6 +67,14 @@ def read_uff(path: Path, options: Options) -> tuple[Record | None, Responses | N
 
 
 _ADVICE = 'Export the file anew, or allow "truncated" to use what there is'
+
+
+def _missing(path: Path, found: list[DataSet]) -> Iterable[Finding]:
+    """What files written here say of how many functions there were: one cut between two functions is like a whole one otherwise."""
+    told = [COUNTED.fullmatch(each.function.texts[3]) for each in found if each.function.texts[4].startswith("flexstage ")]
+    stated = max((int(each["count"]) for each in told if each), default=0)
+    if len(found) < stated:
+        yield Finding(str(path), f"it breaks off: {len(found)} of the {stated} functions that were written are there", _ADVICE)
 
 
 def _where(path: Path, found: DataSet) -> str:
@@ -169,12 +179,18 @@ def _responses(path: Path, found: list[DataSet], coherences: list[DataSet], opti
         rows,
         columns,
         values,
-        _coherence(coherences, outputs, inputs, len(frequencies)),
-        window=first.texts[3] if own else "",
+        _coherence(path, coherences, table, (outputs, inputs), options),
+        window=_text(first.texts[3]) if own else "",
         averages=int(own["averages"]) or None if own else None,
         name=first.texts[2] if own else first.texts[0],
         source=str(path),
     )
+
+
+def _text(line: str) -> str:
+    """A line of text without the count of functions."""
+    told = COUNTED.fullmatch(line)
+    return told["text"] if told else line
 
 
 def _complete(path: Path, table: dict[tuple[str, str], DataSet], options: Options) -> tuple[tuple[str, ...], tuple[str, ...]]:
@@ -261,8 +277,21 @@ def _axis(found: DataSet) -> Array:
     return found.values.read(0, found.values.length)[:, 0]
 
 
-def _coherence(found: list[DataSet], outputs: tuple[str, ...], inputs: tuple[str, ...], size: int) -> Array | None:
+def _coherence(
+    path: Path,
+    found: list[DataSet],
+    table: dict[tuple[str, str], DataSet],
+    names: tuple[tuple[str, ...], tuple[str, ...]],
+    options: Options,
+) -> Array | None:
+    """The coherence of every response; `None` where not all have theirs. Raises `DesignError` where only the last lacks it."""
+    outputs, inputs = names
+    size = table[outputs[0], inputs[0]].values.length
     stored = {_pair(each): each for each in found if each.values.length == size}
-    if any((output, input_) not in stored for output in outputs for input_ in inputs):
+    lack = [(output, input_) for output in outputs for input_ in inputs if (output, input_) not in stored]
+    if lack and lack == list(table)[-1:] and len(table) > 1 and Allow.INCOMPLETE not in options.allow:
+        what = f"all responses have their coherence but the last, of {lack[0][0]} to {lack[0][1]}: the file may break off there"
+        raise DesignError([Finding(str(path), what, 'Export the file anew, or allow "incomplete" to do without coherence')])
+    if lack:
         return None
     return np.stack([np.stack([np.real(_complex(stored[output, input_])) for input_ in inputs], axis=-1) for output in outputs], axis=-2)

@@ -11,7 +11,7 @@ from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array
 from flexstage.readings.measured.aside import aside
 from flexstage.readings.measured.record import Channel, Record, Responses, Role
-from flexstage.readings.measured.uff.function import COHERENCE, COMPLEX_DOUBLE, REAL_DOUBLE, RESPONSE, TIME, Axis, Function, head
+from flexstage.readings.measured.uff.function import COHERENCE, COMPLEX_DOUBLE, REAL_DOUBLE, RESPONSE, TIME, Axis, Function, counted, head
 
 _BLOCK = 65_536
 _END = f"{-1:6d}\n".encode()
@@ -74,7 +74,8 @@ def _write_record(stream: BinaryIO, record: Record, *, binary: bool) -> None:
     for number, channel in enumerate(record.channels):
         own = f"flexstage {channel.role.value}; rate {float(record.rate)!r} Hz; start {float(record.start)!r} s"
         ordinate = Axis(kinds[channel.role], "", channel.unit)
-        texts, place = (channel.name, record.name[:_LONGEST], "", "", own), (channel.name, number + 1, 0)
+        place = channel.name, number + 1, 0
+        texts = (channel.name, record.name[:_LONGEST], "", counted("", number + 1, len(record.channels)), own)
         axes = (Axis(17, "time", "s"), ordinate, _EMPTY)
         form = (REAL_DOUBLE, record.length, True, record.start, 1.0 / record.rate, 0.0)
         begin = head(Function(texts, TIME, place, ("", 0, 0), *form, *axes), binary_bytes=8 * record.length if binary else None)
@@ -107,9 +108,12 @@ def _encoded(numbers: Array, *, binary: bool) -> bytes:
 def _write_responses(stream: BinaryIO, responses: Responses, *, binary: bool) -> None:
     first, step = _even(responses.frequencies)
     own = f"flexstage response; first {first!r} Hz; step {step!r} Hz; averages {responses.averages or 0}"
+    number, kinds = 0, 1 if responses.coherence is None else 2
     for row, output in enumerate(responses.outputs):
         for column, input_ in enumerate(responses.inputs):
-            texts = (output.name, input_.name, responses.name[:_LONGEST], responses.window[:_LONGEST], own)
+            number += kinds
+            counts = counted(responses.window[: _LONGEST // 2], number, kinds * len(responses.outputs) * len(responses.inputs))
+            texts = (output.name, input_.name, responses.name[:_LONGEST], counts, own)
             places = ((output.name, row + 1, 0), (input_.name, column + 1, 0))
             units = (Axis(18, "frequency", "Hz"), Axis(8, "", output.unit), Axis(13, "", input_.unit))
             form = (len(responses.frequencies), bool(step), first if step else 0.0, step, 0.0)

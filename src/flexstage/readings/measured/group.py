@@ -1,0 +1,169 @@
+"""The modes of one group of candidates: fitted together, freed of what is not significant, added to where the data hold more."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from flexstage.base.number import Array
+from flexstage.readings.measured.bands import Extent
+from flexstage.readings.measured.cluster import Candidate, alike
+from flexstage.readings.measured.confidence import Deviations, deviations, drive_strength, freedoms, significance
+from flexstage.readings.measured.evidence import Evidence
+from flexstage.readings.measured.likelihood import Band, Fit, Modal, background, fit, noise, scatter, shaped, silence
+from flexstage.readings.measured.lines import Cells
+from flexstage.readings.measured.unexplained import SURPRISING, excess, suggested
+
+ONCE_IN = 1e-9
+"""How often noise may pass for a mode."""
+_SURE, _EVIDENT = 1.0 / 3.0, 3.0
+_ROUNDS = 2
+_MOST_MODES = 24
+
+
+@dataclass(frozen=True, eq=False)
+class Lost:
+    """A resonance left out again: its `pole` in Hz, `shape` (p,), and how likely (`chance`) noise would be as strong."""
+
+    pole: complex
+    shape: Array
+    chance: float
+
+
+@dataclass(frozen=True, eq=False)
+class Hunt:
+    """What is looked for: modes in `group`, damped no more than `highest_damping`; what is left out again is added to `lost`."""
+
+    group: Extent
+    highest_damping: float
+    lost: list[Lost]
+
+
+@dataclass(frozen=True, eq=False)
+class Found:
+    """The modes of one band, with deviations and significance, and the outputs' noise variance per line (p,)."""
+
+    band: Band
+    modal: Modal
+    deviations: Deviations
+    significance: Array
+
+    def only(self, chosen: Array) -> Found:
+        """Some of the modes, by their numbers.
+
+        >>> from flexstage.readings.measured.example import one_mode_band
+        >>> band, start = one_mode_band()
+        >>> len(Found(band, start, Deviations(*np.ones((2, 1)), np.ones((1, 1))), np.ones(1)).only(np.array([], dtype=int)).modal.poles)
+        0
+        """
+        modal, spread = self.modal, self.deviations
+        return Found(
+            self.band,
+            Modal(modal.poles[chosen], modal.participation[chosen], modal.shapes[:, chosen]),
+            Deviations(spread.frequencies[chosen], spread.damping[chosen], spread.shapes[:, chosen]),
+            self.significance[chosen],
+        )
+
+
+def grouped(known: Evidence, cells: Cells, candidates: tuple[Candidate, ...], hunt: Hunt) -> Found | None:
+    """The modes of one group of candidates: fitted, freed of what is not significant, fitted anew with the noise that is left.
+
+    `cells` are those of the group's band; candidates beside the group stand for what lies outside. `None` where no mode is left.
+
+    >>> from flexstage.readings.measured.evidence import evidence
+    >>> from flexstage.readings.measured.example import POLE, one_mode_record
+    >>> from flexstage.readings.measured.lines import edges, gathered
+    >>> known, pole = evidence(one_mode_record(), None), 1.01 * POLE
+    >>> [cells] = gathered(known.lines(), [edges(np.array([pole]), 6.0, 14.0)])
+    >>> found = grouped(known, cells, (Candidate(pole, np.ones(1), 3),), Hunt(Extent(6.0, 14.0, (0,)), 0.1, []))
+    >>> None if found is None else abs(found.modal.poles).round(1).tolist()
+    [10.0]
+    """
+    group = hunt.group
+    poles = np.array([candidate.pole for candidate in candidates])
+    members = list(group.members)
+    outside = np.concatenate([np.delete(poles, members), np.conj(poles)])
+    shape = known.shape(cells)
+    variance = known.variance(group.low, group.high)[:, None] * shape / np.median(shape, axis=1, keepdims=True)
+    variance = np.maximum(variance, silence(cells, known.rounding))
+    band = Band(cells, variance, background(cells, outside), known.smear, shape, known.rounding, len(known.input_scale))
+    if np.sum(cells.count) < 2 * cells.own.shape[2] * band.background.shape[1]:
+        return None
+    participation = np.array([candidates[index].participation for index in members])
+    found, strength = _pruned(band, fit(band, shaped(band, poles[members], participation)), hunt)
+    for _ in range(_ROUNDS):
+        band = replace(band, variance=noise(band, found.modal))
+        found, strength = _pruned(band, fit(band, found.modal), hunt)
+        band, found, strength = _extended(band, (found, strength), hunt)
+    if not len(found.modal.poles):
+        return None
+    spread = deviations(found, known.inflation, scatter(band, found.modal))
+    return Found(band, found.modal, spread, strength / _limit(found.modal))
+
+
+def _limit(modal: Modal) -> float:
+    from scipy.stats import chi2
+
+    return float(chi2.isf(ONCE_IN, freedoms(modal)))
+
+
+def _chance(modal: Modal, strength: float) -> float:
+    from scipy.stats import chi2
+
+    return float(chi2.sf(strength, freedoms(modal)))
+
+
+def _pruned(band: Band, found: Fit, hunt: Hunt) -> tuple[Fit, Array]:
+    """Leave out, one at a time and the least significant first, what is no mode; and the significance of the modes left."""
+    while len(found.modal.poles):
+        worst, strength = _worst(band, found, hunt)
+        if worst is None:
+            return found, strength
+        hunt.lost.append(Lost(complex(found.modal.poles[worst]), found.modal.shapes[:, worst], _chance(found.modal, strength[worst])))
+        found = fit(band, found.modal.without(worst))
+    return found, np.zeros(0)
+
+
+def _extended(band: Band, known: tuple[Fit, Array], hunt: Hunt) -> tuple[Band, Fit, Array]:
+    """Add modes, one at a time, where the data hold more than those found explain, as long as that is significant."""
+    found, strength = known
+    while len(found.modal.poles) < _MOST_MODES:
+        score = excess(band, found.modal)
+        place = int(np.argmax(score))
+        if score[place] < SURPRISING:
+            break
+        more, grown = _pruned(band, fit(band, suggested(band, found.modal, place)), hunt)
+        if len(more.modal.poles) <= len(found.modal.poles) or more.cost > found.cost:
+            break
+        found, strength = more, grown
+        band = replace(band, variance=noise(band, found.modal))
+    return band, found, strength
+
+
+def _worst(band: Band, found: Fit, hunt: Hunt) -> tuple[int | None, Array]:
+    """The mode that is least one, if there is such, and how significant each is."""
+    poles, limit = found.modal.poles, _limit(found.modal)
+    ratio = -np.real(poles) / np.abs(poles)
+    spread = deviations(found)
+    outside = (ratio > hunt.highest_damping) | (np.imag(poles) < hunt.group.low) | (np.imag(poles) > hunt.group.high)
+    if np.any(outside):
+        return int(np.argmax(np.where(outside, spread.damping / ratio, -1.0))), np.zeros(len(poles))
+    strength = np.where(_doubles(found.modal), 0.0, significance(band, found, limit))
+    strength = np.minimum(strength, limit * drive_strength(band, found, ONCE_IN))
+    wanted = np.where(spread.damping > _SURE * ratio, _EVIDENT * limit, limit)
+    least = int(np.argmin(strength / wanted))
+    return (least if strength[least] < wanted[least] else None), strength
+
+
+def _doubles(modal: Modal) -> Array:
+    """Modes that repeat another one: same pole within a tenth of its half-width, same shape and participation; the weaker of both."""
+    size = np.linalg.norm(modal.shapes, axis=0) * np.linalg.norm(modal.participation, axis=1)
+    found = np.zeros(len(size), dtype=bool)
+    for first in range(len(size)):
+        for second in range(first):
+            near = abs(modal.poles[first] - modal.poles[second]) < -0.1 * modal.poles[first].real
+            same = alike(modal.shapes[:, first], modal.shapes[:, second]) > 0.98
+            if near and same and alike(modal.participation[first], modal.participation[second]) > 0.98:
+                found[first if size[first] < size[second] else second] = True
+    return found
