@@ -10,12 +10,18 @@ for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
 
 import pytest
 from hypothesis import HealthCheck, Phase, settings
+from hypothesis.internal.conjecture import providers
 from threadpoolctl import threadpool_limits
+
+# Else Hypothesis also tries numbers it finds in the code of whatever modules are loaded by then, but for those of a path with "test" in it:
+# what a law is tried on would depend on which tests ran before it in this process, and on where the tree lies.
+providers._get_local_constants = lambda: providers._local_constants
 
 FULL = os.environ.get("FLEXSTAGE_TESTS") == "full"
 
-# Laws build whole mechanisms: drawing one is slow by nature, and no test has a time limit.
-_SLOW = [HealthCheck.too_slow, HealthCheck.data_too_large]
+# Laws build whole mechanisms: drawing one is slow by nature, and no test has a time limit. They are drawn once for all laws, by the first
+# one that asks (tests/laws/shared.py), which takes a `given` within another.
+_SLOW = [HealthCheck.too_slow, HealthCheck.data_too_large, HealthCheck.nested_given]
 # Shrinking a failing random stage takes minutes and says little more than the stage itself.
 _PHASES = (Phase.explicit, Phase.reuse, Phase.generate)
 settings.register_profile("default", max_examples=200, deadline=None, derandomize=True, suppress_health_check=_SLOW, phases=_PHASES)

@@ -11,6 +11,7 @@ import flexstage as fs
 from flexstage.analysis.workspace.blocking import platform_lines, stack_lines
 from flexstage.analysis.workspace.buckling import Ends, buckling
 from flexstage.analysis.workspace.drive import drive
+from flexstage.analysis.workspace.gauging import _pseudo_inverse
 from flexstage.analysis.workspace.load import load_share
 from flexstage.analysis.workspace.map_error import linear_map_error
 from flexstage.analysis.workspace.room import room
@@ -232,3 +233,13 @@ def test_a_batch_is_the_loop():
         np.testing.assert_allclose(
             load_share(together, model).share.values[index], load_share(alone, single).share.values, rtol=1e-6, atol=1e-9
         )
+
+
+def test_the_pseudo_inverse_lets_complex_steps_through_and_stays_exact_for_gauges_hardly_told_apart():
+    random = np.random.default_rng(5)
+    tall, step = random.standard_normal((5, 3)), random.standard_normal((5, 3))
+    slope = np.imag(_pseudo_inverse(tall + 1e-20j * step)) / 1e-20
+    central = (np.linalg.pinv(tall + 1e-6 * step) - np.linalg.pinv(tall - 1e-6 * step)) / 2e-6
+    np.testing.assert_allclose(slope, central, rtol=1e-7, atol=1e-8)
+    near = tall * [1.0, 1.0, 0.0] + tall[:, [0]] * [0.0, 0.0, 1.0] + 1e-8 * step * [0.0, 0.0, 1.0]
+    np.testing.assert_allclose(_pseudo_inverse(near) @ near, np.eye(3), atol=1e-6)

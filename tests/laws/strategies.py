@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import itertools
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 from hypothesis import strategies as st
@@ -28,15 +29,18 @@ from flexstage.parts.piezo import Piezo
 from flexstage.parts.profile import Circular, Elliptic, Filleted, Straight
 from flexstage.parts.rod import Rod
 from flexstage.spatial.frame import axes
+from tests.laws.shared import shared
 
 GAUGE = Gauge(range=100e-6)
 
 
+@cache
 def _length(low, high):
     """Lengths in millimetres, drawn in steps of 1/100 mm: they print and shrink well."""
     return st.integers(round(100 * low), round(100 * high)).map(lambda hundredths: hundredths * 0.01 * mm)
 
 
+@cache
 def _number(low, high):
     """Numbers in thousand steps from low to high."""
     return st.integers(0, 1000).map(lambda step: low + (high - low) * step / 1000.0)
@@ -139,6 +143,7 @@ def _ears(draw):
     return known[1:], pairs
 
 
+@shared
 @st.composite
 def mechanisms(draw):
     """Any connected graph of up to seven bodies and elastic links, with closed loops and dangling bodies, one to eight stacks.
@@ -226,6 +231,7 @@ def lever_units(draw):
     return Unit(drawn, links), short / long
 
 
+@shared
 @st.composite
 def platforms(draw, wires=None, struts=None):
     """A platform on `wires` rods and `struts` driven units along lines that hold it well; returns (mechanism, lines, ratios).
@@ -265,6 +271,7 @@ def _upright(along):
     return tuple(axes(tuple(map(float, along)))[:, 2].tolist())
 
 
+@shared
 @st.composite
 def actuated_platforms(draw):
     """Platforms of any mobility with as many strokes as freedoms, or up to two more."""
@@ -272,6 +279,7 @@ def actuated_platforms(draw):
     return draw(platforms(wires, 6 - wires + draw(st.integers(0, 2))))[0]
 
 
+@shared
 @st.composite
 def rosettes(draw):
     """Three to six equal random units around z under a platform whose reference lies on the axis."""

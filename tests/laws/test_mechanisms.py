@@ -151,6 +151,17 @@ def rounding_of_values(model):
     return rounding(model) + 4.0 * len(model.stiffness_matrix) * np.finfo(float).eps * values / values[0]
 
 
+def rounding_per_stroke(model, rows):
+    """What rounding may do to these rows of the motion per stroke: from |D dq| <= rounding |D q| follows |r dq| <= rounding |r/D| |D q|.
+
+    A platform on soft hinges moves by more of it than stiff parts elsewhere.
+    """
+    weight = np.sqrt(np.diag(model.stiffness_matrix))
+    motion = displacement(model, model.input_matrix[:, model.input_index(model.strokes)])
+    reach = np.linalg.norm(rows / weight, axis=1)[:, None] * np.linalg.norm(weight[:, None] * motion, axis=0)
+    return rounding(model) * reach
+
+
 @given(mechanisms(), turns())
 def test_moving_an_elastic_stage_changes_only_frames(mechanism, move):
     turn, shift = move
@@ -161,7 +172,7 @@ def test_moving_an_elastic_stage_changes_only_frames(mechanism, move):
     assert np.all(np.abs(eigen(there).values[:6] - values) <= rounding_of_values(here) * values)
     gauges, strokes = tuple(mechanism.gauges), here.strokes
     difference = static_gain(there, gauges, strokes).values - static_gain(here, gauges, strokes).values
-    assert np.abs(difference).max() < rounding(here)
+    assert np.all(np.abs(difference) <= rounding_per_stroke(here, here.output[here.output_index(gauges)]))
 
 
 @given(actuated_platforms(), turns())
@@ -203,7 +214,8 @@ def test_reciprocity(mechanism):
     forces = tuple(f"{link}.fx" for link in mechanism.links if is_actuator(mechanism.parts[mechanism.links[link].part]))
     forward = static_gain(model, TWIST, model.strokes).values * METRE[:, None]
     backward = static_gain(model, forces, WRENCH).values * METRE
-    assert np.abs(forward - backward.T).max() < rounding(model) * max(1.0, np.abs(forward).max())
+    rows = model.output[model.output_index(TWIST)] * METRE[:, None]
+    assert np.all(np.abs(forward - backward.T) <= rounding_per_stroke(model, rows))
 
 
 def respond(model, inputs, size):

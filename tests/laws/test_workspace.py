@@ -212,7 +212,7 @@ def test_gauge_swing_is_the_worst_corner_and_the_radius_its_limit(mechanism, see
         elif np.isinf(here):
             assert swing <= limit * (1.0 + 1e-9)
     worst, here = (np.nan_to_num(radii, nan=-1.0) for radii in (found.largest_anywhere, found.largest_here))
-    assert np.all(worst <= here + 1e-9 * np.abs(here))
+    assert np.all(worst - here <= 1e-9 * np.abs(here))
 
 
 @given(actuated_platforms(), turns())

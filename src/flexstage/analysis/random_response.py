@@ -112,10 +112,10 @@ def random_response(
     >>> round(float(found.rms[0]) * 1e9, 1)  # far below the resonance the platform follows: 1 nm (100 Hz)^(1/2)
     10.0
     """
-    require(_findings(spectra, band))
+    require(spectrum_findings(spectra, band))
     law = damping_law(model, damping)
     chosen = ports(model, outputs, tuple(spectra))
-    grid, weights = _quadrature(_panels(model, law, spectra, band))
+    grid, weights = quadrature(_panels(model, law, spectra, band))
     gains = np.abs(transfer(model, chosen, grid, law)) ** 2
     each = gains * np.stack([spectrum.at(grid) for spectrum in spectra.values()], axis=-1)[:, None, :]
     shares = np.einsum("f,...fpm->...pm", weights, each)
@@ -124,7 +124,12 @@ def random_response(
     return RandomResponse(grid, chosen.outputs, chosen.inputs, np.sum(each, axis=-1), rms, shares, band, method, model.provenance)
 
 
-def _findings(spectra: Mapping[str, Spectrum], band: tuple[float, float]) -> list[Finding]:
+def spectrum_findings(spectra: Mapping[str, Spectrum], band: tuple[float, float]) -> list[Finding]:
+    """What is wrong with spectra and the band to integrate them over.
+
+    >>> [finding.where for finding in spectrum_findings({"ground.z": Spectrum(-1.0)}, (10.0, 1.0))]
+    ['band', 'ground.z']
+    """
     low, high = band
     found = [] if 0.0 < low < high < np.inf else [Finding("band", f"{low:g} Hz to {high:g} Hz is no band", "Give 0 < low < high in Hz")]
     if not spectra:
@@ -155,8 +160,13 @@ def _panels(model: LinearModel, law: Damping, spectra: Mapping[str, Spectrum], b
     return np.unique(np.concatenate([[low, high], ends[(ends > low) & (ends < high)]]))
 
 
-def _quadrature(ends: Array) -> tuple[Array, Array]:
-    """Nodes and weights of Gauss's rule on every panel."""
+def quadrature(ends: Array) -> tuple[Array, Array]:
+    """Nodes and weights of Gauss's rule, 8 nodes on every panel between `ends` (k,).
+
+    >>> nodes, weights = quadrature(np.array([0.0, 1.0, 3.0]))
+    >>> round(float(weights @ nodes**2), 12), round(3.0**3 / 3.0, 12)
+    (9.0, 9.0)
+    """
     half = 0.5 * np.diff(ends)[:, None]
     middle = 0.5 * (ends[1:] + ends[:-1])[:, None]
     return (middle + half * _NODES).ravel(), (half * _WEIGHTS).ravel()

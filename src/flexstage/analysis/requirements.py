@@ -1,4 +1,4 @@
-"""The `[require]` lines of a design file: what may be required, how a line is read, and the verdict on a value."""
+"""Measures, the numbers by which a stage is judged; the `[require]` lines of a design file about them, and the verdict on a value."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from enum import Enum
 
 import numpy as np
 
-from flexstage.base.finding import DesignError, Finding, nearest
+from flexstage.base.finding import DesignError, Finding, nearest, refuse
 from flexstage.base.number import Array
 from flexstage.base.quantity import (
     ANGLE,
@@ -29,6 +29,7 @@ from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.spatial.frame import COMPONENTS
 
 _LINE = re.compile(r"\s*(?P<sense>at least|at most)\s+(?P<value>.+?)(?:\s+at\s+(?P<point>[^\s].*?))?\s*")
+_MEASURE = re.compile(r"\s*(?P<key>[^\s]+)(?:\s+at\s+(?P<point>[^\s].*?))?\s*")
 _COUNT = re.compile(r"[1-9]\d{0,2}")
 _SLACK = 1e-9
 
@@ -115,17 +116,23 @@ KINDS: Mapping[Subject, Kind] = {
 
 
 @dataclass(frozen=True)
-class Requirement:
-    """One line: its `key`, the `subject` with its `name` (an axis, actuator, gauge, number), the limit in SI and the point it holds at."""
+class Measure:
+    """A number that a stage has: its `key`, the `subject` with its `name` (an axis, actuator, gauge, number), the point it is taken at."""
 
     key: str
-    text: str
     subject: Subject
     name: str
-    sense: Sense
-    limit: float
     quantity: Quantity
     point: str = PLATFORM
+
+
+@dataclass(frozen=True, kw_only=True)
+class Requirement(Measure):
+    """One line: a measure, on which side of the limit [SI] it is to be, and the line's own words."""
+
+    text: str
+    sense: Sense
+    limit: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -182,7 +189,7 @@ def requirements(mechanism: Mechanism) -> tuple[Requirement, ...]:
     findings: list[Finding] = []
     for key, text in mechanism.requirements.items():
         try:
-            found.append(_read(key, text, names, points))
+            found.append(_read(f"require.{key}", (key, text), names, points))
         except DesignError as error:
             findings += error.findings
     if findings:
@@ -210,26 +217,58 @@ def _spelt(form: str, names: Mapping[str, tuple[str, ...]]) -> Iterator[str]:
         yield form.replace(match[0], name)
 
 
-def _read(key: str, text: str, names: Mapping[str, tuple[str, ...]], points: tuple[str, ...]) -> Requirement:
-    where = f"require.{key}"
-    subject, name = _subject(key, names)
+def requirement(mechanism: Mechanism, key: str, text: str, where: str) -> Requirement:
+    """Read one line: `key` is a measure, `text` its limit as in `[require]`. Raises `DesignError` at `where`.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> requirement(double_triangle(), "mass", "at most 12 kg", "limits.mass").limit
+    12.0
+    """
+    assembly = expand(mechanism)
+    return _read(where, (key, text), _names(assembly), (PLATFORM, *assembly.points))
+
+
+def _read(where: str, line: tuple[str, str], names: Mapping[str, tuple[str, ...]], points: tuple[str, ...]) -> Requirement:
+    key, text = line
+    subject, name = _subject(key, names, where)
     match = _LINE.fullmatch(text)
     if match is None:
-        raise DesignError(
-            [Finding(where, f'found "{text}"', 'Write "at least" or "at most" and a value, for example "at least 50 um at chuck"')]
-        )
-    kind = KINDS[subject]
-    point = match["point"] or PLATFORM
-    if match["point"] and not kind.pointed:
-        raise DesignError([Finding(where, f"is not asked at a point, found at {point}", f'Leave out "at {point}"')])
-    if point not in points:
-        raise DesignError([Finding(where, f"found at {point}, and no point has this name", nearest(point, points))])
-    quantity = kind.about if kind.about is not None and name.startswith("r") else kind.quantity
+        raise refuse(where, f'found "{text}"', 'Write "at least" or "at most" and a value, for example "at least 50 um at chuck"')
+    point, quantity = _placed(where, (subject, name), match["point"], points)
     limit = parse(match["value"], quantity, where=where)
-    return Requirement(key, text, subject, name, Sense(match["sense"]), limit, quantity, point)
+    return Requirement(key, subject, name, quantity, point, text=text, sense=Sense(match["sense"]), limit=limit)
 
 
-def _subject(key: str, names: Mapping[str, tuple[str, ...]]) -> tuple[Subject, str]:
+def measure(mechanism: Mechanism, text: str, where: str) -> Measure:
+    """Read the name of a measure: a key as in `[require]`, for some `at` a named point. Raises `DesignError` at `where`.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> read = measure(double_triangle(), "stroke.x at platform", "responses.reach")
+    >>> read.subject, read.name, read.quantity.shown
+    (<Subject.STROKE: 'stroke.<axis>'>, 'x', 'um')
+    """
+    assembly = expand(mechanism)
+    match = _MEASURE.fullmatch(text)
+    if match is None:
+        raise refuse(where, f'found "{text}"', 'Write the name of a measure, for example "stroke.x at chuck"')
+    subject, name = _subject(match["key"], _names(assembly), where)
+    point, quantity = _placed(where, (subject, name), match["point"], (PLATFORM, *assembly.points))
+    return Measure(match["key"], subject, name, quantity, point)
+
+
+def _placed(where: str, asked: tuple[Subject, str], point: str | None, points: tuple[str, ...]) -> tuple[str, Quantity]:
+    """The point a measure is taken at, and its quantity: that about an axis for rotations."""
+    subject, name = asked
+    kind = KINDS[subject]
+    if point and not kind.pointed:
+        raise refuse(where, f"is not asked at a point, found at {point}", f'Leave out "at {point}"')
+    point = point or PLATFORM
+    if point not in points:
+        raise refuse(where, f"found at {point}, and no point has this name", nearest(point, points))
+    return point, kind.about if kind.about is not None and name.startswith("r") else kind.quantity
+
+
+def _subject(key: str, names: Mapping[str, tuple[str, ...]], where: str) -> tuple[Subject, str]:
     """The subject of a key and the name in it."""
     for subject in Subject:
         stem, _, placeholder = subject.value.rstrip(">").partition("<")
@@ -239,4 +278,4 @@ def _subject(key: str, names: Mapping[str, tuple[str, ...]]) -> tuple[Subject, s
         if placeholder and key.startswith(stem) and (name in names[placeholder] or (placeholder == "n" and _COUNT.fullmatch(name))):
             return subject, name
     known = [spelt for subject in Subject for spelt in _spelt(subject.value, names)]
-    raise DesignError([Finding(f"require.{key}", "nothing of this name can be required", nearest(key, known))])
+    raise refuse(where, f'there is no measure called "{key}"', nearest(key, known))

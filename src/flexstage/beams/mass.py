@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from typing import TypeAlias
+
 import numpy as np
 
 from flexstage.base.number import Array
 from flexstage.beams.beam import Beam
-from flexstage.beams.compliance import beam_of
+from flexstage.beams.compliance import Law, beam_of, law
 from flexstage.beams.given import given_mass
 from flexstage.parts.given import Given, Joint
+from flexstage.parts.leaf import Leaf
 from flexstage.parts.material import Material
 from flexstage.parts.part import Part, Restricted
-from flexstage.spatial.frame import transport
 
 
 def mass(part: Part, material: Material | None) -> Array:
@@ -35,8 +38,26 @@ def mass(part: Part, material: Material | None) -> Array:
     return consistent_mass(beam_of(part, material))
 
 
+def law_and_mass(part: Part, material: Material | None) -> tuple[Law, Array]:
+    """Law and mass of a part, its beam integrated once for both; as `law` and `mass` give them.
+
+    >>> steel = Material(young=200e9, poisson=0.3, density=8000.0)
+    >>> from flexstage.parts.rod import Rod
+    >>> rod = Rod("steel", length=0.1, diameter=0.002)
+    >>> bool(np.all(law_and_mass(rod, steel)[0].stiffness == law(rod, steel).stiffness))
+    True
+    """
+    if isinstance(part, (Joint, Restricted, Given, Leaf)):
+        return law(part, material), mass(part, material)
+    beam = beam_of(part, material)
+    return Law((1.0 / beam.diagonal())[..., None] * np.eye(6)), consistent_mass(beam)
+
+
 def consistent_mass(beam: Beam) -> Array:
     """Consistent mass (..., 12, 12) of a beam, as `mass` says.
+
+    A straight symmetric section moves along, about its axis, and in two planes, and none of the four feels another: only their entries
+    are integrated.
 
     >>> from flexstage.beams.piezo import piezo_beam
     >>> from flexstage.parts.piezo import Piezo
@@ -44,40 +65,60 @@ def consistent_mass(beam: Beam) -> Array:
     >>> consistent_mass(bar)[[0, 0, 6], [0, 6, 6]].round(9).tolist()
     [2.0, 1.0, 2.0]
     """
-    shares = _shares(beam)
-    position = np.concatenate([-beam.points.position, beam.points.position], axis=-1)
-    carry = transport(np.stack([position, np.zeros_like(position), np.zeros_like(position)], axis=-1))
-    second = carry @ shares
-    shapes = np.concatenate([carry - second, second], axis=-1)
-    weight = beam.points.rule.weights * beam.points.rate
-    density = weight[..., None] * beam.inertia
-    density = np.concatenate([density, density], axis=-2)
-    rows = (*np.broadcast_shapes(shapes.shape[:-3], density.shape[:-2]), -1)
-    flat = np.broadcast_to(shapes, (*rows[:-1], *shapes.shape[-3:])).reshape(*rows, 12)
-    weighted = np.broadcast_to(density, (*rows[:-1], *density.shape[-2:])).reshape(*rows, 1) * flat
-    return np.swapaxes(flat, -1, -2) @ weighted
+    weight = (beam.points.rule.weights * beam.points.rate)[..., None, :] * np.swapaxes(beam.inertia, -1, -2)
+    weight = np.concatenate([weight, weight], axis=-1)
+    blocks = [(columns, _total([_product(rows[row], weight[..., row, :]) for row in rows])) for columns, rows in _motions(beam)]
+    batch = np.broadcast_shapes(*(block.shape[:-2] for _, block in blocks))
+    result = np.zeros((*batch, 12, 12), dtype=np.result_type(*(block for _, block in blocks)))
+    for columns, block in blocks:
+        both = np.concatenate([columns, columns + 6])
+        result[..., both[:, None], both] = block
+    return result
 
 
-def _shares(beam: Beam) -> Array:
-    """Gamma (..., 2m, 6, 6): the part of a relative twist that has accumulated at the stations -x and +x."""
+_Rows: TypeAlias = dict[int, list[tuple[Array, Array]]]
+"""For the freedoms of a section, as (along x, y, z; about x, y, z): the pairs of entries of its twist per motion of both ends, and per
+relative motion, one pair for each column."""
+
+
+def _total(items: list[Array]) -> Array:
+    return items[0] if len(items) == 1 else items[0] + items[1]
+
+
+def _product(entries: list[tuple[Array, Array]], weight: Array) -> Array:
+    """Integral of N^T w N over the stations for one row of N = [X - second, second]."""
+    rows = [carry - second for carry, second in entries] + [second for _, second in entries]
+    shape = np.stack(np.broadcast_arrays(*rows), axis=-2)
+    return (weight[..., None, :] * shape) @ np.swapaxes(shape, -1, -2)
+
+
+def _motions(beam: Beam) -> Iterator[tuple[Array, _Rows]]:
+    """Columns of the motions that do not feel one another, and their rows of X and of X Gamma at the stations -x and +x."""
     points, flexibility = beam.points, beam.flexibility
     position = points.position
-    even = [flexibility[..., index] for index in range(6)]
-    even[1] = even[1] + position * position * flexibility[..., 5]
-    even[2] = even[2] + position * position * flexibility[..., 4]
-    halves = [points.running(values) for values in even]
-    totals = [2.0 * half[..., -1:] for half in halves]
-    coupling_y = _odd_from_end(beam, position * flexibility[..., 5])
-    coupling_z = -_odd_from_end(beam, position * flexibility[..., 4])
-    size = np.broadcast_shapes(*(item.shape for item in (*halves, coupling_y, coupling_z)))
-    result = np.zeros((*size[:-1], 2 * size[-1], 6, 6), dtype=np.result_type(position, flexibility))
-    for index, (half, total) in enumerate(zip(halves, totals, strict=True)):
-        result[..., index, index] = np.concatenate(np.broadcast_arrays(0.5 - half / total, 0.5 + half / total), axis=-1)
-    for row, column, values in ((1, 5, coupling_y), (2, 4, coupling_z)):
-        both = np.concatenate([values, values], axis=-1)
-        result[..., row, column] = both / totals[column]
-        result[..., column, row] = both / totals[row]
-    return result
+    both = np.concatenate([-position, position], axis=-1)
+    one, none = np.ones_like(both), np.zeros_like(both)
+    for axis in (0, 3):
+        share = _share(points.running(flexibility[..., axis]))[0]
+        yield np.array([axis]), {axis: [(one, share)]}
+    for across, turning, sign in ((1, 5, 1.0), (2, 4, -1.0)):
+        bending = flexibility[..., turning]
+        moved, moving = _share(points.running(flexibility[..., across] + position * position * bending))
+        turned, turns = _share(points.running(bending))
+        odd = sign * _odd_from_end(beam, position * bending)
+        odd = np.concatenate([odd, odd], axis=-1)
+        arm = sign * both
+        rows = {
+            across: [(one, moved + arm * odd / moving), (arm, odd / turns + arm * turned)],
+            turning: [(none, odd / moving), (one, turned)],
+        }
+        yield np.array([across, turning]), rows
+
+
+def _share(half: Array) -> tuple[Array, Array]:
+    """The part of an even flexibility that has accumulated at the stations -x and +x, and the whole (..., 1)."""
+    total = 2.0 * half[..., -1:]
+    return np.concatenate([0.5 - half / total, 0.5 + half / total], axis=-1), total
 
 
 def _odd_from_end(beam: Beam, values: Array) -> Array:

@@ -39,11 +39,11 @@ class Stations:
 
     def whole(self, values: Array) -> Array:
         """Integral over the whole hinge of an even function given at the stations (..., m) -> (...)."""
-        return 2.0 * ((values * self.rate) @ self.rule.weights)
+        return 2.0 * np.sum(values * self.rate * self.rule.weights, axis=-1)
 
     def running(self, values: Array) -> Array:
         """Integrals from the centre to each station (..., m) -> (..., m)."""
-        return (values * self.rate) @ self.rule.running.T
+        return (self.rule.running @ (values * self.rate)[..., None])[..., 0]  # each design by itself: no bit depends on the batch
 
 
 def stations(profile: Profile, thinnest: Number) -> Stations:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from flexstage.base.number import Array, Number
+from flexstage.base.number import Array, Number, magnitude
 from flexstage.beams.beam import Beam
 from flexstage.beams.compliance import beam_of
 from flexstage.parts.leaf import Leaf
@@ -52,14 +52,14 @@ def stress(part: Part, material: Material | None, wrench: Array) -> Stress | Non
     if not isinstance(inner, (Notch, Neck, Leaf, Rod)):
         return None
     beam = beam_of(inner, material)
-    position = _real(np.stack([-beam.points.position, beam.points.position], axis=-2))
-    load = np.moveaxis(_real(wrench), -1, 0)[..., None, None]
+    position = np.stack([-beam.points.position, beam.points.position], axis=-2)
+    load = np.moveaxis(np.asarray(wrench), -1, 0)[..., None, None]
     equivalent = np.sqrt(_normal(beam, position, load) ** 2 + 3.0 * _tangential(beam, load) ** 2)
     equivalent, position = (item.reshape(*item.shape[:-2], -1) for item in np.broadcast_arrays(equivalent, position))
     where = np.argmax(equivalent, axis=-1)[..., None]
     nominal = np.take_along_axis(equivalent, where, axis=-1)[..., 0]
     factor = concentration(inner.profile, inner.thickness) if isinstance(inner, (Notch, Neck)) else 1.0
-    return Stress(nominal, np.take_along_axis(position, where, axis=-1)[..., 0], _real(factor))
+    return Stress(nominal, np.take_along_axis(position, where, axis=-1)[..., 0], np.asarray(factor))
 
 
 def concentration(profile: Profile, thickness: Number) -> Number:
@@ -84,28 +84,28 @@ def _normal(beam: Beam, position: Array, load: Array) -> Array:
     """Largest normal stress (..., 2, m) at the stations -x and +x."""
     section = beam.section
     thickness, width = _row(section.thickness), _row(section.width)
-    about_z = np.abs(load[5] - position * load[1]) / _row(section.inertia_z)
-    about_y = np.abs(load[4] + position * load[2]) / _row(section.inertia_y)
-    axial = np.abs(load[0]) / _row(section.area)
+    about_z = magnitude(load[5] - position * load[1]) / _row(section.inertia_z)
+    about_y = magnitude(load[4] + position * load[2]) / _row(section.inertia_y)
+    axial = magnitude(load[0]) / _row(section.area)
     if section.warping is None:
-        return axial + 0.5 * thickness * np.hypot(about_y, about_z)
-    warping = np.abs(_row(beam.twisting.bimoment) * load[3]) / _row(section.warping)
+        return axial + 0.5 * thickness * np.sqrt(about_y * about_y + about_z * about_z)
+    warping = magnitude(_row(beam.twisting.bimoment) * load[3]) / _row(section.warping)
     return axial + 0.5 * thickness * about_z + 0.5 * width * about_y + 0.25 * thickness * width * warping
 
 
 def _tangential(beam: Beam, load: Array) -> Array:
     """Largest shear stress (..., 1, m): shear forces (3/2 or 4/3 of the mean), uniform torsion and the torque carried by strips."""
     section = beam.section
-    force = np.hypot(load[1], load[2]) / _row(section.area)
+    force = np.sqrt(load[1] * load[1] + load[2] * load[2]) / _row(section.area)
     if section.warping is None:
-        return 4.0 / 3.0 * force + np.abs(load[3]) * 0.5 * _row(section.thickness) / _row(section.torsion)
+        return 4.0 / 3.0 * force + magnitude(load[3]) * 0.5 * _row(section.thickness) / _row(section.torsion)
     torsion = _row(section.torsion)
     uniform = _row(beam.twisting.rate) * torsion * _shear_modulus(beam)
     short, long = np.minimum(_row(section.thickness), _row(section.width)), np.maximum(_row(section.thickness), _row(section.width))
     ratio = 0.5 * np.pi * (long / short)[..., None] * _ODD
     crest = 1.0 - 8.0 / np.pi**2 * np.sum(2.0 * np.exp(-ratio) / (1.0 + np.exp(-2.0 * ratio)) / _ODD**2, axis=-1)
-    strips = 9.0 * np.abs(1.0 - uniform) / (long * long * short)
-    return 1.5 * force + np.abs(load[3]) * (np.abs(uniform) * crest * short / torsion + strips)
+    strips = 9.0 * magnitude(1.0 - uniform) / (long * long * short)
+    return 1.5 * force + magnitude(load[3]) * (magnitude(uniform) * crest * short / torsion + strips)
 
 
 def _shear_modulus(beam: Beam) -> Array:
@@ -114,8 +114,4 @@ def _shear_modulus(beam: Beam) -> Array:
 
 
 def _row(number: Number) -> Array:
-    return np.atleast_1d(_real(number))[..., None, :]
-
-
-def _real(number: Number) -> Array:
-    return np.real(np.asarray(number))
+    return np.atleast_1d(np.asarray(number))[..., None, :]

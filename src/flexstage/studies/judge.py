@@ -10,7 +10,7 @@ import numpy as np
 from flexstage.analysis.drift import Drift, drift
 from flexstage.analysis.lost_motion import LostMotion, lost_motion
 from flexstage.analysis.modes import Modes, modes
-from flexstage.analysis.requirements import Requirement, Subject, Verdict, requirements
+from flexstage.analysis.requirements import Measure, Requirement, Subject, Verdict, requirements
 from flexstage.analysis.statics import statics
 from flexstage.analysis.workspace.blocking import platform_lines
 from flexstage.analysis.workspace.buckling import buckling
@@ -21,7 +21,7 @@ from flexstage.analysis.workspace.room import Room, room
 from flexstage.analysis.workspace.strength import HingeStress, hinge_stress
 from flexstage.analysis.workspace.stroke import StrokeLimits, mapping_at, single_axis, stroke_limits, utilisation
 from flexstage.base.finding import DesignError, refuse
-from flexstage.base.number import Array
+from flexstage.base.number import Array, magnitude
 from flexstage.mechanism.expand import Assembly, expand
 from flexstage.mechanism.expansion import ground_material
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
@@ -43,15 +43,39 @@ def judge(mechanism: Mechanism) -> tuple[Verdict, ...]:
     [True, True, True, True, True, True, True, True]
     """
     lines = requirements(mechanism)
-    bench = _Bench(mechanism, {line.name: line.limit for line in lines if line.subject is Subject.STROKE})
+    bench = _Bench(mechanism, _box(lines))
     return tuple(_judged(bench, line) for line in lines)
 
 
-def _judged(bench: _Bench, line: Requirement) -> Verdict:
+def measured(mechanism: Mechanism, measures: tuple[Measure, ...]) -> tuple[Array | str, ...]:
+    """Values (...) in SI of measures by the lumped reading, for one design or a batch; where a stage has none, the reason in words.
+
+    What asks for all required strokes at once (corner, gauge.range) takes those of the description's `[require]` lines.
+
+    >>> from flexstage.analysis.requirements import measure
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> stage = double_triangle()
+    >>> round(float(measured(stage, (measure(stage, "frequency.platform.1", "here"),))[0]), 1)
+    106.0
+    """
+    bench = _Bench(mechanism, _box(requirements(mechanism)))
+    return tuple(_measured(bench, each) for each in measures)
+
+
+def _box(lines: tuple[Requirement, ...]) -> dict[str, float]:
+    return {line.name: line.limit for line in lines if line.subject is Subject.STROKE}
+
+
+def _measured(bench: _Bench, asked: Measure) -> Array | str:
     try:
-        return Verdict(line, np.asarray(_MEASURES[line.subject](bench, line)))
+        return np.asarray(_MEASURES[asked.subject](bench, asked))
     except DesignError as error:
-        return Verdict(line, None, str(error))
+        return str(error)
+
+
+def _judged(bench: _Bench, line: Requirement) -> Verdict:
+    value = _measured(bench, line)
+    return Verdict(line, None, value) if isinstance(value, str) else Verdict(line, value)
 
 
 class _Bench:
@@ -120,33 +144,33 @@ class _Bench:
         return self.command
 
 
-def _stroke(bench: _Bench, line: Requirement) -> Array:
+def _stroke(bench: _Bench, line: Measure) -> Array:
     mapping = mapping_at(bench.mechanism, bench.kinematics, line.point, mapping=bench.lost.correction)
     if line.name not in mapping.columns:
         raise refuse(f"stroke.{line.name}", "is no ideal motion of this stage", f"Its ideal motions are {', '.join(mapping.columns)}")
     return single_axis(mapping, bench.limits).symmetric[..., mapping.columns.index(line.name)]
 
 
-def _corner(bench: _Bench, _: Requirement) -> Array:
+def _corner(bench: _Bench, _: Measure) -> Array:
     return np.max(utilisation(bench.lost.correction, bench.limits, bench.box()).ratio, axis=-1)
 
 
-def _frequency(bench: _Bench, line: Requirement) -> Array:
+def _frequency(bench: _Bench, line: Measure) -> Array:
     return _numbered(bench.modes.frequencies, line)
 
 
-def _platform_frequency(bench: _Bench, line: Requirement) -> Array:
+def _platform_frequency(bench: _Bench, line: Measure) -> Array:
     return _numbered(bench.modes.platform_frequencies, line)
 
 
-def _numbered(frequencies: Array, line: Requirement) -> Array:
+def _numbered(frequencies: Array, line: Measure) -> Array:
     count = frequencies.shape[-1]
     if int(line.name) > count:
         raise refuse(f"require.{line.key}", f"there are {count} such modes", "Ask for a lower number")
     return frequencies[..., int(line.name) - 1]
 
 
-def _safety(bench: _Bench, _: Requirement) -> Array:
+def _safety(bench: _Bench, _: Measure) -> Array:
     if bench.stress.unknown:
         links = ", ".join(bench.stress.unknown[:3])
         raise refuse(
@@ -155,71 +179,71 @@ def _safety(bench: _Bench, _: Requirement) -> Array:
     return bench.stress.least
 
 
-def _buckling(bench: _Bench, _: Requirement) -> Array:
+def _buckling(bench: _Bench, _: Measure) -> Array:
     return buckling(bench.mechanism, bench.model, bench.limits.from_zero).least
 
 
-def _stiffness(bench: _Bench, line: Requirement) -> Array:
+def _stiffness(bench: _Bench, line: Measure) -> Array:
     index = COMPONENTS.index(line.name)
     return 1.0 / statics(bench.model, load_point=line.point, read_point=line.point).compliance.values[..., index, index]
 
 
-def _force(bench: _Bench, line: Requirement) -> Array:
+def _force(bench: _Bench, line: Measure) -> Array:
     lines = platform_lines(bench.kinematics.mapping, bench.model, bench.limits)
     if line.name not in lines.coordinates:
         raise refuse(f"force.{line.name}", "is no ideal motion of this stage", f"Its ideal motions are {', '.join(lines.coordinates)}")
     return lines.blocking[..., lines.coordinates.index(line.name)]
 
 
-def _loss(bench: _Bench, line: Requirement) -> Array:
-    own = np.abs(np.diagonal(bench.lost.loss.values, axis1=-2, axis2=-1))
+def _loss(bench: _Bench, line: Measure) -> Array:
+    own = magnitude(np.diagonal(bench.lost.loss.values, axis1=-2, axis2=-1))
     return own[..., bench.lost.loss.rows.index(line.name)] if line.name else np.max(own, axis=-1)
 
 
-def _crosstalk(bench: _Bench, _: Requirement) -> Array:
+def _crosstalk(bench: _Bench, _: Measure) -> Array:
     values = bench.lost.loss.values
-    return np.max(np.abs(values * (1.0 - np.eye(values.shape[-1]))), axis=(-2, -1))
+    return np.max(magnitude(values * (1.0 - np.eye(values.shape[-1]))), axis=(-2, -1))
 
 
-def _map_error(bench: _Bench, line: Requirement) -> Array:
+def _map_error(bench: _Bench, line: Measure) -> Array:
     return bench.map_error[..., COMPONENTS.index(line.name)]
 
 
-def _drift(bench: _Bench, line: Requirement) -> Array:
-    return np.abs(bench.drift.motion.at(f"{line.point}.{line.name}", "uniform"))
+def _drift(bench: _Bench, line: Measure) -> Array:
+    return magnitude(bench.drift.motion.at(f"{line.point}.{line.name}", "uniform"))
 
 
-def _mass(bench: _Bench, _: Requirement) -> Array:
+def _mass(bench: _Bench, _: Measure) -> Array:
     own = bench.assembly.bodies[PLATFORM].mass
     if own is None:
         raise refuse("platform", "has neither solids nor a stated mass", "Give it a solid of a material with a density, or its mass")
     return own.mass
 
 
-def _size(bench: _Bench, line: Requirement) -> Array:
+def _size(bench: _Bench, line: Measure) -> Array:
     return bench.room.size[..., COMPONENTS.index(line.name or "z")]
 
 
-def _opening(bench: _Bench, _: Requirement) -> Array:
+def _opening(bench: _Bench, _: Measure) -> Array:
     if bench.mechanism.opening is None:
         raise refuse("opening", "the description has no clear opening", 'Add for example opening = { size = ["110 mm", "110 mm"] }')
     depths = [item.depth for item in bench.room.intrusions]
     return np.max(np.stack(np.broadcast_arrays(*depths)), axis=0) if depths else np.asarray(0.0)
 
 
-def _resolution(bench: _Bench, line: Requirement) -> Array:
+def _resolution(bench: _Bench, line: Measure) -> Array:
     seen = pose_resolution(bench.mechanism, bench.kinematics)
     inverse = transport(bench.arm(line.point)) @ seen.inverse.values
-    return (np.abs(inverse) @ seen.gauge_steps[..., None])[..., COMPONENTS.index(line.name), 0]
+    return (magnitude(inverse) @ seen.gauge_steps[..., None])[..., COMPONENTS.index(line.name), 0]
 
 
-def _gauge_range(bench: _Bench, line: Requirement) -> Array:
+def _gauge_range(bench: _Bench, line: Measure) -> Array:
     held = gauge_range(bench.mechanism, bench.kinematics, bench.box())
     ratio = held.swing / held.limit
     return ratio[..., held.gauges.index(line.name)] if line.name else np.max(ratio, axis=-1)
 
 
-def _load(bench: _Bench, line: Requirement) -> Array:
+def _load(bench: _Bench, line: Measure) -> Array:
     share = load_share(bench.mechanism, bench.model)
     compression = share.range(bench.limits.from_zero)[1]
     if line.name:
@@ -230,7 +254,7 @@ def _load(bench: _Bench, line: Requirement) -> Array:
     return np.max(usage, axis=-1)
 
 
-_MEASURES: Mapping[Subject, Callable[[_Bench, Requirement], Array]] = {
+_MEASURES: Mapping[Subject, Callable[[_Bench, Measure], Array]] = {
     Subject.STROKE: _stroke,
     Subject.CORNER: _corner,
     Subject.FREQUENCY: _frequency,

@@ -8,7 +8,7 @@ import numpy as np
 
 from flexstage.analysis.workspace.stroke import StrokeLimits, stacks
 from flexstage.base.labelled import Matrix, ratio_units
-from flexstage.base.number import Array, Number, stack
+from flexstage.base.number import Array, Number, magnitude, stack
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.readings.linear.model import LinearModel
@@ -115,8 +115,9 @@ def platform_lines(mapping: Matrix, model: LinearModel, limits: StrokeLimits) ->
     gain = static_gain(model, twist, mapping.rows).values @ mapping.values
     compliance = static_gain(model, twist, wrench).values
     available = np.minimum(-limits.low, limits.high)
-    with np.errstate(divide="ignore"):
-        reach = np.min(available[..., :, None] / np.abs(mapping.values), axis=-2)
+    share = magnitude(mapping.values)
+    none = share == 0.0
+    reach = np.min(np.where(none, np.inf, available[..., :, None] / np.where(none, 1.0, share)), axis=-2)
     travel = reach * np.diagonal(gain, axis1=-2, axis2=-1)
     stiffness = 1.0 / np.diagonal(compliance, axis1=-2, axis2=-1)
     return PlatformLine(mapping.columns, travel, stiffness, travel * stiffness, model.provenance)

@@ -9,7 +9,7 @@ import numpy as np
 
 from flexstage.base.finding import refuse
 from flexstage.base.labelled import Matrix
-from flexstage.base.number import Array, Number, stack
+from flexstage.base.number import Array, Number, magnitude, stack
 from flexstage.mechanism.expand import Assembly, expand
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
 from flexstage.readings.linear.kinematics import Kinematics
@@ -95,9 +95,20 @@ def gauge_inverse(kinematics: Kinematics) -> Matrix:
             f"{len(kinematics.gauges)} gauges see {rank} of the platform's {kinematics.mobility} ideal motions",
             "Add gauges, or turn them so that every motion changes a reading",
         )
-    back = np.linalg.pinv(np.real(seen) * scale)
-    values = kinematics.motion @ (scale[:, None] * back)
+    values = kinematics.motion @ (scale[:, None] * _pseudo_inverse(seen * scale))
     return Matrix(values, COMPONENTS, kinematics.gauges, tuple((f"{unit}/m",) * len(kinematics.gauges) for unit in TWIST_UNITS))
+
+
+def _pseudo_inverse(matrix: Array) -> Array:
+    """A^+ of full column rank, that derivatives by complex step pass through: dA^+ = A^+ A^+^T dA^T (I - A A^+) - A^+ dA A^+."""
+    real = np.real(matrix)
+    back = np.linalg.pinv(real)
+    if not np.iscomplexobj(matrix):
+        return back
+    step = np.imag(matrix)
+    beside = np.eye(real.shape[-2]) - real @ back
+    change = back @ np.swapaxes(back, -1, -2) @ np.swapaxes(step, -1, -2) @ beside - back @ step @ back
+    return back + 1j * change
 
 
 def pose_resolution(mechanism: Mechanism, kinematics: Kinematics) -> PoseResolution:
@@ -123,7 +134,7 @@ def pose_resolution(mechanism: Mechanism, kinematics: Kinematics) -> PoseResolut
         inverse=inverse,
         gauge_steps=steps,
         gauge_noise=noises,
-        worst=(np.abs(inverse.values) @ steps[..., None])[..., 0],
+        worst=(magnitude(inverse.values) @ steps[..., None])[..., 0],
         rms=np.sqrt((squares @ (steps**2)[..., None])[..., 0]),
         noise=np.sqrt((squares @ (noises**2)[..., None])[..., 0]),
         provenance=kinematics.provenance,
@@ -146,8 +157,8 @@ def gauge_range(mechanism: Mechanism, kinematics: Kinematics, command: Mapping[s
     for name in command:
         if name not in names:
             raise refuse(f"command {name}", "is not one of the stage's ideal motions", f"These are {', '.join(names)}")
-    half = np.abs(stack([command.get(name, 0.0) for name in names]))
-    swing = (np.abs(kinematics.sensing @ kinematics.motion) @ half[..., None])[..., 0]
+    half = magnitude(stack([command.get(name, 0.0) for name in names]))
+    swing = (magnitude(kinematics.sensing @ kinematics.motion) @ half[..., None])[..., 0]
     assembly = expand(mechanism)
     limit = stack([0.5 * placed.gauge.range for placed in assembly.gauges.values()])
     box = kinematics.motion * half[..., None, :]

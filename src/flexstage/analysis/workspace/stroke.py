@@ -9,7 +9,7 @@ import numpy as np
 
 from flexstage.base.finding import Finding, nearest, refuse, require
 from flexstage.base.labelled import Matrix
-from flexstage.base.number import Array, Number, stack
+from flexstage.base.number import Array, Number, magnitude, stack
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.incidence import layout, twist_at
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
@@ -223,7 +223,7 @@ def utilisation(mapping: Matrix, limits: StrokeLimits, command: Mapping[str, Num
         if name not in mapping.columns
     )
     half = stack([command.get(name, 0.0) for name in mapping.columns])
-    demand = (np.abs(mapping.values) @ np.abs(half)[..., None])[..., 0]
+    demand = (magnitude(mapping.values) @ magnitude(half)[..., None])[..., 0]
     available = np.minimum(-limits.low, limits.high)
     return Utilisation(mapping.rows, dict(command), demand, available, provenance)
 
