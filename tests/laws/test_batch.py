@@ -1,0 +1,372 @@
+"""The batched engine against the readings one design at a time: on random graphs, with repeated modes, massless bodies and bad designs."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import flexstage as fs
+from flexstage.base.finding import DesignError
+from flexstage.base.scale import X, Y, Z
+from flexstage.cases.double_triangle import double_triangle
+from flexstage.cases.registry import CASES
+from flexstage.mechanism.address import addresses, get, set_value
+from flexstage.mechanism.expand import expand
+from flexstage.mechanism.mechanism import GROUND, PLATFORM, Link, Mechanism
+from flexstage.parts.body import Body, Inertia
+from flexstage.parts.given import Given
+from flexstage.readings.batch.blocks import blocks, dense
+from flexstage.readings.batch.choice import Choice
+from flexstage.readings.batch.engine import Method, Plan, Status, iterated, plan, platform_modes
+from flexstage.readings.batch.kernel import kernel
+from flexstage.readings.batch.numbers import numbers_of, slopes_of
+from flexstage.readings.batch.order import elimination
+from flexstage.readings.batch.solution import Stage, by_iteration, wholly
+from flexstage.readings.lumped import lumped
+from tests.conftest import examples
+from tests.laws.strategies import actuated_platforms, mechanisms, rosettes
+
+METHODS = tuple(Method)
+VARIED = ("thickness", "young", "density", "radius", "diameter", "stiffness", "mass")
+SHARED = ("parts.neck.thickness", "parts.foot_notch.thickness", "parts.pole_neck.profile.radius", "place.B1-B3.pattern.radius")
+SINGLE = ("B2/front.thickness", "materials.steel.density", "units.vertical.links.upper.at.z", "parts.stack_vertical.mass")
+
+
+def varied(mechanism: Mechanism, most: int = 8) -> tuple[str, ...]:
+    """Some numbers that shape K or M."""
+    found = [name for name in addresses(mechanism) if name.rpartition(".")[2] in VARIED and isinstance(get(mechanism, name), float)]
+    return tuple(found[:: max(1, len(found) // most)])
+
+
+def designs(family_plan: Plan, count: int, spread: float, seed: int = 0) -> np.ndarray:
+    """Numbers around the plan's own design, which is the first."""
+    shift = np.random.default_rng(seed).uniform(-spread, spread, size=(count, len(family_plan.family.addresses)))
+    shift[0] = 0.0
+    return family_plan.family.nominal * (1.0 + shift)
+
+
+def one(family_plan: Plan, values: np.ndarray) -> Mechanism:
+    result = replace(family_plan.family.mechanism, requirements={})
+    for address, value in zip(family_plan.family.addresses, values, strict=True):
+        result = set_value(result, address, float(value))
+    return result
+
+
+def stage_of(family_plan: Plan, values: np.ndarray) -> Stage:
+    numbers = numbers_of(family_plan.family, values)
+    return Stage(family_plan.scheme, numbers, values.shape[1], slopes_of(family_plan.family, values))
+
+
+def check_matrices(mechanism: Mechanism) -> None:
+    family_plan = plan(mechanism, varied(mechanism))
+    if family_plan.family.topology.locked:
+        return
+    values = designs(family_plan, 2, 0.05)
+    found = blocks(family_plan.scheme, numbers_of(family_plan.family, values))
+    model = lumped(one(family_plan, values[1]))
+    for mine, theirs in zip(found, (model.stiffness_matrix, model.inertia_matrix), strict=True):
+        assert np.max(np.abs(dense(family_plan.scheme, mine)[1] - theirs)) <= 1e-12 * np.max(np.abs(theirs))
+
+
+@given(mechanisms())
+@examples(15, 600)
+def test_blocks_are_the_matrices_of_the_lumped_reading(mechanism: Mechanism) -> None:
+    check_matrices(mechanism)
+
+
+@given(st.one_of(mechanisms(), rosettes(), actuated_platforms()))
+@examples(6, 400)
+def test_frequencies_are_those_of_each_design_alone(mechanism: Mechanism) -> None:
+    family_plan = plan(mechanism, varied(mechanism))
+    values = designs(family_plan, 3, 0.05)
+    found = platform_modes(family_plan, values)
+    for row, value in zip(found.frequencies, values, strict=True):
+        alone = fs.modes(lumped(one(family_plan, value)))
+        expected = alone.platform_frequencies
+        if len(expected) < 6:
+            assert np.isnan(row).all()
+        else:
+            # Where shares tie, rounding chooses: then the frequencies are those of modes all the same.
+            nearest = np.min(np.abs(row[:, None] / alone.frequencies - 1.0), axis=1)
+            assert np.max(nearest) < 1e-6
+            if alone.margin < 0.999 * np.min(alone.share[list(alone.platform)]):
+                np.testing.assert_allclose(row, expected[:6] if len(expected) == 6 else row, rtol=1e-6)
+
+
+@given(rosettes())
+@examples(8, 200)
+def test_iteration_agrees_with_dense_matrices_in_numpy_and_in_c(mechanism: Mechanism) -> None:
+    """Rosettes have repeated modes; whatever is proved must be right."""
+    family_plan = plan(mechanism, varied(mechanism))
+    if family_plan.start is None or family_plan.family.topology.locked:
+        return
+    stage = stage_of(family_plan, designs(family_plan, 4, 0.1))
+    for method in METHODS:
+        found = iterated(family_plan, stage, method)
+        for design in np.flatnonzero(found.good):
+            exact = wholly(stage.take(np.array([design])), family_plan.choice)[0]
+            np.testing.assert_allclose(found.values[design], exact.values[0], rtol=2e-6)
+
+
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("names", [SHARED, SHARED + SINGLE])
+def test_frequencies_and_gradients_of_the_shipped_stage(names: tuple[str, ...], method: Method) -> None:
+    """Shared numbers keep the symmetry, and so the pairs; single ones split them."""
+    family_plan = plan(double_triangle(), names)
+    values = designs(family_plan, 5, 0.08)
+    found = platform_modes(family_plan, values, slopes=True, method=method)
+    assert (found.status == Status.ITERATED).all()
+    for design in (0, 3):
+        stage = one(family_plan, values[design])
+        exact = fs.sensitivities(stage, names, modes=6)
+        np.testing.assert_allclose(found.frequencies[design], exact.frequencies, rtol=1e-6)
+        scale = values[design][:, None] / exact.frequencies
+        assert np.max(np.abs(found.gradient[design] - exact.frequency) * scale) < 1e-6
+        for group, slopes in zip(exact.clusters, exact.one_sided, strict=True):
+            mine = np.linalg.eigvalsh(found.slopes[design][:, group][..., group])
+            assert np.max(np.abs(mine - slopes) * scale[:, :1]) < 1e-6
+
+
+@pytest.mark.parametrize("slopes", [False, True])
+def test_the_kernel_is_numpy(slopes: bool) -> None:
+    if kernel() is None:
+        pytest.skip("no compiler")
+    family_plan = plan(double_triangle(), SHARED + SINGLE)
+    values = designs(family_plan, 37, 0.05)
+    fast, plain = (platform_modes(family_plan, values, slopes=slopes, method=method) for method in METHODS)
+    np.testing.assert_array_equal(fast.status, plain.status)
+    np.testing.assert_allclose(fast.frequencies, plain.frequencies, rtol=1e-10)
+    np.testing.assert_allclose(fast.share, plain.share, rtol=1e-8)
+    if slopes:
+        largest = np.max(np.abs(plain.gradient), axis=(0, 2))[:, None]
+        assert np.max(np.abs(fast.gradient - plain.gradient)[1:] / largest) < 1e-10  # the first has pairs: means of what turns within them
+        assert np.max(np.abs(fast.gradient - plain.gradient)[0] / largest) < 1e-8
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_results_do_not_depend_on_how_the_batch_is_cut(method: Method) -> None:
+    family_plan = plan(double_triangle(), SHARED + SINGLE)
+    values = designs(family_plan, 19, 0.2)
+    whole = platform_modes(family_plan, values, slopes=True, method=method)
+    for cut in ((0, 1), (1, 12), (12, 19)):
+        piece = platform_modes(family_plan, values[slice(*cut)], slopes=True, method=method)
+        np.testing.assert_array_equal(piece.frequencies, whole.frequencies[slice(*cut)])
+        np.testing.assert_array_equal(piece.slopes, whole.slopes[slice(*cut)])
+    backwards = platform_modes(family_plan, values[::-1], slopes=True, method=method)
+    np.testing.assert_array_equal(backwards.frequencies[::-1], whole.frequencies)
+    np.testing.assert_array_equal(backwards.gradient[::-1], whole.gradient)
+
+
+def test_fitted_features_give_what_each_design_gives() -> None:
+    """Over stated ranges features are polynomials; outside them, and without them, each design is described by itself."""
+    names = SHARED + SINGLE + ("materials.steel.young", "bodies.platform.solids.plate.size.x", "place.B4-B6.pattern.turn")
+    plain = plan(double_triangle(), names)
+    ends = [plain.family.nominal * factor for factor in (0.9, 1.1)]
+    fitted = plan(double_triangle(), names, ranges=(np.minimum(*ends), np.maximum(*ends)))
+    assert fitted.surface is not None
+    assert fitted.surface.error < 1e-10
+    values = designs(plain, 40, 0.1)
+    values[7] = 1.2 * plain.family.nominal
+    for slopes in (False, True):
+        near, exact = (platform_modes(each, values, slopes=slopes) for each in (fitted, plain))
+        np.testing.assert_allclose(near.frequencies, exact.frequencies, rtol=1e-8)
+        scale = np.abs(values)[:, : near.gradient.shape[1], None] / exact.frequencies[:, None, :]
+        assert np.max(np.abs(near.gradient - exact.gradient) * scale, initial=0.0) < 1e-6
+        np.testing.assert_array_equal(near.frequencies[7], exact.frequencies[7])
+        cut = platform_modes(fitted, values[5:23], slopes=slopes)
+        np.testing.assert_array_equal(cut.frequencies, near.frequencies[5:23])
+        np.testing.assert_array_equal(cut.slopes, near.slopes[5:23])
+
+
+def test_what_is_not_smooth_over_a_range_is_not_fitted() -> None:
+    nominal = plan(double_triangle(), ("parts.neck.thickness",)).family.nominal
+    assert plan(double_triangle(), ("parts.neck.thickness",), ranges=(0.02 * nominal, 40.0 * nominal)).surface is None
+
+
+def test_the_batch_is_the_loop() -> None:
+    """The dense path: a stage of few bodies, all designs at once against one at a time."""
+    case = CASES["parallelogram"].build()
+    family_plan = plan(case, varied(case))
+    values = designs(family_plan, 9, 0.1)
+    whole = platform_modes(replace(family_plan, start=None), values, slopes=True)
+    assert (whole.status == Status.WHOLE).all()
+    for number, value in enumerate(values):
+        alone = fs.modes(lumped(one(family_plan, value)))
+        np.testing.assert_allclose(whole.frequencies[number], alone.platform_frequencies, rtol=1e-12)
+
+
+def test_designs_that_fail_stop_no_other() -> None:
+    family_plan = plan(double_triangle(), ("parts.neck.thickness", "parts.stack_vertical.stiffness"))
+    good = family_plan.family.nominal
+    values = np.array([good, good * [np.nan, 1.0], good * [1.0, 0.0], good * [1.0, -1.0], good * [np.inf, 1.0], good * [1e-4, 1.0]])
+    for method in METHODS:
+        found = platform_modes(family_plan, values, slopes=True, method=method)
+        names = [Status(status).name for status in found.status]
+        assert names[:2] == ["ITERATED", "NOT_FINITE"]
+        assert names[3] == "SINGULAR"
+        assert names[4] == "NOT_FINITE"
+        assert np.isnan(found.frequencies[1:5]).all()
+        np.testing.assert_allclose(found.frequencies[0], fs.modes(lumped(double_triangle())).platform_frequencies, rtol=1e-6)
+
+
+def test_a_limit_leaves_modes_out_as_for_one_design() -> None:
+    for limit in (150.0, 300.0, 1000.0):
+        family_plan = plan(double_triangle(), ("parts.neck.thickness",), Choice(limit=limit))
+        found = platform_modes(family_plan, family_plan.family.nominal[None])
+        expected = fs.modes(lumped(double_triangle()), limit=limit).platform_frequencies
+        if len(expected) < 6:
+            assert Status(found.status[0]) is Status.FEW
+        else:
+            np.testing.assert_allclose(found.frequencies[0], expected, rtol=1e-6)
+
+
+def test_local_modes_that_cross_are_not_taken_for_the_platforms() -> None:
+    """Lighter casings lower the stacks' own modes through the platform's: which modes are its own is decided design by design."""
+    family_plan = plan(double_triangle(), ("parts.stack_horizontal.bending_rigidity", "parts.neck.thickness"))
+    values = family_plan.family.nominal * np.array([[1.0, 1.0], [1.0, 0.7], [1.0, 0.8], [1.0, 1.2], [0.5, 0.75], [2.0, 0.72]])
+    for method in METHODS:
+        found = platform_modes(family_plan, values, method=method)
+        for row, value in zip(found.frequencies, values, strict=True):
+            np.testing.assert_allclose(row, fs.modes(lumped(one(family_plan, value))).platform_frequencies, rtol=1e-6)
+
+
+def test_without_a_compiler_the_results_are_the_same(monkeypatch: pytest.MonkeyPatch, tmp_path) -> None:
+    family_plan = plan(double_triangle(), SHARED)
+    values = designs(family_plan, 9, 0.05)
+    before = platform_modes(family_plan, values)
+    monkeypatch.setenv("PATH", str(tmp_path))
+    monkeypatch.setenv("FLEXSTAGE_CACHE", str(tmp_path / "none"))
+    kernel.cache_clear()
+    try:
+        assert kernel() is None
+        after = platform_modes(family_plan, values)
+    finally:
+        kernel.cache_clear()
+    np.testing.assert_allclose(after.frequencies, before.frequencies, rtol=1e-10)
+    np.testing.assert_array_equal(after.status, before.status)
+
+
+@pytest.mark.parametrize("script", ["exit 1", "echo broken > /dev/null", "exec sleep 0"])
+def test_a_compiler_that_builds_nothing_is_none(script: str, monkeypatch: pytest.MonkeyPatch, tmp_path) -> None:
+    compiler = tmp_path / "cc"
+    compiler.write_text(f"#!/bin/sh\n{script}\n")
+    compiler.chmod(0o755)
+    monkeypatch.setenv("CC", str(compiler))
+    monkeypatch.setenv("FLEXSTAGE_CACHE", str(tmp_path / "cache"))
+    kernel.cache_clear()
+    try:
+        assert kernel() is None
+    finally:
+        kernel.cache_clear()
+
+
+def ring(massless: bool) -> Mechanism:
+    """Eight bodies in a ring with two diagonals, the platform among them: no tree."""
+    soft = tuple(tuple(float(row == column) * (2e-8 if row < 3 else 3e-5) for column in range(6)) for row in range(6))
+    names = [PLATFORM, *(f"b{number}" for number in range(1, 8))]
+    heavy = Body(mass=9.0, centre=(0.0, 0.0, 0.0), inertia=Inertia(0.1, 0.2, 0.3), reference=(0.0, 0.0, 0.0))
+    angles = 2.0 * np.pi * np.arange(8) / 8
+    light = Inertia(1e-6, 2e-6, 1e-6)
+    bodies = {PLATFORM: heavy}
+    for name, angle in zip(names[1:], angles[1:], strict=True):
+        centre = (0.1 * float(np.cos(angle)), 0.1 * float(np.sin(angle)), 0.0)
+        bodies[name] = Body(reference=centre) if massless else Body(mass=0.01, centre=centre, inertia=light, reference=centre)
+    pairs = [(names[number], names[(number + 1) % 8]) for number in range(8)] + [("b1", "b5"), ("b2", "b6")]
+    pairs += [(GROUND, "b3"), (GROUND, "b5"), (GROUND, "b7")]
+    directions = (X, Y, Z)
+    links = {
+        f"l{number}": Link(pair, "joint", (0.02 * number - 0.1, 0.05, 0.01 * number), directions[number % 3])
+        for number, pair in enumerate(pairs)
+    }
+    return Mechanism("ring", parts={"joint": Given(soft, free=(), mass=0.0 if massless else 0.001)}, bodies=bodies, links=links)
+
+
+@pytest.mark.parametrize("massless", [False, True])
+def test_rings_and_massless_bodies(massless: bool) -> None:
+    stage = ring(massless)
+    family_plan = plan(stage, ("bodies.platform.mass", "parts.joint.compliance.x.x", "bodies.platform.inertia.xx"))
+    assert len(family_plan.scheme.graph.edges) > len([pair for pair in family_plan.family.topology.links if -1 not in pair]) - 1
+    values = designs(family_plan, 6, 0.1)
+    for method in METHODS:
+        found = platform_modes(family_plan, values, slopes=True, method=method)
+        for number in (0, 5):
+            design = one(family_plan, values[number])
+            alone = fs.modes(lumped(design))
+            np.testing.assert_allclose(found.frequencies[number], alone.platform_frequencies, rtol=1e-6)
+            exact = fs.sensitivities(design, family_plan.family.addresses, modes=max(alone.platform) + 1)
+            expected = exact.frequency[:, list(alone.platform)]
+            scale = values[number][:, None] / alone.platform_frequencies
+            assert np.max(np.abs(found.gradient[number] - expected) * scale) < 1e-6
+
+
+def test_iteration_on_a_ring_is_proved() -> None:
+    """Not by the dense path alone: the elimination fills in, and the block is still found."""
+    family_plan = plan(ring(massless=False), ("bodies.platform.mass",))
+    values = designs(family_plan, 4, 0.05)
+    assert family_plan.start is not None
+    stage = stage_of(family_plan, values)
+    for method in METHODS:
+        found = iterated(family_plan, stage, method)
+        assert found.good.all()
+        exact = np.concatenate([each.values for each in wholly(stage, family_plan.choice)])
+        np.testing.assert_allclose(found.values, exact, rtol=1e-9)
+
+
+def test_a_start_without_the_right_modes_is_found_out() -> None:
+    """A block that holds nothing of one mode converges to others: counting the pivots' signs tells, and the dense path takes over."""
+    family_plan = plan(double_triangle(), ("parts.neck.thickness",))
+    assert family_plan.start is not None
+    block = family_plan.start.block.copy()
+    block[..., 3] = 0.0  # z: alone of its symmetry among the first
+    block[..., 3] = block[..., 0] + block[..., 8]
+    blind = replace(family_plan, start=replace(family_plan.start, block=block, rounds=1), wider=None)
+    value = family_plan.family.nominal[None]
+    stage = Stage(blind.scheme, numbers_of(blind.family, value))
+    for method in METHODS:
+        assert not iterated(blind, stage, method).good.any()
+        found = platform_modes(blind, value, method=method)
+        assert Status(found.status[0]) is Status.WHOLE
+        np.testing.assert_allclose(found.frequencies[0], fs.modes(lumped(double_triangle())).platform_frequencies, rtol=1e-9)
+
+
+@given(st.integers(2, 9).flatmap(lambda count: st.tuples(st.just(count), st.sets(st.tuples(st.integers(0, 8), st.integers(0, 8))))))
+@examples(50, 1000)
+def test_elimination_orders_any_graph(drawn) -> None:
+    count, pairs = drawn
+    pairs = {pair for pair in pairs if max(pair) < count}
+    found = elimination(count, pairs, keep=0)
+    assert sorted(found.order) == list(range(count))
+    assert found.order[-1] == 0
+    place = {node: position for position, node in enumerate(found.order)}
+    wanted = {tuple(sorted((place[first], place[second]))) for first, second in pairs if first != second}
+    assert wanted <= set(found.edges)
+    assert all(first < later for first, later in found.edges)
+    for start, stop in found.levels:
+        assert not any(start <= first and later < stop for first, later in found.edges)
+
+
+def test_what_stays_free_is_refused_by_name() -> None:
+    stage = ring(massless=False)
+    loose = replace(stage, links={name: link for name, link in stage.links.items() if GROUND not in link.joins})
+    with pytest.raises(DesignError, match="stiffness matrix is singular"):
+        plan(loose, ("bodies.platform.mass",))
+    with pytest.raises(DesignError, match="nearest"):
+        plan(stage, ("bodies.platform.masss",))
+
+
+def test_expansion_is_the_same_for_all() -> None:
+    """Departures of single copies make parts of their own: as many as the description has."""
+    names = ("parts.neck.thickness", "B2/front.thickness")
+    assert plan(double_triangle(), names).family.topology.parts == 7
+    assert len(expand(double_triangle()).links) == 27
+
+
+def test_by_iteration_gives_no_slopes_unless_asked() -> None:
+    family_plan = plan(double_triangle(), ("parts.neck.thickness",))
+    stage = Stage(family_plan.scheme, numbers_of(family_plan.family, family_plan.family.nominal[None]))
+    assert family_plan.start is not None
+    assert by_iteration(stage, family_plan.start).slopes.shape == (1, 0, 6, 6)
