@@ -1,0 +1,173 @@
+"""Branches of a record: where the volts turn, and what keeps a record of volts and stroke from being a hysteresis."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from flexstage.base.finding import Finding
+from flexstage.base.number import Array
+
+MAJOR = 0.8
+"""Branches that cover this part of the range or more belong to major loops."""
+_LEAST = 0.1
+_BINS = 20
+_FEWEST = 40
+_FEWEST_A_BRANCH = 10
+_FALL = 0.02
+_AHEAD = 0.01
+_LARGEST_STROKE = 0.01
+
+
+@dataclass(frozen=True)
+class Branch:
+    """A way up or down: samples `start` to `stop` (both ends included), from volts `first` to volts `last`."""
+
+    start: int
+    stop: int
+    first: float
+    last: float
+
+    @property
+    def rises(self) -> bool:
+        """Whether the volts rise along it."""
+        return self.last > self.first
+
+    @property
+    def swing(self) -> float:
+        """Its length in V."""
+        return abs(self.last - self.first)
+
+
+def branches_of(volts: Array, least: float = _LEAST) -> list[Branch]:
+    """The branches of a record (k,) between turning points; smaller turns than `least` of the range count as noise.
+
+    >>> [(each.first, each.last) for each in branches_of(np.array([0.0, 5.0, 10.0, 9.9, 10.0, 4.0, 0.0, 8.0]))]
+    [(0.0, 10.0), (10.0, 0.0), (0.0, 8.0)]
+    """
+    threshold = least * float(np.ptp(volts))
+    turns, low, high, going = [0], 0, 0, 0
+    for place in _extremes(volts):
+        value = float(volts[place])
+        high = place if value > volts[high] else high
+        low = place if value < volts[low] else low
+        if going <= 0 and value - volts[low] >= threshold:
+            turns += [low] if low > turns[-1] else []
+            going, high = 1, place
+        elif going >= 0 and volts[high] - value >= threshold:
+            turns += [high] if high > turns[-1] else []
+            going, low = -1, place
+    last = high if going > 0 else low
+    turns += [last] if last > turns[-1] else []
+    return [Branch(start, stop, float(volts[start]), float(volts[stop])) for start, stop in pairwise(turns)]
+
+
+def _extremes(volts: Array) -> list[int]:
+    """Samples at which the volts turn, however little, and both ends."""
+    steps = np.diff(volts)
+    moves = np.flatnonzero(steps)
+    ways = np.sign(steps[moves])
+    return [0, *moves[1:][ways[1:] != ways[:-1]].tolist(), len(volts) - 1]
+
+
+def record_findings(volts: Array, strokes: Array) -> list[Finding]:
+    """What keeps a record (k,) in V and m from being that of a stack's hysteresis; what others rest on is told first, and alone.
+
+    >>> record_findings(np.arange(100.0), 1e-7 * np.arange(100.0))[0].what
+    'the volts go from 0 V to 99 V and never turn: what a hysteresis remembers does not show'
+    """
+    for check in (_channel_findings, _column_findings, _branch_findings, _loop_findings):
+        found = list(check(volts, strokes))
+        if found:
+            return found
+    return []
+
+
+def _channel_findings(volts: Array, strokes: Array) -> Iterator[Finding]:
+    if volts.ndim != 1 or volts.shape != strokes.shape:
+        yield Finding("record", f"volts are {volts.shape}, strokes {strokes.shape}", "Give one of each a sample")
+        return
+    if len(volts) < _FEWEST:
+        yield Finding("record", f"it has {len(volts)} samples, at least {_FEWEST} are needed", "Record more of them")
+    for name, values in (("volts", volts), ("stroke", strokes)):
+        if not np.all(np.isfinite(values)):
+            place = int(np.argmin(np.isfinite(values)))
+            yield Finding(name, f"sample {place} is {values[place]}", "Cut the record there, or mend the channel")
+        elif np.ptp(values) <= 1e-9 * np.max(np.abs(values)):
+            yield Finding(
+                name, f"all its samples are {values[0]:g}: the channel is dead", "Check its cable and its range, or name another one"
+            )
+
+
+def _column_findings(volts: Array, strokes: Array) -> Iterator[Finding]:
+    if np.ptp(strokes) > _LARGEST_STROKE:
+        what = f"the stroke spans {np.ptp(strokes):g} m, and the volts {np.ptp(volts):g} V"
+        yield Finding("record", what, "Check the units of both channels, and whether they are exchanged")
+
+
+def _branch_findings(volts: Array, _: Array) -> Iterator[Finding]:
+    branches = branches_of(volts)
+    if len(branches) < 2:
+        what = f"the volts go from {volts[0]:g} V to {volts[-1]:g} V and never turn: what a hysteresis remembers does not show"
+        yield Finding("volts", what, "Record two cycles over the whole range, then smaller ones within")
+        return
+    counts = np.array([branch.stop - branch.start + 1 for branch in branches])
+    if np.any(counts < _FEWEST_A_BRANCH):
+        worst = int(np.argmin(counts))
+        what = f"{np.sum(counts < _FEWEST_A_BRANCH)} of {len(branches)} branches have fewer than {_FEWEST_A_BRANCH} samples"
+        which = f"branch {worst + 1}, {branches[worst].first:g} V to {branches[worst].last:g} V, has {counts[worst]}"
+        yield Finding("volts", f"{what}: {which}", "Record slower, or sample faster")
+    major = [branch for branch in branches[1:] if branch.swing >= MAJOR * np.ptp(volts)]
+    for rises, word in ((True, "up"), (False, "down")):
+        if not any(branch.rises == rises for branch in major):
+            what = f"after the first branch none goes {word} over {MAJOR:.0%} of the range ({np.min(volts):g} V to {np.max(volts):g} V)"
+            yield Finding("volts", what, "Record at least one and a half cycles over the whole range: the first branch depends on the past")
+
+
+def _loop_findings(volts: Array, strokes: Array) -> Iterator[Finding]:
+    major = [branch for branch in branches_of(volts)[1:] if branch.swing >= MAJOR * np.ptp(volts)]
+    size = float(np.ptp(strokes))
+    means = [_binned(volts, strokes, branch) for branch in major]
+    risen = np.mean([np.sign(branch.last - branch.first) * (strokes[branch.stop] - strokes[branch.start]) for branch in major])
+    if risen < 0.0:
+        what = f"the stroke falls by {-risen:g} m while the volts rise over a branch"
+        yield Finding("stroke", what, "Change its sign: a stack grows with the volts")
+        return
+    up, down = (
+        np.nanmean([mean for branch, mean in zip(major, means, strict=True) if branch.rises == way], axis=0) for way in (True, False)
+    )
+    ahead = float(np.mean((up - down)[1:-1])) / size
+    if ahead > _AHEAD:
+        what = (
+            f"at equal volts the stroke is on the way up {ahead:.1%} of its range larger than on the way down: it runs ahead of the volts"
+        )
+        yield Finding("record", what, "A stack lags behind: check whether the channels are exchanged, or one is delayed")
+    drops = [float(np.max(np.maximum.accumulate(mean) - mean)) for mean in means]
+    worst = int(np.argmax(drops))
+    if drops[worst] > _FALL * size:
+        yield _fall(major[worst], means[worst], volts, size)
+
+
+def _binned(volts: Array, strokes: Array, branch: Branch) -> Array:
+    """Means of the strokes of a branch in equal bins of the record's range; where a bin is empty, from its neighbours."""
+    rows = slice(branch.start, branch.stop + 1)
+    edges = np.linspace(np.min(volts), np.max(volts), _BINS + 1)
+    place = np.clip(np.digitize(volts[rows], edges) - 1, 0, _BINS - 1)
+    counts = np.bincount(place, minlength=_BINS)
+    sums = np.bincount(place, strokes[rows], minlength=_BINS)
+    there = np.flatnonzero(counts)
+    return np.interp(np.arange(_BINS), there, sums[there] / counts[there])
+
+
+def _fall(branch: Branch, mean: Array, volts: Array, size: float) -> Finding:
+    highest = np.maximum.accumulate(mean)
+    trough = int(np.argmax(highest - mean))
+    peak = int(np.argmax(mean[: trough + 1]))
+    drop = highest[trough] - mean[trough]
+    places = np.min(volts) + np.ptp(volts) * (np.array([peak, trough]) + 0.5) / _BINS
+    what = f"on the branch from {branch.first:g} V to {branch.last:g} V it is {drop:.3g} m less at {places[1]:g} V"
+    much = f"than at {places[0]:g} V ({drop / size:.1%} of its range)"
+    return Finding("stroke", f"{what} {much}: a loop that is not monotone has no inverse", "Look for slip, a resonance or a bad contact")
