@@ -1,0 +1,89 @@
+"""A control loop over 10 s at 10 kHz: in numpy, by generated C, and by python-control's nonlinear simulation of the same loop.
+
+The shipped stage with its 12 lowest modes, six axes under PI control with the reference fed forward, amplifiers with lag, limits of range
+and speed and 18-bit converters, hysteresis of ten plays in every stack, gauges that round. Seconds are those of the processor, so that what
+else runs on the machine counts little; ratios say how much faster than real time. python-control is given the loop as one difference
+equation, written plainly with numpy, for a shorter time; its answers are compared with ours over that time, those of C over all of it.
+Targets: numpy at least 3 times faster than real time, C at least 50 times, C equal to numpy to 1e-12.
+"""
+
+from __future__ import annotations
+
+import os
+
+for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
+    os.environ[name] = "1"
+
+import importlib.util
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+
+from flexstage.analysis.loop.code.compiled import simulate_compiled
+from flexstage.analysis.loop.code.compiler import compiler
+from flexstage.analysis.loop.simulation.result import Simulated
+from flexstage.analysis.loop.simulation.run import simulate
+from tests.elsewhere.independent_loop import Stepped
+from tests.elsewhere.loops import PLATFORM, RATE, full_loop, way
+from tests.elsewhere.test_loop_simulation import worst
+
+SECONDS, SHORT = 10.0, 0.2
+NUMPY, COMPILED, EQUAL = 3.0, 50.0, 1e-12
+
+
+def timed(action: Callable[[], Simulated]) -> tuple[Simulated, float]:
+    start = time.process_time()
+    return action(), time.process_time() - start
+
+
+def told(name: str, spent: float, seconds: float, target: float | None = None) -> None:
+    ratio = seconds / spent
+    verdict = "" if target is None else f"   target {target:g}: {'met' if ratio >= target else 'MISSED'}"
+    print(f"{name:40} {1e6 * spent / seconds / RATE:8.2f} us a sample {ratio:8.1f} times real time{verdict}")
+
+
+def by_control(reference: np.ndarray) -> tuple[np.ndarray, float]:
+    import control
+
+    given = full_loop()
+    loop = Stepped(given)
+    system = control.nlsys(loop.update, loop.output, inputs=6, outputs=12, states=len(loop.initial), dt=given.step)
+    times = given.step * np.arange(len(reference))
+    start = time.process_time()
+    answer = control.input_output_response(system, times, reference.T, loop.initial)
+    return answer.outputs.T, time.process_time() - start
+
+
+def main() -> None:
+    given = full_loop(motions=PLATFORM)
+    reference, _ = way(given, round(SECONDS * RATE))
+    found, spent = timed(lambda: simulate(given, reference))
+    told("numpy", spent, SECONDS, NUMPY)
+    compensated = full_loop(inverse=True, motions=PLATFORM)
+    told("numpy, inverse of the hysteresis as well", timed(lambda: simulate(compensated, reference))[1], SECONDS)
+    if compiler() is None:
+        print("generated C: no compiler is there")
+    else:
+        simulate_compiled(given, reference[:2])  # compiled and kept
+        compiled, fast = timed(lambda: simulate_compiled(given, reference))
+        told("generated C", fast, SECONDS, COMPILED)
+        difference = max(worst(compiled, found).values())
+        print(f"  differs from numpy by {difference:.1e} (target {EQUAL:g})")
+    if importlib.util.find_spec("control") is None:
+        print("python-control is not installed, so it is not compared")
+        return
+    short = reference[: round(SHORT * RATE)]
+    theirs, slow = by_control(short)
+    told("python-control", slow, SHORT)
+    ours = simulate(full_loop(), short)
+    difference = np.max(np.abs(np.hstack([ours.pose, ours.given]) - theirs), axis=0) / np.max(np.abs(theirs), axis=0)
+    print(f"  differs from ours by {np.max(difference):.1e}; numpy is {slow / SHORT * SECONDS / spent:.0f} times faster")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,1 @@
+"""The control loop: from reference command to nanometres."""

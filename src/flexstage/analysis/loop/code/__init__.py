@@ -1,0 +1,1 @@
+"""Loops and controllers as C: generated, compiled and run."""

@@ -1,0 +1,1 @@
+"""Controllers: from the error of the pose to the actuators' commands."""

@@ -1,0 +1,1 @@
+"""Sampled time simulation of the nonlinear loop."""

@@ -1,0 +1,92 @@
+"""The structured singular value of a matrix for one complex factor in every channel: bounds from both sides."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from flexstage.base.number import Array
+
+_POWERS = (4.0, 32.0, 256.0, 2048.0)
+
+
+def balanced(matrices: Array) -> Array:
+    """Logarithms d (f, n) of diagonal factors that make e^{d_i} M_ij e^{-d_j} of each matrix (f, n, n) small, by rows and columns in turn.
+
+    Osborne's rule: every row's norm without its diagonal made equal to its column's. A start, and often enough.
+
+    >>> balanced(np.array([[[0.0, 100.0], [1.0, 0.0]]])).round(6).tolist()
+    [[-1.151293, 1.151293]]
+    """
+    size = np.abs(matrices) ** 2
+    count = matrices.shape[-1]
+    logs = np.zeros(matrices.shape[:-1])
+    for _ in range(12):
+        for index in range(count):
+            scaled = size * np.exp(2.0 * (logs[:, :, None] - logs[:, None, :]))
+            row = np.sum(scaled[:, index, :], axis=-1) - scaled[:, index, index]
+            column = np.sum(scaled[:, :, index], axis=-1) - scaled[:, index, index]
+            usable = (row > 0.0) & (column > 0.0)
+            logs[:, index] += np.where(usable, 0.25 * np.log(np.where(usable, column, 1.0) / np.where(usable, row, 1.0)), 0.0)
+    return logs - np.mean(logs, axis=-1, keepdims=True)
+
+
+def scaled_size(matrix: Array, logs: Array) -> float:
+    """Largest singular value of e^{d_i} M_ij e^{-d_j}.
+
+    >>> scaled_size(np.array([[0.0, 4.0], [1.0, 0.0]]), np.array([-0.5, 0.5]) * np.log(2.0))
+    2.0
+    """
+    return float(np.linalg.svd(matrix * np.exp(logs[:, None] - logs[None, :]), compute_uv=False)[0])
+
+
+def upper_bound(matrix: Array, start: Array) -> tuple[float, Array]:
+    """min over d of the largest singular value of e^{d_i} M_ij e^{-d_j}, and d: at least mu, whatever is found.
+
+    The logarithm is convex in d. Singular values meet at the minimum, so the norms sum(sigma^2p)^(1/2p) are minimised instead, p growing;
+    their gradient is sum w_k (|u_ik|^2 - |v_ik|^2).
+
+    >>> round(upper_bound(np.array([[0.0, 100.0], [1.0, 0.0]]), np.zeros(2))[0], 6)  # mu is the geometric mean of the two
+    10.0
+    """
+    from scipy.optimize import minimize
+
+    best, logs = scaled_size(matrix, start), start
+    for power in _POWERS:
+        found = minimize(_smooth, logs, args=(matrix, power), jac=True, method="BFGS", options={"gtol": 1e-9})
+        size = scaled_size(matrix, found.x)
+        if size < best:
+            best, logs = size, found.x
+    return best, logs - np.mean(logs)
+
+
+def _smooth(logs: Array, matrix: Array, power: float) -> tuple[float, Array]:
+    left, sizes, right = np.linalg.svd(matrix * np.exp(logs[:, None] - logs[None, :]))
+    relative = np.maximum(sizes / max(sizes[0], 1e-300), 1e-300) ** (2.0 * power)
+    weights = relative / np.sum(relative)
+    value = np.log(max(sizes[0], 1e-300)) + 0.5 * np.log(np.sum(relative)) / power
+    return float(value), (np.abs(left) ** 2 - np.abs(right.T) ** 2) @ weights
+
+
+def lower_bound(matrix: Array) -> tuple[float, Array]:
+    """max over phases of the spectral radius of e^{j theta_i} M_ij, and theta: at most mu, whatever is found.
+
+    Climbed by BFGS from several starts: d log|lambda| / d theta_i = -Im(conj(y_i) x_i / y^H x).
+
+    >>> round(lower_bound(np.array([[1.0, 2.0], [2.0, -1.0]]))[0], 6), round(5.0**0.5, 6)  # all of sigma is reached
+    (2.236068, 2.236068)
+    """
+    from scipy.optimize import minimize
+
+    left, _, right = np.linalg.svd(matrix)
+    starts = [np.zeros(len(matrix)), *(-np.angle(left[:, index]) - np.angle(right[index]) for index in range(min(2, len(matrix))))]
+    results = [minimize(_radius, start, args=(matrix,), jac=True, method="BFGS", options={"gtol": 1e-10}) for start in starts]
+    best = min(results, key=lambda result: result.fun)
+    return float(np.exp(-best.fun)), np.asarray(best.x)
+
+
+def _radius(phases: Array, matrix: Array) -> tuple[float, Array]:
+    """-log of the spectral radius, and its gradient."""
+    values, vectors = np.linalg.eig(np.exp(1j * phases)[:, None] * matrix)
+    place = int(np.argmax(np.abs(values)))
+    rows = np.linalg.pinv(vectors)
+    return -float(np.log(max(abs(values[place]), 1e-300))), np.imag(rows[place] * vectors[:, place])

@@ -1,0 +1,1 @@
+"""Trajectories: what the platform is asked to do."""

@@ -1,0 +1,74 @@
+"""Trajectories against what the stage can do: its strokes, and the speed of its amplifiers."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from flexstage.analysis.workspace.polytope import Polytope
+from flexstage.base.finding import Finding, require
+from flexstage.base.labelled import Matrix
+from flexstage.base.number import Array
+from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
+
+
+def require_reach(poses: Array, times: Array, polytope: Polytope) -> None:
+    """Raise `DesignError` where poses (n, f) leave the `polytope` of what strokes reach: first and worst time, and the scale that fits.
+
+    Columns are the polytope's coordinates; the boundary counts as reachable.
+
+    >>> from flexstage.analysis.workspace.polytope import reachable
+    >>> from flexstage.analysis.workspace.stroke import StrokeLimits
+    >>> span = StrokeLimits(("B",), np.array([-1e-6]), np.array([1e-6]))
+    >>> room = reachable(Matrix(np.eye(1), ("B",), ("x",), "1"), span)
+    >>> require_reach(np.array([[0.0], [1e-6]]), np.array([0.0, 1.0]), room)
+    """
+    require(reach_findings(poses, times, polytope))
+
+
+def reach_findings(poses: Array, times: Array, polytope: Polytope) -> list[Finding]:
+    """What `require_reach` raises: one finding, or none.
+
+    >>> from flexstage.analysis.workspace.polytope import reachable
+    >>> from flexstage.analysis.workspace.stroke import StrokeLimits
+    >>> span = StrokeLimits(("B",), np.array([-1e-6]), np.array([1e-6]))
+    >>> room = reachable(Matrix(np.eye(1), ("B",), ("x",), "1"), span)
+    >>> print(reach_findings(np.array([[1e-6], [2e-6]]), np.array([0.0, 1.0]), room)[0].advice)
+    Shrink the trajectory to 0.5 of its size, or move it towards the middle of the strokes
+    """
+    outside = np.flatnonzero(~polytope.contains(poses))
+    if not len(outside):
+        return []
+    share = np.max(poses @ polytope.normals.T / polytope.offsets, axis=-1)
+    worst = int(np.argmax(share))
+    pose = ", ".join(f"{name} = {_shown(value, name)}" for name, value in zip(polytope.coordinates, poses[worst], strict=True) if value)
+    what = (
+        f"it leaves what the strokes reach at {times[outside[0]]:g} s; at {times[worst]:g} s {pose} takes {share[worst]:.3g} of the stroke"
+    )
+    advice = f"Shrink the trajectory to {1.0 / share[worst]:.3g} of its size, or move it towards the middle of the strokes"
+    return [Finding("trajectory", what, advice)]
+
+
+def _shown(value: float, coordinate: str) -> str:
+    return f"{1e6 * value:.4g} u{TWIST_UNITS[COMPONENTS.index(coordinate)]}"
+
+
+def speed_findings(poses: Array, times: Array, mapping: Matrix, slew: Array) -> list[Finding]:
+    """Actuators that sampled poses (n, f) ask for more speed than `slew` (m,) [m/s] allows: R_a times the poses' differences.
+
+    A finding, not a refusal: behind a step an amplifier runs at its limit, and the simulation shows how. Columns of `mapping` (R_a) are
+    the coordinates of the poses.
+
+    >>> lever = Matrix(np.array([[2.0]]), ("B1",), ("x",), "1")
+    >>> found = speed_findings(np.array([[0.0], [1e-6]]), np.array([0.0, 1e-3]), lever, np.array([1e-3]))
+    >>> print(found[0])
+    B1: the trajectory asks for 2000 um/s at 0.001 s, the amplifier gives 1000 um/s. Slow it down to 0.5 of its speed.
+    """
+    rates = np.abs(np.diff(poses, axis=0) @ np.asarray(mapping.values).T) / np.diff(times)[:, None]
+    found = []
+    for actuator, column, most in zip(mapping.rows, rates.T, slew, strict=True):
+        worst = int(np.argmax(column))
+        if column[worst] > most * (1.0 + 1e-9):
+            asked = f"the trajectory asks for {1e6 * column[worst]:.4g} um/s at {times[worst + 1]:g} s"
+            what = f"{asked}, the amplifier gives {1e6 * most:.4g} um/s"
+            found.append(Finding(actuator, what, f"Slow it down to {most / column[worst]:.3g} of its speed"))
+    return found

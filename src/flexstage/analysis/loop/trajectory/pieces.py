@@ -1,0 +1,108 @@
+"""Motions made of polynomials in time, one after the other."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.base.number import Array
+
+
+@dataclass(frozen=True, eq=False)
+class Pieces:
+    """Polynomials sum_i `coefficients`[k, i] (t - `knots`[k])^i between knots (k + 1,) [s], coefficients (k, 6, c); at rest outside."""
+
+    knots: Array
+    coefficients: Array
+
+    @property
+    def duration(self) -> float:
+        """Time of the last knot [s]."""
+        return float(self.knots[-1])
+
+    def at(self, times: Array, order: int = 0) -> Array:
+        """Values (n, c), or those of the derivative of an `order`."""
+        times = np.clip(np.asarray(times, dtype=float), self.knots[0], self.knots[-1])
+        piece = np.clip(np.searchsorted(self.knots, times, side="right") - 1, 0, len(self.coefficients) - 1)
+        return _valued(self.coefficients[piece], times - self.knots[piece], order)
+
+    def largest(self, order: int) -> Array:
+        """Largest absolute value (c,) of a derivative: of those at the ends of the pieces, and where the next derivative is 0."""
+        found = np.zeros(self.coefficients.shape[2])
+        for duration, coefficients in {(time, each.tobytes()): (time, each) for time, each in self._timed}.values():
+            for column, values in enumerate(coefficients.T):
+                found[column] = max(found[column], _largest(np.polynomial.Polynomial(values).deriv(order), duration))
+        return found
+
+    @property
+    def _timed(self) -> Iterator[tuple[float, Array]]:
+        """Durations and coefficients but for where a piece begins, which no derivative feels."""
+        moved = self.coefficients.copy()
+        moved[:, 0] = 0.0
+        yield from zip(np.diff(self.knots), moved, strict=True)
+
+
+def _largest(polynomial: np.polynomial.Polynomial, duration: float) -> float:
+    """Largest absolute value between 0 and a duration, with numbers counted in it, so that small and large are told apart."""
+    scaled = polynomial(np.polynomial.Polynomial([0.0, duration])).trim()
+    turning = scaled.deriv().roots()
+    inside = turning.real[(np.abs(turning.imag) < 1e-9) & (turning.real > 0.0) & (turning.real < 1.0)]
+    return float(np.max(np.abs(scaled(np.concatenate([[0.0, 1.0], inside])))))
+
+
+def _valued(coefficients: Array, times: Array, order: int) -> Array:
+    """Horner's rule on coefficients (n, 6, c) at times (n,)."""
+    powers = np.arange(6.0)
+    factors = np.prod([np.maximum(powers - each, 0.0) for each in range(order)], axis=0) * np.ones(6)
+    total = np.zeros((len(coefficients), coefficients.shape[2]))
+    for power in range(5, order - 1, -1):
+        total = total * times[:, None] + factors[power] * coefficients[:, power]
+    return total
+
+
+def joined(parts: Iterable[tuple[float, Array]]) -> Pieces:
+    """Pieces from (duration [s], coefficients (6, c)) one after the other, each given from its own start; those that last no time drop out.
+
+    >>> forth = np.zeros((6, 1)); forth[1] = 2.0
+    >>> joined([(0.5, forth), (0.5, rest(np.array([1.0])))]).at(np.array([0.25, 0.75, 9.0])).ravel().tolist()
+    [0.5, 1.0, 1.0]
+    """
+    kept = [(time, coefficients) for time, coefficients in parts if time > 0.0]
+    return Pieces(np.concatenate([[0.0], np.cumsum([time for time, _ in kept])]), np.array([each for _, each in kept]))
+
+
+def rest(position: Array) -> Array:
+    """Coefficients (6, c) of standing still.
+
+    >>> rest(np.array([3.0]))[:2].tolist()
+    [[3.0], [0.0]]
+    """
+    result = np.zeros((6, len(position)))
+    result[0] = position
+    return result
+
+
+def smooth(start: Array, end: Array, time: float) -> Array:
+    """Coefficients (6, c) of the smooth move from rest to rest in a `time` [s]: start + (end - start)(10 s^3 - 15 s^4 + 6 s^5), s = t/time.
+
+    Largest speed 15/8 d/time, acceleration 10/3^(1/2) d/time^2.
+
+    >>> move = joined([(2.0, smooth(np.array([0.0]), np.array([1.0]), 2.0))])
+    >>> move.at(np.array([1.0, 2.0])).ravel().tolist(), move.largest(1).tolist()
+    ([0.5, 1.0], [0.9375])
+    """
+    result = rest(start)
+    for power, factor in ((3, 10.0), (4, -15.0), (5, 6.0)):
+        result[power] = factor * (end - start) / time**power
+    return result
+
+
+def smooth_time(distance: float, speed: float, acceleration: float) -> float:
+    """The least time [s] of a smooth move over a `distance` within a `speed` and an `acceleration`.
+
+    >>> smooth_time(1.0, 15.0 / 8.0, 100.0)
+    1.0
+    """
+    return max(15.0 / 8.0 * distance / speed, np.sqrt(10.0 / 3.0**0.5 * distance / acceleration))

@@ -1,0 +1,1 @@
+"""Functional mock-up units: programs of loops for other simulators."""

@@ -1,0 +1,228 @@
+"""Tables of a loop: what it is, whether it is stable, how far from the edge, how it steps and follows."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from flexstage.analysis.loop.controllers.law import Law
+from flexstage.analysis.loop.controllers.notch import Notch
+from flexstage.analysis.loop.controllers.pi import PI
+from flexstage.analysis.loop.controllers.pid import PID
+from flexstage.analysis.loop.controllers.resonant import IntegralResonant
+from flexstage.analysis.loop.disk import DiskMargin
+from flexstage.analysis.loop.simulation.result import StepFigures
+from flexstage.present.display import NO_VALUE, number, percent, value_with_unit
+from flexstage.present.table import Cell, Column, Content, Mark, Table, build
+from flexstage.studies.loop.choices import ControllerKind
+from flexstage.studies.loop.runs import Run
+from flexstage.studies.loop.study import LoopStudy
+
+_SMALL = 1e-12
+_BANDWIDTH_NOTE = "Follows to: the true motion is 3 dB below its reference. Rejects to: |S| passes 1, disturbances above it are made worse."
+_MARGIN_NOTE = (
+    "Margins of one loop at a time, cut at the pose, the others closed. Disk margin alpha: gain and phase together may change by "
+    "(1 + d/2)/(1 - d/2), |d| < alpha; 2 is the most there is."
+)
+
+
+def loop_table(found: LoopStudy) -> Table:
+    """What the loop is, and whether it is stable.
+
+    >>> loop_table.__name__
+    'loop_table'
+    """
+    plant, hardware = found.settled.plant, found.settled.plant.hardware
+    delay = f"{number(1e6 * hardware.delay, 4)} us"
+    modes = f"{len(plant.frequencies)} modes up to {number(float(plant.frequencies[-1]), 4)} Hz, {plant.left_out} as a static term"
+    rows = [
+        ("stability", Cell("stable" if found.verdict.stable else "unstable", Mark.PASS if found.verdict.stable else Mark.FAIL)),
+        ("controller", _controller(found)),
+        ("coordinates", ", ".join(plant.coordinates.names)),
+        ("clock", f"{number(found.settled.rate, 5)} Hz, outputs {delay} after the samples, held"),
+        ("plant", f"{found.setup.reading.value}, {modes}"),
+        ("fed forward", ", ".join(each.value for each in found.setup.compensate) or "nothing"),
+    ]
+    if found.peaks is not None:
+        seen = found.peaks
+        peak = f"S {number(seen.sensitivity.value, 4)} at {number(seen.sensitivity.frequency, 4)} Hz"
+        rows.append(("highest peaks", f"{peak}, T {number(seen.complementary.value, 4)} at {number(seen.complementary.frequency, 4)} Hz"))
+    notes = [f"{found.verdict.sentence[0].upper()}{found.verdict.sentence[1:]}.", f"{plant.note[0].upper()}{plant.note[1:]}."]
+    if found.control.tuning is not None:
+        notes.insert(0, f"Tuned: {found.control.tuning.reason}.")
+    return build("Loop", ["what", "value"], [(Cell(name, Mark.STRONG), value) for name, value in rows], notes=notes)
+
+
+def _controller(found: LoopStudy) -> str:
+    asked = found.setup.controller
+    if asked.kind is ControllerKind.NONE:
+        return "none: open loop"
+    where = f"{asked.kind.value.upper() if len(asked.kind.value) < 4 else asked.kind.value} in {asked.coordinates.value} coordinates"
+    frequencies = sorted({round(each.frequency, 1) for group in found.control.notches for each in group})
+    return f"{where}, notches at {', '.join(f'{each:g}' for each in frequencies)} Hz" if frequencies else where
+
+
+def law_table(found: LoopStudy) -> Table | None:
+    """The controller's numbers, loop by loop; `None` of one that is not made of single loops.
+
+    >>> law_table.__name__
+    'law_table'
+    """
+    control = found.control
+    if not control.laws:
+        return None
+    notches = control.notches or ((),) * len(control.laws)
+    heads = sorted({name for law in control.laws for name in _numbers(law)}, key=_HEADS.index)
+    rows = [
+        (Cell(name, Mark.STRONG), *(_numbers(law).get(head, "") for head in heads), _notches(group))
+        for name, law, group in zip(control.loop_names, control.laws, notches, strict=True)
+    ]
+    columns = ["loop", *(Column(head, _UNITS.get(head, "")) for head in heads), "notches"]
+    note = "From the loop's error to its command, both in metres: rotations times the stage's length."
+    return build("Controller", columns, rows, notes=[note])
+
+
+_HEADS = ("proportional", "integral", "derivative", "filter", "gain", "feed-through", "tracking")
+_UNITS = {"integral": "1/s", "derivative": "ms", "filter": "Hz", "gain": "1/s", "tracking": "1/s"}
+
+
+def _numbers(law: Law) -> dict[str, str]:
+    if isinstance(law, PI):
+        return {"proportional": number(law.proportional), "integral": number(law.integral)}
+    if isinstance(law, PID):
+        first = {"proportional": number(law.proportional), "integral": number(law.integral)}
+        return first | {"derivative": number(1e3 * law.derivative), "filter": number(law.filter)}
+    if isinstance(law, IntegralResonant):
+        return {"gain": number(law.gain), "feed-through": number(law.feedthrough), "tracking": number(law.tracking)}
+    return {}
+
+
+def _notches(group: Sequence[Notch]) -> str:
+    return ", ".join(f"{number(each.frequency, 5)} Hz to {number(each.depth, 3)}" for each in group)
+
+
+def margin_table(found: LoopStudy) -> Table | None:
+    """Bandwidth and margins by coordinate; `None` in open loop.
+
+    >>> margin_table.__name__
+    'margin_table'
+    """
+    if found.margins is None or found.bandwidths is None:
+        return None
+    rows = [
+        (
+            Cell(each.channel, Mark.STRONG),
+            number(float(found.bandwidths.tracking[index]), 4),
+            number(float(found.bandwidths.rejection[index]), 4),
+            _range(each.gain_low.value, each.gain_high.value),
+            number(float(np.rad2deg(each.phase.value)), 4),
+            number(1e3 * each.delay.value, 4),
+            _alpha(each.disk.value),
+        )
+        for index, each in enumerate(found.margins.channels)
+    ]
+    heads = [
+        "motion",
+        Column("follows to", "Hz"),
+        Column("rejects to", "Hz"),
+        Column("gain may be"),
+        Column("phase margin", "deg"),
+        Column("delay margin", "ms"),
+        Column("disk margin"),
+    ]
+    return build("Bandwidth and margins", heads, rows, notes=[_BANDWIDTH_NOTE, _MARGIN_NOTE, *_together(found.disk)])
+
+
+def _together(found: DiskMargin | None) -> Iterator[str]:
+    if found is not None:
+        span = f"{number(found.gain_low, 3)} to {number(found.gain_high, 3)}"
+        turn = number(float(np.rad2deg(found.phase)), 3)
+        yield f"All loops at once: disk margin {number(found.guaranteed, 3)}, that is every gain by {span}, or every phase by {turn} deg."
+
+
+def _range(low: float, high: float) -> str:
+    lower = "0" if low == 0.0 else number(low, 3)
+    return f"{lower} to {'any' if np.isinf(high) else number(high, 3)}"
+
+
+def _alpha(value: float) -> Cell:
+    return Cell(number(value, 3), Mark.PLAIN if value > 0.5 else Mark.WARN)
+
+
+def step_table(tests: Sequence[Run]) -> Table | None:
+    """Answers to steps; `None` where none was simulated.
+
+    >>> step_table([]) is None
+    True
+    """
+    stepped = [(test, test.figures) for test in tests if test.figures is not None]
+    if not stepped:
+        return None
+    heads = [
+        "step of",
+        Column("by"),
+        Column("settled in", "ms"),
+        Column("overshoot"),
+        Column("error at the end"),
+        Column("others move"),
+        "limits",
+    ]
+    note = "Settled: the true error stays within 2 % of the step. Others: the largest motion along any other coordinate, of the same unit."
+    return build("Steps", heads, [tuple(_step(test, figures)) for test, figures in stepped], notes=[note])
+
+
+def _step(test: Run, figures: StepFigures) -> Iterator[Content]:
+    seen, index = test.simulated, test.index
+    unit = seen.coordinates[index].unit
+    size = float(seen.reference[-1, index])
+    yield Cell(test.course.name, Mark.STRONG)
+    yield value_with_unit(size, unit, 4)
+    settling = float(figures.settling[index])
+    yield Cell("not", Mark.FAIL) if np.isinf(settling) else number(1e3 * settling, 4)
+    yield percent(float(figures.overshoot[index]), 3)
+    yield _length(float(figures.residual[index]), size, unit)
+    others = [other for other, each in enumerate(seen.coordinates) if other != index and each.unit == unit]
+    moved = float(np.max(np.abs(seen.true_error[:, others]), initial=0.0))
+    yield _length(moved, size, unit) if others else Cell(NO_VALUE, Mark.FAINT)
+    yield limits_text(test)
+
+
+def _length(value: float, size: float, unit: str) -> Cell:
+    return Cell("0", Mark.FAINT) if abs(value) < _SMALL * abs(size) else Cell(value_with_unit(value, unit, 3))
+
+
+def limits_text(test: Run) -> str:
+    """Which actuators ran into their limits, for which share of the time.
+
+    >>> limits_text.__name__
+    'limits_text'
+    """
+    seen = test.simulated
+    words = [
+        f"{name} {noun} {percent(float(share), 3)}"
+        for noun, shares in (("saturated", seen.saturated), ("slewing", seen.slewed))
+        for name, share in zip(seen.actuators, shares, strict=True)
+        if share > 0.0
+    ]
+    return ", ".join(words)
+
+
+def tracking_table(tests: Sequence[Run]) -> Table | None:
+    """Errors along trajectories that are no steps, by coordinate; `None` where none was simulated.
+
+    >>> tracking_table([]) is None
+    True
+    """
+    followed = [test for test in tests if test.figures is None]
+    if not followed:
+        return None
+    rows: list[tuple[Content, ...]] = []
+    for test in followed:
+        for name, values, units in zip(test.tracking.rows, test.tracking.values, test.tracking.unit, strict=True):
+            numbers = [value_with_unit(float(value), unit, 3) for value, unit in zip(values, units, strict=True)]
+            rows.append((Cell(test.course.name, Mark.STRONG), name, *numbers))
+    heads = ["trajectory", "motion", *(Column(head) for head in ("rms seen", "peak seen", "true rms", "true peak"))]
+    limits = [f"{test.course.name}: {limits_text(test)}." for test in followed if limits_text(test)]
+    note = "Reference less pose: as the gauges tell it, and against the platform's true pose."
+    return build("Tracking", heads, rows, notes=[note, *limits])

@@ -1,0 +1,151 @@
+"""Tables of what a loop is there for: errors at rest without it, noise with it, hysteresis with and without inverse."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from flexstage.analysis.loop.compensation import StaticError
+from flexstage.analysis.loop.noise import NoiseBudget
+from flexstage.base.number import Array
+from flexstage.present.display import NO_VALUE, number, percent, value_with_unit
+from flexstage.present.table import Cell, Column, Mark, Table, build
+from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
+from flexstage.studies.loop.rest import RestErrors
+from flexstage.studies.loop.stacks import Stacks, Sweep
+from flexstage.studies.loop.study import LoopStudy
+
+_SILENT = 1e-12
+_STANDS_OUT = 1e-3
+_NOTHING = 1e-16
+
+
+def rest_table(found: RestErrors) -> Table:
+    """Errors at rest in open loop by coordinate: its own, and its largest crosstalk, by the ideal map and by corrected gains.
+
+    >>> rest_table.__name__
+    'rest_table'
+    """
+    pairs = (("by R_a", found.bare), ("corrected", found.corrected))
+    heads = ["command", *(head for noun, _ in pairs for head in (Column(f"error {noun}"), Column("crosstalk")))]
+    rows = [
+        (Cell(name, Mark.STRONG), *_own_and_cross([each for _, each in pairs], index)) for index, name in enumerate(found.bare.error.rows)
+    ]
+    return build("Static errors without the loop", heads, rows, notes=list(_rest_notes(found)))
+
+
+def _rest_notes(found: RestErrors) -> Iterator[str]:
+    yield (
+        "Commanded less reached, per unit commanded, by strokes R_a x and by those that correct lost motion; crosstalk: the largest motion "
+        "elsewhere, and which."
+    )
+    if found.other is not None:
+        yield (
+            f"With the gains of the {found.other_reading.value} reading the largest error is {percent(found.other.largest, 3)}, by R_a "
+            f"{percent(found.bare.largest, 3)}, rotations as lengths."
+        )
+    if np.any(np.abs(found.load) > 0.0):
+        yield f"Loads, strokes held: {_twist(found.load, found.load)}; their strokes fed forward: {_twist(found.carried, found.load)}."
+
+
+def _own_and_cross(found: Sequence[StaticError], column: int) -> Iterator[Cell]:
+    for each in found:
+        values = np.asarray(each.error.values)
+        yield _share(float(values[column, column]))
+        row = int(np.argmax(np.abs(values[:, column]) * (np.arange(len(values)) != column)))
+        size = float(values[row, column]) if row != column else 0.0
+        text = f"{_sized(size, each.error.unit[row][column])} {each.error.rows[row]}"
+        yield Cell(NO_VALUE, Mark.FAINT) if abs(size) < _SILENT else Cell(text)
+
+
+def _sized(value: float, unit: str) -> str:
+    return percent(value, 3) if unit == "1" else value_with_unit(value, unit, 3)
+
+
+def _share(value: float) -> Cell:
+    return Cell("0", Mark.FAINT) if abs(value) < _SILENT else Cell(percent(value, 4))
+
+
+def _twist(values: Array, against: Array) -> str:
+    """The components of a twist that stand out against another."""
+    scale = {unit: max(abs(float(value)) for value, each in zip(against, TWIST_UNITS, strict=True) if each == unit) for unit in TWIST_UNITS}
+    parts = [
+        f"{name} {value_with_unit(float(value), unit, 3)}"
+        for name, value, unit in zip(COMPONENTS, values, TWIST_UNITS, strict=True)
+        if abs(value) > _STANDS_OUT * scale[unit]
+    ]
+    return ", ".join(parts) or "nothing"
+
+
+def noise_table(found: LoopStudy) -> Table:
+    """The rms of every coordinate at rest by kind of source, and as simulated.
+
+    >>> noise_table.__name__
+    'noise_table'
+    """
+    budget = found.noise
+    squares = np.asarray(budget.by_kind.values)
+    simulated = None if found.still is None else settled_rms(found)
+    heads = ["motion", Column("rms"), *(Column(kind.value) for kind in budget.kinds)]
+    heads += [Column("simulated")] if simulated is not None else []
+    rows = []
+    for index, channel in enumerate(budget.outputs):
+        cells = [_rms(float(np.sqrt(value)), channel.unit) for value in squares[index]]
+        told = [] if simulated is None else [value_with_unit(float(simulated[index]), channel.unit, 3)]
+        total = replace(_rms(float(budget.rms[index]), channel.unit), mark=Mark.STRONG)
+        rows.append((Cell(channel.name.removeprefix("relative."), Mark.STRONG), total, *cells, *told))
+    return build("Noise at rest", heads, rows, notes=_noise_notes(budget, simulated=simulated is not None))
+
+
+def _rms(value: float, unit: str) -> Cell:
+    return Cell("0", Mark.FAINT) if value < _NOTHING else Cell(value_with_unit(value, unit, 3))
+
+
+def _noise_notes(budget: NoiseBudget, *, simulated: bool) -> Sequence[str]:
+    first = "Rms of the platform's true motion against the ground; squares add up. "
+    first += f"The floor from {number(budget.band[0], 3)} to {number(budget.band[1], 4)} Hz."
+    more = ["Simulated: over the same noise as series of numbers, rounding and limits included."] if simulated else []
+    return [first, *more, *(f"{each[0].upper()}{each[1:]}." for each in budget.notes)]
+
+
+def settled_rms(found: LoopStudy) -> Array:
+    """Rms (f,) of the simulated true motion at rest.
+
+    >>> settled_rms.__name__
+    'settled_rms'
+    """
+    if found.still is None:
+        return np.zeros(0)
+    return np.sqrt(np.mean(found.still.true_error**2, axis=0))
+
+
+def hysteresis_table(stacks: Stacks, sweep: Sweep) -> Table:
+    """Stacks with hysteresis: width of their loops, error in open loop without and with the inverse.
+
+    >>> hysteresis_table.__name__
+    'hysteresis_table'
+    """
+    bare, inverse = sweep.error(sweep.bare), sweep.error(sweep.inverse)
+    rows = [
+        (
+            Cell(name, Mark.STRONG),
+            percent(float(stacks.width[index]), 3),
+            value_with_unit(float(np.ptp(sweep.wanted[:, index])), "m", 4),
+            percent(float(bare[index]), 3),
+            percent(float(inverse[index]), 3),
+            number(float(bare[index] / inverse[index]), 3) if inverse[index] > _SILENT else "exact",
+        )
+        for index, name in enumerate(sweep.actuators)
+    ]
+    heads = [
+        "actuator",
+        Column("loop width"),
+        Column("range swept"),
+        Column("rms error, bare"),
+        Column("with inverse"),
+        Column("better by"),
+    ]
+    note = "Stacks alone, in open loop: strokes that came less those wanted, as a share of the range swept."
+    return build("Hysteresis of the stacks", heads, rows, notes=[note])

@@ -1,0 +1,222 @@
+"""Tuning against closed forms and searches made here: what an oscillator lets integral control reach, and what is said beyond."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from flexstage.analysis.loop.closed import Cut, loop, opened
+from flexstage.analysis.loop.controllers.loops import actuator_loops, loop_modes, modal_loops, platform_loops
+from flexstage.analysis.loop.controllers.lqg import Disturbances
+from flexstage.analysis.loop.controllers.notch import Notch
+from flexstage.analysis.loop.controllers.pi import PI
+from flexstage.analysis.loop.hardware import Hardware
+from flexstage.analysis.loop.margins import peaks
+from flexstage.analysis.loop.plant import plant
+from flexstage.analysis.loop.tuning.attempt import Task, attempt
+from flexstage.analysis.loop.tuning.goal import Goal, Kind, peak_for_margins
+from flexstage.analysis.loop.tuning.laws import Place, laws
+from flexstage.analysis.loop.tuning.tuned import tuned
+from flexstage.analysis.loop.tuning.view import resonances, view
+from flexstage.analysis.loop.verdict import verdict
+from flexstage.analysis.modes import modes
+from flexstage.base.finding import DesignError
+from flexstage.cases.parallelogram import parallelogram
+from flexstage.cases.registry import case
+from flexstage.readings.ideal import ideal
+from flexstage.readings.lumped import lumped
+from flexstage.readings.mapped import mapped
+
+
+@pytest.fixture(scope="module")
+def oscillator():
+    """The one-axis stage by the mapped reading: a single mode of 1 %, static gain 1, continuous."""
+    stage = parallelogram()
+    return plant(mapped(stage), ideal(stage), Hardware())
+
+
+@pytest.fixture(scope="module")
+def sampled():
+    """The same stage with three lumped modes, at 20 kHz and a sample of delay."""
+    stage = parallelogram()
+    return plant(lumped(stage), ideal(stage), Hardware(rate=20e3, delay=50e-6), modes=3)
+
+
+def _peak(rate: float, omega: float, ratio: float = 0.01) -> float:
+    """Peak of S of k/s around an oscillator, by a fine grid of its own; infinite where unstable (k >= 2 zeta omega)."""
+    if rate >= 2.0 * ratio * omega:
+        return np.inf
+    s = 1j * omega * np.concatenate([np.geomspace(1e-3, 10.0, 4000), 1.0 + ratio * np.linspace(-5.0, 5.0, 8001)])
+    return float(np.max(np.abs(1.0 / (1.0 + rate / s * omega**2 / (s**2 + 2.0 * ratio * omega * s + omega**2)))))
+
+
+@pytest.mark.parametrize("allowed", [1.5, 2.0, 4.0])
+def test_integral_control_reaches_what_an_oscillator_lets_it(oscillator, allowed):
+    """The highest bandwidth is that whose peak of S is the one allowed, found here by halving: near 2 zeta f (1 - 1/M)."""
+    found = tuned(oscillator, platform_loops(oscillator.coordinates), Task(Kind.PI, Goal(None, allowed, 0.0), automatic=False))
+    omega = 2.0 * np.pi * oscillator.frequencies[0]
+    low, high = 0.0, 0.02 * omega
+    for _ in range(50):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if _peak(middle, omega) <= allowed else (low, middle)
+    assert found.bandwidth == pytest.approx(low / (2.0 * np.pi), rel=0.02)
+    assert found.bandwidth == pytest.approx(0.02 * oscillator.frequencies[0] * (1.0 - 1.0 / allowed), rel=0.05)
+    law = found.controller.laws[0]
+    assert isinstance(law, PI)
+    assert law.proportional == 0.0
+
+
+def test_notches_and_modes_that_are_off(oscillator):
+    """A notch on the mode gives many times the bandwidth; the more the mode may be off, the less."""
+    loops = platform_loops(oscillator.coordinates)
+    bare = tuned(oscillator, loops, Task(Kind.PI, Goal(spread=0.0), automatic=False)).bandwidth
+    notched = [tuned(oscillator, loops, Task(Kind.PI, Goal(spread=spread))) for spread in (0.0, 0.02, 0.05)]
+    reached = [each.bandwidth for each in notched]
+    assert reached[0] > 20.0 * bare
+    assert reached[0] > 1.2 * reached[1] > 1.2 * reached[2] > 3.0 * bare
+    assert all(abs(each.frequency / oscillator.frequencies[0] - 1.0) < 1e-6 for found in notched for each in found.notches[0])
+
+
+@pytest.mark.parametrize("kind", list(Kind))
+def test_what_is_asked_for_is_reached(sampled, kind):
+    """Every kind: the loop's own gain is 1 where asked, the verdict is stable, the peak of S that of the margins."""
+    asked = {Kind.PI: 150.0, Kind.PID: 200.0, Kind.RESONANT: 30.0, Kind.LQG: 200.0}[kind]
+    noise = Disturbances(1e-9, dict.fromkeys(sampled.gauges, 1e-11))
+    found = tuned(sampled, platform_loops(sampled.coordinates), Task(kind, Goal(asked, 2.0, 0.0), expected=noise))
+    closed = loop(sampled, found.controller.system(sampled.hardware.step))
+    assert verdict(closed).stable
+    assert abs(opened(closed, Cut.POSE).transfer(np.array([asked]))[0, 0, 0]) == pytest.approx(1.0, rel=0.01)
+    assert found.bandwidth == pytest.approx(asked, rel=0.01)
+    peak = peaks(closed, Cut.POSE).sensitivity
+    assert peak.value <= 2.0 * 1.01
+    assert found.judgement.peak == pytest.approx(peak.value, rel=0.02)
+    assert found.judgement.growth == pytest.approx(closed.system.growth, rel=1e-6)
+
+
+def test_the_reason_has_the_numbers(sampled):
+    """Asked too much: the peak and the highest that is reached are those of the margins, the notch's frequency that of the mode."""
+    loops = platform_loops(sampled.coordinates)
+    with pytest.raises(DesignError) as error:
+        tuned(sampled, loops, Task(Kind.PI, Goal(30.0, 2.0, 0.0), automatic=False))
+    said = str(error.value)
+    form = r"at 30 Hz the peak of S with PI is ([\d.]+) dB at (\d+) Hz, ([\d.]+) dB above the 6.0 dB allowed; ([\d.]+) Hz is the highest"
+    level, place, above, highest = map(float, re.search(form, said).groups())
+    tried = attempt(view(sampled, loops, 0.0), Task(Kind.PI, Goal(30.0, spread=0.0), automatic=False), 30.0)
+    peak = peaks(loop(sampled, tried.controller.system(sampled.hardware.step)), Cut.POSE).sensitivity
+    assert level == pytest.approx(20.0 * np.log10(peak.value), abs=0.06)
+    assert above == pytest.approx(20.0 * np.log10(peak.value / 2.0), abs=0.1)
+    assert place == pytest.approx(peak.frequency, rel=0.01)
+    for factor, good in ((1.0, True), (1.05, False)):
+        law = PI(0.0, factor * _rate(tried, highest))
+        control = replace(tried.controller, laws=(law,)).system(sampled.hardware.step)
+        assert (peaks(loop(sampled, control), Cut.POSE).sensitivity.value <= 2.0 * 1.01) is good
+    notch, better = map(float, re.search(r"with a notch at ([\d.]+) Hz ([\d.]+) Hz is reached", said).groups())
+    assert notch == pytest.approx(sampled.frequencies[1], abs=0.06)
+    assert tuned(sampled, loops, Task(Kind.PI, Goal(0.97 * better, 2.0, 0.0))).bandwidth == pytest.approx(0.97 * better, rel=0.01)
+
+
+def _rate(tried, highest: float) -> float:
+    return tried.controller.laws[0].integral * highest / 30.0
+
+
+def test_an_unstable_attempt_is_called_so(sampled):
+    """Beyond the edge of stability the growth is said; where hold and delay take part, faster samples are advised."""
+    with pytest.raises(DesignError, match=r"with PI is unstable: it grows by .* 1/s; .* is the highest reachable with PI") as error:
+        tuned(sampled, platform_loops(sampled.coordinates), Task(Kind.PI, Goal(900.0, spread=0.0), automatic=False))
+    assert "hold and delay take 24 deg at 900 Hz" in str(error.value)  # 360 x 900 Hz x (50 + 25) us
+
+
+@pytest.mark.parametrize("name", ["xy-stage", "tip-tilt", "tip-tilt-four", "bridge"])
+def test_stages_of_fewer_freedoms(name):
+    """One to three axes, redundant actuators too: tuned in all coordinates that they have, and reached."""
+    stage = case(name)
+    model, kinematics = lumped(stage), ideal(stage)
+    count = len(kinematics.coordinates)
+    first = float(modes(model).frequencies[0])
+    one = plant(model, kinematics, Hardware(rate=20.0 * first, delay=0.05 / first), modes=2 * count)
+    found = modes(model)
+    shapes = found.platform_shapes[:, list(loop_modes(found, one.coordinates))]
+    kinds = [platform_loops(one.coordinates), modal_loops(one.coordinates, shapes)]
+    if len(one.actuators) == count:
+        kinds.append(actuator_loops(one.coordinates))
+    for loops in kinds:
+        tuning = tuned(one, loops, Task(Kind.PI, Goal(0.1 * first)))
+        assert tuning.bandwidth == pytest.approx(0.1 * first, rel=0.01)
+        assert verdict(loop(one, tuning.controller.system(one.hardware.step))).stable
+
+
+@pytest.mark.parametrize("step", [None, 1e-3])
+@pytest.mark.parametrize("kind", [Kind.PI, Kind.PID, Kind.RESONANT])
+def test_laws_have_the_gain_that_is_left(kind, step):
+    """|C g| = 1 at the frequency, sampled too, where Tustin's rule bends frequencies by a tenth and more."""
+    found = laws(kind, Place(180.0, 0.3 - 0.4j, 0.9, 60.0), step)
+    assert len(found) > 4
+    for law in found:
+        response = law.system(step).transfer(np.array([180.0]))[0, 0]
+        assert abs((response[0] - response[1]) * (0.3 - 0.4j)) == pytest.approx(1.0, rel=1e-9)
+
+
+def test_modes_off_are_the_plant_in_faster_time(sampled):
+    """Poles of the offset plants, as rates, are those of the model times 1 + offset."""
+    seen = view(sampled, platform_loops(sampled.coordinates), 0.05)
+    own = [np.sort(np.abs(np.log(_fast(system.poles)) / sampled.hardware.step)) for system in seen.systems]
+    for offset, rates in zip(seen.offsets, own, strict=True):
+        np.testing.assert_allclose(rates, own[0] * (1.0 + offset), rtol=1e-6)
+
+
+def _fast(poles: np.ndarray) -> np.ndarray:
+    """Without the registers of the hold."""
+    return poles[np.abs(poles) > 1e-3].astype(complex)
+
+
+def test_resonances_are_the_modes_that_show(oscillator, sampled):
+    """The lone mode with its gain 1/(2 zeta) = 50; of three lumped modes those that move along the axis."""
+    found = resonances(view(oscillator, platform_loops(oscillator.coordinates), 0.0), 0)
+    assert [round(each.gain, 2) for each in found] == [50.0]
+    shown = resonances(view(sampled, platform_loops(sampled.coordinates), 0.0), 0)
+    assert [each.frequency for each in shown] == [pytest.approx(sampled.frequencies[1])]
+
+
+def test_margins_as_peaks_of_sensitivity():
+    """Gain margin 2 and phase margin 60 deg need M = 2 and M = 1; both at once the lower."""
+    assert peak_for_margins(2.0) == 2.0
+    assert peak_for_margins(3.0, np.radians(29.0)) == pytest.approx(min(1.5, 0.5 / np.sin(np.radians(14.5))))
+
+
+BAD = {
+    "bandwidth: 12000 Hz is not below half the sampling rate, 10000 Hz": Task(Kind.PI, Goal(12e3)),
+    "bandwidth: it is -5 Hz": Task(Kind.PI, Goal(-5.0)),
+    "the highest peak of S allowed is 0.9": Task(Kind.PI, Goal(5.0, 0.9)),
+    "modes are to be off by up to -0.1": Task(Kind.PI, Goal(5.0, 2.0, -0.1)),
+    "notch at 1200 Hz: it is on no mode: between those at 875": Task(Kind.PI, Goal(5.0), (Notch(1200.0),)),
+    "1 are given for LQG, whose observer knows the modes": Task(Kind.LQG, Goal(5.0), (Notch(875.0),)),
+    "the noise its observer shall expect is not stated": Task(Kind.LQG, Goal(5.0)),
+}
+
+
+@pytest.mark.parametrize("said", BAD)
+def test_bad_tasks_are_named_with_their_numbers(sampled, said):
+    """What cannot be is refused before anything is tried."""
+    with pytest.raises(DesignError) as error:
+        tuned(sampled, platform_loops(sampled.coordinates), BAD[said])
+    assert said in str(error.value)
+
+
+def test_the_shipped_stage_in_all_coordinates():
+    """Six axes at 10 kHz and a sample of delay: PI with notches at 25 Hz, modes up to 2 % off, in platform and modal coordinates."""
+    stage = case("double-triangle")
+    model, kinematics = lumped(stage), ideal(stage)
+    one = plant(model, kinematics, Hardware(rate=10e3, delay=1e-4), modes=12)
+    found = modes(model)
+    for loops in (platform_loops(one.coordinates), modal_loops(one.coordinates, found.platform_shapes[:, list(found.platform)])):
+        seen = view(one, loops, 0.02)
+        tried = attempt(seen, Task(Kind.PI, Goal()), 25.0)
+        assert tried.reaches(25.0, Goal())
+        placed = {round(notch.frequency, 1) for group in tried.notches for notch in group}
+        assert placed <= {round(float(each), 1) for each in found.platform_frequencies}
+        closed = loop(one, tried.controller.system(1e-4))
+        assert verdict(closed).stable
+        assert peaks(closed, Cut.POSE).sensitivity.value <= 2.0

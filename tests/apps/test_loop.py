@@ -1,0 +1,235 @@
+"""The command `loop`: good defaults, options heard, bad input named, nothing half-written; document, report, files for others."""
+
+from __future__ import annotations
+
+import json
+import re
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import pytest
+import scipy.io
+
+from flexstage.cases.registry import CASES, case
+from flexstage.mechanism.store import dump
+from flexstage.studies.loop.file import FORMAT, load_setup
+from flexstage.studies.loop.setup import LoopSetup
+from tests.apps.command import Command, design_in
+from tests.apps.test_documents import ENVELOPE, page_section
+
+SMALL = ("--seconds", "0.02")
+
+
+@pytest.fixture
+def guide(flexstage: Command, tmp_path: Path) -> Command:
+    """The command in a folder whose stage is the shipped guide of one axis: quick."""
+    design_in(tmp_path, "parallelogram")
+    return flexstage
+
+
+def test_the_loop_of_the_shipped_stage_is_closed_judged_and_told(flexstage: Command, tmp_path: Path) -> None:
+    words = ("--bandwidth", "30 Hz", "--seconds", "0.05")  # without any options: docs/loop.md
+    ended = flexstage("loop", "stage.toml", *words, "--json", "loop.json", "--report", "loop.html")
+    assert ended.code == 0, ended.err
+    document = json.loads((tmp_path / "loop.json").read_text())
+    assert document["stability"]["stable"]
+    assert document["stability"]["growth_all_modes"] < 0.0
+    assert document["plant"]["coordinates"] == ["x", "y", "z", "rx", "ry", "rz"]
+    assert document["controller"]["bandwidth_hz"] == pytest.approx(30.0, rel=0.01)
+    assert document["peaks"]["sensitivity"]["value"] < 2.0
+    assert [run["course"] for run in document["runs"]] == ["x", "y", "z", "rx", "ry", "rz"]
+    assert document["static_errors"]["lost_motion_gains"]["largest"] < 1e-9
+    section = page_section("loop")
+    assert [key for key in document if key not in ENVELOPE and f"`{key}`" not in section] == []
+    for title in ("Loop", "Controller", "Bandwidth and margins", "Steps", "Static errors without the loop", "Noise at rest"):
+        assert f"{title}\n" in ended.out
+    page = (tmp_path / "loop.html").read_text()
+    for name in ("loop-diagram", "open-loops", "sensitivities", "poles", "steps", "noise-shares", "noise-spectrum"):
+        assert f".{name}-" in page or f'"{name}-' in page, name
+    assert "http" not in re.sub(r"http://www.w3.org/\d+/svg", "", page)
+
+
+SEVERAL = ("xy-stage-floating", "bridge")
+"""Cases that are tried always; the others in full only."""
+OTHERS = sorted(set(CASES) - {"double-triangle", "parallelogram"})
+
+
+@pytest.mark.parametrize("name", [pytest.param(name, marks=() if name in SEVERAL else pytest.mark.full) for name in OTHERS])
+def test_every_case_closes_or_is_refused_with_the_reason(flexstage: Command, tmp_path: Path, name: str) -> None:
+    design_in(tmp_path, name)
+    ended = flexstage("loop", "stage.toml", "--controller", "pi", "--json", "-", *SMALL)
+    if name == "xy-stage-floating":
+        assert ended.code == 2
+        assert "1 actuators make 1 of the platform's 2 ideal motions; missing: y" in ended.err
+        return
+    assert ended.code == 0, ended.err
+    assert ended.document["stability"]["stable"]
+
+
+def test_options_go_before_the_set_up_file(guide: Command, tmp_path: Path) -> None:
+    (tmp_path / "loop.toml").write_text(f'format = "{FORMAT}"\nrate = "20 kHz"\nseed = 3\n[controller]\nintegral = "100 1/s"')
+    document = guide("loop", "stage.toml", "--setup", "loop.toml", "--rate", "12 kHz", "--command", "x=2um", "--json", "-", *SMALL).document
+    assert document["plant"]["rate_hz"] == 12000.0
+    assert document["setup"]["seed"] == 3
+    assert document["controller"]["loops"]["x"]["integral"] == 100.0
+    assert document["runs"][0]["step"]["size"] == 2e-6
+
+
+def test_every_option_is_heard(guide: Command) -> None:
+    said = {
+        "--reading": "mapped",
+        "--delay": "30 us",
+        "--controller": "pid",
+        "--coordinates": "actuator",
+        "--bandwidth": "60 Hz",
+        "--sensitivity": "1.9",
+        "--compensate": "reference",
+        "--floor": "x=VC-C",
+        "--gauge-noise": "0.2 nm/Hz^0.5",
+        "--resolution": "0.5 nm",
+        "--trajectory": "sine",
+        "--seed": "5",
+    }
+    words = [word for pair in said.items() for word in pair]
+    ended = guide("loop", "stage.toml", *words, "--amplifier", "3 kHz", "--amplifier", "0.3 A", "--json", "-", "--seconds", "0.1")
+    assert ended.code == 0, ended.err
+    setup = ended.document["setup"]
+    assert (setup["reading"], setup["delay"], setup["compensate"], setup["seed"]) == ("mapped", 3e-5, ["reference"], 5)
+    assert (setup["controller"]["kind"], setup["controller"]["coordinates"]) == ("pid", "actuator")
+    assert (setup["controller"]["bandwidth"], setup["controller"]["sensitivity"]) == (60.0, 1.9)
+    assert setup["floor"]["x"]["criterion"] == "VC-C"
+    assert (setup["gauges"]["noise"], setup["gauges"]["resolution"]) == (2e-10, 5e-10)
+    assert (setup["amplifier"]["bandwidth"], setup["amplifier"]["current"]) == (3000.0, 0.3)
+    assert setup["trajectory"]["kind"] == "sine"
+    assert {source["kind"] for source in ended.document["noise"]["sources"]} == {"floor", "gauge noise", "gauge rounding"}
+    assert ended.document["runs"][0]["tracking"]["rows"] == ["x"]
+
+
+def test_the_example_can_be_used_as_it_is(guide: Command, tmp_path: Path) -> None:
+    ended = guide("loop", "stage.toml", "--example", "loop.toml")
+    assert ended.code == 0
+    assert "Next: flexstage loop stage.toml --setup loop.toml" in ended.err
+    assert load_setup(tmp_path / "loop.toml") == LoopSetup()
+    assert guide("loop", "stage.toml", "--setup", "loop.toml", *SMALL).code == 0
+
+
+def test_open_loop_and_hysteresis(guide: Command) -> None:
+    words = ("--controller", "none", "--hysteresis", "15 %", "--trajectory", "sine", "--command", "x=3um", "--json", "-")
+    bare, inverted = (guide("loop", "stage.toml", *words, *more).document for more in ((), ("--compensate", "hysteresis")))
+    assert bare["margins"] is None
+    assert bare["reasons"]["margins"] == "the stage is commanded in open loop"
+    stack = bare["hysteresis"]["B"]
+    assert stack["width"] == pytest.approx(0.15, abs=1e-3)
+    assert stack["rms_error_inverse"] < 0.2 * stack["rms_error"]
+    without, with_ = (document["runs"][0]["tracking"]["values"][0][2] for document in (bare, inverted))
+    assert with_ < 0.5 * without
+
+
+def test_a_file_of_hysteresis_and_one_of_poses(guide: Command, tmp_path: Path) -> None:
+    (tmp_path / "stack.toml").write_text(
+        'format = "flexstage hysteresis 1"\nthresholds = ["0 V", "20 V"]\nweights = ["100 nm/V", "20 nm/V"]\nvolts = ["0 V", "100 V"]\n'
+    )
+    (tmp_path / "path.csv").write_text("time [ms],x [um]\n0,0\n20,1\n40,0\n")
+    words = ("--hysteresis", "stack.toml", "--trajectory", "path.csv", "--compensate", "hysteresis", "--json", "-")
+    ended = guide("loop", "stage.toml", *words)
+    assert ended.code == 0, ended.err
+    assert ended.document["hysteresis"]["B"]["rms_error_inverse"] < 1e-9  # the stack is the model: the inverse is exact
+    assert ended.document["runs"][0]["course"] == "file"
+
+
+def test_exports_are_there_whole(guide: Command, tmp_path: Path) -> None:
+    names = ("plant.mat", "guide.c", "guide.fmu")
+    ended = guide("loop", "stage.toml", *SMALL, *(word for name in names for word in ("--export", name)))
+    assert ended.code == 0, ended.err
+    assert all(f"Wrote {name}" in ended.err for name in (*names, "guide.h"))
+    plant = scipy.io.loadmat(tmp_path / "plant.mat", simplify_cells=True)
+    assert plant["sampled"]["step"] == pytest.approx(1e-4)
+    compiled = ["cc", "-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-c", "guide.c", "-o", "guide.o"]
+    assert subprocess.run(compiled, cwd=tmp_path, check=False).returncode == 0
+
+
+def test_noise_is_that_of_its_simulation(guide: Command) -> None:
+    words = (
+        "--gauge-noise",
+        "1 nm/Hz^0.5",
+        "--resolution",
+        "0.1nm",
+        "--floor",
+        "x=5 nm/Hz^0.5",
+        "--bandwidth",
+        "50 Hz",
+        "--json",
+        "-",
+        *SMALL,
+    )
+    noise = guide("loop", "stage.toml", *words).document["noise"]
+    np.testing.assert_allclose(noise["simulated_rms"], noise["rms"], rtol=0.2)  # 5,000 samples, some hundred of them independent
+
+
+BAD: tuple[tuple[tuple[str, ...], tuple[str, ...]], ...] = (
+    (("--rate", "300 Hz"), ("rate: sampling at 300 Hz", "875.4 Hz", "Sample at")),
+    (("--rate", "5"), ("--rate", "without a unit")),
+    (("--bandwidth", "3 kHz"), ("bandwidth: at 3000 Hz", "the highest reachable with PI", "Ask for")),
+    (("--bandwidth", "6 kHz"), ("half the sampling rate",)),
+    (("--command", "x=1mm"), ("trajectory x", "leaves what the strokes reach", "Shrink the trajectory")),
+    (("--command", "z=1um"), ("trajectory z: the stage has no motion z", "x")),
+    (("--command", "q=1um"), ("--command q=1um", "rx, ry, rz, x, y, z")),
+    (("--trajectory", "raster"), ("the stage has no motion y",)),
+    (("--trajectory", "sinus"), ("sinus", "sine")),
+    (("--trajectory", "nowhere.csv"), ("nowhere.csv", "no such file")),
+    (("--floor", "VC-Z"), ("--floor VC-Z", "VC-A")),
+    (("--compensate", "everything"), ("--compensate everything", "lost-motion, load, reference, hysteresis")),
+    (("--compensate", "hysteresis"), ("compensate", "the stacks have none")),
+    (("--hysteresis", "nowhere.toml"), ("nowhere.toml", "no such file")),
+    (("--hysteresis", "80 %"), ("hysteresis.width", "at most 0.5")),
+    (("--reading", "ideal"), ("rigid bodies have no stiffness",)),
+    (("--controller", "none", "--bandwidth", "5 Hz"), ("there is no loop to be tuned",)),
+    (("--controller", "pidd"), ("--controller", "pi, pid, resonant, lqg, none")),
+    (("--sensitivity", "0.9"), ("controller.sensitivity", "greater than 1")),
+    (("--seconds", "-1"), ("seconds", "greater than 0")),
+    (("--seconds", "1e9"), ("seconds", "samples")),
+    (("--export", "loop.xyz"), ("--export loop.xyz", ".mat", ".fmu")),
+    (("--setup", "nowhere.toml"), ("nowhere.toml", "no such file")),
+    (("--json", "nowhere/loop.json"), ("nowhere/loop.json cannot be written",)),
+)
+
+
+@pytest.mark.parametrize(("arguments", "texts"), BAD)
+def test_bad_input_is_named_and_nothing_written(guide: Command, tmp_path: Path, arguments: tuple[str, ...], texts: tuple[str, ...]) -> None:
+    before = sorted(tmp_path.iterdir())
+    ended = guide("loop", "stage.toml", "--report", "loop.html", *arguments)
+    assert ended.code == 2, ended.out
+    assert all(text in ended.err for text in texts), ended.err
+    assert "Traceback" not in ended.err
+    assert sorted(tmp_path.iterdir()) == before
+    assert not ended.out
+
+
+def test_an_unstable_loop_is_refused_with_what_makes_it_so(guide: Command, tmp_path: Path) -> None:
+    (tmp_path / "loop.toml").write_text(f'format = "{FORMAT}"\n[controller]\nproportional = 3\nintegral = "9000 1/s"')
+    ended = guide("loop", "stage.toml", "--setup", "loop.toml", "--json", "-")
+    assert ended.code == 2
+    assert not ended.out
+    assert "unstable loop" in ended.err
+    assert "grows by" in ended.err
+    assert "1674 Hz" in ended.err
+
+
+def test_a_stage_without_gauges_is_refused_with_the_reason(flexstage: Command, tmp_path: Path) -> None:
+    from dataclasses import replace
+
+    from flexstage.base.number import Table
+
+    dump(replace(case("parallelogram"), gauges=Table({}), requirements=Table({})), tmp_path / "stage.toml")
+    ended = flexstage("loop", "stage.toml")
+    assert ended.code == 2
+    assert "0 gauges tell 0 of the platform's 1 ideal motions; missing: x" in ended.err
+
+
+def test_all_findings_come_at_once(guide: Command, tmp_path: Path) -> None:
+    (tmp_path / "loop.toml").write_text(
+        f'format = "{FORMAT}"\n\n[gauges]\nfilter_order = 3\n[controller]\nkind = "pi"\nderivative = "1 ms"'
+    )
+    ended = guide("loop", "stage.toml", "--setup", "loop.toml", "--rate", "5 m", "--floor", "VC-Z", "--compensate", "x")
+    assert ended.err.startswith("error: 5 findings")

@@ -1,0 +1,227 @@
+"""Generated C and functional mock-up units against the simulation in numpy; without warnings, and validated by FMPy."""
+
+from __future__ import annotations
+
+import ctypes
+import shutil
+import subprocess
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from flexstage.analysis.loop.code.compiled import simulate_compiled
+from flexstage.analysis.loop.code.compiler import FLAGS, WARNINGS, compiler
+from flexstage.analysis.loop.code.controller import controller_code
+from flexstage.analysis.loop.code.program import Program
+from flexstage.analysis.loop.code.whole import loop_code
+from flexstage.analysis.loop.example import integral_loop
+from flexstage.analysis.loop.hysteresis.bouc_wen import BoucWen, bouc_wen
+from flexstage.analysis.loop.hysteresis.envelope import Envelope
+from flexstage.analysis.loop.hysteresis.prandtl_ishlinskii import PrandtlIshlinskii
+from flexstage.analysis.loop.hysteresis.preisach import Preisach
+from flexstage.analysis.loop.simulation.machine import Machine, machine, unlimited
+from flexstage.analysis.loop.simulation.result import Simulated
+from flexstage.analysis.loop.simulation.run import simulate
+from flexstage.analysis.loop.system import static
+from flexstage.base.finding import DesignError
+from flexstage.present.fmu.unit import fmu, fmu_sources
+from flexstage.present.loop_files import write_controller, write_fmu, write_plant
+from flexstage.readings.linear.model import Channel
+from tests.elsewhere.loops import PLATFORM, full_loop, plays, six_axes, way
+from tests.elsewhere.test_loop_simulation import worst
+
+needs_compiler = pytest.mark.skipif(compiler() is None, reason="no compiler of C on the PATH")
+
+
+def enveloped() -> PrandtlIshlinskii:
+    """Plays between bent envelopes, in volts and metres."""
+    model = plays(6)
+    knots, bent = np.array([-200.0, 300.0, 700.0, 1200.0]), np.array([-150.0, 320.0, 690.0, 1100.0])
+    after = Envelope(np.array([-1e-4, 0.0, 2e-4]), np.array([-0.9e-4, 1e-6, 2.2e-4]))
+    return PrandtlIshlinskii(model.thresholds, model.weights, Envelope(knots, bent), after)
+
+
+def bouc_wens() -> BoucWen:
+    """Of three shapes; the second has no slow part (beta = gamma), where its formula has another form."""
+    ones = [bouc_wen(150e-6, (0.0, 1000.0), 0.1, skew=skew) for skew in (0.3, 1.0, -0.2)] * 2
+    return BoucWen(*(np.array([getattr(one, name)[0] for one in ones]) for name in ("gain", "lag", "beta", "gamma")), 1e-6)
+
+
+def full(*, inverse: bool = False) -> Machine:
+    return full_loop(inverse=inverse, motions=PLATFORM)
+
+
+KINDS: dict[str, Callable[[], Machine]] = {
+    "Bouc-Wen, unrounded": lambda: replace(full(), hysteresis=bouc_wens(), compensation=plays(), resolution=np.zeros(6)),
+    "linear": lambda: unlimited(full()),
+    "limits": lambda: replace(full(), hysteresis=None),
+    "hysteresis": full,
+    "inverse": lambda: full(inverse=True),
+    "envelopes": lambda: replace(full(), hysteresis=enveloped(), compensation=enveloped()),
+    "all motions": lambda: full_loop(inverse=True),
+    "slack": lambda: replace(full(), amplifiers=replace(full().amplifiers, slew=np.full(6, np.inf), step=np.zeros(6))),
+}
+FULL = pytest.mark.full
+EVERY = [kind if kind.startswith("Bouc-Wen") else pytest.param(kind, marks=FULL) for kind in KINDS]
+
+
+@needs_compiler
+@pytest.mark.parametrize("kind", EVERY)
+def test_compiled_loops_equal_numpy(kind):
+    given = KINDS[kind]()
+    reference, disturbances = way(given, 400, size=35e-6)
+    found, expected = simulate_compiled(given, reference, disturbances), simulate(given, reference, disturbances)
+    assert max(worst(found, expected).values()) < 1e-12, worst(found, expected)
+    assert np.array_equal(found.saturated, expected.saturated)
+    assert np.array_equal(found.slewed, expected.slewed)
+
+
+@needs_compiler
+@FULL
+def test_compiled_loops_equal_numpy_without_disturbances():
+    given = full_loop()
+    reference, _ = way(given, 300)
+    assert max(worst(simulate_compiled(given, reference), simulate(given, reference)).values()) < 1e-12
+
+
+@needs_compiler
+@FULL
+@pytest.mark.parametrize("free", [False, True])
+def test_loops_without_states_of_their_own_compile_as_well(free):
+    """A controller that only passes the reference on, one axis, no volts, with and without limits: groups of size 0 everywhere."""
+    example = integral_loop()
+    through = static(np.eye(1), (Channel("reference.x", "m"),), (Channel("command.B", "m"),), example.step)
+    given = machine(example.plant, through, motions=())
+    given = unlimited(given) if free else given
+    reference = np.full((300, 1), 1e-6)
+    found, expected = simulate_compiled(given, reference), simulate(given, reference)
+    assert np.max(np.abs(found.pose - expected.pose)) < 1e-12 * 1e-6
+    assert len(fmu(controller_code(given, "2 odd */ names"))) > 1000
+
+
+def replayed(step: object, program: Program, given: Machine, known: Simulated) -> dict[str, np.ndarray]:
+    """Outputs of a controller's step, called sample by sample with the reference and readings of a simulation."""
+    sizes = {signal.field: len(signal.channels) for signal in program.outputs}
+    inputs = np.ascontiguousarray(np.hstack([known.reference, known.readings]))
+    outputs = np.empty((len(inputs), sum(sizes.values())))
+    for entry, out in zip(inputs, outputs, strict=True):
+        step(entry.ctypes.data_as(ctypes.c_void_p), out.ctypes.data_as(ctypes.c_void_p))
+    ends = np.cumsum([0, *sizes.values()])
+    return {field: outputs[:, start:stop] for field, start, stop in zip(sizes, ends[:-1], ends[1:], strict=True)}
+
+
+@needs_compiler
+def test_the_exported_controller_gives_the_volts_of_the_simulation(tmp_path):
+    given = full_loop(inverse=True)
+    known = simulate(given, *way(given, 400))
+    source, header = write_controller(tmp_path / "controller.c", given, "Made for a test.")
+    assert "Made for a test." in header.read_text()
+    made = tmp_path / "controller.so"
+    subprocess.run([*compiler().command, *FLAGS, "-o", str(made), str(source), "-lm"], check=True, cwd=tmp_path)
+    loaded, state = ctypes.CDLL(str(made)), ctypes.create_string_buffer(1 << 16)
+    loaded.controller_init(state)
+    program = controller_code(given)
+    found = replayed(lambda entry, out: loaded.controller_step(state, entry, out), program, given, known)
+    for field in ("pose", "error", "command", "asked", "given", "volts"):
+        ours = getattr(known, field)
+        assert np.max(np.abs(found[field] - ours)) < 1e-12 * np.max(np.abs(ours)), field
+
+
+@needs_compiler
+@pytest.mark.parametrize("name", [name for name in ("gcc", "clang") if shutil.which(name)])
+@pytest.mark.parametrize("standard", ["c99", pytest.param("c11", marks=FULL)])
+@pytest.mark.parametrize("kind", EVERY)
+def test_no_compiler_warns(tmp_path, name, standard, kind):
+    given = KINDS[kind]()
+    for program in (controller_code(given), loop_code(given)):
+        for file, text in fmu_sources(program).items():
+            (tmp_path / file).write_text(text)
+        units = [f"{program.name}.c", "fmi2.c"]
+        command = [name, f"-std={standard}", "-O1", "-c", "-Wshadow", "-Wdouble-promotion", *WARNINGS, *units]
+        done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stderr
+
+
+@pytest.mark.parametrize("kind", EVERY)
+def test_the_code_needs_nothing_but_mathematics(kind):
+    for program in (controller_code(KINDS[kind]()), loop_code(KINDS[kind]())):
+        included = [line for line in program.source.splitlines() if line.startswith("#include")]
+        assert included == [f'#include "{program.name}.h"', "#include <math.h>"]
+        assert "#include" not in program.header
+        assert not any(word in program.source for word in ("malloc", "calloc", "free(", "printf"))
+
+
+def test_the_same_loop_gives_the_same_text_and_the_same_unit():
+    first, again = (controller_code(full_loop(inverse=True)) for _ in range(2))
+    assert (first.source, first.header) == (again.source, again.header)
+    assert fmu(first, sources_only=True) == fmu(again, sources_only=True)
+
+
+@needs_compiler
+@FULL
+def test_the_same_loop_gives_the_same_library(tmp_path, monkeypatch):
+    made = []
+    for folder in ("a", "b"):
+        monkeypatch.setenv("FLEXSTAGE_CACHE", str(tmp_path / folder))
+        made.append(fmu(controller_code(full_loop(inverse=True))))
+        assert [path.suffix for path in (tmp_path / folder / "loops").iterdir()] == [".so"]
+    assert made[0] == made[1]
+
+
+def test_without_a_compiler_it_is_said_and_the_text_still_comes(tmp_path, monkeypatch):
+    given = full_loop(current=0.03)  # no other test has compiled it
+    monkeypatch.setenv("CC", "no-such-compiler")
+    with pytest.raises(DesignError, match=r"compiler: a functional mock-up unit needs a compiler of C.*CC = no-such-compiler.*Install one"):
+        write_fmu(tmp_path / "controller.fmu", controller_code(given))
+    with pytest.raises(DesignError, match="the compiled simulation needs a compiler of C"):
+        simulate_compiled(given, np.zeros((2, 6)))
+    write_fmu(tmp_path / "controller.fmu", controller_code(given), sources_only=True)
+    write_controller(tmp_path / "stage.c", given)
+    assert {path.name for path in tmp_path.iterdir()} == {"controller.fmu", "stage.c", "stage.h"}
+
+
+@pytest.mark.parametrize(
+    ("write", "name", "message"),
+    [
+        (write_controller, "controller.txt", r"does not end in \.c\. Call it controller\.c"),
+        (write_controller, "2 axes.c", r'"2 axes" is no name for functions of C\. Call it _2_axes\.c'),
+        (write_fmu, "controller.zip", r"does not end in \.fmu"),
+        (write_plant, "plant.m", r"does not end in \.mat"),
+    ],
+)
+def test_bad_names_are_refused(tmp_path, write, name, message):
+    with pytest.raises(DesignError, match=message):
+        write(tmp_path / name, full_loop())
+
+
+def test_a_hysteresis_without_c_is_refused():
+    given = full_loop()
+    one = Preisach.__new__(Preisach)  # of this kind, whatever its numbers
+    with pytest.raises(DesignError, match="Preisach has no form in C"):
+        loop_code(replace_unchecked(given, one))
+
+
+def replace_unchecked(given: Machine, model: object) -> Machine:
+    changed = replace(given)
+    object.__setattr__(model, "start", lambda bias: bias)
+    object.__setattr__(changed, "hysteresis", model)
+    return changed
+
+
+def test_plants_for_matlab_read_back_and_are_the_same_file(tmp_path):
+    from scipy.io import loadmat
+
+    wired = six_axes()
+    content = [write_plant(tmp_path / name, wired.plant).read_bytes() for name in ("a.mat", "b.mat")]
+    assert content[0] == content[1]
+    found = loadmat(tmp_path / "a.mat", simplify_cells=True)
+    for name in "ABCD":
+        assert np.array_equal(found["continuous"][name], getattr(wired.plant.system, name))
+        assert np.array_equal(found["sampled"][name], getattr(wired.held, name))
+    assert list(found["sampled"]["inputs"]) == list(wired.held.input_names)
+    assert list(found["continuous"]["output_units"]) == [channel.unit for channel in wired.plant.system.outputs]
+    assert list(found["continuous"]["states"]) == list(wired.plant.states)
+    assert (found["continuous"]["step"], found["sampled"]["step"]) == (0.0, wired.plant.hardware.step)
+    assert found["note"] == wired.plant.note

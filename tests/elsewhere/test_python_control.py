@@ -1,0 +1,191 @@
+"""Loops against python-control, an independent control library: responses, poles, margins, disk margins, variances.
+
+The numbers are made at test time by the pinned version; margins there come from roots of polynomials, ours from frequencies.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+pytest.importorskip("control", reason="python-control is not installed")
+
+import control
+from scipy.signal import dlsim, dlti
+
+from flexstage.analysis.loop.closed import Cut, Loop, loop, opened
+from flexstage.analysis.loop.curves import sensitivity
+from flexstage.analysis.loop.disk import disk_margin
+from flexstage.analysis.loop.example import integral
+from flexstage.analysis.loop.exchange import from_control, to_control
+from flexstage.analysis.loop.hardware import AmplifierSettings, GaugeSettings, hardware
+from flexstage.analysis.loop.margins import margins
+from flexstage.analysis.loop.norm import peak
+from flexstage.analysis.loop.plant import held, plant
+from flexstage.analysis.loop.system import System, picked
+from flexstage.analysis.loop.whites import mean_squares
+from flexstage.base.finding import DesignError
+from flexstage.cases.parallelogram import parallelogram
+from flexstage.cases.tip_tilt import tip_tilt
+from flexstage.readings.ideal import ideal
+from flexstage.readings.linear.model import Channel
+from flexstage.readings.lumped import lumped
+
+CLOSE, ZERO = 1e-9, 1e-12
+
+
+def _loop(rate: float | None, gain: float, case=parallelogram, modes: int = 2) -> Loop:
+    stage = case()
+    delay = 60e-6 if rate else 0.0
+    given = hardware(stage, rate=rate, delay=delay, amplifiers=AmplifierSettings(bandwidth=900.0), gauges=GaugeSettings(bandwidth=np.inf))
+    one = plant(lumped(stage), ideal(stage), given, modes=modes)
+    return loop(one, integral(one, gain))
+
+
+def _like(system: System, response):
+    """The largest of all entries of the same kind, rotations and moments taken at 50 mm: what is 0 by symmetry is rounding of that."""
+    sizes = [
+        np.array([{"m": 1.0, "rad": 0.05, "N": 1.0, "N m": 20.0}[each.unit] for each in group]) for group in (system.outputs, system.inputs)
+    ]
+    forces = np.array([each.unit.startswith("N") for each in system.inputs])
+    scale = np.outer(sizes[0], 1.0 / sizes[1])
+    largest = np.max(np.abs(response), axis=0) * scale
+    return np.where(forces, np.max(largest[:, forces], initial=0.0), np.max(largest[:, ~forces])) / scale
+
+
+@pytest.mark.parametrize("rate", [8e3, None])
+def test_responses(rate):
+    closed = _loop(rate, 100.0, tip_tilt, 6)
+    for ours in (closed.system, opened(closed, Cut.POSE), closed.plant.system):
+        theirs, at = to_control(ours), np.geomspace(0.5, 3500.0, 200)
+        found = np.moveaxis(np.asarray(theirs.frequency_response(2.0 * np.pi * at).frdata), -1, 0)
+        mine = ours.transfer(at)
+        assert np.all(np.abs(found - mine) <= CLOSE * np.abs(mine) + ZERO * _like(ours, mine))
+        poles, own = np.sort_complex(theirs.poles()), np.sort_complex(ours.poles)
+        assert np.allclose(poles, own, rtol=1e-6, atol=1e-9 * np.max(np.abs(own)))
+
+
+@pytest.mark.parametrize("rate", [8e3, None])
+@pytest.mark.parametrize("gain", [50.0, 200.0, 400.0])
+def test_closed_by_feedback(rate, gain):
+    """The closed loop of python-control's `feedback` around our open loop is ours."""
+    closed = _loop(rate, gain, tip_tilt, 6)
+    open_loop = to_control(opened(closed, Cut.POSE))
+    at = np.geomspace(0.5, 3500.0, 100)
+    found = control.feedback(open_loop, control.ss([], [], [], np.eye(3), open_loop.dt))
+    theirs = np.moveaxis(np.asarray(found.frequency_response(2.0 * np.pi * at).frdata), -1, 0)
+    mine = np.eye(3) - sensitivity(opened(closed, Cut.POSE)).transfer(at)
+    assert np.max(np.abs(theirs - mine)) < CLOSE * np.max(np.abs(mine))
+
+
+@pytest.mark.parametrize("gain", [50.0, 200.0, 400.0])
+def test_margins(gain):
+    """A continuous loop: every margin by the roots of polynomials."""
+    closed = _loop(None, gain)
+    own = margins(closed, Cut.POSE).of("x")
+    gains, phases, _, at_gain, at_phase, _ = control.stability_margins(to_control(opened(closed, Cut.POSE)), returnall=True, method="poly")
+    place, least = int(np.argmin(np.where(np.asarray(gains) > 1.0, gains, np.inf))), int(np.argmin(np.abs(phases)))
+    assert abs(gains[place] / own.gain_high.value - 1.0) < CLOSE
+    assert abs(at_gain[place] / (2.0 * np.pi) / own.gain_high.frequency - 1.0) < CLOSE
+    assert abs(np.radians(abs(phases[least])) - own.phase.value) < CLOSE
+    assert abs(at_phase[least] / (2.0 * np.pi) / own.phase.frequency - 1.0) < CLOSE
+    assert abs(np.min(np.radians(np.mod(phases, 360.0)) / at_phase) / own.delay.value - 1.0) < CLOSE
+
+
+@pytest.mark.parametrize("gain", [50.0, 200.0, 400.0])
+def test_margins_of_samples(gain):
+    """A sampled loop: theirs by interpolation (their polynomials in z lose four digits), and their response at our frequencies."""
+    closed = _loop(8e3, gain)
+    own, loops = margins(closed, Cut.POSE).of("x"), to_control(opened(closed, Cut.POSE))
+    gain_high, phase, _, at_gain, at_phase, _ = control.stability_margins(loops, method="frd")
+    assert abs(gain_high / own.gain_high.value - 1.0) < 1e-7
+    assert abs(np.radians(phase) - own.phase.value) < 1e-7
+    assert np.allclose([at_gain / (2.0 * np.pi), at_phase / (2.0 * np.pi)], [own.gain_high.frequency, own.phase.frequency], rtol=1e-6)
+    edges = [own.gain_high.frequency, own.phase.frequency, own.delay.frequency]
+    found = loops(np.exp(2j * np.pi * np.array(edges) * closed.step))
+    factors = [own.gain_high.value, np.exp(-1j * own.phase.value), np.exp(-2j * np.pi * own.delay.frequency * own.delay.value)]
+    assert np.allclose(found * factors, -1.0, atol=CLOSE)
+
+
+@pytest.mark.parametrize("rate", [8e3, None])
+def test_disk_margins(rate):
+    """Theirs from frequencies given, ours from the norm: with the norm's own frequency among them."""
+    closed = _loop(rate, 200.0)
+    for skew in (-0.5, 0.0, 1.0):
+        own = disk_margin(sensitivity(opened(closed, Cut.POSE)), skew)
+        at = 2.0 * np.pi * np.unique(np.append(np.geomspace(1.0, 3900.0, 300), own.frequency))
+        alpha, _, _ = control.disk_margins(to_control(opened(closed, Cut.POSE)), at, skew)
+        assert abs(alpha / own.value - 1.0) < CLOSE
+
+
+@pytest.mark.parametrize("rate", [8e3, None])
+def test_norms(rate):
+    """The H-2 norm is the rms under white noise, the highest response the H-infinity norm.
+
+    Theirs by the Gramian: `control.norm` looks for a negative eigenvalue in it, and finds one of rounding or none as the machine rounds.
+    """
+    closed = _loop(rate, 200.0)
+    system = picked(closed.system, ["noise.B"], ["relative.x"])
+    if rate is None:
+        theirs = to_control(system)
+        square = theirs.C @ control.lyap(theirs.A, theirs.B @ theirs.B.T) @ theirs.C.T
+        assert abs(square[0, 0] / mean_squares(system)[0, 0] - 1.0) < 1e-8
+    found = peak(system)
+    grid = 2.0 * np.pi * np.append(np.geomspace(1.0, 3900.0, 400), found.frequency)
+    highest = np.max(np.abs(to_control(system).frequency_response(grid).frdata))
+    assert abs(highest / found.value - 1.0) < CLOSE
+
+
+def test_hold():
+    """Exact sampling without delay is `sample_system`; a whole sample of delay is a shift."""
+    stage = parallelogram()
+    plants = [
+        plant(lumped(stage), ideal(stage), hardware(stage, rate=8e3, delay=delay, amplifiers=AmplifierSettings(bandwidth=900.0)), modes=2)
+        for delay in (0.0, 1.0 / 8e3)
+    ]
+    ours = [picked(held(each), ["B"], ["gap.S"]) for each in plants]
+    theirs = control.sample_system(to_control(picked(plants[0].system, ["B"], ["gap.S"])), 1.0 / 8e3, method="zoh")
+    at = np.geomspace(1.0, 3900.0, 100)
+    response = theirs.frequency_response(2.0 * np.pi * at).frdata[0, 0]
+    assert np.allclose(ours[0].transfer(at)[:, 0, 0], response, rtol=1e-8)
+    assert np.allclose(ours[1].transfer(at)[:, 0, 0], response * np.exp(-2j * np.pi * at / 8e3), rtol=1e-8)
+
+
+def test_stepped_by_scipy():
+    """The closed loop's step, as scipy.signal and python-control march it."""
+    closed = _loop(8e3, 200.0)
+    system = picked(closed.system, ["reference.x"], ["relative.x", "command.B"])
+    reference = np.ones(400)
+    _, found, _ = dlsim(dlti(system.A, system.B, system.C, system.D, dt=system.step), reference)
+    theirs = control.forced_response(to_control(system), inputs=reference, squeeze=False)
+    assert np.allclose(theirs.outputs.T, found, rtol=1e-10, atol=1e-12)
+    assert abs(found[-1, 0] - 1.0) < 1e-3
+
+
+def test_controllers_come_back():
+    """A controller designed there closes the loop here."""
+    closed = _loop(8e3, 200.0)
+    theirs = control.c2d(control.tf([200.0], [1.0, 0.0]), closed.step, method="tustin")
+    gain = float(closed.plant.coordinates.strokes[0, 0])
+    designed = from_control(gain * theirs, closed.controller.inputs, closed.controller.outputs)
+    found = loop(closed.plant, designed)
+    assert found.system.growth < 0.0
+    assert from_control(to_control(found.system)).input_names[0] == "reference_x"
+
+
+def test_what_cannot_be_taken_is_refused():
+    one = to_control(_loop(8e3, 200.0).controller)
+    channel = Channel("error.x", "m")
+    with pytest.raises(DesignError, match="2 are named, the system has 1"):
+        from_control(one, (channel, channel), None)
+    with pytest.raises(DesignError, match="no step is stated"):
+        from_control(control.ss([0.5], [1.0], [1.0], [0.0], True))
+    with pytest.raises(DesignError, match="no StateSpace"):
+        from_control(3.0)
+    with pytest.raises(DesignError, match="2 inputs and 1 outputs"):
+        from_control(control.tf([[[1.0], [1.0]]], [[[1.0, 1.0], [1.0, 2.0]]]))
+    twins = System(
+        np.zeros((0, 0)), np.zeros((0, 2)), np.zeros((1, 0)), np.ones((1, 2)), (Channel("a.b", "m"), Channel("a_b", "m")), (channel,)
+    )
+    with pytest.raises(DesignError, match="2 names become this one"):
+        to_control(twins)

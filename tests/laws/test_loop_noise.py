@@ -1,0 +1,96 @@
+"""Series of noise have the spectra they are made of, and a simulated loop the variances of its noise budget."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.signal import welch
+
+from flexstage.analysis.loop.closed import loop
+from flexstage.analysis.loop.example import integral
+from flexstage.analysis.loop.hardware import AmplifierSettings, GaugeSettings, hardware
+from flexstage.analysis.loop.noise import noise_budget
+from flexstage.analysis.loop.plant import plant
+from flexstage.analysis.loop.simulation.machine import machine
+from flexstage.analysis.loop.simulation.noise import noises, series
+from flexstage.analysis.loop.simulation.run import simulate
+from flexstage.analysis.random_response import Rate, Spectrum
+from flexstage.base.finding import DesignError
+from flexstage.cases.parallelogram import parallelogram
+from flexstage.readings.ideal import ideal
+from flexstage.readings.lumped import lumped
+
+STEP = 1e-4
+RATE = 40e3
+"""So fast that the lowest resonance, 1.5 kHz, feels the straight lines between samples of the floor by 0.5 % only."""
+SPECTRA = {
+    "white": Spectrum(2e-18),
+    "table": Spectrum(np.array([1e-16, 1e-18, 1e-20]), np.array([20.0, 200.0, 2000.0])),
+    "acceleration": Spectrum(np.array([1e-8, 1e-8]), np.array([10.0, 1000.0]), Rate.ACCELERATION),
+}
+
+
+@pytest.mark.parametrize("name", SPECTRA)
+def test_periodograms_are_the_spectra(name):
+    """Welch's averages of n segments scatter by 1/n^(1/2): mean ratio 1, none beyond five deviations."""
+    values = series(SPECTRA[name], 400_000, STEP, (3,))
+    frequencies, density = welch(values, 1.0 / STEP, nperseg=4000, noverlap=0, window="hann", detrend=False)
+    inside = (frequencies > 30.0) & (frequencies < 900.0)
+    ratio = density[inside] / SPECTRA[name].at(frequencies[inside])
+    assert np.mean(ratio) == pytest.approx(1.0, abs=0.01)
+    assert np.max(np.abs(ratio - 1.0)) < 5.0 / 10.0
+
+
+def test_series_are_gaussian_and_their_own():
+    one, again, other = (series(SPECTRA["white"], 100_000, STEP, (seed,)) for seed in (1, 1, 2))
+    assert np.array_equal(one, again)
+    assert abs(np.corrcoef(one, other)[0, 1]) < 5.0 / 100_000**0.5
+    scaled = one / np.std(one)
+    assert np.mean(scaled**4) == pytest.approx(3.0, abs=0.1)
+    assert np.std(one) == pytest.approx((2e-18 * 5e3) ** 0.5, rel=0.02)
+
+
+def test_names_and_seeds_of_noise():
+    one = small_loop().plant
+    found, more = noises(one, {}, 100, seed=4), noises(one, {"ground.x": SPECTRA["white"]}, 100, seed=4)
+    assert all(np.array_equal(found[name], more[name]) for name in found)  # what else there is does not matter
+    with pytest.raises(DesignError, match=r"ground\.q: the ground has no such motion"):
+        noises(one, {"ground.q": SPECTRA["white"]}, 100)
+    with pytest.raises(DesignError, match="it is continuous"):
+        noises(replace(one, hardware=replace(one.hardware, rate=None, delay=0.0)), {}, 100)
+
+
+def small_loop(resolution: float = 2e-10):
+    stage = parallelogram()
+    gauges = GaugeSettings(noise_density=1e-11, resolution=resolution, filter_order=2, filter_corner=6000.0)
+    amplifiers = AmplifierSettings(bandwidth=1000.0, noise_density=1e-5)
+    given = hardware(stage, rate=RATE, delay=15e-6, gauges=gauges, amplifiers=amplifiers)
+    one = plant(lumped(stage), ideal(stage), given, modes=3)
+    return loop(one, integral(one, 100.0))
+
+
+KINDS = {"floor": ("ground.",), "gauge noise": ("noise.S",), "amplifier noise": ("noise.B",), "all": ("ground.", "noise.")}
+
+
+@pytest.mark.parametrize("kind", [*(pytest.param(kind, marks=pytest.mark.full) for kind in list(KINDS)[:-1]), "all"])
+def test_the_simulated_variance_is_that_of_the_budget(kind):
+    """Of each source alone, and of all with rounding: eight seeds, their mean within four deviations (and 1 % for straight lines)."""
+    closed = small_loop()
+    floor = {"ground.x": Spectrum(np.array([1e-18, 1e-21]), np.array([5.0, 1500.0]))}
+    count = 10_000
+    outputs = ("relative.x", "platform.x")
+    budget = noise_budget(closed, floor, (0.5 * RATE / count, 0.5 * RATE), outputs)
+    known = machine(closed.plant, closed.controller, motions=outputs)
+    known = known if kind == "all" else replace(known, resolution=np.zeros(1))
+    squares = []
+    for seed in range(8):
+        every = noises(closed.plant, floor, count, seed)
+        own = {name: values for name, values in every.items() if name.startswith(KINDS[kind])}
+        found = simulate(known, np.zeros((count, 1)), own).motions[1000:]
+        squares.append(np.mean(found**2, axis=0))
+    expected = budget.rms**2 if kind == "all" else np.array([budget.by_kind.at(output, kind) for output in outputs])
+    mean, deviation = np.mean(squares, axis=0), np.std(squares, axis=0, ddof=1) / 8.0**0.5
+    assert np.all(np.abs(mean - expected) < 4.0 * deviation + 0.01 * expected), (mean / expected, deviation / expected)
+    assert np.all(deviation < 0.1 * expected)

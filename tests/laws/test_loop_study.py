@@ -1,0 +1,121 @@
+"""A loop from its set-up: every number reaches its place, and what the study says is what its parts say."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from flexstage.analysis.loop.closed import loop
+from flexstage.analysis.loop.reduced import reduced, resonances
+from flexstage.analysis.workspace.drive import drive
+from flexstage.base.finding import DesignError
+from flexstage.cases.double_triangle import double_triangle
+from flexstage.cases.parallelogram import parallelogram
+from flexstage.studies.loop.choices import Compensation, ControllerKind, StackKind
+from flexstage.studies.loop.settle import settled, usual_rate
+from flexstage.studies.loop.setup import (
+    Amplifying,
+    Controlling,
+    Gauging,
+    HystereticStacks,
+    LoopSetup,
+    Motion,
+    SineMotion,
+    StepMotion,
+)
+from flexstage.studies.loop.stacks import stacks_of, swept
+from flexstage.studies.loop.study import loop_study
+
+CALM = Controlling(integral=300.0)
+
+
+def test_every_number_of_the_set_up_reaches_the_hardware() -> None:
+    amplifier = Amplifying(bandwidth=900.0, current=0.1, slew=1e3, noise=2e-6, bits=16)
+    gauges = Gauging(noise=1e-10, resolution=2e-9, bandwidth=3e3, filter_order=2, filter_corner=4e3)
+    given = settled(parallelogram(), LoopSetup(rate=12e3, delay=1e-4, amplifier=amplifier, gauges=gauges)).plant.hardware
+    (power,), (sensor,) = given.amplifiers.values(), given.sensors.values()
+    span = power.high - power.low
+    volts = float(drive(parallelogram()).gain[0])
+    assert (given.rate, given.delay, power.bandwidth) == (12e3, 1e-4, 900.0)
+    assert power.noise_density == pytest.approx(2e-6 * volts)
+    assert power.step == pytest.approx(span / 2**16)
+    assert power.slew == pytest.approx(1e3 * volts)  # slower than 0.1 A into the stack lets it
+    assert (sensor.noise_density, sensor.resolution, sensor.bandwidth) == (1e-10, 2e-9, 3e3)
+    assert (sensor.filter_order, sensor.filter_corner) == (2, 4e3)
+
+
+def test_rates_are_round_and_fast_enough() -> None:
+    for highest in (3.0, 173.0, 999.0, 1000.0, 1001.0, 5e3, 7.7e4):
+        rate = usual_rate(highest)
+        assert rate >= max(10e3, 10.0 * highest)
+        assert f"{rate:.0e}"[0] in "125"
+        assert float(f"{rate:.0e}") == rate
+
+
+def test_a_reduced_plant_keeps_its_static_gains_and_the_loop_its_poles() -> None:
+    given = settled(double_triangle(), LoopSetup())
+    few, whole = given.plant.system, given.whole.system
+    assert len(few.A) < 0.4 * len(whole.A)
+    at_rest = [each.transfer(np.zeros(1))[0] for each in (few, whole)]
+    np.testing.assert_allclose(at_rest[0], at_rest[1], rtol=1e-7, atol=1e-9 * np.max(np.abs(at_rest[1])))
+    assert float(np.min(resonances(given.plant))) >= 0.01
+    assert reduced(given.plant, 0.01) is given.plant
+    lines = np.geomspace(1.0, 0.45 * given.rate, 200)
+    pair = [
+        given.plant.coordinates.scale[:, None] * (given.plant.coordinates.pose @ each.transfer(lines)[:, :6, :6]) for each in (few, whole)
+    ]
+    assert np.max(np.abs(pair[0] - pair[1])) < 0.02
+
+
+def test_a_loop_of_stated_numbers_settles_as_its_integrator_does() -> None:
+    found = loop_study(parallelogram(), LoopSetup(controller=CALM, gauges=Gauging(resolution=0.0), seconds=0.1))
+    (run,) = found.runs
+    assert run.figures is not None
+    assert run.figures.settling[0] == pytest.approx(np.log(50.0) / 300.0, rel=0.05)  # and the delay
+    assert found.growth == pytest.approx(loop(found.settled.whole, found.control.system).system.growth)
+
+
+def test_open_loop_errors_are_those_at_rest() -> None:
+    """A step in open loop ends where the static errors say, by the map alone and corrected."""
+    for compensate, wanted in (((), 0.012938), ((Compensation.LOST_MOTION,), 0.0)):
+        setup = LoopSetup(controller=Controlling(kind=ControllerKind.NONE), compensate=compensate, gauges=Gauging(resolution=0.0))
+        found = loop_study(parallelogram(), setup)
+        error = found.runs[0].simulated.true_error[:, 0] / 1e-6
+        late = error[len(error) // 2 :]
+        shown = found.rest.bare if not compensate else found.rest.corrected
+        assert float(np.asarray(shown.error.values)[0, 0]) == pytest.approx(wanted, abs=1e-5)
+        assert float(np.mean(late)) == pytest.approx(wanted, abs=3e-3)  # what still rings averages out
+
+
+def test_the_inverse_of_the_stacks_own_model_is_exact_and_helps_others_fivefold() -> None:
+    own, other = (swept(stacks_of(parallelogram(), HystereticStacks(width=0.15, plant=kind))) for kind in StackKind)
+    assert float(own.error(own.inverse)[0]) < 1e-9
+    assert float(other.error(other.inverse)[0]) < 0.2 * float(other.error(other.bare)[0])
+
+
+def test_stacks_creep_by_their_law() -> None:
+    """In open loop a step goes on by as much a decade as is stated, from a tenth of a second on."""
+    still, creeping = (HystereticStacks(width=0.01, creep=creep) for creep in (None, 0.02))
+    asked = LoopSetup(controller=Controlling(kind=ControllerKind.NONE), trajectory=StepMotion(by=Motion(x=1e-6)), seconds=1.5)
+    first, second = (
+        loop_study(parallelogram(), LoopSetup(**{**asked.__dict__, "hysteresis": each})).runs[0].simulated for each in (still, creeping)
+    )
+    places = [int(np.searchsorted(first.times, time)) for time in (0.1, 0.3, 1.0)]
+    ratio = (1.0 - second.true_error[places, 0] / 1e-6) / (1.0 - first.true_error[places, 0] / 1e-6)
+    np.testing.assert_allclose(ratio, 1.0 + 0.02 * np.log10(first.times[places] / 0.1), atol=2e-4)
+
+
+def test_loads_that_are_carried_take_of_the_strokes() -> None:
+    """290 of 300 um are there for a command, but not beside the 16 um that carry the platform's weight."""
+    slow, far = Controlling(integral=5.0), StepMotion(by=Motion(z=290e-6))
+    assert loop_study(double_triangle(), LoopSetup(controller=slow, trajectory=far, compensate=(), seconds=0.01)).runs
+    with pytest.raises(DesignError, match="trajectory z: it leaves what the strokes reach"):
+        loop_study(double_triangle(), LoopSetup(controller=slow, trajectory=far, compensate=(Compensation.LOAD,), seconds=0.01))
+
+
+def test_the_same_seed_gives_the_same_noise() -> None:
+    setup = LoopSetup(controller=CALM, gauges=Gauging(noise=1e-9), trajectory=SineMotion(frequency=50.0), seconds=0.05)
+    first, again = (loop_study(parallelogram(), setup).runs[0].simulated.true_error for _ in range(2))
+    other = loop_study(parallelogram(), LoopSetup(**{**setup.__dict__, "seed": 1})).runs[0].simulated.true_error
+    np.testing.assert_array_equal(first, again)
+    assert np.any(first != other)

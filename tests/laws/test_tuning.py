@@ -1,0 +1,76 @@
+"""Laws of tuning on random stages: what is judged reached is stable by the verdict, with the gain and the peak that were asked for."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from hypothesis import given
+from hypothesis import strategies as st
+
+from flexstage.analysis.loop.closed import Cut, loop, opened
+from flexstage.analysis.loop.controllers.loops import Loops, actuator_loops, loop_modes, modal_loops, platform_loops
+from flexstage.analysis.loop.controllers.lqg import Disturbances
+from flexstage.analysis.loop.hardware import Hardware
+from flexstage.analysis.loop.margins import peaks
+from flexstage.analysis.loop.plant import Plant, plant
+from flexstage.analysis.loop.tuning.attempt import Task, attempt
+from flexstage.analysis.loop.tuning.goal import Goal, Kind
+from flexstage.analysis.loop.tuning.judge import judged
+from flexstage.analysis.loop.tuning.view import view
+from flexstage.analysis.loop.verdict import verdict
+from flexstage.analysis.modes import modes
+from flexstage.mechanism.mechanism import PLATFORM, Probe
+from flexstage.mechanism.pattern import Pose
+from flexstage.parts.gauge import Positive
+from flexstage.readings.ideal import ideal
+from flexstage.readings.lumped import lumped
+from flexstage.spatial.frame import axes
+from tests.conftest import examples
+from tests.laws.strategies import platforms
+
+
+@st.composite
+def plants(draw) -> tuple[Plant, Loops]:
+    """A platform of one to six axes with a gauge along every strut, sampled 10 to 60 times a period of its lowest mode, up to 2 late."""
+    wires = draw(st.integers(0, 5))
+    mechanism, lines, _ = draw(platforms(wires, 6 - wires + draw(st.integers(0, 1))))
+    poses = [Pose(point, along, tuple(axes(tuple(map(float, along)))[:, 2].tolist())) for point, along in lines]
+    gauges = {f"S{number + 1}": Probe("gauge", PLATFORM, pose, Positive.OPENS) for number, pose in enumerate(poses)}
+    stage = replace(mechanism, gauges=gauges)
+    model, kinematics = lumped(stage), ideal(stage)
+    found = modes(model)
+    rate = float(found.frequencies[0]) * draw(st.integers(10, 60))
+    one = plant(model, kinematics, Hardware(rate=rate, delay=draw(st.sampled_from([0.0, 0.3, 1.0, 1.7])) / rate), modes=6)
+    count = len(kinematics.coordinates)
+    kinds = [platform_loops(one.coordinates)]
+    kinds.append(modal_loops(one.coordinates, found.platform_shapes[:, list(loop_modes(found, one.coordinates))]))
+    if len(one.actuators) == count:
+        kinds.append(actuator_loops(one.coordinates))
+    return one, draw(st.sampled_from(kinds))
+
+
+@examples(10, 200)
+@given(case=plants(), kind=st.sampled_from(list(Kind)), part=st.sampled_from([0.005, 0.05, 0.3, 0.8]))
+def test_what_is_judged_reached_is_reached(case, kind, part):
+    """Eigenvalues with hold and delay, the gain of each loop at the frequency, the exact peak of S; judgements of others are right too."""
+    one, loops = case
+    if kind is Kind.LQG:
+        loops = platform_loops(one.coordinates)
+    asked, goal = part * float(one.frequencies[0]), Goal(None, 2.0, 0.0)
+    noise = Disturbances(1e-9, dict.fromkeys(one.gauges, 1e-10))
+    seen = view(one, loops, 0.0)
+    found = attempt(seen, Task(kind, goal, expected=noise), asked)
+    if found is None:
+        return
+    system = found.controller.system(one.hardware.step)
+    closed = loop(one, system)
+    assert verdict(closed).stable == found.judgement.stable
+    again = judged(seen, system)
+    np.testing.assert_allclose([again.peak, *again.bandwidths], [found.judgement.peak, *found.judgement.bandwidths], rtol=1e-6)
+    if not found.reaches(asked, goal):
+        return
+    gains = opened(closed, Cut.POSE).transfer(np.array([asked]))[0]
+    own = np.diag(loops.sense @ gains @ np.linalg.inv(loops.sense))
+    np.testing.assert_allclose(np.abs(own), 1.0, rtol=0.01)
+    assert peaks(closed, Cut.POSE).sensitivity.value <= goal.sensitivity * 1.02
