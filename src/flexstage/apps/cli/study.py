@@ -1,0 +1,79 @@
+"""The command `sweep`: many designs of a stage computed, and what makes them differ."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from flexstage.apps.cli.options import Json
+
+if TYPE_CHECKING:
+    from flexstage.studies.study.definition import Study
+    from flexstage.studies.study.effects import Effects
+    from flexstage.studies.study.store import Results
+
+StudyFile = Annotated[Path, typer.Argument(help="File of the study (TOML).", metavar="STUDY.TOML", show_default=False)]
+
+
+def sweep(
+    study: StudyFile,
+    *,
+    output: Annotated[
+        Path, typer.Option("--output", "-o", metavar="RESULTS.H5", help="Results file to write: every design.", show_default=False)
+    ],
+    resume: Annotated[bool, typer.Option("--resume", help="Go on with a results file that is not complete.")] = False,
+    workers: Annotated[
+        int | None, typer.Option("--workers", metavar="N", help="Processes. Default: one a core.", show_default=False)
+    ] = None,
+    scheduler: Annotated[
+        str | None,
+        typer.Option("--scheduler", metavar="ADDRESS", help="Dask scheduler of a cluster, e.g. tcp://host:8786.", show_default=False),
+    ] = None,
+    report: Annotated[
+        Path | None, typer.Option("--report", metavar="FILE.html", help="Write a report with pictures.", show_default=False)
+    ] = None,
+    json: Json = None,
+) -> None:
+    """Compute many designs; show what varies with what.
+
+    Grid, Latin hypercube, Sobol sequence, or Saltelli's plan for Sobol indices, as the study's file says.
+
+    Interrupted at any moment, --resume goes on without loss or repetition.
+    """
+    from flexstage.apps.cli.bar import bar
+    from flexstage.apps.cli.output import output_findings
+    from flexstage.base.finding import require
+    from flexstage.studies.study.effects import effects
+    from flexstage.studies.study.file import load_study
+    from flexstage.studies.study.run import Run, run
+
+    require(output_findings([("--output", output), ("--json", json), ("--report", report)], study))
+    asked = load_study(study)
+    with bar() as shown:
+        results = run(
+            asked, output, Run(workers, resume, scheduler), lambda done, of: shown.share(f"{done} of {of} designs", done / max(of, 1))
+        )
+    found = effects(results, asked.plan)
+    _told(asked, results, found, report, json)
+
+
+def _told(asked: Study, results: Results, found: Effects, report: Path | None, json: str | None) -> None:
+    from flexstage.apps.cli.answer import Asked, answer
+    from flexstage.apps.cli.opening import announce
+    from flexstage.apps.cli.output import write
+    from flexstage.present.documents.study import sweep_body
+    from flexstage.present.study_report import sweep_report
+    from flexstage.present.tables.study import study_tables
+    from flexstage.studies.reading import Reading
+
+    if report is not None:
+        write(report, sweep_report(asked, results, found), "--report")
+        announce(report)
+    design = asked.design
+    answer(
+        Asked("sweep", design, Reading.LUMPED, json),
+        lambda: sweep_body(asked, results, found),
+        lambda: study_tables(asked, results, found),
+    )

@@ -1,0 +1,48 @@
+"""A study: the design it starts from, what is varied and what is asked."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from flexstage.analysis.requirements import Measure, Requirement
+from flexstage.base.digest import digest
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.studies.study.plan import Plan
+from flexstage.studies.study.variable import Variable
+
+
+@dataclass(frozen=True, eq=False)
+class Study:
+    """What a study's file says: `design` as it stands, `variables`, `responses` by name, `limits` on measures, the sampling `plan`.
+
+    `text` is the file's own, kept with the results.
+    """
+
+    name: str
+    design: Mechanism
+    variables: tuple[Variable, ...]
+    responses: Mapping[str, Measure]
+    limits: tuple[Requirement, ...]
+    plan: Plan
+    text: str = ""
+
+    @property
+    def columns(self) -> Mapping[str, Measure]:
+        """What is computed of each design, by name: the responses, and the measures that limits are on."""
+        return {**self.responses, **{each.key: each for each in self.limits if each.key not in self.responses}}
+
+    @property
+    def facts(self) -> dict[str, str]:
+        """What results depend on, item by item in words: two studies with the same facts have the same results.
+
+        >>> from flexstage.studies.study.example import neck_study
+        >>> list(neck_study().facts)
+        ['design', 'plan', 'variables.neck', 'responses.tilt']
+        """
+        return {
+            "design": digest(self.design, physics=True)[:16],
+            "plan": repr(self.plan),
+            **{f"variables.{each.name}": repr(each) for each in self.variables},
+            **{f"responses.{name}": f"{each.key} at {each.point}" for name, each in self.columns.items()},
+        }

@@ -1,0 +1,190 @@
+"""The study's file: TOML with unit strings, read with all its findings at once."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from pathlib import Path
+
+from flexstage.analysis.requirements import Measure, Requirement, measure, requirement
+from flexstage.base.finding import DesignError, Finding, nearest, require
+from flexstage.base.number import Table
+from flexstage.base.quantity import RATIO, Quantity
+from flexstage.cases.registry import case
+from flexstage.mechanism.address import quantity_of
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.mechanism.store import load
+from flexstage.mechanism.store.file import parse_toml, read_text
+from flexstage.studies.sensitivities import not_numbers
+from flexstage.studies.study.definition import Study
+from flexstage.studies.study.fields import Fields
+from flexstage.studies.study.plan import Plan, Sampling
+from flexstage.studies.study.variable import Variable, variable_findings
+
+FORMAT = "flexstage study 1"
+_MOST = 10**9
+
+
+def load_study(path: str | os.PathLike[str]) -> Study:
+    """Read a study's file; a design file that it names is looked for beside it.
+
+    Raises `DesignError` with every finding: unknown keys, variables and measures (with the nearest names), empty ranges, wrong units.
+
+    >>> load_study("nowhere/study.toml")
+    Traceback (most recent call last):
+        ...
+    flexstage.base.finding.DesignError: nowhere/study.toml: there is no such file. Check the path, or write one with "flexstage new".
+    """
+    return loads_study(read_text(path), where=os.fspath(path), folder=Path(path).parent)
+
+
+def loads_study(text: str, *, where: str = "text", folder: Path | None = None) -> Study:
+    """Read a study from its text; `folder` is where design files are looked for.
+
+    >>> study = loads_study('''
+    ... format = "flexstage study 1"
+    ... case = "double-triangle"
+    ... variables.neck = { of = "parts.neck.thickness", from = "1.4 mm", to = "1.7 mm" }
+    ... responses.tilt = "frequency.platform.1"
+    ... sweep = { sampling = "sobol", designs = 8 }
+    ... ''')
+    >>> study.variables[0].high, study.responses["tilt"].key, study.plan.designs
+    (0.0017, 'frequency.platform.1', 8)
+    """
+    findings: list[Finding] = []
+    fields = Fields(parse_toml(text, where), "", findings)
+    if fields.text("format") != FORMAT:
+        fields.note("format", f'found "{fields.text("format")}"', f'Begin the file with format = "{FORMAT}"')
+    name = fields.text("name", "study")
+    design = _design(fields, folder or Path())
+    tables = {key: fields.table(key) for key in ("variables", "responses", "limits", "sweep")}
+    fields.done()
+    require(_placed(findings, where))
+    variables = _variables(tables["variables"], design)
+    responses = _responses(tables["responses"], design)
+    limits = _limits(tables["limits"], design)
+    plan = _plan(tables["sweep"], variables)
+    if not responses:
+        findings.append(Finding("responses", "nothing is asked", 'Name a measure, for example f1 = "frequency.platform.1"'))
+    require(_placed([*findings, *variable_findings(design, variables)], where))
+    return Study(name, design, variables, Table(responses), limits, plan, text)
+
+
+def _placed(findings: list[Finding], where: str) -> Iterator[Finding]:
+    for each in findings:
+        yield Finding(f"{where}: {each.where}", each.what, each.advice)
+
+
+def _design(fields: Fields, folder: Path) -> Mechanism:
+    """The design that the study starts from."""
+    path, shipped = fields.text("design"), fields.text("case")
+    if bool(path) == bool(shipped):
+        found = "both a design file and a case are named" if path else "no design is named"
+        fields.note("design", found, 'Write design = "stage.toml", or case = "double-triangle"')
+        return Mechanism("")
+    try:
+        return load(folder / path) if path else case(shipped)
+    except DesignError as error:
+        fields.findings.extend(error.findings)
+        return Mechanism("")
+
+
+def _variables(table: Fields, design: Mechanism) -> tuple[Variable, ...]:
+    """All variables; the name of one that gives no address is its address."""
+    found = [_variable(table.table(name), name, design) for name in table.tree]
+    if not table.tree:
+        what = 'Write for example neck = { of = "parts.neck.thickness", from = "1.4 mm", to = "1.7 mm" }'
+        table.findings.append(Finding("variables", "nothing is varied", what))
+    return tuple(each for each in found if each is not None)
+
+
+def _variable(table: Fields, name: str, design: Mechanism) -> Variable | None:
+    several = isinstance(table.tree.get("of"), list)
+    addresses = table.texts("of") if several else (table.text("of", name),)
+    before = len(table.findings)
+    quantity = _quantity(table, addresses, design)
+    low, relative = _end(table, "from", quantity)
+    high, also = _end(table, "to", quantity)
+    logarithmic = table.flag("logarithmic")
+    levels = table.whole("levels", 2, 0) or None
+    table.done()
+    if len(table.findings) == before and relative != also:
+        table.note("to", "one end is relative (%), the other not", "Give both alike")
+    if quantity is None or len(table.findings) > before:
+        return None
+    return Variable(name, addresses, RATIO if relative else quantity, low, high, relative, logarithmic, levels)
+
+
+def _quantity(table: Fields, addresses: tuple[str, ...], design: Mechanism) -> Quantity | None:
+    """The quantity of what is moved; all addresses must have the same."""
+    found: list[Quantity] = []
+    for address in addresses:
+        try:
+            wrong = list(not_numbers(design, (address,)))
+            table.findings.extend(Finding(table.where, f"{each.where}: {each.what}", each.advice) for each in wrong)
+            found += [] if wrong else [quantity_of(design, address)]
+        except DesignError as error:
+            table.findings.extend(Finding(table.where, f"{each.where}: {each.what}", each.advice) for each in error.findings)
+    if len({each.si for each in found}) > 1:
+        table.note("of", f"the addresses are of different quantities: {', '.join(each.name for each in found)}", "Use two variables")
+        return None
+    return found[0] if found else None
+
+
+def _end(table: Fields, key: str, quantity: Quantity | None) -> tuple[float, bool]:
+    """One end of a range, and whether it is relative: "-10 %" is nine tenths of what the design states."""
+    raw = table.tree.get(key)
+    if isinstance(raw, str) and raw.strip().endswith("%"):
+        share = table.number(key, RATIO, 0.0)
+        return 1.0 + (share or 0.0), True
+    if raw is None:
+        table.asked.append(key)
+        table.note(key, "it is not given", 'Give both ends, such as from = "1.4 mm", or from = "-10 %" of what the design states')
+    value = None if quantity is None else table.number(key, quantity, 0.0)
+    table.asked.append(key)
+    return value or 0.0, False
+
+
+def _responses(table: Fields, design: Mechanism) -> dict[str, Measure]:
+    found: dict[str, Measure] = {}
+    for name in table.tree:
+        try:
+            found[name] = measure(design, table.text(name), table.at(name))
+        except DesignError as error:
+            table.findings.extend(error.findings)
+    return found
+
+
+def _limits(table: Fields, design: Mechanism) -> tuple[Requirement, ...]:
+    found: list[Requirement] = []
+    for key in table.tree:
+        try:
+            found.append(requirement(design, key, table.text(key), table.at(key)))
+        except DesignError as error:
+            table.findings.extend(error.findings)
+    return tuple(found)
+
+
+def _plan(table: Fields, variables: tuple[Variable, ...]) -> Plan:
+    wanted = table.text("sampling", Sampling.SOBOL.value)
+    known = [each.value for each in Sampling]
+    if wanted not in known:
+        table.note("sampling", f'found "{wanted}"', nearest(wanted, known))
+        wanted = Sampling.SOBOL.value
+    sampling = Sampling(wanted)
+    count, seed = table.whole("designs", 1, 1024), table.whole("seed", 0, 0)
+    table.done()
+    levels = _levels(table, variables) if sampling is Sampling.GRID else ()
+    plan = Plan(sampling, len(variables), 0 if sampling is Sampling.GRID else count, levels, seed)
+    if plan.designs > _MOST:
+        table.note("designs", f"these are {plan.designs:.3g} designs", f"Ask for at most {_MOST:.0e}")
+    return plan
+
+
+def _levels(table: Fields, variables: tuple[Variable, ...]) -> tuple[int, ...]:
+    for each in variables:
+        if each.levels is None:
+            table.findings.append(Finding(f"variables.{each.name}", "a grid needs its levels", "Add for example levels = 5"))
+    if "designs" in table.tree:
+        table.note("designs", "a grid has as many designs as its levels make", "Leave it out")
+    return tuple(each.levels or 2 for each in variables)

@@ -1,0 +1,111 @@
+"""Plans of designs: which points of the variables' ranges a study computes, the same whatever is computed first and by whom."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+from functools import lru_cache
+
+import numpy as np
+
+from flexstage.base.number import Array
+
+
+class Sampling(Enum):
+    """How designs are spread over the ranges."""
+
+    GRID = "grid"
+    LATIN_HYPERCUBE = "latin hypercube"
+    SOBOL = "sobol"
+    SALTELLI = "saltelli"
+
+
+@dataclass(frozen=True)
+class Plan:
+    """A sampling of `count` designs with its `seed`; a grid takes `levels`, one number a variable, instead.
+
+    Saltelli: two Sobol samples A and B of `count` designs each, and for each of d variables A with that variable's column from B: count
+    (d + 2) designs in all, from which Sobol indices follow (Saltelli et al., Computer Physics Communications 181 (2010) 259).
+    """
+
+    sampling: Sampling
+    dimensions: int
+    count: int = 0
+    levels: tuple[int, ...] = ()
+    seed: int = 0
+
+    @property
+    def designs(self) -> int:
+        """Number of designs.
+
+        >>> Plan(Sampling.GRID, 2, levels=(3, 4)).designs, Plan(Sampling.SALTELLI, 2, count=8).designs
+        (12, 32)
+        """
+        if self.sampling is Sampling.GRID:
+            return int(np.prod(self.levels, dtype=object))
+        return self.count * (self.dimensions + 2) if self.sampling is Sampling.SALTELLI else self.count
+
+
+def shares(plan: Plan, start: int, stop: int) -> Array:
+    """Shares (stop - start, d) in [0, 1] of the ranges for designs from `start` to before `stop`.
+
+    >>> shares(Plan(Sampling.GRID, 2, levels=(3, 2)), 0, 6).tolist()
+    [[0.0, 0.0], [0.0, 1.0], [0.5, 0.0], [0.5, 1.0], [1.0, 0.0], [1.0, 1.0]]
+    >>> whole, plan = shares(Plan(Sampling.SOBOL, 2, count=8, seed=3), 0, 8), Plan(Sampling.SOBOL, 2, count=8, seed=3)
+    >>> bool(np.all(whole[5:7] == shares(plan, 5, 7)))
+    True
+    """
+    if plan.sampling is Sampling.GRID:
+        places = np.unravel_index(np.arange(start, stop), plan.levels)
+        return np.stack([place / (levels - 1) for place, levels in zip(places, plan.levels, strict=True)], axis=-1)
+    if plan.sampling is Sampling.LATIN_HYPERCUBE:
+        return _latin(plan, start, stop)
+    if plan.sampling is Sampling.SOBOL:
+        return _sobol(plan.dimensions, plan.seed, start, stop)
+    return _saltelli(plan, start, stop)
+
+
+def _sobol(dimensions: int, seed: int, start: int, stop: int) -> Array:
+    """Rows of a scrambled Sobol sequence."""
+    from scipy.stats import qmc
+
+    sequence = qmc.Sobol(dimensions, scramble=True, rng=np.random.default_rng(seed))
+    if start:
+        sequence.fast_forward(start)
+    return _drawn(sequence, stop - start)
+
+
+def _drawn(sequence: object, count: int) -> Array:
+    """Rows in powers of two: the sequence warns of other numbers, whose balance the plan does not need piece by piece."""
+    rows = [np.zeros((0, sequence.d))]  # type: ignore[attr-defined]
+    while count:
+        piece = 1 << (count.bit_length() - 1)
+        rows.append(sequence.random(piece))  # type: ignore[attr-defined]
+        count -= piece
+    return np.concatenate(rows)
+
+
+def _latin(plan: Plan, start: int, stop: int) -> Array:
+    """Each variable's range in `count` equal strata, each taken once, in an order of its own, anywhere in the stratum."""
+    return np.stack([_strata(plan.count, plan.seed, number)[start:stop] for number in range(plan.dimensions)], axis=-1)
+
+
+@lru_cache(maxsize=64)
+def _strata(count: int, seed: int, number: int) -> Array:
+    """One variable's shares of all designs: kept, since every piece of a plan is cut from them."""
+    generator = np.random.default_rng([seed, number])
+    return (generator.permutation(count) + generator.random(count)) / count
+
+
+def _saltelli(plan: Plan, start: int, stop: int) -> Array:
+    """Designs block by block: A, B, then A with one column of B each."""
+    result = np.empty((stop - start, plan.dimensions))
+    for block in range(start // plan.count, -(-stop // plan.count)):
+        low, high = max(start, block * plan.count), min(stop, (block + 1) * plan.count)
+        both = _sobol(2 * plan.dimensions, plan.seed, low - block * plan.count, high - block * plan.count)
+        first, second = both[:, : plan.dimensions], both[:, plan.dimensions :]
+        rows = second.copy() if block == 1 else first.copy()
+        if block > 1:
+            rows[:, block - 2] = second[:, block - 2]
+        result[low - start : high - start] = rows
+    return result

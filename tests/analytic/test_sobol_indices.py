@@ -1,0 +1,39 @@
+"""Effects of variables against the Ishigami function, whose indices are known in closed form (Ishigami and Homma, ISUMA 1990)."""
+
+import numpy as np
+import pytest
+
+from flexstage.studies.study.effects import Effects, effects
+from flexstage.studies.study.plan import Plan, Sampling, shares
+from flexstage.studies.study.store import Results
+
+A, B = 7.0, 0.1
+ALONE = np.array([0.5 * (1.0 + B * np.pi**4 / 5.0) ** 2, A**2 / 8.0, 0.0])
+TOGETHER = B**2 * np.pi**8 * (1.0 / 18.0 - 1.0 / 50.0)
+VARIANCE = ALONE.sum() + TOGETHER
+
+
+def ishigami(sampling: Sampling, count: int) -> Effects:
+    plan = Plan(sampling, 3, count=count, seed=1)
+    at = np.pi * (2.0 * shares(plan, 0, plan.designs) - 1.0)
+    value = np.sin(at[:, 0]) + A * np.sin(at[:, 1]) ** 2 + B * at[:, 2] ** 4 * np.sin(at[:, 0])
+    names, units = (("a", "b", "c"), ("y", "still")), (("", "", ""), ("", ""))
+    made = Results(np.arange(len(at)), at, np.column_stack([value, np.ones(len(at))]), {}, names, units, len(at), {}, "")
+    return effects(made, plan)
+
+
+def test_indices_of_saltelli_plan():
+    found = ishigami(Sampling.SALTELLI, 4096)
+    assert found.total is not None
+    np.testing.assert_allclose(found.first[:, 0], ALONE / VARIANCE, atol=0.015)
+    np.testing.assert_allclose(found.total[:, 0], (ALONE + TOGETHER * np.array([1.0, 0.0, 1.0])) / VARIANCE, atol=0.01)
+    assert np.all(np.isnan(found.first[:, 1]))  # what does not vary has no shares
+
+
+@pytest.mark.parametrize("sampling", [Sampling.SOBOL, Sampling.LATIN_HYPERCUBE])
+def test_correlation_ratios_of_other_plans(sampling):
+    found = ishigami(sampling, 8192)
+    assert found.total is None
+    np.testing.assert_allclose(found.first[:, 0], ALONE / VARIANCE, atol=0.03)
+    np.testing.assert_allclose(found.mean, [A / 2.0, 1.0], atol=0.05)
+    np.testing.assert_allclose(found.deviation[0] ** 2, VARIANCE, rtol=4.0 * np.sqrt(2.5 / 8192))  # four standard errors, kurtosis 3.5

@@ -1,0 +1,100 @@
+"""Laws of studies: plans do not depend on how they are cut, batches not on how they are computed, failures stay in their places."""
+
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from flexstage.analysis.requirements import measure
+from flexstage.cases.double_triangle import double_triangle
+from flexstage.mechanism.address import get, set_value
+from flexstage.studies.judge import measured
+from flexstage.studies.sensitivities import stepped
+from flexstage.studies.study.evaluate import piece
+from flexstage.studies.study.file import loads_study
+from flexstage.studies.study.plan import Plan, Sampling, shares
+from flexstage.studies.study.variable import varied
+
+STUDY = """
+format = "flexstage study 1"
+case = "parallelogram"
+responses.f = "frequency.1"
+responses.k = "stiffness.x"
+sweep = { sampling = "sobol", designs = 12, seed = 4 }
+[variables]
+young = { of = "materials.aluminium.young", from = "-10 %", to = "10 %" }
+leaf = { of = "parts.leaf.thickness", from = "0.8 mm", to = "1.2 mm" }
+"""
+
+
+@given(
+    st.sampled_from([Sampling.SOBOL, Sampling.LATIN_HYPERCUBE, Sampling.SALTELLI, Sampling.GRID]),
+    st.integers(1, 4),
+    st.integers(0, 5),
+    st.lists(st.integers(0, 48), max_size=4),
+)
+def test_plans_do_not_depend_on_how_they_are_cut(sampling, dimensions, seed, cuts):
+    levels = tuple(range(2, 2 + dimensions)) if sampling is Sampling.GRID else ()
+    plan = Plan(sampling, dimensions, 0 if levels else 8, levels, seed)
+    whole = shares(plan, 0, plan.designs)
+    edges = sorted({0, plan.designs, *(min(cut, plan.designs) for cut in cuts)})
+    np.testing.assert_array_equal(np.concatenate([shares(plan, *pair) for pair in pairwise(edges)]), whole)
+    assert np.all((whole >= 0.0) & (whole <= 1.0))
+    assert len(np.unique(whole, axis=0)) == plan.designs or sampling is Sampling.SALTELLI
+
+
+@given(st.integers(1, 5), st.integers(1, 60), st.integers(0, 9))
+def test_a_latin_hypercube_takes_every_stratum_once(dimensions, count, seed):
+    at = shares(Plan(Sampling.LATIN_HYPERCUBE, dimensions, count, seed=seed), 0, count)
+    np.testing.assert_array_equal(np.sort(np.floor(at * count).astype(int), axis=0), np.arange(count)[:, None].repeat(dimensions, axis=1))
+
+
+def test_a_batch_is_its_designs_one_by_one():
+    study = loads_study(STUDY)
+    found = piece(study, 0, 12)
+    for values, responses in zip(found.variables, found.responses, strict=True):
+        alone = measured(varied(study.design, study.variables, values), tuple(study.columns.values()))
+        np.testing.assert_allclose(responses, [float(value) for value in alone], rtol=1e-12)
+
+
+def test_variables_reach_the_numbers_they_name():
+    study = loads_study(STUDY)
+    changed = varied(study.design, study.variables, np.array([1.05, 0.9e-3]))
+    assert get(changed, "materials.aluminium.young") == pytest.approx(1.05 * get(study.design, "materials.aluminium.young"), rel=1e-15)
+    assert get(changed, "parts.leaf.thickness") == 0.9e-3
+
+
+def test_designs_that_fail_keep_their_place_and_reason():
+    study = loads_study(STUDY)
+    leaf = replace(study.variables[1], low=-0.4e-3)  # thickness below nought in a quarter of the range
+    found = piece(replace(study, variables=(study.variables[0], leaf)), 0, 12)
+    negative = np.flatnonzero(found.variables[:, 1] <= 0.0)
+    assert 0 < len(negative) < 12
+    assert sorted(found.failures) == negative.tolist()
+    assert all("thickness" in reason for reason in found.failures.values())
+    assert np.all(np.isnan(found.responses[negative]))
+    assert np.all(np.isfinite(np.delete(found.responses, negative, axis=0)))
+
+
+@pytest.mark.parametrize(
+    "key",
+    ["stroke.x", "corner", "safety", "buckling", "stiffness.rz", "force.z", "loss", "loss.B4", "crosstalk", "drift.z", "mass", "load"],
+)
+def test_measures_are_analytic(key):
+    """A step of 1e-20 in the imaginary direction is the derivative that a central difference finds.
+
+    Of the safety factor less sharply: stations at which stress is taken move with a notch's thickness, for the real steps only.
+    """
+    sharp = 1e-4 if key == "safety" else 1e-5
+    stage = double_triangle()
+    names = ("parts.neck.thickness", "bodies.platform.solids.plate.size.z", "parts.lever_notch.thickness")
+    asked = (measure(stage, key, "here"),)
+    slopes = np.imag(measured(replace(stepped(stage, names), requirements=stage.requirements), asked)[0]) / 1e-20
+    for slope, name in zip(np.broadcast_to(slopes, 3), names, strict=True):
+        value = get(stage, name)
+        here, there = (float(measured(set_value(stage, name, value * (1.0 + step)), asked)[0]) for step in (1e-5, -1e-5))
+        scale = abs(here) / value
+        assert slope == pytest.approx((here - there) / (2e-5 * value), rel=sharp, abs=1e-8 * scale), name
