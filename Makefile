@@ -6,6 +6,8 @@ PYTHON ?= $(shell for each in python3.11 python3 python3.12 python3.13 python; d
 	$$each -c 'import sys, venv; sys.exit(sys.version_info < (3, 11))' >/dev/null 2>&1 && echo $$each && break; done)
 BIN := .venv/bin
 JOBS ?= 2
+# Every process gets half of the tests in their order, so that what a file's tests share is made once; who is done first takes from the other.
+PYTEST = $(BIN)/python -m pytest -n $(JOBS) --dist worksteal
 
 # Many small matrices: a second BLAS thread costs far more than it gives, and tests already run side by side.
 export OPENBLAS_NUM_THREADS := 1
@@ -13,6 +15,8 @@ export OMP_NUM_THREADS := 1
 export MKL_NUM_THREADS := 1
 export PYTHONNOUSERSITE := 1
 unexport PYTHONPATH PYTHONHOME
+# The tests start some hundred processes: none need translate flexstage anew.
+unexport PYTHONDONTWRITEBYTECODE
 
 COMPILE := $(BIN)/uv pip compile -q --universal --python-version 3.11 --generate-hashes --no-header --no-annotate --no-emit-index-url
 
@@ -31,10 +35,10 @@ demo: setup-runtime ## analyse the shipped stage: tables here, the report in dem
 	$(BIN)/flexstage analyse demo/stage.toml --report demo/report.html
 
 test: setup-dev ## the tests, but for the examples of the documentation
-	$(BIN)/python -m pytest -n $(JOBS) --ignore=tests/docs
+	$(PYTEST) --ignore=tests/docs
 
 check-all: setup-oracles ## the tests with full counts and sizes, other programs beside ours; writes docs/validation
-	FLEXSTAGE_TESTS=full $(BIN)/python -m pytest -n $(JOBS)
+	FLEXSTAGE_TESTS=full $(PYTEST)
 	$(BIN)/python benchmarks/oracles.py
 	$(BIN)/python -m tools.validation --solids
 
@@ -67,9 +71,9 @@ docs: setup-dev ## build the documentation into docs/_build/html; warnings are e
 	$(BIN)/sphinx-build -q -W --keep-going -b html docs docs/_build/html
 
 examples: setup-dev ## run every example of README.md and docs
-	$(BIN)/python -m pytest -n $(JOBS) tests/docs
+	$(PYTEST) tests/docs
 
 lock: setup-dev ## pin the requirements anew (newer versions: make lock UPGRADE=--upgrade)
 	$(COMPILE) $(UPGRADE) pyproject.toml requirements/build.in --extra dev -o requirements/dev.txt
-	$(COMPILE) pyproject.toml requirements/build.in --extra solid --extra tables -c requirements/dev.txt -o requirements/runtime.txt
+	$(COMPILE) pyproject.toml requirements/build.in --extra cluster --extra control --extra solid --extra tables -c requirements/dev.txt -o requirements/runtime.txt
 	$(COMPILE) pyproject.toml --extra oracles -c requirements/dev.txt -o requirements/oracles.txt

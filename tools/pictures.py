@@ -10,6 +10,7 @@ import re
 from collections.abc import Callable, Mapping
 from functools import cache
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
@@ -28,20 +29,35 @@ from flexstage.present.figures.budget import loss_figure
 from flexstage.present.figures.compare import compare_figure
 from flexstage.present.figures.directional import directional_figure
 from flexstage.present.figures.export import to_png, to_svg
+from flexstage.present.figures.hysteresis import stack_figure
+from flexstage.present.figures.loop_diagram import loop_diagram
+from flexstage.present.figures.loop_frequency import Curves, open_loop_figure
+from flexstage.present.figures.loop_noise import noise_share_figure
+from flexstage.present.figures.loop_time import path_figure
 from flexstage.present.figures.measured import stabilisation_figure
 from flexstage.present.figures.skin import skin_figure
+from flexstage.present.figures.study import effects_figure
 from flexstage.present.figures.style import FULL, INK, PAPER, SERIES, canvas, styled
 from flexstage.present.plan import plan_figure
 from flexstage.present.scene.facet import Facet, Kind
 from flexstage.present.scene.stage import Scene, displaced, largest_motion, scene
 from flexstage.present.scene.view import Side, draw, ordered, outline, triad, view, write
+from flexstage.present.sections.loop import diagram_of, shares_of
 from flexstage.readings.solid.fineness import Fineness, Reduction
 from flexstage.spatial.frame import COMPONENTS
 from flexstage.studies.complete import platform_modes
+from flexstage.studies.hysteresis_example import example_test
+from flexstage.studies.loop.choices import Compensation, Criterion
+from flexstage.studies.loop.setup import Floor, Gauging, LoopSetup, RasterMotion, Shaking
+from flexstage.studies.loop.study import LoopStudy, loop_study
 from flexstage.studies.solid_read import STANDARD_SOLIDS, read_solid
 from flexstage.studies.solid_surface import mode_surfaces
+from flexstage.studies.study.effects import effects as effects_of
+from flexstage.studies.study.file import loads_study
+from flexstage.studies.study.run import Run, run
 from tests.analytic import test_paros_weisbord, test_smith_toroid
 from tests.analytic.hinges import UNIT, circular, diagonal, error
+from tests.docs.pages import blocks
 
 PICTURES = Path(__file__).resolve().parents[1] / "docs" / "pictures"
 _OF_THE_PAGE = re.compile(r"var\(--\w+,\s*([^)]+)\)")
@@ -203,6 +219,55 @@ def solid() -> Any:
     return skin_figure(mode_surfaces(read, found.shapes[:, found.platform[0]]), "")
 
 
+def hysteresis() -> Any:
+    """A stack's loops, the model and the inverse."""
+    return stack_figure(example_test())
+
+
+def effects() -> Any:
+    """What the variables of the study in docs/studies.md do."""
+    text = next(block.text for block in blocks("docs/studies.md") if block.word("file") == "study.toml")
+    study = loads_study(text)
+    with TemporaryDirectory() as place:
+        results = run(study, Path(place) / "results.h5", Run(workers=1))
+    return effects_figure(study, effects_of(results, study.plan))
+
+
+@cache
+def _loop() -> LoopStudy:
+    """The loop of the shipped stage on a floor of class VC-D, along a raster."""
+    shaken = Shaking(criterion=Criterion.VC_D)
+    setup = LoopSetup(
+        floor=Floor(shaken, shaken, shaken),
+        gauges=Gauging(noise=0.1 * fs.nm),
+        compensate=(Compensation.LOST_MOTION, Compensation.REFERENCE),
+        trajectory=RasterMotion(length=20e-6, pitch=2e-6, speed=0.2e-3, acceleration=0.02),
+    )
+    return loop_study(double_triangle(), setup)
+
+
+def loop() -> Any:
+    """The block diagram of that loop."""
+    return loop_diagram(diagram_of(_loop()))
+
+
+def loop_frequency() -> Any:
+    """Its open loops."""
+    seen = _loop().curves
+    assert seen is not None  # noqa: S101 (its loop is closed)
+    return open_loop_figure(Curves(seen.frequencies, seen.loops, seen.names), _loop().settled.plant.frequencies[:6])
+
+
+def loop_raster() -> Any:
+    """The raster as it is followed."""
+    return path_figure(_loop().runs[0].simulated, ("x", "y"))
+
+
+def loop_noise() -> Any:
+    """Whose the noise at rest is."""
+    return noise_share_figure(shares_of(_loop()))
+
+
 DRAWN: Mapping[str, tuple[Callable[[], Any], str]] = {
     "stage": (stage, "the double-triangular stage from above the corner, from above, from the front and from the right"),
     "plan": (plan, "dimensioned plan of the double-triangular stage"),
@@ -211,6 +276,15 @@ DRAWN: Mapping[str, tuple[Callable[[], Any], str]] = {
     "modes": (modes, "shapes of the platform's six modes"),
     "stabilisation": (stabilisation, "poles over the order of the model; those that stay become modes"),
     "compared": (compared, "frequencies of six modes by theory and as measured, and how far theory is off"),
+    "hysteresis": (hysteresis, "loops of a stack with the model over them, the model's error, and the volts of the inverse"),
+    "effects": (effects, "mean frequency, lost motion and mass over the thickness of necks, plate and notch"),
+    "loop": (
+        loop,
+        "block diagram of a control loop: what the computer does, then hold, amplifiers, stacks, stage and gauges",
+    ),
+    "loop-frequency": (loop_frequency, "magnitude and phase of the open loops over frequency; notches hold down the modes of the stage"),
+    "loop-raster": (loop_raster, "a raster as commanded and as followed, its error magnified"),
+    "loop-noise": (loop_noise, "shares of floor, gauges and rounding in the noise of each motion at rest"),
     "hinge-errors": (hinge_errors, "error of beam theory against finite elements over thickness over radius"),
 }
 

@@ -284,6 +284,45 @@ from flexstage.readings.solid.reading import (
     solid as solid,
     solid_parts as solid_parts,
 )
+from flexstage.analysis.loop.hysteresis.prandtl_ishlinskii import (
+    PrandtlIshlinskii as PrandtlIshlinskii,
+)
+from flexstage.analysis.loop.hysteresis.envelope import (
+    Envelope as Envelope,
+)
+from flexstage.analysis.loop.hysteresis.inverse import (
+    hysteresis_inverse as hysteresis_inverse,
+)
+from flexstage.analysis.loop.hysteresis.bouc_wen import (
+    BoucWen as BoucWen,
+    bouc_wen as bouc_wen,
+)
+from flexstage.analysis.loop.hysteresis.preisach import (
+    Preisach as Preisach,
+    preisach as preisach,
+)
+from flexstage.analysis.loop.hysteresis.creep import (
+    Creep as Creep,
+    LogCreep as LogCreep,
+    exponentials as exponentials,
+)
+from flexstage.analysis.loop.hysteresis.creep_record import (
+    identify_creep as identify_creep,
+)
+from flexstage.analysis.loop.hysteresis.identify import (
+    identify_hysteresis as identify_hysteresis,
+)
+from flexstage.analysis.loop.hysteresis.stack import (
+    StackHysteresis as StackHysteresis,
+    dump_hysteresis as dump_hysteresis,
+    load_hysteresis as load_hysteresis,
+    stack_hysteresis as stack_hysteresis,
+)
+from flexstage.studies.hysteresis import (
+    Channels as Channels,
+    StackTest as StackTest,
+    stack_test as stack_test,
+)
 from flexstage.studies.budget import (
     budget as budget,
 )
@@ -376,3 +415,69 @@ from flexstage.studies.workspace import (
 )
 
 __version__: str
+from flexstage.analysis.loop.system import System as System
+from flexstage.analysis.loop.hardware import AmplifierSettings as AmplifierSettings
+from flexstage.analysis.loop.hardware import GaugeSettings as GaugeSettings
+from flexstage.analysis.loop.hardware import Hardware as Hardware
+from flexstage.analysis.loop.hardware import hardware as hardware
+from flexstage.analysis.loop.plant import Plant as Plant
+from flexstage.analysis.loop.plant import plant as plant
+from flexstage.analysis.loop.reduced import reduced as reduced
+from flexstage.analysis.loop.closed import Cut as Cut
+from flexstage.analysis.loop.closed import Loop as Loop
+from flexstage.analysis.loop.closed import loop as loop
+from flexstage.analysis.loop.verdict import verdict as verdict
+from flexstage.analysis.loop.margins import bandwidths as bandwidths
+from flexstage.analysis.loop.margins import crosstalk as crosstalk
+from flexstage.analysis.loop.margins import margins as margins
+from flexstage.analysis.loop.margins import peaks as peaks
+from flexstage.analysis.loop.noise import noise_budget as noise_budget
+from flexstage.analysis.loop.exchange import from_control as from_control
+from flexstage.analysis.loop.exchange import to_control as to_control
+from flexstage.analysis.loop.controllers.pi import PI as PI
+from flexstage.analysis.loop.controllers.pid import PID as PID
+from flexstage.analysis.loop.controllers.resonant import IntegralResonant as IntegralResonant
+from flexstage.analysis.loop.controllers.notch import notch_of_mode as notch_of_mode
+from flexstage.analysis.loop.controllers.loops import actuator_loops as actuator_loops
+from flexstage.analysis.loop.controllers.loops import modal_loops as modal_loops
+from flexstage.analysis.loop.controllers.loops import platform_loops as platform_loops
+from flexstage.analysis.loop.controllers.decentralised import Decentralised as Decentralised
+from flexstage.analysis.loop.tuning.goal import Goal as Goal
+from flexstage.analysis.loop.trajectory.step import Step as Step
+from flexstage.analysis.loop.trajectory.raster import Raster as Raster
+from flexstage.analysis.loop.trajectory.spiral import Spiral as Spiral
+from flexstage.analysis.loop.trajectory.sine import Sine as Sine
+from flexstage.analysis.loop.trajectory.path import reference as reference
+from flexstage.analysis.loop.simulation.machine import machine as machine
+from flexstage.analysis.loop.simulation.run import simulate as simulate
+from flexstage.analysis.loop.simulation.result import step_figures as step_figures
+from flexstage.analysis.loop.simulation.result import tracking as tracking
+from flexstage.studies.loop.choices import Axes as Axes
+from flexstage.studies.loop.choices import Axis as Axis
+from flexstage.studies.loop.choices import Compensation as Compensation
+from flexstage.studies.loop.choices import ControllerKind as ControllerKind
+from flexstage.studies.loop.choices import Criterion as Criterion
+from flexstage.studies.loop.choices import Notching as Notching
+from flexstage.studies.loop.choices import StackKind as StackKind
+from flexstage.studies.loop.setup import Amplifying as Amplifying
+from flexstage.studies.loop.setup import Controlling as Controlling
+from flexstage.studies.loop.setup import FileMotion as FileMotion
+from flexstage.studies.loop.setup import Floor as Floor
+from flexstage.studies.loop.setup import Gauging as Gauging
+from flexstage.studies.loop.setup import HystereticStacks as HystereticStacks
+from flexstage.studies.loop.setup import LoopSetup as LoopSetup
+from flexstage.studies.loop.setup import Motion as Motion
+from flexstage.studies.loop.setup import NotchAt as NotchAt
+from flexstage.studies.loop.setup import RasterMotion as RasterMotion
+from flexstage.studies.loop.setup import Shaking as Shaking
+from flexstage.studies.loop.setup import SineMotion as SineMotion
+from flexstage.studies.loop.setup import SpiralMotion as SpiralMotion
+from flexstage.studies.loop.setup import StepMotion as StepMotion
+from flexstage.studies.loop.file import load_setup as load_setup
+from flexstage.studies.loop.floor import criterion_spectrum as criterion_spectrum
+from flexstage.studies.loop.study import LoopStudy as LoopStudy
+from flexstage.studies.loop.study import loop_study as loop_study
+from flexstage.present.loop_report import loop_report as loop_report
+from flexstage.present.loop_files import write_controller as write_controller
+from flexstage.present.loop_files import write_fmu as write_fmu
+from flexstage.present.loop_files import write_plant as write_plant

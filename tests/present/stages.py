@@ -1,4 +1,4 @@
-"""Stages the presentation is tried on, each analysed once a session."""
+"""Stages the presentation is tried on, each analysed and reported once a session."""
 
 from __future__ import annotations
 
@@ -7,15 +7,29 @@ from dataclasses import replace
 
 from flexstage.cases.registry import CASES, case
 from flexstage.mechanism.mechanism import Mechanism
+from flexstage.present.report import report
 from flexstage.studies.complete import Analysis, Reading, analyse
 
 NAMES = tuple(CASES)
 HOSTILE = '<script>alert("1 & 2")</script>'
 
 
-@functools.cache
 def analysed(name: str, reading: Reading = Reading.LUMPED) -> Analysis:
+    return _analysed(name, reading)  # kept under both arguments, whether the second is given or not
+
+
+def reported(name: str, reading: Reading = Reading.LUMPED) -> str:
+    return _reported(name, reading)
+
+
+@functools.cache
+def _analysed(name: str, reading: Reading) -> Analysis:
     return analyse(case(name), reading)
+
+
+@functools.cache
+def _reported(name: str, reading: Reading) -> str:
+    return report(_analysed(name, reading))
 
 
 def hostile() -> Mechanism:

@@ -16,7 +16,7 @@ from flexstage.cases.double_triangle import double_triangle
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.present.report import report
 from flexstage.studies.complete import Reading, analyse
-from tests.present.stages import HOSTILE, NAMES, analysed, hostile
+from tests.present.stages import HOSTILE, NAMES, analysed, hostile, reported
 
 LARGEST = 1_000_000
 SVG = re.compile(r"<svg.*?</svg>", re.DOTALL)
@@ -59,7 +59,7 @@ ALIKE = ("double-triangle-a", "double-triangle-refitted", "tip-tilt-four")
     ],
 )
 def test_every_case_has_a_report_that_stands_alone(name: str, reading: Reading) -> None:
-    page = report(analysed(name, reading))
+    page = reported(name, reading)
     assert LOADS.findall(page) == []
     assert len(page.encode()) < LARGEST
     found = Balance()
@@ -74,13 +74,13 @@ def test_every_case_has_a_report_that_stands_alone(name: str, reading: Reading) 
 
 
 def test_mapped_reading_has_a_report() -> None:
-    page = report(analysed("double-triangle", Reading.MAPPED))
+    page = reported("double-triangle", Reading.MAPPED)
     assert "110.91" in page
     assert "not stated" not in page
 
 
 def test_references_inside_the_page_lead_somewhere() -> None:
-    page = report(analysed("double-triangle"))
+    page = reported("double-triangle")
     names = set(re.findall(r' id="([^"]+)"', page))
     wanted = set(re.findall(r'href="#([^"]+)"', page)) | set(re.findall(r"url\(#([^)]+)\)", page))
     assert wanted <= names
@@ -97,7 +97,7 @@ def test_markup_of_users_is_text() -> None:
 
 
 def test_the_same_analysis_gives_the_same_bytes() -> None:
-    assert report(analysed("parallelogram")) == report(analysed("parallelogram"))
+    assert report(analysed("parallelogram")) == reported("parallelogram")
 
 
 def test_another_process_gives_the_same_bytes() -> None:
@@ -107,11 +107,11 @@ def test_another_process_gives_the_same_bytes() -> None:
     )
     environment = {**os.environ, "PYTHONHASHSEED": "7"}
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, check=True, env=environment)
-    assert done.stdout.decode() == report(analysed("parallelogram"))
+    assert done.stdout.decode() == reported("parallelogram")
 
 
 def test_no_date_and_no_path_inside() -> None:
-    page = report(analysed("double-triangle"))
+    page = reported("double-triangle")
     assert not re.search(r"\b20[12]\d-\d\d-\d\d\b", page)
     assert os.getcwd() not in page  # noqa: PTH109
 

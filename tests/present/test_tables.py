@@ -15,7 +15,6 @@ from flexstage.cases.registry import case
 from flexstage.mechanism.address import set_value
 from flexstage.present.page import Abreast, Folded
 from flexstage.present.render import to_html, to_markdown, to_rich, to_text
-from flexstage.present.report import report
 from flexstage.present.table import Table
 from flexstage.present.tables.description import value_tables
 from flexstage.present.tables.lost_motion import budget_table, loss_table
@@ -27,7 +26,7 @@ from flexstage.readings.lumped import lumped
 from flexstage.spatial.frame import COMPONENTS
 from flexstage.studies.complete import Analysis, Reading
 from flexstage.studies.workspace import Workspace
-from tests.present.stages import HOSTILE, NAMES, analysed, hostile
+from tests.present.stages import HOSTILE, NAMES, analysed, hostile, reported
 
 TITLES = {
     "kinematics": "Actuator mapping R_a",
@@ -68,7 +67,7 @@ def test_every_result_is_presented() -> None:
     """A result that is added to the analysis fails here until the report shows it."""
     assert {field.name for field in fields(Analysis)} - NOT_SHOWN == set(TITLES)
     assert {field.name for field in fields(Workspace)} - NOT_SHOWN == set(REACH)
-    page = report(analysed("double-triangle"))
+    page = reported("double-triangle")
     assert [title for title in (*TITLES.values(), *REACH.values()) if title not in page] == []
 
 
@@ -130,7 +129,7 @@ def test_html_escapes_what_users_write() -> None:
 
 
 def test_ideal_reading_has_no_elastic_tables() -> None:
-    page = report(analysed("double-triangle", Reading.IDEAL))
+    page = reported("double-triangle", Reading.IDEAL)
     assert "Stiffness at platform" not in page
     assert "the ideal reading has no elasticity" in page
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import typer
 
-from flexstage.apps.cli import about, analyses, design, identify, reach, rig, solid, solid_files, update, whole
+from flexstage.apps.cli import about, analyses, design, hysteresis, identify, loop, reach, rig, solid, solid_files, study, update, whole
 
 app = typer.Typer(
     help="Design and proof of flexure-based ultra-precision positioning stages.",
@@ -22,6 +22,8 @@ _FILES = "Design files"
 _WHOLE = "The whole stage"
 _SINGLE = "One analysis"
 _TESTS = "Tests of a stage"
+_CONTROL = "Control"
+_STUDIES = "Many designs"
 _INSTALLATION = "Installation"
 
 COMMANDS: tuple[tuple[str, str, Callable[..., Any], str], ...] = (
@@ -54,6 +56,9 @@ COMMANDS: tuple[tuple[str, str, Callable[..., Any], str], ...] = (
         update.update,
         'flexstage update stage.toml --record record.uff --free "neck.thickness, steel.density" -o updated.toml',
     ),
+    (_TESTS, "hysteresis", hysteresis.hysteresis, 'flexstage hysteresis stack.csv --limits "0 V" "1000 V" -o stack.toml'),
+    (_STUDIES, "sweep", study.sweep, "flexstage sweep study.toml -o results.h5 --report sweep.html"),
+    (_CONTROL, "loop", loop.loop, "flexstage loop stage.toml --floor VC-D --report loop.html"),
     (_INSTALLATION, "doctor", about.doctor, "flexstage doctor --mend"),
     (_INSTALLATION, "version", about.version, "flexstage version"),
 )
