@@ -17,14 +17,16 @@ from flexstage.analysis.workspace.buckling import buckling
 from flexstage.analysis.workspace.gauging import gauge_range, pose_resolution
 from flexstage.analysis.workspace.load import load_share
 from flexstage.analysis.workspace.map_error import linear_map_error
-from flexstage.analysis.workspace.room import Room, room
+from flexstage.analysis.workspace.room import Room, bounds, room
 from flexstage.analysis.workspace.strength import HingeStress, hinge_stress
 from flexstage.analysis.workspace.stroke import StrokeLimits, mapping_at, single_axis, stroke_limits, utilisation
 from flexstage.base.finding import DesignError, refuse
+from flexstage.base.labelled import Matrix
 from flexstage.base.number import Array, magnitude
 from flexstage.mechanism.expand import Assembly, expand
 from flexstage.mechanism.expansion import ground_material
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
+from flexstage.mechanism.outline import outlines
 from flexstage.readings.ideal import ideal
 from flexstage.readings.linear.kinematics import Kinematics
 from flexstage.readings.linear.model import LinearModel
@@ -43,7 +45,7 @@ def judge(mechanism: Mechanism) -> tuple[Verdict, ...]:
     [True, True, True, True, True, True, True, True]
     """
     lines = requirements(mechanism)
-    bench = _Bench(mechanism, _box(lines))
+    bench = Bench(mechanism, _box(lines))
     return tuple(_judged(bench, line) for line in lines)
 
 
@@ -58,72 +60,113 @@ def measured(mechanism: Mechanism, measures: tuple[Measure, ...]) -> tuple[Array
     >>> round(float(measured(stage, (measure(stage, "frequency.platform.1", "here"),))[0]), 1)
     106.0
     """
-    bench = _Bench(mechanism, _box(requirements(mechanism)))
-    return tuple(_measured(bench, each) for each in measures)
+    bench = bench_of(mechanism)
+    return tuple(measured_on(bench, each) for each in measures)
+
+
+def bench_of(mechanism: Mechanism) -> Bench:
+    """A bench for one design or a batch; the strokes that measures of all strokes at once take are those of the `[require]` lines.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> bench_of(double_triangle()).command["x"]
+    5e-05
+    """
+    return Bench(mechanism, _box(requirements(mechanism)))
 
 
 def _box(lines: tuple[Requirement, ...]) -> dict[str, float]:
     return {line.name: line.limit for line in lines if line.subject is Subject.STROKE}
 
 
-def _measured(bench: _Bench, asked: Measure) -> Array | str:
+def measured_on(bench: Bench, asked: Measure) -> Array | str:
+    """The value (...) of one measure, or the reason in words.
+
+    >>> from flexstage.analysis.requirements import measure
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> stage = double_triangle()
+    >>> round(float(measured_on(bench_of(stage), measure(stage, "mass", "here"))), 2)
+    13.99
+    """
     try:
         return np.asarray(_MEASURES[asked.subject](bench, asked))
     except DesignError as error:
         return str(error)
 
 
-def _judged(bench: _Bench, line: Requirement) -> Verdict:
-    value = _measured(bench, line)
+def _judged(bench: Bench, line: Requirement) -> Verdict:
+    value = measured_on(bench, line)
     return Verdict(line, None, value) if isinstance(value, str) else Verdict(line, value)
 
 
-class _Bench:
+class Bench:
     """Readings and results of one stage, each worked out when first asked for. `command`: the required strokes as a box."""
 
     def __init__(self, mechanism: Mechanism, command: Mapping[str, float]) -> None:
         self.mechanism = mechanism
         self.command = command
+        self._corrections: dict[str, Matrix] = {}
+
+    def correction(self, point: str) -> Matrix:
+        """Strokes per motion of a point, lost motion made up by command."""
+        if point not in self._corrections:
+            self._corrections[point] = mapping_at(self.mechanism, self.kinematics, point, mapping=self.lost.correction)
+        return self._corrections[point]
 
     @cached_property
     def assembly(self) -> Assembly:
+        """The description expanded."""
         return expand(self.mechanism)
 
     @cached_property
     def kinematics(self) -> Kinematics:
+        """The ideal reading."""
         return ideal(self.mechanism)
 
     @cached_property
     def model(self) -> LinearModel:
+        """The lumped reading."""
         return lumped(self.mechanism)
 
     @cached_property
     def limits(self) -> StrokeLimits:
+        """Strokes around the bias."""
         return stroke_limits(self.mechanism)
 
     @cached_property
     def lost(self) -> LostMotion:
+        """Lost motion."""
         return lost_motion(self.kinematics, self.model)
 
     @cached_property
     def modes(self) -> Modes:
+        """Modes, the platform's among them below the description's limit."""
         limit = self.mechanism.mode_limit
         return modes(self.model, limit=np.inf if limit is None else float(np.max(limit)))
 
     @cached_property
     def stress(self) -> HingeStress:
+        """Stress of hinges over all strokes, relaxed without voltage."""
         return hinge_stress(self.mechanism, self.model, self.limits.from_zero)
 
     @cached_property
     def drift(self) -> Drift:
+        """Motion by temperature."""
         return drift(self.mechanism, self.model, ground=ground_material(self.mechanism))
 
     @cached_property
     def room(self) -> Room:
+        """What the stage occupies."""
         return room(self.mechanism)
 
     @cached_property
+    def size(self) -> Array:
+        """Edges of the bounding box (..., 3) [m]."""
+        low, high, _ = bounds(outlines(self.assembly))
+        return high - low
+
+    @cached_property
     def map_error(self) -> Array:
+        """Largest errors of the linear map (..., 6)."""
         return linear_map_error(self.mechanism, self.kinematics, self.limits).worst
 
     def arm(self, point: str) -> Array:
@@ -144,22 +187,22 @@ class _Bench:
         return self.command
 
 
-def _stroke(bench: _Bench, line: Measure) -> Array:
-    mapping = mapping_at(bench.mechanism, bench.kinematics, line.point, mapping=bench.lost.correction)
+def _stroke(bench: Bench, line: Measure) -> Array:
+    mapping = bench.correction(line.point)
     if line.name not in mapping.columns:
         raise refuse(f"stroke.{line.name}", "is no ideal motion of this stage", f"Its ideal motions are {', '.join(mapping.columns)}")
     return single_axis(mapping, bench.limits).symmetric[..., mapping.columns.index(line.name)]
 
 
-def _corner(bench: _Bench, _: Measure) -> Array:
+def _corner(bench: Bench, _: Measure) -> Array:
     return np.max(utilisation(bench.lost.correction, bench.limits, bench.box()).ratio, axis=-1)
 
 
-def _frequency(bench: _Bench, line: Measure) -> Array:
+def _frequency(bench: Bench, line: Measure) -> Array:
     return _numbered(bench.modes.frequencies, line)
 
 
-def _platform_frequency(bench: _Bench, line: Measure) -> Array:
+def _platform_frequency(bench: Bench, line: Measure) -> Array:
     return _numbered(bench.modes.platform_frequencies, line)
 
 
@@ -170,7 +213,7 @@ def _numbered(frequencies: Array, line: Measure) -> Array:
     return frequencies[..., int(line.name) - 1]
 
 
-def _safety(bench: _Bench, _: Measure) -> Array:
+def _safety(bench: Bench, _: Measure) -> Array:
     if bench.stress.unknown:
         links = ", ".join(bench.stress.unknown[:3])
         raise refuse(
@@ -179,71 +222,71 @@ def _safety(bench: _Bench, _: Measure) -> Array:
     return bench.stress.least
 
 
-def _buckling(bench: _Bench, _: Measure) -> Array:
+def _buckling(bench: Bench, _: Measure) -> Array:
     return buckling(bench.mechanism, bench.model, bench.limits.from_zero).least
 
 
-def _stiffness(bench: _Bench, line: Measure) -> Array:
+def _stiffness(bench: Bench, line: Measure) -> Array:
     index = COMPONENTS.index(line.name)
     return 1.0 / statics(bench.model, load_point=line.point, read_point=line.point).compliance.values[..., index, index]
 
 
-def _force(bench: _Bench, line: Measure) -> Array:
+def _force(bench: Bench, line: Measure) -> Array:
     lines = platform_lines(bench.kinematics.mapping, bench.model, bench.limits)
     if line.name not in lines.coordinates:
         raise refuse(f"force.{line.name}", "is no ideal motion of this stage", f"Its ideal motions are {', '.join(lines.coordinates)}")
     return lines.blocking[..., lines.coordinates.index(line.name)]
 
 
-def _loss(bench: _Bench, line: Measure) -> Array:
+def _loss(bench: Bench, line: Measure) -> Array:
     own = magnitude(np.diagonal(bench.lost.loss.values, axis1=-2, axis2=-1))
     return own[..., bench.lost.loss.rows.index(line.name)] if line.name else np.max(own, axis=-1)
 
 
-def _crosstalk(bench: _Bench, _: Measure) -> Array:
+def _crosstalk(bench: Bench, _: Measure) -> Array:
     values = bench.lost.loss.values
     return np.max(magnitude(values * (1.0 - np.eye(values.shape[-1]))), axis=(-2, -1))
 
 
-def _map_error(bench: _Bench, line: Measure) -> Array:
+def _map_error(bench: Bench, line: Measure) -> Array:
     return bench.map_error[..., COMPONENTS.index(line.name)]
 
 
-def _drift(bench: _Bench, line: Measure) -> Array:
+def _drift(bench: Bench, line: Measure) -> Array:
     return magnitude(bench.drift.motion.at(f"{line.point}.{line.name}", "uniform"))
 
 
-def _mass(bench: _Bench, _: Measure) -> Array:
+def _mass(bench: Bench, _: Measure) -> Array:
     own = bench.assembly.bodies[PLATFORM].mass
     if own is None:
         raise refuse("platform", "has neither solids nor a stated mass", "Give it a solid of a material with a density, or its mass")
     return own.mass
 
 
-def _size(bench: _Bench, line: Measure) -> Array:
-    return bench.room.size[..., COMPONENTS.index(line.name or "z")]
+def _size(bench: Bench, line: Measure) -> Array:
+    return bench.size[..., COMPONENTS.index(line.name or "z")]
 
 
-def _opening(bench: _Bench, _: Measure) -> Array:
+def _opening(bench: Bench, _: Measure) -> Array:
     if bench.mechanism.opening is None:
         raise refuse("opening", "the description has no clear opening", 'Add for example opening = { size = ["110 mm", "110 mm"] }')
     depths = [item.depth for item in bench.room.intrusions]
     return np.max(np.stack(np.broadcast_arrays(*depths)), axis=0) if depths else np.asarray(0.0)
 
 
-def _resolution(bench: _Bench, line: Measure) -> Array:
+def _resolution(bench: Bench, line: Measure) -> Array:
     seen = pose_resolution(bench.mechanism, bench.kinematics)
     inverse = transport(bench.arm(line.point)) @ seen.inverse.values
     return (magnitude(inverse) @ seen.gauge_steps[..., None])[..., COMPONENTS.index(line.name), 0]
 
 
-def _gauge_range(bench: _Bench, line: Measure) -> Array:
+def _gauge_range(bench: Bench, line: Measure) -> Array:
     held = gauge_range(bench.mechanism, bench.kinematics, bench.box())
     ratio = held.swing / held.limit
     return ratio[..., held.gauges.index(line.name)] if line.name else np.max(ratio, axis=-1)
 
 
-def _load(bench: _Bench, line: Measure) -> Array:
+def _load(bench: Bench, line: Measure) -> Array:
     share = load_share(bench.mechanism, bench.model)
     compression = share.range(bench.limits.from_zero)[1]
     if line.name:
@@ -254,7 +297,7 @@ def _load(bench: _Bench, line: Measure) -> Array:
     return np.max(usage, axis=-1)
 
 
-_MEASURES: Mapping[Subject, Callable[[_Bench, Measure], Array]] = {
+_MEASURES: Mapping[Subject, Callable[[Bench, Measure], Array]] = {
     Subject.STROKE: _stroke,
     Subject.CORNER: _corner,
     Subject.FREQUENCY: _frequency,

@@ -90,19 +90,32 @@ def room(mechanism: Mechanism) -> Room:
     found = outlines(expand(mechanism))
     envelope = None if mechanism.envelope is None else stack(mechanism.envelope)
     opening = None if mechanism.opening is None else stack(mechanism.opening.size)
+    low, high, extreme = bounds(found)
+    return Room(
+        intrusions=() if opening is None else tuple(_intrusions(found, opening)),
+        low=low,
+        high=high,
+        envelope=envelope,
+        extreme=extreme,
+        opening=opening,
+    )
+
+
+def bounds(found: tuple[Outline, ...]) -> tuple[Array, Array, tuple[str, ...]]:
+    """Corners low and high (..., 3) [m] of the box around outlines, and the names of those that reach farthest; nought around none.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> low, high, _ = bounds(outlines(expand(double_triangle())))
+    >>> (high - low).round(4).tolist()
+    [0.3658, 0.3474, 0.1127]
+    """
     if not found:
-        return Room((), np.zeros(3), np.zeros(3), envelope, (), opening)
+        return np.zeros(3), np.zeros(3), ()
     high = [_joined([outline.reach(axis) for outline in found]) for axis in np.eye(3)]
     low = [_joined([-outline.reach(-axis) for outline in found]) for axis in np.eye(3)]
     ends = [np.argmin(_first(values)) for values in low] + [np.argmax(_first(values)) for values in high]
-    return Room(
-        intrusions=() if opening is None else tuple(_intrusions(found, opening)),
-        low=_joined([np.min(values, axis=-1) for values in low]),
-        high=_joined([np.max(values, axis=-1) for values in high]),
-        envelope=envelope,
-        extreme=tuple(found[int(index)].name for index in ends),
-        opening=opening,
-    )
+    least, most = _joined([np.min(values, axis=-1) for values in low]), _joined([np.max(values, axis=-1) for values in high])
+    return least, most, tuple(found[int(index)].name for index in ends)
 
 
 def _joined(values: list[Array]) -> Array:

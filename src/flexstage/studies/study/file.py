@@ -22,6 +22,8 @@ from flexstage.studies.study.plan import Plan, Sampling
 from flexstage.studies.study.variable import Variable, variable_findings
 
 FORMAT = "flexstage study 1"
+OTHERS = ("optimise", "tolerance", "scatter")
+"""Sections that a study's file may have for other commands; each is read by its own."""
 _MOST = 10**9
 
 
@@ -57,7 +59,7 @@ def loads_study(text: str, *, where: str = "text", folder: Path | None = None) -
         fields.note("format", f'found "{fields.text("format")}"', f'Begin the file with format = "{FORMAT}"')
     name = fields.text("name", "study")
     design = _design(fields, folder or Path())
-    tables = {key: fields.table(key) for key in ("variables", "responses", "limits", "sweep")}
+    tables = {key: fields.table(key) for key in ("variables", "responses", "limits", "sweep", *OTHERS)}
     fields.done()
     require(_placed(findings, where))
     variables = _variables(tables["variables"], design)
@@ -107,12 +109,24 @@ def _variable(table: Fields, name: str, design: Mechanism) -> Variable | None:
     high, also = _end(table, "to", quantity)
     logarithmic = table.flag("logarithmic")
     levels = table.whole("levels", 2, 0) or None
+    step = _step(table, quantity, relative=relative)
     table.done()
     if len(table.findings) == before and relative != also:
         table.note("to", "one end is relative (%), the other not", "Give both alike")
     if quantity is None or len(table.findings) > before:
         return None
-    return Variable(name, addresses, RATIO if relative else quantity, low, high, relative, logarithmic, levels)
+    return Variable(name, addresses, RATIO if relative else quantity, low, high, relative, logarithmic, levels, step)
+
+
+def _step(table: Fields, quantity: Quantity | None, *, relative: bool) -> float | None:
+    """The step of values that can be made."""
+    step = None if quantity is None or "step" not in table.tree else table.number("step", quantity)
+    table.asked.append("step")
+    if step is not None and relative:
+        table.note("step", "the range is relative (%)", "Give the range with its unit, or leave out the step")
+    elif step is not None and not step > 0.0:
+        table.note("step", f"found {step:g}", 'Give a step above 0, for example step = "10 um"')
+    return step
 
 
 def _quantity(table: Fields, addresses: tuple[str, ...], design: Mechanism) -> Quantity | None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from flexstage.base.finding import Finding
 from flexstage.base.number import Array
@@ -18,7 +18,7 @@ class Variable:
     """One number that a study moves from `low` to `high` [SI of `quantity`], written to all its `addresses`.
 
     `relative`: low and high are factors on what the design states at each address. `logarithmic`: equal steps are equal ratios. `levels`:
-    into how many values a grid divides the range, ends included.
+    into how many values a grid divides the range, ends included. `step` [SI]: only its multiples can be made.
     """
 
     name: str
@@ -29,6 +29,7 @@ class Variable:
     relative: bool = False
     logarithmic: bool = False
     levels: int | None = None
+    step: float | None = field(default=None, repr=False)
 
     def at(self, shares: Array) -> Array:
         """Values (n,) at shares (n,) of the range: 0 is low, 1 is high.
