@@ -85,7 +85,7 @@ def measured_on(bench: Bench, asked: Measure) -> Array | str:
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> stage = double_triangle()
     >>> round(float(measured_on(bench_of(stage), measure(stage, "mass", "here"))), 2)
-    13.99
+    14.0
     """
     try:
         return np.asarray(_MEASURES[asked.subject](bench, asked))
