@@ -31,7 +31,7 @@ leaf = { of = "parts.leaf.thickness", from = "0.8 mm", to = "1.2 mm" }
 
 
 @given(
-    st.sampled_from([Sampling.SOBOL, Sampling.LATIN_HYPERCUBE, Sampling.SALTELLI, Sampling.GRID]),
+    st.sampled_from([Sampling.SOBOL, Sampling.LATIN_HYPERCUBE, Sampling.SALTELLI, Sampling.GRID, Sampling.MONTE_CARLO]),
     st.integers(1, 4),
     st.integers(0, 5),
     st.lists(st.integers(0, 48), max_size=4),

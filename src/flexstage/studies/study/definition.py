@@ -5,11 +5,15 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+import numpy as np
+
 from flexstage.analysis.requirements import Measure, Requirement
 from flexstage.base.digest import digest
+from flexstage.base.number import Array
 from flexstage.mechanism.mechanism import Mechanism
-from flexstage.studies.study.plan import Plan
-from flexstage.studies.study.variable import Variable
+from flexstage.studies.judge import measured
+from flexstage.studies.study.plan import Plan, shares
+from flexstage.studies.study.variable import Variable, varied
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,3 +50,31 @@ class Study:
             **{f"variables.{each.name}": repr(each) for each in self.variables},
             **{f"responses.{name}": f"{each.key} at {each.point}" for name, each in self.columns.items()},
         }
+
+    def drawn(self, start: int, stop: int) -> Array:
+        """Values (n, d) of the variables in SI for designs from `start` to before `stop` of the plan.
+
+        >>> from flexstage.studies.study.example import neck_study
+        >>> neck_study().drawn(1, 3).shape
+        (2, 1)
+        """
+        at = shares(self.plan, start, stop)
+        return np.stack([variable.at(at[:, number]) for number, variable in enumerate(self.variables)], axis=-1)
+
+    def described(self, values: Array) -> Mechanism:
+        """The design with `values` (..., d) of the variables.
+
+        >>> from flexstage.studies.study.example import neck_study
+        >>> neck_study().described(np.array([0.0015])).parts["neck"].thickness
+        0.0015
+        """
+        return varied(self.design, self.variables, values)
+
+    def answered(self, mechanism: Mechanism) -> tuple[Array | str, ...]:
+        """What is asked of a design or a batch, column by column (...); where a stage has no such measure, the reason in words.
+
+        >>> from flexstage.studies.study.example import neck_study
+        >>> round(float(neck_study().answered(neck_study().design)[0]))
+        106
+        """
+        return measured(mechanism, tuple(self.columns.values()))

@@ -11,10 +11,7 @@ from flexstage.analysis.requirements import Measure
 from flexstage.base.finding import DesignError, Finding, require
 from flexstage.base.number import Array
 from flexstage.mechanism.checks import checked
-from flexstage.studies.judge import measured
 from flexstage.studies.study.definition import Study
-from flexstage.studies.study.plan import shares
-from flexstage.studies.study.variable import varied
 
 _LONGEST_REASON = 400
 
@@ -39,9 +36,7 @@ def piece(study: Study, start: int, stop: int) -> Piece:
     >>> found.responses.shape, dict(found.failures)
     ((2, 1), {})
     """
-    at = shares(study.plan, start, stop)
-    columns = [variable.at(at[:, number]) for number, variable in enumerate(study.variables)]
-    values = np.stack(columns, axis=-1)
+    values = study.drawn(start, stop)
     with np.errstate(all="ignore"):
         responses, failures = _computed(study, values)
     return Piece(start, values, responses, failures)
@@ -54,7 +49,7 @@ def nominal(study: Study) -> Array:
     >>> nominal(neck_study()).round(0).tolist()
     [106.0]
     """
-    found = measured(checked(study.design), tuple(study.columns.values()))
+    found = study.answered(checked(study.design))
     named = zip(study.columns, found, strict=True)
     require(Finding(f"responses.{name}", value, "Ask for what this stage has") for name, value in named if isinstance(value, str))
     return np.array([float(np.real(value)) for value in found if not isinstance(value, str)])
@@ -78,7 +73,7 @@ def _computed(study: Study, values: Array) -> tuple[Array, dict[int, str]]:
 def _batch(study: Study, values: Array) -> Array | str:
     """Responses (n, r) of all these designs, or why not."""
     try:
-        found = measured(checked(varied(study.design, study.variables, values)), tuple(study.columns.values()))
+        found = study.answered(checked(study.described(values)))
     except (DesignError, np.linalg.LinAlgError) as error:
         return str(error)
     reasons = [value for value in found if isinstance(value, str)]

@@ -18,6 +18,7 @@ class Sampling(Enum):
     LATIN_HYPERCUBE = "latin hypercube"
     SOBOL = "sobol"
     SALTELLI = "saltelli"
+    MONTE_CARLO = "monte carlo"
 
 
 @dataclass(frozen=True)
@@ -60,9 +61,18 @@ def shares(plan: Plan, start: int, stop: int) -> Array:
         return np.stack([place / (levels - 1) for place, levels in zip(places, plan.levels, strict=True)], axis=-1)
     if plan.sampling is Sampling.LATIN_HYPERCUBE:
         return _latin(plan, start, stop)
+    if plan.sampling is Sampling.MONTE_CARLO:
+        return _random(plan, start, stop)
     if plan.sampling is Sampling.SOBOL:
         return _sobol(plan.dimensions, plan.seed, start, stop)
     return _saltelli(plan, start, stop)
+
+
+def _random(plan: Plan, start: int, stop: int) -> Array:
+    """Independent random designs: the generator takes one step a number, so that any piece is had by stepping ahead."""
+    bits = np.random.PCG64(plan.seed)
+    bits.advance(start * plan.dimensions)
+    return np.random.Generator(bits).random((stop - start, plan.dimensions))
 
 
 def _sobol(dimensions: int, seed: int, start: int, stop: int) -> Array:
