@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
 from pathlib import Path
 
 from flexstage.analysis.requirements import Measure, Requirement, measure, requirement
@@ -53,6 +54,35 @@ def loads_study(text: str, *, where: str = "text", folder: Path | None = None) -
     >>> study.variables[0].high, study.responses["tilt"].key, study.plan.designs
     (0.0017, 'frequency.platform.1', 8)
     """
+    head = opening(text, where, folder)
+    design, tables, findings = head.design, head.tables, head.findings
+    variables = _variables(tables["variables"], design)
+    plan = _plan(tables["sweep"], variables)
+    if not head.responses:
+        findings.append(Finding("responses", "nothing is asked", 'Name a measure, for example f1 = "frequency.platform.1"'))
+    require(placed([*findings, *variable_findings(design, variables)], where))
+    return Study(head.name, design, variables, Table(head.responses), head.limits, plan, text)
+
+
+@dataclass(frozen=True, eq=False)
+class Opening:
+    """What all studies' files have: the design, what is asked of it, and the `tables` of their sections with the `findings` so far."""
+
+    name: str
+    design: Mechanism
+    tables: Mapping[str, Fields]
+    responses: Mapping[str, Measure]
+    limits: tuple[Requirement, ...]
+    findings: list[Finding]
+
+
+def opening(text: str, where: str, folder: Path | None) -> Opening:
+    """Read what all studies' files have; sections are left to who reads them. Raises `DesignError` where there is no design to go on with.
+
+    >>> text = 'format = "flexstage study 1"' + chr(10) + 'case = "parallelogram"' + chr(10) + 'responses.f = "frequency.1"'
+    >>> list(opening(text, "here", None).responses)
+    ['f']
+    """
     findings: list[Finding] = []
     fields = Fields(parse_toml(text, where), "", findings)
     if fields.text("format") != FORMAT:
@@ -61,18 +91,16 @@ def loads_study(text: str, *, where: str = "text", folder: Path | None = None) -
     design = _design(fields, folder or Path())
     tables = {key: fields.table(key) for key in ("variables", "responses", "limits", "sweep", *OTHERS)}
     fields.done()
-    require(_placed(findings, where))
-    variables = _variables(tables["variables"], design)
-    responses = _responses(tables["responses"], design)
-    limits = _limits(tables["limits"], design)
-    plan = _plan(tables["sweep"], variables)
-    if not responses:
-        findings.append(Finding("responses", "nothing is asked", 'Name a measure, for example f1 = "frequency.platform.1"'))
-    require(_placed([*findings, *variable_findings(design, variables)], where))
-    return Study(name, design, variables, Table(responses), limits, plan, text)
+    require(placed(findings, where))
+    return Opening(name, design, tables, _responses(tables["responses"], design), _limits(tables["limits"], design), findings)
 
 
-def _placed(findings: list[Finding], where: str) -> Iterator[Finding]:
+def placed(findings: Iterable[Finding], where: str) -> Iterator[Finding]:
+    """Findings with the file they are about.
+
+    >>> [str(each) for each in placed([Finding("limits", "none", "Add one")], "study.toml")]
+    ['study.toml: limits: none. Add one.']
+    """
     for each in findings:
         yield Finding(f"{where}: {each.where}", each.what, each.advice)
 
