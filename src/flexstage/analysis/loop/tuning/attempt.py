@@ -62,10 +62,11 @@ class Attempt:
         return found.stable and found.peak <= goal.sensitivity and passed
 
 
-def attempt(seen: View, task: Task, frequency: float) -> Attempt | None:
+def attempt(seen: View, task: Task, frequency: float, calm: float = 0.0) -> Attempt | None:
     """The best that the kind can do where every loop's gain passes 1 at a frequency [Hz]; None where it has no law for it.
 
     First with the stated notches only, then with more on the modes that stand out of a loop with a gain above 0.3, as wide as does best.
+    A loop's best law is the one with the lowest peak of S; of those with peaks up to `calm` the one with the highest gain at rest.
 
     >>> from flexstage.analysis.loop.controllers.loops import platform_loops
     >>> from flexstage.analysis.loop.example import integral_loop
@@ -78,12 +79,12 @@ def attempt(seen: View, task: Task, frequency: float) -> Attempt | None:
     if task.kind is Kind.LQG:
         return _observed(seen, task, frequency)
     stated: _Options = ((task.notches,),) * len(seen.loops.names)
-    first = _decentralised(seen, task, frequency, stated)
+    first = _decentralised(seen, task, (frequency, calm), stated)
     if first is None or not task.automatic or task.kind is Kind.RESONANT or first.reaches(frequency, task.goal):
         return first
     best = first
     for options in _choices(_placed(seen, first, frequency)):
-        found = _decentralised(seen, task, frequency, options)
+        found = _decentralised(seen, task, (frequency, calm), options)
         if found is not None and found.judgement.score < best.judgement.score:
             best = found
         if best.reaches(frequency, task.goal):
@@ -99,12 +100,12 @@ def _choices(options: _Options) -> Iterator[_Options]:
             yield tuple(sets[min(number, len(sets) - 1) :][:1] for sets in options)
 
 
-def _decentralised(seen: View, task: Task, frequency: float, options: _Options) -> Attempt | None:
-    at = seen.at(frequency)
+def _decentralised(seen: View, task: Task, wanted: tuple[float, float], options: _Options) -> Attempt | None:
+    at = seen.at(wanted[0])
     found: list[_Chosen] = []
     for loop, sets in enumerate(options):
         alike = _alike(seen, options, loop)
-        one = found[alike] if alike < loop else _chosen(seen, task.kind, (loop, frequency, complex(at[loop])), sets)
+        one = found[alike] if alike < loop else _chosen(seen, task.kind, (loop, *wanted, complex(at[loop])), sets)
         if one is None:
             return None
         found.append(one)
@@ -133,12 +134,15 @@ class _Chosen:
     response: Array
 
 
-def _chosen(seen: View, kind: Kind, at: tuple[int, float, complex], options: _Sets) -> _Chosen | None:
-    """Law and notches whose loop by itself is stable, passes 1 where it shall, and has the lowest peak of S, wherever the modes may lie."""
-    loop, frequency, gain = at
+def _chosen(seen: View, kind: Kind, at: tuple[int, float, float, complex], options: _Sets) -> _Chosen | None:
+    """Law and notches whose loop by itself is stable, passes 1 where it shall, and has the lowest peak of S, wherever the modes may lie.
+
+    Peaks up to `calm` count as equal; the highest gain at the lowest frequency, so the strongest integrator, is then the best.
+    """
+    loop, frequency, calm, gain = at
     static = float(seen.static[loop] @ seen.loops.drive[:, loop])
     first = next((each.frequency for each in resonances(seen, loop)), None)
-    best, lowest = None, np.inf
+    best, lowest = None, (np.inf, 0.0)
     for notches in options:
         filters = [notch.system(seen.step) for notch in notches]
         filtered = _product([resonant.at(seen.frequencies) for resonant in map(resolvent, filters)])
@@ -148,9 +152,10 @@ def _chosen(seen: View, kind: Kind, at: tuple[int, float, complex], options: _Se
             if response is None:
                 continue
             whole = response * filtered
-            score = _score(seen.frequencies, whole * seen.own[:1, :, loop], frequency)
+            slack = -float(np.abs(whole[0])) if calm else 0.0
+            score = (max(calm, _score(seen.frequencies, whole * seen.own[:1, :, loop], frequency)), slack)
             if score < lowest and len(seen.offsets) > 1:
-                score = max(score, _score(seen.frequencies, whole * seen.own[:, :, loop], frequency))
+                score = (max(score[0], _score(seen.frequencies, whole * seen.own[:, :, loop], frequency)), slack)
             if score < lowest:
                 best, lowest = _Chosen(law, notches, whole), score
     return best

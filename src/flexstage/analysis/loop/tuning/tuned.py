@@ -22,6 +22,7 @@ _FINE = 0.05
 _STEPS = {Kind.PI: (1.3, 2.0), Kind.PID: (1.3, 2.0), Kind.RESONANT: (1.3, 2.0), Kind.LQG: (1.6, 4.0)}
 _WITHIN = 1.01
 _NOTICED = 20.0
+_CALM = (0.8, 0.65)
 
 
 def tuned(plant: Plant, loops: Loops, task: Task) -> Tuning:
@@ -29,9 +30,10 @@ def tuned(plant: Plant, loops: Loops, task: Task) -> Tuning:
 
     At the wanted bandwidth (absent: the highest found, by trial from fast to slow and then by halving) every loop's gain is 1; of the
     kind's laws the one with the lowest peak of S is taken, first without notches of its own, then with them. The loop as a whole has to
-    be stable by its eigenvalues and its peak of S below the goal's, also with all modes off by the goal's spread. LQG is tuned by its
-    weights, in platform coordinates. Raises `DesignError` where the bandwidth is not reached: with what stands in the way, the highest
-    that is, and what would help.
+    be stable by its eigenvalues and its peak of S below the goal's, also with all modes off by the goal's spread. Once the bandwidth
+    stands, PI and PID take the strongest integrators that the same peak of S leaves room for (Astrom, Panagopoulos & Hagglund, Automatica
+    34 (1998) 585). LQG is tuned by its weights, in platform coordinates. Raises `DesignError` where the bandwidth is not reached: with
+    what stands in the way, the highest that is, and what would help.
 
     >>> from flexstage.analysis.loop.controllers.loops import platform_loops
     >>> from flexstage.analysis.loop.example import integral_loop
@@ -48,7 +50,22 @@ def tuned(plant: Plant, loops: Loops, task: Task) -> Tuning:
     top, best = highest(seen, task) if wanted is None else (wanted, attempt(seen, task, wanted))
     if best is None or not best.reaches(top, task.goal):
         raise DesignError([_hopeless(seen, task) if wanted is None else _unreached(seen, task, best, wanted)])
+    best = _stiffest(seen, task, top, best)
     return Tuning(task.kind, task.goal, best.controller, best.judgement, best.notches, _said(task, best, top))
+
+
+def _stiffest(seen: View, task: Task, bandwidth: float, found: Attempt) -> Attempt:
+    """At the same bandwidth, within the same peak of S, more gain at rest: the lowest peak alone leaves motions that creep.
+
+    Part of the peak allowed is left to what the loops do to one another.
+    """
+    if task.kind not in (Kind.PI, Kind.PID):
+        return found
+    for share in _CALM:
+        tried = attempt(seen, task, bandwidth, share * task.goal.sensitivity)
+        if tried is not None and tried.reaches(bandwidth, task.goal):
+            return tried
+    return found
 
 
 def highest(seen: View, task: Task) -> tuple[float, Attempt | None]:
