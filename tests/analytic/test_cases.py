@@ -168,7 +168,7 @@ def test_redundant_posts_share_a_command():
 def test_piston_frequency_is_that_of_three_struts():
     """f = (3 k / m)^(1/2) / 2 pi without the struts' own masses; with them at most 10 % lower, leaves and necks add less than 2 %."""
     p = TipTilt()
-    mass = math.pi / 4.0 * (p.holder**2 * p.holder_thickness * ALUMINIUM.density + p.mirror[0] ** 2 * p.mirror[1] * 2530.0)
+    mass = math.pi / 4.0 * (p.holder**2 * p.holder_thickness * ALUMINIUM.density + p.mirror**2 * p.mirror_thickness * 2530.0)
     simple = math.sqrt(3.0 * _strut_stiffness(p.neck, p.stack) / mass) / (2.0 * math.pi)
     model = lumped(tip_tilt(p))
     solved = eigen(model)

@@ -10,10 +10,12 @@ many times over.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Annotated
 
 import numpy as np
 
 from flexstage.base.number import Number, Vector
+from flexstage.base.quantity import ANGLE, LENGTH, POSITIVE
 from flexstage.base.scale import X, Y, Z, deg, kHz, mm, nm, um
 from flexstage.cases.stock import ALUMINIUM, GAUGE, SLIM_STACK, SOURCES, stock_tags
 from flexstage.mechanism.mechanism import Link, Mechanism, ModalDamping, Placement, Probe, Unit
@@ -35,13 +37,13 @@ class Bridge:
     """
 
     leaf: Leaf = Leaf("aluminium", length=4 * mm, thickness=0.35 * mm, width=10 * mm)
-    bar: Number = 12 * mm
-    angle: Number = 6 * deg
-    half_span: Number = 23 * mm
-    half_gap: Number = 4 * mm
+    bar: Annotated[Number, LENGTH, POSITIVE] = 12 * mm
+    angle: Annotated[Number, ANGLE] = 6 * deg
+    half_span: Annotated[Number, LENGTH, POSITIVE] = 23 * mm
+    half_gap: Annotated[Number, LENGTH, POSITIVE] = 4 * mm
     guide: Leaf = Leaf("aluminium", length=25 * mm, thickness=0.3 * mm, width=10 * mm)
-    guide_spacing: Number = 8 * mm
-    size: tuple[Number, Number, Number] = (30 * mm, 12 * mm, 10 * mm)
+    guide_spacing: Annotated[Number, LENGTH, POSITIVE] = 8 * mm
+    size: Annotated[tuple[Number, Number, Number], LENGTH, POSITIVE] = (30 * mm, 12 * mm, 10 * mm)
     stack: Piezo = SLIM_STACK
 
 

@@ -9,8 +9,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from enum import Enum
+from typing import Annotated
+
+import numpy as np
 
 from flexstage.base.number import Number, Vector
+from flexstage.base.quantity import ANGLE, LENGTH, NOT_NEGATIVE, POSITIVE
 from flexstage.base.scale import X, Y, Z, deg, kHz, mm, um
 from flexstage.mechanism.mechanism import Link, Mechanism, ModalDamping, Opening, Placement, Probe, Unit
 from flexstage.mechanism.pattern import Facing, Polar
@@ -24,14 +29,21 @@ from flexstage.parts.piezo import Piezo
 from flexstage.parts.profile import Circular, Straight, length
 
 
+class Bodies(Enum):
+    """What the bodies but the plate are."""
+
+    SOLID = "solid"
+    MASSLESS = "massless"
+
+
 @dataclass(frozen=True)
 class Plate:
     """The platform's square plate: `side`, `thickness`, `height` of its middle; squares of side `corner` are cut from its corners."""
 
-    side: Number
-    thickness: Number
-    height: Number
-    corner: Number = 0.0
+    side: Annotated[Number, LENGTH, POSITIVE]
+    thickness: Annotated[Number, LENGTH, POSITIVE]
+    height: Annotated[Number, LENGTH]
+    corner: Annotated[Number, LENGTH, NOT_NEGATIVE] = 0.0
 
 
 @dataclass(frozen=True)
@@ -41,31 +53,31 @@ class DoubleTriangle:
     Horizontal units lie tangentially at `horizontal_radius`, `horizontal_height` above the stage's origin, their front necks at
     `front_offset` along the line of action, necks `horizontal_span` apart. Vertical units have their poles at `pole_radius`, the upper
     pole hinge at `pole_height`, the lower one `pole_span` below; `short_arm` r1, `long_arm` r2; their push is turned by `vertical_turn`
-    from the tangent. With `blocks` all bodies are solids that touch where links join them; without, all but the plate are massless.
+    from the tangent. `bodies`: solids that touch where links join them, or massless ones but for the plate.
     """
 
     name: str
     neck: Neck
-    front_offset: Number
-    horizontal_span: Number
-    horizontal_radius: Number
-    horizontal_height: Number
+    front_offset: Annotated[Number, LENGTH]
+    horizontal_span: Annotated[Number, LENGTH, POSITIVE]
+    horizontal_radius: Annotated[Number, LENGTH, POSITIVE]
+    horizontal_height: Annotated[Number, LENGTH]
     horizontal_stack: Piezo
     foot_notch: Notch
     lever_notch: Notch
     pole_neck: Neck
     vertical_stack: Piezo
-    short_arm: Number
-    long_arm: Number
-    pole_span: Number
-    pole_radius: Number
-    pole_height: Number
-    vertical_turn: Number
-    back_distance: Number
-    gauge_radius: Number
-    gauge_height: Number
+    short_arm: Annotated[Number, LENGTH, POSITIVE]
+    long_arm: Annotated[Number, LENGTH, POSITIVE]
+    pole_span: Annotated[Number, LENGTH, POSITIVE]
+    pole_radius: Annotated[Number, LENGTH, POSITIVE]
+    pole_height: Annotated[Number, LENGTH]
+    vertical_turn: Annotated[Number, ANGLE]
+    back_distance: Annotated[Number, LENGTH, POSITIVE]
+    gauge_radius: Annotated[Number, LENGTH, POSITIVE]
+    gauge_height: Annotated[Number, LENGTH]
     plate: Plate
-    blocks: bool
+    bodies: Bodies
     fit: str = "fit"
 
 
@@ -154,7 +166,7 @@ SM_REF_A = DoubleTriangle(
     gauge_radius=150 * mm,
     gauge_height=0.0,
     plate=Plate(320 * mm, 20 * mm, 0.0),
-    blocks=False,
+    bodies=Bodies.MASSLESS,
 )
 
 SM_REF_B = DoubleTriangle(
@@ -179,7 +191,7 @@ SM_REF_B = DoubleTriangle(
     gauge_radius=130 * mm,
     gauge_height=80 * mm,
     plate=Plate(side=340.64498 * mm, thickness=18.96433 * mm, height=105.21508 * mm, corner=49.91874 * mm),
-    blocks=True,
+    bodies=Bodies.SOLID,
 )
 
 SM_REF_B_REFITTED = replace(
@@ -235,7 +247,7 @@ def double_triangle(parameters: DoubleTriangle = SM_REF_B) -> Mechanism:
 def _plate(plate: Plate) -> dict[str, Block]:
     """The plate with its hole, in three pieces where its corners are cut off."""
     opening = (110 * mm, 110 * mm)
-    if plate.corner == 0.0:
+    if not np.any(plate.corner):
         return {"plate": Block("steel", (plate.side, plate.side, plate.thickness), (0.0, 0.0, plate.height), opening)}
     across = plate.side - 2.0 * plate.corner
     strip, reach = (across, plate.corner, plate.thickness), 0.5 * (plate.side - plate.corner)
@@ -260,7 +272,7 @@ def _horizontal(p: DoubleTriangle) -> Unit:
     back = p.front_offset - p.horizontal_span
     middle = p.front_offset - 0.5 * p.horizontal_span
     return Unit(
-        bodies=_horizontal_blocks(p) if p.blocks else {"base": Body(), "tip": Body()},
+        bodies=_horizontal_blocks(p) if p.bodies is Bodies.SOLID else {"base": Body(), "tip": Body()},
         links={
             "back": Link(("ground", "base"), "neck", (back, 0.0, 0.0), X, bends=Y),
             "pzt": Link(("base", "tip"), "stack_horizontal", (middle, 0.0, 0.0), X),
@@ -306,7 +318,7 @@ def _vertical(p: DoubleTriangle) -> Unit:
     rear = p.long_arm - p.back_distance
     middle = p.long_arm - 0.5 * p.back_distance
     return Unit(
-        bodies=_vertical_blocks(p) if p.blocks else {name: Body() for name in ("base", "tip", "lever", "pole")},
+        bodies=_vertical_blocks(p) if p.bodies is Bodies.SOLID else {name: Body() for name in ("base", "tip", "lever", "pole")},
         links={
             "back": Link(("ground", "base"), "foot_notch", (rear, 0.0, line), X, bends=Y),
             "pzt": Link(("base", "tip"), "stack_vertical", (middle, 0.0, line), X),
@@ -437,7 +449,8 @@ def _tags(p: DoubleTriangle) -> dict[str, str]:
     derived += ["parts.neck.width"] if p.neck.width is not None else []
     derived += ["units.horizontal.links.back.at", "units.vertical.links.front.at", "units.vertical.links.pivot.at"]
     derived += ["parts.stack_horizontal.length", "parts.stack_vertical.length"]
-    trimmed = [f"bodies.platform.solids.{name}.{field}" for name in _plate(p.plate) for field in ("size", "at")] if p.blocks else []
+    solid = _plate(p.plate) if p.bodies is Bodies.SOLID else {}
+    trimmed = [f"bodies.platform.solids.{name}.{field}" for name in solid for field in ("size", "at")]
     return (
         {key: f"stated {value}" for key, value in stated.items()}
         | dict.fromkeys(derived, f"derived {p.fit}")

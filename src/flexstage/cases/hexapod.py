@@ -8,10 +8,12 @@ and yaw, steep ones z and the tilts. The necks' bending is what each motion work
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
 from flexstage.base.number import Number, Vector
+from flexstage.base.quantity import ANGLE, LENGTH, NOT_NEGATIVE, POSITIVE
 from flexstage.base.scale import deg, kHz, mm
 from flexstage.cases.stock import ALUMINIUM, GAUGE, SOURCES, STEEL, STRONG_STACK, stock_tags
 from flexstage.cases.strut import Strut
@@ -35,13 +37,13 @@ class Hexapod:
 
     neck: Neck = Neck("steel", thickness=3 * mm, profile=Circular(4 * mm))
     stack: Piezo = STRONG_STACK
-    head_radius: Number = 55 * mm
-    gap: Number = 24 * mm
-    slope: Number = 45 * deg
-    diameter: Number = 140 * mm
-    thickness: Number = 12 * mm
-    bore: Number = 60 * mm
-    rise: Number = 8 * mm
+    head_radius: Annotated[Number, LENGTH, POSITIVE] = 55 * mm
+    gap: Annotated[Number, LENGTH, POSITIVE] = 24 * mm
+    slope: Annotated[Number, ANGLE] = 45 * deg
+    diameter: Annotated[Number, LENGTH, POSITIVE] = 140 * mm
+    thickness: Annotated[Number, LENGTH, POSITIVE] = 12 * mm
+    bore: Annotated[Number, LENGTH, NOT_NEGATIVE] = 60 * mm
+    rise: Annotated[Number, LENGTH] = 8 * mm
 
 
 def hexapod(parameters: Hexapod | None = None) -> Mechanism:

@@ -9,8 +9,10 @@ least; here it passes through the platform itself, which is easier to build: the
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated
 
 from flexstage.base.number import Number
+from flexstage.base.quantity import LENGTH, POSITIVE
 from flexstage.base.scale import X, Z, kHz, mm
 from flexstage.cases.stock import ALUMINIUM, GAUGE, SLIM_STACK, SOURCES, STEEL, stock_tags
 from flexstage.cases.strut import Strut
@@ -36,9 +38,9 @@ class Parallelogram:
     leaf: Leaf = Leaf("aluminium", length=25 * mm, thickness=1.0 * mm, width=25 * mm)
     neck: Neck = Neck("steel", thickness=2 * mm, profile=Circular(4 * mm))
     stack: Piezo = SLIM_STACK
-    size: tuple[Number, Number, Number] = (60 * mm, 40 * mm, 25 * mm)
-    spacing: Number = 50 * mm
-    push_offset: Number = 0.0
+    size: Annotated[tuple[Number, Number, Number], LENGTH, POSITIVE] = (60 * mm, 40 * mm, 25 * mm)
+    spacing: Annotated[Number, LENGTH, POSITIVE] = 50 * mm
+    push_offset: Annotated[Number, LENGTH] = 0.0
 
 
 def parallelogram(parameters: Parallelogram | None = None) -> Mechanism:

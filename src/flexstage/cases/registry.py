@@ -1,56 +1,125 @@
-"""The shipped cases by name, for `flexstage new --case NAME`."""
+"""The shipped cases by name, with their parameters: for `flexstage new --case NAME`, for studies, and in Python."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
-from functools import partial
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
 
 from flexstage.base.finding import nearest, refuse
-from flexstage.cases.bridge import bridge
+from flexstage.base.number import Number, Table, stack
+from flexstage.cases.bridge import Bridge, bridge
 from flexstage.cases.double_triangle import SM_REF_A, SM_REF_B, SM_REF_B_REFITTED, double_triangle
-from flexstage.cases.hexapod import hexapod
-from flexstage.cases.parallelogram import parallelogram
+from flexstage.cases.hexapod import Hexapod, hexapod
+from flexstage.cases.parallelogram import Parallelogram, parallelogram
+from flexstage.cases.parameters import Stated, parameter, with_parameters
 from flexstage.cases.tip_tilt import TipTilt, tip_tilt
 from flexstage.cases.xy_stage import XYStage, xy_stage
+from flexstage.mechanism.address import get
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.store import tidied
 
 
 @dataclass(frozen=True)
 class Case:
-    """A shipped case: `build` makes its description, `summary` says in one line what it is."""
+    """A shipped case: `draw` makes a description from `parameters`, here its own; `summary` says in one line what it is."""
 
-    build: Callable[[], Mechanism]
+    draw: Callable[[Any], Mechanism]
+    parameters: Any
     summary: str
+
+    def build(self, stated: Mapping[str, Stated] | None = None) -> Mechanism:
+        """The description with some parameters `stated` otherwise: texts with units, or SI numbers; arrays make it a batch.
+
+        Tags of numbers that come out otherwise are dropped: their source no longer says them.
+
+        >>> CASES["hexapod"].build({"slope": "50 deg"}).name
+        'hexapod'
+        """
+        own = self.draw(self.parameters)
+        return own if not stated else _honest(self.draw(with_parameters(self.parameters, stated)), own)
+
+
+def _honest(mechanism: Mechanism, own: Mechanism) -> Mechanism:
+    """The description without tags of numbers that are not those of the case's `own`."""
+    tags = {key: tag for key, tag in mechanism.tags.items() if key in own.tags and _same(get(mechanism, key), get(own, key))}
+    return mechanism if len(tags) == len(mechanism.tags) else replace(mechanism, tags=Table(tags))
+
+
+def _same(first: Any, second: Any) -> bool:
+    return bool(np.all(stack(first) == stack(second)))
 
 
 CASES: Mapping[str, Case] = {
     "double-triangle": Case(
-        partial(double_triangle, SM_REF_B), "six axes: three direct units inside, three levers outside (Shin & Moon), buildable"
+        double_triangle, SM_REF_B, "six axes: three direct units inside, three levers outside (Shin & Moon), buildable"
     ),
-    "double-triangle-a": Case(partial(double_triangle, SM_REF_A), "the same stage for checking formulas; cannot be built"),
+    "double-triangle-a": Case(double_triangle, SM_REF_A, "the same stage for checking formulas; cannot be built"),
     "double-triangle-refitted": Case(
-        partial(double_triangle, SM_REF_B_REFITTED), "the buildable stage with neck and lever notch fitted by FEA instead of beam theory"
+        double_triangle, SM_REF_B_REFITTED, "the buildable stage with neck and lever notch fitted by FEA instead of beam theory"
     ),
-    "parallelogram": Case(parallelogram, "one axis: a platform on two leaves, pushed by one stack"),
-    "xy-stage": Case(xy_stage, "two axes: four carriages on leaves around a platform, two of them driven"),
-    "xy-stage-floating": Case(partial(xy_stage, XYStage(driven=1)), "the XY stage with one stack only: under-actuated"),
-    "bridge": Case(bridge, "one axis: a rhombus of leaf hinges amplifies one stack about nine times"),
-    "hexapod": Case(hexapod, "six axes: six flexure struts in three pairs"),
-    "tip-tilt": Case(tip_tilt, "tip, tilt and piston of a mirror: three stacks and a guide of three leaves"),
-    "tip-tilt-four": Case(partial(tip_tilt, TipTilt(posts=4)), "the mirror mount on four stacks: redundant actuation"),
+    "parallelogram": Case(parallelogram, Parallelogram(), "one axis: a platform on two leaves, pushed by one stack"),
+    "xy-stage": Case(xy_stage, XYStage(), "two axes: four carriages on leaves around a platform, two of them driven"),
+    "xy-stage-floating": Case(xy_stage, XYStage(driven=1), "the XY stage with one stack only: under-actuated"),
+    "bridge": Case(bridge, Bridge(), "one axis: a rhombus of leaf hinges amplifies one stack about nine times"),
+    "hexapod": Case(hexapod, Hexapod(), "six axes: six flexure struts in three pairs"),
+    "tip-tilt": Case(tip_tilt, TipTilt(), "tip, tilt and piston of a mirror: three stacks and a guide of three leaves"),
+    "tip-tilt-four": Case(tip_tilt, TipTilt(posts=4), "the mirror mount on four stacks: redundant actuation"),
 }
 
 
-def case(name: str) -> Mechanism:
-    """The description of a shipped case, its numbers as a file shows them.
+def case(name: str, parameters: Mapping[str, Stated] | None = None) -> Mechanism:
+    """The description of a shipped case, its numbers as a file shows them; with some of its `parameters` stated otherwise.
 
-    Raises `DesignError` with the nearest name where there is none of this name.
+    A parameter is named as `flexstage new --case NAME --parameters` lists it, and is a text with its unit, or a number in SI. Arrays make
+    the description a batch. Numbers that do not vary are rounded to twelve digits. Raises `DesignError` with the nearest name where there
+    is no case or no parameter of this name, and for values that cannot be.
 
     >>> case("hexapod").name
     'hexapod'
+    >>> case("hexapod", {"slope": "50 deg", "neck.thickness": np.array([2.5e-3, 3e-3])}).parts["neck"].thickness.tolist()
+    [0.0025, 0.003]
+    """
+    return tidied(shipped(name).build(parameters))
+
+
+def shipped(name: str) -> Case:
+    """The shipped case of that name. Raises `DesignError` with the nearest name where there is none.
+
+    >>> shipped("hexapod").summary
+    'six axes: six flexure struts in three pairs'
     """
     if name not in CASES:
         raise refuse(name, "there is no case of this name", nearest(name, CASES))
-    return tidied(CASES[name].build())
+    return CASES[name]
+
+
+@dataclass(frozen=True)
+class Variant:
+    """A shipped case by name, and the parameters in which it differs from that case: full names and SI values, choices as they are."""
+
+    case: str
+    stated: tuple[tuple[str, Any], ...] = ()
+
+    @property
+    def parameters(self) -> Any:
+        """The dataclass of all its parameters."""
+        return with_parameters(shipped(self.case).parameters, dict(self.stated))
+
+    def value(self, name: str) -> Any:
+        """What it has for a parameter [SI].
+
+        >>> round(Variant("hexapod", (("rise", 0.01),)).value("rise"), 9)
+        0.01
+        """
+        return parameter(self.parameters, name).value
+
+    def drawn(self, values: Mapping[str, Number]) -> Mechanism:
+        """The description at other `values` of some parameters [SI], numbers or arrays: to the last bit, and without tags.
+
+        >>> Variant("hexapod").drawn({"neck.profile.radius": 0.005}).parts["neck"].profile
+        Circular(radius=0.005)
+        """
+        return replace(shipped(self.case).draw(with_parameters(self.parameters, values)), tags=Table({}))

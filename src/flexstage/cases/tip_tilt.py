@@ -8,8 +8,10 @@ redundant: a command in which opposite pairs work against one another is interna
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated
 
 from flexstage.base.number import Number
+from flexstage.base.quantity import LENGTH, POSITIVE
 from flexstage.base.scale import X, Y, Z, deg, kHz, mm
 from flexstage.cases.stock import ALUMINIUM, GAUGE, GLASS_CERAMIC, SLIM_STACK, SOURCES, STEEL, stock_tags
 from flexstage.cases.strut import Strut
@@ -29,19 +31,20 @@ class TipTilt:
     """Parameters of a tip-tilt-piston mount, SI.
 
     `posts` stacks stand at `post_radius` around z. The holder is a disc of diameter `holder` and thickness `holder_thickness` centred at
-    the origin, where also the three leaves lie, their middles at `leaf_radius`; the mirror, `mirror` = (diameter, thickness), is bonded
-    on top.
+    the origin, where also the three leaves lie, their middles at `leaf_radius`; the mirror, of diameter `mirror` and thickness
+    `mirror_thickness`, is bonded on top.
     """
 
     posts: int = 3
     neck: Neck = Neck("steel", thickness=1.5 * mm, profile=Circular(4 * mm))
     stack: Piezo = SLIM_STACK
     leaf: Leaf = Leaf("steel", length=24 * mm, thickness=0.3 * mm, width=8 * mm)
-    post_radius: Number = 20 * mm
-    leaf_radius: Number = 36 * mm
-    holder: Number = 60 * mm
-    holder_thickness: Number = 6 * mm
-    mirror: tuple[Number, Number] = (60 * mm, 10 * mm)
+    post_radius: Annotated[Number, LENGTH, POSITIVE] = 20 * mm
+    leaf_radius: Annotated[Number, LENGTH, POSITIVE] = 36 * mm
+    holder: Annotated[Number, LENGTH, POSITIVE] = 60 * mm
+    holder_thickness: Annotated[Number, LENGTH, POSITIVE] = 6 * mm
+    mirror: Annotated[Number, LENGTH, POSITIVE] = 60 * mm
+    mirror_thickness: Annotated[Number, LENGTH, POSITIVE] = 10 * mm
 
 
 def tip_tilt(parameters: TipTilt | None = None) -> Mechanism:
@@ -98,8 +101,7 @@ def _leaf(p: TipTilt) -> Unit:
 
 
 def _platform(p: TipTilt) -> Body:
-    diameter, thickness = p.mirror
-    face = 0.5 * p.holder_thickness + thickness
+    face = 0.5 * p.holder_thickness + p.mirror_thickness
     holder = Cylinder("aluminium", p.holder, p.holder_thickness)
-    mirror = Cylinder("glass", diameter, thickness, (0.0, 0.0, face - 0.5 * thickness))
+    mirror = Cylinder("glass", p.mirror, p.mirror_thickness, (0.0, 0.0, face - 0.5 * p.mirror_thickness))
     return Body(solids={"holder": holder, "mirror": mirror}, points={"vertex": (0.0, 0.0, face)})

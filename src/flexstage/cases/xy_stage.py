@@ -9,8 +9,10 @@ Those constraints are listed by name; they must be met by accuracy of manufactur
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated
 
 from flexstage.base.number import Number
+from flexstage.base.quantity import LENGTH, POSITIVE
 from flexstage.base.scale import X, Z, deg, kHz, mm
 from flexstage.cases.stock import ALUMINIUM, GAUGE, SLIM_STACK, SOURCES, STEEL, stock_tags
 from flexstage.cases.strut import Strut
@@ -40,10 +42,10 @@ class XYStage:
     guide: Leaf = Leaf("aluminium", length=25 * mm, thickness=0.6 * mm, width=15 * mm)
     neck: Neck = Neck("steel", thickness=2 * mm, profile=Circular(4 * mm))
     stack: Piezo = SLIM_STACK
-    edge: Number = 60 * mm
-    height: Number = 15 * mm
-    coupling_offset: Number = 20 * mm
-    carriage: tuple[Number, Number] = (12 * mm, 46 * mm)
+    edge: Annotated[Number, LENGTH, POSITIVE] = 60 * mm
+    height: Annotated[Number, LENGTH, POSITIVE] = 15 * mm
+    coupling_offset: Annotated[Number, LENGTH, POSITIVE] = 20 * mm
+    carriage: Annotated[tuple[Number, Number], LENGTH, POSITIVE] = (12 * mm, 46 * mm)
     driven: int = 2
 
 

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import inspect
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import Any
 
 from flexstage.base.finding import Finding, nearest, refuse
-from flexstage.cases.registry import CASES
+from flexstage.cases.parameters import parameters
+from flexstage.cases.registry import CASES, shipped
 from flexstage.mechanism.grammar import TAGS
 from flexstage.mechanism.store.catalogue import Catalogue, Section
 from flexstage.parts.gauge import Gauge
@@ -27,6 +29,19 @@ def case_table() -> Table:
     """
     rows = [(Cell(name, Mark.STRONG), case.summary) for name, case in CASES.items()]
     return build("Cases", ["name", "what it is"], rows, notes=["flexstage new stage.toml --case NAME"])
+
+
+def parameter_table(name: str) -> Table:
+    """The parameters of a shipped case: name, quantity, value. Raises `DesignError` with the nearest name where there is no such case.
+
+    >>> parameter_table("parallelogram").texts()[-2]
+    ['spacing', 'length', '50 mm']
+    """
+    own = shipped(name).parameters
+    rows = [(Cell(each.name, Mark.STRONG), each.kind, each.text) for each in parameters(own).values()]
+    meaning = " ".join((inspect.getdoc(type(own)) or "").partition("\n\n")[2].replace("`", "").split())
+    notes = [meaning, f"flexstage new stage.toml --case {name} --parameter NAME=VALUE"]
+    return build(f"Parameters of {name}", ["name", "quantity", "value"], rows, notes=notes)
 
 
 def finding_table(title: str, findings: Iterable[Finding]) -> Table:

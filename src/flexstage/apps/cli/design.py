@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from enum import Enum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -25,7 +26,17 @@ def new(
     target: Annotated[Path | None, typer.Argument(metavar="STAGE.TOML", help="File to write.", show_default=False)] = None,
     *,
     case: Annotated[str, typer.Option(metavar="NAME", help="Shipped case to start from; --list shows them.")] = DEFAULT_CASE,
+    parameter: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--parameter",
+            metavar="NAME=VALUE",
+            help="State a parameter of the case otherwise, e.g. long_arm=80mm. May be given several times.",
+            show_default=False,
+        ),
+    ] = None,
     listed: Annotated[bool, typer.Option("--list", help="List the shipped cases and stop.")] = False,
+    parameters: Annotated[bool, typer.Option("--parameters", help="List the parameters of the case and stop.")] = False,
     force: Annotated[bool, typer.Option("--force", help="Overwrite the file if it exists.")] = False,
 ) -> None:
     """Write a shipped case as a commented design file."""
@@ -35,25 +46,40 @@ def new(
     from flexstage.cases.registry import CASES
     from flexstage.cases.registry import case as shipped_case
     from flexstage.mechanism.store import dumps
-    from flexstage.present.listing import case_table
+    from flexstage.present.listing import case_table, parameter_table
 
-    if listed:
-        show([case_table()])
+    if listed or parameters:
+        show([case_table() if listed else parameter_table(case)])
         return
     if target is None:
         raise typer.BadParameter("name the file to write, e.g. stage.toml", param_hint="STAGE.TOML")
-    mechanism = shipped_case(case)
+    stated = _stated(parameter or ())
+    mechanism = shipped_case(case, stated)
     require(output_findings([(str(target), target)]))
     if target.exists() and not force:
         require([Finding(str(target), "the file exists already", "Choose another name, or overwrite it with --force")])
-    write(target, dumps(mechanism, {"": _heading(case, CASES[case].summary, str(target))}), str(target))
+    write(target, dumps(mechanism, {"": _heading(case, CASES[case].summary, str(target), stated)}), str(target))
     announced(f"Wrote {target} ({case}: {CASES[case].summary}). Next: flexstage analyse {target}")
 
 
-def _heading(case: str, summary: str, target: str) -> str:
+def _stated(assignments: Sequence[str]) -> dict[str, str]:
+    """Names and values of parameters."""
+    from flexstage.base.finding import Finding, require
+
+    split = [each.partition("=") for each in assignments]
+    advice = "Write for example --parameter long_arm=80mm"
+    require(Finding(f'--parameter "{name}"', "it gives no value", advice) for name, equals, _ in split if not equals)
+    names = [name.strip() for name, _, _ in split]
+    twice = {name for name in names if names.count(name) > 1}
+    require(Finding(f"--parameter {name}", "it is stated more than once", "State it once") for name in sorted(twice))
+    return {name.strip(): value.strip() for name, _, value in split}
+
+
+def _heading(case: str, summary: str, target: str, stated: Mapping[str, str]) -> str:
     return (
         f"{case}: {summary}.\n"
-        f"flexstage check {target}     flexstage analyse {target} --report report.html\n"
+        + "".join(f"Parameter {name} = {value}.\n" for name, value in stated.items())
+        + f"flexstage check {target}     flexstage analyse {target} --report report.html\n"
         "Every physical value carries a unit. tags say where a value comes from: stated, derived or assumed (untagged), and the source."
     )
 

@@ -25,7 +25,8 @@ def sweep_body(study: Study, results: Results, found: Effects) -> Document:
         "variables": [
             {
                 "name": each.name,
-                "addresses": list(each.addresses),
+                "addresses": list(each.addresses) if each.variant is None else [],
+                "parameters": [] if each.variant is None else list(each.addresses),
                 "unit": each.quantity.si,
                 "from": each.low,
                 "to": each.high,

@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from flexstage.analysis.requirements import Verdict
+from flexstage.base.quantity import Quantity
+from flexstage.base.unit import show
 from flexstage.present.display import number, value_with_unit
 from flexstage.present.table import Cell, Column, Mark, Table, build
 from flexstage.studies.study.definition import Study
@@ -28,9 +30,9 @@ def _variables(study: Study, results: Results) -> Table:
     rows = [
         (
             Cell(each.name, Mark.STRONG),
-            ", ".join(each.addresses),
-            _end(each.low, each.quantity.si, relative=each.relative),
-            _end(each.high, each.quantity.si, relative=each.relative),
+            ", ".join(each.addresses) if each.variant is None else f"parameter {', '.join(each.addresses)}",
+            _end(each.low, each.quantity, relative=each.relative),
+            _end(each.high, each.quantity, relative=each.relative),
         )
         for each in study.variables
     ]
@@ -39,8 +41,8 @@ def _variables(study: Study, results: Results) -> Table:
     return build("Varied", ["variable", "number", "from", "to"], rows, notes=[f"{note}."])
 
 
-def _end(value: float, unit: str, *, relative: bool) -> str:
-    return f"{100.0 * (value - 1.0):+.4g} %" if relative else value_with_unit(value, unit)
+def _end(value: float, quantity: Quantity, *, relative: bool) -> str:
+    return f"{100.0 * (value - 1.0):+.4g} %" if relative else show(value, quantity, digits=6)
 
 
 def _responses(study: Study, results: Results, found: Effects) -> Table:

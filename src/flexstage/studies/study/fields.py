@@ -66,6 +66,10 @@ class Fields:
                 self.note(f"{key}[{number}]", f"found {item!r}", "Give a text in quotes")
         return tuple(item for item in found if isinstance(item, str))
 
+    def text_or_texts(self, key: str, default: str = "") -> tuple[str, ...]:
+        """A text, or a list of them."""
+        return self.texts(key) if isinstance(self.tree.get(key), list) else (self.text(key, default),)
+
     def number(self, key: str, quantity: Quantity, default: float | None = None) -> float | None:
         """A number with its unit, in SI; a ratio may be bare."""
         self.asked.append(key)

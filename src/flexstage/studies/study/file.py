@@ -11,15 +11,15 @@ from flexstage.analysis.requirements import Measure, Requirement, measure, requi
 from flexstage.base.finding import DesignError, Finding, nearest, require
 from flexstage.base.number import Table
 from flexstage.base.quantity import RATIO, Quantity
-from flexstage.cases.registry import case
+from flexstage.cases.registry import Variant
 from flexstage.mechanism.address import quantity_of
 from flexstage.mechanism.mechanism import Mechanism
-from flexstage.mechanism.store import load
 from flexstage.mechanism.store.file import parse_toml, read_text
 from flexstage.studies.sensitivities import not_numbers
 from flexstage.studies.study.definition import Study
 from flexstage.studies.study.fields import Fields
 from flexstage.studies.study.plan import Plan, Sampling
+from flexstage.studies.study.start import one_quantity, parameters_varied, start
 from flexstage.studies.study.variable import Variable, variable_findings
 
 FORMAT = "flexstage study 1"
@@ -56,7 +56,7 @@ def loads_study(text: str, *, where: str = "text", folder: Path | None = None) -
     """
     head = opening(text, where, folder)
     design, tables, findings = head.design, head.tables, head.findings
-    variables = _variables(tables["variables"], design)
+    variables = _variables(tables["variables"], design, head.variant)
     plan = _plan(tables["sweep"], variables)
     if not head.responses:
         findings.append(Finding("responses", "nothing is asked", 'Name a measure, for example f1 = "frequency.platform.1"'))
@@ -66,7 +66,10 @@ def loads_study(text: str, *, where: str = "text", folder: Path | None = None) -
 
 @dataclass(frozen=True, eq=False)
 class Opening:
-    """What all studies' files have: the design, what is asked of it, and the `tables` of their sections with the `findings` so far."""
+    """What all studies' files have: the design, what is asked of it, and the `tables` of their sections with the `findings` so far.
+
+    `variant` is the case that the design is drawn from; `None`: a design file.
+    """
 
     name: str
     design: Mechanism
@@ -74,6 +77,7 @@ class Opening:
     responses: Mapping[str, Measure]
     limits: tuple[Requirement, ...]
     findings: list[Finding]
+    variant: Variant | None = None
 
 
 def opening(text: str, where: str, folder: Path | None) -> Opening:
@@ -88,11 +92,12 @@ def opening(text: str, where: str, folder: Path | None) -> Opening:
     if fields.text("format") != FORMAT:
         fields.note("format", f'found "{fields.text("format")}"', f'Begin the file with format = "{FORMAT}"')
     name = fields.text("name", "study")
-    design = _design(fields, folder or Path())
+    design, variant = start(fields, folder or Path())
     tables = {key: fields.table(key) for key in ("variables", "responses", "limits", "sweep", *OTHERS)}
     fields.done()
     require(placed(findings, where))
-    return Opening(name, design, tables, _responses(tables["responses"], design), _limits(tables["limits"], design), findings)
+    responses, limits = _responses(tables["responses"], design), _limits(tables["limits"], design)
+    return Opening(name, design, tables, responses, limits, findings, variant)
 
 
 def placed(findings: Iterable[Finding], where: str) -> Iterator[Finding]:
@@ -105,34 +110,22 @@ def placed(findings: Iterable[Finding], where: str) -> Iterator[Finding]:
         yield Finding(f"{where}: {each.where}", each.what, each.advice)
 
 
-def _design(fields: Fields, folder: Path) -> Mechanism:
-    """The design that the study starts from."""
-    path, shipped = fields.text("design"), fields.text("case")
-    if bool(path) == bool(shipped):
-        found = "both a design file and a case are named" if path else "no design is named"
-        fields.note("design", found, 'Write design = "stage.toml", or case = "double-triangle"')
-        return Mechanism("")
-    try:
-        return load(folder / path) if path else case(shipped)
-    except DesignError as error:
-        fields.findings.extend(error.findings)
-        return Mechanism("")
-
-
-def _variables(table: Fields, design: Mechanism) -> tuple[Variable, ...]:
+def _variables(table: Fields, design: Mechanism, variant: Variant | None) -> tuple[Variable, ...]:
     """All variables; the name of one that gives no address is its address."""
-    found = [_variable(table.table(name), name, design) for name in table.tree]
+    found = [_variable(table.table(name), name, design, variant) for name in table.tree]
     if not table.tree:
         what = 'Write for example neck = { of = "parts.neck.thickness", from = "1.4 mm", to = "1.7 mm" }'
         table.findings.append(Finding("variables", "nothing is varied", what))
     return tuple(each for each in found if each is not None)
 
 
-def _variable(table: Fields, name: str, design: Mechanism) -> Variable | None:
-    several = isinstance(table.tree.get("of"), list)
-    addresses = table.texts("of") if several else (table.text("of", name),)
+def _variable(table: Fields, name: str, design: Mechanism, variant: Variant | None) -> Variable | None:
     before = len(table.findings)
-    quantity = _quantity(table, addresses, design)
+    if "parameter" in table.tree:
+        addresses, quantity = parameters_varied(table, variant)
+    else:
+        addresses = table.text_or_texts("of", name)
+        quantity, variant = _quantity(table, addresses, design), None
     low, relative = _end(table, "from", quantity)
     high, also = _end(table, "to", quantity)
     logarithmic = table.flag("logarithmic")
@@ -143,7 +136,7 @@ def _variable(table: Fields, name: str, design: Mechanism) -> Variable | None:
         table.note("to", "one end is relative (%), the other not", "Give both alike")
     if quantity is None or len(table.findings) > before:
         return None
-    return Variable(name, addresses, RATIO if relative else quantity, low, high, relative, logarithmic, levels, step)
+    return Variable(name, addresses, RATIO if relative else quantity, low, high, relative, logarithmic, levels, step, variant)
 
 
 def _step(table: Fields, quantity: Quantity | None, *, relative: bool) -> float | None:
@@ -167,10 +160,7 @@ def _quantity(table: Fields, addresses: tuple[str, ...], design: Mechanism) -> Q
             found += [] if wrong else [quantity_of(design, address)]
         except DesignError as error:
             table.findings.extend(Finding(table.where, f"{each.where}: {each.what}", each.advice) for each in error.findings)
-    if len({each.si for each in found}) > 1:
-        table.note("of", f"the addresses are of different quantities: {', '.join(each.name for each in found)}", "Use two variables")
-        return None
-    return found[0] if found else None
+    return one_quantity(table, "of", found)
 
 
 def _end(table: Fields, key: str, quantity: Quantity | None) -> tuple[float, bool]:

@@ -5,12 +5,19 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
+import numpy as np
+
 from flexstage.base.finding import Finding
 from flexstage.base.number import Array
 from flexstage.base.quantity import Quantity
+from flexstage.cases.registry import Variant
 from flexstage.mechanism.address import get, set_value
+from flexstage.mechanism.grammar import node_of, numbers
+from flexstage.mechanism.locate import canonical
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.studies.sensitivities import departure
+
+_STEP = 1e-20
 
 
 @dataclass(frozen=True)
@@ -18,7 +25,8 @@ class Variable:
     """One number that a study moves from `low` to `high` [SI of `quantity`], written to all its `addresses`.
 
     `relative`: low and high are factors on what the design states at each address. `logarithmic`: equal steps are equal ratios. `levels`:
-    into how many values a grid divides the range, ends included. `step` [SI]: only its multiples can be made.
+    into how many values a grid divides the range, ends included. `step` [SI]: only its multiples can be made. With a `variant`, its
+    addresses are parameters of that case, from which the design is drawn anew.
     """
 
     name: str
@@ -30,6 +38,7 @@ class Variable:
     logarithmic: bool = False
     levels: int | None = None
     step: float | None = field(default=None, repr=False)
+    variant: Variant | None = None
 
     def at(self, shares: Array) -> Array:
         """Values (n,) at shares (n,) of the range: 0 is low, 1 is high.
@@ -47,7 +56,8 @@ class Variable:
 def varied(mechanism: Mechanism, variables: Iterable[Variable], values: Array) -> Mechanism:
     """The design with `values` (..., d) of the variables, in SI; with leading axes it is a batch.
 
-    Shared parts are written before departures from them, whatever the order of the variables.
+    Parameters of a case come first: the design is drawn from them. Then shared parts are written, then departures from them, whatever the
+    order of the variables.
 
     >>> import numpy as np
     >>> from flexstage.base.quantity import LENGTH
@@ -57,15 +67,24 @@ def varied(mechanism: Mechanism, variables: Iterable[Variable], values: Array) -
     [0.0015, 0.0016]
     """
     moves = [(address, variable, values[..., number]) for number, variable in enumerate(variables) for address in variable.addresses]
-    result = mechanism
-    for address, variable, value in sorted(moves, key=lambda move: departure(mechanism, move[0])):
-        wanted = get(mechanism, address) * value if variable.relative else value
+    start = result = _drawn(mechanism, [move for move in moves if move[1].variant is not None])
+    written = [move for move in moves if move[1].variant is None]
+    for address, variable, value in sorted(written, key=lambda move: departure(mechanism, move[0])):
+        wanted = get(start, address) * value if variable.relative else value
         result = set_value(result, address, wanted)
     return result
 
 
+def _drawn(mechanism: Mechanism, moves: list[tuple[str, Variable, Array]]) -> Mechanism:
+    """The design drawn from the parameters that vary; as it stands where none does."""
+    variant = next((variable.variant for _, variable, _ in moves), None)
+    if variant is None:
+        return mechanism
+    return variant.drawn({name: variant.value(name) * value if variable.relative else value for name, variable, value in moves})
+
+
 def variable_findings(mechanism: Mechanism, variables: Iterable[Variable]) -> Iterator[Finding]:
-    """Ranges that are empty or inverted, and numbers that two variables move.
+    """Ranges that are empty or inverted, numbers that two variables move, parameters that move none.
 
     >>> from flexstage.base.quantity import LENGTH
     >>> from flexstage.cases.double_triangle import double_triangle
@@ -73,8 +92,6 @@ def variable_findings(mechanism: Mechanism, variables: Iterable[Variable]) -> It
     >>> [str(each) for each in variable_findings(double_triangle(), [neck])]
     ['variables.neck: its range is empty: from 0.002 to 0.001 m. Give from < to.']
     """
-    from flexstage.mechanism.locate import canonical
-
     owners: dict[str, str] = {}
     for variable in variables:
         where = f"variables.{variable.name}"
@@ -86,7 +103,39 @@ def variable_findings(mechanism: Mechanism, variables: Iterable[Variable]) -> It
         if variable.levels is not None and variable.levels < 2:
             yield Finding(where, f"it has {variable.levels} level", "Give 2 levels or more")
         for address in variable.addresses:
-            full = canonical(mechanism, address)
+            full = canonical(mechanism, address) if variable.variant is None else f"parameter {address}"
             if full in owners:
                 yield Finding(where, f"'{address}' is already moved by {owners[full]}", "Let one variable move it")
             owners[full] = variable.name
+    yield from _parameter_findings(mechanism, tuple(variables))
+
+
+def _parameter_findings(mechanism: Mechanism, variables: tuple[Variable, ...]) -> Iterator[Finding]:
+    """Parameters that move no number of the design, or one that an address overwrites."""
+    overwritten = {
+        canonical(mechanism, address): (variable.name, address)
+        for variable in variables
+        if variable.variant is None and not variable.relative
+        for address in variable.addresses
+    }
+    for variable in variables:
+        if variable.variant is None:
+            continue
+        where = f"variables.{variable.name}"
+        for name in variable.addresses:
+            moved = _moved(variable.variant, name)
+            if not moved:
+                yield Finding(where, f"parameter {name} changes nothing of this design", "Vary another")
+            for address in sorted(moved & set(overwritten)):
+                other, text = overwritten[address]
+                what = f"parameter {name} moves {text}, which variable {other} sets too"
+                yield Finding(where, what, "Let one of them move it, or vary the address in percent of what the parameter makes it")
+
+
+def _moved(variant: Variant, name: str) -> frozenset[str]:
+    """Addresses of the numbers that depend on a parameter."""
+    value = variant.value(name)
+    stepped = variant.drawn({name: np.asarray(complex(value, abs(value) * _STEP or _STEP))})
+    return frozenset(
+        address for address, found, _ in numbers(node_of(Mechanism), stepped) if np.iscomplexobj(found) and np.imag(found) != 0.0
+    )

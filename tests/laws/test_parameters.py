@@ -1,0 +1,123 @@
+"""Laws of cases' parameters: a batch of them is a batch of stages, to the last bit; derivatives pass through them; studies vary them."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import flexstage as fs
+from flexstage.base.finding import DesignError
+from flexstage.cases.double_triangle import SM_REF_B
+from flexstage.cases.parameters import parameters
+from flexstage.cases.registry import CASES, Variant
+from flexstage.mechanism.grammar import node_of, numbers
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.studies.judge import measured
+from flexstage.studies.study.evaluate import piece
+from flexstage.studies.study.file import loads_study
+
+STUDY = """
+format = "flexstage study 1"
+case = "double-triangle"
+parameters.long_arm = "80 mm"
+responses.mass = "mass"
+sweep = { sampling = "sobol", designs = 4, seed = 1 }
+[variables]
+arm = { parameter = "short_arm", from = "24 mm", to = "28 mm" }
+plate = { parameter = "plate.thickness", from = "-10 %", to = "10 %" }
+side = { of = "bodies.platform.solids.plate.size.x", from = "-1 %", to = "1 %" }
+"""
+
+NECK = 'a = { parameter = "neck.thickness", from = "1 mm", to = "2 mm" }\n'
+
+
+def values_of(mechanism):
+    return {address: value for address, value, _ in numbers(node_of(Mechanism), mechanism)}
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_a_batch_of_parameters_is_its_stages_one_by_one(name):
+    factors = np.array([1.0, 1.01, 0.98])
+    varying = {each.name: each.value * factors for each in parameters(CASES[name].parameters).values() if each.quantity is not None}
+    batch = values_of(Variant(name).drawn(varying))
+    for index in range(len(factors)):
+        alone = values_of(Variant(name).drawn({key: float(value[index]) for key, value in varying.items()}))
+        assert alone.keys() == batch.keys()
+        assert all(np.broadcast_to(batch[address], (3,))[index] == value for address, value in alone.items())
+
+
+def test_parameters_are_those_of_the_case_function():
+    drawn = CASES["double-triangle"].build({"short_arm": "25 mm", "neck.length": 0.013})
+    changed = replace(SM_REF_B, short_arm=0.025, neck=replace(SM_REF_B.neck, profile=fs.Straight(0.013)))
+    assert replace(drawn, tags={}) == replace(fs.double_triangle(changed), tags={})
+    assert "parts.neck.profile.length" not in drawn.tags
+    assert "parts.neck.thickness" in drawn.tags
+
+
+def vertical(mapping):
+    """What B4 has to do for a unit of z."""
+    return mapping.values[..., mapping.rows.index("B4"), mapping.columns.index("z")]
+
+
+def test_a_lever_gains_by_its_arms():
+    """The ideal stroke of a vertical actuator for a height is r1/r2 of it; so is the derivative, by complex step through the case."""
+    arm = np.array([0.024, 0.026, 0.028])
+    variant = Variant("double-triangle", (("long_arm", 0.08),))
+    np.testing.assert_allclose(vertical(fs.ideal(variant.drawn({"short_arm": arm})).mapping), arm / 0.08, rtol=1e-9)
+    stepped = vertical(fs.ideal(variant.drawn({"short_arm": 0.026 + 1e-20j})).mapping)
+    assert np.imag(stepped) / 1e-20 == pytest.approx(1.0 / 0.08, rel=1e-9)
+
+
+def test_studies_vary_parameters_and_addresses_together():
+    study = loads_study(STUDY)
+    found = piece(study, 0, 4)
+    assert not found.failures
+    for values, responses in zip(found.variables, found.responses, strict=True):
+        alone = measured(study.described(values), tuple(study.columns.values()))
+        np.testing.assert_allclose(responses, [float(value) for value in alone], rtol=1e-12)
+
+
+def test_addresses_are_written_on_top_of_parameters():
+    study = loads_study(STUDY)
+    values = np.array([[0.025, 0.9, 1.01], [0.027, 1.1, 0.99]])
+    for row in values:
+        alone = study.described(row)
+        size = alone.bodies["platform"].solids["plate"].size
+        assert size[0] == SM_REF_B.plate.side * row[2]
+        assert size[2] == SM_REF_B.plate.thickness * row[1]
+        assert alone.units["vertical"].links["front"].at[0] == 0.08
+        batch = study.described(values).bodies["platform"].solids["plate"].size
+        assert size[0] in batch[0]
+
+
+@pytest.mark.parametrize(
+    ("line", "told"),
+    [
+        ('arm = { parameter = "shrt_arm", from = "1 mm", to = "2 mm" }', "The nearest name is short_arm"),
+        ('arm = { parameter = "bodies", from = "1 mm", to = "2 mm" }', "no number that can vary"),
+        ('arm = { parameter = "short_arm", of = "mass", from = "1 mm", to = "2 mm" }', "both an address and a parameter"),
+        ('arm = { parameter = "plate", from = "1 mm", to = "2 mm" }', "plate.side, plate.thickness"),
+        ('arm = { parameter = "short_arm", from = "1 kg", to = "2 kg" }', "a length is expected"),
+        ('arm = { parameter = ["short_arm", "vertical_turn"], from = "1 mm", to = "2 mm" }', "different quantities"),
+        (NECK + 'b = { of = "parts.neck.thickness", from = "1 mm", to = "2 mm" }', "which variable b sets too"),
+        (NECK + 'b = { parameter = "neck.thickness", from = "-1 %", to = "1 %" }', "already moved by a"),
+    ],
+)
+def test_bad_parameters_of_variables_are_told(line, told):
+    text = STUDY.partition("\narm = ")[0] + "\n" + line
+    with pytest.raises(DesignError, match=told):
+        loads_study(text)
+
+
+def test_bad_parameters_of_cases_are_told_all_at_once():
+    text = STUDY.replace(
+        'parameters.long_arm = "80 mm"', 'parameters.long_arm = 80\nparameters.plate.sid = "1 mm"\nparameters.bodies = "air"'
+    )
+    with pytest.raises(DesignError) as error:
+        loads_study(text)
+    assert "long_arm: found 80 without a unit" in str(error.value)
+    assert "nearest name is plate.side" in str(error.value).replace("Near to it are", "nearest name is")
+    with pytest.raises(DesignError, match="solid, massless"):
+        fs.case("double-triangle", {"bodies": "air"})
+    with pytest.raises(DesignError, match="the same parameter"):
+        fs.case("parallelogram", {"neck.radius": 0.004, "neck.profile.radius": 0.005})
