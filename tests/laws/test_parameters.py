@@ -12,9 +12,12 @@ from flexstage.cases.parameters import parameters
 from flexstage.cases.registry import CASES, Variant
 from flexstage.mechanism.grammar import node_of, numbers
 from flexstage.mechanism.mechanism import Mechanism
+from flexstage.readings.batch.engine import planned, platform_modes
+from flexstage.readings.batch.numbers import drawn_family
 from flexstage.studies.judge import measured
 from flexstage.studies.study.evaluate import piece
 from flexstage.studies.study.file import loads_study
+from flexstage.studies.study.variable import varied_by
 
 STUDY = """
 format = "flexstage study 1"
@@ -121,3 +124,17 @@ def test_bad_parameters_of_cases_are_told_all_at_once():
         fs.case("double-triangle", {"bodies": "air"})
     with pytest.raises(DesignError, match="the same parameter"):
         fs.case("parallelogram", {"neck.radius": 0.004, "neck.profile.radius": 0.005})
+
+
+def test_many_designs_are_drawn_from_parameters_with_derivatives():
+    """The engine's frequencies are those of the lumped reading, its derivatives those of finite differences."""
+    study = loads_study(STUDY)
+    values = study.drawn(0, 1)
+    names = tuple(each.name for each in study.variables)
+    family = planned(drawn_family(lambda columns: varied_by(study.design, study.variables, columns), names, values[0]))
+    found = platform_modes(family, values, slopes=True)
+    alone = fs.modes(fs.lumped(study.described(values[0])))
+    np.testing.assert_allclose(found.frequencies[0], alone.frequencies[:6], rtol=1e-7)
+    steps = 1e-6 * values * np.eye(3)
+    above, below = (platform_modes(family, values + sign * steps).frequencies for sign in (1.0, -1.0))
+    np.testing.assert_allclose(found.gradient[0] * values.T, (above - below) / 2e-6, rtol=1e-4, atol=1e-3)

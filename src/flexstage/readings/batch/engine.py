@@ -107,7 +107,6 @@ def plan(mechanism: Mechanism, addresses: tuple[str, ...], choice: Choice | None
     With `ranges`, (low, high) of (P,), features are fitted over them once (seconds), where polynomials meet them to 1e-10: then numbers of
     designs within cost less than solving. Others are described one by one, as they all are without ranges.
 
-
     Raises `DesignError` for addresses that are none, and for a mechanism whose own stiffness is singular.
 
     >>> from flexstage.cases.double_triangle import double_triangle
@@ -115,15 +114,24 @@ def plan(mechanism: Mechanism, addresses: tuple[str, ...], choice: Choice | None
     >>> found.scheme.topology.size
     114
     """
-    family_ = family(mechanism, addresses)
+    return planned(family(mechanism, addresses), choice, ranges)
+
+
+def planned(family_: Family, choice: Choice | None = None, ranges: tuple[Array, Array] | None = None) -> Plan:
+    """Plan a family of designs, however it is drawn: see `plan`.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> planned(family(double_triangle(), ("parts.neck.thickness",))).scheme.topology.size
+    114
+    """
     scheme_ = scheme(family_.topology)
     choice = choice or Choice()
     if family_.topology.locked:
-        lumped(mechanism)  # says which bodies can move freely
+        lumped(family_.mechanism)  # says which bodies can move freely
         return Plan(family_, scheme_, choice, None)
     modes = every_mode(scheme_, numbers_of(family_, family_.nominal[None]))
     if not len(modes.values):
-        lumped(mechanism)  # says which bodies can move freely
+        lumped(family_.mechanism)  # says which bodies can move freely
         return Plan(family_, scheme_, choice, None)
     fitted = None if ranges is None else surface(family_, *(np.asarray(side, dtype=float) for side in ranges))
     return Plan(family_, scheme_, choice, *_starts(scheme_, modes, choice), fitted)

@@ -6,7 +6,7 @@ comes out complex knows whose step that is, as the type of an array says what it
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -25,6 +25,9 @@ _STEP = 1e-20
 Key = tuple[str, int]
 """A feature by kind and owner."""
 
+Draw = Callable[[tuple[Array, ...]], Mechanism]
+"""What makes a description of numbers (...), real or complex, one array each."""
+
 
 @dataclass(frozen=True, eq=False)
 class Change:
@@ -37,9 +40,10 @@ class Change:
 
 @dataclass(frozen=True, eq=False)
 class Family:
-    """Designs that differ in the numbers at `addresses`, around a `mechanism`; `nominal` (P,) are its own.
+    """Designs that differ in P numbers, around a `mechanism`; `nominal` (P,) are its own.
 
-    `touched` says which features each number is in, `changes` which of their numbers; `together` which are stepped in one pass.
+    The numbers are those at `addresses`, or what `draw` makes descriptions of; then addresses are their names. `touched` says which
+    features each number is in, `changes` which of their numbers; `together` which are stepped in one pass.
     """
 
     mechanism: Mechanism
@@ -48,6 +52,7 @@ class Family:
     topology: Topology
     touched: tuple[frozenset[Key], ...]
     together: tuple[tuple[int, ...], ...]
+    draw: Draw | None = None
 
     @cached_property
     def widest(self) -> tuple[Change, ...]:
@@ -100,13 +105,38 @@ def family(mechanism: Mechanism, addresses: tuple[str, ...]) -> Family:
     return Family(plain, addresses, nominal, topology(expand(plain)), touched, tuple(_together(touched)))
 
 
+def drawn_family(draw: Draw, names: tuple[str, ...], nominal: Array) -> Family:
+    """The family of the descriptions that `draw` makes of numbers with these names, around those of the `nominal` ones (P,).
+
+    All of one topology. Derivatives pass through it: it must take complex numbers, and make nothing complex that does not depend on them.
+
+    >>> from flexstage.cases.registry import Variant
+    >>> hexapod = Variant("hexapod")
+    >>> found = drawn_family(lambda values: hexapod.drawn({"slope": values[0]}), ("slope",), np.array([0.8]))
+    >>> numbers_of(found, np.array([[0.8], [0.9]])).shape[1]
+    2
+    """
+    own = tuple(np.asarray(float(value)) for value in nominal)
+    touched = tuple(_complex(draw((*own[:number], _stepped(own[number]), *own[number + 1 :]))) for number in range(len(own)))
+    plain = _without_requirements(draw(own))
+    return Family(plain, names, np.asarray(nominal, float), topology(expand(plain)), touched, tuple(_together(touched)), draw)
+
+
+def _stepped(value: Array) -> Array:
+    return value + 1j * (abs(value) * _STEP or _STEP)
+
+
+def _complex(mechanism: Mechanism) -> frozenset[Key]:
+    """Features that come out complex."""
+    return frozenset(key for key, array in features(mechanism).items() if np.iscomplexobj(array))
+
+
 def _without_requirements(mechanism: Mechanism) -> Mechanism:
     return replace(mechanism, requirements={})
 
 
 def _touched(mechanism: Mechanism, address: str, value: float) -> frozenset[Key]:
-    found = features(set_value(mechanism, address, complex(value, abs(value) * _STEP or _STEP)))
-    return frozenset(key for key, array in found.items() if np.iscomplexobj(array))
+    return _complex(set_value(mechanism, address, complex(value, abs(value) * _STEP or _STEP)))
 
 
 def _together(touched: tuple[frozenset[Key], ...]) -> Iterator[tuple[int, ...]]:
@@ -130,7 +160,8 @@ def described(family_: Family, values: Array) -> Mechanism:
     >>> described(found, np.array([[1e-3], [2e-3]])).parts["neck"].thickness.tolist()
     [0.001, 0.002]
     """
-    return _set(family_, family_.mechanism, {number: values[:, number] for number in range(values.shape[1])})
+    columns = tuple(values.T)
+    return family_.draw(columns) if family_.draw is not None else _set(family_, family_.mechanism, dict(enumerate(columns)))
 
 
 def _set(family_: Family, mechanism: Mechanism, values: Mapping[int, Array]) -> Mechanism:
@@ -207,7 +238,10 @@ def stepped(family_: Family, mechanism: Mechanism, values: Array, group: tuple[i
     >>> stepped(found, found.mechanism, value, (0,)).parts["neck"].thickness
     array([0.001+1.54e-23j])
     """
-    return _set(family_, mechanism, {number: values[:, number] + 1j * width(family_, number) for number in group})
+    steps = {number: values[:, number] + 1j * width(family_, number) for number in group}
+    if family_.draw is not None:
+        return family_.draw(tuple({**dict(enumerate(values.T)), **steps}.values()))
+    return _set(family_, mechanism, steps)
 
 
 def width(family_: Family, number: int) -> float:

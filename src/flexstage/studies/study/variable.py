@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from flexstage.base.finding import Finding
-from flexstage.base.number import Array
+from flexstage.base.number import Array, Number
 from flexstage.base.quantity import Quantity
 from flexstage.cases.registry import Variant
 from flexstage.mechanism.address import get, set_value
@@ -66,7 +66,20 @@ def varied(mechanism: Mechanism, variables: Iterable[Variable], values: Array) -
     >>> varied(double_triangle(), [neck], np.array([[0.0015], [0.0016]])).parts["neck"].thickness.tolist()
     [0.0015, 0.0016]
     """
-    moves = [(address, variable, values[..., number]) for number, variable in enumerate(variables) for address in variable.addresses]
+    known = tuple(variables)
+    return varied_by(mechanism, known, tuple(values[..., number] for number in range(len(known))))
+
+
+def varied_by(mechanism: Mechanism, variables: tuple[Variable, ...], columns: tuple[Number, ...]) -> Mechanism:
+    """The same of values (...) by variable: those alone that are complex make the design complex.
+
+    >>> from flexstage.base.quantity import LENGTH
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> neck = Variable("neck", ("parts.neck.thickness",), LENGTH, 1e-3, 2e-3)
+    >>> varied_by(double_triangle(), (neck,), (0.0015,)).parts["neck"].thickness
+    0.0015
+    """
+    moves = [(address, *move) for move in zip(variables, columns, strict=True) for address in move[0].addresses]
     start = result = _drawn(mechanism, [move for move in moves if move[1].variant is not None])
     written = [move for move in moves if move[1].variant is None]
     for address, variable, value in sorted(written, key=lambda move: departure(mechanism, move[0])):
@@ -75,7 +88,7 @@ def varied(mechanism: Mechanism, variables: Iterable[Variable], values: Array) -
     return result
 
 
-def _drawn(mechanism: Mechanism, moves: list[tuple[str, Variable, Array]]) -> Mechanism:
+def _drawn(mechanism: Mechanism, moves: list[tuple[str, Variable, Number]]) -> Mechanism:
     """The design drawn from the parameters that vary; as it stands where none does."""
     variant = next((variable.variant for _, variable, _ in moves), None)
     if variant is None:
