@@ -27,6 +27,7 @@ from flexstage.mechanism.expand import Assembly, expand
 from flexstage.mechanism.expansion import ground_material
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.mechanism.outline import outlines
+from flexstage.readings.batch.choice import Choice, chosen
 from flexstage.readings.ideal import ideal
 from flexstage.readings.linear.kinematics import Kinematics
 from flexstage.readings.linear.model import LinearModel
@@ -144,6 +145,17 @@ class Bench:
         return modes(self.model, limit=np.inf if limit is None else float(np.max(limit)))
 
     @cached_property
+    def platform_frequencies(self) -> Array:
+        """Frequencies of the platform's modes (..., k) [Hz], of a batch chosen design by design; NaN where one has fewer than others."""
+        found = self.modes
+        if found.frequencies.ndim == 1:
+            return found.platform_frequencies
+        flat = found.frequencies.reshape(-1, found.frequencies.shape[-1])
+        mask = chosen((2.0 * np.pi * flat) ** 2, found.share.reshape(flat.shape), Choice(limit=found.limit)).mask
+        ordered = np.sort(np.where(mask, flat, np.nan), axis=-1)[:, : int(np.max(np.sum(mask, axis=-1), initial=0))]
+        return ordered.reshape(*found.frequencies.shape[:-1], -1)
+
+    @cached_property
     def stress(self) -> HingeStress:
         """Stress of hinges over all strokes, relaxed without voltage."""
         return hinge_stress(self.mechanism, self.model, self.limits.from_zero)
@@ -203,7 +215,7 @@ def _frequency(bench: Bench, line: Measure) -> Array:
 
 
 def _platform_frequency(bench: Bench, line: Measure) -> Array:
-    return _numbered(bench.modes.platform_frequencies, line)
+    return _numbered(bench.platform_frequencies, line)
 
 
 def _numbered(frequencies: Array, line: Measure) -> Array:

@@ -54,6 +54,8 @@ class Status(IntEnum):
     """Some number of it is not finite: no frequencies."""
     FEW = 4
     """It has fewer platform modes below the limit than asked for: no frequencies."""
+    CUT = 5
+    """By dense matrices, and the last of the wanted modes is one of a cluster that has more: some of them are left out."""
 
 
 class Method(Enum):
@@ -272,9 +274,9 @@ def _write(plan_: Plan, result: PlatformModes, designs: Array, found: Solution) 
     if found.values.shape[1] < plan_.choice.count:
         result.status[designs] = Status.FEW if found.good.all() else Status.SINGULAR
         return
+    result.status[designs] = Status.WHOLE if found.values.shape[1] == plan_.choice.count else Status.CUT
     found, gradient = kept(found, plan_.choice)
     frequencies = np.sqrt(found.values) / (2.0 * np.pi)
     scale = (1.0 / (8.0 * np.pi**2 * frequencies))[:, None]
     result.frequencies[designs], result.share[designs] = frequencies, found.share
-    result.status[designs] = Status.WHOLE
     result.slopes[designs], result.gradient[designs] = found.slopes * scale[..., None], gradient * scale

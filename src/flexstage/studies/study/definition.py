@@ -12,6 +12,7 @@ from flexstage.base.digest import digest
 from flexstage.base.number import Array
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.studies.judge import measured
+from flexstage.studies.study.numbers import Numbers, numbers_moved
 from flexstage.studies.study.plan import Plan, shares
 from flexstage.studies.study.variable import Variable, varied
 
@@ -70,11 +71,22 @@ class Study:
         """
         return varied(self.design, self.variables, values)
 
-    def answered(self, mechanism: Mechanism) -> tuple[Array | str, ...]:
-        """What is asked of a design or a batch, column by column (...); where a stage has no such measure, the reason in words.
+    @property
+    def numbers(self) -> Numbers | None:
+        """The numbers of the description that designs differ in; `None` where `described` does more than write numbers.
+
+        >>> from flexstage.studies.study.example import neck_study
+        >>> neck_study().numbers.addresses
+        ('parts.neck.thickness',)
+        """
+        return numbers_moved(self.design, self.variables)
+
+    def answered(self, mechanism: Mechanism, names: tuple[str, ...] | None = None) -> tuple[Array | str, ...]:
+        """What is asked of a design or a batch, column by column (...) or those of `names`; where a stage has none, the reason in words.
 
         >>> from flexstage.studies.study.example import neck_study
         >>> round(float(neck_study().answered(neck_study().design)[0]))
         106
         """
-        return measured(mechanism, tuple(self.columns.values()))
+        columns = self.columns
+        return measured(mechanism, tuple(columns[name] for name in (columns if names is None else names)))

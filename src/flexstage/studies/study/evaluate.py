@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
-from flexstage.analysis.requirements import Measure
 from flexstage.base.finding import DesignError, Finding, require
 from flexstage.base.number import Array
 from flexstage.mechanism.checks import checked
 from flexstage.studies.study.definition import Study
+from flexstage.studies.study.engine import Engine, engine_of
 
 _LONGEST_REASON = 400
+
+Reasons = dict[int, str]
+"""Why designs fail, by row."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,8 +29,8 @@ class Piece:
     failures: Mapping[int, str]
 
 
-def piece(study: Study, start: int, stop: int) -> Piece:
-    """Compute the designs from `start` to before `stop` of a study's plan.
+def piece(study: Study, start: int, stop: int, engine: Engine | None = None) -> Piece:
+    """Compute the designs from `start` to before `stop` of a study's plan; `engine` is made here unless it is at hand.
 
     A design that cannot be read, or lacks a value, keeps its place: NaN and the reason.
 
@@ -38,7 +41,7 @@ def piece(study: Study, start: int, stop: int) -> Piece:
     """
     values = study.drawn(start, stop)
     with np.errstate(all="ignore"):
-        responses, failures = _computed(study, values)
+        responses, failures = _computed(study, values, engine_of(study) if engine is None else engine)
     return Piece(start, values, responses, failures)
 
 
@@ -55,25 +58,55 @@ def nominal(study: Study) -> Array:
     return np.array([float(np.real(value)) for value in found if not isinstance(value, str)])
 
 
-def _computed(study: Study, values: Array) -> tuple[Array, dict[int, str]]:
-    """Responses (n, r) and failures; what fails as a batch is halved until the culprits stand alone."""
-    found = _batch(study, values)
-    count = len(values)
+def _computed(study: Study, values: Array, engine: Engine) -> tuple[Array, Reasons]:
+    """Responses (n, r) and failures. What the engine does not answer for sure is read design by design."""
+    columns = tuple(study.columns)
+    others = tuple(name for name in columns if name not in engine.modes)
+    result = np.full((len(values), len(columns)), np.nan)
+    failures = _halved(values, 0, lambda part: _refused(study, part))[1]
+    sound = np.array([row for row in range(len(values)) if row not in failures], dtype=int)
+    found, reasons = _halved(values[sound], len(others), lambda part: _batch(study, part, others))
+    frequencies, sure = engine.answers(values[sound])
+    for names, part in ((others, found), (engine.modes, frequencies)):
+        result[np.ix_(sound, np.array([columns.index(name) for name in names], dtype=int))] = part
+    for place in np.flatnonzero(~sure):
+        result[sound[place]], reason = _halved(values[sound[[place]]], len(columns), lambda part: _batch(study, part, columns))
+        reasons |= {int(place): text for text in reason.values()}
+    failures |= {int(sound[place]): reason for place, reason in reasons.items()}
+    result[list(failures)] = np.nan
+    lost = np.flatnonzero(~np.all(np.isfinite(result), axis=-1))
+    return result, {int(row): failures.get(int(row)) or _unfinished(study, result[row]) for row in lost}
+
+
+def _halved(values: Array, width: int, batch: Callable[[Array], Array | str]) -> tuple[Array, Reasons]:
+    """What a batch gives (n, width), and failures; what fails as a batch is halved until the culprits stand alone."""
+    found = batch(values)
     if not isinstance(found, str):
-        lost = np.flatnonzero(~np.all(np.isfinite(found), axis=-1))
-        return found, {int(row): _unfinished(tuple(study.columns.values()), found[row]) for row in lost}
-    if count == 1:
-        return np.full((1, len(study.columns)), np.nan), {0: found[:_LONGEST_REASON]}
-    half = count // 2
-    first, early = _computed(study, values[:half])
-    second, late = _computed(study, values[half:])
+        return found, {}
+    if len(values) == 1:
+        return np.full((1, width), np.nan), {0: found[:_LONGEST_REASON]}
+    half = len(values) // 2
+    first, early = _halved(values[:half], width, batch)
+    second, late = _halved(values[half:], width, batch)
     return np.concatenate([first, second]), {**early, **{row + half: reason for row, reason in late.items()}}
 
 
-def _batch(study: Study, values: Array) -> Array | str:
-    """Responses (n, r) of all these designs, or why not."""
+def _refused(study: Study, values: Array) -> Array | str:
+    """Why a description of these designs cannot be read; nothing (n, 0) where it can."""
     try:
-        found = study.answered(checked(study.described(values)))
+        checked(study.described(values))
+    except DesignError as error:
+        return str(error)
+    return np.zeros((len(values), 0))
+
+
+def _batch(study: Study, values: Array, names: tuple[str, ...]) -> Array | str:
+    """Responses (n, r) of these designs by name, or why not."""
+    if not names or not len(values):
+        return np.zeros((len(values), len(names)))
+    try:
+        mechanism = study.described(values)
+        found = study.answered(mechanism) if len(names) == len(study.columns) else study.answered(mechanism, names)
     except (DesignError, np.linalg.LinAlgError) as error:
         return str(error)
     reasons = [value for value in found if isinstance(value, str)]
@@ -82,6 +115,6 @@ def _batch(study: Study, values: Array) -> Array | str:
     return np.stack([np.broadcast_to(np.real(value), len(values)) for value in found if not isinstance(value, str)], axis=-1)
 
 
-def _unfinished(measures: tuple[Measure, ...], values: Array) -> str:
-    missing = [measure.key for measure, value in zip(measures, values, strict=True) if not np.isfinite(value)]
+def _unfinished(study: Study, values: Array) -> str:
+    missing = [measure.key for measure, value in zip(study.columns.values(), values, strict=True) if not np.isfinite(value)]
     return f"{', '.join(missing)}: no finite value"

@@ -14,6 +14,7 @@ import numpy as np
 from flexstage.base.child import cores
 from flexstage.base.finding import refuse, require
 from flexstage.studies.study.definition import Study
+from flexstage.studies.study.engine import engine_of
 from flexstage.studies.study.evaluate import nominal
 from flexstage.studies.study.store import Results, computed, differences, folder_of, gather, read_results, waiting
 from flexstage.studies.study.work import worked
@@ -94,11 +95,12 @@ def _ready(target: Path, study: Study, how: Run) -> None:
 def _pieces(study: Study, ranges: list[tuple[int, int]], folder: Path, how: Run) -> Iterator[int]:
     if not ranges:
         return iter(())
+    engine = engine_of(study)
     if how.scheduler is not None:
         from flexstage.studies.study.cluster import clustered
 
-        return clustered(study, ranges, folder, how.scheduler)
-    return worked(study, ranges, folder, how.workers or cores())
+        return clustered(study, engine, ranges, folder, how.scheduler)
+    return worked(study, engine, ranges, folder, how.workers or cores())
 
 
 def _gathering(pieces: Iterator[int], target: Path, study: Study) -> Iterator[int]:

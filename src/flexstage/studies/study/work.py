@@ -21,6 +21,7 @@ from typing import IO, cast
 from flexstage.base.child import command, environment
 from flexstage.base.finding import DesignError, refuse
 from flexstage.studies.study.definition import Study
+from flexstage.studies.study.engine import Engine
 from flexstage.studies.study.evaluate import piece
 from flexstage.studies.study.store import write_piece
 
@@ -29,19 +30,20 @@ _LIVES = 3
 _DONE, _REFUSED = "done", "refused"
 
 
-def worked(study: Study, ranges: Iterable[tuple[int, int]], folder: Path, workers: int) -> Iterator[int]:
+def worked(study: Study, engine: Engine, ranges: Iterable[tuple[int, int]], folder: Path, workers: int) -> Iterator[int]:
     """Compute all ranges of designs into `folder`; yields the first design of each as it is there, in any order.
 
-    Raises `DesignError` where a piece cannot be written, or where processes die over it again and again. When the iteration is left,
-    all processes end.
+    All processes take the same `engine`. Raises `DesignError` where a piece cannot be written, or where processes die over it again and
+    again. When the iteration is left, all processes end.
 
     >>> from flexstage.studies.study.example import neck_study
-    >>> list(worked(neck_study(), [], Path("nowhere"), 2))
+    >>> from flexstage.studies.study.engine import engine_of
+    >>> list(worked(neck_study(), engine_of(neck_study()), [], Path("nowhere"), 2))
     []
     """
     with tempfile.TemporaryDirectory() as place:
         task = Path(place) / "study.pickle"
-        task.write_bytes(pickle.dumps(study))
+        task.write_bytes(pickle.dumps((study, engine)))
         crew = _Crew(task, folder)
         for each in ranges:
             crew.todo.put((*each, 0))
@@ -147,11 +149,11 @@ def _dismissed(process: subprocess.Popen[str]) -> None:
 
 def _main(task: str, folder: str) -> None:
     """Compute ranges that come on standard input, one a line, until it closes."""
-    study: Study = pickle.loads(Path(task).read_bytes())  # noqa: S301 written by the process that started this one
+    study, engine = cast("tuple[Study, Engine]", pickle.loads(Path(task).read_bytes()))  # noqa: S301 written by this one's parent
     for line in sys.stdin:
         start, stop = map(int, line.split())
         try:
-            write_piece(Path(folder), piece(study, start, stop))
+            write_piece(Path(folder), piece(study, start, stop, engine))
             answer = _DONE
         except DesignError as error:
             answer = f"{_REFUSED} {' '.join(str(error).split())}"
