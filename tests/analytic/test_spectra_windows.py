@@ -76,6 +76,7 @@ def test_poles_of_a_rational_response_are_exact():
     for pole, row in zip(known.poles, known.participation, strict=True):
         index = int(np.argmin(np.abs(found.values - pole)))
         assert abs(found.values[index] - pole) < 1e-4 * abs(pole)
+        assert found.damping[index] == pytest.approx(-pole.real / abs(pole), rel=0.02)
         assert abs(np.dot(row, found.participation[index].conj())) ** 2 / np.sum(row**2) > 0.9999
 
 

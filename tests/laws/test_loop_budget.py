@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from flexstage.analysis.loop.closed import loop
 from flexstage.analysis.loop.example import integral, integral_loop
-from flexstage.analysis.loop.hardware import AmplifierSettings, GaugeSettings, hardware
+from flexstage.analysis.loop.hardware import AmplifierSettings, GaugeSettings, Sensor, hardware
 from flexstage.analysis.loop.noise import Disturbed, noise_budget
 from flexstage.analysis.loop.plant import plant, sensing
 from flexstage.analysis.loop.system import picked
@@ -108,6 +108,23 @@ def test_gauge_noise_is_its_integral(rate):
     size = np.abs(picked(closed.system, ["noise.S"], OUTPUTS).transfer(nodes) @ through)[:, :, 0] ** 2
     square = weights @ size * closed.plant.hardware.sensors["S"].noise_density ** 2
     assert np.allclose(square, _square(closed, Kind.GAUGE, "S", found), atol=0.0, rtol=2e-6)
+
+
+def test_what_enters_at_the_samples_is_its_integral():
+    """A gauge without lag: n^2 up to half the rate; rounding of gauge and converter: q^2/12, which is 2 T q^2/12 over frequency."""
+    given = hardware(parallelogram(), rate=5e3, delay=70e-6, amplifiers=AmplifierSettings(bits=12))
+    closed = integral_loop(150.0, replace(given, sensors=Table({"S": Sensor(noise_density=3e-12, resolution=2e-10)})))
+    found = noise_budget(closed, {}, (1e-3, 2500.0), OUTPUTS)
+    rates = np.log(closed.system.poles[np.abs(closed.system.poles) > 1e-9].astype(complex)) / closed.step
+    nodes, weights = quadrature(np.concatenate([[0.0], _panels(1e-6, 2500.0, rates)]))
+    sizes = np.abs(picked(closed.system, ["noise.S", "noise.B"], OUTPUTS).transfer(nodes)) ** 2
+    step, rounding = closed.plant.hardware.amplifiers["B"].step, 2.0 * closed.step / 12.0
+    known = ((Kind.GAUGE, "S", 9e-24), (Kind.ROUNDING, "S", rounding * 4e-20), (Kind.CONVERTER, "B", rounding * step**2))
+    for place, (kind, name, density) in enumerate(known):
+        whole = weights @ sizes[:, :, 1 if name == "B" else 0] * density
+        assert np.allclose(whole, _square(closed, kind, name, found), atol=0.0, rtol=1e-8)
+        drawn = np.trapezoid(found.density[:, :, place], found.frequencies, axis=0)
+        assert np.allclose(drawn, found.squares[:, place], atol=0.0, rtol=0.02)
 
 
 def test_fast_samples_are_a_continuous_loop():
@@ -244,6 +261,8 @@ def test_what_is_not_stated_is_said():
     bare = replace(closed.plant.hardware, sensors=Table({"S": replace(closed.plant.hardware.sensors["S"], noise_density=None)}))
     found = noise_budget(replace(closed, plant=replace(closed.plant, hardware=bare)), {}, (1.0, 100.0))
     assert any(note.startswith("no noise is stated of S") for note in found.notes)
+    assert any("a reading at rest may stay off by half a step, 0.25 nm" in note for note in found.notes)
+    assert not any("half a step" in note for note in noise_budget(closed, {}, (1.0, 100.0)).notes)
     assert Kind.GAUGE not in found.kinds
 
 

@@ -75,6 +75,31 @@ def test_repeated_modes_are_one_plane(compared: Compared) -> None:
     assert compared.warnings == ()
 
 
+def test_shapes_turned_by_an_angle_have_its_squared_cosine(experiment: Identified) -> None:
+    """z turned by 20 degrees towards another motion: MAC cos^2; one tilt turned by 10 degrees out of their plane: that is the angle."""
+    model = lumped(STAGE)
+    theory = platform_modes(STAGE, model)
+    rows = list(model.output_index(tuple(each.name for each in experiment.outputs)))
+    sensed = model.output[rows] @ theory.shapes[:, list(theory.platform)]
+    shapes = sensed / np.linalg.norm(sensed, axis=0)
+    plane = np.linalg.qr(shapes[:, :2])[0]
+    z, tilt = np.deg2rad(20.0), np.deg2rad(10.0)
+    beside, above = (_across(shapes[:, 3], shapes[:, 2:3]), _across(shapes[:, 2], plane))
+    made = shapes.copy()
+    made[:, 2] = np.cos(z) * shapes[:, 2] + np.sin(z) * beside
+    made[:, 0], made[:, 1] = plane[:, 0], np.cos(tilt) * plane[:, 1] + np.sin(tilt) * above
+    found = compare(STAGE, replace(experiment, shapes=made.astype(complex), frequencies=theory.platform_frequencies))
+    assert found.rows[2].assurance == pytest.approx(np.cos(z) ** 2, abs=1e-9)
+    assert sorted(row.assurance or 0.0 for row in found.rows[:2]) == pytest.approx([np.cos(tilt) ** 2, 1.0], abs=1e-9)
+    assert found.repeated[0].angle == pytest.approx(tilt, abs=1e-6)
+
+
+def _across(shape: np.ndarray, basis: np.ndarray) -> np.ndarray:
+    """The part of a shape across a basis, of unit length."""
+    rest = shape - basis @ (basis.T @ shape)
+    return rest / np.linalg.norm(rest)
+
+
 def test_channels_are_told_by_name(record: Record, compared: Compared) -> None:
     turned = record.select(record.names[::-1])
     again = compare(STAGE, identified(turned))

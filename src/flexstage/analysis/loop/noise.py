@@ -205,6 +205,13 @@ def _notes(closed: Loop, outputs: tuple[str, ...]) -> Iterator[str]:
         yield f"{', '.join(bare)}: neither bandwidth nor filter is stated; noise is taken to end at {end}"
     if len(bare) < len(sensors) - len(silent) and closed.step is not None:
         yield "gauge noise is white before the gauge's lag and filter; what passes them above half the sampling rate is aliased, exactly"
+    still = [name for name, sensor in sensors.items() if closed.step is not None and _too_still(sensor, closed.step)]
+    if still:
+        half = 1e9 * 0.5 * max(sensors[name].resolution for name in still)
+        yield (
+            f"rounding counts as noise, as if readings moved by half a step by themselves; the noise stated of {', '.join(still)} moves "
+            f"them less: unless the floor does, a reading at rest may stay off by half a step, {half:.3g} nm, which no loop sees"
+        )
     if closed.step is None and any(sensor.resolution for sensor in sensors.values()):
         yield "a continuous loop rounds nothing: rounding of gauges and converters is left out"
     quiet = [name for name in given.actuators if given.hardware.amplifiers.get(name, Amplifier()).noise_density is None]
@@ -213,3 +220,9 @@ def _notes(closed: Loop, outputs: tuple[str, ...]) -> Iterator[str]:
     unbounded = list(driving(closed, {}, outputs))
     if unbounded:
         yield f"the amplifiers of {', '.join(unbounded)} have no lag: their noise is counted over the band only"
+
+
+def _too_still(sensor: Sensor, step: float) -> bool:
+    """Whether a gauge's noise is below half its step rms, so that rounding is not noise (Widrow & Kollar, Quantization Noise, 2008)."""
+    density = sensor.noise_density or 0.0
+    return density * np.sqrt(min(0.5 / step, 0.5 * np.pi * sensor.bandwidth)) < 0.5 * sensor.resolution

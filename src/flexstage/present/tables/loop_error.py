@@ -9,6 +9,7 @@ import numpy as np
 
 from flexstage.analysis.loop.compensation import StaticError
 from flexstage.analysis.loop.noise import NoiseBudget
+from flexstage.analysis.loop.whites import Kind
 from flexstage.base.number import Array
 from flexstage.present.display import NO_VALUE, number, percent, value_with_unit
 from flexstage.present.table import Cell, Column, Mark, Table, build
@@ -104,8 +105,8 @@ def _rms(value: float, unit: str) -> Cell:
 
 
 def _noise_notes(budget: NoiseBudget, *, simulated: bool) -> Sequence[str]:
-    first = "Rms of the platform's true motion against the ground; squares add up. "
-    first += f"The floor from {number(budget.band[0], 3)} to {number(budget.band[1], 4)} Hz."
+    first = "Rms of the platform's true motion against the ground; squares add up."
+    first += f" The floor from {number(budget.band[0], 3)} to {number(budget.band[1], 4)} Hz." if Kind.FLOOR in budget.kinds else ""
     more = ["Simulated: over the same noise as series of numbers, rounding and limits included."] if simulated else []
     return [first, *more, *(f"{each[0].upper()}{each[1:]}." for each in budget.notes)]
 
