@@ -11,8 +11,8 @@ from tests.laws.strategies import mechanisms, platforms, rosettes
 
 TOLERANCE = 1e-12
 
-fewer = settings(max_examples=settings().max_examples // 4)
-"""For stages whose drawing takes longest; what they add to the graphs is the expansion of units."""
+fewer = settings(max_examples=settings().max_examples // 8)
+"""Stages are drawn anew here: these tests are seldom in the process that holds those of the laws, and drawing is what takes the time."""
 
 
 def agrees(mechanism):
@@ -61,18 +61,19 @@ def _outputs_agree(model, plain, own, stiff):
             near(model.feedthrough[picked, number], expected, root * root[0])
 
 
-@given(mechanisms())
+@settings(max_examples=settings().max_examples // 4)
+@given(mechanisms.fresh())
 def test_graphs_with_closed_loops(mechanism):
     agrees(mechanism)
 
 
 @fewer
-@given(platforms())
+@given(platforms.fresh())
 def test_platforms_on_units_in_any_pose(drawn):
     agrees(drawn[0])
 
 
 @fewer
-@given(rosettes())
+@given(rosettes.fresh())
 def test_units_around_a_circle(mechanism):
     agrees(mechanism)

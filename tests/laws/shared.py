@@ -3,27 +3,38 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import cache
+from functools import cache, lru_cache
 from typing import Any
 
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from flexstage.readings import ideal as _ideal
+from flexstage.readings import lumped as _lumped
 from tests.conftest import FULL
 
+_KEPT = 800
+"""Readings kept at a time: of the stages that laws share, and of what they were last turned into."""
 
-def shared(strategy: Callable[..., st.SearchStrategy[Any]]) -> Callable[..., st.SearchStrategy[Any]]:
+ideal = lru_cache(maxsize=_KEPT)(_ideal.ideal)
+lumped = lru_cache(maxsize=_KEPT)(_lumped.lumped)
+
+
+class Shared:
     """In the quick tests a strategy called without arguments gives stages of a common store, as many as a law has examples.
 
     So a law of stages alone is still tried on that many different ones, and `test_all_kinds_are_drawn` says that every kind is among
-    them. The full tests draw stages anew for every law, ten times as many.
+    them. The full tests draw stages anew for every law, ten times as many. `fresh` is the strategy itself.
     """
-    if FULL:
-        return strategy
-    count = settings().max_examples
-    store = cache(lambda: _drawn(strategy(), count))
-    stored = st.integers(0, count - 1).map(lambda number: store()[number])
-    return lambda *arguments, **named: strategy(*arguments, **named) if arguments or named else stored
+
+    def __init__(self, fresh: Callable[..., st.SearchStrategy[Any]]) -> None:
+        self.fresh = fresh
+        count = settings().max_examples
+        self._store = cache(lambda: _drawn(fresh(), count))
+        self._stored = st.integers(0, count - 1).map(lambda number: self._store()[number])
+
+    def __call__(self, *arguments: Any, **named: Any) -> st.SearchStrategy[Any]:
+        return self.fresh(*arguments, **named) if FULL or arguments or named else self._stored
 
 
 def _drawn(strategy: st.SearchStrategy[Any], count: int) -> list[Any]:

@@ -29,7 +29,7 @@ from flexstage.parts.piezo import Piezo
 from flexstage.parts.profile import Circular, Elliptic, Filleted, Straight
 from flexstage.parts.rod import Rod
 from flexstage.spatial.frame import axes
-from tests.laws.shared import shared
+from tests.laws.shared import Shared
 
 GAUGE = Gauge(range=100e-6)
 
@@ -143,7 +143,7 @@ def _ears(draw):
     return known[1:], pairs
 
 
-@shared
+@Shared
 @st.composite
 def mechanisms(draw):
     """Any connected graph of up to seven bodies and elastic links, with closed loops and dangling bodies, one to eight stacks.
@@ -231,7 +231,7 @@ def lever_units(draw):
     return Unit(drawn, links), short / long
 
 
-@shared
+@Shared
 @st.composite
 def platforms(draw, wires=None, struts=None):
     """A platform on `wires` rods and `struts` driven units along lines that hold it well; returns (mechanism, lines, ratios).
@@ -271,7 +271,7 @@ def _upright(along):
     return tuple(axes(tuple(map(float, along)))[:, 2].tolist())
 
 
-@shared
+@Shared
 @st.composite
 def actuated_platforms(draw):
     """Platforms of any mobility with as many strokes as freedoms, or up to two more."""
@@ -279,7 +279,7 @@ def actuated_platforms(draw):
     return draw(platforms(wires, 6 - wires + draw(st.integers(0, 2))))[0]
 
 
-@shared
+@Shared
 @st.composite
 def rosettes(draw):
     """Three to six equal random units around z under a platform whose reference lies on the axis."""

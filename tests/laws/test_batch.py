@@ -26,8 +26,8 @@ from flexstage.readings.batch.kernel import kernel
 from flexstage.readings.batch.numbers import numbers_of, slopes_of
 from flexstage.readings.batch.order import elimination
 from flexstage.readings.batch.solution import Stage, by_iteration, wholly
-from flexstage.readings.lumped import lumped
 from tests.conftest import examples
+from tests.laws.shared import lumped
 from tests.laws.strategies import actuated_platforms, mechanisms, rosettes
 
 METHODS = tuple(Method)

@@ -16,9 +16,8 @@ from flexstage.base.number import Table
 from flexstage.cases.registry import CASES, case
 from flexstage.mechanism.expand import expand
 from flexstage.parts.given import Given, Joint
-from flexstage.readings.ideal import ideal
-from flexstage.readings.lumped import lumped
 from flexstage.spatial.frame import COMPONENTS
+from tests.laws.shared import ideal, lumped
 from tests.laws.strategies import actuated_platforms, mechanisms, moved, places, turns
 
 coefficients = st.floats(-5e-6, 30e-6)

@@ -15,11 +15,10 @@ from flexstage.analysis.workspace.gauging import pose_resolution
 from flexstage.cases.hexapod import hexapod
 from flexstage.cases.registry import case
 from flexstage.readings.finite import forward_kinematics
-from flexstage.readings.ideal import ideal
 from flexstage.readings.linear.static import static_gain
-from flexstage.readings.lumped import lumped
 from flexstage.spatial.frame import COMPONENTS
 from flexstage.studies.budget import budget
+from tests.laws.shared import ideal, lumped
 
 NAMES = ("double-triangle", "parallelogram", "xy-stage", "bridge", "hexapod", "tip-tilt", "tip-tilt-four")
 

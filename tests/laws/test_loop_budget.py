@@ -21,10 +21,9 @@ from flexstage.base.finding import DesignError
 from flexstage.base.number import Table
 from flexstage.cases.parallelogram import parallelogram
 from flexstage.cases.xy_stage import xy_stage
-from flexstage.readings.ideal import ideal
-from flexstage.readings.lumped import lumped
 from tests.conftest import examples
 from tests.laws.loops import random_loop, stable_loop
+from tests.laws.shared import ideal, lumped
 
 SEEDS = st.integers(0, 10_000)
 OUTPUTS = ("relative.x", "pose.x", "command.B")

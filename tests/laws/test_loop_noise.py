@@ -19,8 +19,7 @@ from flexstage.analysis.loop.simulation.run import simulate
 from flexstage.analysis.random_response import Rate, Spectrum
 from flexstage.base.finding import DesignError
 from flexstage.cases.parallelogram import parallelogram
-from flexstage.readings.ideal import ideal
-from flexstage.readings.lumped import lumped
+from tests.laws.shared import ideal, lumped
 
 STEP = 1e-4
 RATE = 40e3

@@ -21,13 +21,12 @@ from flexstage.parts.freedom import Freedom, others
 from flexstage.parts.given import Given, Joint
 from flexstage.parts.part import Restricted, is_actuator
 from flexstage.parts.piezo import Piezo
-from flexstage.readings.ideal import ideal
 from flexstage.readings.linear.eigen import eigen
 from flexstage.readings.linear.model import Contribution, assembled
 from flexstage.readings.linear.port import ports
 from flexstage.readings.linear.static import displacement, part_deformation, static_gain
-from flexstage.readings.lumped import lumped
 from flexstage.spatial.frame import COMPONENTS, FORCES, rigid_inertia, transport, turned
+from tests.laws.shared import ideal, lumped
 from tests.laws.strategies import actuated_platforms, mechanisms, moved, platforms, rosettes, turns
 
 TWIST = tuple(f"{PLATFORM}.{name}" for name in COMPONENTS)

@@ -78,7 +78,7 @@ def test_random_hinges_mesh(count):
 SAMPLES = [
     Notch("m", 1.0 * MM, 3.0 * MM, Circular(2.0 * MM)),
     Neck("m", 1.0 * MM, Elliptic(3.0 * MM, 1.5 * MM), width=1.5 * MM),
-    Neck("m", 1.0 * MM, Filleted(5.0 * MM, 1.0 * MM)),
+    pytest.param(Neck("m", 1.0 * MM, Filleted(5.0 * MM, 1.0 * MM)), marks=pytest.mark.full),
     Leaf("m", 20.0 * MM, 0.5 * MM, 8.0 * MM),
 ]
 

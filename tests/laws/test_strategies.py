@@ -7,7 +7,7 @@ from hypothesis import HealthCheck, Phase, find, given, settings
 
 from flexstage.mechanism.checks import check
 from flexstage.parts.part import is_actuator
-from flexstage.readings.ideal import ideal
+from tests.laws.shared import ideal
 from tests.laws.strategies import actuated_platforms, mechanisms, moved, platforms, rosettes, turns
 
 

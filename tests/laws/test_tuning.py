@@ -23,10 +23,9 @@ from flexstage.analysis.modes import modes
 from flexstage.mechanism.mechanism import PLATFORM, Probe
 from flexstage.mechanism.pattern import Pose
 from flexstage.parts.gauge import Positive
-from flexstage.readings.ideal import ideal
-from flexstage.readings.lumped import lumped
 from flexstage.spatial.frame import axes
 from tests.conftest import examples
+from tests.laws.shared import ideal, lumped
 from tests.laws.strategies import platforms
 
 

@@ -23,10 +23,9 @@ from flexstage.cases.registry import case
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import Force
 from flexstage.parts.body import Payload
-from flexstage.readings.ideal import ideal
 from flexstage.readings.linear.static import static_gain
-from flexstage.readings.lumped import lumped
 from flexstage.spatial.frame import COMPONENTS, FORCES
+from tests.laws.shared import ideal, lumped
 from tests.laws.strategies import actuated_platforms, mechanisms, moved, turns
 
 seeds = st.integers(0, 2**32 - 1)

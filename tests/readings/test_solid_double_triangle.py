@@ -1,4 +1,7 @@
-"""The shipped stage as a solid, from a cold cache: what symmetry demands, what the paper found, what beam theory may be off by."""
+"""The shipped stage as a solid, from a cold cache: what symmetry demands, what the paper found, what beam theory may be off by.
+
+In full only, as it takes half a minute of processor time: the parallelogram (`test_solid_stage`) goes the same way in the quick tests.
+"""
 
 from __future__ import annotations
 
@@ -11,6 +14,8 @@ from flexstage.readings.linear.static import static_gain
 from flexstage.readings.lumped import lumped
 from flexstage.spatial.frame import COMPONENTS, FORCES
 from tests.readings.solids import read
+
+pytestmark = pytest.mark.full
 
 TWIST = tuple(f"{PLATFORM}.{name}" for name in COMPONENTS)
 WRENCH = tuple(f"{PLATFORM}.{name}" for name in FORCES)

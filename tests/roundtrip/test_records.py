@@ -15,6 +15,7 @@ from flexstage.readings.measured.read import read
 from flexstage.readings.measured.record import Channel, InMemory, Record, Responses, in_memory
 from flexstage.readings.measured.uff import write as uff_write
 from flexstage.readings.measured.write import Form, write
+from tests.conftest import examples
 from tests.roundtrip.records import awkward_record, awkward_responses, bits
 
 SUFFIX = {Form.UFF: ".uff", Form.UFF_ASCII: ".unv", Form.MAT: ".mat", Form.MAT_73: ".mat", Form.HDF5: ".h5", Form.CSV: ".csv"}
@@ -80,6 +81,7 @@ def test_a_single_output_and_input(form: Form, tmp_path: Path) -> None:
     np.testing.assert_allclose(found.values, single.values, rtol=1e-11)
 
 
+@examples(50, 2000)
 @given(length=st.integers(2, 41), channels=st.integers(1, 3), form=st.sampled_from(list(Form)), data=st.data())
 def test_any_part_is_read_as_it_stands_in_the_whole(
     length: int, channels: int, form: Form, data: st.DataObject, tmp_path_factory: pytest.TempPathFactory

@@ -18,6 +18,8 @@ from flexstage.base.quantity import Quantity
 DOCUMENT_ONLY = {"physics": False}
 """Field metadata: the field (a name, tags, sources) does not count in the physics digest."""
 
+_KEPT = "_digests"
+
 
 class Description:
     """Base of every frozen value that describes a stage: immutable, compared and hashed by content.
@@ -41,6 +43,9 @@ class Description:
 
     def __hash__(self) -> int:
         return hash(digest(self))
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {name: value for name, value in self.__dict__.items() if name != _KEPT}
 
 
 @functools.cache
@@ -69,18 +74,28 @@ def digest(value: Any, *, physics: bool = False) -> str:
     >>> digest(1.0) == digest(1.0), digest(1.0) == digest(1)
     (True, False)
     """
+    if isinstance(value, Description):
+        return _own(value, physics=physics).hex()
     pieces: list[bytes] = []
     _feed(pieces, value, physics=physics)
     return hashlib.sha256(b"".join(pieces)).hexdigest()
 
 
-def _feed(pieces: list[bytes], value: Any, *, physics: bool) -> None:
-    if isinstance(value, Description):
-        pieces.append(b"D" + type(value).__name__.encode())
+def _own(value: Description, *, physics: bool) -> bytes:
+    """The digest of one description, kept with it: a design varied in one number shares all other parts with the one it came from."""
+    known: dict[bool, bytes] = value.__dict__.setdefault(_KEPT, {})
+    if physics not in known:
+        pieces = [b"D" + type(value).__name__.encode()]
         for name, piece in _counted_fields(type(value), physics=physics):
             pieces.append(piece)
             _feed(pieces, getattr(value, name), physics=physics)
-        pieces.append(b"d")
+        known[physics] = hashlib.sha256(b"".join(pieces)).digest()
+    return known[physics]
+
+
+def _feed(pieces: list[bytes], value: Any, *, physics: bool) -> None:
+    if isinstance(value, Description):
+        pieces.append(b"D" + _own(value, physics=physics))
     elif isinstance(value, Mapping):
         pieces.append(b"M")
         for key in sorted(value):

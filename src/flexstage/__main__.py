@@ -1,0 +1,6 @@
+"""`python -m flexstage`: the command line, where its script is not on the PATH."""
+
+from flexstage.apps.cli import main
+
+if __name__ == "__main__":
+    main()
