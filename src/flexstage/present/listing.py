@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import inspect
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
-from flexstage.base.finding import Finding, nearest, refuse
+from flexstage.base.finding import nearest, refuse
 from flexstage.cases.parameters import parameters
 from flexstage.cases.registry import CASES, shipped
 from flexstage.mechanism.grammar import TAGS
@@ -42,15 +42,6 @@ def parameter_table(name: str) -> Table:
     meaning = " ".join((inspect.getdoc(type(own)) or "").partition("\n\n")[2].replace("`", "").split())
     notes = [meaning, f"flexstage new stage.toml --case {name} --parameter NAME=VALUE"]
     return build(f"Parameters of {name}", ["name", "quantity", "value"], rows, notes=notes)
-
-
-def finding_table(title: str, findings: Iterable[Finding]) -> Table:
-    """Findings: where, what, what to do.
-
-    >>> finding_table("Findings", [Finding("B4/pivot", "it is thin", "Thicken it")]).texts()[1]
-    ['B4/pivot', 'it is thin', 'Thicken it']
-    """
-    return build(title, ["where", "what", "what to do"], [(Cell(each.where, Mark.STRONG), each.what, each.advice) for each in findings])
 
 
 def catalogue_tables(catalogue: Catalogue) -> tuple[Table, ...]:

@@ -39,7 +39,7 @@ def reduced(given: Plant, least: float) -> Plant:
         frequencies=given.frequencies[kept],
         ratios=given.ratios[kept],
         left_out=given.left_out + len(kept) - count,
-        note=f"{given.note}; {count} modes that the loop feels, the others as a static term",
+        note=f"{given.note}; {count} {'mode' if count == 1 else 'modes'} that the loop feels, the others as a static term",
     )
 
 

@@ -17,7 +17,7 @@ from flexstage.present.figures.loop_noise import Densities, Shares, noise_share_
 from flexstage.present.figures.loop_time import error_figure, path_figure, step_figure
 from flexstage.present.page import Block, Fact, Facts, Picture, Section, folded, section
 from flexstage.present.table import matrix_table
-from flexstage.present.tables.loop import law_table, loop_table, margin_table, step_table, tracking_table
+from flexstage.present.tables.loop import law_table, loop_table, margin_table, modes_told, step_table, tracking_table
 from flexstage.present.tables.loop_error import hysteresis_table, noise_table, rest_table
 from flexstage.studies.loop.choices import Compensation, ControllerKind
 from flexstage.studies.loop.runs import Run
@@ -70,7 +70,7 @@ def diagram_of(found: LoopStudy) -> Diagram:
     """
     setup, plant = found.setup, found.settled.plant
     rate = f"{number(1e-3 * found.settled.rate, 4)} kHz"
-    stage = Box("stage", f"{setup.reading.value}\n{len(plant.frequencies)} modes")
+    stage = Box("stage", f"{setup.reading.value}\n{modes_told(len(plant.frequencies))}")
     back = (
         Box("gauges", f"{len(plant.gauges)}"),
         *_filters(found),
@@ -84,14 +84,15 @@ def diagram_of(found: LoopStudy) -> Diagram:
         Box("PZT", _stacks(found)),
     )
     onto = [("floor", "stage")] if found.settled.floor else []
-    onto += [("noise", "gauges")] if any(each.noise_density for each in plant.hardware.sensors.values()) else []
+    closed = setup.controller.kind is not ControllerKind.NONE
+    onto += [("noise", "gauges")] if closed and any(each.noise_density for each in plant.hardware.sensors.values()) else []
     onto += [("load", "gains")] if Compensation.LOAD in setup.compensate else []
     return Diagram(
         forward=(*_digital(found), *analogue, stage),
         back=back,
         onto=tuple(onto),
-        fed_forward=Compensation.REFERENCE in setup.compensate and setup.controller.kind is not ControllerKind.NONE,
-        closed=setup.controller.kind is not ControllerKind.NONE,
+        fed_forward=Compensation.REFERENCE in setup.compensate and closed,
+        closed=closed,
     )
 
 

@@ -86,11 +86,10 @@ def coherence_section(seen: Identification) -> Section | None:
         return None
     drawn = to_svg(coherence_figure(seen.found, seen.multiple), "coherence", "Coherence of outputs with inputs over frequency")
     known = seen.spectra
-    cut = (
-        ""
-        if known is None
-        else (f" Segments of {number(known.segments.seconds, 4)} s, {known.segments.window.value} window, {known.averages} averages.")
-    )
+    cut = ""
+    if known is not None:
+        window = known.segments.window.value.capitalize()
+        cut = f" Segments of {number(known.segments.seconds, 4)} s, {window} window, {known.averages} averages."
     caption = "Multiple: the share of an output's power that all inputs together explain. Ordinary, with one input: its share alone." + cut
     return section("Coherence", [Picture(drawn, caption)])
 

@@ -9,7 +9,7 @@ import numpy as np
 from flexstage.analysis.requirements import Verdict
 from flexstage.present.display import number, percent, value_with_unit
 from flexstage.present.page import Fact, Facts, Prose, Section, section
-from flexstage.present.table import Cell, Column, Content, Mark, Table, build, first_design
+from flexstage.present.table import Cell, Column, Mark, Table, build, first_design
 from flexstage.present.tables.change import change_table, set_table
 from flexstage.present.tables.requirements import margin_text, meaning, met, shown_value
 from flexstage.studies.complete import Analysis
@@ -187,12 +187,3 @@ def _loss_sentence(analysis: Analysis) -> str:
     taken = f"Elasticity takes {range_text} of the actuators' strokes"
     stirred = float(others.max(initial=0.0))
     return f"{taken}, and up to {percent(stirred, 3)} of a stroke appears as another's." if stirred > _SILENT else f"{taken}."
-
-
-def plain_rows(pairs: Sequence[tuple[str, str]]) -> list[tuple[Content, ...]]:
-    """Rows of a name and a text.
-
-    >>> plain_rows([("a", "b")])[0][1]
-    'b'
-    """
-    return [(Cell(name, Mark.STRONG), text) for name, text in pairs]

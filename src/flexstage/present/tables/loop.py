@@ -35,7 +35,7 @@ def loop_table(found: LoopStudy) -> Table:
     """
     plant, hardware = found.settled.plant, found.settled.plant.hardware
     delay = f"{number(1e6 * hardware.delay, 4)} us"
-    modes = f"{len(plant.frequencies)} modes up to {number(float(plant.frequencies[-1]), 4)} Hz, {plant.left_out} as a static term"
+    modes = f"{modes_told(len(plant.frequencies))} up to {number(float(plant.frequencies[-1]), 4)} Hz, {plant.left_out} as a static term"
     rows = [
         ("stability", Cell("stable" if found.verdict.stable else "unstable", Mark.PASS if found.verdict.stable else Mark.FAIL)),
         ("controller", _controller(found)),
@@ -52,6 +52,15 @@ def loop_table(found: LoopStudy) -> Table:
     if found.control.tuning is not None:
         notes.insert(0, f"Tuned: {found.control.tuning.reason}.")
     return build("Loop", ["what", "value"], [(Cell(name, Mark.STRONG), value) for name, value in rows], notes=notes)
+
+
+def modes_told(count: int) -> str:
+    """How many modes.
+
+    >>> modes_told(1), modes_told(18)
+    ('1 mode', '18 modes')
+    """
+    return f"{count} mode" if count == 1 else f"{count} modes"
 
 
 def _controller(found: LoopStudy) -> str:

@@ -94,7 +94,7 @@ def noise_table(found: LoopStudy) -> Table:
     rows = []
     for index, channel in enumerate(budget.outputs):
         cells = [_rms(float(np.sqrt(value)), channel.unit) for value in squares[index]]
-        told = [] if simulated is None else [value_with_unit(float(simulated[index]), channel.unit, 3)]
+        told = [] if simulated is None else [_rms(float(simulated[index]), channel.unit)]
         total = replace(_rms(float(budget.rms[index]), channel.unit), mark=Mark.STRONG)
         rows.append((Cell(channel.name.removeprefix("relative."), Mark.STRONG), total, *cells, *told))
     return build("Noise at rest", heads, rows, notes=_noise_notes(budget, simulated=simulated is not None))

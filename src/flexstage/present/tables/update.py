@@ -71,6 +71,7 @@ def residual_table(found: Updated) -> Table:
     ]
     before, after = number(found.chi_square_before, 3), number(found.chi_square, 3)
     notes = [f"Chi-square of {found.freedoms} data: {before} before, {after} after (prior included), probability {found.probability:.2g}."]
+    notes.append(f"Frequencies in Hz{', gains in metres at the gauge per metre of free stroke' if gains else ''}.")
     if len(gains) > _MOST_GAINS:
         notes.append(f"Of {len(gains)} gains the {_MOST_GAINS} that misfitted most; errors relative to the actuator's largest gain.")
     rows = [_residual(each) for each in (*modes, *gains[:_MOST_GAINS])]

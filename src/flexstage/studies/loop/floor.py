@@ -29,11 +29,6 @@ _VELOCITIES = MappingProxyType(
 _FROM_ONE_HERTZ = (Criterion.VC_C, Criterion.VC_D, Criterion.VC_E, Criterion.VC_F, Criterion.VC_G)
 _LOWEST, _CORNER, _HIGHEST = 4.0, 8.0, 80.0
 
-SOURCE = (
-    "C. G. Gordon, Generic vibration criteria for vibration-sensitive equipment, Proc. SPIE 3786 (1999); H. Amick et al., Evolving "
-    "criteria for research facilities: I - Vibration, Proc. SPIE 5933 (2005), Table 1"
-)
-
 
 def criterion_spectrum(criterion: Criterion) -> Spectrum:
     """The spectrum of a floor that just meets a generic vibration criterion in every third-octave band.

@@ -11,19 +11,17 @@ from pathlib import Path
 
 import numpy as np
 
-from flexstage.analysis.loop.code.compiler import compiler, library
-from flexstage.analysis.loop.code.hysteresis import has_code
+from flexstage.analysis.loop.code.compiler import library
 from flexstage.analysis.loop.code.program import Program, Signal
 from flexstage.analysis.loop.code.whole import loop_code
 from flexstage.analysis.loop.simulation.inflow import inflow
 from flexstage.analysis.loop.simulation.machine import Machine
 from flexstage.analysis.loop.simulation.result import Series, Simulated, simulated
-from flexstage.analysis.loop.simulation.run import require_bounded, simulate
+from flexstage.analysis.loop.simulation.run import require_bounded
 from flexstage.analysis.loop.system import picked
 from flexstage.base.number import Array
 
 _NONE: Mapping[str, Array] = {}
-_WORTH_COMPILING = 100_000
 _RUN = """
 void {name}_run({name}_state *state, long count, const double *inputs, double *outputs);
 void {name}_run({name}_state *state, long count, const double *inputs, double *outputs)
@@ -59,22 +57,6 @@ def simulate_compiled(given: Machine, reference: Array, disturbances: Mapping[st
     rows = _stepped(program, np.hstack([entering.reference, entering.disturbances[:, felt], entering.readings, entering.strokes]))
     require_bounded(given, rows)
     return simulated(given, entering.reference, _series(program, rows))
-
-
-def simulate_fast(given: Machine, reference: Array, disturbances: Mapping[str, Array] = _NONE) -> Simulated:
-    """The loop's answer by the faster engine: C for 100,000 samples and more, where a compiler is there and the hysteresis can be C.
-
-    For fewer samples compiling takes longer than it saves. Raises `DesignError` as `simulate` does.
-
-    >>> from flexstage.analysis.loop.example import integral_loop
-    >>> from flexstage.analysis.loop.simulation.machine import machine
-    >>> example = integral_loop()
-    >>> simulate_fast(machine(example.plant, example.controller), np.zeros((3, 1))).pose.ravel().tolist()
-    [0.0, 0.0, 0.0]
-    """
-    if len(reference) >= _WORTH_COMPILING and compiler() is not None and has_code(given.hysteresis):
-        return simulate_compiled(given, reference, disturbances)
-    return simulate(given, reference, disturbances)
 
 
 def _feeling(given: Machine, felt: tuple[int, ...]) -> Machine:

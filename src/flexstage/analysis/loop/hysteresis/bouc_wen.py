@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from flexstage.analysis.loop.hysteresis.protocol import run_steps
+from flexstage.analysis.loop.hysteresis.protocol import one_step, run_steps
 from flexstage.analysis.loop.hysteresis.shape import Range, settled_loop
 from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.number import Array, freeze
@@ -55,9 +55,7 @@ class BoucWen:
 
     def step(self, state: Array, value: Array) -> tuple[Array, Array]:
         """The next state (axes, 2) and the stroke (axes,) for the next volts (axes,)."""
-        kernel = self.stepper(state)
-        out = kernel(np.asarray(value, dtype=float), np.empty(self.axes))
-        return kernel.state, out
+        return one_step(self, state, value)
 
     def run(self, values: Array, state: Array | None = None) -> Array:
         """Strokes for volts (k, axes), or (k,) of a single axis, from `state`, or else from rest."""

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexstage.analysis.loop.hysteresis.envelope import IDENTITY, Envelope, spread, stacked_envelopes, straight
-from flexstage.analysis.loop.hysteresis.protocol import run_steps
+from flexstage.analysis.loop.hysteresis.protocol import one_step, run_steps
 from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array, freeze
 
@@ -59,9 +59,7 @@ class PrandtlIshlinskii:
 
     def step(self, state: Array, value: Array) -> tuple[Array, Array]:
         """The next outputs of the plays (axes, n) and the output (axes,) for the next input (axes,)."""
-        kernel = self.stepper(state)
-        out = kernel(np.asarray(value, dtype=float), np.empty(self.axes))
-        return kernel.state, out
+        return one_step(self, state, value)
 
     def run(self, values: Array, state: Array | None = None) -> Array:
         """Outputs for inputs (k, axes), or (k,) of a single axis, from `state`, or else from rest."""

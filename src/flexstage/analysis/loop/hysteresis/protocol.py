@@ -73,3 +73,15 @@ def run_steps(model: Hysteresis, values: Array, state: Array | None) -> Array:
         for value, out in zip(rows, found, strict=True):
             kernel(value, out)
     return found.reshape(values.shape)
+
+
+def one_step(model: Hysteresis, state: Array, value: Array) -> tuple[Array, Array]:
+    """The next state and the output (axes,) of a hysteresis for the next input (axes,).
+
+    >>> from flexstage.analysis.loop.hysteresis.prandtl_ishlinskii import proportional
+    >>> (1e6 * one_step(proportional([2e-7]), np.zeros((1, 1)), np.array([100.0]))[1]).round(9).tolist()
+    [20.0]
+    """
+    kernel = model.stepper(state)
+    out = kernel(np.asarray(value, dtype=float), np.empty(model.axes))
+    return kernel.state, out
