@@ -69,6 +69,8 @@ def _plain(value: Any, where: str, reasons: dict[str, str]) -> Any:
     if isinstance(value, np.ndarray):
         return _plain(value.tolist(), where, reasons)
     if isinstance(value, (list, tuple)):
+        if all(type(item) is float and math.isfinite(item) for item in value):
+            return [item + 0.0 for item in value]  # responses are long
         return [_plain(item, f"{where}.{number}", reasons) for number, item in enumerate(value)]
     if isinstance(value, Enum):
         return value.value
