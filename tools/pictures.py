@@ -30,6 +30,7 @@ from flexstage.present.figures.compare import compare_figure
 from flexstage.present.figures.directional import directional_figure
 from flexstage.present.figures.export import to_png, to_svg
 from flexstage.present.figures.hysteresis import stack_figure
+from flexstage.present.figures.interactions import pairs_figure, strongest_figure
 from flexstage.present.figures.loop_diagram import loop_diagram
 from flexstage.present.figures.loop_frequency import Curves, open_loop_figure
 from flexstage.present.figures.loop_noise import noise_share_figure
@@ -52,6 +53,8 @@ from flexstage.studies.loop.setup import Floor, Gauging, LoopSetup, RasterMotion
 from flexstage.studies.loop.study import LoopStudy, loop_study
 from flexstage.studies.solid_read import STANDARD_SOLIDS, read_solid
 from flexstage.studies.solid_surface import mode_surfaces
+from flexstage.studies.study.definition import Study
+from flexstage.studies.study.effects import Effects
 from flexstage.studies.study.effects import effects as effects_of
 from flexstage.studies.study.file import loads_study
 from flexstage.studies.study.run import Run, run
@@ -224,13 +227,27 @@ def hysteresis() -> Any:
     return stack_figure(example_test())
 
 
-def effects() -> Any:
-    """What the variables of the study in docs/studies.md do."""
-    text = next(block.text for block in blocks("docs/studies.md") if block.word("file") == "study.toml")
-    study = loads_study(text)
+@cache
+def _study(name: str) -> tuple[Study, Effects]:
+    """A study in docs/studies.md, and what its variables do."""
+    study = loads_study(next(block.text for block in blocks("docs/studies.md") if block.word("file") == name))
     with TemporaryDirectory() as place:
-        results = run(study, Path(place) / "results.h5", Run(workers=1))
-    return effects_figure(study, effects_of(results, study.plan))
+        return study, effects_of(run(study, Path(place) / "results.h5", Run(workers=1)), study.plan)
+
+
+def effects() -> Any:
+    """What variables do."""
+    return effects_figure(*_study("study.toml"))
+
+
+def pairs() -> Any:
+    """What pairs of variables do together."""
+    return pairs_figure(_study("arms.toml")[1])
+
+
+def strongest() -> Any:
+    """How the strongest pairs act."""
+    return strongest_figure(*_study("arms.toml"))
 
 
 @cache
@@ -278,6 +295,8 @@ DRAWN: Mapping[str, tuple[Callable[[], Any], str]] = {
     "compared": (compared, "frequencies of six modes by theory and as measured, and how far theory is off"),
     "hysteresis": (hysteresis, "loops of a stack with the model over them, the model's error, and the volts of the inverse"),
     "effects": (effects, "mean frequency, lost motion and mass over the thickness of necks, plate and notch"),
+    "pairs": (pairs, "shares of variance of stroke and lost motion by the arm, the notch, and both together"),
+    "strongest": (strongest, "lost motion over the arm, for thin and thick notches"),
     "loop": (
         loop,
         "block diagram of a control loop: what the computer does, then hold, amplifiers, stacks, stage and gauges",

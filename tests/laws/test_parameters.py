@@ -15,6 +15,7 @@ from flexstage.mechanism.mechanism import Mechanism
 from flexstage.readings.batch.engine import planned, platform_modes
 from flexstage.readings.batch.numbers import drawn_family
 from flexstage.studies.judge import measured
+from flexstage.studies.study.engine import engine_of
 from flexstage.studies.study.evaluate import piece
 from flexstage.studies.study.file import loads_study
 from flexstage.studies.study.variable import varied_by
@@ -128,10 +129,11 @@ def test_bad_parameters_of_cases_are_told_all_at_once():
 
 def test_many_designs_are_drawn_from_parameters_with_derivatives():
     """The engine's frequencies are those of the lumped reading, its derivatives those of finite differences."""
-    study = loads_study(STUDY)
+    study = loads_study(STUDY.replace('responses.mass = "mass"', 'responses.f = "frequency.platform.1"'))
     values = study.drawn(0, 1)
     names = tuple(each.name for each in study.variables)
     family = planned(drawn_family(lambda columns: varied_by(study.design, study.variables, columns), names, values[0]))
+    np.testing.assert_allclose(engine_of(study).answers(values)[0], platform_modes(family, values).frequencies[:, :1], rtol=1e-9)
     found = platform_modes(family, values, slopes=True)
     alone = fs.modes(fs.lumped(study.described(values[0])))
     np.testing.assert_allclose(found.frequencies[0], alone.frequencies[:6], rtol=1e-7)

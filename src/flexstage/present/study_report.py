@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 import flexstage
 from flexstage.base.digest import digest
 from flexstage.present.figures.export import to_svg
+from flexstage.present.figures.interactions import pairs_figure, strongest_figure
 from flexstage.present.figures.study import designs_figure, effects_figure
-from flexstage.present.page import Head, Picture, Section, page, section
-from flexstage.present.tables.study import study_tables
+from flexstage.present.page import Block, Head, Picture, Section, page, section
+from flexstage.present.tables.study import failure_table, pair_table, response_table, share_table, variable_table
 from flexstage.studies.study.definition import Study
 from flexstage.studies.study.effects import Effects
 from flexstage.studies.study.store import Results
 
 _STEEP = "All panels of a row have one scale: the steeper, the stronger. Means over designs, the other variables anywhere in their ranges."
-_PARALLEL = "Each line is a design; colour by the last response."
+_MAP = "Shares of variance in percent: of variables alone on the diagonal, of what two do together beyond that below it."
+_STRONGEST = "The strongest pairs: where lines are not parallel, one variable decides what the other does. Above: share of variance."
 
 
 def sweep_report(study: Study, results: Results, found: Effects) -> str:
@@ -22,14 +26,31 @@ def sweep_report(study: Study, results: Results, found: Effects) -> str:
     >>> sweep_report.__name__
     'sweep_report'
     """
-    varied, responses, shares, *failures = study_tables(study, results, found)
     effects = Picture(to_svg(effects_figure(study, found), "effects", "mean responses over the variables"), _STEEP)
-    designs = Picture(to_svg(designs_figure(results), "designs", "designs over parallel axes"), _PARALLEL)
+    designs = Picture(to_svg(designs_figure(study, results), "designs", "designs over parallel axes"), _parallel(study, found))
     sections: list[Section | None] = [
-        section("What was varied", [varied]),
-        section("Responses", [responses, designs if found.used else None]),
-        section("Effects", [shares, effects if found.used else None]),
-        section("Designs without values", failures),
+        section("What was varied", [variable_table(study, results)]),
+        section("Responses", [response_table(study, results, found), designs if found.used else None]),
+        section("Effects", [share_table(found), effects if found.used else None]),
+        section("Interactions", _interactions(study, found)),
+        section("Designs without values", [failure_table(results)] if results.failures else []),
     ]
     origin = (("design", study.design.name), ("physics", digest(study.design, physics=True)[:16]), ("flexstage", flexstage.__version__))
     return page(Head(study.name, "A sweep of designs", origin), [each for each in sections if each is not None])
+
+
+def _parallel(study: Study, found: Effects) -> str:
+    """What the designs over parallel axes show."""
+    text = f"Each line is a design; colour by {found.responses[0]}, from dark where it is least to yellow where it is largest"
+    return f"{text}; grey ones do not keep the limits." if study.limits else f"{text}."
+
+
+def _interactions(study: Study, found: Effects) -> list[Block]:
+    """The pairs: table, map, and the strongest."""
+    if not np.any(np.isfinite(found.pairs)):
+        return []
+    shares = Picture(to_svg(pairs_figure(found), "pairs", "shares of variance of pairs of variables"), _MAP)
+    blocks: list[Block] = [pair_table(found), shares]
+    if found.strongest:
+        blocks.append(Picture(to_svg(strongest_figure(study, found), "strongest", "mean responses over pairs of variables"), _STRONGEST))
+    return blocks

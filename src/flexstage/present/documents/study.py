@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import combinations
 from typing import Any
 
 from flexstage.present.documents.envelope import Document
@@ -54,4 +55,10 @@ def _response(study: Study, found: Effects, index: int, name: str) -> dict[str, 
         "largest": float(found.high[index]),
         "first_order": dict(zip(found.variables, found.first[:, index].tolist(), strict=True)),
         "total_order": None if total is None else dict(zip(found.variables, total.tolist(), strict=True)),
+        "standard_error": float(found.errors[0, index]),
+        "pairs_standard_error": float(found.errors[1, index]),
+        "pairs": [
+            {"variables": [found.variables[first], found.variables[second]], "share": float(found.pairs[first, second, index])}
+            for first, second in combinations(range(len(found.variables)), 2)
+        ],
     }

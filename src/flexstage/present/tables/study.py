@@ -2,18 +2,24 @@
 
 from __future__ import annotations
 
+import re
+from itertools import combinations
+
 import numpy as np
 
-from flexstage.analysis.requirements import Verdict
+from flexstage.analysis.requirements import KINDS, Verdict
 from flexstage.base.quantity import Quantity
 from flexstage.base.unit import show
-from flexstage.present.display import number, value_with_unit
+from flexstage.present.display import NOISE, number, value_with_unit
 from flexstage.present.table import Cell, Column, Mark, Table, build
 from flexstage.studies.study.definition import Study
 from flexstage.studies.study.effects import Effects
 from flexstage.studies.study.store import Results
 
 _MOST_FAILURES = 8
+_MOST_PAIRS = 6
+_LEAST = 0.01
+_NUMBER = re.compile(r"-?\d+(\.\d+)?(e[+-]?\d+)?")
 
 
 def study_tables(study: Study, results: Results, found: Effects) -> list[Table]:
@@ -22,11 +28,17 @@ def study_tables(study: Study, results: Results, found: Effects) -> list[Table]:
     >>> study_tables.__name__
     'study_tables'
     """
-    tables = [_variables(study, results), _responses(study, results, found), _shares(found)]
-    return [*tables, *([_failures(results)] if results.failures else [])]
+    tables = [variable_table(study, results), response_table(study, results, found), share_table(found)]
+    tables += [pair_table(found)] if np.any(np.isfinite(found.pairs)) else []
+    return tables + ([failure_table(results)] if results.failures else [])
 
 
-def _variables(study: Study, results: Results) -> Table:
+def variable_table(study: Study, results: Results) -> Table:
+    """Variables with their ranges, and how many designs there are.
+
+    >>> variable_table.__name__
+    'variable_table'
+    """
     rows = [
         (
             Cell(each.name, Mark.STRONG),
@@ -45,14 +57,33 @@ def _end(value: float, quantity: Quantity, *, relative: bool) -> str:
     return f"{100.0 * (value - 1.0):+.4g} %" if relative else show(value, quantity, digits=6)
 
 
-def _responses(study: Study, results: Results, found: Effects) -> Table:
+def response_table(study: Study, results: Results, found: Effects) -> Table:
+    """Responses with their distributions, and how many designs keep the limits on them.
+
+    >>> response_table.__name__
+    'response_table'
+    """
     rows = []
     for index, (name, measure) in enumerate(study.columns.items()):
         unit = measure.quantity.si
-        cells = [value_with_unit(float(each[index]), unit, 5) for each in (found.low, found.mean, found.deviation, found.high)]
-        rows.append((Cell(name, Mark.STRONG), f"{measure.key} at {measure.point}", *cells, _met(study, results, name)))
+        noise = NOISE * abs(found.mean[index])
+        spread = 0.0 if found.deviation[index] < noise else found.deviation[index]
+        cells = [value_with_unit(float(each), unit, 5) for each in (found.low[index], found.mean[index], spread, found.high[index])]
+        rows.append(
+            (
+                Cell(name, Mark.STRONG),
+                f"{measure.key} at {measure.point}" if KINDS[measure.subject].pointed else measure.key,
+                *cells,
+                _met(study, results, name),
+            )
+        )
     heads = ["least", "mean", "deviation", "largest"]
-    return build("Responses", ["response", "measure", *(Column(head) for head in heads), Column("limit met by", "%")], rows)
+    return build(
+        "Responses",
+        ["response", "measure", *(Column(head) for head in heads), Column("limit met by", "%")],
+        rows,
+        notes=_limit_notes(study, results),
+    )
 
 
 def _met(study: Study, results: Results, name: str) -> str:
@@ -64,8 +95,28 @@ def _met(study: Study, results: Results, name: str) -> str:
     return number(100.0 * float(np.mean(np.all([verdict.passed for verdict in verdicts], axis=0))), 4)
 
 
-def _shares(found: Effects) -> Table:
-    """First-order and, where known, total indices."""
+def _limit_notes(study: Study, results: Results) -> list[str]:
+    """How many designs keep all limits; where none does, which are kept by none, or contradict one another."""
+    kept = study.kept(results.responses)
+    if not study.limits or not len(kept):
+        return []
+    if np.any(kept):
+        return [f"All limits together are met by {number(100.0 * float(np.mean(kept)), 4)} % of the designs."]
+    alone = {f"{each.key} {each.text}": study.kept(results.responses, (each,)) for each in study.limits}
+    never = [text for text, met in alone.items() if not np.any(met)]
+    if never:
+        return [f"No design meets {' nor '.join(never)}: widen the ranges, or ask for less."]
+    pairs = [pair for pair in combinations(alone, 2) if not np.any(alone[pair[0]] & alone[pair[1]])]
+    told = "; ".join(f"{first} and {second}" for first, second in pairs)
+    return [f"No design meets all limits at once{f': no design meets both {told}' if told else ''}."]
+
+
+def share_table(found: Effects) -> Table:
+    """First-order and, where known, total indices.
+
+    >>> share_table.__name__
+    'share_table'
+    """
     columns: list[Column | str] = ["variable"]
     for name in found.responses:
         columns += [Column(name, "alone")] + ([] if found.total is None else [Column(name, "in all")])
@@ -78,7 +129,35 @@ def _shares(found: Effects) -> Table:
         rows.append(cells)
     note = "Alone: share of the response's variance by the variable alone"
     note += "; in all: with its interactions." if found.total is not None else "; what is left is interaction."
-    return build("What does it", columns, rows, notes=[note, f"By {found.method}, {found.used} designs."])
+    return build("What does it", columns, rows, notes=[note, f"By {found.method}, {found.used} designs.", *_error_note(found, 0)])
+
+
+def _error_note(found: Effects, order: int) -> list[str]:
+    """How well indices are known."""
+    told = [f"{name} {100.0 * error:.1g} %" for name, error in zip(found.responses, found.errors[order], strict=True) if np.isfinite(error)]
+    return [f"Standard errors up to: {', '.join(told)}."] if told else []
+
+
+def pair_table(found: Effects) -> Table:
+    """Pairs of variables that explain a hundredth of some response's variance or more beyond each alone, the strongest first.
+
+    >>> pair_table.__name__
+    'pair_table'
+    """
+    known = np.nan_to_num(found.pairs).max(axis=2)
+    ranked = sorted(combinations(range(len(found.variables)), 2), key=lambda pair: -known[pair])
+    shown_pairs = [pair for pair in ranked if known[pair] >= _LEAST][:_MOST_PAIRS]
+    rows = [
+        [
+            Cell(f"{found.variables[first]}, {found.variables[second]}", Mark.STRONG),
+            *(_share(float(each)) for each in found.pairs[first, second]),
+        ]
+        for first, second in shown_pairs
+    ]
+    less = "No pair" if not rows else "No other pair"
+    notes = ["Share of variance that only both together explain.", f"{less} explains 1 % of anything." if len(rows) < _MOST_PAIRS else ""]
+    notes += _error_note(found, 1)
+    return build("Interactions", ["variables", *(Column(name) for name in found.responses)], rows, notes=[note for note in notes if note])
 
 
 def _share(value: float) -> Cell:
@@ -87,13 +166,18 @@ def _share(value: float) -> Cell:
     return Cell(f"{round(100.0 * value, 1) + 0.0:.1f} %", Mark.STRONG if value > 0.1 else Mark.PLAIN, bar=float(np.clip(value, 0.0, 1.0)))
 
 
-def _failures(results: Results) -> Table:
-    """Reasons of failed designs, the most frequent first."""
+def failure_table(results: Results) -> Table:
+    """Reasons of failed designs, the most frequent first.
+
+    >>> failure_table.__name__
+    'failure_table'
+    """
     reasons: dict[str, list[int]] = {}
     for design, reason in results.failures.items():
-        reasons.setdefault(reason, []).append(design)
-    ranked = sorted(reasons.items(), key=lambda item: -len(item[1]))
-    rows = [(number(len(designs)), str(designs[0]), reason) for reason, designs in ranked[:_MOST_FAILURES]]
+        reasons.setdefault(_NUMBER.sub("", reason), []).append(design)
+    ranked = sorted(reasons.values(), key=lambda designs: -len(designs))
+    rows = [(number(len(designs)), str(designs[0]), results.failures[designs[0]]) for designs in ranked[:_MOST_FAILURES]]
     rest = len(ranked) - _MOST_FAILURES
-    notes = [f"{rest} further reasons are in the results file."] if rest > 0 else []
+    notes = ["Reasons that differ in numbers only are told once, as the first design has them; the results file holds all."]
+    notes += [f"{rest} further reasons are in the results file."] if rest > 0 else []
     return build("Designs without values", [Column("designs"), Column("first"), "reason"], rows, notes=notes)

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from flexstage.analysis.requirements import Measure, Requirement
+from flexstage.analysis.requirements import Measure, Requirement, Verdict
 from flexstage.base.digest import digest
 from flexstage.base.number import Array
 from flexstage.mechanism.mechanism import Mechanism
@@ -35,7 +35,9 @@ class Study:
     @property
     def columns(self) -> Mapping[str, Measure]:
         """What is computed of each design, by name: the responses, and the measures that limits are on."""
-        return {**self.responses, **{each.key: each for each in self.limits if each.key not in self.responses}}
+        asked = {(each.key, each.point) for each in self.responses.values()}
+        further = [each for each in self.limits if (each.key, each.point) not in asked]
+        return {**self.responses, **{each.key if each.key not in self.responses else f"limit {each.key}": each for each in further}}
 
     @property
     def facts(self) -> dict[str, str]:
@@ -90,3 +92,17 @@ class Study:
         """
         columns = self.columns
         return measured(mechanism, tuple(columns[name] for name in (columns if names is None else names)))
+
+    def kept(self, responses: Array, limits: Sequence[Requirement] | None = None) -> Array:
+        """Which designs (n,) keep all the study's limits, or those, given all columns' responses (n, r); those without values keep none.
+
+        >>> from flexstage.studies.study.example import neck_study
+        >>> neck_study().kept(np.array([[100.0], [np.nan]])).tolist()
+        [True, False]
+        """
+        names = list(self.columns)
+        measured_by = {(each.key, each.point): names.index(name) for name, each in self.columns.items()}
+        verdicts = [
+            Verdict(each, responses[:, measured_by[each.key, each.point]]).passed for each in (self.limits if limits is None else limits)
+        ]
+        return np.all([np.all(np.isfinite(responses), axis=1), *verdicts], axis=0)

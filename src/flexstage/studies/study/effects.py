@@ -7,11 +7,23 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexstage.base.number import Array
+from flexstage.studies.study.interactions import (
+    Interaction,
+    paired_shares,
+    ranked,
+    second_order,
+    single_effects,
+    standard_error,
+    strongest,
+    variance,
+)
 from flexstage.studies.study.plan import Plan, Sampling
 from flexstage.studies.study.store import Results
 
 _BINS = 16
 _FEWEST = 8
+_SPARE = 4
+"""Designs for each bin's effect at least."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -19,9 +31,12 @@ class Effects:
     """What d variables do to r responses over the designs that have values.
 
     `used` designs of `computed`; `mean`, `deviation`, `low`, `high` (r,) in SI. `places` (d, b) and `means` (d, b, r): the mean response
-    where a variable lies in each of b bins of equal counts (for grids, at each level): its main effect. `first` (d, r): share of the
+    where a variable lies in each of b bins of equal counts (for grids, at each level), less what the other variables happen to do
+    there: its main effect. `first` (d, r): share of the
     variance that a variable alone explains; `total` (d, r): with all its interactions; `total` is None unless the plan is Saltelli's,
-    and `first` is then Sobol's, else the correlation ratio of the bins, corrected for their number. NaN where a response does not vary.
+    and `first` is then Sobol's, else the correlation ratio of the bins, corrected for their number. `pairs` (d, d, r): what two variables
+    explain together beyond each alone, `strongest` how the strongest of them act. `errors` (2, r): the largest standard error of a Sobol
+    index, and of one of second order; NaN for other plans. NaN where a response does not vary.
     """
 
     variables: tuple[str, ...]
@@ -36,6 +51,9 @@ class Effects:
     means: Array
     first: Array
     total: Array | None
+    pairs: Array
+    errors: Array
+    strongest: tuple[Interaction, ...]
     method: str
 
 
@@ -43,7 +61,7 @@ def effects(results: Results, plan: Plan) -> Effects:
     """Effects of a study's variables on its responses, over all complete designs so far.
 
     First-order index S_i = V[E(y | x_i)] / V(y), total index T_i = E[V(y | x_~i)] / V(y) (Sobol, Math. Comput. Simul. 55 (2001) 271;
-    estimators of Saltelli et al. 2010 by scipy). Raises nothing: what too few designs cannot tell is NaN.
+    estimators of Saltelli et al. 2010). Raises nothing: what too few designs cannot tell is NaN.
 
     >>> plan = Plan(Sampling.GRID, 2, levels=(3, 3))
     >>> from flexstage.studies.study.plan import shares
@@ -59,14 +77,18 @@ def effects(results: Results, plan: Plan) -> Effects:
     bins = [_bins(column, plan) for column in at.T]
     width = max((int(group.max(initial=0)) + 1 for group in bins), default=1)
     places, means = np.full((at.shape[1], width), np.nan), np.full((at.shape[1], width, values.shape[1]), np.nan)
-    for number, group in enumerate(bins):
-        for each in range(int(group.max(initial=-1)) + 1):
-            members = group == each
-            places[number, each], means[number, each] = at[members, number].mean(), values[members].mean(axis=0)
-    total, first, method = None, _ratios(bins, values, grid=plan.sampling is Sampling.GRID), "correlation ratio of bins"
+    for number, (group, effect) in enumerate(zip(bins, single_effects(bins, values) if len(values) else [], strict=False)):
+        count = int(group.max()) + 1
+        places[number, :count] = np.bincount(group, at[:, number]) / np.bincount(group)
+        means[number, :count] = values.mean(axis=0) + effect
+    grid = plan.sampling is Sampling.GRID
+    error = np.full(values.shape[1], np.nan)
+    total, first, method = None, _ratios(bins, values, grid=grid), "correlation ratio of bins"
     if plan.sampling is Sampling.SALTELLI:
-        first, total = _sobol(results, plan)
-        method = "Sobol indices by Saltelli's plan"
+        blocks = _whole(results, plan)
+        first, total, error = _sobol(blocks, plan.dimensions)
+        method = f"Sobol indices by Saltelli's plan from {blocks.shape[1]} of its {plan.count} rows"
+    pairs, further = _pairs(results, plan, sound)
     return Effects(
         *results.names,
         len(values),
@@ -76,6 +98,9 @@ def effects(results: Results, plan: Plan) -> Effects:
         means=means,
         first=first,
         total=total,
+        pairs=pairs,
+        errors=np.stack([error, further]),
+        strongest=strongest(at, values, pairs, grid=grid),
         method=method,
     )
 
@@ -88,42 +113,55 @@ def _bins(column: Array, plan: Plan) -> Array:
     """Which bin (n,) each value falls into: levels of a grid, else bins of equal counts."""
     if plan.sampling is Sampling.GRID:
         return np.unique(column, return_inverse=True)[1]
-    count = max(1, min(_BINS, len(column) // _FEWEST))
-    rank = np.argsort(np.argsort(column, kind="stable"), kind="stable")
-    return rank * count // max(len(column), 1)
+    count = max(1, min(_BINS, len(column) // _FEWEST, 1 + len(column) // (_SPARE * plan.dimensions)))
+    return ranked(column, count)
 
 
 def _ratios(bins: list[Array], values: Array, *, grid: bool) -> Array:
     """Correlation ratios (d, r); of random designs less what bins of pure chance would explain, (b - 1)/(n - 1)."""
     result = np.full((len(bins), values.shape[1]), np.nan)
-    spread = np.var(values, axis=0) if len(values) else np.zeros(values.shape[1])
-    varies = spread > 0.0
+    spread = variance(values)
     for number, group in enumerate(bins):
         counts = np.bincount(group)
         sums = np.stack([np.bincount(group, weights=column) for column in values.T], axis=-1)
         between = np.sum(counts[:, None] * (sums / counts[:, None] - values.mean(axis=0)) ** 2, axis=0) / max(len(values), 1)
-        share = np.divide(between, spread, out=np.full_like(spread, np.nan), where=varies)
+        share = between / spread
         chance = 0.0 if grid or len(values) < 2 else (len(counts) - 1) / (len(values) - 1)
         result[number] = np.maximum((share - chance) / (1.0 - chance), 0.0) if chance < 1.0 else np.nan
     return result
 
 
-def _sobol(results: Results, plan: Plan) -> tuple[Array, Array]:
-    """Sobol indices (d, r) of a complete plan; NaN while designs are missing or have failed."""
-    from scipy.stats import sobol_indices
+def _sobol(blocks: Array, dimensions: int) -> tuple[Array, Array, Array]:
+    """First-order and total indices (d, r) and their largest standard error (r,) of the blocks (d + 2 or more, n, r) of Saltelli's plan.
 
-    blocks, width = plan.dimensions + 2, results.responses.shape[1]
-    unknown = np.full((plan.dimensions, width), np.nan)
-    if not results.complete or not np.all(np.isfinite(results.responses)):
-        return unknown, unknown
-    by_block = results.responses.reshape(blocks, plan.count, width)
-    varies = np.ptp(by_block[0], axis=0) > 0.0
-    if not np.any(varies):
-        return unknown, unknown
-    values = by_block[..., varies]
-    functions = {"f_A": values[0].T, "f_B": values[1].T, "f_AB": values[2:].transpose(0, 2, 1)}
-    found = sobol_indices(func=functions, n=plan.count)
-    first, total = unknown.copy(), unknown.copy()
-    first[:, varies] = np.reshape(found.first_order.T, (plan.dimensions, -1))
-    total[:, varies] = np.reshape(found.total_order.T, (plan.dimensions, -1))
-    return first, total
+    S_i = E[f_B (f_AB,i - f_A)] / V, T_i = E[(f_A - f_AB,i)^2] / (2 V): estimators (b) and (f) of Table 2 of Saltelli et al., Computer
+    Physics Communications 181 (2010) 259, the mean taken away first. NaN where a response does not vary.
+    """
+    if not blocks.shape[1]:
+        unknown = np.full((dimensions, blocks.shape[-1]), np.nan)
+        return unknown, unknown, unknown[0]
+    first, second, *mixed = blocks[: dimensions + 2] - blocks[:2].mean(axis=(0, 1))
+    spread, steps = variance(blocks[:2].reshape(-1, blocks.shape[-1])), np.stack(mixed) - first
+    alone, total = second * steps / spread, 0.5 * steps**2 / spread
+    error = np.max(np.concatenate([standard_error(alone), standard_error(total)]), axis=0)
+    return alone.mean(axis=1), total.mean(axis=1), error
+
+
+def _whole(results: Results, plan: Plan) -> Array:
+    """Responses (blocks, n, r) of Saltelli's plan, of those rows of its samples whose designs are all there and have values."""
+    values = np.full((plan.designs, results.responses.shape[1]), np.nan)
+    values[results.designs] = results.responses
+    blocks = values.reshape(plan.blocks, plan.count, -1)
+    return blocks[:, np.all(np.isfinite(blocks), axis=(0, 2))]
+
+
+def _pairs(results: Results, plan: Plan, sound: Array) -> tuple[Array, Array]:
+    """Shares of pairs (d, d, r) and their largest standard error (r,).
+
+    Second-order indices where the plan has them, else by analysis of variance over independent designs.
+    """
+    if plan.pairs:
+        return second_order(_whole(results, plan), plan.dimensions)
+    independent = sound & (results.designs < 2 * plan.count) if plan.sampling is Sampling.SALTELLI else sound
+    shares = paired_shares(results.variables[independent], results.responses[independent], grid=plan.sampling is Sampling.GRID)
+    return shares, np.full(results.responses.shape[1], np.nan)

@@ -16,10 +16,13 @@ from flexstage.analysis.requirements import Subject
 from flexstage.base.finding import DesignError
 from flexstage.base.number import Array, Table
 from flexstage.mechanism.locate import canonical
+from flexstage.mechanism.mechanism import Mechanism
 from flexstage.readings.batch.choice import Choice
-from flexstage.readings.batch.engine import Plan, Status, plan, platform_modes
+from flexstage.readings.batch.engine import Plan, Status, planned, platform_modes
+from flexstage.readings.batch.numbers import Family, drawn_family, family
 from flexstage.studies.study.definition import Study
 from flexstage.studies.study.numbers import Numbers
+from flexstage.studies.study.variable import varied_by
 
 _MODES = 6
 _FIT = 4_700
@@ -67,8 +70,8 @@ class Engine:
 def engine_of(study: Study) -> Engine:
     """The engine for a study: its plan, over the variables' ranges where the study has designs enough for that to pay.
 
-    What it does not cover is left to the other readings: variables that are parameters of a case, designs described in a way of the
-    study's own, a varied limit of modes. Raises nothing.
+    What it does not cover is left to the other readings: designs described in a way of the study's own, a varied limit of modes. Raises
+    nothing.
 
     >>> from flexstage.studies.study.example import neck_study
     >>> dict(engine_of(neck_study()).modes)
@@ -76,16 +79,45 @@ def engine_of(study: Study) -> Engine:
     """
     wanted = {name: int(each.name) - 1 for name, each in study.columns.items() if each.subject is Subject.PLATFORM_FREQUENCY}
     modes = Table({name: mode for name, mode in wanted.items() if mode < _MODES})
-    numbers = study.numbers if modes and _writes_numbers(type(study)) else None
-    if numbers is None or any(canonical(study.design, each) == "mode_limit" for each in numbers.addresses):
+    parametric = any(each.variant is not None for each in study.variables)
+    numbers = _columns(study) if parametric else study.numbers
+    if not modes or numbers is None or not _writes_numbers(type(study), parametric=parametric) or _moves_limit(study):
         return Engine(Table({}))
     limit = study.design.mode_limit
     choice = Choice(_MODES, np.inf if limit is None else float(np.max(limit)))
     try:
         with threadpool_limits(1):  # sums over several threads would not be the same to the bit
-            return Engine(modes, Planned(plan(study.design, numbers.addresses, choice, _ranges(study, numbers)), numbers))
+            family_ = _drawn(study, numbers) if parametric else family(study.design, numbers.addresses)
+            return Engine(modes, Planned(planned(family_, choice, _ranges(study, numbers)), numbers))
     except DesignError:
         return Engine(Table({}))
+
+
+def _moves_limit(study: Study) -> bool:
+    """Whether a variable moves the limit of modes."""
+    addresses = [each for variable in study.variables if variable.variant is None for each in variable.addresses]
+    return any(canonical(study.design, each) == "mode_limit" for each in addresses)
+
+
+def _columns(study: Study) -> Numbers:
+    """The variables themselves as numbers: what designs are drawn from, where parameters of a case vary."""
+    count = len(study.variables)
+    return Numbers(tuple(each.name for each in study.variables), np.arange(count), np.ones(count))
+
+
+@dataclass(frozen=True, eq=False)
+class _Drawing:
+    """What describes designs by the values of all variables."""
+
+    study: Study
+
+    def __call__(self, columns: tuple[Array, ...]) -> Mechanism:
+        return varied_by(self.study.design, self.study.variables, columns)
+
+
+def _drawn(study: Study, numbers: Numbers) -> Family:
+    """The designs drawn from the variables' values, about the middle of their ranges."""
+    return drawn_family(_Drawing(study), numbers.addresses, np.array([float(each.at(np.array(0.5))) for each in study.variables]))
 
 
 def _ranges(study: Study, numbers: Numbers) -> tuple[Array, Array] | None:
@@ -96,6 +128,6 @@ def _ranges(study: Study, numbers: Numbers) -> tuple[Array, Array] | None:
     return numbers.ranges(low, high)
 
 
-def _writes_numbers(kind: type[Study]) -> bool:
+def _writes_numbers(kind: type[Study], *, parametric: bool) -> bool:
     """Whether a kind of study says itself which numbers its designs differ in, if it describes them in a way of its own."""
-    return kind.described is Study.described or kind.numbers is not Study.numbers
+    return kind.described is Study.described or (kind.numbers is not Study.numbers and not parametric)

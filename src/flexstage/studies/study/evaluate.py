@@ -94,7 +94,7 @@ def _halved(values: Array, width: int, batch: Callable[[Array], Array | str]) ->
 def _refused(study: Study, values: Array) -> Array | str:
     """Why a description of these designs cannot be read; nothing (n, 0) where it can."""
     try:
-        checked(study.described(values))
+        checked(study.described(values[0] if len(values) == 1 else values))
     except DesignError as error:
         return str(error)
     return np.zeros((len(values), 0))

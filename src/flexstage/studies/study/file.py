@@ -205,9 +205,12 @@ def _plan(table: Fields, variables: tuple[Variable, ...]) -> Plan:
         wanted = Sampling.SOBOL.value
     sampling = Sampling(wanted)
     count, seed = table.whole("designs", 1, 1024), table.whole("seed", 0, 0)
+    pairs = table.flag("pairs")
+    if pairs and sampling is not Sampling.SALTELLI:
+        table.note("pairs", f"sampling is {sampling.value}", f'Take sampling = "{Sampling.SALTELLI.value}", or leave it out')
     table.done()
     levels = _levels(table, variables) if sampling is Sampling.GRID else ()
-    plan = Plan(sampling, len(variables), 0 if sampling is Sampling.GRID else count, levels, seed)
+    plan = Plan(sampling, len(variables), 0 if sampling is Sampling.GRID else count, levels, seed, pairs)
     if plan.designs > _MOST:
         table.note("designs", f"these are {plan.designs:.3g} designs", f"Ask for at most {_MOST:.0e}")
     return plan

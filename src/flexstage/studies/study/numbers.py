@@ -50,7 +50,7 @@ def numbers_moved(mechanism: Mechanism, variables: tuple[Variable, ...]) -> Numb
     >>> from flexstage.base.quantity import RATIO
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> neck = Variable("neck", ("parts.neck.thickness",), RATIO, 0.9, 1.1, relative=True)
-    >>> numbers_moved(double_triangle(), (neck,)).at(np.array([[0.5]])).tolist()
+    >>> numbers_moved(double_triangle(), (neck,)).at(np.array([[0.5]])).round(9).tolist()
     [[0.00077]]
     """
     if any(variable.variant is not None for variable in variables):

@@ -26,7 +26,8 @@ class Plan:
     """A sampling of `count` designs with its `seed`; a grid takes `levels`, one number a variable, instead.
 
     Saltelli: two Sobol samples A and B of `count` designs each, and for each of d variables A with that variable's column from B: count
-    (d + 2) designs in all, from which Sobol indices follow (Saltelli et al., Computer Physics Communications 181 (2010) 259).
+    (d + 2) designs in all, from which Sobol indices follow (Saltelli et al., Computer Physics Communications 181 (2010) 259). With `pairs`
+    also B with each column from A: count (2 d + 2) designs, from which indices of second order follow.
     """
 
     sampling: Sampling
@@ -34,6 +35,16 @@ class Plan:
     count: int = 0
     levels: tuple[int, ...] = ()
     seed: int = 0
+    pairs: bool = False
+
+    @property
+    def blocks(self) -> int:
+        """Number of samples that Saltelli's plan is made of.
+
+        >>> Plan(Sampling.SALTELLI, 3, count=8).blocks, Plan(Sampling.SALTELLI, 3, count=8, pairs=True).blocks
+        (5, 8)
+        """
+        return (2 if self.pairs else 1) * self.dimensions + 2
 
     @property
     def designs(self) -> int:
@@ -44,7 +55,7 @@ class Plan:
         """
         if self.sampling is Sampling.GRID:
             return int(np.prod(self.levels, dtype=object))
-        return self.count * (self.dimensions + 2) if self.sampling is Sampling.SALTELLI else self.count
+        return self.count * self.blocks if self.sampling is Sampling.SALTELLI else self.count
 
 
 def shares(plan: Plan, start: int, stop: int) -> Array:
@@ -108,14 +119,16 @@ def _strata(count: int, seed: int, number: int) -> Array:
 
 
 def _saltelli(plan: Plan, start: int, stop: int) -> Array:
-    """Designs block by block: A, B, then A with one column of B each."""
+    """Designs block by block: A, B, then A with one column of B each, then B with one column of A each."""
     result = np.empty((stop - start, plan.dimensions))
     for block in range(start // plan.count, -(-stop // plan.count)):
         low, high = max(start, block * plan.count), min(stop, (block + 1) * plan.count)
         both = _sobol(2 * plan.dimensions, plan.seed, low - block * plan.count, high - block * plan.count)
         first, second = both[:, : plan.dimensions], both[:, plan.dimensions :]
-        rows = second.copy() if block == 1 else first.copy()
+        turned = block == 1 or block >= plan.dimensions + 2
+        rows, other = (second.copy(), first) if turned else (first.copy(), second)
         if block > 1:
-            rows[:, block - 2] = second[:, block - 2]
+            column = (block - 2) % plan.dimensions
+            rows[:, column] = other[:, column]
         result[low - start : high - start] = rows
     return result

@@ -1,0 +1,185 @@
+"""Interactions of two variables: the share of a response's variance that neither explains alone, and how it looks."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import combinations, pairwise
+
+import numpy as np
+
+from flexstage.base.number import Array
+
+_LEVELS = 3
+_WIDEST = 8
+_FEWEST = 8
+_LEAST, _MOST = 0.01, 4
+_ROUNDING = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class Interaction:
+    """Means of a response over one variable, where another is low, in the middle, and high.
+
+    `over`, `by` and `response` are their numbers, `share` that of the response's variance which only both together explain. `places` (b,)
+    and `levels` (3,) are mean values of the variables in SI, `means` (3, b) of the response; NaN where there is no design.
+    """
+
+    over: int
+    by: int
+    response: int
+    share: float
+    places: Array
+    levels: Array
+    means: Array
+
+
+def paired_shares(at: Array, values: Array, *, grid: bool) -> Array:
+    """Shares (d, d, r) of the variance of responses (n, r) that two of the variables (n, d) explain beyond each alone; NaN on the diagonal.
+
+    Analysis of variance: variables fall into bins (levels of a `grid`); the effects of all single bins are fitted and taken away, and what
+    the cells of two variables explain of the rest is counted, less what cells would by chance: SS_ij - (b_i - 1)(b_j - 1) MSE over the
+    total sum of squares. Of a complete grid it is exact, else what happens within bins is missed: true shares are larger. NaN where there
+    are too few designs, or a response does not vary.
+
+    >>> from itertools import product
+    >>> at = np.array(list(product([-1.0, 0.0, 1.0], repeat=2)))
+    >>> paired_shares(at, at[:, :1] * at[:, 1:], grid=True)[0, 1].round(6).tolist()  # a product is nothing but interaction
+    [1.0]
+    >>> paired_shares(at, at[:, :1] + at[:, 1:], grid=True)[0, 1].round(6).tolist()
+    [0.0]
+    """
+    count, dimensions = at.shape
+    result = np.full((dimensions, dimensions, values.shape[1]), np.nan)
+    width = _WIDEST if grid else min(_WIDEST, int(np.sqrt(count / _FEWEST)))
+    if width < 2:
+        return result
+    bins = [np.unique(column, return_inverse=True)[1] if grid else ranked(column, width) for column in at.T]
+    rest = values - values.mean(axis=0) - sum(effect[group] for effect, group in zip(single_effects(bins, values), bins, strict=True))
+    total, left = count * variance(values), np.sum(rest**2, axis=0)
+    singles = sum(int(group.max()) for group in bins) + 1
+    for first, second in combinations(range(dimensions), 2):
+        explained = _explained(bins[first], bins[second], rest)
+        degrees = int(bins[first].max()) * int(bins[second].max())
+        spare = count - singles - degrees
+        chance = 0.0 if grid else degrees * (left - explained) / spare if spare > 0 else np.nan
+        result[first, second] = result[second, first] = np.maximum((explained - chance) / total, 0.0)
+    return result
+
+
+def variance(values: Array) -> Array:
+    """Variance (r,) of responses (n, r); NaN where none varies by more than a billionth of itself: that is rounding.
+
+    >>> variance(np.array([[1.0, 2.0], [3.0, 2.0]])).tolist()
+    [1.0, nan]
+    """
+    if not len(values):
+        return np.full(values.shape[1], np.nan)
+    return np.where(np.ptp(values, axis=0) > _ROUNDING * np.abs(values).max(axis=0), np.var(values, axis=0), np.nan)
+
+
+def ranked(column: Array, count: int) -> Array:
+    """Which of `count` bins of equal counts (n,) each value falls into.
+
+    >>> ranked(np.array([0.3, 0.1, 0.2, 0.9]), 2).tolist()
+    [1, 0, 0, 1]
+    """
+    rank = np.argsort(np.argsort(column, kind="stable"), kind="stable")
+    return rank * count // max(len(column), 1)
+
+
+def single_effects(bins: Sequence[Array], values: Array) -> list[Array]:
+    """Effects (b, r) of each variable's bins (n,) on responses (n, r), about their mean: least squares of all together, from sums alone.
+
+    So one variable's effect is not mistaken for another's where designs are few. Empty bins have effect 0.
+
+    >>> bins = [np.array([0, 0, 0, 1]), np.array([0, 0, 1, 1])]
+    >>> [each[1] - each[0] for each in single_effects(bins, np.array([[1.0], [1.0], [3.0], [3.0]]))][0].round(9).tolist()
+    [0.0]
+    """
+    starts = np.cumsum([0, *(int(group.max()) + 1 for group in bins)])
+    places = [group + start for group, start in zip(bins, starts[:-1], strict=True)]
+    size = int(starts[-1])
+    normal = np.zeros((size, size))
+    for first in places:
+        for second in places:
+            normal += np.bincount(first * size + second, minlength=size * size).reshape(size, size)
+    centred = values - values.mean(axis=0)
+    sums = np.stack([sum(np.bincount(place, column, size) for place in places) for column in centred.T], axis=-1)
+    effects = np.linalg.lstsq(normal, sums, rcond=None)[0]
+    parts = [effects[start:end] for start, end in pairwise(starts)]
+    return [part - part[group].mean(axis=0) for part, group in zip(parts, bins, strict=True)]
+
+
+def _explained(first: Array, second: Array, rest: Array) -> Array:
+    """Sum of squares (r,) of the cells' means."""
+    cells = first * (int(second.max()) + 1) + second
+    counts = np.bincount(cells)
+    sums = np.stack([np.bincount(cells, column, len(counts)) for column in rest.T], axis=-1)
+    return np.sum(np.divide(sums**2, counts[:, None], out=np.zeros_like(sums), where=counts[:, None] > 0), axis=0)
+
+
+def second_order(blocks: Array, dimensions: int) -> tuple[Array, Array]:
+    """Second-order Sobol indices (d, d, r) and their largest standard error (r,) from the blocks (2 d + 2, n, r) of Saltelli's plan.
+
+    S_ij = V[E(y | x_i, x_j)] / V(y) - S_i - S_j, by products of designs that share x_i and x_j only: A with column j of B, and B with
+    column i of A (Saltelli, Computer Physics Communications 145 (2002) 280); the mean is taken away first, both orders are averaged. Errors
+    are those of independent rows: of a Sobol sequence's they are less.
+
+    >>> second_order(np.zeros((6, 4, 1)), 2)[0][0, 1].tolist()  # nothing varies
+    [nan]
+    """
+    result = np.full((dimensions, dimensions, blocks.shape[-1]), np.nan)
+    errors = np.full(blocks.shape[-1], np.nan)
+    if not blocks.shape[1]:
+        return result, errors
+    centre, spread = blocks[:2].mean(axis=(0, 1)), variance(blocks[:2].reshape(-1, blocks.shape[-1]))
+    first, second, mixed, turned = (part - centre for part in (blocks[0], blocks[1], blocks[2 : dimensions + 2], blocks[dimensions + 2 :]))
+    single = 0.5 * (second * (mixed - first) + first * (turned - second))
+    for one, two in combinations(range(dimensions), 2):
+        both = 0.5 * (turned[one] * mixed[two] + turned[two] * mixed[one]) - first * second
+        rows = (both - single[one] - single[two]) / spread
+        result[one, two] = result[two, one] = rows.mean(axis=0)
+        errors = np.fmax(errors, standard_error(rows))
+    return result, errors
+
+
+def standard_error(rows: Array) -> Array:
+    """Standard error (..., r) of the mean over independent rows (..., n, r).
+
+    >>> standard_error(np.array([[1.0], [3.0]])).tolist()
+    [1.0]
+    """
+    count = rows.shape[-2]
+    return np.std(rows, axis=-2, ddof=1) / np.sqrt(count) if count > 1 else np.full((*rows.shape[:-2], rows.shape[-1]), np.nan)
+
+
+def strongest(at: Array, values: Array, shares: Array, *, grid: bool) -> tuple[Interaction, ...]:
+    """How the strongest pairs act, from one hundredth of a response's variance on, four at most: means of responses (n, r) over at (n, d).
+
+    >>> from itertools import product
+    >>> at = np.array(list(product([-1.0, 0.0, 1.0], repeat=2)))
+    >>> found = strongest(at, at[:, :1] * at[:, 1:], np.ones((2, 2, 1)), grid=True)[0]
+    >>> found.means.tolist()  # downwards where the other is low, upwards where it is high
+    [[1.0, 0.0, -1.0], [0.0, 0.0, 0.0], [-1.0, 0.0, 1.0]]
+    """
+    upper = [(pair, number) for pair in combinations(range(at.shape[1]), 2) for number in range(values.shape[1])]
+    strong = [(float(shares[*pair, number]), pair, number) for pair, number in upper if shares[*pair, number] >= _LEAST]
+    return tuple(_seen(at, values, each, grid=grid) for each in sorted(strong, reverse=True)[:_MOST])
+
+
+def _seen(at: Array, values: Array, which: tuple[float, tuple[int, int], int], *, grid: bool) -> Interaction:
+    share, (over, by), number = which
+    width = max(2, min(_WIDEST, len(at) // (_FEWEST * _LEVELS)))
+    along = np.unique(at[:, over], return_inverse=True)[1] if grid else ranked(at[:, over], width)
+    levels = np.unique(at[:, by], return_inverse=True)[1] if grid else ranked(at[:, by], _LEVELS)
+    level = levels * _LEVELS // (int(levels.max()) + 1)
+    width = int(along.max()) + 1
+    cells = level * width + along
+    means = _means(cells, values[:, number], _LEVELS * width).reshape(_LEVELS, width)
+    return Interaction(over, by, number, share, _means(along, at[:, over], width), _means(level, at[:, by], _LEVELS), means)
+
+
+def _means(groups: Array, values: Array, count: int) -> Array:
+    counts = np.bincount(groups, minlength=count)
+    return np.divide(np.bincount(groups, values, count), counts, out=np.full(count, np.nan), where=counts > 0)
