@@ -167,6 +167,16 @@ def test_a_reader_that_leaves_is_no_failure(tmp_path: Path, unbuffered: str) -> 
         assert process.wait() == 0
 
 
+def test_bad_input_is_bad_input_also_where_nobody_reads_it(tmp_path: Path) -> None:
+    """`flexstage ... 2>&1 | head -1`: stderr breaks too, and the exit code still tells."""
+    with subprocess.Popen([*PROCESS, "check", "none.toml"], cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
+        assert process.stdout is not None
+        assert process.stderr is not None
+        process.stdout.close()
+        process.stderr.close()
+        assert process.wait() == 2
+
+
 @pytest.mark.parametrize("encoding", ["ascii", "utf-8"])
 def test_tables_fit_the_encoding_of_the_terminal(tmp_path: Path, encoding: str) -> None:
     design_in(tmp_path)

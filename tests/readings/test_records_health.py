@@ -12,6 +12,7 @@ from flexstage.base.finding import DesignError
 from flexstage.readings.measured.health import Needs, examine, responses_findings, usable
 from flexstage.readings.measured.options import Allow
 from flexstage.readings.measured.record import Channel, Record, Responses, Role, in_memory
+from flexstage.studies.identification import sound as sound_records
 
 RATE, LENGTH = 2048.0, 8192
 CHANNELS = (
@@ -167,6 +168,15 @@ def test_units_that_are_missing_or_unknown() -> None:
     findings = examine(record(sound(), channels)).findings
     assert [finding.what for finding in findings] == ["no unit is stated", '"furlong" is not a known unit']
     assert usable(record(sound(), channels), frozenset({Allow.UNITS})).names == CHANNELS_NAMES
+
+
+def test_what_is_wrong_with_all_channels_is_told_once() -> None:
+    bare = record(sound(), tuple(replace(each, unit="") for each in CHANNELS))
+    with pytest.raises(DesignError) as refused:
+        sound_records([bare])
+    (finding,) = refused.value.findings
+    assert finding.where.endswith(", ".join(CHANNELS_NAMES))
+    assert finding.what == "no unit is stated"
 
 
 CHANNELS_NAMES = tuple(channel.name for channel in CHANNELS)

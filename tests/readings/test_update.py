@@ -21,7 +21,7 @@ from flexstage.studies.rig.setup import Recorded, RigSetup, Sensing
 from flexstage.studies.update import Told, Updated, update
 from flexstage.studies.update_fit import Problem, fitted
 from flexstage.studies.update_free import Known, free
-from flexstage.studies.update_gains import measured_gains
+from flexstage.studies.update_gains import _led_back, measured_gains
 from flexstage.studies.update_rows import ModeRow, begun, followed, frequency_slopes, gain_slopes, gains_of
 from flexstage.studies.update_text import updated_text
 from tests.readings.made_tests import Noise, made
@@ -260,3 +260,13 @@ def test_designs_that_cannot_be_read_shorten_the_step() -> None:
 
     steeper = Problem(state, lambda u: 100.0 * (1.75 - u - 5.0 * u**2), lambda u: 100.0 * (1.0 + 10.0 * u[:, None]))  # first step: to 1.75
     assert fitted(steeper, np.zeros(1), np.zeros(1)).parameters[0] == pytest.approx(0.5, abs=1e-3)
+
+
+def test_gains_are_led_back_past_the_lowest_mode() -> None:
+    """A mode g/(1 - x^2), its neighbours' and lags' r + q x^2: at rest exactly g + r; a polynomial alone would not be."""
+    lines = np.linspace(0.02, 0.35, 60)
+    mode, rest, curve = (np.array([[0.9, -0.2]]), np.array([[0.1, 0.5]]), np.array([[0.05, -0.3]]))
+    values = mode / (1.0 - lines[:, None, None] ** 2) + rest + curve * lines[:, None, None] ** 2
+    found, deviations = _led_back(lines, values)
+    np.testing.assert_allclose(found, mode + rest, atol=1e-12)
+    assert np.max(deviations) < 1e-12

@@ -52,6 +52,20 @@ def refuse(where: str, what: str, advice: str) -> DesignError:
     return DesignError([Finding(where, what, advice)])
 
 
+def joined(findings: Iterable[Finding]) -> tuple[Finding, ...]:
+    """Findings that say the same of several objects of one file (`file: name`) as one, which names them all.
+
+    >>> print(*joined([Finding("a.csv: S1", "no unit", "State it"), Finding("a.csv: S2", "no unit", "State it")]))
+    a.csv: S1, S2: no unit. State it.
+    """
+    groups: dict[tuple[str, str, str], list[str]] = {}
+    for finding in findings:
+        place, _, name = finding.where.rpartition(": ")
+        groups.setdefault((place, finding.what, finding.advice), []).append(name)
+    wheres = [f"{place}: {', '.join(names)}" if place else ", ".join(names) for (place, _, _), names in groups.items()]
+    return tuple(Finding(where, what, advice) for where, (_, what, advice) in zip(wheres, groups, strict=True))
+
+
 def nearest(name: str, names: Iterable[str]) -> str:
     """Advice that names what is near to a misspelt name, or what there is.
 

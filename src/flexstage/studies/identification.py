@@ -8,7 +8,7 @@ from typing import TypeAlias
 
 import numpy as np
 
-from flexstage.base.finding import DesignError, Finding, require
+from flexstage.base.finding import DesignError, Finding, joined, require
 from flexstage.base.number import Array
 from flexstage.readings.measured.evidence import chosen_segments
 from flexstage.readings.measured.health import Needs, responses_findings, usable
@@ -69,7 +69,7 @@ def sound(
             kept.append(_sound_record(record, allow, wanted, _part(told, index, len(records))))
         except DesignError as error:
             findings += error.findings
-    require(findings)
+    require(joined(findings))
     return tuple(kept)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from contextlib import suppress
 
 
 def say(text: str = "") -> None:
@@ -11,8 +12,9 @@ def say(text: str = "") -> None:
 
 
 def tell(text: str) -> None:
-    """Print a line that is not the result (progress, where a file was written) to stderr."""
-    sys.stderr.write(f"{text}\n")
+    """Print a line that is not the result (progress, where a file was written) to stderr, as long as somebody reads there."""
+    with suppress(BrokenPipeError):
+        sys.stderr.write(f"{text}\n")
 
 
 def warn(text: str) -> None:

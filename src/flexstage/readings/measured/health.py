@@ -226,7 +226,7 @@ def _units(channels: Iterable[Channel], where: str) -> Iterator[Fault]:
     for channel in channels:
         problem = unit_problem(channel.unit)
         if problem is not None:
-            advice = f'State it (units {channel.name}=...), or allow "units" to use the numbers as they are'
+            advice = 'State it (units, by names or patterns, such as "S*=um"), or allow "units" to use the numbers as they are'
             yield Fault(Allow.UNITS, channel.name, Finding(f"{where}: {channel.name}", problem, advice))
 
 
