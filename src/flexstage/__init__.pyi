@@ -358,6 +358,24 @@ from flexstage.studies.omitted import (
     Omitted as Omitted,
     omitted as omitted,
 )
+from flexstage.studies.optimise.file import (
+    load_wanted as load_wanted,
+)
+from flexstage.studies.optimise.front import (
+    pareto_front as pareto_front,
+)
+from flexstage.studies.optimise.optimum import (
+    optimise as optimise,
+)
+from flexstage.studies.optimise.result import (
+    Front as Front,
+    Optimum as Optimum,
+)
+from flexstage.studies.optimise.wanted import (
+    Aim as Aim,
+    Objective as Objective,
+    Wanted as Wanted,
+)
 from flexstage.studies.resolution import (
     Resolution as Resolution,
     Resolved as Resolved,
@@ -389,6 +407,9 @@ from flexstage.studies.solid_stage import (
 from flexstage.studies.solid_unit import (
     SolidUnit as SolidUnit,
     solid_units as solid_units,
+)
+from flexstage.studies.study.file import (
+    load_study as load_study,
 )
 from flexstage.studies.units import (
     UnitResult as UnitResult,

@@ -37,6 +37,7 @@ format = "flexstage study 1"
 case = "parallelogram"
 responses.f = "frequency.1"
 sweep = { sampling = "latin hypercube", designs = 16, seed = 3 }
+optimise = { maximise = "f", starts = 1 }
 [variables]
 young = { of = "materials.aluminium.young", from = "-10 %", to = "10 %" }
 """
@@ -58,7 +59,7 @@ def test_examples_run(flexstage: Command, tmp_path: Path, example: str) -> None:
         occ.Box(occ.Pnt(0, 0, 0), occ.Pnt(10, 20, 30)).WriteStep(str(tmp_path / "part.step"))
     if "record.uff" in words and words[1] != "rig":
         write(tmp_path / "record.uff", stage_record(double_triangle()))
-    if words[1] == "sweep":
+    if words[1] in {"sweep", "optimise"}:
         (tmp_path / "study.toml").write_text(STUDY)
     if words[1] == "hysteresis":
         write(tmp_path / "stack.csv", example_record())

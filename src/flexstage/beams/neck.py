@@ -25,7 +25,7 @@ def neck_beam(part: Neck, material: Material) -> Beam:
         points = stations(part.profile, part.thickness)
         factor = np.asarray(cowper_circle(material.poisson))[..., None]
         return beam(points, circle(_grown(part.thickness, points.growth), factor), material)
-    points = stations(part.profile, np.minimum(np.real(part.thickness), np.real(part.width)))
+    points = stations(part.profile, np.minimum(part.thickness, part.width))
     return beam(points, rectangle(_grown(part.thickness, points.growth), _grown(part.width, points.growth)), material)
 
 

@@ -69,9 +69,9 @@ def _straight(half: Number) -> Stations:
 
 
 def _arc(along: Number, across: Number, thinnest: Number) -> Stations:
-    """Arc x = a sin p, w = c (1 - cos p); the singularity is at p = i arccosh(1 + t / 2c). The nodes depend on real parts only."""
+    """Arc x = a sin p, w = c (1 - cos p); the singularity is at p = i arccosh(1 + t / 2c). Nodes are complex where numbers are stepped."""
     along, across = np.asarray(along)[..., None], np.asarray(across)[..., None]
-    scale = 2.0 * np.arcsinh(np.sqrt(np.real(np.asarray(thinnest)[..., None]) / np.real(4.0 * across)))
+    scale = 2.0 * np.arcsinh(np.sqrt(np.asarray(thinnest)[..., None] / (4.0 * across)))
     span = np.arcsinh(0.5 * np.pi / scale)
     stretched = span * _points()
     angle = scale * np.sinh(stretched)

@@ -34,6 +34,16 @@ class Stress:
         return self.nominal * self.factor
 
 
+def has_section(part: Part) -> bool:
+    """Whether beam theory knows the part's section, so that `stress` has something to say of it.
+
+    >>> from flexstage.parts.profile import Circular
+    >>> has_section(Notch("steel", thickness=0.001, width=0.01, profile=Circular(0.005)))
+    True
+    """
+    return isinstance(part.part if isinstance(part, Restricted) else part, (Notch, Neck, Leaf, Rod))
+
+
 def stress(part: Part, material: Material | None, wrench: Array) -> Stress | None:
     """Largest stress in a part that carries `wrench` (..., 6) [N, N m] at its centre, on its second end, in its link frame.
 
@@ -49,7 +59,7 @@ def stress(part: Part, material: Material | None, wrench: Array) -> Stress | Non
     (15.0, 15.0)
     """
     inner = part.part if isinstance(part, Restricted) else part
-    if not isinstance(inner, (Notch, Neck, Leaf, Rod)):
+    if not isinstance(inner, (Notch, Neck, Leaf, Rod)):  # as has_section says
         return None
     beam = beam_of(inner, material)
     position = np.stack([-beam.points.position, beam.points.position], axis=-2)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, fields
+from functools import lru_cache
 from typing import TypeAlias
 
 import numpy as np
@@ -140,6 +141,26 @@ def expand(mechanism: Mechanism) -> Assembly:
     >>> len(expand(double_triangle()).links)
     27
     """
+    return _expanded(_Same(mechanism))
+
+
+class _Same:
+    """A description as a key: equal only to itself, which is cheaper to tell than a digest."""
+
+    def __init__(self, mechanism: Mechanism) -> None:
+        self.mechanism = mechanism
+
+    def __hash__(self) -> int:
+        return id(self.mechanism)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Same) and self.mechanism is other.mechanism
+
+
+@lru_cache(maxsize=2)
+def _expanded(key: _Same) -> Assembly:
+    """The assembly, kept for the next reading or analysis of the same description: each of them asks for it."""
+    mechanism = key.mechanism
     placed = tuple(copies(mechanism))
     links = {link.name: link for link in _links(mechanism, placed)}
     drawn = tuple(_bodies(mechanism, placed))

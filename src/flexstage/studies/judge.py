@@ -14,7 +14,7 @@ from flexstage.analysis.requirements import Measure, Requirement, Subject, Verdi
 from flexstage.analysis.statics import statics
 from flexstage.analysis.workspace.blocking import platform_lines
 from flexstage.analysis.workspace.buckling import buckling
-from flexstage.analysis.workspace.gauging import gauge_range, pose_resolution
+from flexstage.analysis.workspace.gauging import gauge_swing, half_ranges, pose_resolution
 from flexstage.analysis.workspace.load import load_share
 from flexstage.analysis.workspace.map_error import linear_map_error
 from flexstage.analysis.workspace.room import Room, bounds, room
@@ -293,9 +293,8 @@ def _resolution(bench: Bench, line: Measure) -> Array:
 
 
 def _gauge_range(bench: Bench, line: Measure) -> Array:
-    held = gauge_range(bench.mechanism, bench.kinematics, bench.box())
-    ratio = held.swing / held.limit
-    return ratio[..., held.gauges.index(line.name)] if line.name else np.max(ratio, axis=-1)
+    ratio = gauge_swing(bench.kinematics, bench.box()) / half_ranges(bench.assembly)
+    return ratio[..., bench.kinematics.gauges.index(line.name)] if line.name else np.max(ratio, axis=-1)
 
 
 def _load(bench: Bench, line: Measure) -> Array:

@@ -153,14 +153,10 @@ def gauge_range(mechanism: Mechanism, kinematics: Kinematics, command: Mapping[s
     >>> (1e3 * held.largest_anywhere[3:]).round(2).tolist()
     [96.47, 96.47, 96.47]
     """
-    names = kinematics.coordinates
-    for name in command:
-        if name not in names:
-            raise refuse(f"command {name}", "is not one of the stage's ideal motions", f"These are {', '.join(names)}")
-    half = magnitude(stack([command.get(name, 0.0) for name in names]))
-    swing = (magnitude(kinematics.sensing @ kinematics.motion) @ half[..., None])[..., 0]
+    half = _half(kinematics, command)
+    swing = gauge_swing(kinematics, command)
     assembly = expand(mechanism)
-    limit = stack([0.5 * placed.gauge.range for placed in assembly.gauges.values()])
+    limit = half_ranges(assembly)
     box = kinematics.motion * half[..., None, :]
     places = [_places(assembly, name, box, limit[..., number]) for number, name in enumerate(assembly.gauges)]
     columns = [np.stack(np.broadcast_arrays(*values), axis=-1) for values in zip(*places, strict=True)]
@@ -175,6 +171,35 @@ def gauge_range(mechanism: Mechanism, kinematics: Kinematics, command: Mapping[s
         largest_anywhere=np.broadcast_to(anywhere, swing.shape),
         provenance=kinematics.provenance,
     )
+
+
+def gauge_swing(kinematics: Kinematics, command: Mapping[str, Number]) -> Array:
+    """How far each gauge moves either way (..., g) [m] at the worst corner of a box of motions given by their half widths.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.readings.ideal import ideal
+    >>> (1e6 * gauge_swing(ideal(double_triangle()), {"z": 150e-6})).round(1).tolist()
+    [0.0, 0.0, 0.0, 150.0, 150.0, 150.0]
+    """
+    return (magnitude(kinematics.sensing @ kinematics.motion) @ _half(kinematics, command)[..., None])[..., 0]
+
+
+def half_ranges(assembly: Assembly) -> Array:
+    """Half of each gauge's range (..., g) [m].
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> half_ranges(expand(double_triangle()))[:2].tolist()
+    [0.00025, 0.00025]
+    """
+    return stack([0.5 * placed.gauge.range for placed in assembly.gauges.values()])
+
+
+def _half(kinematics: Kinematics, command: Mapping[str, Number]) -> Array:
+    names = kinematics.coordinates
+    for name in command:
+        if name not in names:
+            raise refuse(f"command {name}", "is not one of the stage's ideal motions", f"These are {', '.join(names)}")
+    return magnitude(stack([command.get(name, 0.0) for name in names]))
 
 
 def _places(assembly: Assembly, name: str, box: Array, limit: Array) -> tuple[Array, Array, Array]:
@@ -200,8 +225,8 @@ def _largest_radius(box: Array, gauge: tuple[Array, Array, Array], limit: Array,
     turned = _around(direction, angles)
     out = _around(np.concatenate([outward, np.zeros_like(outward[..., :1])], axis=-1), angles)
     up = np.asarray(height)[..., None, None] * np.array([0.0, 0.0, 1.0])
-    fixed = np.concatenate([turned, np.cross(up, turned)], axis=-1) @ box
-    growing = np.concatenate([np.zeros_like(turned), np.cross(out, turned)], axis=-1) @ box
+    fixed = np.concatenate(np.broadcast_arrays(turned, np.cross(up, turned)), axis=-1) @ box
+    growing = np.concatenate(np.broadcast_arrays(np.zeros_like(turned), np.cross(out, turned)), axis=-1) @ box
     start, slope = np.sum(np.abs(fixed), axis=-1), np.sum(np.abs(growing), axis=-1)
     bound = np.asarray(limit)[..., None] * (1.0 + 1e-12)
     grows = slope > _LEVEL * start

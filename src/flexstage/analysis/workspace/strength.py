@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
 
@@ -10,7 +11,7 @@ from flexstage.analysis.workspace.stroke import StrokeLimits
 from flexstage.analysis.workspace.wrench import corner_wrenches
 from flexstage.base.labelled import Matrix
 from flexstage.base.number import Array
-from flexstage.beams.stress import stress
+from flexstage.beams.stress import has_section, stress
 from flexstage.mechanism.expand import PlacedLink, expand
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.parts.part import Restricted
@@ -82,7 +83,7 @@ def hinge_stress(mechanism: Mechanism, model: LinearModel, limits: StrokeLimits)
     sized = {name: link for name, link in assembly.links.items() if _has_section(link)}
     wrenches = corner_wrenches(mechanism, model, limits, tuple(sized))
     points = limits.points(wrenches.ndim - 3)
-    rows = [_worst(link, wrenches[..., index, :], points) for index, link in enumerate(sized.values())]
+    rows = _rows(list(sized.values()), wrenches, points)
     nominal, peak, known = (np.stack(np.broadcast_arrays(*(row[item] for row in rows)), axis=-1) for item in range(3))
     return HingeStress(
         links=tuple(sized),
@@ -98,16 +99,34 @@ def hinge_stress(mechanism: Mechanism, model: LinearModel, limits: StrokeLimits)
 
 def _has_section(link: PlacedLink) -> bool:
     """Whether beam theory knows a section and the model the whole wrench (locked freedoms pass forces that no spring feels)."""
-    return not isinstance(link.part, Restricted) and stress(link.part, link.material, np.zeros(6)) is not None
+    return not isinstance(link.part, Restricted) and has_section(link.part)
 
 
-def _worst(link: PlacedLink, wrenches: Array, corners: Array) -> tuple[Array, Array, Array, Array]:
+_Row: TypeAlias = tuple[Array, Array, Array, Array]
+
+
+def _rows(links: list[PlacedLink], wrenches: Array, points: Array) -> list[_Row]:
+    """Nominal and peak stress, yield stress and strokes of every link at its worst corner; links of one part are worked out together."""
+    groups: dict[tuple[int, int], list[int]] = {}
+    for index, link in enumerate(links):
+        groups.setdefault((id(link.part), id(link.material)), []).append(index)
+    rows: dict[int, _Row] = {}
+    for members in groups.values():
+        first = links[members[0]]
+        found = stress(first.part, first.material, np.moveaxis(wrenches[..., members, :], -2, 0))
+        assert found is not None  # noqa: S101  _has_section has asked
+        peaks = np.broadcast_to(found.peak, found.nominal.shape)
+        for place, index in enumerate(members):
+            rows[index] = _worst(links[index], (found.nominal[place], peaks[place]), points)
+    return [rows[index] for index in range(len(links))]
+
+
+def _worst(link: PlacedLink, found: tuple[Array, Array], corners: Array) -> _Row:
     """Nominal and peak stress, yield stress and strokes of the worst corner of a link."""
-    found = stress(link.part, link.material, wrenches)
-    assert found is not None  # noqa: S101  _has_section has asked
-    where = np.argmax(found.peak, axis=0)[None]
-    spread = np.broadcast_to(corners, (*found.peak.shape, corners.shape[-1]))
+    nominal, peak = found
+    where = np.argmax(peak, axis=0)[None]
+    spread = np.broadcast_to(corners, (*peak.shape, corners.shape[-1]))
     strokes = np.take_along_axis(spread, where[..., None], axis=0)[0]
     limit = None if link.material is None else link.material.yield_stress
-    nominal, peak = (np.take_along_axis(np.broadcast_to(item, found.peak.shape), where, axis=0)[0] for item in (found.nominal, found.peak))
+    nominal, peak = (np.take_along_axis(item, where, axis=0)[0] for item in (nominal, peak))
     return nominal, peak, np.broadcast_to(np.nan if limit is None else np.asarray(limit), peak.shape), strokes

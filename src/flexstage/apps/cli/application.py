@@ -7,7 +7,22 @@ from typing import Any
 
 import typer
 
-from flexstage.apps.cli import about, analyses, design, hysteresis, identify, loop, reach, rig, solid, solid_files, study, update, whole
+from flexstage.apps.cli import (
+    about,
+    analyses,
+    design,
+    hysteresis,
+    identify,
+    loop,
+    optimise,
+    reach,
+    rig,
+    solid,
+    solid_files,
+    study,
+    update,
+    whole,
+)
 
 app = typer.Typer(
     help="Design and proof of flexure-based ultra-precision positioning stages.",
@@ -58,6 +73,7 @@ COMMANDS: tuple[tuple[str, str, Callable[..., Any], str], ...] = (
     ),
     (_TESTS, "hysteresis", hysteresis.hysteresis, 'flexstage hysteresis stack.csv --limits "0 V" "1000 V" -o stack.toml'),
     (_STUDIES, "sweep", study.sweep, "flexstage sweep study.toml -o results.h5 --report sweep.html"),
+    (_STUDIES, "optimise", optimise.optimise, "flexstage optimise study.toml -o better.toml --report optimum.html"),
     (_CONTROL, "loop", loop.loop, "flexstage loop stage.toml --floor VC-D --report loop.html"),
     (_INSTALLATION, "doctor", about.doctor, "flexstage doctor --mend"),
     (_INSTALLATION, "version", about.version, "flexstage version"),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TypeAlias
 
 import numpy as np
@@ -60,15 +61,15 @@ class LinearModel:
     idle: tuple[str, ...]
     provenance: str
 
-    @property
+    @cached_property
     def stiffness_matrix(self) -> Array:
-        """K (..., n, n)."""
-        return assembled(self.stiffness, len(self.coordinates))
+        """K (..., n, n), read-only."""
+        return _kept(assembled(self.stiffness, len(self.coordinates)))
 
-    @property
+    @cached_property
     def inertia_matrix(self) -> Array:
-        """M (..., n, n)."""
-        return assembled(self.inertia, len(self.coordinates))
+        """M (..., n, n), read-only."""
+        return _kept(assembled(self.inertia, len(self.coordinates)))
 
     @property
     def input_matrix(self) -> Array:
@@ -118,6 +119,12 @@ def gathered(contributions: Contributions, strains: Mapping[str, Array]) -> Arra
     operators = [item.operator for item in contributions.values()]
     forces = [item.law @ strains[name] for name, item in contributions.items()]
     return _transposed(_stacked(operators)) @ _stacked(forces)
+
+
+def _kept(matrix: Array) -> Array:
+    """A matrix that whoever is given it cannot change for others."""
+    matrix.flags.writeable = False
+    return matrix
 
 
 def _stacked(matrices: list[Array]) -> Array:

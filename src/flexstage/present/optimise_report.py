@@ -1,0 +1,49 @@
+"""Reports of optimisations: one HTML file each that stands alone."""
+
+from __future__ import annotations
+
+import flexstage
+from flexstage.base.digest import digest
+from flexstage.present.figures.export import to_svg
+from flexstage.present.figures.optimise import convergence_figure, front_figure
+from flexstage.present.page import Head, Picture, Section, page, section
+from flexstage.present.tables.optimise import front_tables, optimise_tables
+from flexstage.studies.optimise.result import Front, Optimum
+from flexstage.studies.study.definition import Study
+
+_SEARCH = (
+    "Left: accepted designs of every start; open: some limit is not kept. Right: each variable in its range, as it stands and at the end."
+)
+
+
+def optimise_report(found: Optimum) -> str:
+    """An optimisation as a page of HTML: objective, variables, limits, what binds, convergence.
+
+    >>> optimise_report.__name__
+    'optimise_report'
+    """
+    objective, variables, limits, *rest = optimise_tables(found)
+    search = Picture(to_svg(convergence_figure(found), "search", "objective over accepted designs, variables in their ranges"), _SEARCH)
+    sections: list[Section | None] = [
+        section("Objective", [objective, search]),
+        section("Variables", [variables]),
+        section("Limits", [limits, *rest[:-1]]),
+        section("Starts", rest[-1:]),
+    ]
+    return page(_head(found.study, "An optimisation"), [each for each in sections if each is not None])
+
+
+def front_report(found: Front) -> str:
+    """A front as a page of HTML.
+
+    >>> front_report.__name__
+    'front_report'
+    """
+    picture = Picture(to_svg(front_figure(found), "front", "designs of the front"), "None of these designs is better in both objectives.")
+    sections = [section("Front", [picture, *front_tables(found)])]
+    return page(_head(found.study, "A front of two objectives"), [each for each in sections if each is not None])
+
+
+def _head(study: Study, kind: str) -> Head:
+    origin = (("design", study.design.name), ("physics", digest(study.design, physics=True)[:16]), ("flexstage", flexstage.__version__))
+    return Head(study.name, kind, origin)

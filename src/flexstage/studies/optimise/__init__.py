@@ -1,0 +1,1 @@
+"""Optimise: the best design within ranges and limits, by exact derivatives."""
