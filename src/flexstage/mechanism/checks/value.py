@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 
 from flexstage.base.finding import Finding
-from flexstage.base.unit import show
+from flexstage.base.quantity import RATIO
+from flexstage.base.unit import parse, show
 from flexstage.mechanism.grammar import NumberNode, node_of, numbers
 from flexstage.mechanism.locate import locate
 from flexstage.mechanism.mechanism import Mechanism
@@ -56,9 +57,11 @@ def _all_numbers(mechanism: Mechanism) -> Iterator[tuple[str, Any, NumberNode]]:
 def number_findings(where: str, value: Any, node: NumberNode) -> Iterator[Finding]:
     """What is wrong with a number as a node says it should be.
 
-    >>> from flexstage.base.quantity import FREQUENCY, POSITIVE
+    >>> from flexstage.base.quantity import FREQUENCY, POSITIVE, RATIO, Bound
     >>> print(*number_findings("rate", 0.0, NumberNode(FREQUENCY, POSITIVE)))
     rate: found 0 Hz, which is not greater than 0 Hz. Write for example "4 kHz".
+    >>> print(*number_findings("peak", 0.5, NumberNode(RATIO, Bound(1.0, open_low=True))))
+    peak: found 0.5, which is not greater than 1. Give a number that is greater than 1.
     """
     example = f'Write for example "{node.quantity.example}"'
     real = np.real(value)
@@ -77,7 +80,9 @@ def number_findings(where: str, value: Any, node: NumberNode) -> Iterator[Findin
     outside = _outside(real, node)
     if node.bound is not None and np.any(outside):
         at, (found,) = first_failing(outside, real)
-        yield Finding(f"{where}{at}", f"found {show(found, node.quantity, digits=6)}, which is not {_bound_text(node)}", example)
+        fits = node.quantity is not RATIO or not _outside(parse(RATIO.example, RATIO), node)
+        advice = example if fits else f"Give a number that is {_bound_text(node)}"
+        yield Finding(f"{where}{at}", f"found {show(found, node.quantity, digits=6)}, which is not {_bound_text(node)}", advice)
 
 
 def _outside(real: Any, node: NumberNode) -> Any:

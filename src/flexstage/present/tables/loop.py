@@ -19,7 +19,7 @@ from flexstage.studies.loop.choices import ControllerKind
 from flexstage.studies.loop.runs import Run
 from flexstage.studies.loop.study import LoopStudy
 
-_SMALL = 1e-12
+_SMALL, _NOTHING = 1e-12, 1e-16
 _BANDWIDTH_NOTE = "Follows to: the true motion is 3 dB below its reference. Rejects to: |S| passes 1, disturbances above it are made worse."
 _MARGIN_NOTE = (
     "Margins of one loop at a time, cut at the pose, the others closed. Disk margin alpha: gain and phase together may change by "
@@ -49,6 +49,8 @@ def loop_table(found: LoopStudy) -> Table:
         peak = f"S {number(seen.sensitivity.value, 4)} at {number(seen.sensitivity.frequency, 4)} Hz"
         rows.append(("highest peaks", f"{peak}, T {number(seen.complementary.value, 4)} at {number(seen.complementary.frequency, 4)} Hz"))
     notes = [f"{found.verdict.sentence[0].upper()}{found.verdict.sentence[1:]}.", f"{plant.note[0].upper()}{plant.note[1:]}."]
+    if found.peaks is not None:
+        notes.append("S: what the loop leaves of a disturbance, above 1 it adds to it. T: what it follows of a reference.")
     if found.control.tuning is not None:
         notes.insert(0, f"Tuned: {found.control.tuning.reason}.")
     return build("Loop", ["what", "value"], [(Cell(name, Mark.STRONG), value) for name, value in rows], notes=notes)
@@ -135,7 +137,7 @@ def margin_table(found: LoopStudy) -> Table | None:
         "motion",
         Column("follows to", "Hz"),
         Column("rejects to", "Hz"),
-        Column("gain may be"),
+        Column("gain may be", "times"),
         Column("phase margin", "deg"),
         Column("delay margin", "ms"),
         Column("disk margin"),
@@ -217,6 +219,15 @@ def limits_text(test: Run) -> str:
     return ", ".join(words)
 
 
+def motion_cell(value: float, unit: str) -> Cell:
+    """A motion or its rms value with its unit; what is far below an atom is rounding, and told as 0.
+
+    >>> motion_cell(3.3e-9, "m").text, motion_cell(5e-24, "m").text
+    ('3.3 nm', '0')
+    """
+    return Cell("0", Mark.FAINT) if abs(value) < _NOTHING else Cell(value_with_unit(value, unit, 3))
+
+
 def tracking_table(tests: Sequence[Run]) -> Table | None:
     """Errors along trajectories that are no steps, by coordinate; `None` where none was simulated.
 
@@ -229,7 +240,7 @@ def tracking_table(tests: Sequence[Run]) -> Table | None:
     rows: list[tuple[Content, ...]] = []
     for test in followed:
         for name, values, units in zip(test.tracking.rows, test.tracking.values, test.tracking.unit, strict=True):
-            numbers = [value_with_unit(float(value), unit, 3) for value, unit in zip(values, units, strict=True)]
+            numbers = [motion_cell(float(value), unit) for value, unit in zip(values, units, strict=True)]
             rows.append((Cell(test.course.name, Mark.STRONG), name, *numbers))
     heads = ["trajectory", "motion", *(Column(head) for head in ("rms seen", "peak seen", "true rms", "true peak"))]
     limits = [f"{test.course.name}: {limits_text(test)}." for test in followed if limits_text(test)]

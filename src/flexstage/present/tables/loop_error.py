@@ -13,6 +13,7 @@ from flexstage.analysis.loop.whites import Kind
 from flexstage.base.number import Array
 from flexstage.present.display import NO_VALUE, number, percent, value_with_unit
 from flexstage.present.table import Cell, Column, Mark, Table, build
+from flexstage.present.tables.loop import motion_cell
 from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
 from flexstage.studies.loop.rest import RestErrors
 from flexstage.studies.loop.stacks import Stacks, Sweep
@@ -20,7 +21,6 @@ from flexstage.studies.loop.study import LoopStudy
 
 _SILENT = 1e-12
 _STANDS_OUT = 1e-3
-_NOTHING = 1e-16
 
 
 def rest_table(found: RestErrors) -> Table:
@@ -93,15 +93,11 @@ def noise_table(found: LoopStudy) -> Table:
     heads += [Column("simulated")] if simulated is not None else []
     rows = []
     for index, channel in enumerate(budget.outputs):
-        cells = [_rms(float(np.sqrt(value)), channel.unit) for value in squares[index]]
-        told = [] if simulated is None else [_rms(float(simulated[index]), channel.unit)]
-        total = replace(_rms(float(budget.rms[index]), channel.unit), mark=Mark.STRONG)
+        cells = [motion_cell(float(np.sqrt(value)), channel.unit) for value in squares[index]]
+        told = [] if simulated is None else [motion_cell(float(simulated[index]), channel.unit)]
+        total = replace(motion_cell(float(budget.rms[index]), channel.unit), mark=Mark.STRONG)
         rows.append((Cell(channel.name.removeprefix("relative."), Mark.STRONG), total, *cells, *told))
     return build("Noise at rest", heads, rows, notes=_noise_notes(budget, simulated=simulated is not None))
-
-
-def _rms(value: float, unit: str) -> Cell:
-    return Cell("0", Mark.FAINT) if value < _NOTHING else Cell(value_with_unit(value, unit, 3))
 
 
 def _noise_notes(budget: NoiseBudget, *, simulated: bool) -> Sequence[str]:
