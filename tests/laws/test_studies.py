@@ -81,7 +81,10 @@ def test_designs_that_fail_keep_their_place_and_reason():
 
 @pytest.mark.parametrize(
     "key",
-    ["stroke.x", "corner", "safety", "buckling", "stiffness.rz", "force.z", "loss", "loss.B4", "crosstalk", "drift.z", "mass", "load"],
+    [
+        *("stroke.x", "corner", "safety", "buckling", "stiffness.rz", "stiffness.(1,2,3)", "stiffness.least", "deflection.z", "force.z"),
+        *("loss", "loss.B4", "crosstalk", "drift.z", "mass", "mass.total", "load"),
+    ],
 )
 def test_measures_are_analytic(key):
     """A step of 1e-20 in the imaginary direction is the derivative that a central difference finds.

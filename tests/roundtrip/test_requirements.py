@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import flexstage as fs
+from flexstage.analysis.deflection import deflection
 from flexstage.analysis.drift import drift
 from flexstage.analysis.lost_motion import lost_motion
 from flexstage.analysis.modes import modes
@@ -81,6 +82,9 @@ def test_a_line_is_read():
         ("stroke.rx", "at least 50 um", "where a rotation is expected"),
         ("drift.x", "at most 5 um", "where a drift is expected"),
         ("mass", "at most 5 kg at chuck", "is not asked at a point"),
+        ("stiffness.(1,1)", "at least 5 N/um", "Write three numbers"),
+        ("stiffness.(0,0,0)", "at least 5 N/um", "Write three numbers"),
+        ("stiffness.r(1,1,0)", "at least 5 N/um", "rotational stiffness is expected"),
         ("stroke.x", "at least 50 um at chuck", "no point has this name"),
     ],
 )
@@ -113,6 +117,11 @@ def test_values_are_those_of_the_analyses(stage):
         "crosstalk": (np.max(np.abs(lost.loss.values - np.diag(own))), ""),
         "drift.z": (abs(drift(stage, model, ground="steel").motion.at("platform.z", "uniform")), "m/K"),
         "mass": (13.9965, "kg"),
+        "stiffness.(0,0,-2)": (1.0 / statics(model).compliance.values[2, 2], "N/m"),
+        "stiffness.r(0,0,1)": (1.0 / statics(model).compliance.values[5, 5], "N m/rad"),
+        "stiffness.(1,2,0)": (1.0 / statics(model).compliance.values[0, 0], "N/m"),  # of threefold symmetry: alike in the plane
+        "stiffness.least": (1.0 / np.linalg.eigvalsh(statics(model).compliance.values[:3, :3])[-1], "N/m"),
+        "deflection.z": (abs(np.sum(deflection(stage, model).by_cause.values[2])), "m"),
         "height": (0.1126972, "m"),  # from the levers, 2 mm, to the plate's upper face
         "envelope.z": (0.1126972, "m"),
         "opening": (0.0, "m"),
@@ -123,6 +132,19 @@ def test_values_are_those_of_the_analyses(stage):
     for key, (value, unit) in cases.items():
         found = one(stage, key, f"at most 1 {unit}".strip())
         assert found.value == pytest.approx(value, rel=1e-6, abs=1e-15), key
+
+
+def test_the_mass_of_everything():
+    """Discs as cylinders, stacks as stated, necks as solids of revolution: t(x) = t + 2 (R - (R^2 - x^2)^0.5)."""
+    stage = hexapod()
+    density = {name: material.density for name, material in stage.materials.items()}
+    plate = np.pi / 4.0 * (0.14**2 - 0.06**2) * 0.012 * density["aluminium"]
+    adapters = 12 * np.pi / 4.0 * 0.014**2 * 0.005 * density["steel"]
+    stacks = 6 * stage.parts["stack"].mass
+    at = 0.004 * np.cos(np.pi * (np.arange(400) + 0.5) / 400)
+    thickness = 0.003 + 2.0 * (0.004 - np.sqrt(0.004**2 - at**2))
+    necks = 12 * density["steel"] * np.pi / 4.0 * np.pi / 400 * np.sum(np.sqrt(0.004**2 - at**2) * thickness**2)
+    assert one(stage, "mass.total", "at most 5 kg").value == pytest.approx(plate + adapters + stacks + necks, rel=1e-5)
 
 
 def test_the_corner_of_all_required_strokes(stage):

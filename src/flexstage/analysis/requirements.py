@@ -58,6 +58,9 @@ class Subject(Enum):
     SAFETY = "safety"
     BUCKLING = "buckling"
     STIFFNESS = "stiffness.<axis>"
+    DIRECTED_STIFFNESS = "stiffness.<direction>"
+    LEAST_STIFFNESS = "stiffness.least"
+    DEFLECTION = "deflection.<axis>"
     FORCE = "force.<axis>"
     LOSS = "loss"
     OWN_LOSS = "loss.<actuator>"
@@ -65,6 +68,7 @@ class Subject(Enum):
     MAP_ERROR = "map_error.<axis>"
     DRIFT = "drift.<axis>"
     MASS = "mass"
+    TOTAL_MASS = "mass.total"
     SIZE = "envelope.<dimension>"
     HEIGHT = "height"
     OPENING = "opening"
@@ -95,6 +99,14 @@ KINDS: Mapping[Subject, Kind] = {
     Subject.STIFFNESS: Kind(
         "stiffness of the platform against a load along one axis, the others giving way", STIFFNESS, TWISTING, pointed=True
     ),
+    Subject.DIRECTED_STIFFNESS: Kind(
+        "stiffness of the platform against a force along a direction, or with r a moment about it, all else giving way",
+        STIFFNESS,
+        TWISTING,
+        pointed=True,
+    ),
+    Subject.LEAST_STIFFNESS: Kind("stiffness against a force in the direction that gives way most", STIFFNESS, pointed=True),
+    Subject.DEFLECTION: Kind("motion under gravity and stated forces, strokes held", DISPLACEMENT, ROTATION, pointed=True),
     Subject.FORCE: Kind("blocking force of the platform along one axis", FORCE, MOMENT),
     Subject.LOSS: Kind("largest share of its stroke an actuator loses", RATIO),
     Subject.OWN_LOSS: Kind("share of its stroke the actuator loses", RATIO),
@@ -104,6 +116,7 @@ KINDS: Mapping[Subject, Kind] = {
         "motion per kelvin of uniform temperature, strokes held, the ground of the material of its links", DRIFT, TILT_DRIFT, pointed=True
     ),
     Subject.MASS: Kind("mass of the platform without payload", MASS),
+    Subject.TOTAL_MASS: Kind("mass of all bodies, links and stacks without payload", MASS),
     Subject.SIZE: Kind("edge of the bounding box", LENGTH),
     Subject.HEIGHT: Kind("edge of the bounding box along z", LENGTH),
     Subject.OPENING: Kind("how far anything stands into the clear opening", LENGTH),
@@ -202,6 +215,7 @@ def _names(assembly: Assembly) -> dict[str, tuple[str, ...]]:
     return {
         "axis": COMPONENTS,
         "dimension": COMPONENTS[:3],
+        "direction": ("(1,1,0)",),
         "n": tuple(str(number) for number in range(1, 7)),
         "actuator": tuple(assembly.actuators),
         "gauge": tuple(assembly.gauges),
@@ -256,6 +270,29 @@ def measure(mechanism: Mechanism, text: str, where: str) -> Measure:
     return Measure(match["key"], subject, name, quantity, point)
 
 
+def _free(placeholder: str, name: str, where: str) -> bool:
+    """Whether a name that is in no list may stand in the place: a number, or a direction."""
+    if placeholder == "direction" and name.removeprefix("r").startswith("("):
+        direction_of(name, where)
+        return True
+    return placeholder == "n" and _COUNT.fullmatch(name) is not None
+
+
+def direction_of(name: str, where: str = "direction") -> Array:
+    """The unit vector (3,) of a direction such as `(1,1,0)`, with `r` before it for a moment about it. Raises `DesignError` at `where`.
+
+    >>> direction_of("r(0,3,4)").tolist()
+    [0.0, 0.6, 0.8]
+    """
+    try:
+        vector = np.array([float(each) for each in name.removeprefix("r").removeprefix("(").removesuffix(")").split(",")])
+    except ValueError:
+        vector = np.zeros(0)
+    if vector.shape != (3,) or not np.all(np.isfinite(vector)) or not np.any(vector) or not name.endswith(")"):
+        raise refuse(where, f'"{name}" is no direction', "Write three numbers, not all 0, without spaces, for example (1,1,0)")
+    return vector / np.linalg.norm(vector)
+
+
 def _placed(where: str, asked: tuple[Subject, str], point: str | None, points: tuple[str, ...]) -> tuple[str, Quantity]:
     """The point a measure is taken at, and its quantity: that about an axis for rotations."""
     subject, name = asked
@@ -275,7 +312,7 @@ def _subject(key: str, names: Mapping[str, tuple[str, ...]], where: str) -> tupl
         name = key.removeprefix(stem)
         if key == stem and not placeholder:
             return subject, ""
-        if placeholder and key.startswith(stem) and (name in names[placeholder] or (placeholder == "n" and _COUNT.fullmatch(name))):
+        if placeholder and key.startswith(stem) and (name in names[placeholder] or _free(placeholder, name, where)):
             return subject, name
     known = [spelt for subject in Subject for spelt in _spelt(subject.value, names)]
     raise refuse(where, f'there is no measure called "{key}"', nearest(key, known))

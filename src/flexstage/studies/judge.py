@@ -7,10 +7,11 @@ from functools import cached_property
 
 import numpy as np
 
+from flexstage.analysis.deflection import deflection
 from flexstage.analysis.drift import Drift, drift
 from flexstage.analysis.lost_motion import LostMotion, lost_motion
 from flexstage.analysis.modes import Modes, modes
-from flexstage.analysis.requirements import Measure, Requirement, Subject, Verdict, requirements
+from flexstage.analysis.requirements import Measure, Requirement, Subject, Verdict, direction_of, requirements
 from flexstage.analysis.statics import statics
 from flexstage.analysis.workspace.blocking import platform_lines
 from flexstage.analysis.workspace.buckling import buckling
@@ -23,6 +24,7 @@ from flexstage.analysis.workspace.stroke import StrokeLimits, mapping_at, single
 from flexstage.base.finding import DesignError, refuse
 from flexstage.base.labelled import Matrix
 from flexstage.base.number import Array, magnitude
+from flexstage.beams.mass import mass
 from flexstage.mechanism.expand import Assembly, expand
 from flexstage.mechanism.expansion import ground_material
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
@@ -240,7 +242,36 @@ def _buckling(bench: Bench, _: Measure) -> Array:
 
 def _stiffness(bench: Bench, line: Measure) -> Array:
     index = COMPONENTS.index(line.name)
-    return 1.0 / statics(bench.model, load_point=line.point, read_point=line.point).compliance.values[..., index, index]
+    return 1.0 / _compliance(bench, line)[..., index, index]
+
+
+def _directed_stiffness(bench: Bench, line: Measure) -> Array:
+    along, start = direction_of(line.name, line.key), 3 * line.name.startswith("r")
+    return 1.0 / (along @ _compliance(bench, line)[..., start : start + 3, start : start + 3] @ along)
+
+
+def _least_stiffness(bench: Bench, line: Measure) -> Array:
+    """Real directions, so that derivatives by complex step are those of a simple eigenvalue."""
+    block = _compliance(bench, line)[..., :3, :3]
+    worst = np.linalg.eigh(0.5 * np.real(block + np.swapaxes(block, -1, -2)))[1][..., :, -1]
+    return 1.0 / np.einsum("...i,...ij,...j->...", worst, block, worst)
+
+
+def _compliance(bench: Bench, line: Measure) -> Array:
+    return statics(bench.model, load_point=line.point, read_point=line.point).compliance.values
+
+
+def _deflection(bench: Bench, line: Measure) -> Array:
+    causes = deflection(bench.mechanism, bench.model, point=line.point).by_cause
+    return magnitude(np.sum(causes.values[..., causes.rows.index(f"{line.point}.{line.name}"), :], axis=-1))
+
+
+def _total_mass(bench: Bench, _: Measure) -> Array:
+    """Links by their integrals over the profile: a rigid motion along has the mass of both ends and what is between them."""
+    bodies = [body.mass.mass for body in bench.assembly.bodies.values() if body.mass is not None]
+    ends = [mass(link.part, link.material) for link in bench.assembly.links.values()]
+    links = [each[..., 0, 0] + each[..., 0, 6] + each[..., 6, 0] + each[..., 6, 6] for each in ends]
+    return sum([*bodies, *links], np.asarray(0.0))
 
 
 def _force(bench: Bench, line: Measure) -> Array:
@@ -316,6 +347,9 @@ _MEASURES: Mapping[Subject, Callable[[Bench, Measure], Array]] = {
     Subject.SAFETY: _safety,
     Subject.BUCKLING: _buckling,
     Subject.STIFFNESS: _stiffness,
+    Subject.DIRECTED_STIFFNESS: _directed_stiffness,
+    Subject.LEAST_STIFFNESS: _least_stiffness,
+    Subject.DEFLECTION: _deflection,
     Subject.FORCE: _force,
     Subject.LOSS: _loss,
     Subject.OWN_LOSS: _loss,
@@ -323,6 +357,7 @@ _MEASURES: Mapping[Subject, Callable[[Bench, Measure], Array]] = {
     Subject.MAP_ERROR: _map_error,
     Subject.DRIFT: _drift,
     Subject.MASS: _mass,
+    Subject.TOTAL_MASS: _total_mass,
     Subject.SIZE: _size,
     Subject.HEIGHT: _size,
     Subject.OPENING: _opening,
