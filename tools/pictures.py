@@ -39,6 +39,7 @@ from flexstage.present.figures.measured import stabilisation_figure
 from flexstage.present.figures.skin import skin_figure
 from flexstage.present.figures.study import effects_figure
 from flexstage.present.figures.style import FULL, INK, PAPER, SERIES, canvas, styled
+from flexstage.present.figures.tolerance import crosstalk_figure, distributions_figure
 from flexstage.present.plan import plan_figure
 from flexstage.present.scene.facet import Facet, Kind
 from flexstage.present.scene.stage import Scene, displaced, largest_motion, scene
@@ -58,6 +59,8 @@ from flexstage.studies.study.effects import Effects
 from flexstage.studies.study.effects import effects as effects_of
 from flexstage.studies.study.file import loads_study
 from flexstage.studies.study.run import Run, run
+from flexstage.studies.tolerance.file import loads_tolerance
+from flexstage.studies.tolerance.run import Toleranced, tolerance
 from tests.analytic import test_paros_weisbord, test_smith_toroid
 from tests.analytic.hinges import UNIT, circular, diagonal, error
 from tests.docs.pages import blocks
@@ -251,6 +254,23 @@ def strongest() -> Any:
 
 
 @cache
+def _made() -> Toleranced:
+    """The study in docs/tolerance.md, with as many copies as histograms need."""
+    text = next(block.text for block in blocks("docs/tolerance.md") if block.word("file") == "made.toml")
+    return tolerance(loads_tolerance(text.replace("copies = 96", "copies = 1024")), how=Run(workers=1))
+
+
+def made() -> Any:
+    """What copies of the shipped stage do, against their limits."""
+    return distributions_figure(_made())
+
+
+def crosstalk() -> Any:
+    """Crosstalk of these copies, commanded by the drawn stage's mapping."""
+    return crosstalk_figure(_made().summary.crosstalk[0])
+
+
+@cache
 def _loop() -> LoopStudy:
     """The loop of the shipped stage on a floor of class VC-D, along a raster."""
     shaken = Shaking(criterion=Criterion.VC_D)
@@ -294,6 +314,8 @@ DRAWN: Mapping[str, tuple[Callable[[], Any], str]] = {
     "stabilisation": (stabilisation, "poles over the order of the model; those that stay become modes"),
     "compared": (compared, "frequencies of six modes by theory and as measured, and how far theory is off"),
     "hysteresis": (hysteresis, "loops of a stack with the model over them, the model's error, and the volts of the inverse"),
+    "tolerance": (made, "distributions of lost motion and frequency over copies of the stage, with limits"),
+    "crosstalk": (crosstalk, "pose errors per command of copies of the stage, as a matrix of means and deviations"),
     "effects": (effects, "mean frequency, lost motion and mass over the thickness of necks, plate and notch"),
     "pairs": (pairs, "shares of variance of stroke and lost motion by the arm, the notch, and both together"),
     "strongest": (strongest, "lost motion over the arm, for thin and thick notches"),

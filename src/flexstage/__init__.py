@@ -139,6 +139,8 @@ _ROOMS = {
     "studies.loop.floor": "criterion_spectrum",
     "studies.loop.study": "LoopStudy loop_study",
     "studies.rig.rig": "rig",
+    "studies.tolerance.file": "load_tolerance",
+    "studies.tolerance.run": "Toleranced tolerance",
     "studies.rig.setup": "Amplifier AntiAlias NoiseDrive Recorded RigSetup Sensing Tap",
     "present.report": "report",
     "present.loop_report": "loop_report",

@@ -502,3 +502,6 @@ from flexstage.present.loop_report import loop_report as loop_report
 from flexstage.present.loop_files import write_controller as write_controller
 from flexstage.present.loop_files import write_fmu as write_fmu
 from flexstage.present.loop_files import write_plant as write_plant
+from flexstage.studies.tolerance.file import load_tolerance as load_tolerance
+from flexstage.studies.tolerance.run import Toleranced as Toleranced
+from flexstage.studies.tolerance.run import tolerance as tolerance

@@ -6,6 +6,7 @@
     horizontal/front.thickness               the part of one link of a unit, in all copies: a departure, kept in `changes`
     B2/front.thickness                       in one copy: a departure that goes before that of all copies
     links.strut.thickness                    the part of a link of the stage itself: a departure too
+    B2.shift.x, S1.rotation.z                where a copy of a unit, or a gauge, stands against its pattern: a departure, nought if not made
 
 Levels may be skipped where that is unique: `horizontal/front.radius` for `horizontal/front.profile.radius`, `neck.thickness` for
 `parts.neck.thickness`. An ambiguous or misspelt address is an error that lists the candidates.
@@ -27,6 +28,7 @@ from flexstage.mechanism.expand import departed
 from flexstage.mechanism.grammar import DIRECTIONS, ChoiceNode, DirectionNode, NumberNode, TextNode, VectorNode, node_of, numbers
 from flexstage.mechanism.locate import Place, canonical, locate
 from flexstage.mechanism.mechanism import Link, Mechanism
+from flexstage.mechanism.misalignment import misalignment_of
 from flexstage.mechanism.path import member, replaced
 from flexstage.parts.part import Part
 
@@ -43,7 +45,9 @@ def get(mechanism: Mechanism, address: str) -> Any:
     """
     place = locate(mechanism, address)
     value: Any = mechanism
-    if place.owners:
+    if place.misaligned:
+        value = misalignment_of(mechanism.changes, place.owners[0])
+    elif place.owners:
         link, part = _departed(mechanism, place)
         value = link if place.in_link else part
     for name in place.path:
@@ -213,6 +217,8 @@ def _written(mechanism: Mechanism, place: Place, value: Any) -> Mechanism:
 def _made(mechanism: Mechanism, owner: str) -> Iterator[tuple[str, tuple[str, ...]]]:
     """The departures made of that owner: key and full path."""
     for key in mechanism.changes:
+        if not f"links.{key}".startswith((f"{owner}.", f"links.{owner}.")):
+            continue  # found without looking for the place: a batch of copies has a hundred departures
         place = locate(mechanism, key)
         if place.owners[-1:] == (owner,):
             yield key, place.path
@@ -244,7 +250,7 @@ def _origin(mechanism: Mechanism, place: Place) -> str:
         for _, path in _made(mechanism, owner):
             if path == place.path[: len(path)] or path[: len(place.path)] == place.path:
                 return replace(place, owners=(owner,)).address
-    if not place.owners:
+    if not place.owners or place.misaligned:
         return place.address
     link = _drawn(mechanism, place.owners)
     if not place.in_link:

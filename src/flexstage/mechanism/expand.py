@@ -12,6 +12,7 @@ import numpy as np
 
 from flexstage.base.number import Array, Number, stack
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Link, Mechanism, Probe
+from flexstage.mechanism.misalignment import MISALIGNED, misaligned
 from flexstage.mechanism.path import complete, replaced
 from flexstage.mechanism.pattern import Facing, Pattern, Polar
 from flexstage.parts.body import Body, Solid, owner_of, solid_frame
@@ -181,7 +182,7 @@ def copies(mechanism: Mechanism) -> Iterator[tuple[str, str, Frame]]:
         names = copy_names(key)
         frames = copy_frames(placement.pattern, len(names))
         for name, frame in zip(names, frames, strict=True):
-            yield name, placement.unit, frame
+            yield name, placement.unit, misaligned(frame, mechanism.changes, name)
 
 
 @dataclass(frozen=True, eq=False)
@@ -285,6 +286,8 @@ def departed(mechanism: Mechanism, link: Link, owners: tuple[str, ...]) -> tuple
             if not address.startswith(f"{owner}."):
                 continue
             path = tuple(address[len(owner) + 1 :].split("."))
+            if path[0] in MISALIGNED:  # of a gauge that has a link's name
+                continue
             if path[0] in _LINK_FIELDS:
                 link = replaced(link, complete(link, path), value)
             else:
@@ -319,7 +322,7 @@ def _gauges(mechanism: Mechanism) -> Iterator[tuple[str, PlacedGauge]]:
         names = copy_names(key)
         frames = copy_frames(probe.pattern, len(names))
         for name, frame in zip(names, frames, strict=True):
-            yield name, _placed_gauge(mechanism, probe, name, frame)
+            yield name, _placed_gauge(mechanism, probe, name, misaligned(frame, mechanism.changes, name))
 
 
 def _placed_gauge(mechanism: Mechanism, probe: Probe, name: str, frame: Frame) -> PlacedGauge:

@@ -9,6 +9,7 @@ from flexstage.base.finding import DesignError, nearest, refuse
 from flexstage.mechanism.expand import copy_names
 from flexstage.mechanism.grammar import DirectionNode, MatrixNode, Node, RecordNode, RowNode, UnionNode, VectorNode, child, node_of
 from flexstage.mechanism.mechanism import Link, Mechanism
+from flexstage.mechanism.misalignment import MISALIGNED, Misalignment
 from flexstage.mechanism.path import completions, has_member, member
 from flexstage.spatial.frame import COMPONENTS
 
@@ -21,13 +22,19 @@ class Place:
     """Where an address points.
 
     `path` is the full path from the description, and `owners` is empty; or a departure is meant: `owners` are those whose changes count,
-    the last one before the first (`horizontal/front`, `B2/front`), and `path` starts at the link (`at.x`, `in_link`) or at its part.
+    the last one before the first (`horizontal/front`, `B2/front`), and `path` starts at the link (`at.x`, `in_link`) or at its part; or
+    `owners` is a copy or a gauge, and `path` starts at its misalignment (`shift.x`).
     """
 
     owners: tuple[str, ...]
     path: tuple[str, ...]
     node: Node
     in_link: bool = False
+
+    @property
+    def misaligned(self) -> bool:
+        """Whether it says where a copy or a gauge stands."""
+        return bool(self.owners) and not self.in_link and self.path[:1] in [(name,) for name in MISALIGNED]
 
     @property
     def address(self) -> str:
@@ -49,7 +56,20 @@ def locate(mechanism: Mechanism, address: str) -> Place:
     steps = tuple(owner.split("."))
     if steps[0] in _DOCUMENT:
         raise refuse(address, f'"{steps[0]}" holds no values of the stage', "Address the value itself")
+    if _stands(mechanism, address, steps):
+        return _descend(Misalignment(), address, Place(steps[:1], (), RecordNode(Misalignment)), steps[1:])
     return _descend(mechanism, address, Place((), (), RecordNode(Mechanism)), steps)
+
+
+def _stands(mechanism: Mechanism, address: str, steps: tuple[str, ...]) -> bool:
+    """Whether the steps say where a copy or a gauge stands."""
+    gauges = [name for key in mechanism.gauges for name in copy_names(key)]
+    owners = [*unit_of_copy(mechanism), *gauges]
+    if steps[0] not in owners or len(steps) < 2 or (steps[1] not in MISALIGNED and completions(mechanism, steps[0])):
+        return False
+    if owners.count(steps[0]) > 1:
+        raise refuse(address, f'"{steps[0]}" is a copy of a unit and a gauge', "Rename one of them")
+    return True
 
 
 def unit_of_copy(mechanism: Mechanism) -> dict[str, str]:

@@ -20,6 +20,7 @@ from flexstage.apps.cli import (
     solid,
     solid_files,
     study,
+    tolerance,
     update,
     whole,
 )
@@ -74,6 +75,7 @@ COMMANDS: tuple[tuple[str, str, Callable[..., Any], str], ...] = (
     (_TESTS, "hysteresis", hysteresis.hysteresis, 'flexstage hysteresis stack.csv --limits "0 V" "1000 V" -o stack.toml'),
     (_STUDIES, "sweep", study.sweep, "flexstage sweep study.toml -o results.h5 --report sweep.html"),
     (_STUDIES, "optimise", optimise.optimise, "flexstage optimise study.toml -o better.toml --report optimum.html"),
+    (_STUDIES, "tolerance", tolerance.tolerance, "flexstage tolerance study.toml --report tolerance.html"),
     (_CONTROL, "loop", loop.loop, "flexstage loop stage.toml --floor VC-D --report loop.html"),
     (_INSTALLATION, "doctor", about.doctor, "flexstage doctor --mend"),
     (_INSTALLATION, "version", about.version, "flexstage version"),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, TypeAlias
 
 import typer
 
@@ -14,7 +14,18 @@ if TYPE_CHECKING:
     from flexstage.studies.study.effects import Effects
     from flexstage.studies.study.store import Results
 
-StudyFile = Annotated[Path, typer.Argument(help="File of the study (TOML).", metavar="STUDY.TOML", show_default=False)]
+StudyFile: TypeAlias = Annotated[Path, typer.Argument(help="File of the study (TOML).", metavar="STUDY.TOML", show_default=False)]
+Resume: TypeAlias = Annotated[bool, typer.Option("--resume", help="Go on with a results file that is not complete.")]
+Workers: TypeAlias = Annotated[
+    int | None, typer.Option("--workers", metavar="N", help="Processes. Default: one a core.", show_default=False)
+]
+Scheduler: TypeAlias = Annotated[
+    str | None,
+    typer.Option("--scheduler", metavar="ADDRESS", help="Dask scheduler of a cluster, e.g. tcp://host:8786.", show_default=False),
+]
+Report: TypeAlias = Annotated[
+    Path | None, typer.Option("--report", metavar="FILE.html", help="Write a report with pictures.", show_default=False)
+]
 
 
 def sweep(
@@ -23,17 +34,10 @@ def sweep(
     output: Annotated[
         Path, typer.Option("--output", "-o", metavar="RESULTS.H5", help="Results file to write: every design.", show_default=False)
     ],
-    resume: Annotated[bool, typer.Option("--resume", help="Go on with a results file that is not complete.")] = False,
-    workers: Annotated[
-        int | None, typer.Option("--workers", metavar="N", help="Processes. Default: one a core.", show_default=False)
-    ] = None,
-    scheduler: Annotated[
-        str | None,
-        typer.Option("--scheduler", metavar="ADDRESS", help="Dask scheduler of a cluster, e.g. tcp://host:8786.", show_default=False),
-    ] = None,
-    report: Annotated[
-        Path | None, typer.Option("--report", metavar="FILE.html", help="Write a report with pictures.", show_default=False)
-    ] = None,
+    resume: Resume = False,
+    workers: Workers = None,
+    scheduler: Scheduler = None,
+    report: Report = None,
     json: Json = None,
 ) -> None:
     """Compute many designs; show what varies with what.

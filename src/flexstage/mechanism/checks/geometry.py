@@ -56,7 +56,8 @@ def geometry_findings(mechanism: Mechanism, *, departures: bool = True) -> Itera
 
 def _departed_parts(mechanism: Mechanism) -> Iterator[tuple[str, Part]]:
     """The parts as they are after the departures, by the link or the copy that departs."""
-    for owners in dict.fromkeys(locate(mechanism, key).owners for key in mechanism.changes):
+    places = [locate(mechanism, key) for key in mechanism.changes]
+    for owners in dict.fromkeys(place.owners for place in places if not place.misaligned):
         owner, slash, name = owners[0].partition("/")
         link = mechanism.units[owner].links[name] if slash else mechanism.links[owner]
         yield owners[-1], departed(mechanism, link, owners)[1]

@@ -1,0 +1,169 @@
+"""What an entry of `[scatter]` reaches: kinds of things, shared parts and units taken apart into the numbers of single copies."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+
+from flexstage.base.finding import DesignError, nearest, refuse
+from flexstage.mechanism.address import get
+from flexstage.mechanism.expand import PlacedLink, copy_names, expand
+from flexstage.mechanism.grammar import NumberNode, VectorNode
+from flexstage.mechanism.locate import Place, locate, unit_of_copy
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.mechanism.misalignment import MISALIGNED
+from flexstage.parts.leaf import Leaf
+from flexstage.parts.neck import Neck
+from flexstage.parts.notch import Notch
+from flexstage.parts.part import Restricted
+from flexstage.parts.piezo import Piezo
+from flexstage.parts.rod import Rod
+
+KINDS: Mapping[str, tuple[type, ...]] = {
+    "hinges": (Notch, Neck, Leaf),
+    "notches": (Notch,),
+    "necks": (Neck,),
+    "leaves": (Leaf,),
+    "rods": (Rod,),
+    "stacks": (Piezo,),
+}
+"""Kinds of parts that an entry may name: `hinges.thickness` is that of every notch, neck and leaf."""
+PLACED = ("units", "gauges")
+"""Kinds that stand somewhere: `units.shift` is that of every copy of a unit."""
+
+
+@dataclass(frozen=True)
+class Reached:
+    """Numbers that an entry reaches, by component (one where it has none), and the shared number that each one comes from."""
+
+    components: Mapping[str, tuple[str, ...]]
+    shared: Mapping[str, str]
+
+
+def reach(design: Mechanism, source: str) -> Reached:
+    """Take an address or a kind apart into numbers of single copies; vectors into their components.
+
+    Kinds are those of `KINDS`, `units`, `gauges` and `materials`, before a number's name: `hinges.thickness`, `units.rotation.z`,
+    `gauges.shift`, `stacks.stroke`, `materials.young`. The name of a unit or of a pattern means its copies: `horizontal.shift.x`,
+    `S1-S3.shift`. Raises `DesignError` for what points nowhere, with the nearest names.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> reach(parallelogram(), "hinges.thickness").components[""]
+    ('links.left.thickness', 'links.right.thickness', 'B/back.thickness', 'B/front.thickness')
+    >>> list(reach(parallelogram(), "units.shift").components)
+    ['x', 'y', 'z']
+    """
+    shared: dict[str, str] = {}
+    components: dict[str, list[str]] = {}
+    for address in _addresses(design, source.strip()):
+        for component, number in _numbers(design, address):
+            components.setdefault(component, []).extend(_copies(design, locate(design, number), shared))
+    return Reached({name: tuple(dict.fromkeys(found)) for name, found in components.items()}, shared)
+
+
+def _addresses(design: Mechanism, source: str) -> tuple[str, ...]:
+    """The addresses that a kind stands for, or the address itself."""
+    owner, _, rest = source.partition(".")
+    stem = rest.partition(".")[0]
+    if owner in KINDS:
+        return _of_links(design, source, lambda link: isinstance(_inner(link), KINDS[owner]), rest)
+    if owner == "materials" and stem not in design.materials:
+        return _stated(design, source, (f"materials.{name}.{rest}" for name in design.materials))
+    if owner in PLACED and stem not in (*MISALIGNED, *design.units, *design.gauges):
+        raise refuse(source, f'"{stem}" is not where copies stand', nearest(stem, MISALIGNED))
+    if stem in MISALIGNED and (names := _standing(design, owner)):
+        return tuple(f"{name}.{rest}" for name in names)
+    try:
+        locate(design, source)
+    except DesignError as error:
+        known = (*KINDS, *PLACED)
+        missed = any(f'"{owner}"' in each.what for each in error.findings)
+        if missed and "/" not in source and "." in source and (near := nearest(owner, known)).startswith("The nearest"):
+            raise refuse(source, f'there is no "{owner}"', near) from error
+        raise
+    return (source,)
+
+
+def _standing(design: Mechanism, owner: str) -> tuple[str, ...]:
+    """The copies that a kind, a unit or a pattern means."""
+    copies = unit_of_copy(design)
+    if owner == "units":
+        return tuple(copies)
+    if owner == "gauges":
+        return tuple(name for key in design.gauges for name in copy_names(key))
+    if owner in (*design.place, *design.gauges) and len(copy_names(owner)) > 1:
+        return copy_names(owner)
+    return tuple(copy for copy, unit in copies.items() if unit == owner)
+
+
+def _of_links(design: Mechanism, source: str, wanted: Callable[[PlacedLink], bool], rest: str) -> tuple[str, ...]:
+    links = [link for link in expand(design).links.values() if wanted(link)]
+    if not links:
+        raise refuse(source, "the design has none of this kind", f"Name parts that it has: {', '.join(design.parts)}")
+    return _stated(design, source, (f"{_home(link)}.{rest}" for link in links))
+
+
+def _stated(design: Mechanism, source: str, candidates: Iterator[str]) -> tuple[str, ...]:
+    """Those that the design states; the first one's complaint where it states none."""
+    found: list[str] = []
+    complaint: DesignError | None = None
+    for address in candidates:
+        try:
+            if get(design, address) is not None:
+                found.append(address)
+        except DesignError as error:
+            complaint = complaint or error
+    if not found:
+        what = complaint.findings[0] if complaint is not None else None
+        raise refuse(source, what.what if what else "the design does not state it", what.advice if what else "State it")
+    return tuple(found)
+
+
+def _inner(link: PlacedLink) -> object:
+    return link.part.part if isinstance(link.part, Restricted) else link.part
+
+
+def _home(link: PlacedLink) -> str:
+    return link.name if "/" in link.name else f"links.{link.name}"
+
+
+def _numbers(design: Mechanism, address: str) -> Iterator[tuple[str, str]]:
+    """The numbers of a vector by component; a number alone."""
+    node = locate(design, address).node
+    if isinstance(node, VectorNode):
+        yield from ((name, f"{address}.{name}") for name in "xyz"[: len(node.items)])
+    elif isinstance(node, NumberNode):
+        if get(design, address) is None:
+            raise refuse(address, "the description does not state it", "State it, or choose another number")
+        yield "", address
+    else:
+        raise refuse(address, "this is not a number", "Address one of its numbers")
+
+
+def _copies(design: Mechanism, place: Place, shared: dict[str, str]) -> Iterator[str]:
+    """The same number of every copy of a part or of a link drawn in a unit, else the number itself."""
+    found = [(link, rest) for link in expand(design).links.values() if (rest := _rest(place, link)) is not None]
+    of_part = not place.in_link and (bool(place.owners) or place.path[0] == "parts")
+    for link, rest in found:
+        address = locate(design, f"{_home(link)}.{'.'.join(rest)}").address
+        if of_part:
+            shared[address] = locate(design, f"parts.{link.link.part}.{'.'.join(rest)}").address
+        yield address
+    if not found:
+        yield place.address
+
+
+def _rest(place: Place, link: PlacedLink) -> tuple[str, ...] | None:
+    """The path within a link or its part, if the place is in this link."""
+    if place.misaligned:
+        return None
+    if place.owners:
+        drawn = place.owners[-1]
+        return place.path if drawn in (link.name, link.drawn, f"links.{link.name}") else None
+    if place.path[0] == "parts":
+        return place.path[2:] if link.link.part == place.path[1] else None
+    if place.path[0] == "units" and place.path[2] == "links":
+        return place.path[4:] if link.drawn == f"{place.path[1]}/{place.path[3]}" else None
+    if place.path[0] == "links":
+        return place.path[2:] if link.name == place.path[1] else None
+    return None

@@ -1,0 +1,47 @@
+"""A tolerance study run: copies computed, then told what they say and what they allow."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+
+from flexstage.studies.study.run import DEFAULT, Progress, Run, run
+from flexstage.studies.study.store import Results
+from flexstage.studies.tolerance.allowance import Allowance, allowance
+from flexstage.studies.tolerance.definition import Tolerance
+from flexstage.studies.tolerance.slopes import Slopes, slopes
+from flexstage.studies.tolerance.summary import Summary, summary
+
+
+@dataclass(frozen=True, eq=False)
+class Toleranced:
+    """A tolerance study with the `results` of all its copies, its `slopes`, what both say (`summary`) and what they allow (`allowance`)."""
+
+    study: Tolerance
+    results: Results
+    slopes: Slopes
+    summary: Summary
+    allowance: Allowance
+
+
+def tolerance(
+    study: Tolerance, path: str | os.PathLike[str] | None = None, how: Run = DEFAULT, progress: Progress | None = None
+) -> Toleranced:
+    """Run a tolerance study, its copies kept in the results file at `path` (absent: nowhere), as `run` keeps those of any study.
+
+    Raises `DesignError` as `run` does.
+
+    >>> from flexstage.studies.tolerance.example import leaf_study
+    >>> found = tolerance(leaf_study(), how=Run(workers=1))
+    >>> found.summary.together.share, round(found.allowance.together, 1) > 10.0
+    (1.0, True)
+    """
+    if path is None:
+        with tempfile.TemporaryDirectory() as place:
+            return tolerance(study, Path(place) / "copies.h5", how, progress)
+    results = run(study, path, how, progress)
+    found = slopes(study)
+    said = summary(study, results, found)
+    return Toleranced(study, results, found, said, allowance(study, results, found, said))

@@ -1,0 +1,80 @@
+"""The command `tolerance`: what it shows and writes, that it does not matter who computes it, and studies that cannot be."""
+
+import json
+
+import numpy as np
+import pytest
+
+from flexstage.studies.study.evaluate import piece
+from flexstage.studies.study.store import read_results
+from flexstage.studies.tolerance.file import load_tolerance
+
+STUDY = """
+format = "flexstage study 1"
+name = "leaves"
+case = "parallelogram"
+responses.f = "frequency.1"
+tolerance = { copies = 40, seed = 2 }
+[scatter]
+wire = { of = "hinges.thickness", uniform = "5 um" }
+turn = { of = "units.rotation.z", normal = "300 urad" }
+"""
+
+
+@pytest.fixture
+def study_file(tmp_path):
+    path = tmp_path / "study.toml"
+    path.write_text(STUDY)
+    return path
+
+
+def test_tolerance_shows_and_writes(study_file, tmp_path, flexstage):
+    done = flexstage("tolerance", "study.toml", "-o", "r.h5", "--report", "r.html", "--json", "r.json", "--workers", "1")
+    assert done.code == 0, done.err
+    for said in ("all together", "What is allowed", "Crosstalk", "+-5 um", "common to 4"):
+        assert said in done.out
+    told = json.loads((tmp_path / "r.json").read_text())
+    assert told["copies"] == {"computed": 40, "failed": 0}
+    assert sum(told["responses"][0]["share_by_derivatives"].values()) == pytest.approx(1.0)
+    assert [each["kind"] for each in told["crosstalk"]] == ["open"]  # one gauge does not tell six motions
+    page = (tmp_path / "r.html").read_text()
+    assert page.startswith("<!doctype html>")
+    assert page.count("<svg") == 4
+    study = load_tolerance(study_file)
+    kept = read_results(tmp_path / "r.h5")
+    assert kept.complete
+    np.testing.assert_array_equal(kept.responses[:40], piece(study, 0, 40).responses)
+    study_file.write_text(STUDY.replace("5 um", "6 um"))
+    other = flexstage("tolerance", "study.toml", "-o", "r.h5", "--resume")
+    assert (other.code, "scatter.wire was" in other.err) == (2, True)
+
+
+def test_without_a_specification_there_is_no_yield(study_file, tmp_path, flexstage):
+    study_file.write_text(STUDY.replace("copies = 40", "copies = 8, require = false, crosstalk = false").replace("turn =", "#"))
+    done = flexstage("tolerance", "study.toml", "--json", "r.json")
+    assert done.code == 0
+    assert "There is no yield: neither" in " ".join(done.out.split())
+    told = json.loads((tmp_path / "r.json").read_text())
+    assert (told["yield"], told["allowed"]) == (None, None)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("hinges", "hinge", "The nearest name is hinges"),
+        ("units.rotation.z", "units.rotaton.z", "The nearest name is rotation"),
+        ("300 urad", "-1 urad", "Give a deviation above 0"),
+        ("copies = 40", "copies = 1", "Give a whole number of 2 or more"),
+        ("seed = 2", 'sampling = "grid"', 'found "grid"'),
+        ("seed = 2", 'point = "edge"', 'there is no point "edge"'),
+        ("seed = 2", 'yield = "101 %"', "Give a share between 50 % and 100 %"),
+        ("[scatter]", "[scater]", "scater: nothing of this name is known here"),
+    ],
+)
+def test_bad_studies_are_told(study_file, tmp_path, flexstage, old, new, message):
+    assert old in STUDY
+    study_file.write_text(STUDY.replace(old, new, 1))
+    done = flexstage("tolerance", "study.toml", "-o", "r.h5")
+    assert (done.code, message in " ".join(done.err.split())) == (2, True), done.err
+    assert not (tmp_path / "r.h5").exists()
+    assert "Traceback" not in done.err

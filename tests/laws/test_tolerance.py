@@ -1,0 +1,290 @@
+"""Laws of tolerance studies: first order in the limit, moments of cubes, averaging, yields of linear responses, what is allowed."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from scipy.special import ndtr, ndtri
+
+from flexstage.base.finding import DesignError
+from flexstage.cases.double_triangle import double_triangle
+from flexstage.mechanism.address import get, set_value
+from flexstage.mechanism.expand import copies
+from flexstage.spatial.frame import COMPONENTS
+from flexstage.studies.judge import bench_of
+from flexstage.studies.study.evaluate import piece
+from flexstage.studies.study.store import Results
+from flexstage.studies.tolerance.allowance import allowance
+from flexstage.studies.tolerance.crosstalk import command, pose_measures, poses
+from flexstage.studies.tolerance.distribution import Distribution, Shape
+from flexstage.studies.tolerance.file import loads_tolerance
+from flexstage.studies.tolerance.slopes import slopes
+from flexstage.studies.tolerance.summary import binomial, summary
+
+LEAVES = 4
+GUIDE = """
+format = "flexstage 1"
+name = "guide"
+materials = { steel = { young = "200 GPa", poisson = 0.3, density = "7800 kg/m^3" } }
+parts = { leaf = { kind = "leaf", material = "steel", length = "60 mm", thickness = "0.5 mm", width = "10 mm" } }
+bodies = { platform = { mass = "1 kg", reference = ["0 mm", "0 mm", "0 mm"] } }
+[links]
+""" + "\n".join(
+    f'l{n} = {{ joins = ["ground", "platform"], part = "leaf", at = ["{40 * n - 20 * (LEAVES - 1)} mm", "0 mm", "{30 * (-1) ** n} mm"],'
+    ' along = "y", bends = "z" }'
+    for n in range(LEAVES)
+)
+
+
+ASKED = """
+format = "flexstage study 1"
+design = "guide.toml"
+responses.k = "stiffness.x"
+tolerance = { crosstalk = false }
+scatter.w = { of = "leaf.thickness", normal = "1 um" }
+"""
+
+
+def told(study, count=None):
+    """Results of a study, computed here."""
+    count = study.plan.designs if count is None else count
+    found = piece(study, 0, count)
+    return Results(np.arange(count), found.variables, found.responses, found.failures, ((), ()), ((), ()), count, {}, "")
+
+
+@pytest.fixture(scope="module")
+def guide(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("guide")
+    (folder / "guide.toml").write_text(GUIDE)
+
+    def study(text, copies=256, sampling="sobol", wishes=""):
+        head = 'format = "flexstage study 1"\ndesign = "guide.toml"\nresponses.k = "stiffness.x"\n'
+        section = f'tolerance = {{ copies = {copies}, sampling = "{sampling}", crosstalk = false {wishes} }}\n'
+        return loads_tolerance(head + section + text, folder=folder)
+
+    study.folder = folder
+    return study
+
+
+def test_stiffness_has_the_moments_of_a_cube(guide):
+    """E[(1 + s)^3] = 1 + 3 v, Var = 9 v + 36 v^2 + 15 v^3 for normal s of variance v; shear of these leaves takes less than 1e-3."""
+    study = guide('scatter.wire = { of = "hinges.thickness", normal = "8 %" }', copies=512)
+    found = piece(study, 0, 512).responses[:, 0] / slopes(study).values[0]
+    v = 0.08**2
+    assert found.mean() == pytest.approx(1.0 + 3.0 * v, rel=2e-3)
+    assert found.var() == pytest.approx(9.0 * v + 36.0 * v**2 + 15.0 * v**3, rel=0.02)
+
+
+def test_single_errors_average_out_and_common_ones_do_not(guide):
+    common = guide('scatter.wire = { of = "hinges.thickness", normal = "2 um" }')
+    each = guide('scatter.wire = { of = "hinges.thickness", normal = "2 um", each = true }')
+    one, many = (slopes(study) for study in (common, each))
+    sizes = [np.linalg.norm(found.gradient[0] * 2e-6) for found in (one, many)]
+    assert len(each.variables) == LEAVES
+    assert sizes[1] == pytest.approx(sizes[0] / np.sqrt(LEAVES), rel=1e-9)
+    deviations = [piece(study, 0, 256).responses[:, 0].std() for study in (common, each)]
+    assert deviations == pytest.approx(sizes, rel=0.05)
+
+
+def test_common_and_single_errors_of_one_number_add_up(guide):
+    both = guide('[scatter]\na = { of = "leaf.thickness", normal = "2 um" }\nb = { of = "links.l0.thickness", uniform = "5 um" }')
+    values = np.array([1e-6, 3e-6])
+    changed = both.described(values)
+    assert get(changed, "links.l0.thickness") == pytest.approx(0.504e-3, rel=1e-12)
+    assert get(changed, "links.l1.thickness") == pytest.approx(0.501e-3, rel=1e-12)
+
+
+def test_first_order_holds_for_small_scatter():
+    study = loads_tolerance(
+        """
+format = "flexstage study 1"
+case = "parallelogram"
+responses = { k = "stiffness.rz", f = "frequency.2", m = "mass", s = "safety" }
+tolerance = { copies = 256, require = false, crosstalk = false }
+[scatter]
+wire = { of = "hinges.thickness", normal = "0.2 um" }
+hinge = { of = "hinges.thickness", uniform = "0.2 um", each = true }
+place = { of = "units.shift", normal = "2 um" }
+steel = { of = "materials", normal = "0.02 %" }
+""".replace('"materials"', '["materials.young", "materials.steel.young"]')
+    )
+    slope = slopes(study)
+    size = np.array([each.deviation for each in study.deviations])
+    values = piece(study, 0, 256).responses
+    linear = np.linalg.norm(slope.gradient * size, axis=1)
+    moved = linear > 0.0
+    assert moved.tolist() == [True, True, False, True]
+    assert slope.smooth.all()
+    assert values[:, moved].std(axis=0) == pytest.approx(linear[moved], rel=4.0 / np.sqrt(2 * 256))
+    for column, variable in enumerate(study.deviations):
+        step = np.zeros((2, len(size)))
+        step[:, column] = variable.deviation * np.array([1.0, -1.0])
+        there = np.stack([np.broadcast_to(found, 2) for found in study.answered(study.described(step))], axis=-1)
+        wanted = (there[0] - there[1]) / (2.0 * variable.deviation)
+        np.testing.assert_allclose(slope.gradient[:, column], wanted, rtol=1e-4, atol=1e-4 * linear.max() / size[column])
+
+
+def test_the_yield_of_a_linear_response_is_that_of_its_distribution():
+    """Mass is proportional to density: the share below a limit is the normal distribution's."""
+    text = """
+format = "flexstage study 1"
+case = "parallelogram"
+limits.mass = "at most {} kg"
+scatter.density = {{ of = "materials.aluminium.density", normal = "2 %" }}
+tolerance = {{ copies = 2000, require = false, crosstalk = false }}
+"""
+    nominal = float(slopes(loads_tolerance(text.format(1.0))).values[0])
+    study = loads_tolerance(text.format(nominal * 1.02))
+    slope, results = slopes(study), told(study)
+    found = summary(study, results, slope)
+    wanted = float(ndtr(1.0))
+    error = np.sqrt(wanted * (1.0 - wanted) / 2000)
+    assert found.together.share == pytest.approx(wanted, abs=4.0 * error)
+    assert found.together.low < wanted < found.together.high
+    assert allowance(study, results, slope, found).together == pytest.approx(1.0 / ndtri(0.99), rel=1e-9)
+
+
+def test_what_is_allowed_keeps_what_is_wanted(guide):
+    study = guide(
+        'limits."stiffness.x" = "at least 4.5 N/mm"\n[scatter]\n'
+        'wire = { of = "leaf.thickness", normal = "4 um" }\nhinge = { of = "leaf.thickness", normal = "8 um", each = true }',
+        copies=600,
+        sampling="monte carlo",
+        wishes=', yield = "90 %"',
+    )
+    slope, results = slopes(study), told(study)
+    found = allowance(study, results, slope, summary(study, results, slope))
+    error = 4.0 * np.sqrt(0.9 * 0.1 / 600)
+    for factors in ((found.together,) * 2, (found.alone[0], 1.0), tuple(found.equal)):
+        again = study.scaled(tuple(float(each) for each in factors))
+        passed = piece(again, 0, 600).responses[:, 1] >= 4.5e3
+        assert passed.mean() == pytest.approx(0.9, abs=error + 0.02), factors
+    assert found.then.share == pytest.approx(0.9, abs=error + 0.02)
+
+
+def test_copies_do_not_depend_on_how_they_are_cut(guide):
+    for sampling in ("monte carlo", "latin hypercube", "sobol"):
+        study = guide('[scatter]\na = { of = "leaf.thickness", normal = "2 um" }\nb = { of = "leaf.width", uniform = "1 %" }', 64, sampling)
+        whole = study.drawn(0, study.plan.designs)
+        edges = [0, 5, 64, 70, 97, study.plan.designs]
+        np.testing.assert_array_equal(np.concatenate([study.drawn(*pair) for pair in pairwise(edges)]), whole)
+        assert np.all(whole[64:96, 1] == 0.0)
+        assert np.all(whole[96:, 0] == 0.0)
+        assert np.all(np.any(whole[:64] != 0.0, axis=1))
+
+
+def test_copies_of_a_symmetric_stage_scatter_alike_and_competing_ones_have_no_derivative():
+    study = loads_tolerance("""
+format = "flexstage study 1"
+case = "double-triangle"
+responses = { a = "loss.B4", b = "loss.B5", c = "loss.B6", worst = "loss", f = "frequency.platform.1" }
+tolerance = { copies = 16, require = false, crosstalk = false }
+scatter.pivot = { of = "vertical/pivot.thickness", normal = "5 um", each = true }
+""")
+    found = slopes(study)
+    sizes = np.linalg.norm(found.gradient, axis=1)
+    assert sizes[:3] == pytest.approx(sizes[0], rel=1e-9)
+    assert found.smooth.tolist() == [True, True, True, False, False]
+    assert found.gradient[4].std() < 1e-6 * abs(found.gradient[4].mean())  # each lifts the mean of the pair alike
+
+
+def test_a_drawn_stage_has_no_crosstalk_and_turned_copies_that_of_their_lines_of_action():
+    """Open: -R_a^-1 dR_a for a direct unit turned about z, of stiff stacks; held: -R_s^-1 dR_s for a gauge turned so, exactly."""
+    angle = 1e-5
+    stage = double_triangle()
+    for name in ("stack_horizontal", "stack_vertical"):
+        stage = set_value(stage, f"parts.{name}.stiffness", 1e12)
+    bench = bench_of(stage)
+    asked = command(bench, "platform")
+    names = list(pose_measures(asked))
+    at_rest = dict(zip(names, poses(bench, asked), strict=True))
+    reference = bench.assembly.bodies["platform"].reference
+
+    def matrix(kind, values):
+        return np.array([[float(values[f"{kind}.{row}.{column}"]) for column in COMPONENTS] for row in COMPONENTS])
+
+    assert matrix("open", at_rest) == pytest.approx(np.eye(6), abs=1e-9)
+    assert matrix("held", at_rest) == pytest.approx(np.eye(6), abs=1e-9)
+    unit = next(frame for name, _, frame in copies(stage) if name == "B1")
+    ways = {"open": ("B1", unit), "held": ("S1", bench.assembly.gauges["S1"].frame)}
+    for kind, (name, frame) in ways.items():
+        turned = set_value(stage, f"{name}.rotation.z", angle)
+        found = matrix(kind, dict(zip(names, poses(bench_of(turned), asked), strict=True))) - np.eye(6)
+        mapping = bench.kinematics.mapping.values if kind == "open" else bench.kinematics.sensing
+        own = mapping[0, :3]
+        arm = frame.position - reference
+        swung = angle * np.cross([0.0, 0.0, 1.0], own)
+        change = np.zeros((6, 6))
+        change[0] = np.concatenate([swung, np.cross(arm, swung)])
+        wanted = -np.linalg.solve(mapping, change)
+        np.testing.assert_allclose(found, wanted, atol=(0.01 if kind == "open" else 1e-3) * np.abs(wanted).max())
+
+
+@pytest.mark.parametrize("shape", [Distribution(Shape.NORMAL, 2.0), Distribution(Shape.NORMAL, 2.0, 3.0), Distribution(Shape.UNIFORM, 2.0)])
+def test_distributions_have_the_deviation_they_say(shape):
+    values = shape.quantile((np.arange(20000) + 0.5) / 20000)
+    assert values.mean() == pytest.approx(0.0, abs=1e-9)
+    assert values.std() == pytest.approx(shape.deviation, rel=2e-3)
+    assert shape.bounded is None or np.abs(values).max() <= shape.bounded
+    assert shape.times(3.0).deviation == pytest.approx(3.0 * shape.deviation, rel=1e-12)
+
+
+def test_intervals_cover_the_truth_as_often_as_they_say():
+    kept = np.random.default_rng(1).random((400, 200)) < 0.93
+    covered = [found.low <= 0.93 <= found.high for found in map(binomial, kept)]
+    assert np.mean(covered) >= 0.95 - 3.0 * np.sqrt(0.05 * 0.95 / 400)
+
+
+def test_copies_that_fail_are_kept_and_count_against_the_yield(guide):
+    study = guide(
+        'limits."stiffness.x" = "at least 1 N/mm"\nscatter.wire = { of = "leaf.thickness", normal = "5 %" }',
+        copies=32,
+        sampling="monte carlo",
+    )
+    study = study.scaled((20.0,))  # wider than a file may say: some leaves are thinner than nought
+    results, slope = told(study), slopes(study)
+    negative = np.flatnonzero(results.variables[:, 0] <= -1.0)
+    found = summary(study, results, slope)
+    assert 0 < len(negative) < 16
+    assert set(negative) <= set(results.failures)
+    assert found.failed == len(results.failures)
+    assert found.together.copies == 32
+    assert found.together.kept <= 32 - found.failed
+
+
+BAD = {
+    'w = { of = "hinge.thickness", normal = "1 um" }': 'there is no "hinge". The nearest name is hinges.',
+    'w = { of = "leaf.thicknes", normal = "1 um" }': "The nearest name is thickness",
+    'w = { of = "leaf.thickness", normal = "-1 um" }': "Give a deviation above 0",
+    'w = { of = "leaf.thickness", normal = "0 um" }': "Give a deviation above 0",
+    'w = { of = "leaf.thickness", normal = "0.2 mm" }': "parts.leaf.thickness is 0.5 mm, and deviations reach 1 mm (5 standard deviations)",
+    'w = { of = "leaf.thickness", uniform = "120 %" }': "it would be -0.1 mm, and is to be greater than 0",
+    'w = { of = "leaf.thickness" }': "it is not said how far it deviates",
+    'w = { of = "leaf.thickness", normal = "1 um", uniform = "1 um" }': "it is both normal and uniform",
+    'w = { of = "leaf.thickness", normal = "1 mrad" }': "mrad",
+    'w = { of = "materials.steel.young", normal = "1 %", each = true }': "materials.steel.young is one number, and has no copies",
+    'w = { of = ["leaf.thickness", "materials.steel.young"], normal = "1 %" }': "they are of different quantities",
+    'w = { of = "leaf.thickness", normal = "1 um", evry = true }': "nothing of this name is known here",
+    'w = { of = "stacks.stroke", normal = "1 %" }': "the design has none of this kind",
+    'w = { of = "links.l0.at.z", normal = "1 um", within = "3 %" }': "one is relative (%), the other not",
+}
+
+
+@pytest.mark.parametrize("line", BAD)
+def test_entries_that_cannot_be(guide, line):
+    with pytest.raises(DesignError) as caught:
+        guide(f"[scatter]\n{line}")
+    assert BAD[line] in str(caught.value)
+
+
+def test_sections_that_cannot_be(guide):
+    for text, said in {
+        "": "nothing scatters",
+        'scatter.w = { of = "leaf.thickness", normal = "1 um" }\nlimits."stifness.x" = "at least 1 N/m"': "stiffness.x",
+    }.items():
+        with pytest.raises(DesignError) as caught:
+            guide(text)
+        assert said in str(caught.value)
+    with pytest.raises(DesignError, match="do not determine the platform"):
+        loads_tolerance(ASKED.replace("false", "true"), folder=guide.folder)
+    assert loads_tolerance(ASKED.replace("crosstalk = false", ""), folder=guide.folder).commanded is None
