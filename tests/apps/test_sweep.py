@@ -85,7 +85,7 @@ def test_sweep_shows_and_writes(study_file, tmp_path, flexstage):
     (tmp_path / "random.py").write_text("raise SystemExit('a file of the user')")  # lies where the processes are started
     done = flexstage("sweep", "study.toml", "-o", "r.h5", "--report", "r.html", "--json", "r.json")
     assert done.code == 0, done.err
-    assert "frequency.1 at platform" in done.out
+    assert "frequency.1" in done.out
     assert (tmp_path / "r.html").read_text().startswith("<!doctype html>")
     again = flexstage("sweep", "study.toml", "-o", "r.h5")
     assert (again.code, "results are there already" in again.err) == (2, True)

@@ -26,12 +26,14 @@ def sweep_report(study: Study, results: Results, found: Effects) -> str:
     >>> sweep_report.__name__
     'sweep_report'
     """
-    effects = Picture(to_svg(effects_figure(study, found), "effects", "mean responses over the variables"), _STEEP)
-    designs = Picture(to_svg(designs_figure(study, results), "designs", "designs over parallel axes"), _parallel(study, found))
+    effects = designs = None
+    if found.used:
+        effects = Picture(to_svg(effects_figure(study, found), "effects", "mean responses over the variables"), _STEEP)
+        designs = Picture(to_svg(designs_figure(study, results), "designs", "designs over parallel axes"), _parallel(study, found))
     sections: list[Section | None] = [
         section("What was varied", [variable_table(study, results)]),
-        section("Responses", [response_table(study, results, found), designs if found.used else None]),
-        section("Effects", [share_table(found), effects if found.used else None]),
+        section("Responses", [response_table(study, results, found), designs]),
+        section("Effects", [share_table(found), effects]),
         section("Interactions", _interactions(study, found)),
         section("Designs without values", [failure_table(results)] if results.failures else []),
     ]

@@ -8,9 +8,7 @@ from itertools import combinations
 import numpy as np
 
 from flexstage.analysis.requirements import KINDS, Verdict
-from flexstage.base.quantity import Quantity
-from flexstage.base.unit import show
-from flexstage.present.display import NOISE, number, value_with_unit
+from flexstage.present.display import NO_VALUE, NOISE, number, value_with_unit
 from flexstage.present.table import Cell, Column, Mark, Table, build
 from flexstage.studies.study.definition import Study
 from flexstage.studies.study.effects import Effects
@@ -43,18 +41,14 @@ def variable_table(study: Study, results: Results) -> Table:
         (
             Cell(each.name, Mark.STRONG),
             ", ".join(each.addresses) if each.variant is None else f"parameter {', '.join(each.addresses)}",
-            _end(each.low, each.quantity, relative=each.relative),
-            _end(each.high, each.quantity, relative=each.relative),
+            each.text(each.low),
+            each.text(each.high),
         )
         for each in study.variables
     ]
     plan = study.plan
     note = f"{len(results.designs)} of {results.planned} designs, {plan.sampling.value}" + ("" if plan.levels else f", seed {plan.seed}")
     return build("Varied", ["variable", "number", "from", "to"], rows, notes=[f"{note}."])
-
-
-def _end(value: float, quantity: Quantity, *, relative: bool) -> str:
-    return f"{100.0 * (value - 1.0):+.4g} %" if relative else show(value, quantity, digits=6)
 
 
 def response_table(study: Study, results: Results, found: Effects) -> Table:
@@ -68,7 +62,10 @@ def response_table(study: Study, results: Results, found: Effects) -> Table:
         unit = measure.quantity.si
         noise = NOISE * abs(found.mean[index])
         spread = 0.0 if found.deviation[index] < noise else found.deviation[index]
-        cells = [value_with_unit(float(each), unit, 5) for each in (found.low[index], found.mean[index], spread, found.high[index])]
+        cells = [
+            value_with_unit(float(each), unit, 5) if found.used else NO_VALUE
+            for each in (found.low[index], found.mean[index], spread, found.high[index])
+        ]
         rows.append(
             (
                 Cell(name, Mark.STRONG),

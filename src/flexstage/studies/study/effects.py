@@ -120,6 +120,8 @@ def _bins(column: Array, plan: Plan) -> Array:
 def _ratios(bins: list[Array], values: Array, *, grid: bool) -> Array:
     """Correlation ratios (d, r); of random designs less what bins of pure chance would explain, (b - 1)/(n - 1)."""
     result = np.full((len(bins), values.shape[1]), np.nan)
+    if not len(values):
+        return result
     spread = variance(values)
     for number, group in enumerate(bins):
         counts = np.bincount(group)

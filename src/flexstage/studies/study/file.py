@@ -58,7 +58,7 @@ def loads_study(text: str, *, where: str = "text", folder: Path | None = None) -
     design, tables, findings = head.design, head.tables, head.findings
     variables = _variables(tables["variables"], design, head.variant)
     plan = _plan(tables["sweep"], variables)
-    if not head.responses:
+    if not tables["responses"].tree:
         findings.append(Finding("responses", "nothing is asked", 'Name a measure, for example f1 = "frequency.platform.1"'))
     require(placed([*findings, *variable_findings(design, variables)], where))
     return Study(head.name, design, variables, Table(head.responses), head.limits, plan, text)

@@ -52,7 +52,7 @@ def paired_shares(at: Array, values: Array, *, grid: bool) -> Array:
     count, dimensions = at.shape
     result = np.full((dimensions, dimensions, values.shape[1]), np.nan)
     width = _WIDEST if grid else min(_WIDEST, int(np.sqrt(count / _FEWEST)))
-    if width < 2:
+    if width < 2 or count < 2:
         return result
     bins = [np.unique(column, return_inverse=True)[1] if grid else ranked(column, width) for column in at.T]
     rest = values - values.mean(axis=0) - sum(effect[group] for effect, group in zip(single_effects(bins, values), bins, strict=True))

@@ -10,6 +10,7 @@ import numpy as np
 from flexstage.base.finding import Finding
 from flexstage.base.number import Array, Number
 from flexstage.base.quantity import Quantity
+from flexstage.base.unit import show
 from flexstage.cases.registry import Variant
 from flexstage.mechanism.address import get, set_value
 from flexstage.mechanism.grammar import node_of, numbers
@@ -51,6 +52,15 @@ class Variable:
         if self.logarithmic:
             return self.low * (self.high / self.low) ** shares
         return self.low + (self.high - self.low) * shares
+
+    def text(self, value: float) -> str:
+        """A value as a study's file has it: with its unit, or in percent of what the design states.
+
+        >>> from flexstage.base.quantity import RATIO
+        >>> Variable("t", ("parts.neck.thickness",), RATIO, 0.9, 1.1, relative=True).text(1.1)
+        '+10 %'
+        """
+        return f"{100.0 * (value - 1.0):+.4g} %" if self.relative else show(value, self.quantity, digits=6)
 
 
 def varied(mechanism: Mechanism, variables: Iterable[Variable], values: Array) -> Mechanism:
@@ -103,13 +113,13 @@ def variable_findings(mechanism: Mechanism, variables: Iterable[Variable]) -> It
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> neck = Variable("neck", ("parts.neck.thickness",), LENGTH, 2e-3, 1e-3)
     >>> [str(each) for each in variable_findings(double_triangle(), [neck])]
-    ['variables.neck: its range is empty: from 0.002 to 0.001 m. Give from < to.']
+    ['variables.neck: its range is empty: from 2 mm to 1 mm. Give from < to.']
     """
     owners: dict[str, str] = {}
     for variable in variables:
         where = f"variables.{variable.name}"
         if not variable.low < variable.high:
-            what = f"its range is empty: from {variable.low:g} to {variable.high:g} {variable.quantity.si}"
+            what = f"its range is empty: from {variable.text(variable.low)} to {variable.text(variable.high)}"
             yield Finding(where, what, "Give from < to")
         elif variable.logarithmic and variable.low <= 0.0:
             yield Finding(where, f"a logarithmic range cannot begin at {variable.low:g}", "Begin above 0, or leave out the logarithm")
