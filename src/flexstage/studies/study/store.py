@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+import flexstage
 from flexstage.base.finding import Finding, refuse
 from flexstage.base.number import Array
 from flexstage.readings.measured.aside import aside
@@ -22,8 +23,15 @@ from flexstage.studies.study.definition import Study
 from flexstage.studies.study.evaluate import Piece
 
 FORMAT = "flexstage results 1"
+_ABOUT = (
+    "Designs of a study, one a row of variables and responses, in SI by their attributes names, units and of (what they are; variables in "
+    "1 may be factors on what the design states). NaN: not computed yet (computed says which pieces are, of piece rows each), or "
+    "failed (1 in failed, reasons in failures). study is the study's file, facts what the numbers depend on. "
+    "In Python: flexstage.studies.study.store.read_results, then to_xarray() or to_pandas()."
+)
 _ROWS = 65_536
 _ATTEMPTS = 20
+_PIECES = ".pieces"
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,7 +85,7 @@ def folder_of(path: Path) -> Path:
     >>> folder_of(Path("a/results.h5")).as_posix()
     'a/results.h5.pieces'
     """
-    return path.with_name(f"{path.name}.pieces")
+    return path.with_name(f"{path.name}{_PIECES}")
 
 
 def write_piece(folder: Path, found: Piece) -> Path:
@@ -154,7 +162,7 @@ def _frame(file: Any, study: Study, size: int) -> None:
     """The empty file: names, units and what the study was."""
     names, units = columns_of(study)
     file.attrs["format"] = FORMAT
-    file.attrs["study"] = study.text
+    file.attrs["study"], file.attrs["version"], file.attrs["about"] = study.text, flexstage.__version__, _ABOUT
     file.attrs["planned"], file.attrs["piece"] = study.plan.designs, size
     facts = file.create_group("facts", track_order=True)
     for key, value in study.facts.items():
@@ -163,6 +171,8 @@ def _frame(file: Any, study: Study, size: int) -> None:
     for number, kind in enumerate(("variables", "responses")):
         data = file.create_dataset(kind, (count, len(names[number])), "f8", fillvalue=np.nan, chunks=_chunks(count, len(names[number])))
         data.attrs["names"], data.attrs["units"] = list(names[number]), list(units[number])
+    file["variables"].attrs["of"] = [", ".join(each.addresses) for each in study.variables]
+    file["responses"].attrs["of"] = [f"{each.key} at {each.point}" for each in study.columns.values()]
     import h5py
 
     file.create_dataset("failed", (count,), "u1", chunks=(min(count, _ROWS),))
@@ -242,7 +252,7 @@ def _file(path: Path) -> Generator[Any]:
 
 
 def read_results(path: str | os.PathLike[str]) -> Results:
-    """Read results, complete or not. Raises `DesignError` for files that are none.
+    """Read results, complete or not, by their file or the folder of pieces beside it. Raises `DesignError` for files that are none.
 
     >>> read_results("nowhere/results.h5")
     Traceback (most recent call last):
@@ -250,12 +260,13 @@ def read_results(path: str | os.PathLike[str]) -> Results:
     flexstage.base.finding.DesignError: nowhere/results.h5: there is no such file. Check the path.
     """
     where = os.fspath(path)
-    if not Path(path).exists():
+    path = Path(where.rstrip("/").removesuffix(_PIECES))
+    if not path.exists():
         raise refuse(where, "there is no such file", "Check the path")
     for _ in range(_ATTEMPTS):  # a piece that is gathered while we look is gone from the folder, and in the file the next time
-        pieces = list(waiting(Path(path)).values())
+        pieces = list(waiting(path).values())
         try:
-            return _opened(Path(path), pieces)
+            return _opened(path, pieces)
         except FileNotFoundError:
             continue
     raise refuse(where, "its pieces are gathered faster than they can be read", "Try again")
