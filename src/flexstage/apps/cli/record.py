@@ -43,7 +43,7 @@ Units: TypeAlias = Annotated[
 ]
 Rate: TypeAlias = Annotated[
     str | None,
-    typer.Option("--rate", metavar="FREQUENCY", help='Sampling rate where the file has none, e.g. "2048 Hz".', show_default=False),
+    typer.Option("--rate", metavar="FREQUENCY", help='Sampling rate, if the file has none or a wrong one: "2048 Hz".', show_default=False),
 ]
 Kind: TypeAlias = Annotated[
     str | None,

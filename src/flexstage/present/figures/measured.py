@@ -175,7 +175,7 @@ def coherence_figure(found: Identified, multiple: Array | None) -> Any:
         across = min(3, len(rows))
         down = -(-len(rows) // across)
         figure = canvas(FULL, 0.75 + 1.25 * down)
-        grid = panels(figure, down, across, Margins(left=0.5, top=0.5, across=0.3, down=0.35))
+        grid = panels(figure, down, across, Margins(left=0.5, top=0.5, across=0.45, down=0.35))
         for place, row in enumerate(rows):
             axes = grid[place // across, place % across]
             for column in range(min(LARGEST, len(found.inputs)) if data.coherence is not None else 0):

@@ -133,7 +133,7 @@ def _loop_findings(volts: Array, strokes: Array) -> Iterator[Finding]:
     means = [_binned(volts, strokes, branch) for branch in major]
     risen = np.mean([np.sign(branch.last - branch.first) * (strokes[branch.stop] - strokes[branch.start]) for branch in major])
     if risen < 0.0:
-        what = f"the stroke falls by {-risen:g} m while the volts rise over a branch"
+        what = f"the stroke falls by {-1e6 * risen:.4g} um while the volts rise over a branch"
         yield Finding("stroke", what, "Change its sign: a stack grows with the volts")
         return
     up, down = (
@@ -168,6 +168,6 @@ def _fall(branch: Branch, mean: Array, volts: Array, size: float) -> Finding:
     peak = int(np.argmax(mean[: trough + 1]))
     drop = highest[trough] - mean[trough]
     places = np.min(volts) + np.ptp(volts) * (np.array([peak, trough]) + 0.5) / _BINS
-    what = f"on the branch from {branch.first:g} V to {branch.last:g} V it is {drop:.3g} m less at {places[1]:g} V"
+    what = f"on the branch from {branch.first:g} V to {branch.last:g} V it is {1e6 * drop:.3g} um less at {places[1]:g} V"
     much = f"than at {places[0]:g} V ({drop / size:.1%} of its range)"
     return Finding("stroke", f"{what} {much}: a loop that is not monotone has no inverse", "Look for slip, a resonance or a bad contact")

@@ -164,7 +164,7 @@ def _cautions(search: _Search, found: tuple[float, int], limits: Range | None) -
 
 def _result_findings(found: IdentifiedHysteresis) -> Iterator[Finding]:
     if abs(found.drift) > _DRIFT:
-        what = f"the stroke drifts by {found.drift:.1%} of its range ({found.drift * found.stroke:.3g} m) over the record"
+        what = f"the stroke drifts by {found.drift:.1%} of its range ({1e6 * found.drift * found.stroke:.3g} um) over the record"
         yield Finding("stroke", what, "Let the stage settle before recording, record faster than it creeps, or subtract the drift")
     elif found.rms > _POOR:
         what = f"the best model misses it by {found.rms:.1%} rms of the stroke: this is no rate-independent hysteresis"
