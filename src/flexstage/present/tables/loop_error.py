@@ -9,6 +9,7 @@ import numpy as np
 
 from flexstage.analysis.loop.compensation import StaticError
 from flexstage.analysis.loop.noise import NoiseBudget
+from flexstage.analysis.loop.simulation.result import Simulated
 from flexstage.analysis.loop.whites import Kind
 from flexstage.base.number import Array
 from flexstage.present.display import NO_VALUE, number, percent, value_with_unit
@@ -97,13 +98,16 @@ def noise_table(found: LoopStudy) -> Table:
         told = [] if simulated is None else [motion_cell(float(simulated[index]), channel.unit)]
         total = replace(motion_cell(float(budget.rms[index]), channel.unit), mark=Mark.STRONG)
         rows.append((Cell(channel.name.removeprefix("relative."), Mark.STRONG), total, *cells, *told))
-    return build("Noise at rest", heads, rows, notes=_noise_notes(budget, simulated=simulated is not None))
+    return build("Noise at rest", heads, rows, notes=_noise_notes(budget, found.still))
 
 
-def _noise_notes(budget: NoiseBudget, *, simulated: bool) -> Sequence[str]:
+def _noise_notes(budget: NoiseBudget, still: Simulated | None) -> Sequence[str]:
     first = "Rms of the platform's true motion against the ground; squares add up."
     first += f" The floor from {number(budget.band[0], 3)} to {number(budget.band[1], 4)} Hz." if Kind.FLOOR in budget.kinds else ""
-    more = ["Simulated: over the same noise as series of numbers, rounding and limits included."] if simulated else []
+    more = []
+    if still is not None:
+        seconds = number(float(still.times[-1]), 3)
+        more = [f"Simulated: {seconds} s of the same noise, rounding and limits included; chance parts it from the budget."]
     return [first, *more, *(f"{each[0].upper()}{each[1:]}." for each in budget.notes)]
 
 
