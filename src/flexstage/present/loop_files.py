@@ -15,10 +15,10 @@ from flexstage.analysis.loop.code.text import identifier
 from flexstage.analysis.loop.plant import Plant, held
 from flexstage.analysis.loop.simulation.machine import Machine
 from flexstage.analysis.loop.system import System
+from flexstage.base.aside import aside
 from flexstage.base.finding import refuse
 from flexstage.present.fmu.unit import fmu
 from flexstage.readings.linear.model import Channel
-from flexstage.readings.measured.aside import aside
 
 
 def write_controller(path: str | os.PathLike[str], given: Machine, about: str = "") -> tuple[Path, Path]:

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import errno
 import os
 import re
-import secrets
 import tomllib
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from flexstage.base.aside import beside, put
 from flexstage.base.finding import DesignError, refuse
 
 LARGEST = 5_000_000
@@ -84,7 +83,7 @@ class Aside:
     def put(self) -> Path:
         """Rename it onto its target; raises `DesignError` if that cannot be."""
         try:
-            self.place.replace(self.target)
+            put(self.place, self.target)
         except OSError as error:
             raise _unwritable(self.where, error) from None
         finally:
@@ -120,21 +119,16 @@ def written_aside(path: str | os.PathLike[str], content: str | bytes) -> Aside:
 
 
 def _aside(target: Path, content: bytes) -> Path:
-    mode = target.stat().st_mode & 0o777 if target.exists() else None
-    if mode is not None and not os.access(target, os.W_OK):
-        raise PermissionError(errno.EACCES, "the file is write-protected")
-    aside = target.with_name(f".{target.name[:40]}.{secrets.token_hex(4)}.part")
+    place = beside(target)
     try:
-        with aside.open("xb") as stream:
+        with place.open("xb") as stream:
             stream.write(content)
             stream.flush()
             os.fsync(stream.fileno())
-        if mode is not None:
-            aside.chmod(mode)
     except BaseException:
-        aside.unlink(missing_ok=True)
+        place.unlink(missing_ok=True)
         raise
-    return aside
+    return place
 
 
 def _unwritable(where: str, error: OSError | ValueError) -> DesignError:

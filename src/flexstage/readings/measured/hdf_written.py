@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from flexstage.readings.measured.aside import aside
+from flexstage.base.aside import aside
 
 
 class Stream:

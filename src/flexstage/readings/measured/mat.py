@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
+from flexstage.base.aside import aside
 from flexstage.base.finding import refuse
 from flexstage.base.number import Array
-from flexstage.readings.measured.aside import aside
 from flexstage.readings.measured.hdf import BLOCK, RESPONSES_FORM, Stored, opened
 from flexstage.readings.measured.hdf_sound import require_sound
 from flexstage.readings.measured.hdf_written import hdf_written

@@ -7,10 +7,12 @@ import time
 from collections.abc import Callable, Generator, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from glob import escape
 from pathlib import Path
 
 import numpy as np
 
+from flexstage.base.aside import stem_of
 from flexstage.base.child import cores
 from flexstage.base.finding import refuse, require
 from flexstage.studies.study.definition import Study
@@ -128,7 +130,7 @@ def _alone(folder: Path) -> Generator[None]:
             fcntl.flock(held, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError:
             raise refuse(os.fspath(folder), "another process computes this study", "Wait for it, or name another file") from None
-        for left in (*folder.glob(".*.part"), *folder.parent.glob(f".{folder.stem}.*.part")):
+        for left in (*folder.glob(".*.part"), *folder.parent.glob(f".{escape(stem_of(folder.with_suffix('')))}.*.part")):
             left.unlink(missing_ok=True)
         try:
             yield

@@ -16,9 +16,9 @@ from typing import Any
 import numpy as np
 
 import flexstage
+from flexstage.base.aside import aside
 from flexstage.base.finding import Finding, refuse
 from flexstage.base.number import Array
-from flexstage.readings.measured.aside import aside
 from flexstage.studies.study.definition import Study
 from flexstage.studies.study.evaluate import Piece
 

@@ -11,9 +11,9 @@ from typing import IO
 
 import numpy as np
 
+from flexstage.base.aside import aside
 from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array
-from flexstage.readings.measured.aside import aside
 from flexstage.readings.measured.record import Channel, Record, Responses
 from flexstage.readings.measured.table.read import SAYING
 from flexstage.readings.measured.variables import TIMES, plain_name

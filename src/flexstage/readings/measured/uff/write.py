@@ -7,9 +7,9 @@ from typing import BinaryIO
 
 import numpy as np
 
+from flexstage.base.aside import aside
 from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array
-from flexstage.readings.measured.aside import aside
 from flexstage.readings.measured.record import Channel, Record, Responses, Role
 from flexstage.readings.measured.uff.function import COHERENCE, COMPLEX_DOUBLE, REAL_DOUBLE, RESPONSE, TIME, Axis, Function, counted, head
 
