@@ -155,7 +155,11 @@ def test_what_is_allowed_keeps_what_is_wanted(guide):
     slope, results = slopes(study), told(study)
     found = allowance(study, results, slope, summary(study, results, slope))
     error = 4.0 * np.sqrt(0.9 * 0.1 / 600)
-    for factors in ((found.together,) * 2, (found.alone[0], 1.0), tuple(found.equal)):
+    size = np.array([each.deviation for each in study.deviations])
+    for factors in ((found.together,) * 2, (found.alone[0], 1.0), (1.0, found.alone[1]), tuple(found.equal)):
+        assert 0.1 < min(factors) < 10.0
+        reach = ndtri(0.9) * np.linalg.norm(slope.gradient[1] * size * np.array(factors)[list(study.owners)])
+        assert reach == pytest.approx(found.margin[0], rel=1e-9)
         again = study.scaled(tuple(float(each) for each in factors))
         passed = piece(again, 0, 600).responses[:, 1] >= 4.5e3
         assert passed.mean() == pytest.approx(0.9, abs=error + 0.02), factors
@@ -218,6 +222,16 @@ def test_a_drawn_stage_has_no_crosstalk_and_turned_copies_that_of_their_lines_of
         change[0] = np.concatenate([swung, np.cross(arm, swung)])
         wanted = -np.linalg.solve(mapping, change)
         np.testing.assert_allclose(found, wanted, atol=(0.01 if kind == "open" else 1e-3) * np.abs(wanted).max())
+
+
+def test_volts_of_a_stack_that_reaches_farther_move_the_stage_farther():
+    """Of a drawn stage T C = 1; with the first stack's stroke 3 % larger C^-1 diag(1.03, 1, ...) C."""
+    stage = double_triangle()
+    asked = command(bench_of(stage), "platform")
+    longer = set_value(stage, "B1/pzt.stroke", 1.03 * get(stage, "B1/pzt.stroke"))
+    found = np.array(poses(bench_of(longer), asked)[:36], dtype=float).reshape(6, 6)
+    wanted = np.linalg.solve(asked.gains, np.diag([1.03, 1.0, 1.0, 1.0, 1.0, 1.0]) @ asked.gains)
+    np.testing.assert_allclose(found, wanted, atol=1e-9 * np.abs(wanted).max())
 
 
 @pytest.mark.parametrize("shape", [Distribution(Shape.NORMAL, 2.0), Distribution(Shape.NORMAL, 2.0, 3.0), Distribution(Shape.UNIFORM, 2.0)])

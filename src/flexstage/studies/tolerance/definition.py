@@ -20,6 +20,10 @@ from flexstage.studies.tolerance.crosstalk import Command, PoseMeasure, command,
 from flexstage.studies.tolerance.scatter import Deviation, Scatter, Target, deviated, sums
 
 
+_MANY = 64
+"""How many copies for each number that scatters there must be for the engine of many designs to pay for its plan."""
+
+
 @dataclass(frozen=True)
 class Copies(Plan):
     """A plan of `count` copies in which everything scatters, then of `alone` more for each entry of `[scatter]`, which then scatters alone.
@@ -125,9 +129,9 @@ class Tolerance(Study):
         return deviated(self.design, self.targets, values)
 
     @property
-    def numbers(self) -> Numbers:
-        """The numbers of the description that copies differ in."""
-        return sums(self.targets, len(self.variables))
+    def numbers(self) -> Numbers | None:
+        """The numbers of the description that copies differ in; `None` for so few copies that planning for them costs more than it saves."""
+        return sums(self.targets, len(self.variables)) if self.plan.designs >= _MANY * len(self.targets) else None
 
     def answered(self, mechanism: Mechanism, names: tuple[str, ...] | None = None) -> tuple[Array | str, ...]:
         """What is asked of a copy or a batch of them, column by column or those of `names`."""
