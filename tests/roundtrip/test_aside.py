@@ -15,12 +15,17 @@ def test_a_file_keeps_its_mode(tmp_path):
     assert (target.read_text(), target.stat().st_mode & 0o777) == ("after", 0o640)
 
 
+def half_written(target):
+    with aside(target) as place:
+        place.write_text("half")
+        raise OSError(28, "disk is full")
+
+
 def test_what_fails_leaves_the_file_as_it_was(tmp_path):
     target = tmp_path / "results.h5"
     target.write_text("before")
-    with pytest.raises(DesignError, match="disk is full"), aside(target) as place:
-        place.write_text("half")
-        raise OSError(28, "disk is full")
+    with pytest.raises(DesignError, match="disk is full"):
+        half_written(target)
     assert [each.name for each in tmp_path.iterdir()] == ["results.h5"]
     assert target.read_text() == "before"
 
