@@ -19,7 +19,6 @@ from flexstage.studies.study.plan import Plan, Sampling, shares
 from flexstage.studies.tolerance.crosstalk import Command, PoseMeasure, command, pose_measures, poses
 from flexstage.studies.tolerance.scatter import Deviation, Scatter, Target, deviated, sums
 
-
 _MANY = 64
 """How many copies for each number that scatters there must be for the engine of many designs to pay for its plan."""
 
