@@ -129,7 +129,7 @@ class Tolerance(Study):
 
     @property
     def numbers(self) -> Numbers | None:
-        """The numbers of the description that copies differ in; `None` for so few copies that planning for them costs more than it saves."""
+        """The numbers that copies differ in; `None` for so few copies that planning for them costs more than it saves."""
         return sums(self.targets, len(self.variables)) if self.plan.designs >= _MANY * len(self.targets) else None
 
     def answered(self, mechanism: Mechanism, names: tuple[str, ...] | None = None) -> tuple[Array | str, ...]:
