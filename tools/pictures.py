@@ -36,6 +36,7 @@ from flexstage.present.figures.loop_frequency import Curves, open_loop_figure
 from flexstage.present.figures.loop_noise import noise_share_figure
 from flexstage.present.figures.loop_time import path_figure
 from flexstage.present.figures.measured import stabilisation_figure
+from flexstage.present.figures.optimise import convergence_figure
 from flexstage.present.figures.skin import skin_figure
 from flexstage.present.figures.study import effects_figure
 from flexstage.present.figures.style import FULL, INK, PAPER, SERIES, canvas, styled
@@ -52,6 +53,8 @@ from flexstage.studies.hysteresis_example import example_test
 from flexstage.studies.loop.choices import Compensation, Criterion
 from flexstage.studies.loop.setup import Floor, Gauging, LoopSetup, RasterMotion, Shaking
 from flexstage.studies.loop.study import LoopStudy, loop_study
+from flexstage.studies.optimise.file import load_wanted
+from flexstage.studies.optimise.optimum import optimise
 from flexstage.studies.solid_read import STANDARD_SOLIDS, read_solid
 from flexstage.studies.solid_surface import mode_surfaces
 from flexstage.studies.study.definition import Study
@@ -253,6 +256,12 @@ def strongest() -> Any:
     return strongest_figure(*_study("arms.toml"))
 
 
+def optimum() -> Any:
+    """How the searches of docs/optimise.md converge."""
+    study = loads_study(next(block.text for block in blocks("docs/optimise.md") if block.word("file") == "study.toml"))
+    return convergence_figure(optimise(study, load_wanted(study)))
+
+
 @cache
 def _made() -> Toleranced:
     """The study in docs/tolerance.md, with as many copies as histograms need."""
@@ -319,6 +328,7 @@ DRAWN: Mapping[str, tuple[Callable[[], Any], str]] = {
     "effects": (effects, "mean frequency, lost motion and mass over the thickness of necks, plate and notch"),
     "pairs": (pairs, "shares of variance of stroke and lost motion by the arm, the notch, and both together"),
     "strongest": (strongest, "lost motion over the arm, for thin and thick notches"),
+    "optimum": (optimum, "the lowest frequency over accepted designs of three searches, and where each variable goes in its range"),
     "loop": (
         loop,
         "block diagram of a control loop: what the computer does, then hold, amplifiers, stacks, stage and gauges",

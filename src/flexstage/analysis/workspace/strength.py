@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TypeAlias
+from dataclasses import dataclass, fields, is_dataclass, replace
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -14,7 +14,7 @@ from flexstage.base.number import Array
 from flexstage.beams.stress import has_section, stress
 from flexstage.mechanism.expand import PlacedLink, expand
 from flexstage.mechanism.mechanism import Mechanism
-from flexstage.parts.part import Restricted
+from flexstage.parts.part import Part, Restricted
 from flexstage.readings.linear.model import LinearModel
 
 _ALIKE = 1.0 + 1e-9
@@ -113,20 +113,34 @@ def _rows(links: list[PlacedLink], wrenches: Array, points: Array) -> list[_Row]
     rows: dict[int, _Row] = {}
     for members in groups.values():
         first = links[members[0]]
-        found = stress(first.part, first.material, np.moveaxis(wrenches[..., members, :], -2, 0))
-        assert found is not None  # noqa: S101  _has_section has asked
-        peaks = np.broadcast_to(found.peak, found.nominal.shape)
+        own = np.moveaxis(wrenches[..., members, :], -2, 0)
+        peaks = _stress(_real(first.part), first, np.real(own))[1]
+        where = np.argmax(peaks, axis=1)[:, None]
+        worst = np.take_along_axis(np.broadcast_to(own, (*peaks.shape, 6)), where[..., None], axis=1)
+        nominal, peak = _stress(first.part, first, worst)  # of stepped numbers, derivatives at the worst corner are all that is needed
         for place, index in enumerate(members):
-            rows[index] = _worst(links[index], (found.nominal[place], peaks[place]), points)
+            strokes = np.take_along_axis(np.broadcast_to(points, (*peaks.shape[1:], points.shape[-1])), where[place][..., None], axis=0)[0]
+            rows[index] = nominal[place, 0], peak[place, 0], _yield(links[index], peak[place, 0]), strokes
     return [rows[index] for index in range(len(links))]
 
 
-def _worst(link: PlacedLink, found: tuple[Array, Array], corners: Array) -> _Row:
-    """Nominal and peak stress, yield stress and strokes of the worst corner of a link."""
-    nominal, peak = found
-    where = np.argmax(peak, axis=0)[None]
-    spread = np.broadcast_to(corners, (*peak.shape, corners.shape[-1]))
-    strokes = np.take_along_axis(spread, where[..., None], axis=0)[0]
+def _stress(part: Part, link: PlacedLink, wrenches: Array) -> tuple[Array, Array]:
+    """Nominal and peak stress of a part under wrenches (..., 6)."""
+    found = stress(part, link.material, wrenches)
+    assert found is not None  # noqa: S101  _has_section has asked
+    return found.nominal, np.broadcast_to(found.peak, found.nominal.shape)
+
+
+def _yield(link: PlacedLink, peak: Array) -> Array:
     limit = None if link.material is None else link.material.yield_stress
-    nominal, peak = (np.take_along_axis(item, where, axis=0)[0] for item in (nominal, peak))
-    return nominal, peak, np.broadcast_to(np.nan if limit is None else np.asarray(limit), peak.shape), strokes
+    return np.broadcast_to(np.nan if limit is None else np.asarray(limit), peak.shape)
+
+
+def _real(part: Any) -> Any:
+    """A part with the real parts of its numbers."""
+    changed = {field.name: getattr(part, field.name) for field in fields(part)}
+    return replace(part, **{name: _real(value) if is_dataclass(value) else _real_number(value) for name, value in changed.items()})
+
+
+def _real_number(value: Any) -> Any:
+    return np.real(value) if isinstance(value, np.ndarray) and np.iscomplexobj(value) else value

@@ -10,7 +10,7 @@ from flexstage.analysis.requirements import Sense
 from flexstage.studies.optimise.problem import Problem, lagrangian
 from flexstage.studies.optimise.result import Binding
 from flexstage.studies.optimise.setting import Setting
-from flexstage.studies.optimise.step import step
+from flexstage.studies.optimise.step import Bounds, step
 from flexstage.studies.optimise.values import Point
 
 _COUNTS = 1e-5
@@ -27,7 +27,7 @@ def binding(setting: Setting, problem: Problem, point: Point) -> tuple[Binding, 
     'binding'
     """
     size = len(point.shares)
-    model = step(problem, point, np.eye(size), 2.0, 1e4)
+    model = step(problem, point, np.eye(size), Bounds(2.0, 1e4))
     objective = setting.wanted.objectives[0]
     back = (-1.0 if objective.aim.sense is Sense.AT_LEAST else 1.0) * setting.scale(0)
     found = []
@@ -44,7 +44,7 @@ def binding(setting: Setting, problem: Problem, point: Point) -> tuple[Binding, 
 def _ends(setting: Setting, problem: Problem, point: Point, back: float) -> Iterator[tuple[float, Binding]]:
     """Ends of ranges at which the Lagrangian still falls outward."""
     size = len(point.shares)
-    model = step(problem, point, np.eye(size), 2.0, 1e4)
+    model = step(problem, point, np.eye(size), Bounds(2.0, 1e4))
     slopes = lagrangian(problem, point, model.weights)
     assert slopes is not None  # noqa: S101  of one design, pieces correspond
     for number, variable in enumerate(setting.study.variables):

@@ -102,6 +102,20 @@ def linear(side: Side, point: Point) -> Linear:
     return Linear(sign * constant / side.scale, sign * found.spectrum.slopes[:, chosen, chosen] / side.scale)
 
 
+def corrected(side: Side, point: Point, tried: Point) -> Linear:
+    """A side around a design with its slopes, but lifted so that at another design it is what was found there.
+
+    >>> first, second = (Point(np.array([x]), (Scalars(np.array([x * x]), np.array([[2.0 * x]]), Extreme.LEAST),)) for x in (1.0, 2.0))
+    >>> corrected(Side(0, Sense.AT_MOST, 0.0, 1.0), first, second).constant.tolist()  # 4 - 2 (2 - 1)
+    [2.0]
+    """
+    here, there = linear(side, point), linear(side, tried)
+    if here.constant.shape != there.constant.shape:
+        return here
+    turned = there.constant if here.diagonal else _turned(side, there.constant, tried, point)
+    return Linear(turned - np.tensordot(tried.shares - point.shares, here.slope, axes=1), here.slope)
+
+
 def members(side: Side, found: Numbered) -> slice:
     """Which modes of the spectrum a side is about.
 

@@ -9,13 +9,15 @@ import numpy as np
 
 from flexstage.base.number import Array
 from flexstage.studies.optimise.problem import Problem, Weights, lagrangian
-from flexstage.studies.optimise.step import Step, step
+from flexstage.studies.optimise.step import Bounds, Step, step
 from flexstage.studies.optimise.values import Point
 
 _RADIUS, _SMALLEST = 0.25, 1e-8
 _PENALTY, _MOST = 10.0, 1e5
 _GAIN, _KEPT = 1e-9, 2e-9
-_CURVATURE = 0.1
+_CURVED = 0.75
+"""A step that gains less of what was promised, and breaks limits, is corrected."""
+_CURVATURE, _CURVATURES = 0.1, (1e-4, 1e4)
 STEPS = 80
 """Steps of one search at most."""
 
@@ -66,7 +68,7 @@ def search(problem: Problem, start: Array, trace: Trace | None = None, *, enough
     while len(trace.history) <= STEPS and trace.evaluated < 2 * STEPS:
         if problem.worth(point) <= enough:
             break
-        move, penalty = _steered(problem, point, hessian, (radius, penalty))
+        move, penalty = _steered(problem, point, hessian, Bounds(radius, penalty))
         trace.weights = move.weights
         if move.gain <= _GAIN and not move.held:
             trace.converged = True
@@ -75,7 +77,13 @@ def search(problem: Problem, start: Array, trace: Trace | None = None, *, enough
             break
         answer = yield np.clip(point.shares + move.change, 0.0, 1.0)
         trace.evaluated += 1
-        ratio = -1.0 if isinstance(answer, str) else (_merit(problem, point, penalty) - _merit(problem, answer, penalty)) / move.gain
+        ratio = _ratio(problem, (point, answer), move, penalty)
+        if isinstance(answer, Point) and ratio < _CURVED and problem.violation(answer) > max(move.excess, _KEPT):
+            again = step(problem, point, hessian, Bounds(radius, penalty), answer)
+            second = yield np.clip(point.shares + again.change, 0.0, 1.0)
+            trace.evaluated += 1
+            other = _ratio(problem, (point, second), move, penalty)
+            answer, ratio = (second, other) if other > ratio else (answer, ratio)
         radius = _resized(radius, ratio, move)
         if isinstance(answer, str) or ratio <= 1e-4:
             continue
@@ -90,17 +98,23 @@ def _merit(problem: Problem, point: Point, penalty: float) -> float:
     return problem.worth(point) + penalty * problem.violation(point)
 
 
-def _steered(problem: Problem, point: Point, hessian: Array, size: tuple[float, float]) -> tuple[Step, float]:
+def _ratio(problem: Problem, ends: tuple[Point, Point | str], move: Step, penalty: float) -> float:
+    """What a step gained over what the model promised; -1 where there is no design."""
+    before, after = ends
+    return -1.0 if isinstance(after, str) else (_merit(problem, before, penalty) - _merit(problem, after, penalty)) / move.gain
+
+
+def _steered(problem: Problem, point: Point, hessian: Array, bounds: Bounds) -> tuple[Step, float]:
     """A step that closes at least a tenth of the violation that could be closed, the penalty raised as far as that needs."""
-    radius, penalty = size
-    move = step(problem, point, hessian, radius, penalty)
+    radius, penalty = bounds.radius, bounds.penalty
+    move = step(problem, point, hessian, bounds)
     if move.excess <= _KEPT or penalty >= _MOST:
         return move, penalty
     now = problem.violation(point)
-    least = step(problem, point, hessian, radius, _MOST).excess
+    least = step(problem, point, hessian, Bounds(radius, _MOST)).excess
     while now - move.excess < 0.5 * (now - least) and penalty < _MOST:
         penalty *= 10.0
-        move = step(problem, point, hessian, radius, penalty)
+        move = step(problem, point, hessian, Bounds(radius, penalty))
     return move, penalty
 
 
@@ -125,7 +139,8 @@ def _updated(problem: Problem, hessian: Array, ends: tuple[Point, Point], weight
     share = 1.0 if seen >= 0.2 * own else 0.8 * own / (own - seen)
     bend = share * bend + (1.0 - share) * pushed
     updated = hessian - np.outer(pushed, pushed) / own + np.outer(bend, bend) / float(change @ bend)
-    return 0.5 * (updated + updated.T)
+    values, vectors = np.linalg.eigh(0.5 * (updated + updated.T))  # pieces that change places bend like kinks: held within bounds
+    return (vectors * np.clip(values, *_CURVATURES)) @ vectors.T
 
 
 def together(

@@ -11,7 +11,7 @@ from flexstage.base.number import Array
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.readings.batch.choice import Choice, chosen
 from flexstage.readings.linear.eigen import Eigen, solve
-from flexstage.readings.linear.model import Contribution, LinearModel
+from flexstage.readings.linear.model import Contribution, LinearModel, assembled
 
 _STEP = 1e-20
 _ROOM = 6
@@ -64,7 +64,12 @@ def spectra(mechanism: Mechanism, model: LinearModel, asked: tuple[Modes, ...], 
     """
     designs, variables = shape
     each = max(variables, 1)
-    stiffness, inertia = (_real(matrix, designs, each) for matrix in (model.stiffness_matrix, model.inertia_matrix))
+    first = slice(None, None, each)
+    size = len(model.coordinates)
+    stiffness, inertia = (
+        np.broadcast_to(assembled({name: _real(_cut(item, first)) for name, item in matrix.items()}, size), (designs, size, size))
+        for matrix in (model.stiffness, model.inertia)
+    )
     solved = solve(stiffness, inertia, np.ones(stiffness.shape[-1]))
     picked = [[_picked(mechanism, model, solved, (design, each), wanted) for wanted in asked] for design in range(designs)]
     result = []
@@ -80,8 +85,8 @@ def spectra(mechanism: Mechanism, model: LinearModel, asked: tuple[Modes, ...], 
     return result
 
 
-def _real(matrix: Array, designs: int, each: int) -> Array:
-    return np.real(np.broadcast_to(matrix, (designs * each, *matrix.shape[-2:]))[::each])
+def _real(item: Contribution) -> Contribution:
+    return Contribution(np.real(item.operator), np.real(item.law))
 
 
 def _picked(mechanism: Mechanism, model: LinearModel, solved: Eigen, at: tuple[int, int], wanted: Modes) -> Array:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexstage.base.number import Array
-from flexstage.studies.optimise.problem import Linear, Problem, Weights, linear, sides
+from flexstage.studies.optimise.problem import Linear, Problem, Weights, corrected, linear, sides
 from flexstage.studies.optimise.quadratic import quadratic
 from flexstage.studies.optimise.values import Point
 
@@ -46,19 +46,30 @@ class _Rows:
         self.aims.append(aim)
 
 
-def step(problem: Problem, point: Point, hessian: Array, radius: float, penalty: float) -> Step:
+@dataclass(frozen=True)
+class Bounds:
+    """How far a step may go (shares), and what a unit of violation counts."""
+
+    radius: float
+    penalty: float
+
+
+def step(problem: Problem, point: Point, hessian: Array, bounds: Bounds, tried: Point | None = None) -> Step:
     """Minimise t + d^T B d / 2 + penalty s over a change d within the radius and the ranges.
 
     t is above every side of the objective to first order, s >= 0 above every limit. Sides of frequencies are matrices: their eigenvectors
-    after the change are added as planes until no eigenvalue is above them any more, which is exact also for modes that meet.
+    after the change are added as planes until no eigenvalue is above them any more, which is exact also for modes that meet. A design
+    already `tried` lifts the planes to what was found there: the correction of second order, without which steps along curved limits
+    stay short.
 
     >>> from flexstage.studies.optimise.example import leaf_study
     >>> from flexstage.studies.optimise.setting import setting
     >>> found = setting(*leaf_study())
-    >>> step(found.problem, found.before, np.eye(1), 0.1, 10.0).change.round(3).tolist()
+    >>> step(found.problem, found.before, np.eye(1), Bounds(0.1, 10.0)).change.round(3).tolist()
     [0.1]
     """
-    models = [linear(side, point) for side in sides(problem)]
+    models = [linear(side, point) if tried is None else corrected(side, point, tried) for side in sides(problem)]
+    radius, penalty = bounds.radius, bounds.penalty
     level = problem.worth(point)
     rows = _first(problem, models, level, radius)
     ends = np.maximum(-point.shares, -radius), np.minimum(1.0 - point.shares, radius)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -13,7 +13,7 @@ from flexstage.base.finding import DesignError
 from flexstage.base.number import Array, Table
 from flexstage.mechanism.checks import checked
 from flexstage.mechanism.mechanism import Mechanism
-from flexstage.studies.judge import bench_of
+from flexstage.studies.judge import Bench, bench_of
 from flexstage.studies.optimise.pieces import Extreme, pieces
 from flexstage.studies.optimise.spectrum import Modes, Spectrum, spectra
 from flexstage.studies.study.definition import Study
@@ -99,6 +99,11 @@ class Values:
         return replace(self.study, design=replace(self.study.design, tags=Table({})))
 
     @cached_property
+    def _command(self) -> Mapping[str, float]:
+        """The required strokes as a box, the same for all designs."""
+        return bench_of(self.study.design).command
+
+    @cached_property
     def _modes(self) -> tuple[Modes, ...]:
         """The spectra needed: of the platform, of all bodies, or both; each as far up as the highest number asked for."""
         highest: dict[bool, int] = {}
@@ -140,7 +145,7 @@ class Values:
             rows = rows + 1j * _STEP * np.tile(np.eye(variables), (designs, 1))
         with np.errstate(all="ignore"):
             stepped = self._design(rows)
-            bench = bench_of(stepped)
+            bench = Bench(stepped, self._command)
             modes = spectra(stepped, bench.model, self._modes, (designs, variables if slopes else 0)) if self._modes else []
             columns: list[Sequence[Scalars | Numbered]] = []
             for asked in self.measures:
