@@ -12,6 +12,7 @@ from flexstage.analysis.loop.controllers.notch import notch_findings
 from flexstage.analysis.loop.plant import Plant
 from flexstage.analysis.loop.tuning.attempt import Attempt, Task, attempt
 from flexstage.analysis.loop.tuning.goal import Judgement, Kind, Tuning, goal_findings
+from flexstage.analysis.loop.tuning.judge import open_gains
 from flexstage.analysis.loop.tuning.view import View, view
 from flexstage.base.finding import DesignError, Finding, require
 
@@ -22,7 +23,7 @@ _FINE = 0.05
 _STEPS = {Kind.PI: (1.3, 2.0), Kind.PID: (1.3, 2.0), Kind.RESONANT: (1.3, 2.0), Kind.LQG: (1.6, 4.0)}
 _WITHIN = 1.01
 _NOTICED = 20.0
-_CALM = (0.8, 0.65)
+_CALM = (0.9, 0.8, 0.7, 0.6)
 
 
 def tuned(plant: Plant, loops: Loops, task: Task) -> Tuning:
@@ -61,11 +62,15 @@ def _stiffest(seen: View, task: Task, bandwidth: float, found: Attempt) -> Attem
     """
     if task.kind not in (Kind.PI, Kind.PID):
         return found
-    for share in _CALM:
-        tried = attempt(seen, task, bandwidth, share * task.goal.sensitivity)
-        if tried is not None and tried.reaches(bandwidth, task.goal):
-            return tried
-    return found
+    tried = [attempt(seen, task, bandwidth, share * task.goal.sensitivity) for share in _CALM]
+    kept = [found, *(each for each in tried if each is not None and each.reaches(bandwidth, task.goal))]
+    return max(kept, key=lambda each: _weakest(seen, each))
+
+
+def _weakest(seen: View, found: Attempt) -> float:
+    """The lowest of the loops' own gains at the lowest frequency."""
+    slow = replace(seen, frequencies=seen.frequencies[:1], responses=seen.responses[:1, :1])
+    return float(np.min(np.abs(np.diag(open_gains(slow, found.controller.system(seen.step))[0, 0]))))
 
 
 def highest(seen: View, task: Task) -> tuple[float, Attempt | None]:
