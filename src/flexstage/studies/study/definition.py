@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+import flexstage
 from flexstage.analysis.requirements import Measure, Requirement, Verdict
 from flexstage.base.digest import digest
 from flexstage.base.number import Array
@@ -45,9 +46,10 @@ class Study:
 
         >>> from flexstage.studies.study.example import neck_study
         >>> list(neck_study().facts)
-        ['design', 'plan', 'variables.neck', 'responses.tilt']
+        ['version', 'design', 'plan', 'variables.neck', 'responses.tilt']
         """
         return {
+            "version": flexstage.__version__,
             "design": digest(self.design, physics=True)[:16],
             "plan": repr(self.plan),
             **{f"variables.{each.name}": repr(each) for each in self.variables},
