@@ -159,8 +159,7 @@ def crosstalk_figure(crosstalk: Crosstalk) -> Any:
         for row in range(len(COMPONENTS)):
             for column in range(count):
                 mean, deviation = (1e3 * float(values[row, column]) for values in (crosstalk.mean, crosstalk.deviation))
-                text = f"{number(mean, 2)} \N{PLUS-MINUS SIGN} {number(deviation, 2)}" if deviation > 1e-3 else "0"
-                ax.text(column, row, text, ha="center", va="center", fontsize=6.8)
+                ax.text(column, row, _pair(mean, deviation), ha="center", va="center", fontsize=6.8)
         ax.set_xticks(range(count), [_axis(name, "um", "urad") for name in crosstalk.coordinates])
         ax.set_yticks(range(len(COMPONENTS)), [_axis(name, "nm", "nrad") for name in COMPONENTS])
         ax.xaxis.tick_top()
@@ -169,6 +168,14 @@ def crosstalk_figure(crosstalk: Crosstalk) -> Any:
         for side in ax.spines.values():
             side.set_visible(False)
     return figure
+
+
+def _pair(mean: float, deviation: float) -> str:
+    """A mean and a deviation to the deviation's second digit."""
+    if not deviation > 1e-3:
+        return "0"
+    digits = max(0, 1 - int(np.floor(np.log10(deviation))))
+    return f"{round(mean, digits) + 0.0:.{digits}f} \N{PLUS-MINUS SIGN} {deviation:.{digits}f}"
 
 
 def _shade(crosstalk: Crosstalk) -> Array:
