@@ -268,6 +268,7 @@ def test_an_interrupt_leaves_the_best_design_so_far(tmp_path):
 
     found = optimise(study, wanted, enough)
     assert found.interrupted
+    assert not found.binding  # prices are those of an optimum
     assert found.point is not None
     assert found.value(found.point) >= found.value(found.before)
     assert found.value(found.point) <= found.value(optimise(study, wanted).point)

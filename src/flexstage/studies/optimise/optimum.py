@@ -47,7 +47,7 @@ def optimise(study: Study, wanted: Wanted, progress: Progress | None = None) -> 
     traces = [Trace() for _ in begins]
     interrupted = _searched(set_up, problem, (begins, traces), counted)
     point = best_of(problem, traces)
-    against, near = (), None
+    broken, against, near = interrupted, (), None
     if not interrupted:
         against, near, interrupted = _concluded(set_up, problem, (point, traces), counted)
     starts = tuple(_start(problem, begin, trace, point) for begin, trace in zip(begins, traces, strict=True))
@@ -58,7 +58,7 @@ def optimise(study: Study, wanted: Wanted, progress: Progress | None = None) -> 
         before=set_up.before,
         point=point,
         starts=starts,
-        binding=() if point is None else binding(set_up, problem, point),
+        binding=() if point is None or broken else binding(set_up, problem, point),  # of an optimum only
         rounded=near,
         contradictions=against,
         idle=set_up.idle,
