@@ -61,8 +61,8 @@ def many():
 
 def test_fitting_pays_for_many_designs_only(many):
     asked, engine = many
-    assert engine.planned.plan.surface is not None
-    assert engine_of(replace(asked, plan=replace(asked.plan, count=1000))).planned.plan.surface is None
+    assert engine.plan.surface is not None
+    assert engine_of(replace(asked, plan=replace(asked.plan, count=1000))).plan.surface is None
 
 
 def test_a_design_is_the_same_to_the_bit_in_every_piece(many):
@@ -78,10 +78,9 @@ def test_a_design_is_the_same_to_the_bit_in_every_piece(many):
 
 def test_designs_within_the_ranges_are_all_fitted(many):
     engine = many[1]
-    numbers = engine.planned.numbers
     corners = np.array([[0.9, 1.1], [1.1, 0.9]])
-    assert engine.planned.plan.surface.holds(numbers.at(corners)).all()
-    assert (platform_modes(engine.planned.plan, numbers.at(corners)).status == Status.ITERATED).all()
+    assert engine.plan.surface.holds(corners).all()
+    assert (platform_modes(engine.plan, corners).status == Status.ITERATED).all()
 
 
 def test_designs_that_fail_keep_place_and_reason():

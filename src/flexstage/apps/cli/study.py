@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Generator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, TypeAlias
 
@@ -55,12 +57,23 @@ def sweep(
 
     require(output_findings([("--output", output), ("--json", json), ("--report", report)], study))
     asked = load_study(study)
-    with bar() as shown:
+    with resumable(output), bar() as shown:
         results = run(
             asked, output, Run(workers, resume, scheduler), lambda done, of: shown.share(f"{done} of {of} designs", done / max(of, 1))
         )
     found = effects(results, asked.plan)
     _told(asked, results, found, report, json)
+
+
+@contextmanager
+def resumable(output: Path) -> Generator[None]:
+    """Tell of an interruption what is kept."""
+    try:
+        yield
+    except KeyboardInterrupt:
+        from flexstage.base.finding import refuse
+
+        raise refuse(str(output), "interrupted; what was computed is kept", "Go on with --resume") from None
 
 
 def _told(asked: Study, results: Results, found: Effects, report: Path | None, json: str | None) -> None:

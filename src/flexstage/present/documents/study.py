@@ -38,6 +38,7 @@ def sweep_body(study: Study, results: Results, found: Effects) -> Document:
         "responses": [_response(study, found, index, name) for index, name in enumerate(found.responses)],
         "failures": [{"design": design, "reason": reason} for design, reason in results.failures.items()],
         "method": found.method,
+        "made": list(results.made),
     }
 
 

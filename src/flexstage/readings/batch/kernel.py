@@ -35,6 +35,17 @@ def kernel() -> ctypes.CDLL | None:
     return None if os.environ.get(SWITCH, "") == "off" else built(cache_folder() / "kernels")
 
 
+@functools.cache
+def kernel_name() -> str:
+    """What iterates here: the library by what it is made of, or none. With the same name, results are the same to the bit.
+
+    >>> "kernel" in kernel_name()
+    True
+    """
+    found = compiler() if kernel() is not None else None
+    return "no kernel" if found is None else f"kernel {_key(found)[:12]}"
+
+
 def built(folder: Path) -> ctypes.CDLL | None:
     """The library from a folder, built into it if it is not there yet.
 

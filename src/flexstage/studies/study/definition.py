@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
+from enum import Enum
 
 import numpy as np
 
 import flexstage
 from flexstage.analysis.requirements import Measure, Requirement, Verdict
 from flexstage.base.digest import digest
-from flexstage.base.number import Array
+from flexstage.base.number import Array, Number
+from flexstage.base.quantity import Quantity
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.studies.judge import measured
-from flexstage.studies.study.numbers import Numbers, numbers_moved
+from flexstage.studies.study.numbers import Numbers
 from flexstage.studies.study.plan import Plan, shares
-from flexstage.studies.study.variable import Variable, varied
+from flexstage.studies.study.variable import Variable, varied_by
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,8 +53,8 @@ class Study:
         return {
             "version": flexstage.__version__,
             "design": digest(self.design, physics=True)[:16],
-            "plan": repr(self.plan),
-            **{f"variables.{each.name}": repr(each) for each in self.variables},
+            "plan": _told(self.plan),
+            **{f"variables.{each.name}": _told(each) for each in self.variables},
             **{f"responses.{name}": f"{each.key} at {each.point}" for name, each in self.columns.items()},
         }
 
@@ -73,17 +75,25 @@ class Study:
         >>> neck_study().described(np.array([0.0015])).parts["neck"].thickness
         0.0015
         """
-        return varied(self.design, self.variables, values)
+        return self.drawn_from(tuple(values[..., number] for number in range(len(self.variables))))
+
+    def drawn_from(self, columns: tuple[Number, ...]) -> Mechanism:
+        """The same of values (...) by variable, real or complex: nothing becomes complex that does not depend on one that is.
+
+        >>> from flexstage.studies.study.example import neck_study
+        >>> neck_study().drawn_from((0.0015,)).parts["neck"].thickness
+        0.0015
+        """
+        return varied_by(self.design, self.variables, columns)
 
     @property
     def numbers(self) -> Numbers | None:
-        """The numbers of the description that designs differ in; `None` where `described` does more than write numbers.
+        """The numbers of the description that designs differ in, where variables share them and a design is had by these more easily.
 
         >>> from flexstage.studies.study.example import neck_study
-        >>> neck_study().numbers.addresses
-        ('parts.neck.thickness',)
+        >>> neck_study().numbers  # what `drawn_from` makes of the variables will do
         """
-        return numbers_moved(self.design, self.variables)
+        return None
 
     def answered(self, mechanism: Mechanism, names: tuple[str, ...] | None = None) -> tuple[Array | str, ...]:
         """What is asked of a design or a batch, column by column (...) or those of `names`; where a stage has none, the reason in words.
@@ -108,3 +118,17 @@ class Study:
             Verdict(each, responses[:, measured_by[each.key, each.point]]).passed for each in (self.limits if limits is None else limits)
         ]
         return np.all([np.all(np.isfinite(responses), axis=1), *verdicts], axis=0)
+
+
+def _told(value: Plan | Variable) -> str:
+    """All fields that results depend on, in words; what is absent is left out."""
+    kept = [(each.name, getattr(value, each.name)) for each in fields(value) if each.repr and each.name != "name"]
+    return ", ".join(f"{name} {_word(item)}" for name, item in kept if item is not None and item is not False and item != ())
+
+
+def _word(item: object) -> str:
+    if isinstance(item, Quantity):
+        return f"{item.name} [{item.si}]"
+    if isinstance(item, tuple):
+        return " and ".join(_word(each) for each in item)
+    return str(item.value) if isinstance(item, Enum) else str(item)

@@ -14,6 +14,8 @@ from flexstage.studies.study.definition import Study
 from flexstage.studies.study.engine import Engine, engine_of
 
 _LONGEST_REASON = 400
+_MOST = 256
+"""Designs read at once: matrices of more no longer fit into a processor's cache."""
 
 Reasons = dict[int, str]
 """Why designs fail, by row."""
@@ -21,12 +23,16 @@ Reasons = dict[int, str]
 
 @dataclass(frozen=True, eq=False)
 class Piece:
-    """Designs from `start` on: variables (n, d) and responses (n, r) in SI; `failures` gives reasons by row, their responses are NaN."""
+    """Designs from `start` on: variables (n, d) and responses (n, r) in SI; `failures` gives reasons by row, their responses are NaN.
+
+    `made` says by which versions of what: where these differ, so may the last digits.
+    """
 
     start: int
     variables: Array
     responses: Array
     failures: Mapping[int, str]
+    made: str = ""
 
 
 def piece(study: Study, start: int, stop: int, engine: Engine | None = None) -> Piece:
@@ -40,9 +46,10 @@ def piece(study: Study, start: int, stop: int, engine: Engine | None = None) -> 
     ((2, 1), {})
     """
     values = study.drawn(start, stop)
+    engine = engine_of(study) if engine is None else engine
     with np.errstate(all="ignore"):
-        responses, failures = _computed(study, values, engine_of(study) if engine is None else engine)
-    return Piece(start, values, responses, failures)
+        responses, failures = _computed(study, values, engine)
+    return Piece(start, values, responses, failures, engine.made)
 
 
 def nominal(study: Study) -> Array:
@@ -79,8 +86,11 @@ def _computed(study: Study, values: Array, engine: Engine) -> tuple[Array, Reaso
 
 
 def _halved(values: Array, width: int, batch: Callable[[Array], Array | str]) -> tuple[Array, Reasons]:
-    """What a batch gives (n, width), and failures; what fails as a batch is halved until the culprits stand alone."""
-    found = batch(values)
+    """What a batch gives (n, width), and failures; what fails as a batch is halved until the culprits stand alone.
+
+    Designs that are read (`width` responses) are halved before they are too many: their matrices would fill the memory.
+    """
+    found = batch(values) if width == 0 or len(values) <= _MOST else ""
     if not isinstance(found, str):
         return found, {}
     if len(values) == 1:
@@ -92,9 +102,9 @@ def _halved(values: Array, width: int, batch: Callable[[Array], Array | str]) ->
 
 
 def _refused(study: Study, values: Array) -> Array | str:
-    """Why a description of these designs cannot be read; nothing (n, 0) where it can."""
+    """Why a description of these designs cannot be read; nothing (n, 0) where it can. One alone is told without its place in a batch."""
     try:
-        checked(study.described(values[0] if len(values) == 1 else values))
+        checked(study.described(values if len(values) > 1 else values[0]))
     except DesignError as error:
         return str(error)
     return np.zeros((len(values), 0))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import time
 from collections.abc import Callable, Generator, Iterator
@@ -9,20 +10,26 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from glob import escape
 from pathlib import Path
+from typing import TextIO
 
 import numpy as np
 
+from flexstage.analysis.requirements import Subject
 from flexstage.base.aside import stem_of
 from flexstage.base.child import cores
-from flexstage.base.finding import refuse, require
+from flexstage.base.finding import DesignError, refuse, require
+from flexstage.base.number import Array
 from flexstage.studies.study.definition import Study
-from flexstage.studies.study.engine import engine_of
+from flexstage.studies.study.engine import engine_covers, engine_of
 from flexstage.studies.study.evaluate import nominal
-from flexstage.studies.study.store import Results, computed, differences, folder_of, gather, read_results, waiting
+from flexstage.studies.study.gather import gather, require_room
+from flexstage.studies.study.store import Results, computed, differences, folder_of, opened, read_results, waiting
 from flexstage.studies.study.work import worked
 
 PIECE = 256
-"""Designs computed at once: matrices of more no longer fit into a processor's cache."""
+"""Designs computed and kept together."""
+LARGE, _MANY = 2048, 64
+"""Designs together where each takes microseconds; so many pieces of the smaller size must a study have for it."""
 _SELDOM = 20.0
 _LEAST = 5.0
 
@@ -45,8 +52,8 @@ DEFAULT = Run()
 def run(study: Study, path: str | os.PathLike[str], how: Run = DEFAULT, progress: Progress | None = None) -> Results:
     """Compute all designs of a study into the results file at `path`.
 
-    Pieces of 256 designs are written as they come and gathered into the file from time to time and at the end. Results do not depend on
-    the number of workers or on the order of pieces; the same study gives the same file. An interruption keeps what is there. Raises
+    Pieces (see `piece_size`) are written as they come and gathered into the file from time to time and at the end. Results do not depend
+    on the number of workers or on the order of pieces; the same study gives the same file. An interruption keeps what is there. Raises
     `DesignError` for a file that exists and is not to be resumed, belongs to another study, or is in use; for measures that the
     design lacks; and for a disk that is full.
 
@@ -58,27 +65,52 @@ def run(study: Study, path: str | os.PathLike[str], how: Run = DEFAULT, progress
     ([0, 1, 2, 3], True)
     """
     target = Path(path).absolute()
+    size = piece_size(study)
     _ready(target, study, how)
     nominal(study)
     folder = folder_of(target)
     with _alone(folder):
-        done = computed(target, PIECE, study.plan.designs)
-        ranges = [(start, min(start + PIECE, study.plan.designs)) for start in (np.flatnonzero(~done) * PIECE).tolist()]
-        _tell(progress, study, done)
+        done = _there(target, study, size)
+        ranges = [(start, min(start + size, study.plan.designs)) for start in (np.flatnonzero(~done) * size).tolist()]
+        _tell(progress, study, size * int(np.sum(done)))
+        require_room(target, study)
         try:
-            for start in _gathering(_pieces(study, ranges, folder, how), target, study):
-                done[start // PIECE] = True
-                _tell(progress, study, done)
-        finally:
-            gather(target, study, PIECE)
-        gather(target, study, PIECE)
-    folder.rmdir()
+            for count, _ in enumerate(_gathering(_pieces(study, ranges, folder, how), target, (study, size)), 1 + int(np.sum(done))):
+                _tell(progress, study, size * count)
+        except BaseException:
+            with contextlib.suppress(DesignError):  # the first reason is told; pieces stay as they are
+                if waiting(target):
+                    gather(target, study, size)
+            require_room(target, study)
+            raise
+        gather(target, study, size)
     return read_results(target)
 
 
-def _tell(progress: Progress | None, study: Study, done: np.ndarray) -> None:
+def piece_size(study: Study) -> int:
+    """How many designs are computed at once: more where the engine answers all that is asked of many.
+
+    >>> from flexstage.studies.study.example import neck_study
+    >>> piece_size(neck_study()), piece_size(neck_study(1_000_000))
+    (256, 2048)
+    """
+    quick = engine_covers(study) and all(each.subject is Subject.PLATFORM_FREQUENCY for each in study.columns.values())
+    return LARGE if quick and study.plan.designs >= _MANY * PIECE else PIECE
+
+
+def _tell(progress: Progress | None, study: Study, count: int) -> None:
     if progress is not None:
-        progress(min(int(np.sum(done)) * PIECE, study.plan.designs), study.plan.designs)
+        progress(min(count, study.plan.designs), study.plan.designs)
+
+
+def _there(target: Path, study: Study, size: int) -> Array:
+    """Which pieces are there; results that were cut in another way are refused."""
+    if target.exists():
+        with opened(target) as file:
+            if int(file.attrs["piece"]) != size or len(file["computed"]) != -(-study.plan.designs // size):
+                what = f"its designs are kept in pieces of {file.attrs['piece']}, not {size}"
+                raise refuse(os.fspath(target), what, "Resume with the version of flexstage that wrote it, or name another file")
+    return computed(target, size, study.plan.designs)
 
 
 def _ready(target: Path, study: Study, how: Run) -> None:
@@ -105,34 +137,51 @@ def _pieces(study: Study, ranges: list[tuple[int, int]], folder: Path, how: Run)
     return worked(study, engine, ranges, folder, how.workers or cores())
 
 
-def _gathering(pieces: Iterator[int], target: Path, study: Study) -> Iterator[int]:
+def _gathering(pieces: Iterator[int], target: Path, what: tuple[Study, int]) -> Iterator[int]:
     """The pieces as they come, gathered seldom enough to cost a twentieth of the time."""
+    gather(target, *what)
     last, cost = time.monotonic(), 0.0
-    gather(target, study, PIECE)
     for start in pieces:
         yield start
         now = time.monotonic()
         if now - last > max(_LEAST, _SELDOM * cost):
-            gather(target, study, PIECE)
+            gather(target, *what)
             last = time.monotonic()
             cost = last - now
 
 
 @contextmanager
 def _alone(folder: Path) -> Generator[None]:
-    """Hold the folder of pieces for this process; the system lets go of it however the process ends."""
-    import fcntl
-
-    folder.mkdir(exist_ok=True)
-    lock = folder / ".lock"
-    with lock.open("w") as held:
-        try:
-            fcntl.flock(held, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except OSError:
-            raise refuse(os.fspath(folder), "another process computes this study", "Wait for it, or name another file") from None
+    """Hold the folder of pieces for this process; the system lets go of it however the process ends. At the end it goes."""
+    try:
+        lock = _locked(folder)
         for left in (*folder.glob(".*.part"), *folder.parent.glob(f".{escape(stem_of(folder.with_suffix('')))}.*.part")):
             left.unlink(missing_ok=True)
+    except OSError as error:
+        what = f"it cannot be written to ({error.strerror or error})"
+        raise refuse(os.fspath(folder.parent), what, "Name a file in another folder") from None
+    with lock:
         try:
             yield
         finally:
-            lock.unlink(missing_ok=True)
+            Path(lock.name).unlink(missing_ok=True)
+            with contextlib.suppress(OSError):  # pieces that could not be gathered stay
+                folder.rmdir()
+
+
+def _locked(folder: Path) -> TextIO:
+    """The folder's lock file, made and held."""
+    import fcntl
+
+    while True:
+        folder.mkdir(exist_ok=True)
+        with contextlib.suppress(FileNotFoundError):  # a process that has just ended took the folder or the lock away: once more
+            lock = (folder / ".lock").open("w")
+            try:
+                fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                if Path(lock.name).stat().st_ino == os.fstat(lock.fileno()).st_ino:
+                    return lock
+            except BlockingIOError:
+                lock.close()
+                raise refuse(os.fspath(folder), "another process computes this study", "Wait for it, or name another file") from None
+            lock.close()

@@ -12,24 +12,18 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
+from zipfile import BadZipFile
 
 import numpy as np
 
-import flexstage
 from flexstage.base.aside import aside
 from flexstage.base.finding import Finding, refuse
 from flexstage.base.number import Array
+from flexstage.readings.measured.hdf_sound import require_sound
 from flexstage.studies.study.definition import Study
 from flexstage.studies.study.evaluate import Piece
 
 FORMAT = "flexstage results 1"
-_ABOUT = (
-    "Designs of a study, one a row of variables and responses, in SI by their attributes names, units and of (what they are; variables in "
-    "1 may be factors on what the design states). NaN: not computed yet (computed says which pieces are, of piece rows each), or "
-    "failed (1 in failed, reasons in failures). study is the study's file, facts what the numbers depend on. "
-    "In Python: flexstage.studies.study.store.read_results, then to_xarray() or to_pandas()."
-)
-_ROWS = 65_536
 _ATTEMPTS = 20
 _PIECES = ".pieces"
 
@@ -39,7 +33,7 @@ class Results:
     """Designs computed so far: `designs` (n,) their numbers, `variables` (n, d), `responses` (n, r) in SI, failures by design number.
 
     `names` and `units` are those of the variables, then of the responses; `planned` designs in all; `facts` what they depend on; `text` the
-    study's file.
+    study's file; `made` by which versions of what they were computed, one text each.
     """
 
     designs: Array
@@ -51,6 +45,7 @@ class Results:
     planned: int
     facts: Mapping[str, str]
     text: str
+    made: tuple[str, ...] = ()
 
     @property
     def complete(self) -> bool:
@@ -102,7 +97,7 @@ def write_piece(folder: Path, found: Piece) -> Path:
     rows = np.array(sorted(found.failures), dtype=np.int64)
     reasons = np.array([found.failures[row] for row in sorted(found.failures)], dtype=np.str_)
     with aside(target) as place, place.open("xb") as stream:
-        np.savez(stream, variables=found.variables, responses=found.responses, rows=rows, reasons=reasons)
+        np.savez(stream, variables=found.variables, responses=found.responses, rows=rows, reasons=reasons, made=np.array(found.made))
         stream.flush()
         os.fsync(stream.fileno())
     return target
@@ -117,9 +112,36 @@ def read_piece(path: Path) -> Piece:
     >>> found.start, found.responses.shape, found.failures
     (256, (2, 3), {1: 'too thin'})
     """
-    with np.load(path) as stored:
-        failures = dict(zip(stored["rows"].tolist(), stored["reasons"].tolist(), strict=True))
-        return Piece(int(path.stem), stored["variables"], stored["responses"], failures)
+    with _loaded(path) as stored:
+        return Piece(int(path.stem), stored["variables"], stored["responses"], _failures(stored), str(stored["made"]))
+
+
+def read_failures(path: Path) -> dict[int, str]:
+    """The failures alone of a piece: reasons by row.
+
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as place:
+    ...     read_failures(write_piece(Path(place), Piece(256, np.ones((2, 1)), np.ones((2, 3)), {1: "too thin"})))
+    {1: 'too thin'}
+    """
+    with _loaded(path) as stored:
+        return _failures(stored)
+
+
+@contextmanager
+def _loaded(path: Path) -> Generator[Any]:
+    """A piece's arrays. Raises `FileNotFoundError` where it is gone, `DesignError` for what is none."""
+    try:
+        with np.load(path) as stored:
+            yield stored
+    except FileNotFoundError:
+        raise
+    except (OSError, ValueError, KeyError, EOFError, BadZipFile):
+        raise refuse(os.fspath(path), "it is no piece of results, or damaged", "Take it away and resume: it is computed again") from None
+
+
+def _failures(stored: Any) -> dict[int, str]:
+    return dict(zip(stored["rows"].tolist(), stored["reasons"].tolist(), strict=True))
 
 
 def waiting(path: Path) -> dict[int, Path]:
@@ -130,90 +152,6 @@ def waiting(path: Path) -> dict[int, Path]:
     """
     folder = folder_of(path)
     return {int(each.stem): each for each in sorted(folder.glob("[0-9]*.npz"))} if folder.is_dir() else {}
-
-
-def gather(path: Path, study: Study, size: int) -> None:
-    """Write the results file anew aside, with all pieces of `size` designs so far, and rename it; then the pieces go.
-
-    Raises `DesignError` where the disk refuses; then file and pieces are as they were.
-
-    >>> import tempfile
-    >>> from flexstage.studies.study.example import neck_study
-    >>> with tempfile.TemporaryDirectory() as place:
-    ...     gather(Path(place, "results.h5"), neck_study(), 256)
-    ...     read_results(Path(place, "results.h5")).complete
-    False
-    """
-    import h5py
-
-    pieces = waiting(path)
-    with aside(path) as place, h5py.File(place, "x", libver="v110") as file:
-        _frame(file, study, size)
-        if path.exists():
-            with _file(path) as old:
-                _copy(old, file)
-        for start, each in pieces.items():
-            _put(file, read_piece(each), start // size)
-    for each in pieces.values():
-        each.unlink(missing_ok=True)
-
-
-def _frame(file: Any, study: Study, size: int) -> None:
-    """The empty file: names, units and what the study was."""
-    names, units = columns_of(study)
-    file.attrs["format"] = FORMAT
-    file.attrs["study"], file.attrs["version"], file.attrs["about"] = study.text, flexstage.__version__, _ABOUT
-    file.attrs["planned"], file.attrs["piece"] = study.plan.designs, size
-    facts = file.create_group("facts", track_order=True)
-    for key, value in study.facts.items():
-        facts.attrs[key.replace("/", "|")] = value
-    count = study.plan.designs
-    for number, kind in enumerate(("variables", "responses")):
-        data = file.create_dataset(kind, (count, len(names[number])), "f8", fillvalue=np.nan, chunks=_chunks(count, len(names[number])))
-        data.attrs["names"], data.attrs["units"] = list(names[number]), list(units[number])
-    file["variables"].attrs["of"] = [", ".join(each.addresses) for each in study.variables]
-    file["responses"].attrs["of"] = [f"{each.key} at {each.point}" for each in study.columns.values()]
-    import h5py
-
-    file.create_dataset("failed", (count,), "u1", chunks=(min(count, _ROWS),))
-    file.create_dataset("computed", (-(-count // size),), "u1")
-    file.create_dataset("failures", (0,), _failure_kind(h5py), maxshape=(None,), chunks=(1024,))
-
-
-def _failure_kind(h5py: Any) -> Any:
-    return np.dtype([("design", "i8"), ("reason", h5py.string_dtype())])
-
-
-def _chunks(count: int, width: int) -> tuple[int, int]:
-    return min(count, max(1, _ROWS // width)), width
-
-
-def _put(file: Any, found: Piece, number: int) -> None:
-    """One piece into its place; one that is there already stays as it is."""
-    if file["computed"][number]:
-        return
-    rows = slice(found.start, found.start + len(found.variables))
-    file["variables"][rows], file["responses"][rows] = found.variables, found.responses
-    failed = np.zeros(len(found.variables), dtype=np.uint8)
-    failed[list(found.failures)] = 1
-    file["failed"][rows] = failed
-    file["computed"][number] = 1
-    _add_failures(file, [(found.start + row, reason) for row, reason in sorted(found.failures.items())])
-
-
-def _add_failures(file: Any, entries: list[tuple[int, str]]) -> None:
-    if entries:
-        known = len(file["failures"])
-        file["failures"].resize((known + len(entries),))
-        file["failures"][known:] = np.array(entries, dtype=file["failures"].dtype)
-
-
-def _copy(old: Any, new: Any) -> None:
-    """What was gathered before, in slices: the file need not fit into memory."""
-    for name in ("variables", "responses", "failed", "computed"):
-        for start in range(0, len(old[name]), _ROWS):
-            new[name][start : start + _ROWS] = old[name][start : start + _ROWS]
-    _add_failures(new, sorted((int(design), reason.decode()) for design, reason in old["failures"][:]))
 
 
 def columns_of(study: Study) -> tuple[tuple[tuple[str, ...], tuple[str, ...]], tuple[tuple[str, ...], tuple[str, ...]]]:
@@ -233,22 +171,51 @@ def computed(path: Path, size: int, designs: int) -> Array:
     >>> computed(Path("nowhere/results.h5"), 256, 1000).tolist()
     [False, False, False, False]
     """
-    done = np.zeros(-(-designs // size), dtype=bool)
-    if path.exists():
-        with _file(path) as file:
-            done |= file["computed"][:].astype(bool)
+    done = gathered(path)
+    done = done if len(done) else np.zeros(-(-designs // size), dtype=bool)
     for start in waiting(path):
         done[start // size] = True
     return done
 
 
+def gathered(path: Path) -> Array:
+    """Which pieces (k,) the results file holds; none (0,) where there is no file.
+
+    >>> gathered(Path("nowhere/results.h5")).tolist()
+    []
+    """
+    if not path.exists():
+        return np.zeros(0, dtype=bool)
+    with opened(path) as file:
+        return np.asarray(file["computed"][:], dtype=bool)
+
+
 @contextmanager
-def _file(path: Path) -> Generator[Any]:
-    """The file, open for reading."""
+def opened(path: Path) -> Generator[Any]:
+    """The results file, open for reading; nobody writes to one that is there, so that no lock is needed.
+
+    Raises `FileNotFoundError` for a file that is not there, `DesignError` for one that is none.
+
+    >>> with opened(Path("nowhere/results.h5")):
+    ...     pass
+    Traceback (most recent call last):
+        ...
+    FileNotFoundError: ...
+    """
     import h5py
 
-    with h5py.File(path, "r") as file:
-        yield file
+    where = os.fspath(path)
+    require_sound(path)
+    try:
+        with h5py.File(path, "r", locking=False) as file:
+            if file.attrs.get("format") != FORMAT:
+                raise refuse(where, "it holds no results of a study", f'Name another file: its format is to be "{FORMAT}"')
+            yield file
+    except FileNotFoundError:
+        raise
+    except (OSError, KeyError) as error:
+        what = " ".join(str(error.args[-1] if error.args else error).split())
+        raise refuse(where, f"it cannot be read as results of a study ({what})", "Take it away, or name another file") from None
 
 
 def read_results(path: str | os.PathLike[str]) -> Results:
@@ -260,56 +227,49 @@ def read_results(path: str | os.PathLike[str]) -> Results:
     flexstage.base.finding.DesignError: nowhere/results.h5: there is no such file. Check the path.
     """
     where = os.fspath(path)
-    path = Path(where.rstrip("/").removesuffix(_PIECES))
-    if not path.exists():
+    target = Path(where.rstrip("/").removesuffix(_PIECES))
+    if not target.exists():
         raise refuse(where, "there is no such file", "Check the path")
     for _ in range(_ATTEMPTS):  # a piece that is gathered while we look is gone from the folder, and in the file the next time
-        pieces = list(waiting(path).values())
+        pieces = list(waiting(target).values())
         try:
-            return _opened(path, pieces)
+            with opened(target) as file:
+                return _read(file, pieces)
         except FileNotFoundError:
             continue
     raise refuse(where, "its pieces are gathered faster than they can be read", "Try again")
 
 
-def _opened(path: Path, pieces: list[Path]) -> Results:
-    where = os.fspath(path)
-    try:
-        with _file(path) as file:
-            if file.attrs.get("format") != FORMAT:
-                raise refuse(where, "these are no results of a study", f'Its format is to be "{FORMAT}"')
-            return _read(file, pieces)
-    except FileNotFoundError:
-        raise
-    except (OSError, KeyError) as error:
-        raise refuse(where, f"it cannot be read as results: {error}", "Check the file") from None
-
-
 def _read(file: Any, pieces: list[Path]) -> Results:
     size, planned = int(file.attrs["piece"]), int(file.attrs["planned"])
     done = file["computed"][:].astype(bool)
-    gathered = np.repeat(done, size)[:planned]
-    numbers = [np.flatnonzero(gathered)]
-    tables = [[file["variables"][:][gathered]], [file["responses"][:][gathered]]]
+    more = [found for found in map(read_piece, pieces) if not done[found.start // size]]
+    there = np.repeat(done, size)[:planned]
+    for found in more:
+        there[found.start : found.start + len(found.variables)] = True
+    designs = np.flatnonzero(there)
     failures = {int(design): reason.decode() for design, reason in file["failures"][:]}
-    for found in (read_piece(each) for each in pieces if not done[int(each.stem) // size]):
-        numbers.append(found.start + np.arange(len(found.variables)))
-        tables[0].append(found.variables)
-        tables[1].append(found.responses)
-        failures |= {found.start + row: reason for row, reason in found.failures.items()}
-    designs = np.concatenate(numbers)
-    order = np.argsort(designs)
+    failures |= {found.start + row: reason for found in more for row, reason in found.failures.items()}
     return Results(
-        designs[order],
-        np.concatenate(tables[0])[order],
-        np.concatenate(tables[1])[order],
+        designs,
+        _table(file["variables"], [(found.start, found.variables) for found in more], there),
+        _table(file["responses"], [(found.start, found.responses) for found in more], there),
         dict(sorted(failures.items())),
         names=_labels(file, "names"),
         units=_labels(file, "units"),
         planned=planned,
         facts={key.replace("|", "/"): str(value) for key, value in file["facts"].attrs.items()},
         text=str(file.attrs["study"]),
+        made=tuple(sorted({*(str(each) for each in file.attrs["made"]), *(found.made for found in more)})),
     )
+
+
+def _table(data: Any, more: list[tuple[int, Array]], there: Array) -> Array:
+    """All designs that are there, in order of their numbers."""
+    values = np.asarray(data[:])
+    for start, rows in more:
+        values[start : start + len(rows)] = rows
+    return values if there.all() else values[there]
 
 
 def _labels(file: Any, label: str) -> tuple[tuple[str, ...], tuple[str, ...]]:
@@ -321,16 +281,14 @@ def differences(path: Path, study: Study) -> Iterator[Finding]:
 
     >>> import tempfile
     >>> from flexstage.studies.study.example import neck_study
+    >>> from flexstage.studies.study.gather import gather
     >>> with tempfile.TemporaryDirectory() as place:
     ...     path = Path(place, "results.h5")
     ...     gather(path, neck_study(), 256)
     ...     [each.what.partition(",")[0] for each in differences(path, neck_study(designs=8))]
-    ["plan was Plan(sampling=<Sampling.SOBOL: 'sobol'>"]
+    ['plan was sampling sobol']
     """
-    with _file(path) as file:
-        if file.attrs.get("format") != FORMAT:
-            yield Finding(os.fspath(path), "this file holds no results of a study", "Name another file")
-            return
+    with opened(path) as file:
         before = {key.replace("|", "/"): str(value) for key, value in file["facts"].attrs.items()}
     now = study.facts
     for key in [*before, *(key for key in now if key not in before)]:

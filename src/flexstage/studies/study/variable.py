@@ -62,6 +62,19 @@ class Variable:
         """
         return f"{100.0 * (value - 1.0):+.4g} %" if self.relative else show(value, self.quantity, digits=6)
 
+    def stated(self, mechanism: Mechanism) -> float:
+        """The value that stands for the design as it is: 1 for a relative variable, else what the first address has.
+
+        >>> from flexstage.base.quantity import LENGTH
+        >>> from flexstage.cases.double_triangle import double_triangle
+        >>> Variable("t", ("parts.neck.thickness",), LENGTH, 1e-3, 4e-3).stated(double_triangle())
+        0.00154...
+        """
+        if self.relative:
+            return 1.0
+        first = self.addresses[0]
+        return float(get(mechanism, first) if self.variant is None else self.variant.value(first))
+
 
 def varied(mechanism: Mechanism, variables: Iterable[Variable], values: Array) -> Mechanism:
     """The design with `values` (..., d) of the variables, in SI; with leading axes it is a batch.

@@ -9,6 +9,7 @@ from __future__ import annotations
 import contextlib
 import pickle
 import queue
+import signal
 import subprocess
 import sys
 import tempfile
@@ -148,7 +149,8 @@ def _dismissed(process: subprocess.Popen[str]) -> None:
 
 
 def _main(task: str, folder: str) -> None:
-    """Compute ranges that come on standard input, one a line, until it closes."""
+    """Compute ranges that come on standard input, one a line, until it closes. Interruptions are the affair of who started this."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
     study, engine = cast("tuple[Study, Engine]", pickle.loads(Path(task).read_bytes()))  # noqa: S301 written by this one's parent
     for line in sys.stdin:
         start, stop = map(int, line.split())

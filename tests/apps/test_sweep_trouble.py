@@ -1,0 +1,117 @@
+"""The command `sweep` in trouble: full disks, damaged files, clusters that are none; what was computed is kept."""
+
+import os
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from flexstage.base.finding import DesignError
+from flexstage.studies.study.file import loads_study
+from flexstage.studies.study.gather import needed
+from flexstage.studies.study.run import Run, run
+from flexstage.studies.study.store import folder_of, read_results
+from tests.conftest import FULL
+
+STUDY = """
+format = "flexstage study 1"
+case = "parallelogram"
+responses.m = "mass"
+responses.f = "frequency.platform.1"
+sweep = { sampling = "latin hypercube", designs = 700, seed = 3 }
+[variables]
+young = { of = "materials.aluminium.young", from = "-10 %", to = "10 %" }
+"""
+RUN = """
+import sys, resource
+resource.setrlimit(resource.RLIMIT_FSIZE, (int(sys.argv[2]), resource.RLIM_INFINITY))
+from flexstage.apps.cli import run
+sys.exit(run(["sweep", sys.argv[1], "-o", sys.argv[3], "--resume", "--workers", "1"]))
+"""
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory):
+    """The results without trouble."""
+    path = tmp_path_factory.mktemp("whole") / "r.h5"
+    run(loads_study(STUDY), path, Run(workers=1))
+    return path.read_bytes()
+
+
+def limited(place, size):
+    """The command in a process none of whose files may grow beyond a size; how it ended."""
+    (place / "study.toml").write_text(STUDY)
+    words = [sys.executable, "-c", RUN, place / "study.toml", str(size), place / "r.h5"]
+    return subprocess.run(words, capture_output=True, text=True, check=False)
+
+
+def test_a_disk_that_takes_no_more_keeps_what_is_there(tmp_path, whole):
+    """Pieces fit, the gathered file does not: HDF5 would take the process down."""
+    done = limited(tmp_path, 20_000)
+    assert done.returncode == 2, done.stderr
+    assert "cannot be written" in done.stderr
+    assert "Traceback" not in done.stderr
+    assert not list(tmp_path.glob(".*.part"))
+    found = run(loads_study(STUDY), tmp_path / "r.h5", Run(workers=1, resume=True))
+    assert found.complete
+    assert (tmp_path / "r.h5").read_bytes() == whole
+
+
+def test_room_is_asked_for_before_anything_is_computed(tmp_path, monkeypatch):
+    study = loads_study(STUDY)
+    usage = type("Usage", (), {"free": 2 * needed(study) - 1})
+    monkeypatch.setattr("shutil.disk_usage", lambda _: usage)
+    with pytest.raises(DesignError, match=r"results need .* MB more .* MB are free"):
+        run(study, tmp_path / "r.h5", Run(workers=1))
+    assert not list(tmp_path.iterdir())
+
+
+def test_the_room_asked_for_is_enough(whole):
+    assert len(whole) <= needed(loads_study(STUDY))
+
+
+@pytest.mark.parametrize("damage", [lambda text: text[: len(text) // 2], lambda _: b"", lambda text: os.urandom(len(text))])
+def test_damaged_results_are_refused_and_left(tmp_path, flexstage, whole, damage):
+    (tmp_path / "study.toml").write_text(STUDY)
+    content = damage(whole)
+    (tmp_path / "r.h5").write_bytes(content)
+    done = flexstage("sweep", "study.toml", "-o", "r.h5", "--resume")
+    assert (done.code, "cannot be read as results of a study" in done.err) == (2, True), done.err
+    assert (tmp_path / "r.h5").read_bytes() == content
+
+
+def test_a_damaged_piece_is_named(tmp_path, flexstage):
+    (tmp_path / "study.toml").write_text(STUDY)
+    folder = folder_of(tmp_path / "r.h5")
+    folder.mkdir()
+    (folder / "000000000256.npz").write_bytes(b"none")
+    done = flexstage("sweep", "study.toml", "-o", "r.h5", "--resume")
+    assert (done.code, "000000000256.npz: it is no piece" in done.err) == (2, True), done.err
+
+
+def test_schedulers_that_are_none_are_told_soon(tmp_path, flexstage):
+    (tmp_path / "study.toml").write_text(STUDY)
+    done = flexstage("sweep", "study.toml", "-o", "r.h5", "--scheduler", "tcp://nowhere")
+    assert (done.code, "no Dask scheduler answers at tcp://nowhere" in done.err) == (2, True), done.err
+    assert not (tmp_path / "r.h5").exists()
+
+
+def test_what_made_results_is_kept(whole, tmp_path):
+    (tmp_path / "r.h5").write_bytes(whole)
+    (made,) = read_results(tmp_path / "r.h5").made
+    assert f"numpy {np.__version__}" in made
+    assert "kernel" in made
+
+
+@pytest.mark.skipif(not FULL, reason="two worker processes: seconds")
+def test_a_cluster_gives_the_same_file_though_a_worker_dies(tmp_path, whole):
+    distributed = pytest.importorskip("distributed")
+    with distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster:
+
+        def kill(done, _):
+            if 0 < done < 700 and cluster.workers:
+                cluster.workers[0].process.process.kill()
+
+        run(loads_study(STUDY), tmp_path / "r.h5", Run(scheduler=cluster.scheduler_address), kill)
+    assert (tmp_path / "r.h5").read_bytes() == whole
