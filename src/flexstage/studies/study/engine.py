@@ -11,6 +11,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from threadpoolctl import threadpool_limits
 
 from flexstage import __version__
@@ -68,7 +69,7 @@ class Engine:
         'flexstage ..., numpy ... on ...'
         """
         solver = "" if self.plan is None else f", {kernel_name()}"
-        return f"flexstage {__version__}, numpy {np.__version__} on {platform.machine()}{solver}"
+        return f"flexstage {__version__}, numpy {np.__version__}, scipy {scipy.__version__} on {platform.machine()}{solver}"
 
 
 def engine_covers(study: Study) -> bool:
