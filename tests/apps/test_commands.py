@@ -38,6 +38,8 @@ case = "parallelogram"
 responses.f = "frequency.1"
 sweep = { sampling = "latin hypercube", designs = 16, seed = 3 }
 optimise = { maximise = "f", starts = 1 }
+tolerance = { copies = 16 }
+scatter = { young = { of = "materials.young", normal = "1 %" } }
 [variables]
 young = { of = "materials.aluminium.young", from = "-10 %", to = "10 %" }
 """
@@ -59,7 +61,7 @@ def test_examples_run(flexstage: Command, tmp_path: Path, example: str) -> None:
         occ.Box(occ.Pnt(0, 0, 0), occ.Pnt(10, 20, 30)).WriteStep(str(tmp_path / "part.step"))
     if "record.uff" in words and words[1] != "rig":
         write(tmp_path / "record.uff", stage_record(double_triangle()))
-    if words[1] in {"sweep", "optimise"}:
+    if words[1] in {"sweep", "optimise", "tolerance"}:
         (tmp_path / "study.toml").write_text(STUDY)
     if words[1] == "hysteresis":
         write(tmp_path / "stack.csv", example_record())
@@ -168,9 +170,12 @@ def test_a_reader_that_leaves_is_no_failure(tmp_path: Path, unbuffered: str) -> 
         assert process.wait() == 0
 
 
-def test_bad_input_is_bad_input_also_where_nobody_reads_it(tmp_path: Path) -> None:
+@pytest.mark.parametrize("unbuffered", ["", "1"])
+def test_bad_input_is_bad_input_also_where_nobody_reads_it(tmp_path: Path, unbuffered: str) -> None:
     """`flexstage ... 2>&1 | head -1`: stderr breaks too, and the exit code still tells."""
-    with subprocess.Popen([*PROCESS, "check", "none.toml"], cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
+    environment = os.environ | {"PYTHONUNBUFFERED": unbuffered}
+    words, pipe = [*PROCESS, "check", "none.toml"], subprocess.PIPE
+    with subprocess.Popen(words, cwd=tmp_path, stdout=pipe, stderr=pipe, env=environment) as process:
         assert process.stdout is not None
         assert process.stderr is not None
         process.stdout.close()

@@ -9,7 +9,7 @@ from collections.abc import Callable, Generator
 from contextlib import contextmanager
 
 from flexstage.apps.cli.output import together
-from flexstage.apps.cli.speech import tell, warn
+from flexstage.apps.cli.speech import finish, silence, tell, warn
 from flexstage.base.finding import DesignError
 
 DONE, MISSED, BAD_INPUT, INTERRUPTED, FAULT = 0, 1, 2, 2, 70
@@ -20,6 +20,13 @@ _THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
 
 def guarded(action: Callable[[], object]) -> int:
     """Run an action and turn however it ends into an exit code; messages go to stderr."""
+    try:
+        return _ended(action)
+    finally:
+        finish()
+
+
+def _ended(action: Callable[[], object]) -> int:
     for name in _THREADS:  # many small matrices: a second thread costs more than it gives. Read when numpy is loaded.
         os.environ.setdefault(name, "1")
     try:
@@ -46,8 +53,8 @@ def guarded(action: Callable[[], object]) -> int:
 
 
 def _unread() -> int:
-    """The reader has gone (`| head`). Nothing may be written at the interpreter's end either."""
-    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    """The reader has gone (`| head`): no failure."""
+    silence(sys.stdout)
     return DONE
 
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import os
 import sys
-from contextlib import suppress
+from typing import TextIO
 
 
 def say(text: str = "") -> None:
@@ -13,8 +14,24 @@ def say(text: str = "") -> None:
 
 def tell(text: str) -> None:
     """Print a line that is not the result (progress, where a file was written) to stderr, as long as somebody reads there."""
-    with suppress(BrokenPipeError):
+    try:
         sys.stderr.write(f"{text}\n")
+    except BrokenPipeError:
+        silence(sys.stderr)
+
+
+def silence(stream: TextIO) -> None:
+    """Let go of a stream whose reader has gone: what is held back would fail again at the interpreter's end, and change the exit code."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
+
+
+def finish() -> None:
+    """Write out what is held back on stdout and stderr, as long as somebody reads there."""
+    for stream in (sys.stdout, sys.stderr):
+        try:
+            stream.flush()
+        except BrokenPipeError:
+            silence(stream)
 
 
 def warn(text: str) -> None:

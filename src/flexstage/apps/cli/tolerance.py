@@ -27,7 +27,7 @@ def tolerance(
     report: Report = None,
     json: Json = None,
 ) -> None:
-    """Scatter dimensions and materials; show yield and allowed tolerances.
+    """Scatter dimensions and materials: yield, allowances.
 
     The study's file says in [scatter] what deviates, and how far.
 
