@@ -72,13 +72,13 @@ def check_matrices(mechanism: Mechanism) -> None:
         assert np.max(np.abs(dense(family_plan.scheme, mine)[1] - theirs)) <= 1e-12 * np.max(np.abs(theirs))
 
 
-@given(mechanisms())
+@given(mechanisms.fresh())
 @examples(15, 600)
 def test_blocks_are_the_matrices_of_the_lumped_reading(mechanism: Mechanism) -> None:
     check_matrices(mechanism)
 
 
-@given(st.one_of(mechanisms(), rosettes(), actuated_platforms()))
+@given(st.one_of(mechanisms.fresh(), rosettes.fresh(), actuated_platforms.fresh()))
 @examples(6, 400)
 def test_frequencies_are_those_of_each_design_alone(mechanism: Mechanism) -> None:
     family_plan = plan(mechanism, varied(mechanism))
@@ -97,7 +97,7 @@ def test_frequencies_are_those_of_each_design_alone(mechanism: Mechanism) -> Non
                 np.testing.assert_allclose(row, expected[:6] if len(expected) == 6 else row, rtol=1e-6)
 
 
-@given(rosettes())
+@given(rosettes.fresh())
 @examples(8, 200)
 def test_iteration_agrees_with_dense_matrices_in_numpy_and_in_c(mechanism: Mechanism) -> None:
     """Rosettes have repeated modes; whatever is proved must be right."""

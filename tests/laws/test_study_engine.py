@@ -76,6 +76,18 @@ def test_a_design_is_the_same_to_the_bit_in_every_piece(many):
     np.testing.assert_allclose(whole.responses[:3, 1], dense.responses[:, 1], rtol=1e-12)
 
 
+EVERY = ("stroke.z", "safety", "loss.B4", "crosstalk", "stiffness.x", "frequency.2", "mass", "drift.z", "load", "gauge.range", "corner")
+
+
+def test_a_batch_is_a_loop():
+    """Every measure of designs together, and of each alone: no design depends on its neighbours."""
+    asked = study(MOVED[:4], keys=EVERY)
+    whole = piece(asked, 0, 4)
+    assert not whole.failures
+    for number in range(4):
+        np.testing.assert_allclose(piece(asked, number, number + 1).responses[0], whole.responses[number], rtol=1e-12)
+
+
 def test_designs_within_the_ranges_are_all_fitted(many):
     engine = many[1]
     corners = np.array([[0.9, 1.1], [1.1, 0.9]])

@@ -73,6 +73,7 @@ def test_every_case_has_a_report_that_stands_alone(name: str, reading: Reading) 
         assert root.attrib["aria-label"]
 
 
+@pytest.mark.full
 def test_mapped_reading_has_a_report() -> None:
     page = reported("double-triangle", Reading.MAPPED)
     assert "110.91" in page
