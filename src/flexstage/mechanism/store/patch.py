@@ -8,7 +8,7 @@ from typing import Any
 import tomlkit
 from tomlkit.exceptions import TOMLKitError
 
-from flexstage.base.finding import refuse
+from flexstage.base.finding import DesignError, refuse
 from flexstage.mechanism.address import set_value, value_from_text
 from flexstage.mechanism.grammar import TAGS, Node, RecordNode, UnionNode, child, node_of
 from flexstage.mechanism.locate import canonical, locate
@@ -33,25 +33,40 @@ def patch(text: str, values: Mapping[str, Any], *, where: str = "text") -> str:
     mode_limit = "800 Hz"  # enough
     """
     mechanism = mechanism_from(parse_toml(text, where), shipped())
+    steps: list[_Step] = []
     for address, value in values.items():
         place = locate(mechanism, address)
         kept = value_from_text(value, place, address) if isinstance(value, str) else value
-        changed = set_value(mechanism, address, kept)
-        text = _patched(text, mechanism, changed, address)
-        mechanism = changed
-    if mechanism_from(parse_toml(text, where), shipped()) != mechanism:
+        steps.append((mechanism, set_value(mechanism, address, kept), address))
+        mechanism = steps[-1][1]
+    try:
+        return _written(text, [steps], mechanism, where)
+    except DesignError:  # some layouts bear one change at a time only
+        return _written(text, [[step] for step in steps], mechanism, where)
+
+
+_Step = tuple[Mechanism, Mechanism, str]
+"""The description before and after a change, and its address."""
+
+
+def _written(text: str, portions: list[list[_Step]], wanted: Mechanism, where: str) -> str:
+    """The text after all changes, read anew after each portion of them."""
+    for steps in portions:
+        text = _patched(text, steps)
+    if mechanism_from(parse_toml(text, where), shipped()) != wanted:
         raise refuse(where, "its tables are laid out so that single values cannot be changed", "Write it anew with dump")
     return text
 
 
-def _patched(text: str, mechanism: Mechanism, changed: Mechanism, address: str) -> str:
-    try:
-        document = tomlkit.parse(text)
-        _untag(document, mechanism, changed)
-        _set(document, mechanism, changed, address)
-        return tomlkit.dumps(document)
-    except TOMLKitError as error:
-        raise refuse(address, f"the file cannot be changed there: {error}", "Write it anew with dump") from None
+def _patched(text: str, steps: list[_Step]) -> str:
+    document = tomlkit.parse(text)
+    for mechanism, changed, address in steps:
+        try:
+            _untag(document, mechanism, changed)
+            _set(document, mechanism, changed, address)
+        except TOMLKitError as error:
+            raise refuse(address, f"the file cannot be changed there: {error}", "Write it anew with dump") from None
+    return tomlkit.dumps(document)
 
 
 def _set(document: Any, mechanism: Mechanism, changed: Mechanism, address: str) -> None:

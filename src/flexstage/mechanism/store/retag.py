@@ -35,25 +35,34 @@ def retagged(text: str, tags: Mapping[str, str], *, where: str = "text") -> str:
     <BLANKLINE>
     """
     mechanism = mechanism_from(parse_toml(text, where), shipped())
+    together = _tagged(text, mechanism, tags, where, beside=True)
+    return _one_by_one(text, mechanism, tags, where) if together is None else together
+
+
+def _one_by_one(text: str, mechanism: Mechanism, tags: Mapping[str, str], where: str) -> str:
+    """Each beside its value if the file is laid out so that it can stand there, else in the table of all tags."""
     for address, tag in tags.items():
-        text = _tagged(text, mechanism, address, tag, where)
+        ways = (_tagged(text, mechanism, {address: tag}, where, beside=beside) for beside in (True, False))
+        found = next((way for way in ways if way is not None), None)
+        if found is None:
+            raise refuse(address, "no tag can be put there: the file's tables are laid out otherwise", "Write it anew with dump")
+        text = found
     return text
 
 
-def _tagged(text: str, mechanism: Mechanism, address: str, tag: str, where: str) -> str:
-    """Beside the value if the file is laid out so that it can stand there, else in the table of all tags."""
-    path = () if locate(mechanism, address).owners else locate(mechanism, address).path
-    for depth in (len(path), 0) if path else (0,):
-        try:
-            document = tomlkit.parse(text)
-            _put(document, path[:depth], locate(mechanism, address).address, tag)
-            found = tomlkit.dumps(document)
-            now = mechanism_from(parse_toml(found, where), shipped())
-        except (TOMLKitError, ValueError):  # findings are ValueErrors
-            continue
-        if tag_of(now, address) == tag and now.changes == mechanism.changes and _same_physics(now, mechanism):
-            return found
-    raise refuse(address, "no tag can be put there: the file's tables are laid out otherwise", "Write it anew with dump")
+def _tagged(text: str, mechanism: Mechanism, tags: Mapping[str, str], where: str, *, beside: bool) -> str | None:
+    """The text with these tags; nothing if it then says anything else than before beside them."""
+    try:
+        document = tomlkit.parse(text)
+        for address, tag in tags.items():
+            place = locate(mechanism, address)
+            _put(document, place.path if beside and not place.owners else (), place.address, tag)
+        found = tomlkit.dumps(document)
+        now = mechanism_from(parse_toml(found, where), shipped())
+    except (TOMLKitError, ValueError):  # findings are ValueErrors
+        return None
+    told = all(tag_of(now, address) == tag for address, tag in tags.items())
+    return found if told and now.changes == mechanism.changes and _same_physics(now, mechanism) else None
 
 
 def _same_physics(first: Mechanism, second: Mechanism) -> bool:
