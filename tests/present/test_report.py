@@ -127,7 +127,7 @@ def test_verdicts_come_first_and_failures_before_the_rest() -> None:
     page = report(analyse(_required(stage, changed)))
     first = page[page.index("<h2>") : page.index("</h2>")]
     assert first == "<h2>Requirements"
-    assert "1 of 2 requirements is met. Not met: frequency.platform.1." in page
+    assert "1 of 2 requirements are met. Not met: frequency.platform.1." in page
     assert page.index('<td class="strong">frequency.platform.1') < page.index('<td class="strong">stroke.x')
 
 
