@@ -61,7 +61,7 @@ from flexstage.studies.study.definition import Study
 from flexstage.studies.study.effects import Effects
 from flexstage.studies.study.effects import effects as effects_of
 from flexstage.studies.study.file import loads_study
-from flexstage.studies.study.run import Run, run
+from flexstage.studies.study.run import Run, sweep
 from flexstage.studies.tolerance.file import loads_tolerance
 from flexstage.studies.tolerance.run import Toleranced, tolerance
 from tests.analytic import test_paros_weisbord, test_smith_toroid
@@ -238,7 +238,7 @@ def _study(name: str) -> tuple[Study, Effects]:
     """A study in docs/studies.md, and what its variables do."""
     study = loads_study(next(block.text for block in blocks("docs/studies.md") if block.word("file") == name))
     with TemporaryDirectory() as place:
-        return study, effects_of(run(study, Path(place) / "results.h5", Run(workers=1)), study.plan)
+        return study, effects_of(sweep(study, Path(place) / "results.h5", Run(workers=1)), study.plan)
 
 
 def effects() -> Any:

@@ -408,8 +408,20 @@ from flexstage.studies.solid_unit import (
     SolidUnit as SolidUnit,
     solid_units as solid_units,
 )
+from flexstage.studies.study.effects import (
+    Effects as Effects,
+    effects as effects,
+)
 from flexstage.studies.study.file import (
     load_study as load_study,
+)
+from flexstage.studies.study.run import (
+    Run as Run,
+    sweep as sweep,
+)
+from flexstage.studies.study.store import (
+    Results as Results,
+    read_results as read_results,
 )
 from flexstage.studies.units import (
     UnitResult as UnitResult,

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from flexstage.studies.study.file import load_study
-from flexstage.studies.study.run import PIECE, Run, run
+from flexstage.studies.study.run import PIECE, Run, sweep
 from flexstage.studies.study.store import folder_of, read_results
 from tests.conftest import FULL
 
@@ -27,8 +27,8 @@ young = {{ of = "materials.aluminium.young", from = "-10 %", to = "10 %" }}
 RUN = """
 import sys
 from flexstage.studies.study.file import load_study
-from flexstage.studies.study.run import Run, run
-run(load_study(sys.argv[1]), sys.argv[2], Run(workers=2, resume=True), lambda done, of: print(done, flush=True))
+from flexstage.studies.study.run import Run, sweep
+sweep(load_study(sys.argv[1]), sys.argv[2], Run(workers=2, resume=True), lambda done, of: print(done, flush=True))
 """
 
 
@@ -52,14 +52,14 @@ def killed(study, results, after):
 
 def test_killed_and_resumed_gives_the_same_file(study_file, tmp_path):
     whole, broken = tmp_path / "whole.h5", tmp_path / "broken.h5"
-    run(load_study(study_file), whole, Run(workers=1))
+    sweep(load_study(study_file), whole, Run(workers=1))
     for number in range(KILLS):
         if not killed(study_file, broken, after=1 + number % 2):
             break
         found = read_results(broken)
         assert len(np.unique(found.designs)) == len(found.designs)
         assert np.all(np.isfinite(found.responses))
-    found = run(load_study(study_file), broken, Run(workers=2, resume=True))
+    found = sweep(load_study(study_file), broken, Run(workers=2, resume=True))
     np.testing.assert_array_equal(found.designs, np.arange(DESIGNS))
     assert whole.read_bytes() == broken.read_bytes()
     assert not folder_of(broken).exists()

@@ -10,7 +10,7 @@ import pytest
 from flexstage.base.finding import DesignError
 from flexstage.studies.study.file import loads_study
 from flexstage.studies.study.gather import needed
-from flexstage.studies.study.run import Run, run
+from flexstage.studies.study.run import Run, sweep
 from flexstage.studies.study.store import folder_of, read_results
 from tests.conftest import FULL
 
@@ -35,7 +35,7 @@ sys.exit(run(["sweep", sys.argv[1], "-o", sys.argv[3], "--resume", "--workers", 
 def whole(tmp_path_factory):
     """The results without trouble."""
     path = tmp_path_factory.mktemp("whole") / "r.h5"
-    run(loads_study(STUDY), path, Run(workers=1))
+    sweep(loads_study(STUDY), path, Run(workers=1))
     return path.read_bytes()
 
 
@@ -53,7 +53,7 @@ def test_a_disk_that_takes_no_more_keeps_what_is_there(tmp_path, whole):
     assert "cannot be written" in done.stderr
     assert "Traceback" not in done.stderr
     assert not list(tmp_path.glob(".*.part"))
-    found = run(loads_study(STUDY), tmp_path / "r.h5", Run(workers=1, resume=True))
+    found = sweep(loads_study(STUDY), tmp_path / "r.h5", Run(workers=1, resume=True))
     assert found.complete
     assert (tmp_path / "r.h5").read_bytes() == whole
 
@@ -63,7 +63,7 @@ def test_room_is_asked_for_before_anything_is_computed(tmp_path, monkeypatch):
     usage = type("Usage", (), {"free": 2 * needed(study) - 1})
     monkeypatch.setattr("shutil.disk_usage", lambda _: usage)
     with pytest.raises(DesignError, match=r"results need .* MB more .* MB are free"):
-        run(study, tmp_path / "r.h5", Run(workers=1))
+        sweep(study, tmp_path / "r.h5", Run(workers=1))
     assert not list(tmp_path.iterdir())
 
 
@@ -113,5 +113,5 @@ def test_a_cluster_gives_the_same_file_though_a_worker_dies(tmp_path, whole):
             if 0 < done < 700 and cluster.workers:
                 cluster.workers[0].process.process.kill()
 
-        run(loads_study(STUDY), tmp_path / "r.h5", Run(scheduler=cluster.scheduler_address), kill)
+        sweep(loads_study(STUDY), tmp_path / "r.h5", Run(scheduler=cluster.scheduler_address), kill)
     assert (tmp_path / "r.h5").read_bytes() == whole

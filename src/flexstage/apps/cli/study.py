@@ -53,12 +53,13 @@ def sweep(
     from flexstage.base.finding import require
     from flexstage.studies.study.effects import effects
     from flexstage.studies.study.file import load_study
-    from flexstage.studies.study.run import Run, run
+    from flexstage.studies.study.run import Run
+    from flexstage.studies.study.run import sweep as swept
 
     require(output_findings([("--output", output), ("--json", json), ("--report", report)], study))
     asked = load_study(study)
     with resumable(output), bar() as shown:
-        results = run(
+        results = swept(
             asked, output, Run(workers, resume, scheduler), lambda done, of: shown.share(f"{done} of {of} designs", done / max(of, 1))
         )
     found = effects(results, asked.plan)

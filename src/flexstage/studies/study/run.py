@@ -49,7 +49,7 @@ class Run:
 DEFAULT = Run()
 
 
-def run(study: Study, path: str | os.PathLike[str], how: Run = DEFAULT, progress: Progress | None = None) -> Results:
+def sweep(study: Study, path: str | os.PathLike[str], how: Run = DEFAULT, progress: Progress | None = None) -> Results:
     """Compute all designs of a study into the results file at `path`.
 
     Pieces (see `piece_size`) are written as they come and gathered into the file from time to time and at the end. Results do not depend
@@ -60,7 +60,7 @@ def run(study: Study, path: str | os.PathLike[str], how: Run = DEFAULT, progress
     >>> import tempfile
     >>> from flexstage.studies.study.example import neck_study
     >>> with tempfile.TemporaryDirectory() as place:
-    ...     found = run(neck_study(), f"{place}/results.h5", Run(workers=1))
+    ...     found = sweep(neck_study(), f"{place}/results.h5", Run(workers=1))
     >>> found.designs.tolist(), found.complete
     ([0, 1, 2, 3], True)
     """

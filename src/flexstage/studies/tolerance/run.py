@@ -7,7 +7,7 @@ import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
-from flexstage.studies.study.run import DEFAULT, Progress, Run, run
+from flexstage.studies.study.run import DEFAULT, Progress, Run, sweep
 from flexstage.studies.study.store import Results
 from flexstage.studies.tolerance.allowance import Allowance, allowance
 from flexstage.studies.tolerance.definition import Tolerance
@@ -29,9 +29,9 @@ class Toleranced:
 def tolerance(
     study: Tolerance, path: str | os.PathLike[str] | None = None, how: Run = DEFAULT, progress: Progress | None = None
 ) -> Toleranced:
-    """Run a tolerance study, its copies kept in the results file at `path` (absent: nowhere), as `run` keeps those of any study.
+    """Run a tolerance study, its copies kept in the results file at `path` (absent: nowhere), as `sweep` keeps the designs of any study.
 
-    Raises `DesignError` as `run` does.
+    Raises `DesignError` as `sweep` does.
 
     >>> from flexstage.studies.tolerance.example import leaf_study
     >>> found = tolerance(leaf_study(), how=Run(workers=1))
@@ -41,7 +41,7 @@ def tolerance(
     if path is None:
         with tempfile.TemporaryDirectory() as place:
             return tolerance(study, Path(place) / "copies.h5", how, progress)
-    results = run(study, path, how, progress)
+    results = sweep(study, path, how, progress)
     found = slopes(study)
     said = summary(study, results, found)
     return Toleranced(study, results, found, said, allowance(study, results, found, said))
