@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from enum import Enum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, TypeAlias, TypeVar
 
@@ -26,28 +27,20 @@ def _text(name: str, metavar: str, about: str) -> Any:
     return typer.Option(name, metavar=metavar, help=about, show_default=False)
 
 
+def _choice(name: str, among: type[Enum], about: str) -> Any:
+    return typer.Option(name, parser=choice(name, among), metavar=choices(among), help=about, show_default=False)
+
+
 Setup: TypeAlias = Annotated[Path | None, _text("--setup", "LOOP.TOML", "Set-up file; options on the line go before it.")]
 Rate: TypeAlias = Annotated[str | None, _text("--rate", "VALUE", "Sampling rate. Default: 10 kHz, or 10 times the highest platform mode.")]
 Delay: TypeAlias = Annotated[str | None, _text("--delay", "VALUE", "From sampling to the new output. Default: one sample.")]
 Kind: TypeAlias = Annotated[
     ControllerKind | None,
-    typer.Option(
-        "--controller",
-        parser=choice("--controller", ControllerKind),
-        metavar=choices(ControllerKind),
-        help="What closes the loop; none: open loop. Default: pi.",
-        show_default=False,
-    ),
+    _choice("--controller", ControllerKind, "What closes the loop; none: open loop. Default: pi."),
 ]
 Coordinates: TypeAlias = Annotated[
     Axes | None,
-    typer.Option(
-        "--coordinates",
-        parser=choice("--coordinates", Axes),
-        metavar=choices(Axes),
-        help="In which coordinates single loops are closed. Default: platform.",
-        show_default=False,
-    ),
+    _choice("--coordinates", Axes, "In which coordinates single loops are closed. Default: platform."),
 ]
 Bandwidth: TypeAlias = Annotated[
     str | None, _text("--bandwidth", "VALUE", "Bandwidth to tune to. Default: the highest that the margin allows.")
@@ -92,13 +85,7 @@ Seconds: TypeAlias = Annotated[float | None, _text("--seconds", "NUMBER", "Lengt
 Seed: TypeAlias = Annotated[int | None, _text("--seed", "NUMBER", "Seed of all random numbers. Default: 0.")]
 ReadBy: TypeAlias = Annotated[
     Reading | None,
-    typer.Option(
-        "--reading",
-        parser=choice("--reading", Reading),
-        metavar=choices(Reading),
-        help="Theory to read the plant by. Default: lumped.",
-        show_default=False,
-    ),
+    _choice("--reading", Reading, "Theory to read the plant by. Default: lumped."),
 ]
 
 

@@ -7,14 +7,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from flexstage.analysis.loop.hysteresis.protocol import one_step, run_steps
+from flexstage.analysis.loop.hysteresis.protocol import Hysteresis
 from flexstage.analysis.loop.hysteresis.shape import Range, settled_loop
 from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.number import Array, freeze
 
 
 @dataclass(frozen=True, eq=False)
-class BoucWen:
+class BoucWen(Hysteresis):
     """w = offset + d v - h,  dh/dt = A dv/dt - beta |dv/dt| h - gamma dv/dt |h|, each (axes,); h(v = 0) = 0 at rest.
 
     (Low and Guo, J. Microelectromech. Syst. 4, 1995, 230-237, exponent 1.) `gain` d and `lag` A in m/V, `beta` and `gamma` in 1/V. Rate
@@ -52,14 +52,6 @@ class BoucWen:
         kernel = BoucWenStepper(self, np.zeros((self.axes, 2)))
         kernel(np.broadcast_to(np.asarray(value, dtype=float), (self.axes,)), np.empty(self.axes))
         return kernel.state
-
-    def step(self, state: Array, value: Array) -> tuple[Array, Array]:
-        """The next state (axes, 2) and the stroke (axes,) for the next volts (axes,)."""
-        return one_step(self, state, value)
-
-    def run(self, values: Array, state: Array | None = None) -> Array:
-        """Strokes for volts (k, axes), or (k,) of a single axis, from `state`, or else from rest."""
-        return run_steps(self, values, state)
 
     def stepper(self, state: Array) -> BoucWenStepper:
         """A kernel for simulations that starts from `state`."""

@@ -8,13 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexstage.analysis.loop.hysteresis.envelope import IDENTITY, Envelope, spread, stacked_envelopes, straight
-from flexstage.analysis.loop.hysteresis.protocol import one_step, run_steps
+from flexstage.analysis.loop.hysteresis.protocol import Hysteresis
 from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array, freeze
 
 
 @dataclass(frozen=True, eq=False)
-class PrandtlIshlinskii:
+class PrandtlIshlinskii(Hysteresis):
     """y = b( sum_i p_i F_{r_i}[a(x)] ): plays F of thresholds r_i weighted by p_i, envelopes a before and b after them.
 
     One sample, for each axis, in this order (what code made elsewhere must repeat):
@@ -56,14 +56,6 @@ class PrandtlIshlinskii:
         """Outputs of the plays (axes, n) after a monotone travel from rest, all at 0, to the input (axes,)."""
         effective = self.before.at(np.broadcast_to(np.asarray(value, dtype=float), (self.axes,)))[:, None]
         return np.maximum(effective - self.thresholds, np.minimum(effective + self.thresholds, 0.0))
-
-    def step(self, state: Array, value: Array) -> tuple[Array, Array]:
-        """The next outputs of the plays (axes, n) and the output (axes,) for the next input (axes,)."""
-        return one_step(self, state, value)
-
-    def run(self, values: Array, state: Array | None = None) -> Array:
-        """Outputs for inputs (k, axes), or (k,) of a single axis, from `state`, or else from rest."""
-        return run_steps(self, values, state)
 
     def stepper(self, state: Array) -> PlayStepper:
         """A kernel for simulations that starts from `state`: about ten calls of numpy a sample, whatever the number of axes."""

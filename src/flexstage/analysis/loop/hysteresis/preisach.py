@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from flexstage.analysis.loop.hysteresis.protocol import one_step, run_steps
+from flexstage.analysis.loop.hysteresis.protocol import Hysteresis
 from flexstage.analysis.loop.hysteresis.shape import Range, settled_loop
 from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.number import Array, freeze
@@ -16,7 +16,7 @@ _SLOTS = 16
 
 
 @dataclass(frozen=True, eq=False)
-class Preisach:
+class Preisach(Hysteresis):
     """w = offset + kappa v + integral of mu over the relays that are on, relays (alpha, beta) going on at alpha and off at beta < alpha.
 
     mu = mu_0 e^{-(alpha - beta)/lambda} (1 - c m - d m^2), where m = (alpha + beta - low - high)/(high - low) lies between -1 and 1. A
@@ -70,14 +70,6 @@ class Preisach:
         kernel = PreisachStepper(self, _memory(self.low, self.low, _SLOTS))
         kernel(np.broadcast_to(np.asarray(value, dtype=float), (self.axes,)), np.empty(self.axes))
         return kernel.state
-
-    def step(self, state: Array, value: Array) -> tuple[Array, Array]:
-        """The next state and the stroke (axes,) for the next volts (axes,)."""
-        return one_step(self, state, value)
-
-    def run(self, values: Array, state: Array | None = None) -> Array:
-        """Strokes for volts (k, axes), or (k,) of a single axis, from `state`, or else from rest."""
-        return run_steps(self, values, state)
 
     def stepper(self, state: Array) -> PreisachStepper:
         """A kernel for simulations that starts from `state`."""

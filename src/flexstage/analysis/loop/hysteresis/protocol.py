@@ -40,48 +40,38 @@ class Hysteresis(Protocol):
         ...
 
     def step(self, state: Array, value: Array) -> tuple[Array, Array]:
-        """The next state and the output (axes,) for the next input (axes,); `state` itself is left as it is."""
-        ...
+        """The next state and the output (axes,) for the next input (axes,); `state` itself is left as it is.
+
+        >>> from flexstage.analysis.loop.hysteresis.prandtl_ishlinskii import proportional
+        >>> (1e6 * proportional([2e-7]).step(np.zeros((1, 1)), np.array([100.0]))[1]).round(9).tolist()
+        [20.0]
+        """
+        kernel = self.stepper(state)
+        out = kernel(np.asarray(value, dtype=float), np.empty(self.axes))
+        return kernel.state, out
 
     def run(self, values: Array, state: Array | None = None) -> Array:
-        """Outputs for inputs (k, axes), or (k,) of a single actuator, from `state`, or else from rest."""
-        ...
+        """Outputs for inputs (k, axes), or (k,) of a single actuator, from `state`, or else from rest.
+
+        Raises `DesignError` for inputs of another shape and for numbers that are not finite.
+
+        >>> from flexstage.analysis.loop.hysteresis.prandtl_ishlinskii import proportional
+        >>> (1e6 * proportional([2e-7]).run(np.array([0.0, 100.0]))).round(9).tolist()
+        [0.0, 20.0]
+        """
+        values = np.asarray(values, dtype=float)
+        if values.shape[1:] != (self.axes,) and not (values.ndim == 1 and self.axes == 1):
+            raise refuse("hysteresis", f"inputs are {values.shape} for {self.axes} axes", f"Give (samples, {self.axes})")
+        if not np.all(np.isfinite(values)):
+            raise refuse("hysteresis", "an input is not finite", "Mend the inputs")
+        rows = values.reshape(len(values), self.axes)
+        found = np.empty_like(rows)
+        if len(rows):
+            kernel = self.stepper(self.start(rows[0]) if state is None else state)
+            for value, out in zip(rows, found, strict=True):
+                kernel(value, out)
+        return found.reshape(values.shape)
 
     def stepper(self, state: Array) -> Stepper:
         """A kernel for simulations that starts from `state`."""
         ...
-
-
-def run_steps(model: Hysteresis, values: Array, state: Array | None) -> Array:
-    """Outputs of a hysteresis for inputs (k, axes), or (k,) where it has one axis; from rest where no state is given.
-
-    Raises `DesignError` for inputs of another shape and for numbers that are not finite.
-
-    >>> from flexstage.analysis.loop.hysteresis.prandtl_ishlinskii import proportional
-    >>> (1e6 * run_steps(proportional([2e-7]), np.array([0.0, 100.0]), None)).round(9).tolist()
-    [0.0, 20.0]
-    """
-    values = np.asarray(values, dtype=float)
-    if values.shape[1:] != (model.axes,) and not (values.ndim == 1 and model.axes == 1):
-        raise refuse("hysteresis", f"inputs are {values.shape} for {model.axes} axes", f"Give (samples, {model.axes})")
-    if not np.all(np.isfinite(values)):
-        raise refuse("hysteresis", "an input is not finite", "Mend the inputs")
-    rows = values.reshape(len(values), model.axes)
-    found = np.empty_like(rows)
-    if len(rows):
-        kernel = model.stepper(model.start(rows[0]) if state is None else state)
-        for value, out in zip(rows, found, strict=True):
-            kernel(value, out)
-    return found.reshape(values.shape)
-
-
-def one_step(model: Hysteresis, state: Array, value: Array) -> tuple[Array, Array]:
-    """The next state and the output (axes,) of a hysteresis for the next input (axes,).
-
-    >>> from flexstage.analysis.loop.hysteresis.prandtl_ishlinskii import proportional
-    >>> (1e6 * one_step(proportional([2e-7]), np.zeros((1, 1)), np.array([100.0]))[1]).round(9).tolist()
-    [20.0]
-    """
-    kernel = model.stepper(state)
-    out = kernel(np.asarray(value, dtype=float), np.empty(model.axes))
-    return kernel.state, out
