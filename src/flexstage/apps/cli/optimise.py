@@ -10,7 +10,7 @@ import typer
 
 from flexstage.apps.cli.options import Json
 from flexstage.apps.cli.output import STDOUT
-from flexstage.apps.cli.study import StudyFile
+from flexstage.apps.cli.study import Report, StudyFile
 
 if TYPE_CHECKING:
     from flexstage.present.documents.envelope import Document
@@ -26,9 +26,7 @@ def optimise(
     output: Annotated[
         Path | None, typer.Option("--output", "-o", metavar="STAGE.TOML", help="Design file to write.", show_default=False)
     ] = None,
-    report: Annotated[
-        Path | None, typer.Option("--report", metavar="FILE.html", help="Write a report with pictures.", show_default=False)
-    ] = None,
+    report: Report = None,
     json: Json = None,
 ) -> None:
     """Find the best design within ranges and limits.

@@ -235,18 +235,23 @@ static void eliminate(const Task *t, lanes *own, lanes *edge, lanes *negative, l
     }
 }
 
+/* What body v and its edges to later bodies add to y = M x. */
+static inline void weigh(const Task *t, const Room *w, lanes *restrict y, const lanes *restrict x, int64_t v)
+{
+    const int m = (int)t->m;
+    add(y + 6 * m * v, w->mass + 36 * v, x + 6 * m * v, m);
+    for (int64_t e = t->range[v]; e < t->range[v + 1]; e++)
+        if (t->heavy[e]) {
+            add(y + 6 * m * v, w->mass_edge + 36 * e, x + 6 * m * t->later[e], m);
+            add_turned(y + 6 * m * t->later[e], w->mass_edge + 36 * e, x + 6 * m * v, m);
+        }
+}
+
 static void product(const Task *t, const Room *w, lanes *restrict y, const lanes *restrict x)
 {
     const int m = (int)t->m;
     memset(y, 0, sizeof(lanes) * 6 * m * t->bodies);
-    for (int64_t v = 0; v < t->bodies; v++) {
-        add(y + 6 * m * v, w->mass + 36 * v, x + 6 * m * v, m);
-        for (int64_t e = t->range[v]; e < t->range[v + 1]; e++)
-            if (t->heavy[e]) {
-                add(y + 6 * m * v, w->mass_edge + 36 * e, x + 6 * m * t->later[e], m);
-                add_turned(y + 6 * m * t->later[e], w->mass_edge + 36 * e, x + 6 * m * v, m);
-            }
-    }
+    for (int64_t v = 0; v < t->bodies; v++) weigh(t, w, y, x, v);
 }
 
 static inline void forward(const Task *t, const Room *w, lanes *restrict y, int64_t v)
@@ -279,12 +284,7 @@ static void recur(const Task *t, const Room *w, lanes *restrict old, lanes *rest
     const lanes four = twice + twice;
     memset(y, 0, sizeof(lanes) * 6 * m * t->bodies);
     for (int64_t v = 0; v < t->bodies; v++) {
-        add(y + 6 * m * v, w->mass + 36 * v, x + 6 * m * v, m);
-        for (int64_t e = t->range[v]; e < t->range[v + 1]; e++)
-            if (t->heavy[e]) {
-                add(y + 6 * m * v, w->mass_edge + 36 * e, x + 6 * m * t->later[e], m);
-                add_turned(y + 6 * m * t->later[e], w->mass_edge + 36 * e, x + 6 * m * v, m);
-            }
+        weigh(t, w, y, x, v);
         forward(t, w, y, v);
     }
     for (int64_t v = t->bodies - 1; v >= 0; v--) {
