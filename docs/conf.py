@@ -2,6 +2,11 @@
 
 from __future__ import annotations
 
+import ast
+from pathlib import Path
+
+from sphinx.application import Sphinx
+
 import flexstage
 
 project = "flexstage"
@@ -22,3 +27,24 @@ html_title = "flexstage"
 exclude_patterns = ["_build"]
 suppress_warnings: list[str] = []
 nitpicky = False
+
+
+def setup(app: Sphinx) -> None:
+    """Write the map of the house from the modules' first lines before pages are read."""
+    app.connect("builder-inited", lambda app: Path(app.srcdir, "map.md").write_text(house_map(), encoding="utf-8"))
+
+
+def house_map() -> str:
+    """Every module with its first line, floor by floor."""
+    package = Path(flexstage.__file__).parent
+    lines = [
+        "# Map of the house",
+        "",
+        "Every concept has one home: look here before writing something anew. Imports go down the floors only.",
+    ]
+    for floor in ("apps", "present", "studies", "analysis", "readings", "cases", "beams", "mechanism", "parts", "spatial", "base"):
+        lines += ["", f"## {floor}", ""]
+        for path in sorted((package / floor).rglob("*.py")):
+            first = (ast.get_docstring(ast.parse(path.read_text(encoding="utf-8"))) or "").partition("\n")[0]
+            lines.append(f"- `{path.relative_to(package).as_posix()}`: {first}")
+    return "\n".join(lines) + "\n"

@@ -10,11 +10,7 @@ from flexstage.studies.loop.study import LoopStudy
 
 
 def loop_report(found: LoopStudy) -> str:
-    """A loop as a page of HTML: block diagram, margins, open loops, sensitivities, poles, steps, trajectories, noise.
-
-    >>> loop_report.__name__
-    'loop_report'
-    """
+    """A loop as a page of HTML: block diagram, margins, open loops, sensitivities, poles, steps, trajectories, noise."""
     mechanism = found.settled.mechanism
     origin = (
         ("physics", digest(mechanism, physics=True)[:16]),

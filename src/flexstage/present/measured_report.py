@@ -33,11 +33,7 @@ def identify_report(seen: Identification, mechanism: Mechanism | None = None, sh
 
 
 def compare_report(found: Compared, seen: Identification, mechanism: Mechanism, shapes: StageShapes) -> str:
-    """Theory, FEA and experiment as a page of HTML, followed by what the experiment rests on.
-
-    >>> compare_report.__name__
-    'compare_report'
-    """
+    """Theory, FEA and experiment as a page of HTML, followed by what the experiment rests on."""
     return _page("Theory and experiment", mechanism, seen, [compare_section(found), *_sections(seen, mechanism, shapes)])
 
 

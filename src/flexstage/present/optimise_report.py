@@ -17,11 +17,7 @@ _SEARCH = (
 
 
 def optimise_report(found: Optimum) -> str:
-    """An optimisation as a page of HTML: objective, variables, limits, what binds, convergence.
-
-    >>> optimise_report.__name__
-    'optimise_report'
-    """
+    """An optimisation as a page of HTML: objective, variables, limits, what binds, convergence."""
     objective, variables, limits, *rest = optimise_tables(found)
     search = Picture(to_svg(convergence_figure(found), "search", "objective over accepted designs, variables in their ranges"), _SEARCH)
     sections: list[Section | None] = [
@@ -34,11 +30,7 @@ def optimise_report(found: Optimum) -> str:
 
 
 def front_report(found: Front) -> str:
-    """A front as a page of HTML.
-
-    >>> front_report.__name__
-    'front_report'
-    """
+    """A front as a page of HTML."""
     picture = Picture(to_svg(front_figure(found), "front", "designs of the front"), "None of these designs is better in both objectives.")
     sections = [section("Front", [picture, *front_tables(found)])]
     return page(_head(found.study, "A front of two objectives"), [each for each in sections if each is not None])

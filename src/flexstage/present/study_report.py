@@ -21,11 +21,7 @@ _STRONGEST = "The strongest pairs: where lines are not parallel, one variable de
 
 
 def sweep_report(study: Study, results: Results, found: Effects) -> str:
-    """A sweep as a page of HTML: what was varied, distributions, main effects, shares of variance, designs as lines.
-
-    >>> sweep_report.__name__
-    'sweep_report'
-    """
+    """A sweep as a page of HTML: what was varied, distributions, main effects, shares of variance, designs as lines."""
     effects = designs = None
     if found.used:
         effects = Picture(to_svg(effects_figure(study, found), "effects", "mean responses over the variables"), _STEEP)

@@ -18,11 +18,7 @@ _MATRIX = "Mean and deviation over the copies, row unit per unit of command; the
 
 
 def tolerance_report(found: Toleranced) -> str:
-    """A tolerance study as a page of HTML: what scatters, yields, distributions, contributions, allowances, crosstalk.
-
-    >>> tolerance_report.__name__
-    'tolerance_report'
-    """
+    """A tolerance study as a page of HTML: what scatters, yields, distributions, contributions, allowances, crosstalk."""
     study, said = found.study, found.summary
     drawn = Picture(to_svg(distributions_figure(found), "distributions", "histograms of the responses"), _LIMITS)
     yields = Picture(to_svg(yields_figure(found), "yields", "yields of the specification's lines"), _YIELDS) if said.lines else None

@@ -47,9 +47,6 @@ def calibrate(text: str, compute: Hinges = STANDARD_HINGES, *, where: str = "tex
     """Compute the 6x6 of every distinct hinge in a design file's text and put them in, comments kept.
 
     Raises `DesignError` for hinges that are calibrated already, that single copies depart from, or whose 6x6 FEA could not find.
-
-    >>> calibrate.__name__
-    'calibrate'
     """
     mechanism = loads(text, where=where)
     require(_already(mechanism))

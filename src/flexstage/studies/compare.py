@@ -159,11 +159,7 @@ def compare(mechanism: Mechanism, experiment: Identified, fea: FeaModes | None =
 
 
 def shared_sensors(model: LinearModel, experiment: Identified) -> tuple[str, ...]:
-    """The record's outputs that are outputs of the model too; raises `DesignError` where there is none.
-
-    >>> shared_sensors.__name__
-    'shared_sensors'
-    """
+    """The record's outputs that are outputs of the model too; raises `DesignError` where there is none."""
     known = {channel.name for channel in model.outputs}
     found = tuple(channel.name for channel in experiment.outputs if channel.name in known)
     gauges = [name for name in known if "." not in name]

@@ -38,11 +38,7 @@ class FeaModes:
 
 
 def fea_modes(mechanism: Mechanism, asked: Resolution = DEFAULT, reduce: Solids = STANDARD_SOLIDS) -> FeaModes:
-    """The modes of a stage as a solid, to the accuracy asked. Raises `DesignError` as the solid reading does.
-
-    >>> fea_modes.__name__  # finite elements take a minute
-    'fea_modes'
-    """
+    """The modes of a stage as a solid, to the accuracy asked. Raises `DesignError` as the solid reading does."""
 
     def work(way: Reduction) -> FeaModes:
         model = read_solid(mechanism, way, reduce).model

@@ -104,11 +104,7 @@ class SolidHinge:
 
 
 def hinges(accuracy: float = 0.01, order: int | None = None, ways: Ways = STANDARD_WAYS, notice: Notice | None = None) -> Hinges:
-    """Hinges computed to an accuracy with elements of at most an `order` (never less than three), each once, side by side, by `ways`.
-
-    >>> hinges().__name__
-    'compute'
-    """
+    """Hinges computed to an accuracy with elements of at most an `order` (never less than three), each once, side by side, by `ways`."""
     asked = Accuracy(error=accuracy) if order is None else Accuracy(error=accuracy, orders=(2, max(3, order)))
 
     def compute(forms: Mapping[str, HingeForm]) -> Mapping[str, HingeSolid]:

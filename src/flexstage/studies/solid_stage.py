@@ -117,11 +117,7 @@ def _corners(read: SolidRead) -> tuple[Array, dict[str, Array]] | None:
 
 
 def worst_strokes(stage: SolidStage) -> dict[str, float]:
-    """The strokes [m] by actuator at the corner of the weakest link.
-
-    >>> worst_strokes.__name__
-    'worst_strokes'
-    """
+    """The strokes [m] by actuator at the corner of the weakest link."""
     if stage.stress is None:
         return {}
     limits = stroke_limits(stage.read.mechanism).from_zero

@@ -46,11 +46,7 @@ class LinkStress:
 
 
 def link_stress(read: SolidRead, motion: Array, strokes: Mapping[str, Array]) -> LinkStress:
-    """The highest stress over k load cases: coordinates (N, k) of the model, and the strokes (k,) [m] of its inputs that belong to them.
-
-    >>> link_stress.__name__
-    'link_stress'
-    """
+    """The highest stress over k load cases: coordinates (N, k) of the model, and the strokes (k,) [m] of its inputs that belong to them."""
     assembly = expand(read.mechanism)
     by_link = {assembly.actuators[name]: values for name, values in strokes.items()}
     found = [row for item in read.placed for row in _component(item, element_coordinates(item, motion, by_link), assembly)]

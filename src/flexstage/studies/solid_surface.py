@@ -27,11 +27,7 @@ class Surface:
 
 
 def mode_surfaces(read: SolidRead, shape: Array) -> tuple[Surface, ...]:
-    """The stage moved by a mode's coordinates (N,), magnified to be seen; values: displacement relative to the largest.
-
-    >>> mode_surfaces.__name__
-    'mode_surfaces'
-    """
+    """The stage moved by a mode's coordinates (N,), magnified to be seen; values: displacement relative to the largest."""
     factor, largest = magnification(read, shape)
     return tuple(
         Surface(moved_vertices(item, shape, factor), item.element.skin.triangles, _displacement(item, shape) / largest)
@@ -40,11 +36,7 @@ def mode_surfaces(read: SolidRead, shape: Array) -> tuple[Surface, ...]:
 
 
 def stress_surfaces(read: SolidRead, motion: Array, strokes: Mapping[str, float]) -> tuple[Surface, ...]:
-    """The stage moved by static coordinates (N,), magnified to be seen; values: von Mises stress [Pa]. `strokes` [m] belong to them.
-
-    >>> stress_surfaces.__name__
-    'stress_surfaces'
-    """
+    """The stage moved by static coordinates (N,), magnified to be seen; values: von Mises stress [Pa]. `strokes` [m] belong to them."""
     assembly = expand(read.mechanism)
     factor, _ = magnification(read, motion)
     by_link = {assembly.actuators[name]: np.array([value]) for name, value in strokes.items()}
@@ -57,11 +49,7 @@ def stress_surfaces(read: SolidRead, motion: Array, strokes: Mapping[str, float]
 
 
 def magnification(read: SolidRead, motion: Array) -> tuple[float, float]:
-    """By how much a motion (N,) is magnified in a picture, and its largest displacement [m].
-
-    >>> magnification.__name__
-    'magnification'
-    """
+    """By how much a motion (N,) is magnified in a picture, and its largest displacement [m]."""
     places = np.concatenate([moved_vertices(item, motion, 0.0) for item in read.placed])
     size = float(np.max(places.max(axis=0) - places.min(axis=0)))
     largest = max((float(np.max(_displacement(item, motion))) for item in read.placed), default=0.0) or 1.0

@@ -178,9 +178,6 @@ def update(mechanism: Mechanism, experiment: Identified, names: Sequence[str], k
 
     Raises `DesignError` for unknown, ambiguous and nought numbers, those without effect, fewer data than numbers, a record without the
     stage's gauges, and where no end is found.
-
-    >>> update.__name__
-    'update'
     """
     freed = free(mechanism, names, known)
     model = begun(freed.mechanism, ()).model

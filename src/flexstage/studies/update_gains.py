@@ -52,9 +52,6 @@ def measured_gains(mechanism: Mechanism, model: LinearModel, experiment: Identif
     The real part of H1 up to x = f/f_1 = 0.35 is fitted by a + (b x^2 + c x^4)/(1 - x^2), least squares: the lowest mode exactly, higher
     ones, lags and an amplifier's bandwidth by even powers; a is the gain. Drives in volts count by their stack's stroke over its range
     of voltage. Raises `DesignError` where no input is a stroke, no unit leads to metres, or too few lines are below the modes.
-
-    >>> measured_gains.__name__
-    'measured_gains'
     """
     strokes = driven(mechanism, model)
     inputs = tuple(channel.name for channel in experiment.inputs if channel.name in strokes)

@@ -51,11 +51,7 @@ class Design:
 
 
 def mode_rows(mechanism: Mechanism, compared: Compared, experiment: Identified) -> tuple[ModeRow, ...]:
-    """The rows that a comparison gives: one for each platform mode that was found, one for all of a group of repeated modes.
-
-    >>> mode_rows.__name__
-    'mode_rows'
-    """
+    """The rows that a comparison gives: one for each platform mode that was found, one for all of a group of repeated modes."""
     places = platform_modes(mechanism, lumped(mechanism)).platform
     repeated = [group.numbers for group in compared.repeated]
     groups = [*repeated, *((row.number,) for row in compared.rows if not any(row.number in group for group in repeated))]
@@ -134,20 +130,12 @@ def frequency_slopes(design: Design, names: tuple[str, ...]) -> Array:
 
 
 def gains_of(design: Design, gains: Gains) -> Array:
-    """Theory's static gains (p, m) of the measured ones.
-
-    >>> gains_of.__name__
-    'gains_of'
-    """
+    """Theory's static gains (p, m) of the measured ones."""
     return static_gain(design.model, gains.outputs, gains.inputs).values
 
 
 def gain_slopes(design: Design, names: tuple[str, ...], gains: Gains) -> Array:
-    """Derivatives (p, m, P) of theory's static gains.
-
-    >>> gain_slopes.__name__
-    'gain_slopes'
-    """
+    """Derivatives (p, m, P) of theory's static gains."""
     result = np.zeros((*gains.values.shape, len(names)))
     for chunk, model in _stepped(design, names):
         moved = slope(static_gain(model, gains.outputs, gains.inputs).values)

@@ -13,9 +13,6 @@ def updated_text(text: str, found: Updated, record: str, *, where: str = "text")
     """The text of the stage's design file with the values after the update, each tagged `derived update RECORD` with its deviation.
 
     Raises `DesignError` where the file's layout does not allow it.
-
-    >>> updated_text.__name__
-    'updated_text'
     """
     values = {name: float(f"{value:.{_DIGITS}g}") for name, value in zip(found.parameters, found.after.tolist(), strict=True)}
     tags = {name: _tag(found, index, record) for index, name in enumerate(found.parameters)}

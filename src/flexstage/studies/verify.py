@@ -111,9 +111,6 @@ def verify(
     """Compare theory with finite elements for every distinct hinge and unit and for the whole stage.
 
     Theory is the description as it stands; FEA the shapes it draws. Raises `DesignError` where the stage cannot be read as a solid.
-
-    >>> verify.__name__
-    'verify'
     """
     missing: dict[str, str] = {}
     stage = stage_solid(mechanism, asked, reduce)
@@ -134,20 +131,12 @@ def verify(
 
 
 def stage_solid(mechanism: Mechanism, asked: Resolution = DEFAULT, reduce: Solids = STANDARD_SOLIDS) -> Resolved[SolidStage]:
-    """The whole stage as a solid, to the accuracy asked.
-
-    >>> stage_solid.__name__
-    'stage_solid'
-    """
+    """The whole stage as a solid, to the accuracy asked."""
     return resolved(lambda way: solid_stage(mechanism, way, reduce), lambda found: found.figures, asked)
 
 
 def units_solid(mechanism: Mechanism, asked: Resolution = DEFAULT, reduce: Solids = STANDARD_SOLIDS) -> Resolved[dict[str, SolidUnit]]:
-    """Every distinct unit alone as a solid, to the accuracy asked; the errors by `unit: figure`.
-
-    >>> units_solid.__name__
-    'units_solid'
-    """
+    """Every distinct unit alone as a solid, to the accuracy asked; the errors by `unit: figure`."""
 
     def figures(found: dict[str, SolidUnit]) -> dict[str, float]:
         return {f"{name}: {figure}": value for name, unit in found.items() for figure, value in unit.figures.items()}
@@ -178,11 +167,7 @@ def hinge_rows(mechanism: Mechanism, found: Mapping[str, SolidHinge]) -> Iterato
 
 
 def units_matched(mechanism: Mechanism, compute: Hinges = STANDARD_HINGES) -> dict[str, UnitResult]:
-    """Units alone with the FEA 6x6 of the hinges they have alone: an output without outlines holds the end of its hinge rigid.
-
-    >>> units_matched.__name__
-    'units_matched'
-    """
+    """Units alone with the FEA 6x6 of the hinges they have alone: an output without outlines holds the end of its hinge rigid."""
     found: dict[str, UnitResult] = {}
     for unit, (copy, direction) in driven_units(mechanism).items():
         alone = isolate(mechanism, copy)
@@ -236,11 +221,7 @@ def _touched(mechanism: Mechanism, unit: str | None) -> tuple[str, ...]:
 
 
 def stage_rows(mechanism: Mechanism, matched: Mechanism, found: Resolved[SolidStage]) -> Iterator[Row]:
-    """Stiffness of the platform by direction, and its modes, paired by shape.
-
-    >>> stage_rows.__name__
-    'stage_rows'
-    """
+    """Stiffness of the platform by direction, and its modes, paired by shape."""
     touched = _touched(mechanism, None)
     readings = {"theory": lumped(mechanism), "calibrated": lumped(matched), "mapped": _mapped(mechanism)}
     known = {name: model for name, model in readings.items() if model is not None}

@@ -17,11 +17,7 @@ from flexstage.studies.loop.study import LoopStudy
 
 
 def loop_body(found: LoopStudy) -> Document:
-    """Set-up, plant, controller, stability, margins, simulations.
-
-    >>> loop_body.__name__
-    'loop_body'
-    """
+    """Set-up, plant, controller, stability, margins, simulations."""
     return {
         "setup": _plain(found.setup),
         "plant": _plant(found),
@@ -167,11 +163,7 @@ def _hysteresis(found: LoopStudy) -> Document | None:
 
 
 def run_body(test: Run) -> Document:
-    """One simulation: its figures; its series stay out of the document.
-
-    >>> run_body.__name__
-    'run_body'
-    """
+    """One simulation: its figures; its series stay out of the document."""
     seen = test.simulated
     result: Document = {
         "course": test.course.name,

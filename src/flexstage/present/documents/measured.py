@@ -127,11 +127,7 @@ def _platform(shapes: StageShapes) -> Document:
 
 
 def compare_body(found: Compared) -> Document:
-    """Theory, FEA and experiment mode by mode, subspaces of repeated modes, further measured modes.
-
-    >>> compare_body.__name__
-    'compare_body'
-    """
+    """Theory, FEA and experiment mode by mode, subspaces of repeated modes, further measured modes."""
     return {
         "modes": [compared_mode_body(row) for row in found.rows],
         "repeated": [{"modes": list(group.numbers), "seen": group.seen, "largest_angle_rad": group.angle} for group in found.repeated],

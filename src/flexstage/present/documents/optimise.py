@@ -40,11 +40,7 @@ def optimise_body(found: Optimum) -> Document:
 
 
 def front_body(found: Front) -> Document:
-    """The designs of a front, all in SI.
-
-    >>> front_body.__name__
-    'front_body'
-    """
+    """The designs of a front, all in SI."""
     return {
         **_common(found.study, found.wanted),
         "before": _design(found, found.before),

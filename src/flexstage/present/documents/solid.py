@@ -88,11 +88,7 @@ def stress_body(stress: LinkStress) -> Document:
 
 
 def solid_stage_body(found: Resolved[SolidStage]) -> Document:
-    """Stiffness, modes and stress of the whole stage, with the errors estimated.
-
-    >>> solid_stage_body.__name__
-    'solid_stage_body'
-    """
+    """Stiffness, modes and stress of the whole stage, with the errors estimated."""
     stage = found.result
     platform = list(stage.modes.platform)
     return {
@@ -110,11 +106,7 @@ def solid_stage_body(found: Resolved[SolidStage]) -> Document:
 
 
 def verification_body(found: Verification) -> Document:
-    """Theory beside FEA, row by row, and the verdicts in words.
-
-    >>> verification_body.__name__
-    'verification_body'
-    """
+    """Theory beside FEA, row by row, and the verdicts in words."""
     return {
         "verdicts": found.verdicts,
         "rows": [row_body(row) for row in found.rows],
@@ -148,10 +140,6 @@ def row_body(row: Row) -> Document:
 
 
 def calibration_body(found: Calibration) -> Document:
-    """What calibration computed and by how much it differs from beam theory.
-
-    >>> calibration_body.__name__
-    'calibration_body'
-    """
+    """What calibration computed and by how much it differs from beam theory."""
     softer = found.softer
     return {"parts": {name: {**body, "over_beam_theory": softer[name]} for name, body in hinges_body(found.hinges).items()}}

@@ -12,11 +12,7 @@ from flexstage.studies.study.store import Results
 
 
 def sweep_body(study: Study, results: Results, found: Effects) -> Document:
-    """Variables, responses with their distributions, effects, failures; the designs themselves are in the results file.
-
-    >>> sweep_body.__name__
-    'sweep_body'
-    """
+    """Variables, responses with their distributions, effects, failures; the designs themselves are in the results file."""
     plan = study.plan
     return {
         "study": study.name,

@@ -15,11 +15,7 @@ from flexstage.studies.tolerance.summary import PERCENTILES, Crosstalk, Line, Yi
 
 
 def tolerance_body(found: Toleranced) -> Document:
-    """What scatters, yields, distributions with their shares, what is allowed, crosstalk; the copies are in the results file.
-
-    >>> tolerance_body.__name__
-    'tolerance_body'
-    """
+    """What scatters, yields, distributions with their shares, what is allowed, crosstalk; the copies are in the results file."""
     study, said = found.study, found.summary
     return {
         "study": study.name,

@@ -8,11 +8,7 @@ from flexstage.studies.update import Residual, Updated
 
 
 def update_body(found: Updated) -> Document:
-    """Numbers before and after with their deviations, correlations, combinations, residuals, and theory beside the test afterwards.
-
-    >>> update_body.__name__
-    'update_body'
-    """
+    """Numbers before and after with their deviations, correlations, combinations, residuals, and theory beside the test afterwards."""
     known = found.known
     return {
         "parameters": [parameter_body(found, index) for index in range(len(found.parameters))],
@@ -41,11 +37,7 @@ def update_body(found: Updated) -> Document:
 
 
 def parameter_body(found: Updated, index: int) -> Document:
-    """One number before and after; deviations are relative.
-
-    >>> parameter_body.__name__
-    'parameter_body'
-    """
+    """One number before and after; deviations are relative."""
     return {
         "address": found.parameters[index],
         "unit": found.units[index],

@@ -17,9 +17,6 @@ def compare_figure(found: Compared) -> Any:
     """Frequencies of the platform's modes by theory, FEA and experiment as bars, and below how far the former are off, as a Figure.
 
     Whiskers are the experiment's 95 % intervals, in the lower panel as bands about zero.
-
-    >>> compare_figure.__name__
-    'compare_figure'
     """
     series: list[_Series] = [("theory", _THEORY, [row.theory for row in found.rows])]
     if found.fea is not None:

@@ -17,11 +17,7 @@ _DARK = 0.5
 
 
 def pairs_figure(found: Effects) -> Any:
-    """Shares of each response's variance: of single variables on the diagonal, of what pairs add to them below it.
-
-    >>> pairs_figure.__name__
-    'pairs_figure'
-    """
+    """Shares of each response's variance: of single variables on the diagonal, of what pairs add to them below it."""
     varying = [number for number in range(len(found.responses)) if np.any(np.isfinite(found.pairs[:, :, number]))]
     count, names = len(varying), found.variables
     columns = min(_WIDE if len(names) <= _WIDE else 2, count)
@@ -62,11 +58,7 @@ def _map(ax: Any, names: tuple[str, ...], shares: Array, *, labelled: bool) -> N
 
 
 def strongest_figure(study: Study, found: Effects) -> Any:
-    """The strongest pairs: the mean response over one variable where the other is low, in the middle, and high.
-
-    >>> strongest_figure.__name__
-    'strongest_figure'
-    """
+    """The strongest pairs: the mean response over one variable where the other is low, in the middle, and high."""
     with styled():
         figure = canvas(FULL, 2.1)
         axes = panels(figure, 1, len(found.strongest), Margins(left=0.6, across=0.62, bottom=0.4, top=0.3))[0]

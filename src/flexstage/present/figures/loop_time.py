@@ -104,8 +104,6 @@ def path_figure(test: Simulated, axes_shown: tuple[str, str]) -> Any:
     """The path in plan: commanded, and followed with its error magnified so that it can be seen; the factor stands in the title.
 
     >>> from flexstage.present.figures.style import canvas
-    >>> path_figure.__name__
-    'path_figure'
     """
     names = [channel.name for channel in test.coordinates]
     places = [names.index(name) for name in axes_shown]

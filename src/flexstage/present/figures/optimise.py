@@ -60,11 +60,7 @@ def _ranges(ax: Any, found: Optimum) -> None:
 
 
 def front_figure(found: Front) -> Any:
-    """Both objectives of the designs of a front, and the design as it stands.
-
-    >>> front_figure.__name__
-    'front_figure'
-    """
+    """Both objectives of the designs of a front, and the design as it stands."""
     forms = [
         shown(each.measure.quantity.si, float(np.max(np.abs([*found.values[:, number], found.before.values[number]]))))
         for number, each in enumerate(found.wanted.objectives)

@@ -54,11 +54,7 @@ def display(of: Variable | Measure, values: Array) -> Display:
 
 
 def effects_figure(study: Study, found: Effects) -> Any:
-    """Mean of each response over each variable, one panel each; all panels of a response have one scale, so that steep means strong.
-
-    >>> effects_figure.__name__
-    'effects_figure'
-    """
+    """Mean of each response over each variable, one panel each; all panels of a response have one scale, so that steep means strong."""
     rows, columns = len(found.responses), len(found.variables)
     with styled():
         figure = canvas(FULL, 0.55 + 1.25 * rows)
@@ -88,9 +84,6 @@ def designs_figure(study: Study, results: Results) -> Any:
     """Designs as lines over parallel axes, variables then responses, each from its least to its largest; coloured by the first response.
 
     Those that do not keep the study's limits are grey.
-
-    >>> designs_figure.__name__
-    'designs_figure'
     """
     sound = np.flatnonzero(np.all(np.isfinite(results.responses), axis=1))
     chosen = sound[np.linspace(0, len(sound) - 1, min(len(sound), _MOST_LINES)).astype(int)] if len(sound) else sound

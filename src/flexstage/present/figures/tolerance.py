@@ -21,11 +21,7 @@ _FEWEST = 12
 
 
 def distributions_figure(found: Toleranced) -> Any:
-    """A histogram of each response, the design as drawn and the limits on it; what misses a limit is red.
-
-    >>> distributions_figure.__name__
-    'distributions_figure'
-    """
+    """A histogram of each response, the design as drawn and the limits on it; what misses a limit is red."""
     names = list(found.study.asked)
     rows = -(-len(names) // _ACROSS)
     with styled():
@@ -92,11 +88,7 @@ def _limit(ax: Any, limit: float, edges: Array) -> None:
 
 
 def yields_figure(found: Toleranced) -> Any:
-    """The yield of every line and of all together, with its interval.
-
-    >>> yields_figure.__name__
-    'yields_figure'
-    """
+    """The yield of every line and of all together, with its interval."""
     said = found.summary
     entries = [(line.column, line.kept) for line in said.lines]
     entries += [("all together", said.together)] if said.together is not None else []
@@ -117,11 +109,7 @@ def yields_figure(found: Toleranced) -> Any:
 
 
 def shares_figure(found: Toleranced) -> Any:
-    """Which scatter each response's variance is from, as one bar a response.
-
-    >>> shares_figure.__name__
-    'shares_figure'
-    """
+    """Which scatter each response's variance is from, as one bar a response."""
     spread, names = found.summary.spread, list(found.study.asked)
     entries = [each.name for each in found.study.scatters]
     with styled():
@@ -145,11 +133,7 @@ def shares_figure(found: Toleranced) -> Any:
 
 
 def crosstalk_figure(crosstalk: Crosstalk) -> Any:
-    """Means and deviations of the pose error per command as a matrix; the darker, the larger against the others of its kind.
-
-    >>> crosstalk_figure.__name__
-    'crosstalk_figure'
-    """
+    """Means and deviations of the pose error per command as a matrix; the darker, the larger against the others of its kind."""
     shade = _shade(crosstalk)
     count = len(crosstalk.coordinates)
     with styled():
@@ -195,9 +179,5 @@ def _axis(name: str, along: str, about: str) -> str:
 
 
 def crosstalk_title(crosstalk: Crosstalk) -> str:
-    """What a matrix of crosstalk is about.
-
-    >>> crosstalk_title.__name__
-    'crosstalk_title'
-    """
+    """What a matrix of crosstalk is about."""
     return "commanded by the nominal R_a" if crosstalk.kind == OPEN else "kept by gauges through the nominal R_s^-1"

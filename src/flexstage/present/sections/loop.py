@@ -29,11 +29,7 @@ _NOISELESS = 1e-16
 
 
 def loop_section(found: LoopStudy) -> Section | None:
-    """The loop at a glance: facts, block diagram, what it is made of.
-
-    >>> loop_section.__name__
-    'loop_section'
-    """
+    """The loop at a glance: facts, block diagram, what it is made of."""
     drawn = to_svg(loop_diagram(diagram_of(found)), "loop-diagram", "Block diagram of the loop")
     caption = "The loop of Fig. 9 of Shin & Moon. Shaded: what the computer does, sample by sample."
     blocks = [Facts(tuple(_facts(found))), Picture(drawn, caption), loop_table(found), law_table(found)]
@@ -63,11 +59,7 @@ def _error_fact(test: Run) -> Fact:
 
 
 def diagram_of(found: LoopStudy) -> Diagram:
-    """The block diagram of a loop, in the words of its set-up.
-
-    >>> diagram_of.__name__
-    'diagram_of'
-    """
+    """The block diagram of a loop, in the words of its set-up."""
     setup, plant = found.setup, found.settled.plant
     rate = f"{number(1e-3 * found.settled.rate, 4)} kHz"
     stage = Box("stage", f"{setup.reading.value}\n{modes_told(len(plant.frequencies))}")
@@ -138,11 +130,7 @@ def _stacks(found: LoopStudy) -> str:
 
 
 def frequency_section(found: LoopStudy) -> Section | None:
-    """Open loops, sensitivities, margins, poles, crosstalk; `None` in open loop.
-
-    >>> frequency_section.__name__
-    'frequency_section'
-    """
+    """Open loops, sensitivities, margins, poles, crosstalk; `None` in open loop."""
     if found.curves is None:
         return None
     seen, plant = found.curves, found.settled.plant
@@ -169,11 +157,7 @@ def frequency_section(found: LoopStudy) -> Section | None:
 
 
 def time_section(found: LoopStudy) -> Section | None:
-    """Steps and trajectories.
-
-    >>> time_section.__name__
-    'time_section'
-    """
+    """Steps and trajectories."""
     blocks = [step_table(found.runs), tracking_table(found.runs)]
     stepped = [(test.course.name, test.simulated) for test in found.runs if test.figures is not None]
     pictures = []
@@ -194,11 +178,7 @@ def _followed(test: Run, name: str) -> Iterator[Picture]:
 
 
 def error_section(found: LoopStudy) -> Section | None:
-    """Errors at rest without the loop, noise with it, hysteresis of the stacks.
-
-    >>> error_section.__name__
-    'error_section'
-    """
+    """Errors at rest without the loop, noise with it, hysteresis of the stacks."""
     blocks: list[Block | None] = [rest_table(found.rest), noise_table(found), *_noise_pictures(found)]
     if found.stacks is not None and found.sweep is not None:
         drawn = to_svg(hysteresis_figure(_worst(found.sweep)), "hysteresis", "Hysteresis of a stack with and without its inverse")
@@ -220,11 +200,7 @@ def _noise_pictures(found: LoopStudy) -> Iterator[Picture]:
 
 
 def shares_of(found: LoopStudy) -> Shares:
-    """Mean squares of the motions at rest by kind of source.
-
-    >>> shares_of.__name__
-    'shares_of'
-    """
+    """Mean squares of the motions at rest by kind of source."""
     budget = found.noise
     names = tuple(channel.name.removeprefix("relative.") for channel in budget.outputs)
     kinds = tuple(kind.value for kind in budget.kinds)

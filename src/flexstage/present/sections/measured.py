@@ -38,11 +38,7 @@ _REACH = 0.07
 
 
 def found_section(seen: Identification) -> Section | None:
-    """The modes found, and what the data cannot tell.
-
-    >>> found_section.__name__
-    'found_section'
-    """
+    """The modes found, and what the data cannot tell."""
     text = (
         "Candidates are the stable poles of the poly-reference least-squares complex frequency-domain estimator on H1; each group of near "
         "ones is fitted by maximum likelihood to the transform of the whole record. What the data do not ask for is left out."
@@ -54,11 +50,7 @@ def found_section(seen: Identification) -> Section | None:
 
 
 def response_data_section(seen: Identification) -> Section | None:
-    """Responses with the fit over the data, estimators beside one another.
-
-    >>> response_data_section.__name__
-    'response_data_section'
-    """
+    """Responses with the fit over the data, estimators beside one another."""
     found = seen.found
     drawn = to_svg(response_matrix_figure(found), "measured-responses", "Responses of outputs to inputs, with the fit over the data")
     caption = "Responses, magnitude over phase: grey the data (H1), blue the fit. Columns: inputs; rows: outputs."
@@ -77,11 +69,7 @@ def response_data_section(seen: Identification) -> Section | None:
 
 
 def coherence_section(seen: Identification) -> Section | None:
-    """Ordinary and multiple coherence; `None` where an analyser stored none.
-
-    >>> coherence_section.__name__
-    'coherence_section'
-    """
+    """Ordinary and multiple coherence; `None` where an analyser stored none."""
     if seen.found.responses.coherence is None and seen.multiple is None:
         return None
     drawn = to_svg(coherence_figure(seen.found, seen.multiple), "coherence", "Coherence of outputs with inputs over frequency")
@@ -95,11 +83,7 @@ def coherence_section(seen: Identification) -> Section | None:
 
 
 def stabilisation_section(found: Identified) -> Section | None:
-    """The stabilisation diagram; `None` where nothing was tried.
-
-    >>> stabilisation_section.__name__
-    'stabilisation_section'
-    """
+    """The stabilisation diagram; `None` where nothing was tried."""
     if not found.stabilisation:
         return None
     drawn = to_svg(stabilisation_figure(found), "stabilisation", "Stabilisation diagram: poles by order and frequency")
@@ -108,11 +92,7 @@ def stabilisation_section(found: Identified) -> Section | None:
 
 
 def measured_shape_section(found: Identified, shapes: StageShapes, seen: Scene) -> Section | None:
-    """The measured shapes drawn as motion of the stage, or why they cannot be; `None` where no mode was found.
-
-    >>> measured_shape_section.__name__
-    'measured_shape_section'
-    """
+    """The measured shapes drawn as motion of the stage, or why they cannot be; `None` where no mode was found."""
     if not len(found.frequencies):
         return None
     if shapes.missing:
@@ -135,11 +115,7 @@ def _pictures(found: Identified, shapes: StageShapes, seen: Scene) -> Iterator[P
 
 
 def compare_section(found: Compared) -> Section | None:
-    """Theory, FEA and experiment: picture, tables, cautions.
-
-    >>> compare_section.__name__
-    'compare_section'
-    """
+    """Theory, FEA and experiment: picture, tables, cautions."""
     drawn = to_svg(compare_figure(found), "compared", "Frequencies by theory, FEA and experiment")
     shown = "theory, FEA and experiment" if found.fea is not None else "theory and experiment"
     caption = f"Frequencies by {shown}; below, how far off the experiment. Whiskers and bands: the experiment's 95 % intervals."
@@ -147,9 +123,5 @@ def compare_section(found: Compared) -> Section | None:
 
 
 def compare_tables(found: Compared) -> tuple[Table | None, ...]:
-    """The tables of a comparison, in order.
-
-    >>> compare_tables.__name__
-    'compare_tables'
-    """
+    """The tables of a comparison, in order."""
     return compare_table(found), repeated_table(found), further_table(found), warning_table(found.warnings)

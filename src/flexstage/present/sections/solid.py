@@ -48,11 +48,7 @@ def hinge_section(found: Mapping[str, SolidHinge]) -> Section | None:
 
 
 def unit_section(found: Resolved[dict[str, SolidUnit]]) -> Section | None:
-    """Every distinct unit alone, with its stress at the full stroke.
-
-    >>> unit_section.__name__
-    'unit_section'
-    """
+    """Every distinct unit alone, with its stress at the full stroke."""
     blocks: list[Block] = [solid_unit_table(found)]
     for name, unit in found.result.items():
         stroke = float(unit.strokes[-1])
@@ -72,11 +68,7 @@ def _megapascals(surfaces: tuple[Surface, ...]) -> tuple[Surface, ...]:
 
 
 def stage_solid_section(found: Resolved[SolidStage]) -> Section | None:
-    """Stiffness, modes and stress of the whole stage.
-
-    >>> stage_solid_section.__name__
-    'stage_solid_section'
-    """
+    """Stiffness, modes and stress of the whole stage."""
     stage = found.result
     worst = max(found.errors, key=lambda name: found.errors[name], default="")
     text = (
@@ -117,10 +109,6 @@ def _stress_picture(stage: SolidStage) -> Picture:
 
 
 def verification_section(found: Verification) -> Section | None:
-    """Theory beside finite elements, with the verdicts in words first.
-
-    >>> verification_section.__name__
-    'verification_section'
-    """
+    """Theory beside finite elements, with the verdicts in words first."""
     tables = [verification_table(name, rows) for name, rows in found.groups.items()]
     return section("Theory and finite elements", [verdict_table_of(found), *tables])

@@ -14,11 +14,7 @@ _NEAR, _OFF = 0.02, 0.1
 
 
 def compare_table(found: Compared) -> Table:
-    """Platform modes by theory, FEA where there is one, and experiment: frequencies, differences, modal assurance.
-
-    >>> compare_table.__name__
-    'compare_table'
-    """
+    """Platform modes by theory, FEA where there is one, and experiment: frequencies, differences, modal assurance."""
     with_fea = found.fea is not None
     rows = [_line(row, with_fea=with_fea) for row in found.rows]
     heads = ["mode", "name", Column(f"theory ({found.reading.value})", "Hz")]
@@ -88,11 +84,7 @@ def _fea_notes(found: Compared) -> list[str]:
 
 
 def repeated_table(found: Compared) -> Table | None:
-    """Repeated modes as subspaces: how many of them the experiment shows, and the largest angle; `None` where there is none.
-
-    >>> repeated_table.__name__
-    'repeated_table'
-    """
+    """Repeated modes as subspaces: how many of them the experiment shows, and the largest angle; `None` where there is none."""
     if not found.repeated:
         return None
     rows = [
@@ -109,11 +101,7 @@ def repeated_table(found: Compared) -> Table | None:
 
 
 def further_table(found: Compared) -> Table | None:
-    """Measured modes that are none of the platform's, beside the local modes of theory they may be; `None` where there is none.
-
-    >>> further_table.__name__
-    'further_table'
-    """
+    """Measured modes that are none of the platform's, beside the local modes of theory they may be; `None` where there is none."""
     if not found.further:
         return None
     rows = [

@@ -28,11 +28,7 @@ _MARGIN_NOTE = (
 
 
 def loop_table(found: LoopStudy) -> Table:
-    """What the loop is, and whether it is stable.
-
-    >>> loop_table.__name__
-    'loop_table'
-    """
+    """What the loop is, and whether it is stable."""
     plant, hardware = found.settled.plant, found.settled.plant.hardware
     delay = f"{number(1e6 * hardware.delay, 4)} us"
     modes = f"{modes_told(len(plant.frequencies))} up to {number(float(plant.frequencies[-1]), 4)} Hz, {plant.left_out} as a static term"
@@ -75,11 +71,7 @@ def _controller(found: LoopStudy) -> str:
 
 
 def law_table(found: LoopStudy) -> Table | None:
-    """The controller's numbers, loop by loop; `None` of one that is not made of single loops.
-
-    >>> law_table.__name__
-    'law_table'
-    """
+    """The controller's numbers, loop by loop; `None` of one that is not made of single loops."""
     control = found.control
     if not control.laws:
         return None
@@ -114,11 +106,7 @@ def _notches(group: Sequence[Notch]) -> str:
 
 
 def margin_table(found: LoopStudy) -> Table | None:
-    """Bandwidth and margins by coordinate; `None` in open loop.
-
-    >>> margin_table.__name__
-    'margin_table'
-    """
+    """Bandwidth and margins by coordinate; `None` in open loop."""
     if found.margins is None or found.bandwidths is None:
         return None
     rows = [
@@ -204,11 +192,7 @@ def _length(value: float, size: float, unit: str) -> Cell:
 
 
 def limits_text(test: Run) -> str:
-    """Which actuators ran into their limits, for which share of the time.
-
-    >>> limits_text.__name__
-    'limits_text'
-    """
+    """Which actuators ran into their limits, for which share of the time."""
     seen = test.simulated
     words = [
         f"{name} {noun} {percent(float(share), 3)}"

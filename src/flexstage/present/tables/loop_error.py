@@ -25,11 +25,7 @@ _STANDS_OUT = 1e-3
 
 
 def rest_table(found: RestErrors) -> Table:
-    """Errors at rest in open loop by coordinate: its own, and its largest crosstalk, by the ideal map and by corrected gains.
-
-    >>> rest_table.__name__
-    'rest_table'
-    """
+    """Errors at rest in open loop by coordinate: its own, and its largest crosstalk, by the ideal map and by corrected gains."""
     pairs = (("by R_a", found.bare), ("corrected", found.corrected))
     heads = ["command", *(head for noun, _ in pairs for head in (Column(f"error {noun}"), Column("crosstalk")))]
     rows = [
@@ -82,11 +78,7 @@ def _twist(values: Array, against: Array) -> str:
 
 
 def noise_table(found: LoopStudy) -> Table:
-    """The rms of every coordinate at rest by kind of source, and as simulated.
-
-    >>> noise_table.__name__
-    'noise_table'
-    """
+    """The rms of every coordinate at rest by kind of source, and as simulated."""
     budget = found.noise
     squares = np.asarray(budget.by_kind.values)
     simulated = None if found.still is None else settled_rms(found)
@@ -112,22 +104,14 @@ def _noise_notes(budget: NoiseBudget, still: Simulated | None) -> Sequence[str]:
 
 
 def settled_rms(found: LoopStudy) -> Array:
-    """Rms (f,) of the simulated true motion at rest.
-
-    >>> settled_rms.__name__
-    'settled_rms'
-    """
+    """Rms (f,) of the simulated true motion at rest."""
     if found.still is None:
         return np.zeros(0)
     return np.sqrt(np.mean(found.still.true_error**2, axis=0))
 
 
 def hysteresis_table(stacks: Stacks, sweep: Sweep) -> Table:
-    """Stacks with hysteresis: width of their loops, error in open loop without and with the inverse.
-
-    >>> hysteresis_table.__name__
-    'hysteresis_table'
-    """
+    """Stacks with hysteresis: width of their loops, error in open loop without and with the inverse."""
     bare, inverse = sweep.error(sweep.bare), sweep.error(sweep.inverse)
     rows = [
         (

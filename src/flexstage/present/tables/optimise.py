@@ -28,11 +28,7 @@ def optimise_tables(found: Optimum) -> list[Table]:
 
 
 def front_tables(found: Front) -> list[Table]:
-    """The designs of a front: objectives and variables.
-
-    >>> front_tables.__name__
-    'front_tables'
-    """
+    """The designs of a front: objectives and variables."""
     objectives = found.wanted.objectives
     heads = [f"{each.name} ({each.aim.value})" for each in objectives]
     rows = []
@@ -136,11 +132,7 @@ def _starts(found: Optimum) -> Table:
 
 
 def contradiction_text(each: Contradiction, found: Optimum | Front) -> tuple[str, str]:
-    """What contradicts and how nearly the limits can be met, in words: what was found, and the advice.
-
-    >>> contradiction_text.__name__
-    'contradiction_text'
-    """
+    """What contradicts and how nearly the limits can be met, in words: what was found, and the advice."""
     said = [f"'{limit.key} {limit.text}'" for limit in each.limits]
     at = [_reached(limit.key, limit.point, each.point, found) for limit in each.limits]
     least = f"the least violation is {100.0 * each.violation:.3g} %, with {', '.join(at)}"

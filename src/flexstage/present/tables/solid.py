@@ -116,11 +116,7 @@ def _weakest(stress: LinkStress) -> tuple[str, str, str]:
 
 
 def command_table(name: str, unit: SolidUnit) -> Table:
-    """Output of a unit by command, and what is lost (the form of the paper's Table 2).
-
-    >>> command_table.__name__
-    'command_table'
-    """
+    """Output of a unit by command, and what is lost (the form of the paper's Table 2)."""
     lost = unit.commands - unit.outputs
     lost = np.where(np.abs(lost) < NOISE * np.abs(unit.commands), 0.0, lost)
     columns = [aligned(1e6 * values) for values in (unit.strokes, unit.commands, unit.outputs, lost)]
@@ -129,11 +125,7 @@ def command_table(name: str, unit: SolidUnit) -> Table:
 
 
 def stress_table(title: str, stress: LinkStress, listed: int = _LISTED) -> Table | None:
-    """The highest von Mises stress of links and bodies, highest first; `None` where there is none worth a line.
-
-    >>> stress_table.__name__
-    'stress_table'
-    """
+    """The highest von Mises stress of links and bodies, highest first; `None` where there is none worth a line."""
     if np.max(stress.highest) < _SILENT:
         return None
     order = np.argsort(-stress.highest, kind="stable")
@@ -153,11 +145,7 @@ def stress_table(title: str, stress: LinkStress, listed: int = _LISTED) -> Table
 
 
 def block_table(stage: SolidStage) -> Table:
-    """What the elasticity of the bodies, rigid in all other readings, takes from each platform mode.
-
-    >>> block_table.__name__
-    'block_table'
-    """
+    """What the elasticity of the bodies, rigid in all other readings, takes from each platform mode."""
     rows = [
         (
             Cell(f"{number + 1}", Mark.STRONG),
@@ -225,11 +213,7 @@ def _signed(share: float) -> str:
 
 
 def verdict_table_of(found: Verification) -> Table:
-    """For every group, in words, which theory to trust.
-
-    >>> verdict_table_of.__name__
-    'verdict_table_of'
-    """
+    """For every group, in words, which theory to trust."""
     rows = [(Cell(name, Mark.STRONG), text) for name, text in found.verdicts.items()]
     notes = [
         "Theory: beam theory for hinges, the lumped reading for units and stage.",
@@ -241,11 +225,7 @@ def verdict_table_of(found: Verification) -> Table:
 
 
 def calibration_table(found: Calibration) -> Table:
-    """By how much FEA finds the hinges softer than beam theory has them.
-
-    >>> calibration_table.__name__
-    'calibration_table'
-    """
+    """By how much FEA finds the hinges softer than beam theory has them."""
     rows = [
         (
             Cell(name, Mark.STRONG),

@@ -21,22 +21,14 @@ _NUMBER = re.compile(r"-?\d+(\.\d+)?(e[+-]?\d+)?")
 
 
 def study_tables(study: Study, results: Results, found: Effects) -> list[Table]:
-    """What was varied, how the responses are distributed, what does it, and designs that failed.
-
-    >>> study_tables.__name__
-    'study_tables'
-    """
+    """What was varied, how the responses are distributed, what does it, and designs that failed."""
     tables = [variable_table(study, results), response_table(study, results, found), share_table(found)]
     tables += [pair_table(found)] if np.any(np.isfinite(found.pairs)) else []
     return tables + ([failure_table(results)] if results.failures else [])
 
 
 def variable_table(study: Study, results: Results) -> Table:
-    """Variables with their ranges, and how many designs there are.
-
-    >>> variable_table.__name__
-    'variable_table'
-    """
+    """Variables with their ranges, and how many designs there are."""
     rows = [
         (
             Cell(each.name, Mark.STRONG),
@@ -52,11 +44,7 @@ def variable_table(study: Study, results: Results) -> Table:
 
 
 def response_table(study: Study, results: Results, found: Effects) -> Table:
-    """Responses with their distributions, and how many designs keep the limits on them.
-
-    >>> response_table.__name__
-    'response_table'
-    """
+    """Responses with their distributions, and how many designs keep the limits on them."""
     rows = []
     for index, (name, measure) in enumerate(study.columns.items()):
         unit = measure.quantity.si
@@ -109,11 +97,7 @@ def _limit_notes(study: Study, results: Results) -> list[str]:
 
 
 def share_table(found: Effects) -> Table:
-    """First-order and, where known, total indices.
-
-    >>> share_table.__name__
-    'share_table'
-    """
+    """First-order and, where known, total indices."""
     columns: list[Column | str] = ["variable"]
     for name in found.responses:
         columns += [Column(name, "alone")] + ([] if found.total is None else [Column(name, "in all")])
@@ -136,11 +120,7 @@ def _error_note(found: Effects, order: int) -> list[str]:
 
 
 def pair_table(found: Effects) -> Table:
-    """Pairs of variables that explain a hundredth of some response's variance or more beyond each alone, the strongest first.
-
-    >>> pair_table.__name__
-    'pair_table'
-    """
+    """Pairs of variables that explain a hundredth of some response's variance or more beyond each alone, the strongest first."""
     known = np.nan_to_num(found.pairs).max(axis=2)
     ranked = sorted(combinations(range(len(found.variables)), 2), key=lambda pair: -known[pair])
     shown_pairs = [pair for pair in ranked if known[pair] >= _LEAST][:_MOST_PAIRS]
@@ -164,11 +144,7 @@ def _share(value: float) -> Cell:
 
 
 def failure_table(results: Results) -> Table:
-    """Reasons of failed designs, the most frequent first.
-
-    >>> failure_table.__name__
-    'failure_table'
-    """
+    """Reasons of failed designs, the most frequent first."""
     reasons: dict[str, list[int]] = {}
     for design, reason in results.failures.items():
         reasons.setdefault(_NUMBER.sub("", reason), []).append(design)

@@ -26,11 +26,7 @@ _NO_YIELD = "There is no yield: neither the design's [require] nor the study's [
 
 
 def tolerance_tables(found: Toleranced) -> list[Table]:
-    """What scatters, what the specification says of it, how responses are distributed, what does it, what is allowed, crosstalk.
-
-    >>> tolerance_tables.__name__
-    'tolerance_tables'
-    """
+    """What scatters, what the specification says of it, how responses are distributed, what does it, what is allowed, crosstalk."""
     tables = [scatter_table(found), yield_table(found), spread_table(found), share_table(found)]
     if found.summary.lines:
         tables.append(allowance_table(found))
@@ -39,11 +35,7 @@ def tolerance_tables(found: Toleranced) -> list[Table]:
 
 
 def scatter_table(found: Toleranced) -> Table:
-    """What scatters, how far, and in how many numbers.
-
-    >>> scatter_table.__name__
-    'scatter_table'
-    """
+    """What scatters, how far, and in how many numbers."""
     rows = [
         (Cell(each.name, Mark.STRONG), ", ".join(each.source), said(each, each.distribution), _how(each)) for each in found.study.scatters
     ]
@@ -80,11 +72,7 @@ def _size(scatter: Scatter, value: float) -> str:
 
 
 def yield_table(found: Toleranced) -> Table:
-    """Each line of the specification, its nominal value and its yield; or that there is none.
-
-    >>> yield_table.__name__
-    'yield_table'
-    """
+    """Each line of the specification, its nominal value and its yield; or that there is none."""
     if found.summary.together is None:
         return build("Yield", [""], [(_NO_YIELD,)])
     spread = found.summary.spread
@@ -110,11 +98,7 @@ def _percent(share: float) -> str:
 
 
 def spread_table(found: Toleranced) -> Table:
-    """Distributions of the responses.
-
-    >>> spread_table.__name__
-    'spread_table'
-    """
+    """Distributions of the responses."""
     spread, rows = found.summary.spread, []
     for column, (name, measure) in enumerate(found.study.asked.items()):
         values = [
@@ -136,11 +120,7 @@ def spread_table(found: Toleranced) -> Table:
 
 
 def share_table(found: Toleranced) -> Table:
-    """Which scatter each response's variance is from.
-
-    >>> share_table.__name__
-    'share_table'
-    """
+    """Which scatter each response's variance is from."""
     spread, rows, sampled = found.summary.spread, [], False
     for column, name in enumerate(found.study.asked):
         trusted = bool(spread.trusted[column])
@@ -160,11 +140,7 @@ def _share(value: float, *, exact: bool) -> Cell:
 
 
 def allowance_table(found: Toleranced) -> Table:
-    """How far each entry may deviate.
-
-    >>> allowance_table.__name__
-    'allowance_table'
-    """
+    """How far each entry may deviate."""
     allowed = found.allowance
     rows = [
         (
@@ -199,11 +175,7 @@ def _allowed_notes(allowed: Allowance) -> list[str]:
 
 
 def crosstalk_table(found: Toleranced, crosstalk: Crosstalk) -> Table:
-    """Deviations of the pose per command, and the worst.
-
-    >>> crosstalk_table.__name__
-    'crosstalk_table'
-    """
+    """Deviations of the pose per command, and the worst."""
     opened = crosstalk.kind == OPEN
     title = "Crosstalk, commanded by the nominal R_a" if opened else "Crosstalk, kept by gauges through the nominal R_s^-1"
     heads = [Column("", numeric=False), *(Column(name, "urad" if name.startswith("r") else "um") for name in crosstalk.coordinates)]

@@ -13,11 +13,7 @@ _MOST_GAINS = 12
 
 
 def update_tables(found: Updated) -> Iterator[Table]:
-    """All tables of an update.
-
-    >>> update_tables.__name__
-    'update_tables'
-    """
+    """All tables of an update."""
     yield update_table(found)
     yield residual_table(found)
     if len(found.parameters) > 1:
@@ -26,11 +22,7 @@ def update_tables(found: Updated) -> Iterator[Table]:
 
 
 def update_table(found: Updated) -> Table:
-    """Numbers before and after, with prior and posterior standard deviations.
-
-    >>> update_table.__name__
-    'update_table'
-    """
+    """Numbers before and after, with prior and posterior standard deviations."""
     rows = [
         (
             Cell(name, Mark.STRONG),
@@ -58,11 +50,7 @@ def update_table(found: Updated) -> Table:
 
 
 def residual_table(found: Updated) -> Table:
-    """Data by test and theory before and after: all frequencies, and of gains the largest misfits.
-
-    >>> residual_table.__name__
-    'residual_table'
-    """
+    """Data by test and theory before and after: all frequencies, and of gains the largest misfits."""
     modes = [each for each in found.residuals if each.unit == "Hz"]
     gains = sorted((each for each in found.residuals if each.unit != "Hz"), key=lambda each: -abs(each.misfit_before))
     heads = [
@@ -79,11 +67,7 @@ def residual_table(found: Updated) -> Table:
 
 
 def combination_table(found: Updated) -> Table:
-    """Combinations of numbers by how well the test tells them.
-
-    >>> combination_table.__name__
-    'combination_table'
-    """
+    """Combinations of numbers by how well the test tells them."""
     rows = [
         (
             Cell(", ".join(f"{part:+.2f} {name}" for part, name in zip(column, found.parameters, strict=True) if abs(part) > 0.05)),

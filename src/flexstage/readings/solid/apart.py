@@ -49,20 +49,12 @@ class _Checking(_Drawing):
 
 
 def contact_apart(mechanism: Mechanism, clearance: float = 0.0, limits: Limits = _LIMITS) -> tuple[Finding, ...]:
-    """What `contact_findings` finds, in a process of its own. Raises `DesignError` where that crashes or takes too long.
-
-    >>> contact_apart.__name__  # starting a process takes a second
-    'contact_apart'
-    """
+    """What `contact_findings` finds, in a process of its own. Raises `DesignError` where that crashes or takes too long."""
     return tuple(Finding(**item) for item in json.loads(_done(_Checking(mechanism, clearance), limits)))
 
 
 def step_apart(mechanism: Mechanism, limits: Limits = _LIMITS) -> bytes:
-    """What `step` writes, in a process of its own. Raises `DesignError` where that crashes or takes too long.
-
-    >>> step_apart.__name__  # starting a process takes a second
-    'step_apart'
-    """
+    """What `step` writes, in a process of its own. Raises `DesignError` where that crashes or takes too long."""
     return _done(_Drawing(mechanism), limits)
 
 

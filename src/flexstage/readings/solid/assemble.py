@@ -74,9 +74,6 @@ def linear_model(
 
     Coordinates: twists of rigid bodies, twists of the joints between elastic components (stage axes, at the joint), warps of their faces
     (in the joint's own axes), and each component's internal coordinates. Raises `DesignError` when the joined stage can move freely.
-
-    >>> linear_model.__name__  # tried on whole stages in tests/readings
-    'linear_model'
     """
     model = _joined(mechanism, assembly, parts)
     elastic, mass = dict(_stiffness(model)), dict(_inertia(model))

@@ -42,9 +42,6 @@ def imported_shape(form: Imported) -> occ.TopoDS_Shape:
     """The file's solid [mm], the middle of its box at the origin.
 
     Raises `DesignError` where the file is not there, is no STEP file or not the one that is meant, or does not hold exactly one solid.
-
-    >>> imported_shape.__name__  # needs a file
-    'imported_shape'
     """
     path = Path(form.file)
     require(_version_findings(path, form.sha256))

@@ -85,9 +85,6 @@ def solid_parts(
     """Read a stage as `solid` does, and return the reduced components as well: fields for pictures and stress, and notices.
 
     Calibrated hinges are read as the shapes they stand for.
-
-    >>> solid_parts.__name__
-    'solid_parts'
     """
     ways = Ways(cache, progress, Limits(memory=memory))
     shape = drawn(mechanism)

@@ -34,9 +34,6 @@ def stage_findings(mechanism: Mechanism, cache: Cache | None) -> tuple[Finding, 
     """What keeps a stage's outlines from forming solids. Sound stages are remembered in the cache by their content.
 
     Those with imported solids are not: their files may change.
-
-    >>> stage_findings.__name__  # starting a process takes a second
-    'stage_findings'
     """
     mark = None if cache is None or _imports(mechanism) else _mark(mechanism, cache)
     if mark is not None and mark.is_file():

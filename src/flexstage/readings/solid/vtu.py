@@ -67,11 +67,7 @@ def _placed(part: Component, own: Grid, numbers: Mapping[str, int]) -> Grid:
 
 
 def vtu(mesh: StageMesh) -> bytes:
-    """The file of a stage's mesh: cell data `piece`, `body`, `material`, `component` (numbers), `young` [Pa] and `density` [kg/m^3].
-
-    >>> vtu.__name__  # meshing takes long
-    'vtu'
-    """
+    """The file of a stage's mesh: cell data `piece`, `body`, `material`, `component` (numbers), `young` [Pa] and `density` [kg/m^3]."""
     pieces = [mesh.stage.pieces[name] for name in mesh.pieces]
     bodies = _numbered(piece.name if piece.body is None else piece.body for piece in pieces)
     materials = _numbered(mesh.stage.materials[name] for name in mesh.pieces)

@@ -160,11 +160,7 @@ def course_findings(course: Course, poses: Array, times: Array, gains: Matrix, l
 
 
 def course_cautions(course: Course, poses: Array, times: Array, gains: Matrix, slew: Array) -> list[Finding]:
-    """Where a course that is no jump asks amplifiers for more speed than they have: they then run at their limit.
-
-    >>> course_cautions.__name__
-    'course_cautions'
-    """
+    """Where a course that is no jump asks amplifiers for more speed than they have: they then run at their limit."""
     if course.is_step or not np.any(np.isfinite(slew)):
         return []
     found = speed_findings(poses, times, gains, slew)

@@ -88,11 +88,7 @@ def runs(given: Settled, control: Control, closed: Loop, stacks: Stacks | None =
 
 
 def driven_machine(given: Settled, control: Control, stacks: Stacks | None = None) -> Machine:
-    """The loop as it is simulated: hardware with its limits and steps, and hysteretic `stacks` that may creep.
-
-    >>> driven_machine.__name__
-    'driven_machine'
-    """
+    """The loop as it is simulated: hardware with its limits and steps, and hysteretic `stacks` that may creep."""
     if stacks is None:
         return machine(given.plant, control.system, _electric(given))
     inverted = stacks.model if Compensation.HYSTERESIS in given.setup.compensate else None
@@ -108,11 +104,7 @@ def _electric(given: Settled) -> Drive | None:
 
 
 def at_rest(given: Settled, control: Control, closed: Loop) -> Simulated | None:
-    """The loop holding still in all its noise, from when it has got used to it; `None` where there is no noise but rounding.
-
-    >>> at_rest.__name__
-    'at_rest'
-    """
+    """The loop holding still in all its noise, from when it has got used to it; `None` where there is no noise but rounding."""
     hardware = given.plant.hardware
     noisy = given.floor or any(each.noise_density for each in (*hardware.sensors.values(), *hardware.amplifiers.values()))
     if not noisy:

@@ -22,9 +22,6 @@ def binding(setting: Setting, problem: Problem, point: Point) -> tuple[Binding, 
 
     The multipliers are those of the convex model around the optimum with unit curvature, whose solution is the optimum itself: for
     min c_0 with c_i <= e_i they are -d c_0 / d e_i. Only derivatives: true for small changes, and one-sided where modes are repeated.
-
-    >>> binding.__name__
-    'binding'
     """
     size = len(point.shares)
     model = step(problem, point, np.eye(size), Bounds(2.0, 1e4))

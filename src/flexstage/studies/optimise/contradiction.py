@@ -23,9 +23,6 @@ def contradictions(setting: Setting, starts: Sequence[Array], told: Told | None 
     The largest relative violation is made least; then limits are left out one at a time for good, as long as the rest cannot be kept
     either. What remains is irreducible: without any one of them the others can be kept. It is set aside, and the rest is looked through
     for further sets.
-
-    >>> contradictions.__name__
-    'contradictions'
     """
     return tuple(_sets(setting, list(starts), told))
 

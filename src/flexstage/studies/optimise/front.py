@@ -31,9 +31,6 @@ def pareto_front(study: Study, wanted: Wanted, progress: Progress | None = None)
     First each objective alone, the other improved as far as that costs nothing; between these ends the first is optimised with the second
     bounded at equally spaced values, each from both ends. What another design of the front beats in both is left out. An interrupt ends it
     with what is there.
-
-    >>> pareto_front.__name__
-    'pareto_front'
     """
     if len(wanted.objectives) != 2:
         raise refuse("optimise", f"found {len(wanted.objectives)} objectives", "A front is drawn of two")
@@ -105,11 +102,7 @@ def _between(set_up: Setting, ends: list[Point], counted: Count) -> list[Point]:
 
 
 def undominated(set_up: Setting, points: Iterable[Point]) -> list[Point]:
-    """The points that no other one beats in one objective and equals in the other, from the best in the first on.
-
-    >>> undominated.__name__
-    'undominated'
-    """
+    """The points that no other one beats in one objective and equals in the other, from the best in the first on."""
     points = list(points)
     worth = np.array([[set_up.aim(number).at(point) for number in (0, 1)] for point in points]).reshape(-1, 2)
     kept = [number for number in range(len(points)) if not _beaten(worth, number)]

@@ -25,9 +25,6 @@ def rounded(setting: Setting, problem: Problem, point: Point) -> Rounded | None:
 
     All neighbours (of more than 12 variables those nearest), ranked by the linear model of objective and limits, are evaluated in order
     until one keeps the limits; then single steps of every variable are tried while they make it better. Variables without a step stay.
-
-    >>> rounded.__name__
-    'rounded'
     """
     stepped = [number for number, each in enumerate(setting.study.variables) if each.step is not None]
     if not stepped:

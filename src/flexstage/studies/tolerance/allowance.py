@@ -48,10 +48,6 @@ def allowance(study: Tolerance, results: Results, slope: Slopes, found: Summary)
 
     Responses are taken as linear in the deviations where derivatives and sample agree; else the sample's own quantile is taken, with the
     copies that scatter in one entry alone for its shares. Either way changes grow as the deviations do: near enough for small ones.
-
-    >>> from flexstage.studies.tolerance.example import leaf_study
-    >>> allowance.__name__, leaf_study().wanted
-    ('allowance', 0.99)
     """
     names = tuple(study.columns)
     columns = [names.index(line.column) for line in found.lines]

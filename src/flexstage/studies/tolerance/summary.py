@@ -201,11 +201,7 @@ def _alone(study: Tolerance, results: Results, centre: Array | None) -> Array:
 
 
 def squares_alone(study: Tolerance, results: Results, centre: Array) -> Array:
-    """Mean squares (m, r) about a centre (r,) of what each entry of `[scatter]` does alone.
-
-    >>> squares_alone.__name__
-    'squares_alone'
-    """
+    """Mean squares (m, r) about a centre (r,) of what each entry of `[scatter]` does alone."""
     return _alone(study, results, centre)
 
 

@@ -50,9 +50,6 @@ def read_uff(path: Path, options: Options) -> tuple[Record | None, Responses | N
 
     Raises `DesignError` with all that keeps it from being read: functions that break off (used as far as they go where `Allow.TRUNCATED`),
     of different lengths or rates, of other kinds.
-
-    >>> read_uff.__name__  # see `write_uff` for a file written and read
-    'read_uff'
     """
     found, findings = scan(path)
     truncated = [Finding(_where(path, each), each.problem, _ADVICE) for each in found if each.problem is not None]

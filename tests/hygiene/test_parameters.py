@@ -1,0 +1,44 @@
+"""Parameters are honest: none hidden in a dictionary, flags given by name; names are imported one by one."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+from pathlib import Path
+
+from tests.hygiene.source import SRC, Defined, Function, code_files, defined, expect_none, tree
+
+
+def functions(within: Path | None = None) -> Iterator[Defined]:
+    for path in code_files():
+        if within is None or within in path.parents:
+            yield from (each for each in defined(path) if isinstance(each.node, Function))
+
+
+def positional(each: Defined) -> list[ast.arg]:
+    arguments = each.node.args
+    found = [*arguments.posonlyargs, *arguments.args]
+    bound = isinstance(each.owner, ast.ClassDef) and not any(ast.unparse(mark) == "staticmethod" for mark in each.node.decorator_list)
+    return found[1:] if bound else found
+
+
+def takes_a_flag(each: Defined) -> bool:
+    arguments = each.node.args
+    flags = [argument for argument in positional(each) if argument.annotation and ast.unparse(argument.annotation) == "bool"]
+    defaults = [default for default in arguments.defaults if isinstance(default, ast.Constant) and isinstance(default.value, bool)]
+    return bool(flags or defaults)
+
+
+def test_no_parameters_are_hidden_in_a_dictionary() -> None:
+    expect_none((each.where for each in functions(SRC) if each.node.args.kwarg), "name the parameters instead of **")
+
+
+def test_flags_are_given_by_name() -> None:
+    # `feed(state, value, True)` says nothing at the call. Private helpers are read, too.
+    expect_none((each.where for each in functions(SRC) if takes_a_flag(each)), "put * before the flag")
+
+
+def test_no_star_imports() -> None:
+    imports = ((path, node) for path in code_files() for node in ast.walk(tree(path)) if isinstance(node, ast.ImportFrom))
+    found = (f"{path}:{node.lineno}" for path, node in imports if any(alias.name == "*" for alias in node.names))
+    expect_none(found, "import names")
