@@ -149,7 +149,7 @@ def test_analyse_nests_the_documents_of_the_commands(flexstage: Command) -> None
         alone = flexstage(name, "stage.toml", "--json", "-").document
         common = {key: value for key, value in alone.items() if key in whole[name]}
         assert whole[name] == common, name
-        assert set(alone) - set(common) <= {"format", "kind", "version", "name", "reading", "physics_digest"}
+        assert set(alone) - set(common) <= {"format", "kind", "version", "name", "reading", "physics_digest", "cautions", "defaults"}
     assert [line["passed"] for line in whole["requirements"]] == [True] * 8
     assert list(whole).index("requirements") < list(whole).index("mapping")
 
@@ -192,7 +192,7 @@ def test_changes_are_told_old_new_and_relative(flexstage: Command) -> None:
     assert document["physics_digest"] != digest(double_triangle(), physics=True)
 
 
-ENVELOPE = {"format", "kind", "version", "name", "reading", "physics_digest", "method", "reasons"}
+ENVELOPE = {"format", "kind", "version", "name", "reading", "physics_digest", "cautions", "defaults", "method", "reasons"}
 
 
 def page_section(kind: str) -> str:

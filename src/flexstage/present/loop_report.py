@@ -5,6 +5,7 @@ from __future__ import annotations
 import flexstage
 from flexstage.base.digest import digest
 from flexstage.present.page import Head, page
+from flexstage.present.sections.caveats import caveat_section
 from flexstage.present.sections.loop import error_section, frequency_section, loop_section, time_section
 from flexstage.studies.loop.study import LoopStudy
 
@@ -18,5 +19,11 @@ def loop_report(found: LoopStudy) -> str:
         ("rate", f"{found.settled.rate:g} Hz"),
         ("flexstage", flexstage.__version__),
     )
-    sections = (loop_section(found), frequency_section(found), time_section(found), error_section(found))
+    sections = (
+        caveat_section(mechanism, found.cautions),
+        loop_section(found),
+        frequency_section(found),
+        time_section(found),
+        error_section(found),
+    )
     return page(Head(mechanism.name or "stage", "Control loop", origin), [each for each in sections if each is not None])

@@ -7,6 +7,7 @@ from flexstage.base.digest import digest
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.present.page import Head, Section, page
 from flexstage.present.scene.stage import scene
+from flexstage.present.sections.caveats import caveat_section
 from flexstage.present.sections.measured import (
     coherence_section,
     compare_section,
@@ -49,4 +50,5 @@ def _page(kind: str, mechanism: Mechanism | None, seen: Identification, sections
     if mechanism is not None:
         origin.insert(1, ("physics", digest(mechanism, physics=True)[:16]))
     title = (mechanism.name if mechanism is not None else "") or named
-    return page(Head(title, kind, tuple(origin)), [each for each in sections if each is not None])
+    known = None if mechanism is None else caveat_section(mechanism)
+    return page(Head(title, kind, tuple(origin)), [each for each in (known, *sections) if each is not None])

@@ -7,6 +7,7 @@ from flexstage.base.digest import digest
 from flexstage.present.figures.export import to_svg
 from flexstage.present.figures.optimise import convergence_figure, front_figure
 from flexstage.present.page import Head, Picture, Section, page, section
+from flexstage.present.sections.caveats import caveat_section
 from flexstage.present.tables.optimise import front_tables, optimise_tables
 from flexstage.studies.optimise.result import Front, Optimum
 from flexstage.studies.study.definition import Study
@@ -21,6 +22,7 @@ def optimise_report(found: Optimum) -> str:
     objective, variables, limits, *rest = optimise_tables(found)
     search = Picture(to_svg(convergence_figure(found), "search", "objective over accepted designs, variables in their ranges"), _SEARCH)
     sections: list[Section | None] = [
+        caveat_section(found.study.design),
         section("Objective", [objective, search]),
         section("Variables", [variables]),
         section("Limits", [limits, *rest[:-1]]),
@@ -32,7 +34,7 @@ def optimise_report(found: Optimum) -> str:
 def front_report(found: Front) -> str:
     """A front as a page of HTML."""
     picture = Picture(to_svg(front_figure(found), "front", "designs of the front"), "None of these designs is better in both objectives.")
-    sections = [section("Front", [picture, *front_tables(found)])]
+    sections = [caveat_section(found.study.design), section("Front", [picture, *front_tables(found)])]
     return page(_head(found.study, "A front of two objectives"), [each for each in sections if each is not None])
 
 

@@ -7,6 +7,7 @@ from flexstage.base.digest import digest
 from flexstage.present.page import Head, page
 from flexstage.present.scene.stage import scene
 from flexstage.present.sections.accuracy import drift_section, error_section
+from flexstage.present.sections.caveats import caveat_section
 from flexstage.present.sections.dynamics import mode_section, response_section
 from flexstage.present.sections.mechanics import kinematics_section, lost_motion_section, stiffness_section
 from flexstage.present.sections.overview import change_section, requirement_section, summary_section
@@ -21,7 +22,7 @@ def report(analysis: Analysis, compared: Comparison | None = None) -> str:
     """The analysis of a stage as a self-contained HTML page: verdicts first, pictures inline, nothing loaded from anywhere, no date.
 
     With `compared`, the values that were set and what that did stand after the verdicts, as old, new and change.
-    Results that the reading or the stage does not give are left out, with the reasons under "Limits and warnings". One design; of a
+    Results that the reading or the stage does not give are left out, with the reasons under "Limits". One design; of a
     batch the first is shown.
 
     >>> from flexstage.cases.double_triangle import double_triangle
@@ -33,6 +34,7 @@ def report(analysis: Analysis, compared: Comparison | None = None) -> str:
     seen = scene(mechanism)
     sections = (
         requirement_section(analysis),
+        caveat_section(mechanism),
         change_section(analysis, compared),
         summary_section(analysis),
         stage_section(mechanism, seen),

@@ -8,6 +8,7 @@ import flexstage
 from flexstage.base.digest import digest
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.present.page import Head, Section, page
+from flexstage.present.sections.caveats import caveat_section
 
 
 def solid_report(mechanism: Mechanism, sections: Iterable[Section | None], kind: str = "A flexure stage as solids") -> str:
@@ -22,4 +23,6 @@ def solid_report(mechanism: Mechanism, sections: Iterable[Section | None], kind:
         ("document", digest(mechanism)[:16]),
         ("flexstage", flexstage.__version__),
     )
-    return page(Head(mechanism.name or "stage", kind, origin), [each for each in sections if each is not None])
+    return page(
+        Head(mechanism.name or "stage", kind, origin), [each for each in (caveat_section(mechanism), *sections) if each is not None]
+    )

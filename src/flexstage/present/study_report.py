@@ -10,6 +10,7 @@ from flexstage.present.figures.export import to_svg
 from flexstage.present.figures.interactions import pairs_figure, strongest_figure
 from flexstage.present.figures.study import designs_figure, effects_figure
 from flexstage.present.page import Block, Head, Picture, Section, page, section
+from flexstage.present.sections.caveats import caveat_section
 from flexstage.present.tables.study import failure_table, pair_table, response_table, share_table, variable_table
 from flexstage.studies.study.definition import Study
 from flexstage.studies.study.effects import Effects
@@ -27,6 +28,7 @@ def sweep_report(study: Study, results: Results, found: Effects) -> str:
         effects = Picture(to_svg(effects_figure(study, found), "effects", "mean responses over the variables"), _STEEP)
         designs = Picture(to_svg(designs_figure(study, results), "designs", "designs over parallel axes"), _parallel(study, found))
     sections: list[Section | None] = [
+        caveat_section(study.design),
         section("What was varied", [variable_table(study, results)]),
         section("Responses", [response_table(study, results, found), designs]),
         section("Effects", [share_table(found), effects]),

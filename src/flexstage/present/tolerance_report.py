@@ -7,6 +7,7 @@ from flexstage.base.digest import digest
 from flexstage.present.figures.export import to_svg
 from flexstage.present.figures.tolerance import crosstalk_figure, crosstalk_title, distributions_figure, shares_figure, yields_figure
 from flexstage.present.page import Head, Picture, Section, page, section
+from flexstage.present.sections.caveats import caveat_section
 from flexstage.present.tables.study import failure_table
 from flexstage.present.tables.tolerance import allowance_table, crosstalk_table, scatter_table, share_table, spread_table, yield_table
 from flexstage.studies.tolerance.run import Toleranced
@@ -24,6 +25,7 @@ def tolerance_report(found: Toleranced) -> str:
     yields = Picture(to_svg(yields_figure(found), "yields", "yields of the specification's lines"), _YIELDS) if said.lines else None
     shares = Picture(to_svg(shares_figure(found), "shares", "shares of the variance"), _SHARES)
     sections: list[Section | None] = [
+        caveat_section(study.design),
         section("What scatters", [scatter_table(found)]),
         section("Yield", [yield_table(found), yields]),
         section("Responses", [spread_table(found), drawn if study.asked else None]),

@@ -1,8 +1,12 @@
-"""Cautions: what does not keep a stage from being read, but should be known with its results."""
+"""Caveats: what does not keep a stage from being read, but should be known with its results: cautions, and what was taken by default."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
 
 from flexstage.analysis.requirements import requirements
 from flexstage.analysis.workspace.room import room
@@ -10,8 +14,54 @@ from flexstage.base.finding import DesignError, Finding
 from flexstage.beams.validity import validity
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
+from flexstage.parts.part import Restricted
+from flexstage.parts.piezo import Piezo
 from flexstage.readings.ideal import ideal
 from flexstage.readings.lumped import lumped
+
+
+@dataclass(frozen=True)
+class Caveats:
+    """Known with every result: `cautions` (something is doubtful), and `defaults` (what the description leaves open, as taken)."""
+
+    cautions: tuple[Finding, ...] = ()
+    defaults: tuple[Finding, ...] = ()
+
+
+@lru_cache(maxsize=8)
+def caveats(mechanism: Mechanism) -> Caveats:
+    """Cautions and defaults of a description; those of the last ones are kept, as tables, document and report of one command all show them.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> caveats(double_triangle()).cautions
+    ()
+    """
+    return Caveats(cautions(mechanism), defaults(mechanism))
+
+
+def defaults(mechanism: Mechanism) -> tuple[Finding, ...]:
+    """What a result may rest on that the description does not state, and the value taken: `what` was taken, and by what it is stated.
+
+    >>> defaults(Mechanism("stage"))
+    ()
+    """
+    return tuple(_stack_defaults(mechanism))
+
+
+def _stack_defaults(mechanism: Mechanism) -> Iterator[Finding]:
+    for name, piezo in _shared_stacks(mechanism).items():
+        if np.all(np.asarray(piezo.mass) == 0.0):
+            yield Finding(f"parts.{name}", "the stack weighs nothing", 'Its mass adds local modes and lowers others: mass = "0.12 kg"')
+        if piezo.bias is None and piezo.voltage_low is not None and piezo.voltage_high is not None:
+            middle = np.ravel(0.5 * (np.real(piezo.voltage_low) + np.real(piezo.voltage_high)))[0]
+            yield Finding(f"parts.{name}", f"the bias is the middle of the range, {middle:g} V", 'Strokes count from it: bias = "50 V"')
+
+
+def _shared_stacks(mechanism: Mechanism) -> dict[str, Piezo]:
+    """Stacks that links use, by the name of their part."""
+    used = {link.link.part for link in expand(mechanism).links.values()}
+    inner = {name: part.part if isinstance(part, Restricted) else part for name, part in mechanism.parts.items() if name in used}
+    return {name: part for name, part in inner.items() if isinstance(part, Piezo)}
 
 
 def cautions(mechanism: Mechanism) -> tuple[Finding, ...]:
@@ -64,6 +114,8 @@ def _validity(mechanism: Mechanism) -> Iterator[Finding]:
 
 
 def _room(mechanism: Mechanism) -> tuple[Finding, ...]:
+    if mechanism.envelope is None and mechanism.opening is None:
+        return ()
     try:
         return room(mechanism).findings
     except DesignError as error:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -12,6 +12,7 @@ from flexstage.base.finding import refuse
 from flexstage.studies.reading import Reading
 
 if TYPE_CHECKING:
+    from flexstage.base.finding import Finding
     from flexstage.mechanism.mechanism import Mechanism
     from flexstage.present.documents.envelope import Document
     from flexstage.present.table import Table
@@ -20,12 +21,16 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Asked:
-    """What was asked: the kind of document, of which description (`None`: of none), by which reading, where JSON goes (`None`: nowhere)."""
+    """What was asked: the kind of document, of which description (`None`: of none), by which reading, where JSON goes (`None`: nowhere).
+
+    `cautions` are the result's own, told after those about the description.
+    """
 
     kind: str
     mechanism: Mechanism | None
     reading: Reading | None
     json: str | None
+    cautions: tuple[Finding, ...] = ()
 
 
 def answer(asked: Asked, body: Callable[[], Document], tables: Callable[[], Iterable[Table | None]]) -> None:
@@ -33,13 +38,23 @@ def answer(asked: Asked, body: Callable[[], Document], tables: Callable[[], Iter
     if asked.json is not None:
         from flexstage.present.documents.envelope import as_text, enveloped
 
-        write(asked.json, as_text(enveloped(asked.kind, asked.mechanism, asked.reading, body())) + "\n", "--json")
+        write(asked.json, as_text(enveloped(asked.kind, asked.mechanism, asked.reading, body(), asked.cautions)) + "\n", "--json")
         if asked.json == STDOUT:
             return
         announced(f"Wrote {asked.json}")
     from flexstage.apps.cli.show import show
 
-    show(table for table in tables() if table is not None)
+    show(table for table in (*caveat_tables(asked.mechanism, asked.cautions), *tables()) if table is not None)
+
+
+def caveat_tables(mechanism: Mechanism | None, more: tuple[Finding, ...] = ()) -> Iterator[Table | None]:
+    """Cautions about a description (none: a record alone) and `more` about the result, and what was taken by default."""
+    from flexstage.present.tables.caveats import caution_table, default_table
+    from flexstage.studies.cautions import Caveats, caveats
+
+    found = Caveats() if mechanism is None else caveats(mechanism)
+    yield caution_table((*found.cautions, *more))
+    yield default_table(found.defaults)
 
 
 def tell_missing(missing: Mapping[str, str]) -> None:

@@ -13,10 +13,9 @@ import flexstage
 from flexstage.apps.cli.choice import choice, choices
 from flexstage.apps.cli.options import Changes, Design, Json
 from flexstage.apps.cli.output import announced
-from flexstage.apps.cli.speech import say, warn
+from flexstage.apps.cli.speech import say
 
 if TYPE_CHECKING:
-    from flexstage.base.finding import Finding
     from flexstage.mechanism.mechanism import Mechanism
 
 DEFAULT_CASE = "double-triangle"
@@ -88,6 +87,8 @@ def check(design: Design, *, changes: Changes = None, json: Json = None) -> None
     """Check a design file.
 
     Every finding is told with the object, the numbers and what to do. Exit code 2 if there is any.
+
+    Cautions and what is taken by default are told too; they stop nothing.
     """
     from flexstage.apps.cli.opening import changed
     from flexstage.apps.cli.output import STDOUT, output_findings, write
@@ -95,7 +96,7 @@ def check(design: Design, *, changes: Changes = None, json: Json = None) -> None
     from flexstage.mechanism.store import load
     from flexstage.present.documents.envelope import as_text
     from flexstage.present.documents.reach import check_document
-    from flexstage.studies.cautions import cautions, reading_findings
+    from flexstage.studies.cautions import reading_findings
 
     require(output_findings([("--json", json)], design))
     try:
@@ -103,23 +104,24 @@ def check(design: Design, *, changes: Changes = None, json: Json = None) -> None
         require(reading_findings(mechanism))
     except DesignError as error:
         if json is not None:
-            write(json, as_text(check_document(None, error.findings, ())) + "\n", "--json")
+            write(json, as_text(check_document(None, error.findings)) + "\n", "--json")
         raise
-    warnings = cautions(mechanism)
     if json is not None:
-        write(json, as_text(check_document(mechanism, (), warnings)) + "\n", "--json")
+        write(json, as_text(check_document(mechanism)) + "\n", "--json")
     if json != STDOUT:
-        _tell_sound(design, mechanism, warnings)
+        _tell_sound(design, mechanism)
 
 
-def _tell_sound(design: Path, mechanism: Mechanism, warnings: tuple[Finding, ...]) -> None:
+def _tell_sound(design: Path, mechanism: Mechanism) -> None:
+    from flexstage.apps.cli.answer import caveat_tables
     from flexstage.apps.cli.show import show
     from flexstage.present.tables.description import composition_table
+    from flexstage.studies.cautions import caveats
 
-    show([composition_table(mechanism)])
-    for warning in warnings:
-        warn(str(warning))
-    say(f"{design}: no findings{f', {len(warnings)} warnings' if warnings else ''}.")
+    show(table for table in (composition_table(mechanism), *caveat_tables(mechanism)) if table is not None)
+    count = len(caveats(mechanism).cautions)
+    said = f", {count} caution{'' if count == 1 else 's'}" if count else ""
+    say(f"{design}: no findings{said}.")
 
 
 class File(Enum):

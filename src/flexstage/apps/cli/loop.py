@@ -34,7 +34,7 @@ from flexstage.apps.cli.loop_options import (
 from flexstage.apps.cli.opening import announce, opened
 from flexstage.apps.cli.options import Changes, Design, Json
 from flexstage.apps.cli.output import STDOUT, write
-from flexstage.apps.cli.speech import tell, warn
+from flexstage.apps.cli.speech import tell
 
 if TYPE_CHECKING:
     from flexstage.mechanism.mechanism import Mechanism
@@ -127,7 +127,7 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
         return
     from flexstage.present.documents.loop import loop_body
 
-    answer(Asked("loop", mechanism, asked.reading, json), lambda: loop_body(found), lambda: _tables(found))
+    answer(Asked("loop", mechanism, asked.reading, json, found.cautions), lambda: loop_body(found), lambda: _tables(found))
 
 
 def _write_example(design: Path, example: Path) -> None:
@@ -144,10 +144,7 @@ def _studied(mechanism: Mechanism, asked: LoopSetup) -> LoopStudy:
     from flexstage.studies.loop.study import loop_study
 
     with bar() as shown:
-        found = loop_study(mechanism, asked, tell=shown.share)
-    for caution in found.cautions:
-        warn(str(caution))
-    return found
+        return loop_study(mechanism, asked, tell=shown.share)
 
 
 def _reported(found: LoopStudy, report: Path | None) -> None:

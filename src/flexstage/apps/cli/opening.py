@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from flexstage.apps.cli.output import announced, output_findings
-from flexstage.apps.cli.speech import warn
 from flexstage.base.finding import DesignError, Finding, require
 
 if TYPE_CHECKING:
@@ -15,17 +14,14 @@ if TYPE_CHECKING:
 
 
 def opened(design: Path, changes: Sequence[str] | None, outputs: Sequence[tuple[str, str | Path | None]]) -> Mechanism:
-    """The description in a file, with changes, after the outputs (option and path) were found writable; warnings go to stderr.
+    """The description in a file, with changes, after the outputs (option and path) were found writable.
 
     Raises `DesignError` with all findings.
     """
     from flexstage.mechanism.store import load
 
     require(output_findings(outputs, design))
-    mechanism = changed(load(design), changes or ())
-    for caution in _part_cautions(mechanism):
-        warn(str(caution))
-    return mechanism
+    return changed(load(design), changes or ())
 
 
 def changed(mechanism: Mechanism, changes: Sequence[str]) -> Mechanism:
@@ -48,12 +44,6 @@ def _where(change: str, inner: str) -> str:
     """The assignment, and the place a finding names where that says more than the assignment does."""
     said = {change.partition("=")[0].strip(), f'"{change}"'}
     return f"--set {change}" if inner in said else f"--set {change}: {inner}"
-
-
-def _part_cautions(mechanism: Mechanism) -> tuple[Finding, ...]:
-    from flexstage.studies.cautions import part_cautions
-
-    return part_cautions(mechanism)
 
 
 def announce(target: str | Path) -> None:

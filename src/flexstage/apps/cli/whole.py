@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from flexstage.apps.cli.answer import tell_missing
+from flexstage.apps.cli.answer import caveat_tables, tell_missing
 from flexstage.apps.cli.failure import MISSED
 from flexstage.apps.cli.options import Changes, Design, Json, Theory
 from flexstage.apps.cli.output import STDOUT, announced, output_findings, write
-from flexstage.apps.cli.speech import tell, warn
+from flexstage.apps.cli.speech import tell
 from flexstage.studies.reading import Reading
 
 if TYPE_CHECKING:
@@ -56,22 +56,18 @@ def analyse(
 def _worked_out(
     design: Path, reading: Reading, changes: list[str], outputs: list[tuple[str, str | Path | None]]
 ) -> tuple[Analysis, Comparison | None]:
-    """The analysis of the design with its changes, and their effect if there are any; cautions go to stderr."""
+    """The analysis of the design with its changes, and their effect if there are any."""
     from flexstage.base.finding import require
 
     require(output_findings(outputs, design))
     from flexstage.apps.cli.opening import changed
     from flexstage.mechanism.store import load
-    from flexstage.studies.cautions import part_cautions
     from flexstage.studies.complete import analyse as analysed
     from flexstage.studies.difference import Comparison, difference
 
     stated = load(design)
     mechanism = changed(stated, changes)
     analysis = analysed(mechanism, reading)
-    room = None if analysis.workspace is None else analysis.workspace.room
-    for caution in (*part_cautions(mechanism), *(() if room is None else room.findings)):
-        warn(str(caution))
     if not changes:
         return analysis, None
     addresses = tuple(change.partition("=")[0].strip() for change in changes)
@@ -122,6 +118,7 @@ def _tables(analysis: Analysis, compared: Comparison | None) -> Iterator[Table |
     from flexstage.present.tables.requirements import verdict_table
 
     yield verdict_table(analysis.verdicts)
+    yield from caveat_tables(analysis.mechanism)
     if compared is not None:
         yield set_table(compared.stated, analysis.mechanism, compared.addresses)
         yield change_table(compared.figures)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from enum import Enum
 from typing import Any, TypeAlias
 
@@ -12,7 +12,9 @@ import numpy as np
 
 import flexstage
 from flexstage.base.digest import digest
+from flexstage.base.finding import Finding
 from flexstage.mechanism.mechanism import Mechanism
+from flexstage.studies.cautions import Caveats, caveats
 from flexstage.studies.reading import Reading
 
 FORMAT = "flexstage result 1"
@@ -20,12 +22,17 @@ FORMAT = "flexstage result 1"
 Document: TypeAlias = dict[str, Any]
 
 
-def enveloped(kind: str, mechanism: Mechanism | None, reading: Reading | None, body: Mapping[str, Any]) -> Document:
-    """A document: what it is, of which description (absent: of a record alone), by which reading and version, then its `body`.
+def enveloped(
+    kind: str, mechanism: Mechanism | None, reading: Reading | None, body: Mapping[str, Any], more: Iterable[Finding] = ()
+) -> Document:
+    """A document: what it is, of which description (absent: of a record alone), by which reading and version, caveats, then its `body`.
+
+    `more` are cautions of the result's own.
 
     >>> enveloped("mapping", Mechanism("stage"), None, {"mobility": 6})["name"]
     'stage'
     """
+    known = Caveats() if mechanism is None else caveats(mechanism)
     return {
         "format": FORMAT,
         "kind": kind,
@@ -33,8 +40,19 @@ def enveloped(kind: str, mechanism: Mechanism | None, reading: Reading | None, b
         "name": None if mechanism is None else mechanism.name,
         "reading": None if reading is None else reading.value,
         "physics_digest": None if mechanism is None else digest(mechanism, physics=True),
+        "cautions": findings((*known.cautions, *more)),
+        "defaults": findings(known.defaults),
         **body,
     }
+
+
+def findings(found: Iterable[Finding]) -> list[Document]:
+    """Findings as {where, what, advice}.
+
+    >>> findings([Finding("B4/pivot", "it is thin", "Thicken it")])
+    [{'where': 'B4/pivot', 'what': 'it is thin', 'advice': 'Thicken it'}]
+    """
+    return [{"where": each.where, "what": each.what, "advice": each.advice} for each in found]
 
 
 def plain(document: Mapping[str, Any]) -> Document:

@@ -32,7 +32,6 @@ def loop_body(found: LoopStudy) -> Document:
         "noise": _noise(found),
         "hysteresis": _hysteresis(found),
         "runs": [run_body(each) for each in found.runs],
-        "cautions": [str(each) for each in found.cautions],
         "reasons": dict(found.missing),
     }
 

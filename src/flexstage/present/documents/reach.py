@@ -24,7 +24,7 @@ from flexstage.base.finding import Finding
 from flexstage.base.labelled import Matrix
 from flexstage.base.number import Array, Number
 from flexstage.mechanism.mechanism import Mechanism
-from flexstage.present.documents.envelope import FORMAT, Document, enveloped
+from flexstage.present.documents.envelope import FORMAT, Document, enveloped, findings
 from flexstage.spatial.frame import COMPONENTS
 from flexstage.studies.sensitivities import Sensitivities
 from flexstage.studies.workspace import Workspace
@@ -233,26 +233,18 @@ def _matrix(values: Array, names: tuple[tuple[str, ...], tuple[str, ...]], units
     return Matrix(values, *names, tuple(tuple(row) for row in units)).to_json()
 
 
-def findings(found: Iterable[Finding]) -> list[Document]:
-    """Findings as {where, what, advice}.
+def check_document(mechanism: Mechanism | None, errors: Iterable[Finding] = ()) -> Document:
+    """The document of a check: whether the design is sound, and its findings; without the envelope's digest and caveats if it is not.
 
-    >>> findings([Finding("B4/pivot", "it is thin", "Thicken it")])
-    [{'where': 'B4/pivot', 'what': 'it is thin', 'advice': 'Thicken it'}]
-    """
-    return [{"where": each.where, "what": each.what, "advice": each.advice} for each in found]
-
-
-def check_document(mechanism: Mechanism | None, errors: Iterable[Finding], warnings: Iterable[Finding]) -> Document:
-    """The document of a check: whether the design is sound, its findings and its warnings; without envelope's digest if it is not.
-
-    >>> check_document(None, [Finding("B4/pivot", "it is thin", "Thicken it")], ())["sound"]
+    >>> check_document(None, [Finding("B4/pivot", "it is thin", "Thicken it")])["sound"]
     False
     """
-    body: Document = {"findings": findings(errors), "warnings": findings(warnings)}
-    body = {"sound": not body["findings"], **body}
+    told = findings(errors)
+    body: Document = {"sound": not told, "findings": told}
     if mechanism is None:
-        return {"format": FORMAT, "kind": "check", "version": flexstage.__version__, **body}
-    return enveloped("check", mechanism, None, body)
+        return {"format": FORMAT, "kind": "check", "version": flexstage.__version__, **body, "cautions": [], "defaults": [], "warnings": []}
+    document = enveloped("check", mechanism, None, body)
+    return {**document, "warnings": document["cautions"]}
 
 
 def requirements_body(verdicts: Iterable[Verdict]) -> list[Document]:

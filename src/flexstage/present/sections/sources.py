@@ -1,8 +1,7 @@
-"""What a report rests on: the description with its provenance, known limits and warnings, references."""
+"""What a report rests on: the description with its provenance, known limits, references."""
 
 from __future__ import annotations
 
-from flexstage.base.finding import Finding
 from flexstage.beams.validity import validity
 from flexstage.mechanism.mechanism import Mechanism, StructuralDamping
 from flexstage.parts.neck import Neck
@@ -13,7 +12,7 @@ from flexstage.present.scene.primitives import plain
 from flexstage.present.table import Cell, Column, Mark, Table, build
 from flexstage.present.tables.description import provenance_table, requirement_lines, source_table, value_tables
 from flexstage.spatial.frame import COMPONENTS
-from flexstage.studies.cautions import cautions
+from flexstage.studies.cautions import part_cautions
 from flexstage.studies.complete import Analysis, Reading
 
 _LIMITS = {
@@ -61,24 +60,19 @@ def description_section(mechanism: Mechanism) -> Section | None:
 
 
 def limit_section(analysis: Analysis) -> Section | None:
-    """What the reading leaves out, warnings about parts and room, and results that could not be given, with the reasons.
+    """What the reading leaves out, and results that could not be given, with the reasons.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.studies.complete import Reading, analyse
     >>> limit_section(analyse(double_triangle(), Reading.IDEAL)).title
-    'Limits and warnings'
+    'Limits'
     """
     blocks: list[Block | None] = [Prose(_LIMITS[analysis.reading])]
-    found = cautions(analysis.mechanism)
-    blocks.append(_finding_table(found) if found else Prose("No part lies outside the range that beam theory was compared with."))
+    if not part_cautions(analysis.mechanism):
+        blocks.append(Prose("No part lies outside the range that beam theory was compared with."))
     blocks.append(_missing_table(analysis))
     accuracy = error_of_theory_table(analysis.mechanism) if analysis.reading is not Reading.IDEAL else None
-    return section("Limits and warnings", [*blocks, accuracy])
-
-
-def _finding_table(findings: tuple[Finding, ...]) -> Table:
-    rows = [(Cell(each.where, Mark.WARN), each.what, each.advice) for each in findings]
-    return build("Warnings", ["where", "what", "what to do"], rows)
+    return section("Limits", [*blocks, accuracy])
 
 
 def _missing_table(analysis: Analysis) -> Table | None:
