@@ -154,15 +154,13 @@ def test_an_interruption_while_writing_leaves_the_old_file(tmp_path: Path, monke
     assert find(cache, "key", "lever").element is not None
 
 
-def test_the_least_recently_used_go_first_and_abandoned_parts_too(tmp_path: Path) -> None:
+def test_the_least_recently_used_go_first(tmp_path: Path) -> None:
     size = len(data("a"))
     cache = Cache(tmp_path, limit=2.5 * size)
     for age, key in ((300.0, "a"), (200.0, "b")):
         keep(cache, key, key, data(key))
         then = time.time() - age
         os.utime(tmp_path / f"{key}-{versions().digest}.superelement", (then, then))
-    (tmp_path / "left.part").write_bytes(b"x")
-    os.utime(tmp_path / "left.part", (0.0, 0.0))
     assert find(cache, "a", "a").element is not None  # used now: b is the older one
     keep(cache, "c", "c", data("c"))
     assert [name[0] for name in names(tmp_path)] == ["a", "c"]

@@ -15,8 +15,8 @@ from flexstage.analysis.loop.code.text import identifier
 from flexstage.analysis.loop.plant import Plant, held
 from flexstage.analysis.loop.simulation.machine import Machine
 from flexstage.analysis.loop.system import System
-from flexstage.base.aside import aside
 from flexstage.base.finding import refuse
+from flexstage.base.store import atomic_write
 from flexstage.present.fmu.unit import fmu
 from flexstage.readings.linear.model import Channel
 
@@ -124,5 +124,5 @@ def _ending(path: str | os.PathLike[str], suffix: str) -> Path:
 
 
 def _write(place: Path, content: bytes) -> None:
-    with aside(place) as beside:
+    with atomic_write(place) as beside:
         beside.write_bytes(content)

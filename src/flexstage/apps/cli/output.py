@@ -1,4 +1,4 @@
-"""Output files: found unwritable before anything is computed, written aside and renamed, so that none is ever half-written."""
+"""Output files: found unwritable before anything is computed, all written whole, or none."""
 
 from __future__ import annotations
 
@@ -15,22 +15,23 @@ from flexstage.apps.cli.speech import tell
 from flexstage.base.finding import Finding, refuse
 
 if TYPE_CHECKING:
-    from flexstage.mechanism.store.file import Aside
+    from flexstage.base.store import Waiting
 
 STDOUT = "-"
 _ENDED_WELL = (None, 0, 1)
 
 
 class _Pending:
-    """Outputs of one command written aside, and what is told once they are there."""
+    """Outputs of one command that wait for its end, and what is told once they are there."""
 
     def __init__(self) -> None:
-        self.files: list[Aside] = []
+        self.files: list[Waiting] = []
         self.texts: list[str] = []
 
     def put(self) -> None:
-        for each in self.files:
-            each.put()
+        from flexstage.base.store import put_together
+
+        put_together(self.files)
         for text in self.texts:
             tell(text)
 
@@ -40,7 +41,7 @@ class _Pending:
 
 
 # The command that runs decides when its outputs appear, however deep in it they are written: one value for the time of one command.
-_PENDING: ContextVar[_Pending | None] = ContextVar("outputs written aside", default=None)
+_PENDING: ContextVar[_Pending | None] = ContextVar("outputs that wait", default=None)
 
 
 @contextmanager
@@ -118,8 +119,8 @@ def _is_device(path: Path) -> bool:
 
 
 def write(target: str | Path, content: str | bytes, option: str) -> None:
-    """Write to a file, aside and put in its place at the end of the command, or to stdout for `-`; raises where the disk refuses."""
-    from flexstage.mechanism.store.file import written_aside
+    """Write to a file, which is in its place at the end of the command, or to stdout for `-`; raises where the disk refuses."""
+    from flexstage.base.store import written
 
     data = content.encode() if isinstance(content, str) else content
     if str(target) == STDOUT:
@@ -128,7 +129,7 @@ def write(target: str | Path, content: str | bytes, option: str) -> None:
         sys.stdout.buffer.flush()
         return
     if not _is_device(Path(target)):
-        pending, waiting = _PENDING.get(), written_aside(target, data)
+        pending, waiting = _PENDING.get(), written(target, data)
         if pending is None:
             waiting.put()
         else:

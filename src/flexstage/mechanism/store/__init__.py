@@ -8,13 +8,14 @@ from dataclasses import replace
 from pathlib import Path
 
 from flexstage.base.finding import DesignError
+from flexstage.base.store import write
 from flexstage.mechanism.checks import checked as _checked
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.store.anchor import anchored, beside, outline_text
 from flexstage.mechanism.store.catalogue import shipped
 from flexstage.mechanism.store.decode import mechanism_from
 from flexstage.mechanism.store.encode import tree_of
-from flexstage.mechanism.store.file import parse_toml, read_text, write
+from flexstage.mechanism.store.file import parse_toml, read_text
 from flexstage.mechanism.store.patch import patch
 from flexstage.mechanism.store.schema import schema
 from flexstage.mechanism.store.tidy import tidied

@@ -1,15 +1,13 @@
-"""Files at the border: read with a guard on size and form, written aside and then renamed."""
+"""Files at the border: read with a guard on size and form."""
 
 from __future__ import annotations
 
 import os
 import re
 import tomllib
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from flexstage.base.aside import beside, put
 from flexstage.base.finding import DesignError, refuse
 
 LARGEST = 5_000_000
@@ -59,80 +57,6 @@ def parse_toml(text: str, where: str) -> dict[str, Any]:
     except (RecursionError, ValueError) as error:
         reason = "it nests too deeply" if isinstance(error, RecursionError) else "a number in it has too many digits"
         raise refuse(where, reason, "Check that this is a design file") from None
-
-
-def write(path: str | os.PathLike[str], content: str | bytes) -> Path:
-    """Write aside, then rename onto `path`, so that no half-written file is ever there; raises `DesignError` if that cannot be.
-
-    >>> import tempfile
-    >>> with tempfile.TemporaryDirectory() as folder:
-    ...     write(f"{folder}/stage.toml", "name = 'a'").read_text()
-    "name = 'a'"
-    """
-    return written_aside(path, content).put()
-
-
-@dataclass(frozen=True)
-class Aside:
-    """A file written beside its `target`, whole, and not yet there; `where` is how the user named it."""
-
-    place: Path
-    target: Path
-    where: str
-
-    def put(self) -> Path:
-        """Rename it onto its target; raises `DesignError` if that cannot be."""
-        try:
-            put(self.place, self.target)
-        except OSError as error:
-            raise _unwritable(self.where, error) from None
-        finally:
-            self.drop()
-        return self.target
-
-    def drop(self) -> None:
-        """Remove it, where it has not been put."""
-        self.place.unlink(missing_ok=True)
-
-
-def written_aside(path: str | os.PathLike[str], content: str | bytes) -> Aside:
-    """Write beside `path`, to be put there later, together with others; raises `DesignError` if it cannot be written.
-
-    >>> import tempfile
-    >>> with tempfile.TemporaryDirectory() as folder:
-    ...     waiting = written_aside(f"{folder}/stage.toml", "name = 'a'")
-    ...     (waiting.target.exists(), waiting.put().exists())
-    (False, True)
-    """
-    where = os.fspath(path)
-    try:
-        target = Path(path).resolve()
-        if target.is_dir():
-            raise refuse(where, "this is a directory", "Name a file in it")
-        if target.exists() and not target.is_file():
-            raise refuse(where, "this is no regular file", "Name a file")
-        return Aside(_aside(target, content.encode() if isinstance(content, str) else content), target, where)
-    except (OSError, ValueError) as error:
-        if isinstance(error, DesignError):
-            raise
-        raise _unwritable(where, error) from None
-
-
-def _aside(target: Path, content: bytes) -> Path:
-    place = beside(target)
-    try:
-        with place.open("xb") as stream:
-            stream.write(content)
-            stream.flush()
-            os.fsync(stream.fileno())
-    except BaseException:
-        place.unlink(missing_ok=True)
-        raise
-    return place
-
-
-def _unwritable(where: str, error: OSError | ValueError) -> DesignError:
-    return refuse(where, f"it cannot be written: {_reason(error)}", "Check the directory and its permissions")
 
 
 def _reason(error: OSError | ValueError) -> str:

@@ -16,7 +16,7 @@ import tempfile
 from pathlib import Path
 
 from flexstage.base.compiler import Compiler, compiler
-from flexstage.base.folder import cache_folder
+from flexstage.base.store import cache_folder
 
 SWITCH = "FLEXSTAGE_KERNEL"
 _SOURCE = Path(__file__).with_name("kernel.c")

@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from flexstage.base.aside import aside
+from flexstage.base.store import atomic_write
 
 
 class Stream:
@@ -75,7 +75,7 @@ class Stream:
 
 @contextmanager
 def hdf_written(path: str | os.PathLike[str], *, version: str | None = None, head: bytes = b"") -> Generator[Any]:
-    """An HDF5 file to fill, written aside: there when the block ends, or not at all where it fails or the disk refuses (`DesignError`).
+    """An HDF5 file to fill: there when the block ends, or not at all where it fails or the disk refuses (`DesignError`).
 
     `version` is that of the library which must be able to read it; `head` stands before the file's own content (512 bytes, or 1024, ...).
 
@@ -88,7 +88,7 @@ def hdf_written(path: str | os.PathLike[str], *, version: str | None = None, hea
     """
     import h5py
 
-    with aside(path) as place:
+    with atomic_write(path) as place:
         stream = Stream(place)
         try:
             with h5py.File(stream, "w", libver=None if version is None else (version, version), userblock_size=len(head)) as file:

@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from flexstage.base.aside import aside
 from flexstage.base.finding import refuse
 from flexstage.base.number import Array
+from flexstage.base.store import atomic_write
 from flexstage.readings.measured.hdf import BLOCK, RESPONSES_FORM, Stored, opened
 from flexstage.readings.measured.hdf_sound import require_sound
 from flexstage.readings.measured.hdf_written import hdf_written
@@ -180,7 +180,7 @@ def write_mat(path: str | os.PathLike[str], what: Record | Responses, *, version
     values = {name: _cells(value) if isinstance(value, tuple) else value for name, value in _fields(what)}
     if isinstance(what, Record):
         values["samples"] = what.values
-    with aside(path) as place, place.open("wb") as stream:
+    with atomic_write(path) as place, place.open("wb") as stream:
         scipy.io.savemat(stream, values, oned_as="column")
         stream.seek(0)  # scipy writes the time into the head: the same record is to be the same file
         stream.write(b"MATLAB 5.0 MAT-file, Platform: any".ljust(116))

@@ -56,7 +56,7 @@ def form_of(path: str | os.PathLike[str], what: Record | Responses) -> Form:
 
 
 def write(path: str | os.PathLike[str], what: Record | Responses, form: Form | None = None) -> None:
-    """Write a record or responses, in the form named or that of the file's name; aside first, then renamed.
+    """Write a record or responses, in the form named or that of the file's name, whole or not at all.
 
     Raises `DesignError` for channel names or units the form cannot hold and where the file cannot be written.
 

@@ -8,26 +8,22 @@ from __future__ import annotations
 import contextlib
 import hashlib
 import os
-import tempfile
-import time
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
-from flexstage.base.finding import Finding
-from flexstage.base.folder import FOLDER_VARIABLE, cache_folder
+from flexstage.base.finding import DesignError, Finding
 from flexstage.base.number import Array
+from flexstage.base.store import FOLDER_VARIABLE, cache_folder, write
 from flexstage.readings.solid.component import Component
 from flexstage.readings.solid.content import content
 from flexstage.readings.solid.fineness import Reduction
 from flexstage.readings.solid.store import read, versions
 from flexstage.readings.solid.superelement import Superelement
 
-_SUFFIX, _PART = ".superelement", ".part"
-_ABANDONED = 3600.0
-"""Age of a half-written file [s] whose writer must be gone."""
+_SUFFIX = ".superelement"
 
 
 @dataclass(frozen=True)
@@ -100,7 +96,7 @@ _RECOMPUTED = "It is computed anew and replaced"
 
 
 def keep(cache: Cache, key: str, where: str, data: bytes) -> tuple[Finding, ...]:
-    """Keep a superelement's bytes: written aside, then renamed, so that a file is there whole or not at all. Tells why it could not.
+    """Keep a superelement's bytes, whole or not at all. Tells why it could not.
 
     >>> keep(Cache(Path("/proc/nowhere")), "key", "lever", b"")[0].where
     'lever'
@@ -109,33 +105,17 @@ def keep(cache: Cache, key: str, where: str, data: bytes) -> tuple[Finding, ...]
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         _swept(cache, path.parent, len(data))
-        _placed(path, data)
-    except OSError as error:
-        what = f"its superelement of {len(data) / 1e6:.3g} MB could not be kept in {path.parent} ({error.strerror})"
+        write(path, data)
+    except (OSError, DesignError) as error:
+        why = error.strerror if isinstance(error, OSError) else error.findings[0].what
+        what = f"its superelement of {len(data) / 1e6:.3g} MB could not be kept in {path.parent} ({why})"
         advice = f"The result is complete but will be computed again; free space there, or name another folder in {FOLDER_VARIABLE}"
         return (_notice(where, what, advice),)
     return ()
 
 
-def _placed(path: Path, data: bytes) -> None:
-    handle, aside = tempfile.mkstemp(dir=path.parent, suffix=_PART)
-    try:
-        with os.fdopen(handle, "wb") as stream:
-            stream.write(data)
-            stream.flush()
-            os.fsync(stream.fileno())  # a disk may report only now that it is full
-        Path(aside).replace(path)
-    except BaseException:
-        Path(aside).unlink(missing_ok=True)
-        raise
-
-
 def _swept(cache: Cache, folder: Path, coming: int) -> None:
-    """Remove abandoned parts and what was not used for longest, until there is room."""
-    now = time.time()
-    for used, _, part in _files(folder, _PART):
-        if now - used > _ABANDONED:
-            part.unlink(missing_ok=True)
+    """Remove what was not used for longest, until there is room."""
     total = float(coming)
     for _, size, path in sorted(_files(folder, _SUFFIX), reverse=True):
         total += size

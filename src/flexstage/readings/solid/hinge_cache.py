@@ -13,7 +13,7 @@ import numpy as np
 
 from flexstage.base.digest import digest
 from flexstage.base.finding import DesignError, Finding
-from flexstage.mechanism.store.file import write
+from flexstage.base.store import write
 from flexstage.parts.leaf import Leaf
 from flexstage.parts.material import Material
 from flexstage.parts.neck import Neck

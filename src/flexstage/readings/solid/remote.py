@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import contextlib
 import json
-import os
 import pickle
 import shutil
 import signal
@@ -23,6 +22,7 @@ from typing import IO, Generic, TypeVar, cast
 
 from flexstage.base.child import command, cores, environment
 from flexstage.base.finding import Finding, refuse, require
+from flexstage.base.store import temporary
 from flexstage.readings.solid.memory import Counts, available
 from flexstage.readings.solid.progress import Progress, Stage, Step, gathered, seconds_left
 from flexstage.readings.solid.store import versions
@@ -122,11 +122,12 @@ class _Child(Generic[AnyJob]):
     @property
     def held(self) -> float:
         """Memory it has already [bytes], where the system tells."""
+        import psutil
+
         try:
-            pages = int(Path(f"/proc/{self.process.pid}/statm").read_text(encoding="ascii").split()[1])
-        except (OSError, ValueError, IndexError):
+            return float(psutil.Process(self.process.pid).memory_info().rss)
+        except (psutil.Error, OSError):
             return 0.0
-        return float(pages * os.sysconf("SC_PAGE_SIZE"))
 
     @property
     def voice(self) -> IO[bytes]:
@@ -258,7 +259,7 @@ class _Run(Generic[AnyJob]):
 def _started(task: Task) -> tuple[Path, subprocess.Popen[bytes]]:
     folder: Path | None = None
     try:
-        folder = Path(tempfile.mkdtemp(prefix="flexstage-"))
+        folder = temporary()
         (folder / TASK).write_bytes(pickle.dumps(task))
         with (folder / "log").open("wb") as log:
             process = subprocess.Popen(

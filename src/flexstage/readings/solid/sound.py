@@ -7,8 +7,8 @@ from pathlib import Path
 
 from flexstage.base.digest import digest
 from flexstage.base.finding import DesignError, Finding, require
+from flexstage.base.store import write
 from flexstage.mechanism.mechanism import Mechanism
-from flexstage.mechanism.store.file import write
 from flexstage.parts.body import Imported
 from flexstage.readings.solid.apart import contact_apart
 from flexstage.readings.solid.cache import Cache, folder_of

@@ -6,13 +6,13 @@ The CAD kernel writes every solid by itself; here they become parts of one assem
 from __future__ import annotations
 
 import re
-import tempfile
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from netgen import occ
 
+from flexstage.base.store import temporary_folder
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.readings.solid.draw import drawn, moved
 from flexstage.readings.solid.paint import Colour, palette
@@ -79,9 +79,9 @@ def step_text(name: str, parts: Sequence[Part]) -> str:
     colours = palette(part.material for part in parts)
     lines = _Lines()
     root = _root(lines, name)
-    with tempfile.TemporaryDirectory() as folder:
+    with temporary_folder() as folder:
         for part in parts:
-            _append(lines, root, part, _written(part, colours[part.material], Path(folder) / "part.step"))
+            _append(lines, root, part, _written(part, colours[part.material], folder / "part.step"))
     placed = ",".join(f"#{number}" for number in root.axes)
     lines.put(f"SHAPE_REPRESENTATION('',({placed}),#{root.context})", root.shape)
     heading = (

@@ -6,17 +6,16 @@ stand in a comment at the head of the file. Components do not share points where
 
 from __future__ import annotations
 
-import tempfile
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import accumulate
-from pathlib import Path
 from xml.sax.saxutils import escape
 
 import meshio
 import numpy as np
 
 from flexstage.base.number import Array
+from flexstage.base.store import temporary_folder
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.readings.solid.component import Component, components
 from flexstage.readings.solid.content import content
@@ -96,8 +95,8 @@ def _written(grids: Sequence[Grid], data: Mapping[str, Array]) -> bytes:
     cells = np.vstack([item.cells + start for item, start in zip(grids, starts, strict=False)])
     points = np.vstack([item.points for item in grids])
     mesh = meshio.Mesh(points, [("tetra10", cells)], cell_data={name: [values] for name, values in data.items()})
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "stage.vtu"
+    with temporary_folder() as folder:
+        path = folder / "stage.vtu"
         mesh.write(path, file_format="vtu")
         return path.read_bytes()
 

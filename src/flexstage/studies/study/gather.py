@@ -1,4 +1,4 @@
-"""Pieces of a study gathered into its results file: one HDF5 file that describes itself, written anew aside and renamed.
+"""Pieces of a study gathered into its results file: one HDF5 file that describes itself, written anew as it grows.
 
 What was gathered before and what has come since are written in the order of designs, in one pass: a file with the same designs has the same
 bytes, however often it was interrupted on the way.
@@ -15,9 +15,9 @@ from typing import Any
 import numpy as np
 
 import flexstage
-from flexstage.base.aside import aside
 from flexstage.base.finding import refuse
 from flexstage.base.number import Array
+from flexstage.base.store import atomic_write
 from flexstage.studies.study.definition import Study
 from flexstage.studies.study.evaluate import Piece
 from flexstage.studies.study.store import FORMAT, columns_of, gathered, opened, read_failures, read_piece, waiting
@@ -38,7 +38,7 @@ Failures = list[tuple[int, str]]
 
 
 def gather(path: Path, study: Study, size: int) -> None:
-    """Write the results file anew aside, with all pieces of `size` designs so far, and rename it; then the pieces go.
+    """Write the results file anew, with all pieces of `size` designs so far; then the pieces go.
 
     Raises `DesignError` where the disk refuses; then file and pieces are as they were.
 
@@ -53,10 +53,9 @@ def gather(path: Path, study: Study, size: int) -> None:
     pieces = waiting(path)
     if path.exists() and not pieces:
         return
-    with aside(path) as place:
+    with atomic_write(path) as place:
         _written(place, path, pieces, (study, size))
-        _kept(place)
-    _kept(path.parent)  # the new name is on the disk before what it stands for goes
+    _settle(path.parent)  # the new name is on the disk before what it stands for goes
     for each in pieces.values():
         each.unlink(missing_ok=True)
 
@@ -87,9 +86,11 @@ def needed(study: Study, failures: Failures | None = None) -> int:
     return numbers + min(numbers, _UNFILLED) + reasons + _FRAME + 2 * len(study.text)
 
 
-def _kept(path: Path) -> None:
-    """Make sure that a file, or the names in a folder, are on the disk."""
-    descriptor = os.open(path, os.O_RDONLY)
+def _settle(folder: Path) -> None:
+    """Make sure that the names in a folder are on the disk, where the system can tell."""
+    if os.name != "posix":
+        return
+    descriptor = os.open(folder, os.O_RDONLY)
     try:
         os.fsync(descriptor)
     finally:

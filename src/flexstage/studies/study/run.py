@@ -8,14 +8,12 @@ import time
 from collections.abc import Callable, Generator, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
-from glob import escape
 from pathlib import Path
-from typing import TextIO
 
 import numpy as np
+from filelock import FileLock, Timeout
 
 from flexstage.analysis.requirements import Subject
-from flexstage.base.aside import stem_of
 from flexstage.base.child import cores
 from flexstage.base.finding import DesignError, refuse, require
 from flexstage.base.number import Array
@@ -153,35 +151,27 @@ def _gathering(pieces: Iterator[int], target: Path, what: tuple[Study, int]) -> 
 @contextmanager
 def _alone(folder: Path) -> Generator[None]:
     """Hold the folder of pieces for this process; the system lets go of it however the process ends. At the end it goes."""
+    lock = FileLock(folder / ".lock", blocking=False)
     try:
-        lock = _locked(folder)
-        for left in (*folder.glob(".*.part"), *folder.parent.glob(f".{escape(stem_of(folder.with_suffix('')))}.*.part")):
-            left.unlink(missing_ok=True)
+        folder.mkdir(exist_ok=True)
+        lock.acquire()
+    except Timeout:
+        raise refuse(os.fspath(folder), "another process computes this study", "Wait for it, or name another file") from None
     except OSError as error:
         what = f"it cannot be written to ({error.strerror or error})"
         raise refuse(os.fspath(folder.parent), what, "Name a file in another folder") from None
     with lock:
         try:
+            _clear(folder)
             yield
         finally:
-            Path(lock.name).unlink(missing_ok=True)
+            _clear(folder)
+            Path(lock.lock_file).unlink(missing_ok=True)
             with contextlib.suppress(OSError):  # pieces that could not be gathered stay
                 folder.rmdir()
 
 
-def _locked(folder: Path) -> TextIO:
-    """The folder's lock file, made and held."""
-    import fcntl
-
-    while True:
-        folder.mkdir(exist_ok=True)
-        with contextlib.suppress(FileNotFoundError):  # a process that has just ended took the folder or the lock away: once more
-            lock = (folder / ".lock").open("w")
-            try:
-                fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-                if Path(lock.name).stat().st_ino == os.fstat(lock.fileno()).st_ino:
-                    return lock
-            except BlockingIOError:
-                lock.close()
-                raise refuse(os.fspath(folder), "another process computes this study", "Wait for it, or name another file") from None
-            lock.close()
+def _clear(folder: Path) -> None:
+    """Remove what workers that were ended left half-written; nobody else writes here."""
+    for left in folder.glob(".*.part"):
+        left.unlink(missing_ok=True)

@@ -1,4 +1,4 @@
-"""Results of studies on disk: pieces written aside as they come, gathered into one HDF5 file that describes itself.
+"""Results of studies on disk: pieces written as they come, gathered into one HDF5 file that describes itself.
 
 `results.h5` holds what has been gathered; `results.h5.pieces/` the pieces since. Whatever is renamed is whole, so that the reader, which
 opens both, finds every computed design exactly once at any moment.
@@ -16,9 +16,9 @@ from zipfile import BadZipFile
 
 import numpy as np
 
-from flexstage.base.aside import aside
 from flexstage.base.finding import Finding, refuse
 from flexstage.base.number import Array
+from flexstage.base.store import atomic_write
 from flexstage.readings.measured.hdf_sound import require_sound
 from flexstage.studies.study.definition import Study
 from flexstage.studies.study.evaluate import Piece
@@ -84,7 +84,7 @@ def folder_of(path: Path) -> Path:
 
 
 def write_piece(folder: Path, found: Piece) -> Path:
-    """Write a piece aside and rename it into the folder: `<start>.npz`, the designs from `start` on.
+    """Write a piece into the folder: `<start>.npz`, the designs from `start` on.
 
     Raises `DesignError` where the disk refuses.
 
@@ -96,10 +96,8 @@ def write_piece(folder: Path, found: Piece) -> Path:
     target = folder / f"{found.start:012d}.npz"
     rows = np.array(sorted(found.failures), dtype=np.int64)
     reasons = np.array([found.failures[row] for row in sorted(found.failures)], dtype=np.str_)
-    with aside(target) as place, place.open("xb") as stream:
+    with atomic_write(target) as place, place.open("xb") as stream:
         np.savez(stream, variables=found.variables, responses=found.responses, rows=rows, reasons=reasons, made=np.array(found.made))
-        stream.flush()
-        os.fsync(stream.fileno())
     return target
 
 

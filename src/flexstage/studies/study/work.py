@@ -1,4 +1,4 @@
-"""Pieces of a study computed in processes of this machine: each takes a piece, writes it aside, renames it, and asks for the next.
+"""Pieces of a study computed in processes of this machine: each takes a piece, writes it, and asks for the next.
 
 Processes of their own modules, not copies of the caller's: it works alike from scripts without a guard, notebooks and tests. A process that
 dies gives its piece back.
@@ -7,12 +7,12 @@ dies gives its piece back.
 from __future__ import annotations
 
 import contextlib
+import os
 import pickle
 import queue
 import signal
 import subprocess
 import sys
-import tempfile
 import threading
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
@@ -21,6 +21,7 @@ from typing import IO, cast
 
 from flexstage.base.child import command, environment
 from flexstage.base.finding import DesignError, refuse
+from flexstage.base.store import temporary_folder
 from flexstage.studies.study.definition import Study
 from flexstage.studies.study.engine import Engine
 from flexstage.studies.study.evaluate import piece
@@ -42,8 +43,8 @@ def worked(study: Study, engine: Engine, ranges: Iterable[tuple[int, int]], fold
     >>> list(worked(neck_study(), engine_of(neck_study()), [], Path("nowhere"), 2))
     []
     """
-    with tempfile.TemporaryDirectory() as place:
-        task = Path(place) / "study.pickle"
+    with temporary_folder() as place:
+        task = place / "study.pickle"
         task.write_bytes(pickle.dumps((study, engine)))
         crew = _Crew(task, folder)
         for each in ranges:
@@ -149,11 +150,13 @@ def _dismissed(process: subprocess.Popen[str]) -> None:
 
 
 def _main(task: str, folder: str) -> None:
-    """Compute ranges that come on standard input, one a line, until it closes. Interruptions are the affair of who started this."""
+    """Compute ranges that come on standard input, one a line. Interruptions are the affair of the process that started this one."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    asked = queue.SimpleQueue[str]()
+    threading.Thread(target=_listen, args=(asked,), daemon=True).start()
     study, engine = cast("tuple[Study, Engine]", pickle.loads(Path(task).read_bytes()))  # noqa: S301 written by this one's parent
-    for line in sys.stdin:
-        start, stop = map(int, line.split())
+    while True:
+        start, stop = map(int, asked.get().split())
         try:
             write_piece(Path(folder), piece(study, start, stop, engine))
             answer = _DONE
@@ -161,6 +164,13 @@ def _main(task: str, folder: str) -> None:
             answer = f"{_REFUSED} {' '.join(str(error).split())}"
         sys.stdout.write(f"{answer}\n")
         sys.stdout.flush()
+
+
+def _listen(asked: queue.SimpleQueue[str]) -> None:
+    """Pass on what is asked, until standard input closes: then nobody waits for an answer, and this process ends whatever it does."""
+    for line in sys.stdin:
+        asked.put(line)
+    os._exit(0)
 
 
 if __name__ == "__main__":

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import os
-import tempfile
 from dataclasses import dataclass
-from pathlib import Path
 
+from flexstage.base.store import temporary_folder
 from flexstage.studies.study.run import DEFAULT, Progress, Run, sweep
 from flexstage.studies.study.store import Results
 from flexstage.studies.tolerance.allowance import Allowance, allowance
@@ -39,8 +38,8 @@ def tolerance(
     (1.0, True)
     """
     if path is None:
-        with tempfile.TemporaryDirectory() as place:
-            return tolerance(study, Path(place) / "copies.h5", how, progress)
+        with temporary_folder() as place:
+            return tolerance(study, place / "copies.h5", how, progress)
     results = sweep(study, path, how, progress)
     found = slopes(study)
     said = summary(study, results, found)

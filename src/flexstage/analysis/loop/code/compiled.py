@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import ctypes
-import tempfile
 from collections.abc import Mapping
 from dataclasses import replace
 from functools import lru_cache
-from pathlib import Path
 
 import numpy as np
 
@@ -20,6 +18,7 @@ from flexstage.analysis.loop.simulation.result import Series, Simulated, simulat
 from flexstage.analysis.loop.simulation.run import require_bounded
 from flexstage.analysis.loop.system import picked
 from flexstage.base.number import Array
+from flexstage.base.store import temporary_folder
 
 _NONE: Mapping[str, Array] = {}
 _RUN = """
@@ -105,8 +104,8 @@ def _count(signals: tuple[Signal, ...]) -> int:
 def _loaded(name: str, header: str, source: str) -> ctypes.CDLL:
     """The library in this process, from a file of its own that is gone once it is loaded."""
     made = library({f"{name}.h": header, f"{name}.c": source}, "the compiled simulation")
-    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as folder:
-        place = Path(folder) / "loop.so"
+    with temporary_folder() as folder:
+        place = folder / "loop.so"
         place.write_bytes(made)
         loaded = ctypes.CDLL(str(place))
     loaded[f"{name}_size"].restype = ctypes.c_long

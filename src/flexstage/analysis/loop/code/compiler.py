@@ -5,13 +5,12 @@ from __future__ import annotations
 import hashlib
 import os
 import subprocess
-import tempfile
 from collections.abc import Mapping
 from pathlib import Path
 
 from flexstage.base.compiler import COMPILERS, Compiler, compiler
-from flexstage.base.finding import refuse
-from flexstage.base.folder import cache_folder
+from flexstage.base.finding import DesignError, refuse
+from flexstage.base.store import cache_folder, temporary_folder, write
 
 WARNINGS = ("-Wall", "-Wextra", "-Wpedantic", "-Werror")
 FLAGS = ("-std=c99", "-O3", "-ffp-contract=off", "-fPIC", "-shared", *WARNINGS)
@@ -46,8 +45,8 @@ def library(sources: Mapping[str, str], what: str) -> bytes:
     place = cache_folder() / "loops" / f"{key}.so"
     if place.is_file():
         return place.read_bytes()
-    with tempfile.TemporaryDirectory() as folder:
-        made = _compiled(found, sources, Path(folder))
+    with temporary_folder() as folder:
+        made = _compiled(found, sources, folder)
     _keep(place, made)
     return made
 
@@ -68,14 +67,12 @@ def _compiled(found: Compiler, sources: Mapping[str, str], folder: Path) -> byte
 
 
 def _keep(place: Path, made: bytes) -> None:
-    """Written aside and renamed; a folder that cannot be written to only costs time."""
+    """A folder that cannot be written to only costs time."""
     try:
         place.parent.mkdir(parents=True, exist_ok=True)
-        with tempfile.NamedTemporaryFile(dir=place.parent, suffix=".part", delete=False) as stream:
-            stream.write(made)
-        Path(stream.name).replace(place)
+        write(place, made)
         aged = sorted(place.parent.glob("*.so"), key=lambda each: each.stat().st_mtime)
         for each in aged[:-_KEPT]:
             each.unlink(missing_ok=True)
-    except OSError:
+    except (OSError, DesignError):
         return

@@ -14,10 +14,11 @@ from flexstage.analysis.loop.hysteresis.envelope import IDENTITY, Envelope, stra
 from flexstage.analysis.loop.hysteresis.prandtl_ishlinskii import PrandtlIshlinskii
 from flexstage.base.finding import DesignError, Finding, refuse, require
 from flexstage.base.quantity import DISPLACEMENT, NOT_NEGATIVE, PIEZO_GAIN, POSITIVE, RATIO, TIME, VOLTAGE
+from flexstage.base.store import write
 from flexstage.mechanism.grammar import node_of
 from flexstage.mechanism.store.decode import record_from
 from flexstage.mechanism.store.encode import plain
-from flexstage.mechanism.store.file import parse_toml, read_text, write
+from flexstage.mechanism.store.file import parse_toml, read_text
 from flexstage.mechanism.store.lines import placed
 from flexstage.mechanism.store.toml import text_of
 

@@ -11,9 +11,9 @@ from typing import IO
 
 import numpy as np
 
-from flexstage.base.aside import aside
 from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array
+from flexstage.base.store import atomic_write
 from flexstage.readings.measured.record import Channel, Record, Responses
 from flexstage.readings.measured.table.read import SAYING
 from flexstage.readings.measured.variables import TIMES, plain_name
@@ -37,7 +37,7 @@ def write_table(path: str | os.PathLike[str], what: Record | Responses) -> None:
     """
     channels = what.channels if isinstance(what, Record) else (*what.outputs, *what.inputs)
     require(_unwritable(os.fspath(path), channels))
-    with aside(path) as place, place.open("w", encoding="utf-8", newline="") as stream:
+    with atomic_write(path) as place, place.open("w", encoding="utf-8", newline="") as stream:
         if isinstance(what, Record):
             _write_record(stream, what)
         else:

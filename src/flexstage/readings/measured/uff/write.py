@@ -7,9 +7,9 @@ from typing import BinaryIO
 
 import numpy as np
 
-from flexstage.base.aside import aside
 from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array
+from flexstage.base.store import atomic_write
 from flexstage.readings.measured.record import Channel, Record, Responses, Role
 from flexstage.readings.measured.uff.function import COHERENCE, COMPLEX_DOUBLE, REAL_DOUBLE, RESPONSE, TIME, Axis, Function, counted, head
 
@@ -39,7 +39,7 @@ def write_uff(path: str | os.PathLike[str], what: Record | Responses, *, binary:
     """
     channels = what.channels if isinstance(what, Record) else (*what.outputs, *what.inputs)
     require(_unwritable(os.fspath(path), channels))
-    with aside(path) as place, place.open("wb") as stream:
+    with atomic_write(path) as place, place.open("wb") as stream:
         if isinstance(what, Record):
             _write_record(stream, what, binary=binary)
         else:
