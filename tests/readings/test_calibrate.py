@@ -15,6 +15,8 @@ from flexstage.cases.parallelogram import parallelogram
 from flexstage.mechanism.drawn import calibrated, drawn
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.restrict import isolate
+from flexstage.present.documents.solid import row_body
+from flexstage.present.tables.solid import verification_table
 from flexstage.readings.solid.hinge import HingeSolid
 from flexstage.readings.solid.hinge_cache import HingeForm
 from flexstage.readings.solid.piece import span
@@ -170,3 +172,26 @@ def test_trust(theory: float, calibrated_value: float | None, error: float, trus
     row = Row("stage", "mode 1", "Hz", theory, 100.0, error, calibrated=calibrated_value)
     assert row.trust is trust
     assert replace(row, calibration=("neck",)).trust is Trust.DEPENDENT
+
+
+def test_what_is_not_known_gets_no_verdict() -> None:
+    known = Row("stage", "mode 1", "Hz", 101.0, 100.0, 0.001)
+    without_error = replace(known, error=None, reason="FEA's error was not estimated")
+    without_partner = replace(known, figure="mode 2", theory=None, reason="theory has no mode like it")
+    assert {row.trust for row in (without_error, without_partner)} == {Trust.UNKNOWN}
+    for row in (without_error, without_partner):
+        said = verdict((row,))
+        assert said.startswith("No verdict.")
+        assert row.reason in said
+        assert "trust" not in said
+        body = row_body(row)
+        assert body["trust"] is None
+        assert body["reason"] == row.reason
+        assert body["fea_error"] is row.error
+        assert body["theory"] is row.theory
+        table = verification_table("stage", (row,))
+        assert "0 %" not in table.texts()[1]
+        assert any(row.reason in note for note in table.notes)
+    both = verdict((known, without_partner))
+    assert both.startswith("Lumped theory is up to 1 % off")
+    assert "No verdict on 1 of 2 figures. mode 2: theory has no mode like it." in both

@@ -8,16 +8,18 @@ import numpy as np
 import pytest
 
 import flexstage as fs
+from flexstage.analysis.pairing import RELIABLE, Moving, paired
 from flexstage.base.finding import DesignError
 from flexstage.mechanism.drawn import drawn
 from flexstage.readings.linear.static import displacement
 from flexstage.readings.solid.fineness import Reduction
 from flexstage.studies.complete import platform_modes
-from flexstage.studies.paired import paired
-from flexstage.studies.resolution import Resolution, resolved
+from flexstage.studies.resolution import Resolution, Resolved, resolved
 from flexstage.studies.solid_read import read_solid, solids
 from flexstage.studies.solid_stress import link_stress
 from flexstage.studies.solid_surface import magnification, mode_surfaces, stress_surfaces
+from flexstage.studies.trust import Trust
+from flexstage.studies.verify import stage_rows, verdict
 from tests.readings.small_solids import COARSE, propped
 from tests.readings.solid_studies import small, small_stage, small_unit
 
@@ -57,7 +59,8 @@ def test_the_stage_is_near_the_lumped_one() -> None:
     stage = small_stage()
     theory = fs.statics(fs.lumped(small()))
     assert stage.statics.held.principal[1] / theory.held.principal[1] == pytest.approx(1.0, abs=0.08)
-    pairs = paired(stage.modes, platform_modes(small(), fs.lumped(small())), stage.read.model)
+    model = fs.lumped(small())
+    pairs = paired(Moving(stage.modes, stage.read.model), Moving(platform_modes(small(), model), model))
     for index in stage.modes.platform[:2]:
         assert stage.modes.frequencies[index] == pytest.approx(pairs[index].frequency, rel=0.08)
         assert pairs[index].assurance > 0.99
@@ -132,3 +135,25 @@ def test_given_parts_are_drawn_as_what_they_stand_for() -> None:
     lost = replace(stage, parts={**stage.parts, "leaf": fs.Given(unit, free=(), stands_for="gone")})
     with pytest.raises(DesignError, match='no part "gone"'):
         drawn(lost)
+
+
+def test_errors_that_were_not_estimated_are_unknown() -> None:
+    """Of a solid result without errors every row of the stage is without a verdict, not right to 0 %."""
+    rows = tuple(stage_rows(small(), small(), Resolved(small_stage(), {}, 2)))
+    assert len(rows) > 10
+    assert {row.trust for row in rows} == {Trust.UNKNOWN}
+    assert all(row.error is None and "error was not estimated" in row.reason for row in rows)
+    assert verdict(rows).startswith("No verdict.")
+
+
+def test_a_mode_without_a_partner_has_no_theory() -> None:
+    """Theory with a platform five times as heavy along one axis has none of some modes."""
+    other = replace(small(), bodies={"platform": replace(small().bodies["platform"], mass=0.9, centre=(0.03, 0.02, 0.0))})
+    errors = dict.fromkeys(small_stage().figures, 0.001)
+    rows = [row for row in stage_rows(other, other, Resolved(small_stage(), errors, 2)) if row.assurance is not None]
+    apart = [row for row in rows if row.assurance is not None and row.assurance < RELIABLE]
+    assert apart
+    for row in apart:
+        assert row.theory is None
+        assert row.trust is Trust.UNKNOWN
+        assert "is needed" in row.reason

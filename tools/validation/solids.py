@@ -8,12 +8,12 @@ from dataclasses import replace
 import numpy as np
 
 import flexstage as fs
+from flexstage.analysis.pairing import Moving, Pair, paired
 from flexstage.cases.registry import case
 from flexstage.mechanism.restrict import isolate
 from flexstage.readings.solid.fineness import Fineness, Reduction
 from flexstage.studies.calibrate import with_matrices
 from flexstage.studies.complete import platform_modes
-from flexstage.studies.paired import Pair, paired
 from flexstage.studies.verify import units_matched
 from tests.paper.test_lost_motion import COMMANDS, FEA, THEORY
 from tools.validation.row import Row, Scale, Section, Tolerance, relative, table
@@ -94,7 +94,8 @@ def _stage(stage: fs.Mechanism) -> Section:
     tensor = fs.statics(model).held.principal
     fea = platform_modes(stage, model)
     better = with_matrices(stage, fs.solid_hinges(stage))
-    theory, calibrated = (paired(fea, platform_modes(stage, fs.lumped(each)), model) for each in (stage, better))
+    models = [fs.lumped(each) for each in (stage, better)]
+    theory, calibrated = (paired(Moving(fea, model), Moving(platform_modes(stage, each), each)) for each in models)
     rows = (
         Row(
             "in-plane stiffness, softest over stiffest",

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from flexstage.analysis.modes import Modes, clusters
+from flexstage.analysis.pairing import RELIABLE, Moving, Pair, paired
 from flexstage.base.finding import Finding, nearest, require
 from flexstage.base.number import Array, first_design
 from flexstage.mechanism.mechanism import Mechanism
@@ -16,7 +17,6 @@ from flexstage.readings.measured.identified import Identified
 from flexstage.studies.complete import platform_modes, read
 from flexstage.studies.fea_modes import FeaModes
 from flexstage.studies.measured_shapes import si_shapes
-from flexstage.studies.paired import Pair, paired
 from flexstage.studies.reading import Reading
 
 _REPEATED = 0.01
@@ -43,7 +43,8 @@ class ComparedMode:
     """One platform mode by theory, by FEA and in the experiment, frequencies in Hz.
 
     `number` counts the platform's modes from 1. `assurance` is the modal assurance of theory and experiment at the sensors, of repeated
-    modes the share of the measured shape within theory's subspace; `fea_assurance` that of theory and FEA by the platform's motion.
+    modes the share of the measured shape within theory's subspace; `fea_assurance` that of theory and FEA by all motions both give:
+    below 0.8 `fea` is absent.
     """
 
     number: int
@@ -278,17 +279,19 @@ def _further(
 
 
 def _with_fea(rows: tuple[ComparedMode, ...], theory: Modes, fea: FeaModes, model: LinearModel) -> tuple[ComparedMode, ...]:
-    pairs = paired(theory, fea.modes, model)
+    pairs = paired(Moving(theory, model), Moving(fea.modes, fea.model))
     return tuple(
-        replace(row, fea=pair.frequency, fea_error=_error(fea, pair), fea_assurance=pair.assurance)
-        if (pair := pairs.get(theory.platform[row.number - 1])) is not None
-        else row
+        row
+        if (pair := pairs.get(theory.platform[row.number - 1])) is None
+        else replace(row, fea=pair.frequency, fea_error=_error(fea, pair), fea_assurance=pair.assurance)
+        if pair.reliable
+        else replace(row, fea_assurance=pair.assurance)
         for row in rows
     )
 
 
 def _error(fea: FeaModes, pair: Pair) -> float | None:
-    return fea.errors[fea.modes.platform.index(pair.index)] if fea.errors else None
+    return fea.errors[fea.modes.platform.index(pair.index)] if fea.errors and pair.index in fea.modes.platform else None
 
 
 def _repeated(group: list[int], pairs: dict[int, int], own: Array, seen: Array) -> RepeatedModes:
@@ -312,6 +315,12 @@ def _cautions(rows: tuple[ComparedMode, ...], repeated: tuple[RepeatedModes, ...
     doubtful = [row for row in rows if row.assurance is not None and row.assurance < _TRUSTED]
     found += [
         f"mode {row.number} ({row.name}): modal assurance {row.assurance:.2f}: the pairing is not to be relied on." for row in doubtful
+    ]
+    found += [
+        f"mode {row.number} ({row.name}): FEA has no mode like it: the best shares {row.fea_assurance:.2f} of its motion, "
+        f"{RELIABLE} is needed."
+        for row in rows
+        if row.fea is None and row.fea_assurance is not None
     ]
     for group in repeated:
         names = " and ".join(str(number) for number in group.numbers)

@@ -28,13 +28,13 @@ _AT_ORDER_TWO = 0.25
 class FeaModes:
     """Modes of a stage as a solid, its reduced model, and the relative errors estimated of its platform's frequencies, in their order.
 
-    `errors` is empty where nothing coarser was at hand to estimate them from.
+    `errors` is empty where nothing coarser was at hand to estimate them from, and `None` for a mode that the coarser result has not.
     """
 
     modes: Modes
     model: LinearModel
     order: int
-    errors: tuple[float, ...] = ()
+    errors: tuple[float | None, ...] = ()
 
 
 def fea_modes(mechanism: Mechanism, asked: Resolution = DEFAULT, reduce: Solids = STANDARD_SOLIDS) -> FeaModes:
@@ -45,7 +45,7 @@ def fea_modes(mechanism: Mechanism, asked: Resolution = DEFAULT, reduce: Solids 
         return FeaModes(platform_modes(mechanism, model), model, way.fineness.order)
 
     found = resolved(work, _figures, asked)
-    errors = tuple(found.errors.get(name, 0.0) for name in _figures(found.result))
+    errors = tuple(found.errors.get(name) for name in _figures(found.result))
     return FeaModes(found.result.modes, found.result.model, found.order, errors)
 
 
@@ -86,7 +86,7 @@ def _figures(found: FeaModes) -> Mapping[str, float]:
     return {f"platform mode {number + 1}": float(value) for number, value in enumerate(found.modes.platform_frequencies)}
 
 
-def _errors(before: FeaModes, after: FeaModes) -> tuple[float, ...]:
+def _errors(before: FeaModes, after: FeaModes) -> tuple[float | None, ...]:
     share = _AT_ORDER_TWO if after.order == 2 else 1.0
     found = changes(_figures(before), _figures(after))
-    return tuple(share * found.get(name, 0.0) for name in _figures(after))
+    return tuple(share * found[name] if name in found else None for name in _figures(after))

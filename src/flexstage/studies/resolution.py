@@ -6,6 +6,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Generic, TypeVar
 
+import numpy as np
+
 from flexstage.base.finding import DesignError
 from flexstage.readings.solid.fineness import Fineness, Reduction
 from flexstage.studies.solid_read import coarser
@@ -29,7 +31,7 @@ DEFAULT = Resolution()
 
 @dataclass(frozen=True, eq=False)
 class Resolved(Generic[_Result]):
-    """A result with the relative error estimated of each of its figures. An estimate, no bound.
+    """A result with the relative error estimated of each of its figures. An estimate, no bound; a figure that is not there is unknown.
 
     It is the change from the order before, at order two a quarter of it.
     `stopped` says why the order was not raised further although the accuracy asked was not reached.
@@ -42,8 +44,8 @@ class Resolved(Generic[_Result]):
 
     @property
     def error(self) -> float:
-        """The largest of the errors."""
-        return max(self.errors.values(), default=0.0)
+        """The largest of the errors; infinite where none is known."""
+        return max(self.errors.values(), default=float("inf"))
 
 
 def resolved(
@@ -85,9 +87,10 @@ def at_order(order: int) -> Reduction:
 
 
 def changes(before: Mapping[str, float], after: Mapping[str, float]) -> dict[str, float]:
-    """Relative changes of the figures that both have.
+    """Relative changes of the figures that both have, where they are numbers.
 
-    >>> changes({"a": 1.0, "b": 1.0}, {"a": 2.0})
+    >>> changes({"a": 1.0, "b": 1.0, "c": float("nan")}, {"a": 2.0, "c": 1.0})
     {'a': 0.5}
     """
-    return {name: abs(value - before[name]) / (abs(value) or 1.0) for name, value in after.items() if name in before}
+    found = {name: abs(value - before[name]) / (abs(value) or 1.0) for name, value in after.items() if name in before}
+    return {name: change for name, change in found.items() if np.isfinite(change)}

@@ -14,3 +14,4 @@ class Trust(Enum):
     THEORY = "theory will do"
     CALIBRATED = "calibrated theory"
     FEA = "FEA"
+    UNKNOWN = "no verdict"

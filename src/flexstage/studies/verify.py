@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
 
 import numpy as np
 
+from flexstage.analysis.pairing import RELIABLE, Moving, Pair, paired
 from flexstage.analysis.statics import statics
 from flexstage.base.finding import DesignError
 from flexstage.beams.compliance import compliance
@@ -20,7 +21,6 @@ from flexstage.readings.mapped import mapped
 from flexstage.spatial.frame import COMPONENTS
 from flexstage.studies.calibrate import with_matrices
 from flexstage.studies.complete import platform_modes
-from flexstage.studies.paired import paired
 from flexstage.studies.resolution import DEFAULT, Resolution, Resolved, resolved
 from flexstage.studies.solid_hinge import STANDARD_HINGES, Hinges, SolidHinge, solid_hinges
 from flexstage.studies.solid_read import STANDARD_SOLIDS, Solids
@@ -38,24 +38,26 @@ class Row:
 
     `theory` is the lumped reading's (for hinges beam theory's), `mapped` the paper's axial springs where they give it, `calibrated` the
     lumped reading with the hinges' FEA 6x6; `error` the relative error estimated of FEA. `calibration` names the parts of FEA origin that
-    the theory contains. `assurance` is the modal assurance of paired modes.
+    the theory contains. `assurance` is the modal assurance of paired modes. Absent is unknown, and `reason` says why: without `theory` and
+    `error` there is no verdict.
     """
 
     group: str
     figure: str
     unit: str
-    theory: float
+    theory: float | None
     fea: float
-    error: float
+    error: float | None
     mapped: float | None = None
     calibrated: float | None = None
     calibration: tuple[str, ...] = ()
     assurance: float | None = None
+    reason: str = ""
 
     @property
-    def difference(self) -> float:
+    def difference(self) -> float | None:
         """Theory over FEA less one."""
-        return _relative(self.theory, self.fea)
+        return None if self.theory is None else _relative(self.theory, self.fea)
 
     @property
     def calibrated_difference(self) -> float | None:
@@ -65,9 +67,11 @@ class Row:
     @property
     def trust(self) -> Trust:
         """Which of them to trust."""
-        away = abs(self.difference)
         if self.calibration:
             return Trust.DEPENDENT
+        if self.difference is None or self.error is None:
+            return Trust.UNKNOWN
+        away = abs(self.difference)
         if self.error > max(0.5 * away, _CLOSE):
             return Trust.UNCLEAR
         if away <= self.error:
@@ -163,7 +167,8 @@ def hinge_rows(mechanism: Mechanism, found: Mapping[str, SolidHinge]) -> Iterato
             unit = "m/N" if index < 3 else "rad/(N m)"
             value = float(np.real(theory[index]))
             fea = float(hinge.found.compliance[index, index])
-            yield Row(f"hinge {name}", f"compliance {axis}", unit, value, fea, float(hinge.errors[index]), calibration=touched)
+            error = _known(float(hinge.errors[index]))
+            yield Row(f"hinge {name}", f"compliance {axis}", unit, value, fea, error, calibration=touched, reason=_unestimated(error))
 
 
 def units_matched(mechanism: Mechanism, compute: Hinges = STANDARD_HINGES) -> dict[str, UnitResult]:
@@ -189,21 +194,24 @@ def unit_rows(mechanism: Mechanism, better: Mapping[str, UnitResult], found: Res
         simple = _mapped_unit(theory[name])
         for figure, value in unit.figures.items():
             dimension = "1" if figure == "gain" else "N/m"
+            error = _known(found.errors.get(f"{name}: {figure}"))
             yield Row(
                 group=f"unit {name}",
                 figure=figure,
                 unit=dimension,
                 theory=first[figure],
                 fea=value,
-                error=found.errors.get(f"{name}: {figure}", 0.0),
+                error=error,
                 mapped=simple.get(figure),
                 calibrated=second[figure],
                 calibration=touched,
+                reason=_unestimated(error),
             )
         if unit.loss > 1e-4:
-            error = found.errors.get(f"{name}: gain", 0.0) * (1.0 - unit.loss) / unit.loss
+            gain = _known(found.errors.get(f"{name}: gain"))
+            error = None if gain is None else gain * (1.0 - unit.loss) / unit.loss
             values = (theory[name].loss, unit.loss, error)
-            yield Row(f"unit {name}", "loss", "1", *values, calibrated=better[name].loss, calibration=touched)
+            yield Row(f"unit {name}", "loss", "1", *values, None, better[name].loss, touched, reason=_unestimated(error))
 
 
 def _mapped_unit(unit: UnitResult) -> dict[str, float]:
@@ -230,20 +238,45 @@ def stage_rows(mechanism: Mechanism, matched: Mechanism, found: Resolved[SolidSt
     for figure, value in stiffness_figures(fea.statics).items():
         unit = "N m/rad" if figure.endswith(("rx", "ry", "rz")) else "N/m"
         extra = {name: table[figure] for name, table in tables.items() if np.isfinite(table[figure])}
-        yield _stage_row((figure, unit, value), extra, found.errors.get(figure, 0.0), touched)
-    pairs = {name: paired(fea.modes, platform_modes(mechanism, model), fea.read.model) for name, model in known.items()}
+        error = _known(found.errors.get(figure))
+        values = (extra.get("theory"), value, error, extra.get("mapped"), extra.get("calibrated"))
+        reason = _unestimated(error) if "theory" in extra else "theory gives no finite value"
+        yield Row("stage", figure, unit, *values, touched, reason=reason)
+    own = Moving(fea.modes, fea.read.model)
+    pairs = {name: paired(own, Moving(platform_modes(mechanism, model), model)) for name, model in known.items()}
     for number, index in enumerate(fea.modes.platform):
-        extra = {name: pair[index].frequency for name, pair in pairs.items() if index in pair}
-        if "theory" in extra:
-            figure = f"platform mode {number + 1}"
-            label = f"{figure} ({fea.modes.names[index]})"
-            row = _stage_row((label, "Hz", float(fea.modes.frequencies[index])), extra, found.errors.get(figure, 0.0), touched)
-            yield replace(row, assurance=pairs["theory"][index].assurance)
+        figure = f"platform mode {number + 1}"
+        best = {name: pair[index] for name, pair in pairs.items() if index in pair}
+        alike = {name: pair.frequency for name, pair in best.items() if pair.reliable}
+        error = _known(found.errors.get(figure))
+        yield Row(
+            group="stage",
+            figure=f"{figure} ({fea.modes.names[index]})",
+            unit="Hz",
+            theory=alike.get("theory"),
+            fea=float(fea.modes.frequencies[index]),
+            error=error,
+            mapped=alike.get("mapped"),
+            calibrated=alike.get("calibrated"),
+            calibration=touched,
+            assurance=best["theory"].assurance if "theory" in best else None,
+            reason=_unestimated(error) if "theory" in alike else _unpaired(best.get("theory")),
+        )
 
 
-def _stage_row(said: tuple[str, str, float], values: Mapping[str, float], error: float, touched: tuple[str, ...]) -> Row:
-    figure, unit, fea = said
-    return Row("stage", figure, unit, values["theory"], fea, error, values.get("mapped"), values.get("calibrated"), touched)
+def _unpaired(best: Pair | None) -> str:
+    if best is None:
+        return "theory has fewer modes"
+    return f"theory has no mode like it: that at {best.frequency:.4g} Hz shares {best.assurance:.2f} of its motion, {RELIABLE} is needed"
+
+
+def _known(error: float | None) -> float | None:
+    """An error that is a number."""
+    return error if error is not None and np.isfinite(error) else None
+
+
+def _unestimated(error: float | None) -> str:
+    return "" if error is not None else "FEA's error was not estimated: nothing coarser was at hand that gives this figure"
 
 
 def _mapped(mechanism: Mechanism) -> LinearModel | None:
@@ -259,9 +292,26 @@ def verdict(rows: tuple[Row, ...]) -> str:
     >>> verdict((Row("stage", "mode 1", "Hz", 105.0, 100.0, 0.001, calibrated=100.5),))
     'Lumped theory is up to 5 % off (mode 1); with calibrated hinges 0.5 %: calibrate, then trust the lumped reading.'
     """
-    worst = max(rows, key=lambda row: abs(row.difference))
-    least = max(row.error for row in rows)
-    off = f"up to {_percent(abs(worst.difference))} off ({worst.figure})"
+    open_rows = [row for row in rows if row.difference is None or (row.error is None and not row.calibration)]
+    judged = [row for row in rows if row not in open_rows]
+    if not judged:
+        return f"No verdict. {_reasons(open_rows)}"
+    said = _judged(tuple(judged))
+    return f"{said} No verdict on {len(open_rows)} of {len(rows)} figures. {_reasons(open_rows)}" if open_rows else said
+
+
+def _reasons(rows: Iterable[Row]) -> str:
+    reasons: dict[str, list[str]] = {}
+    for row in rows:
+        reasons.setdefault(row.reason or "unknown", []).append(row.figure)
+    return " ".join(f"{', '.join(figures)}: {reason}." for reason, figures in reasons.items())
+
+
+def _judged(rows: tuple[Row, ...]) -> str:
+    """What rows say whose difference is known, and, unless they are not independent, whose error is."""
+    worst = max(rows, key=_away)
+    least = max((row.error for row in rows if row.error is not None), default=0.0)
+    off = f"up to {_percent(_away(worst))} off ({worst.figure})"
     if any(row.calibration for row in rows):
         names = ", ".join(dict.fromkeys(name for row in rows for name in row.calibration))
         return f"Not independent: the theory contains the FEA 6x6 of {names}. It is {off}: what is left is not the hinges'."
@@ -277,6 +327,10 @@ def verdict(rows: tuple[Row, ...]) -> str:
     if all(row.trust is not Trust.FEA for row in rows):
         return f"{name} is {off}; {after}: calibrate, then trust the lumped reading."
     return f"{name} is {off}; {after}: the rest is the elasticity of bodies and joints, which only the solid reading knows. Trust FEA."
+
+
+def _away(row: Row) -> float:
+    return abs(row.difference or 0.0)
 
 
 def _percent(share: float) -> str:

@@ -313,7 +313,8 @@ _STUDIES = {What.HINGE: _hinge_study, What.UNIT: _unit_study, What.STAGE: _stage
 
 
 def _tell_error(found: Resolved[Any], asked: Resolution) -> None:
-    text = f"error estimated: {100.0 * found.error:.2g} %, at order {found.order}"
+    size = f"{100.0 * found.error:.2g} %" if found.errors else "unknown"
+    text = f"error estimated: {size}, at order {found.order}"
     if found.error <= asked.accuracy:
         tell(text)
         return

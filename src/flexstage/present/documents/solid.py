@@ -9,6 +9,7 @@ import numpy as np
 
 from flexstage.present.documents.envelope import Document
 from flexstage.present.documents.results import modes_body, output_body, stiffness_body
+from flexstage.studies.trust import Trust
 
 if TYPE_CHECKING:
     from flexstage.studies.calibrate import Calibration
@@ -135,7 +136,8 @@ def row_body(row: Row) -> Document:
         "independent": not row.calibration,
         "calibration": list(row.calibration),
         "modal_assurance": row.assurance,
-        "trust": row.trust.value,
+        "trust": None if row.trust is Trust.UNKNOWN else row.trust.value,
+        "reason": row.reason or None,
     }
 
 

@@ -70,11 +70,12 @@ def _megapascals(surfaces: tuple[Surface, ...]) -> tuple[Surface, ...]:
 def stage_solid_section(found: Resolved[SolidStage]) -> Section | None:
     """Stiffness, modes and stress of the whole stage."""
     stage = found.result
-    worst = max(found.errors, key=lambda name: found.errors[name], default="")
+    worst = max(found.errors, key=lambda name: found.errors[name], default=None)
+    error = "not known, nothing coarser was at hand" if worst is None else f"{100.0 * found.error:.2g} % ({worst})"
     text = (
         f"Finite elements of order {found.order}: {stage.read.elements} elements and {stage.read.freedoms} unknowns in the distinct "
         f"components, {len(stage.read.model.coordinates)} coordinates after reduction. Largest error estimated, from a coarser "
-        f"resolution: {100.0 * found.error:.2g} % ({worst})."
+        f"resolution: {error}."
     )
     polar = to_svg(directional_figure(stage.statics), "solid-polar", "Stiffness by direction in the plane")
     table = None if stage.stress is None else stress_table("Highest stress", stage.stress)

@@ -32,6 +32,7 @@ _MARKS = {
     Trust.CALIBRATED: Mark.WARN,
     Trust.UNCLEAR: Mark.WARN,
     Trust.FEA: Mark.FAIL,
+    Trust.UNKNOWN: Mark.WARN,
 }
 
 
@@ -51,7 +52,7 @@ def hinge_table(found: Mapping[str, SolidHinge]) -> Table:
                 number(form.factor * value, 5) if known else NO_VALUE
                 for form, value, known in zip(forms, np.diag(hinge.found.compliance), hinge.separable, strict=True)
             ),
-            percent(hinge.found.error, 2),
+            _error(hinge.found.error),
         )
         for name, hinge in found.items()
     ]
@@ -90,7 +91,7 @@ def solid_unit_table(found: Resolved[dict[str, SolidUnit]]) -> Table:
             f"{number(unit.gain)} of {number(unit.ideal_gain)}",
             percent(unit.loss if abs(unit.loss) > 1e-6 else 0.0),
             *_weakest(unit.stress),
-            percent(max((error for figure, error in found.errors.items() if figure.startswith(f"{name}: ")), default=0.0), 2),
+            _error(max((error for figure, error in found.errors.items() if figure.startswith(f"{name}: ")), default=None)),
         )
         for name, unit in found.result.items()
     ]
@@ -173,7 +174,7 @@ def verification_table(name: str, rows: tuple[Row, ...]) -> Table:
         "theory": _values(rows, [row.theory for row in rows]),
         "calibrated": _values(rows, [row.calibrated for row in rows]),
         "FEA": _values(rows, [row.fea for row in rows]),
-        "FEA's error": [percent(row.error, 2) for row in rows],
+        "FEA's error": [_error(row.error) for row in rows],
         "theory off": _differences([row.difference for row in rows]),
         "calibrated off": _differences([row.calibrated_difference for row in rows]),
     }
@@ -185,7 +186,12 @@ def verification_table(name: str, rows: tuple[Row, ...]) -> Table:
     heads = ["figure", *(Column(head) for head in known), "trust"]
     shared = [row.assurance for row in rows if row.assurance is not None]
     notes = [f"Modes are paired by shape: modal assurance {np.floor(1e3 * min(shared)) / 1e3:.3f} and more."] if shared else []
+    notes += [f"{row.figure}: {row.reason}." for row in rows if row.reason]
     return build(f"{name[:1].upper()}{name[1:]}: theory and finite elements", heads, lines, notes=notes)
+
+
+def _error(error: float | None) -> str:
+    return NO_VALUE if error is None or not np.isfinite(error) else percent(error, 2)
 
 
 def _values(rows: tuple[Row, ...], values: list[float | None]) -> list[str] | None:
@@ -231,7 +237,7 @@ def calibration_table(found: Calibration) -> Table:
             Cell(name, Mark.STRONG),
             ", ".join(found.hinges[name].links),
             *(_signed(float(value)) for value in values),
-            percent(found.hinges[name].found.error, 2),
+            _error(found.hinges[name].found.error),
         )
         for name, values in found.softer.items()
     ]
