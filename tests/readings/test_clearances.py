@@ -8,8 +8,8 @@ from collections.abc import Iterator
 import pytest
 
 from flexstage.cases.double_triangle import SM_REF_B, double_triangle
+from flexstage.mechanism.near import near_pairs
 from flexstage.readings.solid.draw import drawn, moved
-from flexstage.readings.solid.near import near_pairs
 from flexstage.readings.solid.piece import Piece
 from flexstage.readings.solid.stage_pieces import Stage, stage_pieces
 from tests.hygiene.source import ROOT

@@ -12,6 +12,7 @@ from flexstage.analysis.requirements import requirements
 from flexstage.analysis.workspace.room import room
 from flexstage.base.finding import DesignError, Finding
 from flexstage.beams.validity import validity
+from flexstage.mechanism.contact import contact_findings
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.parts.part import Restricted
@@ -65,7 +66,7 @@ def _shared_stacks(mechanism: Mechanism) -> dict[str, Piezo]:
 
 
 def cautions(mechanism: Mechanism) -> tuple[Finding, ...]:
-    """Parts outside the range that beam theory was compared with, and outlines beyond the envelope or in the clear opening.
+    """Parts outside the range that beam theory was compared with; outlines that contradict one another, leave the envelope or enter the opening.
 
     A part that departs from the shared one is told by its link.
 
@@ -73,7 +74,7 @@ def cautions(mechanism: Mechanism) -> tuple[Finding, ...]:
     >>> cautions(double_triangle())
     ()
     """
-    return (*part_cautions(mechanism), *_room(mechanism))
+    return (*part_cautions(mechanism), *contact_findings(mechanism), *_room(mechanism))
 
 
 def reading_findings(mechanism: Mechanism) -> tuple[Finding, ...]:

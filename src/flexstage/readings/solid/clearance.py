@@ -8,8 +8,9 @@ import numpy as np
 
 from flexstage.base.digest import digest
 from flexstage.mechanism.mechanism import GROUND
+from flexstage.mechanism.near import near_pairs
 from flexstage.readings.solid.draw import MILLIMETRES, drawn, moved
-from flexstage.readings.solid.near import Answer, Question, distance_text, frame_key, near_pairs, seen_from
+from flexstage.readings.solid.near import Answer, Question, distance_text, frame_key, seen_from
 from flexstage.readings.solid.piece import Piece
 from flexstage.readings.solid.stage_pieces import Stage
 
@@ -52,14 +53,13 @@ def _belong(stage: Stage, first: Piece, second: Piece) -> bool:
 
 def _answers(first: Piece, second: Piece, clearance: float) -> Iterator[Answer]:
     here, there = drawn(first.form), moved(drawn(second.form), seen_from(second.frame, first.frame))
-    away = float(here.Distance(there))
-    if away > (clearance + TOUCHING) * MILLIMETRES:
-        return
-    common = here * there
+    away, common = float(here.Distance(there)), here * there  # a solid within another one is at a distance from its faces
     if common.mass > _NO_VOLUME:
         at = first.frame.point(np.array([common.center.x, common.center.y, common.center.z]) / MILLIMETRES) * MILLIMETRES
         place = ", ".join(f"{round(float(value), 3) + 0.0:g}" for value in at)
         yield f"it overlaps {second.name} by {common.mass:.3g} mm3 around ({place}) mm", _advice(first, second)
+    elif away > (clearance + TOUCHING) * MILLIMETRES:
+        return
     elif away <= TOUCHING * MILLIMETRES:
         yield f"it touches {second.name}, which no joint connects it to", _advice(first, second)
     else:

@@ -13,11 +13,12 @@ from netgen import occ
 from flexstage.base.digest import digest
 from flexstage.base.finding import DesignError, Finding
 from flexstage.mechanism.mechanism import GROUND, Mechanism
+from flexstage.mechanism.near import near_pairs
 from flexstage.readings.solid.clearance import clearance_questions
 from flexstage.readings.solid.component import components
 from flexstage.readings.solid.draw import MILLIMETRES, drawn, moved
 from flexstage.readings.solid.imported import import_findings
-from flexstage.readings.solid.near import Answer, Question, answered, distance_text, frame_key, near_pairs, seen_from
+from flexstage.readings.solid.near import Answer, Question, answered, distance_text, frame_key, seen_from
 from flexstage.readings.solid.piece import Piece, span, thinnest
 from flexstage.readings.solid.sliver import SLIVER, sliver_findings
 from flexstage.readings.solid.stage_pieces import Stage, stage_pieces
@@ -125,9 +126,10 @@ def _meeting(shape: occ.TopoDS_Shape, half: float, side: float, solid: occ.TopoD
     faces = [face for face in shape.faces if _is_end(face, side * half)]
     area = sum(face.mass for face in faces)
     gap = min(float(face.Distance(solid)) for face in faces)
-    if gap > _GAP:
-        return _Meeting(gap, 0.0, 0.0)
     outward, inward = (sum((face.Extrude(occ.Vec(sign * side * _DEPTH, 0, 0)) * solid).mass for face in faces) for sign in (1.0, -1.0))
+    if gap > _GAP and inward <= _SHARE * area * _DEPTH:  # a face within the solid is at a distance from its faces
+        return _Meeting(gap, 0.0, 0.0)
+    gap = min(gap, _GAP)
     depth = 0.0
     if inward > _SHARE * area * _DEPTH:
         low, high = (shape * solid).bounding_box

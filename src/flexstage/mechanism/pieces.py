@@ -1,0 +1,176 @@
+"""Forms as convex pieces: bodies' solids and links' parts cut into polytopes, each inside the material.
+
+Flat faces are exact. Arcs are followed within `SAGITTA`, from inside, so that pieces meet only where the forms do.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from itertools import pairwise, product
+from typing import TypeAlias
+
+import numpy as np
+
+from flexstage.base.number import Array, Number
+from flexstage.parts.body import Block, Cylinder, Imported
+from flexstage.parts.leaf import Leaf
+from flexstage.parts.neck import Neck
+from flexstage.parts.notch import Notch
+from flexstage.parts.part import Part, Restricted
+from flexstage.parts.piezo import Piezo
+from flexstage.parts.profile import Elliptic, Filleted, Profile, Straight, length
+from flexstage.parts.rod import Rod
+from flexstage.spatial.convex import Convex, cuboid, frustum
+
+SAGITTA = 2e-5
+"""How far a piece stays inside a round face at most [m]."""
+_MOST = 96
+
+Form: TypeAlias = Notch | Neck | Leaf | Rod | Piezo | Block | Cylinder | Imported
+
+
+def form_of(part: Part) -> Form | None:
+    """The form of a link's part; a given matrix and an ideal joint have none.
+
+    >>> form_of(Leaf("steel", 0.02, 0.001, 0.01)).length
+    0.02
+    """
+    inner = part.part if isinstance(part, Restricted) else part
+    return inner if isinstance(inner, (Notch, Neck, Leaf, Rod, Piezo)) else None
+
+
+def single(value: Number) -> float:
+    """A number of the first design.
+
+    >>> single(np.array([1.0, 2.0]))
+    1.0
+    """
+    return float(np.real(np.ravel(value)[0]))
+
+
+def is_flat(form: Form) -> bool:
+    """Whether its pieces are the form itself, without arcs.
+
+    >>> is_flat(Block("steel", (0.1, 0.1, 0.1)))
+    True
+    """
+    return isinstance(form, (Block, Leaf)) or (
+        isinstance(form, (Notch, Neck)) and isinstance(form.profile, Straight) and (isinstance(form, Notch) or form.width is not None)
+    )
+
+
+def pieces(form: Form, trim: float = 0.0) -> tuple[Convex, ...]:
+    """The convex pieces of a form in its own frame; a link's `trim` [m] is cut off at both of its ends. An imported shape has none.
+
+    >>> len(pieces(Block("steel", (0.1, 0.1, 0.1)))), len(pieces(Block("steel", (0.1, 0.1, 0.1), hole=(0.05, 0.05))))
+    (1, 4)
+    """
+    if isinstance(form, Imported):
+        return ()
+    if isinstance(form, Block):
+        return tuple(_frame(form))
+    if isinstance(form, Cylinder):
+        return tuple(_tube(single(form.length), single(form.diameter), 0.0 if form.bore is None else single(form.bore)))
+    if isinstance(form, (Rod, Piezo)):
+        return tuple(_tube(single(form.length) - 2.0 * trim, single(form.diameter), 0.0))
+    if isinstance(form, Leaf):
+        half = np.array([0.5 * single(form.length) - trim, 0.5 * single(form.thickness), 0.5 * single(form.width)])
+        return (cuboid(tuple(-half), tuple(half)),)
+    return tuple(_hinge(form, trim))
+
+
+def _frame(form: Block) -> Iterator[Convex]:
+    """A block, or the four walls around its hole."""
+    x, y, z = (0.5 * single(value) for value in form.size)
+    if form.hole is None:
+        yield cuboid((-x, -y, -z), (x, y, z))
+        return
+    inner, clear = (0.5 * single(value) for value in form.hole)
+    for side in (-1.0, 1.0):
+        low, high = sorted((side * inner, side * x))
+        yield cuboid((low, -y, -z), (high, y, z))
+        low, high = sorted((side * clear, side * y))
+        yield cuboid((-inner, low, -z), (inner, high, z))
+
+
+def _corners(radius: float) -> int:
+    """Sides of the polygon that stays within `SAGITTA` of a circle."""
+    half = np.arccos(max(0.0, 1.0 - SAGITTA / radius))
+    return int(np.clip(4 * np.ceil(np.pi / half / 4.0), 8, _MOST))
+
+
+def _circle(radius: float, count: int) -> Array:
+    angles = 2.0 * np.pi * np.arange(count) / count
+    return radius * np.column_stack([np.cos(angles), np.sin(angles)])
+
+
+def _tube(size: float, diameter: float, bore: float) -> Iterator[Convex]:
+    half, count = 0.5 * size, _corners(0.5 * diameter)
+    rim = _circle(0.5 * diameter, count)
+    if bore == 0.0:
+        yield frustum((-half, half), (rim, rim))
+        return
+    grown = 0.5 * bore / np.cos(np.pi / count)
+    inner = _circle(min(grown, 0.5 * (grown + 0.5 * diameter)), count)
+    for here, there in pairwise([*range(count), 0]):
+        sector = np.array([rim[here], rim[there], inner[there], inner[here]])
+        yield frustum((-half, half), (sector, sector))
+
+
+def _hinge(form: Notch | Neck, trim: float) -> Iterator[Convex]:
+    """Slabs between stations along the hinge; the height between two is the tangent's of its cuts, or the lower end's."""
+    thickness = 0.5 * single(form.thickness)
+    section = _section(form)
+    for (here, there), (low, high) in _slabs(form.profile, trim):
+        yield frustum((here, there), (section(thickness, low), section(thickness, high)))
+
+
+def _section(form: Notch | Neck) -> Callable[[float, float], Array]:
+    """The cross-section by half thickness and rise of the cuts, as a polygon (y, z)."""
+    if isinstance(form, Neck) and form.width is None:
+        count = _corners(0.5 * single(form.thickness) + rise_at(form.profile, 1.0))
+        return lambda half, up: _circle(half + up, count)
+    width = 0.5 * single(form.width)  # type: ignore[arg-type]
+    grows = isinstance(form, Neck)
+
+    def rectangle(half: float, up: float) -> Array:
+        y, z = half + up, width + (up if grows else 0.0)
+        return np.array([[y, z], [-y, z], [-y, -z], [y, -z]])
+
+    return rectangle
+
+
+def rise_at(profile: Profile, station: float) -> float:
+    """How far the cuts have risen at a share of the curved part, from 0 at the neck to 1 at its end [m].
+
+    >>> rise_at(Circular(0.005), 1.0)
+    0.005
+    """
+    if isinstance(profile, Straight):
+        return 0.0
+    height = single(profile.across if isinstance(profile, Elliptic) else profile.radius)
+    return height * (1.0 - np.sqrt(max(0.0, 1.0 - station * station)))
+
+
+def _slabs(profile: Profile, trim: float) -> Iterator[tuple[tuple[float, float], tuple[float, float]]]:
+    """Stations and heights of the cuts' inner approximation: tangents at the middle of each arc."""
+    half = 0.5 * single(length(profile)) - trim
+    if isinstance(profile, Straight):
+        yield (-half, half), (0.0, 0.0)
+        return
+    along = single(profile.along if isinstance(profile, Elliptic) else profile.radius)
+    across = single(profile.across if isinstance(profile, Elliptic) else profile.radius)
+    straight = 0.5 * single(profile.length) - along if isinstance(profile, Filleted) else 0.0
+    if straight > 0.0:
+        yield (-straight, straight), (0.0, 0.0)
+    step = 2.0 * np.arccos(max(0.0, 1.0 - SAGITTA / max(along, across)))
+    angles = np.linspace(0.0, 0.5 * np.pi, int(np.clip(np.ceil(0.5 * np.pi / step), 4, _MOST // 2)) + 1)
+    for (begin, end), side in product(pairwise(angles), (1.0, -1.0)):
+        here, there = straight + along * np.sin(begin), min(half, straight + along * np.sin(end))
+        if there <= here:
+            continue
+        middle = 0.5 * (begin + end)
+        slope = across * np.sin(middle) / (along * np.cos(middle))
+        at, height = straight + along * np.sin(middle), across * (1.0 - np.cos(middle))
+        low, high = (max(0.0, height + slope * (x - at)) for x in (here, there))
+        yield ((here, there), (low, high)) if side > 0.0 else ((-there, -here), (high, low))
