@@ -69,8 +69,10 @@ class _Thing:
 
 @lru_cache(maxsize=4)
 def contact_findings(mechanism: Mechanism) -> tuple[Finding, ...]:
-    """What the outlines of a stage contradict, nothing where there are none: ends off the faces of their bodies, bodies in pieces, overlaps,
-    gauges that look beside their targets. Imported shapes are named: they are not looked at.
+    """What the outlines of a stage contradict.
+
+    Ends off the faces of their bodies, bodies in pieces, overlaps, gauges that look beside their targets; nothing where there are no
+    outlines. Imported shapes are named: they are not looked at.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> contact_findings(parallelogram())
@@ -229,18 +231,18 @@ def _rim(link: _Thing, side: float) -> Array:
     return np.column_stack([np.full(len(rim), side * link.half), rim])
 
 
-def _inside(thing: _Thing, points: Array) -> Array:
-    """Which points (n, 3) lie in a solid, or within `TOUCHING` of it."""
+def _inside(thing: _Thing, points: Array, slack: float = TOUCHING) -> Array:
+    """Which points (n, 3) lie in a solid, or within `slack` [m] of it."""
     own = (points - thing.frame.position) @ thing.frame.rotation
     size = 0.5 * first_design(np.real(thing.outline.size), 1)
     if isinstance(thing.form, Cylinder):
         radii = np.hypot(own[:, 1], own[:, 2])
         bore = 0.0 if thing.form.bore is None else 0.5 * single(thing.form.bore)
-        return (np.abs(own[:, 0]) <= size[0] + TOUCHING) & (radii <= size[1] + TOUCHING) & (radii >= bore - TOUCHING)
-    within = np.all(np.abs(own) <= size + TOUCHING, axis=1)
+        return (np.abs(own[:, 0]) <= size[0] + slack) & (radii <= size[1] + slack) & (radii >= bore - slack)
+    within = np.all(np.abs(own) <= size + slack, axis=1)
     if isinstance(thing.form, Block) and thing.form.hole is not None:
         hole = 0.5 * np.array([single(value) for value in thing.form.hole])
-        within &= np.any(np.abs(own[:, :2]) >= hole - TOUCHING, axis=1)
+        within &= np.any(np.abs(own[:, :2]) >= hole - slack, axis=1)
     return within
 
 
@@ -248,12 +250,12 @@ def _depth(met: Sequence[_Thing], face: Array, inward: Array, most: float) -> fl
     """How far one must go from points of an end face along the link to leave all outlines [m], by halving."""
     low, high = 0.0, most
     steps = np.linspace(0.0, most, 33)
-    deep = [step for step in steps if any(np.any(_inside(each, face + step * inward)) for each in met)]
+    deep = [step for step in steps if any(np.any(_inside(each, face + step * inward, 0.0)) for each in met)]
     low = max(deep, default=0.0)
     high = min(most, low + steps[1])
     while high - low > 0.1 * TOUCHING:
         middle = 0.5 * (low + high)
-        meets = any(np.any(_inside(each, face + middle * inward)) for each in met)
+        meets = any(np.any(_inside(each, face + middle * inward, 0.0)) for each in met)
         low, high = (middle, high) if meets else (low, middle)
     return low
 
@@ -378,7 +380,7 @@ def _close(first: Sequence[Convex], second: Sequence[Convex]) -> Iterator[tuple[
     for piece in first:
         low, high = piece.box
         near = np.all((low <= highs + TOUCHING) & (high >= lows - TOUCHING), axis=1)
-        yield from ((piece, second[number]) for number in np.flatnonzero(near))
+        yield from ((piece, other) for other, is_near in zip(second, near, strict=True) if is_near)
 
 
 def _advice(first: _Thing, second: _Thing) -> str:

@@ -67,10 +67,10 @@ def _unit(vectors: Array) -> Array:
 
 
 def separation(first: Convex, second: Convex) -> tuple[float, Array, float]:
-    """Over the directions that can separate two polytopes: the widest gap [m] (negative: how deep they meet), its unit direction from the
-    first to the second, and the widest gap in any other direction.
+    """The widest gap between two polytopes over the directions that can part them [m], that direction, the widest gap in any other one.
 
-    Exact for polytopes that meet; a lower bound of the distance of those that do not.
+    The unit direction leads from the first to the second; a negative gap is how deep they meet. Exact for polytopes that meet, a lower
+    bound of the distance of those that do not.
 
     >>> gap, direction, other = separation(cuboid((0, 0, 0), (1, 1, 1)), cuboid((0.9, 0.2, 0.0), (2, 1, 1)))
     >>> round(gap, 9), direction.tolist(), round(other, 9)

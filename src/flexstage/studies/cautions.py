@@ -66,7 +66,7 @@ def _shared_stacks(mechanism: Mechanism) -> dict[str, Piezo]:
 
 
 def cautions(mechanism: Mechanism) -> tuple[Finding, ...]:
-    """Parts outside the range that beam theory was compared with; outlines that contradict one another, leave the envelope or enter the opening.
+    """Parts outside the range beam theory was compared with; outlines that contradict one another or leave the room they have.
 
     A part that departs from the shared one is told by its link.
 
