@@ -12,9 +12,8 @@ import numpy as np
 import pytest
 
 from flexstage.analysis.loop.code.compiled import simulate_compiled
-from flexstage.analysis.loop.code.compiler import FLAGS, WARNINGS, compiler
 from flexstage.analysis.loop.code.controller import controller_code
-from flexstage.analysis.loop.code.program import Program
+from flexstage.analysis.loop.code.program import FLAGS, WARNINGS, Program
 from flexstage.analysis.loop.code.whole import loop_code
 from flexstage.analysis.loop.example import integral_loop
 from flexstage.analysis.loop.hysteresis.bouc_wen import BoucWen, bouc_wen
@@ -26,6 +25,7 @@ from flexstage.analysis.loop.simulation.result import Simulated
 from flexstage.analysis.loop.simulation.run import simulate
 from flexstage.analysis.loop.system import static
 from flexstage.base.finding import DesignError
+from flexstage.base.native import compiler
 from flexstage.present.fmu.unit import fmu, fmu_sources
 from flexstage.present.loop_files import write_controller, write_fmu, write_plant
 from flexstage.readings.linear.model import Channel
@@ -166,7 +166,7 @@ def test_the_same_loop_gives_the_same_library(tmp_path, monkeypatch):
     for folder in ("a", "b"):
         monkeypatch.setenv("FLEXSTAGE_CACHE", str(tmp_path / folder))
         made.append(fmu(controller_code(full_loop(inverse=True))))
-        assert [path.suffix for path in (tmp_path / folder / "loops").iterdir()] == [".so"]
+        assert not (tmp_path / folder).exists()  # what goes to others is never taken from a folder that was written before
     assert made[0] == made[1]
 
 

@@ -12,10 +12,10 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
-from flexstage.analysis.loop.code.compiler import compiler
 from flexstage.analysis.loop.code.controller import controller_code
 from flexstage.analysis.loop.code.whole import loop_code
 from flexstage.analysis.loop.simulation.run import simulate
+from flexstage.base.native import compiler
 from flexstage.present.fmu.unit import fmu
 from flexstage.present.loop_files import write_fmu
 from tests.elsewhere.loops import full_loop, way

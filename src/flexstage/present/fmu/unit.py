@@ -9,9 +9,9 @@ import zipfile
 from collections.abc import Mapping
 from importlib.resources import files
 
-from flexstage.analysis.loop.code.compiler import library
-from flexstage.analysis.loop.code.program import Program, Signal
+from flexstage.analysis.loop.code.program import FLAGS, Program, Signal
 from flexstage.base.finding import refuse
+from flexstage.base.native import Recipe, compiled
 from flexstage.present.fmu.description import description, guid
 
 _LONG_AGO = (1980, 1, 1, 0, 0, 0)
@@ -38,7 +38,7 @@ def fmu(program: Program, *, sources_only: bool = False) -> bytes:
     members |= {f"sources/{name}": text.encode() for name, text in texts.items()}
     if not sources_only:
         folder, suffix = _place()
-        members[f"binaries/{folder}/{program.name}.{suffix}"] = library(texts, "a functional mock-up unit")
+        members[f"binaries/{folder}/{program.name}.{suffix}"] = compiled(Recipe("a functional mock-up unit", texts, FLAGS))
     return _zipped(members)
 
 

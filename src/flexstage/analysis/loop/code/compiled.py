@@ -3,22 +3,22 @@
 from __future__ import annotations
 
 import ctypes
+import math
 from collections.abc import Mapping
 from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
 
-from flexstage.analysis.loop.code.compiler import library
-from flexstage.analysis.loop.code.program import Program, Signal
+from flexstage.analysis.loop.code.program import FLAGS, Program, Signal
 from flexstage.analysis.loop.code.whole import loop_code
 from flexstage.analysis.loop.simulation.inflow import inflow
 from flexstage.analysis.loop.simulation.machine import Machine
 from flexstage.analysis.loop.simulation.result import Series, Simulated, simulated
 from flexstage.analysis.loop.simulation.run import require_bounded
 from flexstage.analysis.loop.system import picked
+from flexstage.base.native import Recipe, loaded
 from flexstage.base.number import Array
-from flexstage.base.store import temporary_folder
 
 _NONE: Mapping[str, Array] = {}
 _RUN = """
@@ -40,10 +40,10 @@ def simulate_compiled(given: Machine, reference: Array, disturbances: Mapping[st
     Equal to `simulate` but for the order of summation. Raises `DesignError` as `simulate` does, for a hysteresis that has no form in C, and
     where there is no compiler.
 
-    >>> from flexstage.analysis.loop.code.compiler import compiler
     >>> from flexstage.analysis.loop.example import integral_loop
     >>> from flexstage.analysis.loop.simulation.machine import machine
     >>> from flexstage.analysis.loop.simulation.run import simulate
+    >>> from flexstage.base.native import compiler
     >>> example = integral_loop()
     >>> known, asked = machine(example.plant, example.controller), np.full((500, 1), 1e-6)
     >>> found = simulate_compiled(known, asked) if compiler() else simulate(known, asked)
@@ -82,13 +82,14 @@ def _series(program: Program, rows: Array) -> Series:
 
 def _stepped(program: Program, inputs: Array) -> Array:
     """Outputs (n, outputs) of a program for inputs (n, inputs), from rest."""
-    loaded = _loaded(program.name, program.header, program.source + _driver(program))
+    numbers = sum(math.prod(state.sizes) for state in program.states)
+    library = _loaded(program.name, program.header, program.source + _driver(program), numbers)
     outputs = np.empty((len(inputs), _count(program.outputs)))
-    state = ctypes.create_string_buffer(loaded[f"{program.name}_size"]())
-    loaded[f"{program.name}_init"](state)
+    state = ctypes.create_string_buffer(library[f"{program.name}_size"]())
+    library[f"{program.name}_init"](state)
     inputs = np.ascontiguousarray(inputs)
     pointer = ctypes.POINTER(ctypes.c_double)
-    loaded[f"{program.name}_run"](state, ctypes.c_long(len(inputs)), inputs.ctypes.data_as(pointer), outputs.ctypes.data_as(pointer))
+    library[f"{program.name}_run"](state, ctypes.c_long(len(inputs)), inputs.ctypes.data_as(pointer), outputs.ctypes.data_as(pointer))
     return outputs
 
 
@@ -101,12 +102,12 @@ def _count(signals: tuple[Signal, ...]) -> int:
 
 
 @lru_cache(maxsize=32)
-def _loaded(name: str, header: str, source: str) -> ctypes.CDLL:
-    """The library in this process, from a file of its own that is gone once it is loaded."""
-    made = library({f"{name}.h": header, f"{name}.c": source}, "the compiled simulation")
-    with temporary_folder() as folder:
-        place = folder / "loop.so"
-        place.write_bytes(made)
-        loaded = ctypes.CDLL(str(place))
-    loaded[f"{name}_size"].restype = ctypes.c_long
-    return loaded
+def _loaded(name: str, header: str, source: str, numbers: int) -> ctypes.CDLL:
+    """The library in this process; its state holds so many numbers."""
+
+    def answers(library: ctypes.CDLL) -> bool:
+        size = library[f"{name}_size"]
+        size.restype = ctypes.c_long
+        return all(library[f"{name}_{each}"] for each in ("init", "run")) and size() == numbers * ctypes.sizeof(ctypes.c_double)
+
+    return loaded(Recipe("the compiled simulation", {f"{name}.h": header, f"{name}.c": source}, FLAGS), answers)

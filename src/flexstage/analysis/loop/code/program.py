@@ -10,6 +10,10 @@ from flexstage.analysis.loop.code.product import MULTIPLY
 from flexstage.analysis.loop.code.text import comment, indented, number
 from flexstage.readings.linear.model import Channel
 
+WARNINGS = ("-Wall", "-Wextra", "-Wpedantic", "-Werror")
+FLAGS = ("-std=c99", "-O3", "-ffp-contract=off", "-fPIC", "-shared", *WARNINGS)
+"""How programs are compiled. Without contraction: a product and a sum round as written, here as elsewhere."""
+
 
 @dataclass(frozen=True)
 class Signal:
