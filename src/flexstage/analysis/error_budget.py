@@ -102,7 +102,7 @@ def command_columns(kinematics: Kinematics, command: Mapping[str, Number]) -> li
     """
     known = kinematics.coordinates
     require(
-        Finding(f"command {name}", f"the stage's ideal motions are {', '.join(known)}", nearest(name, known))
+        Finding(f"command {name}", f"the stage's ideal motions are {', '.join(known) or 'none'}", nearest(name, known))
         for name in command
         if name not in known
     )

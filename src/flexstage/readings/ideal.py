@@ -7,7 +7,7 @@ R_a = da/dx and R_s = ds/dx (Eqs. 13 and 14 of Shin & Moon), the platform's mobi
 from __future__ import annotations
 
 import itertools
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -18,6 +18,7 @@ from flexstage.mechanism.expand import Assembly, PlacedLink, expand
 from flexstage.mechanism.incidence import Layout, deformation, layout, twist_at
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.parts.freedom import ALL, Freedom
+from flexstage.readings.linear.blockage import Blockage, blockage
 from flexstage.readings.linear.elimination import Elimination, echelon, eliminate, null_space
 from flexstage.readings.linear.kinematics import Idle, Kinematics, Redundant
 from flexstage.spatial.frame import COMPONENTS
@@ -68,7 +69,7 @@ def ideal(mechanism: Mechanism) -> Kinematics:
     _require_paths(graph, idle[size:])
     motion = _without_idle(graph, solution, columns, rest)
     bodies, strokes = motion[..., :size, :], motion[..., size:, :]
-    return Kinematics(
+    found = Kinematics(
         actuators=tuple(graph.assembly.actuators),
         coordinates=tuple(COMPONENTS[index] for index in freedoms),
         gauges=tuple(graph.assembly.gauges),
@@ -84,6 +85,25 @@ def ideal(mechanism: Mechanism) -> Kinematics:
         length=graph.length,
         provenance=f"ideal reading of {digest(mechanism, physics=True)[:16]}",
     )
+    return replace(found, blocked=_blocked(graph, found.immobile)) if found.immobile else found
+
+
+def _blocked(graph: _Graph, immobile: tuple[str, ...]) -> dict[str, Blockage]:
+    """What blocks each immobile stroke, by the links' addresses in the description."""
+    rows = _comparable(graph)
+    links = {name: link.drawn.removeprefix("links.") for name, link in graph.assembly.links.items()}
+    ends = [name.rpartition(".") for name in graph.names]
+    names = tuple(f"{links[link]}.{freedom}" for link, _, freedom in ends)
+    meant = {f"{links[name]}.{freedom.value}" for name, link in graph.assembly.links.items() for freedom in link.part.intended}
+    actuators = list(graph.assembly.actuators)
+    return {name: blockage(rows, graph.order.size + actuators.index(name), names, frozenset(meant)) for name in immobile}
+
+
+def _comparable(graph: _Graph) -> Array:
+    """The constraints of the first design, all rows of one size."""
+    first = np.real(first_design(graph.constraints, 2)) * graph.scale
+    norms = np.linalg.norm(first, axis=1)
+    return first / np.where(norms > 0.0, norms, 1.0)[:, None]
 
 
 def _graph(mechanism: Mechanism) -> _Graph:
@@ -188,10 +208,7 @@ def _idle(graph: _Graph, motions: Array) -> tuple[Idle, ...]:
 
 def _redundant(graph: _Graph) -> tuple[Redundant, ...]:
     """Self-stress states of the locked freedoms: left null vectors of the constraints."""
-    first = np.real(first_design(graph.constraints, 2)) * graph.scale
-    norms = np.linalg.norm(first, axis=1)
-    first = first / np.where(norms > 0.0, norms, 1.0)[:, None]
-    states = echelon(null_space(first.T).T)
+    states = echelon(null_space(_comparable(graph).T).T)
     return tuple(
         Redundant(tuple(name for name, force in zip(graph.names, state, strict=True) if abs(force) > _NEGLIGIBLE)) for state in states
     )

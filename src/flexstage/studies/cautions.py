@@ -14,7 +14,7 @@ from flexstage.base.finding import DesignError, Finding
 from flexstage.beams.validity import validity
 from flexstage.mechanism.contact import contact_findings
 from flexstage.mechanism.expand import expand
-from flexstage.mechanism.mechanism import Mechanism
+from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.parts.part import Restricted
 from flexstage.parts.piezo import Piezo
 from flexstage.readings.ideal import ideal
@@ -66,7 +66,7 @@ def _shared_stacks(mechanism: Mechanism) -> dict[str, Piezo]:
 
 
 def cautions(mechanism: Mechanism) -> tuple[Finding, ...]:
-    """Parts outside the range beam theory was compared with; outlines that contradict one another or leave the room they have.
+    """What is doubtful: parts beyond beam theory's range, blocked strokes, outlines that contradict one another or leave their room.
 
     A part that departs from the shared one is told by its link.
 
@@ -74,7 +74,19 @@ def cautions(mechanism: Mechanism) -> tuple[Finding, ...]:
     >>> cautions(double_triangle())
     ()
     """
-    return (*part_cautions(mechanism), *contact_findings(mechanism), *_room(mechanism))
+    return (*part_cautions(mechanism), *_blockages(mechanism), *contact_findings(mechanism), *_room(mechanism))
+
+
+def _blockages(mechanism: Mechanism) -> tuple[Finding, ...]:
+    """Strokes that cannot move, or a platform that cannot; nothing where the ideal reading is refused, which tells why."""
+    try:
+        found = ideal(mechanism)
+    except DesignError:
+        return ()
+    if found.mobility or found.actuators:
+        return found.blockages
+    what = "its links hold it in all six freedoms: no ideal motion is left"
+    return (Finding(PLATFORM, what, "Free the freedoms of links that it is to move by"),)
 
 
 def reading_findings(mechanism: Mechanism) -> tuple[Finding, ...]:

@@ -58,9 +58,10 @@ def caveat_tables(mechanism: Mechanism | None, more: tuple[Finding, ...] = ()) -
 
 
 def tell_missing(missing: Mapping[str, str]) -> None:
-    """Say on stderr which results are not given, and why."""
-    for name, reason in missing.items():
-        tell(f"not given: {name.replace('_', ' ')}: {reason}")
+    """Say on stderr which results are not given, and why; a reason that several share once."""
+    for reason in dict.fromkeys(missing.values()):
+        names = ", ".join(name.replace("_", " ") for name, each in missing.items() if each == reason)
+        tell(f"not given: {names}: {reason}")
 
 
 def elastic_model(mechanism: Mechanism, reading: Reading) -> LinearModel:

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
-from flexstage.base.finding import refuse
+from flexstage.base.finding import Finding, joined, refuse
 from flexstage.base.labelled import Matrix, ratio_units
 from flexstage.base.number import Array
 from flexstage.parts.freedom import Freedom
+from flexstage.readings.linear.blockage import Blockage
 from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
 
 
@@ -37,6 +38,7 @@ class Kinematics:
     `actuation` is da/dxi (..., n, f), `sensing` ds/dx (..., g, 6), `motion` V (..., 6, f), `bodies` the motion of all body coordinates per
     xi (..., N, f), `strains` each link's deformation per xi (..., 6, f) in its frame (only intended freedoms and strokes non-zero).
     `free` says which freedoms were taken as free at each link. `length` is the scale that makes rotations comparable with translations.
+    `blocked` says of each immobile actuator which locked freedoms hold its stroke.
     """
 
     actuators: tuple[str, ...]
@@ -53,6 +55,7 @@ class Kinematics:
     redundant: tuple[Redundant, ...]
     length: float
     provenance: str
+    blocked: Mapping[str, Blockage] = field(default_factory=dict)
 
     @property
     def mobility(self) -> int:
@@ -110,12 +113,35 @@ class Kinematics:
         if not self.actuated:
             strokes = "1 stroke does" if len(self.actuators) == 1 else f"{len(self.actuators)} strokes do"
             motions = f"{self.mobility} ideal motion{'' if self.mobility == 1 else 's'}"
-            held = f"; the links hold {', '.join(self.immobile)}" if self.immobile and self.mobility else ""
+            held = f"; the links hold {', '.join(self.immobile)}" if self.immobile else ""
+            mend = [finding.advice for finding in self.blockages] or ["Add actuators or lock freedoms of links"]
             raise refuse(
                 "mapping",
                 f"{strokes} not determine the platform's {motions} ({', '.join(self.coordinates) or 'none'}){held}",
-                "Add actuators or lock freedoms of links; stiffness, modes and response are given all the same",
+                f"{'; '.join(mend)}; stiffness, modes and response are given all the same",
             )
+
+    @property
+    def blockages(self) -> tuple[Finding, ...]:
+        """Strokes that cannot move, the links that block them, strongest first, and what to free; those blocked alike are told once."""
+        return joined(
+            Finding(name, f"the stroke cannot move: it is blocked by the locked freedoms of {_by_link(each.against)}", _freeing(each))
+            for name, each in self.blocked.items()
+        )
+
+
+def _by_link(freedoms: tuple[str, ...]) -> str:
+    links: dict[str, list[str]] = {}
+    for freedom in freedoms:
+        link, _, name = freedom.rpartition(".")
+        links.setdefault(link, []).append(name)
+    return ", ".join(f"{link} ({', '.join(names)})" for link, names in links.items())
+
+
+def _freeing(blockage: Blockage) -> str:
+    *rest, last = blockage.free or ("one of them",)
+    word = "and" if blockage.together else "or"
+    return f"Free {', '.join(rest)} {word} {last}" if rest else f"Free {last}"
 
 
 def _scales(names: tuple[str, ...], rotation: float) -> Array:

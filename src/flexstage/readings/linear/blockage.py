@@ -1,0 +1,108 @@
+"""Blockage: which locked freedoms keep a stroke from moving, and which must be freed.
+
+A stroke is blocked where it can be written as a sum of constraints: forces of the locked freedoms, in balance on all bodies, work against
+it alone. The fewest such forces (least sum of magnitudes, a linear programme) name the links.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import linprog
+
+from flexstage.base.number import Array
+
+_HELD = 1e-7
+"""Forces below this are none, and a column is a sum of rows where they leave less of it than this."""
+_RANK = 1e-9
+
+
+@dataclass(frozen=True)
+class Blockage:
+    """Why a stroke cannot move: the locked freedoms that work against it, strongest first, and what to free.
+
+    `against` and `free` name them `link.freedom`; of `free` any one is enough, or `together`, all of them are needed.
+    """
+
+    against: tuple[str, ...]
+    free: tuple[str, ...]
+    together: bool = False
+
+
+def blockage(constraints: Array, stroke: int, names: Sequence[str], wanted: frozenset[str]) -> Blockage:
+    """What blocks a stroke: rows (m, N) of comparable size and their names, the stroke's column, the platform's being the first six.
+
+    `wanted` are freedoms that their parts are meant to have: they are freed first. Freeing must move the platform.
+
+    >>> rows = np.zeros((3, 7))
+    >>> rows[0, [0, 6]], rows[1, 0], rows[2, 1] = (1.0, -1.0), 1.0, 1.0
+    >>> blockage(rows, 6, ("stack.x", "leaf.x", "leaf.y"), frozenset())
+    Blockage(against=('leaf.x',), free=('leaf.x',), together=False)
+    """
+    against = _against(constraints, stroke)
+    alone = _decisive(constraints, stroke) & ~_decisive(_at_platform(constraints), stroke)[: len(constraints)]
+    single = [row for row in against if alone[row]]
+    if single:
+        meant = [row for row in single if names[row] in wanted]
+        return Blockage(_told(against, names), _told(meant or single, names))
+    left, freed, held = list(range(len(names))), [], []
+    while against and not _moves(constraints[left], stroke):
+        rows = [left[row] for row in against]
+        held += rows
+        freed.append(next((row for row in rows if names[row] in wanted), rows[0]))
+        left.remove(freed[-1])
+        against = _against(constraints[left], stroke)
+    return Blockage(_told(held, names), _told(freed, names), together=True)
+
+
+def _against(constraints: Array, stroke: int) -> list[int]:
+    """Rows whose forces work against the stroke, strongest first; those that drive the platform are not counted among them."""
+    forces = np.round(np.abs(_forces(constraints, stroke)), 9)
+    rows = [row for row in np.argsort(-forces, kind="stable").tolist() if forces[row] > _HELD and constraints[row, stroke] == 0.0]
+    driving = _decisive(_at_platform(constraints), stroke)
+    return [row for row in rows if not driving[row]] or rows
+
+
+def _decisive(constraints: Array, stroke: int) -> Array:
+    """Which rows (m,) alone keep a held stroke from moving: each state of forces against it has them, and no self-stress does."""
+    forces, stresses = _states(constraints, stroke)
+    return (np.abs(forces) > _HELD) & (np.linalg.norm(stresses, axis=1) < _HELD)
+
+
+def _states(constraints: Array, stroke: int) -> tuple[Array, Array]:
+    """Forces (m,) with C^T f = e of least squares, and a basis (m, k) of the self-stresses, C^T f = 0."""
+    left, values, right = np.linalg.svd(constraints, full_matrices=True)
+    rank = int(np.sum(values > _RANK * values[0]))
+    return left[:, :rank] @ (right[:rank, stroke] / values[:rank]), left[:, rank:]
+
+
+def _told(rows: Sequence[int], names: Sequence[str]) -> tuple[str, ...]:
+    """Names of rows, each once: copies of a link have one."""
+    return tuple(dict.fromkeys(names[row] for row in rows))
+
+
+def _forces(constraints: Array, stroke: int) -> Array:
+    """The forces (m,) of least total magnitude with C^T f = e, the stroke's unit vector."""
+    count, size = constraints.shape
+    unit = (np.arange(size) == stroke).astype(float)
+    solved = linprog(np.ones(2 * count), A_eq=np.hstack([constraints.T, -constraints.T]), b_eq=unit, method="highs")
+    if solved.x is None:  # rounding leaves the programme without a solution: the least squares
+        return np.asarray(np.linalg.lstsq(constraints.T, unit, rcond=_HELD)[0])
+    return np.asarray(solved.x[:count] - solved.x[count:])
+
+
+def _moves(constraints: Array, stroke: int) -> bool:
+    """Whether the stroke can move, and moves the platform: held at the platform, it cannot."""
+    return not _is_held(constraints, stroke) and _is_held(_at_platform(constraints), stroke)
+
+
+def _at_platform(constraints: Array) -> Array:
+    """The constraints with the platform held."""
+    return np.concatenate([constraints, np.eye(6, constraints.shape[1])])
+
+
+def _is_held(constraints: Array, stroke: int) -> bool:
+    unit = (np.arange(constraints.shape[1]) == stroke).astype(float)
+    return bool(np.linalg.norm(constraints.T @ _states(constraints, stroke)[0] - unit) < _HELD)
