@@ -44,13 +44,16 @@ class Computer:
         given = self.machine
         bias = given.amplifiers.bias
         plays = [np.zeros((len(bias), 0)) if model is None else model.start(bias) for model in (given.hysteresis, given.compensation)]
-        return np.zeros(len(given.controller.A)), np.zeros(len(bias)), *plays
+        return np.zeros(len(given.controller.A)), np.zeros(len(bias)), *plays, np.zeros(len(given.gauges))
 
     def sample(self, state: tuple[np.ndarray, ...], reference: np.ndarray, gaps: np.ndarray):
         """The next state, free strokes, and what was found on the way; `gaps` are the readings before they are rounded."""
-        given, (z, last, plays, model_plays) = self.machine, state
+        given, (z, last, plays, model_plays, seen) = self.machine, state
         steps, amplifiers = given.resolution, given.amplifiers
-        readings = np.array([gap if not step else step * round(gap / step) for gap, step in zip(gaps, steps, strict=True)])
+        read = [gap if not (step and np.isfinite(gap)) else step * round(gap / step) for gap, step in zip(gaps, steps, strict=True)]
+        ends = np.full(len(gaps), np.inf) if given.half_range is None else given.half_range
+        good = [np.isfinite(one) and abs(one) - end <= 0.5 * step for one, end, step in zip(read, ends, steps, strict=True)]
+        readings = np.array([one if known else kept for one, known, kept in zip(read, good, seen, strict=True)])
         pose = given.pose @ readings
         error = reference - pose
         signals = {f"pose.{name}": value for name, value in zip(given.names, pose, strict=True)}
@@ -75,7 +78,7 @@ class Computer:
             stroke = stroke - moved(given.hysteresis, given.hysteresis.start(amplifiers.bias), amplifiers.bias)[1]
         if given.compensation is not None:
             model_plays = moved(given.compensation, model_plays, volts)[0]
-        following = control.A @ z + control.B @ entry, out, plays, model_plays
+        following = control.A @ z + control.B @ entry, out, plays, model_plays, readings
         return following, stroke, {"pose": pose, "command": command, "asked": asked, "given": out, "readings": readings}
 
     def _inverted(self, plays: np.ndarray, command: np.ndarray) -> np.ndarray:

@@ -26,9 +26,11 @@ from flexstage.analysis.loop.simulation.run import simulate
 from flexstage.analysis.loop.system import static
 from flexstage.base.finding import DesignError
 from flexstage.base.native import compiler
+from flexstage.base.number import Table
 from flexstage.present.fmu.unit import fmu, fmu_sources
 from flexstage.present.loop_files import write_controller, write_fmu, write_plant
 from flexstage.readings.linear.model import Channel
+from tests.elsewhere.independent_loop import Computer
 from tests.elsewhere.loops import PLATFORM, full_loop, plays, six_axes, way
 from tests.elsewhere.test_loop_simulation import worst
 
@@ -127,6 +129,116 @@ def test_the_exported_controller_gives_the_volts_of_the_simulation(tmp_path):
     for field in ("pose", "error", "command", "asked", "given", "volts"):
         ours = getattr(known, field)
         assert np.max(np.abs(found[field] - ours)) < 1e-12 * np.max(np.abs(ours)), field
+
+
+def lost(count: int, gauges: int) -> np.ndarray:
+    """What is added to readings (n, g): at times no number, infinite, or more than any gauge's range; most of it nothing."""
+    random = np.random.default_rng(5)
+    spoilt = random.choice([np.nan, np.inf, -np.inf, 1.0, -1e300], size=(count, gauges))
+    added = np.where(random.random((count, gauges)) < 0.1, spoilt, 0.0)
+    added[60:75, 1], added[0, 0] = np.nan, np.inf  # for long, and before there was any good one
+    return added
+
+
+def by_hand(given: Machine, reference: np.ndarray, gaps: np.ndarray) -> dict[str, np.ndarray]:
+    """The controller alone, on readings before they are rounded, written down anew."""
+    computer, found = Computer(given), []
+    state = computer.start()
+    for wanted, gap in zip(reference, gaps, strict=True):
+        state, _, signals = computer.sample(state, wanted, gap)
+        found.append(signals)
+    return {name: np.array([each[name] for each in found]) for name in found[0]}
+
+
+@pytest.mark.parametrize("inverse", [False, True])
+def test_lost_readings_are_held_and_taken_again(inverse):
+    given = full_loop(inverse=inverse, motions=PLATFORM)
+    reference, disturbances = way(given, 200)
+    bare, added = simulate(given, reference, disturbances), lost(200, 6)
+    noise = {f"noise.{name}": disturbances[f"noise.{name}"] + added[:, index] for index, name in enumerate(given.gauges)}
+    found = simulate(given, reference, disturbances | noise)
+    by_status = np.abs(added) > 0.0  # NaN too: |NaN| > 0 is false
+    by_status |= np.isnan(added)
+    assert found.held == pytest.approx(np.mean(by_status, axis=0))
+    assert not bare.held.any()
+    assert np.all(np.isfinite(found.volts))
+    assert np.all(np.isfinite(found.motions))
+    expected = by_hand(given, reference, found.readings)
+    for field in ("pose", "command", "asked", "given"):
+        ours = getattr(found, field)
+        assert np.max(np.abs(expected[field] - ours)) < 1e-11 * np.max(np.abs(ours)), field
+    if compiler() is not None:
+        compiled = simulate_compiled(given, reference, disturbances | noise)
+        good = np.abs(found.readings) < 1e-3
+        assert np.array_equal(good, np.abs(compiled.readings) < 1e-3)
+        both = (replace(each, readings=np.where(good, each.readings, 0.0)) for each in (compiled, found))
+        assert max(worst(*both).values()) < 1e-12
+
+
+def test_a_gauge_beyond_its_range_is_held_until_it_returns():
+    """One axis that steps farther than its gauge measures: the reading stays below its end, and the way back is found."""
+    example = integral_loop(gain=100.0)
+    sensors = Table({"S": replace(example.plant.hardware.sensors["S"], half_range=2e-6)})
+    plant = replace(example.plant, hardware=replace(example.plant.hardware, sensors=sensors))
+    given = machine(plant, example.controller, motions=("platform.x",))
+    reference = np.repeat([[2.2e-6], [0.0]], 1500, axis=0)
+    found = simulate(given, reference)
+    beyond = np.abs(found.readings[:, 0]) > given.reach[0]
+    assert 0.2 < np.mean(beyond) == found.held[0] < 0.6
+    assert np.max(np.abs(found.pose)) <= given.reach[0]
+    assert abs(found.motion("platform.x")[-1]) < 1e-9
+    assert not simulate(unlimited(given), reference).held.any()
+
+
+def spoilt_replay(given: Machine, tmp_path, reference: np.ndarray, readings: np.ndarray) -> dict[str, np.ndarray]:
+    """Outputs of the exported controller, compiled by itself, for these references and readings."""
+    source, _ = write_controller(tmp_path / "stage.c", given)
+    made = tmp_path / "stage.so"
+    subprocess.run([*compiler().command, *FLAGS, "-o", str(made), str(source), "-lm"], check=True, cwd=tmp_path)
+    loaded, state = ctypes.CDLL(str(made)), ctypes.create_string_buffer(1 << 16)
+    loaded.stage_init(state)
+    known = replace(simulate(given, np.zeros((1, 6))), reference=reference, readings=readings)
+    return replayed(lambda entry, out: loaded.stage_step(state, entry, out), controller_code(given, "stage"), given, known)
+
+
+@needs_compiler
+def test_the_exported_controller_survives_what_is_no_number(tmp_path):
+    given = full_loop(inverse=True)
+    reference, _ = way(given, 200)
+    readings = simulate(given, reference).readings
+    spoilt, wanted = readings + lost(200, 6), reference.copy()
+    wanted[[0, 50, 51, 120], [0, 3, 3, 5]] = np.nan, np.inf, -np.inf, np.nan
+    found = spoilt_replay(given, tmp_path, wanted, spoilt)
+    assert all(np.all(np.isfinite(values)) for values in found.values())
+    infinite, beyond = ~np.isfinite(spoilt), np.isfinite(spoilt) & (np.abs(spoilt) > 1e-3)
+    assert np.array_equal(found["status"], np.hstack([1.0 * infinite + 2.0 * beyond, 1.0 * ~np.isfinite(wanted)]))
+    kept = wanted.copy()
+    kept[0, 0], kept[50:52, 3], kept[120, 5] = 0.0, reference[49, 3], reference[119, 5]
+    expected = by_hand(given, kept, spoilt)
+    for field in ("pose", "command", "asked", "given"):
+        assert np.max(np.abs(found[field] - expected[field])) < 1e-11 * np.max(np.abs(expected[field])), field
+    never = spoilt_replay(given, tmp_path, reference * np.nan, readings * np.nan)
+    assert np.array_equal(never["volts"], np.broadcast_to(given.amplifiers.bias, (200, 6)))  # nothing ever known: it stays at the bias
+
+
+@needs_compiler
+def test_the_exported_controller_survives_numbers_that_overflow(tmp_path):
+    given = replace(full_loop(), compensation=None)
+    reference = np.zeros((300, 6))
+    reference[:100:2], reference[1:100:2] = 1e308, -1e308
+    found = spoilt_replay(given, tmp_path, reference, np.zeros((300, 6)))
+    assert np.all(np.isfinite(found["volts"]))
+    assert np.all(np.isfinite(found["command"][-1]))
+
+
+@needs_compiler
+def test_fast_mathematics_is_refused(tmp_path):
+    source, _ = write_controller(tmp_path / "stage.c", full_loop())
+    done = subprocess.run(
+        [*compiler().command, "-c", "-ffast-math", str(source)], capture_output=True, text=True, check=False, cwd=tmp_path
+    )
+    assert done.returncode != 0
+    assert "without fast math" in done.stderr
 
 
 @needs_compiler

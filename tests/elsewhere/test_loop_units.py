@@ -115,6 +115,20 @@ def test_a_unit_gives_the_volts_of_the_simulation(known, tmp_path):
     assert not unit.said
 
 
+def test_a_unit_holds_lost_readings_and_says_so(known, tmp_path):
+    given, found, content = known
+    unit = Importer(content, tmp_path)
+    one, names = unit.running(), [f"volts.{name}" for name in given.actuators]
+    status = ["status.S1", "status.S2", "status.reference.x"]
+    for k in range(60):
+        lost = {"S1": np.nan, "S2": 1.0, "reference.x": np.inf} if 20 <= k < 30 else {}
+        assert unit.set(one, inputs(given, found, k) | lost) == OK
+        assert unit.step(one, k * given.step, given.step) == OK
+        assert unit.get(one, status).tolist() == ([1.0, 2.0, 1.0] if lost else [0.0, 0.0, 0.0])
+        assert np.all(np.isfinite(unit.get(one, names)))
+    assert np.max(np.abs(unit.get(one, names) - found.volts[59])) < 0.05 * 1000.0  # it has followed again
+
+
 def test_steps_of_the_importer_take_the_samples_that_lie_in_them(known, tmp_path):
     given, found, content = known
     unit = Importer(content, tmp_path)

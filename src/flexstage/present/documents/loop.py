@@ -171,6 +171,7 @@ def run_body(test: Run) -> Document:
         "tracking": test.tracking.to_json(),
         "saturated": dict(zip(seen.actuators, seen.saturated.tolist(), strict=True)),
         "slewing": dict(zip(seen.actuators, seen.slewed.tolist(), strict=True)),
+        "out_of_range": dict(zip(seen.gauges, seen.held.tolist(), strict=True)),
         "step": None,
     }
     figures = test.figures

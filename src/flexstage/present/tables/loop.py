@@ -192,12 +192,16 @@ def _length(value: float, size: float, unit: str) -> Cell:
 
 
 def limits_text(test: Run) -> str:
-    """Which actuators ran into their limits, for which share of the time."""
+    """Which actuators ran into their limits, and which gauges out of their range, for which share of the time."""
     seen = test.simulated
     words = [
         f"{name} {noun} {percent(float(share), 3)}"
-        for noun, shares in (("saturated", seen.saturated), ("slewing", seen.slewed))
-        for name, share in zip(seen.actuators, shares, strict=True)
+        for noun, names, shares in (
+            ("saturated", seen.actuators, seen.saturated),
+            ("slewing", seen.actuators, seen.slewed),
+            ("out of range", seen.gauges, seen.held),
+        )
+        for name, share in zip(names, shares, strict=True)
         if share > 0.0
     ]
     return ", ".join(words)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, fields, replace
 
 import numpy as np
@@ -159,4 +160,13 @@ def _after(found: Simulated, lead: int) -> Simulated:
 def _run(given: Settled, course: Course, computed: Machine, cautions: tuple[Finding, ...], *, poses: Array, rest: float) -> Run:
     found = simulate(computed, poses) if course.is_step else _shaken(given, computed, poses, rest)
     figures = step_figures(found, _BAND) if course.is_step else None
-    return Run(course, found, figures, tracking(found), cautions)
+    return Run(course, found, figures, tracking(found), (*cautions, *_lost(course, found, computed)))
+
+
+def _lost(course: Course, found: Simulated, computed: Machine) -> Iterator[Finding]:
+    """Gauges that went beyond their range."""
+    for name, share, reach in zip(found.gauges, found.held, computed.reach, strict=True):
+        if share > 0.0:
+            what = f"{name} measures {1e6 * reach:.4g} um both ways and is beyond it in {100.0 * share:.3g} % of the samples"
+            advice = "The loop goes on by its last good reading: command less, or take a gauge of a longer range"
+            yield Finding(f"trajectory {course.name}", what, advice)

@@ -54,8 +54,9 @@ def simulate_compiled(given: Machine, reference: Array, disturbances: Mapping[st
     felt = tuple(index for index, channel in enumerate(given.disturbances) if channel.name in disturbances)
     program = loop_code(_feeling(given, felt))
     rows = _stepped(program, np.hstack([entering.reference, entering.disturbances[:, felt], entering.readings, entering.strokes]))
-    require_bounded(given, rows)
-    return simulated(given, entering.reference, _series(program, rows))
+    series = _series(program, rows)
+    require_bounded(given, np.hstack([series.motions, series.command, series.stroke]))
+    return simulated(given, entering.reference, series)
 
 
 def _feeling(given: Machine, felt: tuple[int, ...]) -> Machine:

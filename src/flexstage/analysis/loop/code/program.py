@@ -92,6 +92,7 @@ class Program:
             "",
             "#include <math.h>",
             "",
+            *_NO_FAST_MATH,
             *_head(self.code),
             f"void {name}_init({name}_state *state)",
             "{",
@@ -104,6 +105,14 @@ class Program:
             "}",
         ]
         return "\n".join(lines) + "\n"
+
+
+_NO_FAST_MATH = (
+    "#if defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__) || defined(_M_FP_FAST)",
+    "#error Compile without fast math: what is no finite number would not be seen, and sums would be in another order.",
+    "#endif",
+    "",
+)
 
 
 def _head(code: Code) -> list[str]:

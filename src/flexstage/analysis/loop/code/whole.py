@@ -48,7 +48,7 @@ def _inputs(given: Machine, strokes: tuple[Channel, ...]) -> tuple[Signal, ...]:
     return (
         Signal("reference", tuple(Channel(f"reference.{each.name}", each.unit) for each in given.coordinates), "wanted pose"),
         Signal("disturbance", given.disturbances, "disturbances, held over a sample"),
-        Signal("noise", tuple(Channel(f"noise.{gauge}", "m") for gauge in given.gauges), "added to readings before rounding"),
+        Signal("noise", tuple(Channel(f"noise.{gauge}", "m") for gauge in given.gauges), "added to readings before rounding; NaN: lost"),
         Signal("added", tuple(Channel(f"noise.{each.name}", "m") for each in strokes), "added to free strokes"),
     )
 

@@ -111,6 +111,11 @@ class Row:
         return slice(0, self.controller.stop)
 
     @property
+    def own(self) -> slice:
+        """What of it is bounded in a stable loop: all but readings, which may be lost."""
+        return slice(self.base.start, self.controller.stop)
+
+    @property
     def taken(self) -> slice:
         """What the next step is computed from."""
         return slice(self.plant.start, self.stroke.stop)

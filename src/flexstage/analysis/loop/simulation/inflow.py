@@ -50,7 +50,7 @@ def inflow(given: Machine, reference: Array, disturbances: Mapping[str, Array]) 
     """The reference (n, f) and named series (n,) put in a machine's order; what is not named is nought.
 
     Names are those of the plant's further inputs (`ground.x`, `platform.fz`) and `noise.<gauge>`, `noise.<actuator>` [m]. Raises
-    `DesignError` for others, for lengths that differ, and for numbers that are not finite.
+    `DesignError` for others, for lengths that differ, and for numbers that are not finite, but of `noise.<gauge>`: that reading is lost.
 
     >>> from flexstage.analysis.loop.example import integral_loop
     >>> from flexstage.analysis.loop.simulation.machine import machine
@@ -84,5 +84,5 @@ def _findings(given: Machine, reference: Array, named: Mapping[str, Array]) -> I
             yield Finding(name, "the loop has no input of this name", nearest(name, known))
         elif values.shape != (len(reference),):
             yield Finding(name, f"it is {values.shape}, where the reference has {len(reference)} samples", "Give as many")
-        elif not np.all(np.isfinite(values)):
+        elif name not in _noises(given.gauges) and not np.all(np.isfinite(values)):
             yield Finding(name, "a number is not finite", "Mend the series")

@@ -36,6 +36,23 @@ def rounding(steps: Array) -> Kernel | None:
     return some
 
 
+def holding(reach: Array) -> Callable[[Array, Array], Array]:
+    """Readings that are taken: in place of one that is no finite number or beyond its reach stands the one taken last.
+
+    >>> hold = holding(np.array([2.0, 2.0, 2.0]))
+    >>> hold(np.array([1.5, np.nan, 3.0]), np.array([0.1, 0.2, 0.3])).tolist()
+    [1.5, 0.2, 0.3]
+    """
+    size, good = np.empty(len(reach)), np.empty(len(reach), dtype=bool)
+
+    def hold(readings: Array, last: Array) -> Array:
+        if not np.less_equal(np.abs(readings, out=size), reach, out=good).all():
+            np.copyto(readings, last, where=~good)
+        return readings
+
+    return hold
+
+
 def converter(steps: Array) -> Kernel | None:
     """Rounding to steps (0: none); None where there is nothing to do.
 

@@ -39,7 +39,8 @@ class Machine:
     """A sampled loop as a simulation computes it.
 
     In each sample k: readings y = C x + D w + noise of the `plant` (outputs `gap.<gauge>`), rounded to `resolution` (g,) [m] (0: not);
-    pose = `pose` (f, g) y; error = reference - pose; the `controller` (inputs any of `error.<c>`, `reference.<c>`, `pose.<c>`,
+    instead of one that is no finite number or beyond `half_range` (g,) [m] (absent: unlimited) the last good one of its gauge; pose =
+    `pose` (f, g) y; error = reference - pose; the `controller` (inputs any of `error.<c>`, `reference.<c>`, `pose.<c>`,
     `applied.<actuator>`; outputs `command.<actuator>`); volts by the inverse of `compensation`, or proportional; `amplifiers`; free
     stroke by `hysteresis` of the volts, or proportional; then the states of both for k + 1. `applied` is what the amplifiers gave less
     what they were asked for: nought but where they are at a limit.
@@ -57,6 +58,7 @@ class Machine:
     resolution: Array
     hysteresis: Hysteresis | None = None
     compensation: PrandtlIshlinskii | None = None
+    half_range: Array | None = None
 
     def __post_init__(self) -> None:
         """Refuse what cannot be simulated."""
@@ -66,6 +68,12 @@ class Machine:
     def step(self) -> float:
         """Time between samples [s]."""
         return self.plant.step or np.nan
+
+    @property
+    def reach(self) -> Array:
+        """The largest readings (g,) [m] that are taken: the gauges' range and half a step of theirs, or the largest finite number."""
+        ends = np.full(len(self.gauges), np.inf) if self.half_range is None else self.half_range
+        return np.minimum(ends + 0.5 * self.resolution, np.finfo(float).max)
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -140,11 +148,12 @@ def machine(
         resolution=np.array([0.0 if each is None else each.resolution for each in senses]),
         hysteresis=hysteresis,
         compensation=compensation,
+        half_range=np.array([np.inf if each is None else each.half_range for each in senses]),
     )
 
 
 def unlimited(given: Machine) -> Machine:
-    """The same machine without anything that is not linear: no limits, no rounding, no hysteresis and no inverse.
+    """The same machine without anything that is not linear: no limits and ranges, no rounding, no hysteresis and no inverse.
 
     >>> from flexstage.analysis.loop.example import integral_loop
     >>> example = integral_loop()
@@ -159,7 +168,8 @@ def unlimited(given: Machine) -> Machine:
         slew=np.full(count, np.inf),
         step=np.zeros(count),
     )
-    return replace(given, amplifiers=free, resolution=np.zeros(len(given.gauges)), hysteresis=None, compensation=None)
+    resolution = np.zeros(len(given.gauges))
+    return replace(given, amplifiers=free, resolution=resolution, hysteresis=None, compensation=None, half_range=None)
 
 
 def _findings(given: Machine) -> Iterator[Finding]:

@@ -20,7 +20,8 @@ class Simulated:
     `reference`, `pose` (estimated) and `error` (n, f) [m, rad] by `coordinates`; `motions` (n, p) by `channels`, the true ones; by
     `actuators`, all as strokes [m] from the bias: `command` of the controller, `asked` of the amplifiers (behind inverse and converter),
     `given` by them (behind their limits), `stroke` (n, m) that reaches the stage; `volts` (NaN where a stack states none); `readings`
-    (n, g) [m] by `gauges`. `saturated` and `slewed` (m,) are the shares of samples at a limit of range, or of speed alone.
+    (n, g) [m] by `gauges`, as they give them. `saturated` and `slewed` (m,) are the shares of samples at a limit of range, or of speed
+    alone, `held` (g,) those in which a gauge was beyond its range or lost, and the loop went on by its last good reading.
     """
 
     times: Array
@@ -40,6 +41,7 @@ class Simulated:
     readings: Array
     saturated: Array
     slewed: Array
+    held: Array
 
     def motion(self, name: str) -> Array:
         """The true motion (n,) of that channel (`platform.x`) [m, rad]; raises `DesignError` where it was not kept."""
@@ -105,6 +107,7 @@ def simulated(given: Machine, reference: Array, found: Series) -> Simulated:
         readings=found.readings,
         saturated=np.mean(at_end, axis=0),
         slewed=np.mean(limited & ~at_end, axis=0),
+        held=np.mean(~(np.abs(found.readings) <= given.reach), axis=0),
     )
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from flexstage.analysis.loop.simulation.actuation import Actuation
 from flexstage.analysis.loop.simulation.fused import Fused, Parts, Row, fused, parts
 from flexstage.analysis.loop.simulation.inflow import Inflow, inflow
-from flexstage.analysis.loop.simulation.kernel import rounding
+from flexstage.analysis.loop.simulation.kernel import holding, rounding
 from flexstage.analysis.loop.simulation.machine import Machine
 from flexstage.analysis.loop.simulation.result import Series, Simulated, simulated
 from flexstage.base.finding import refuse
@@ -24,9 +24,9 @@ def simulate(given: Machine, reference: Array, disturbances: Mapping[str, Array]
     """The loop's answer to a reference (n, f) [m, rad] and disturbances (n,) each, from rest, sample by sample.
 
     `disturbances` are `ground.<c>`, `platform.fx` ... (further inputs of the plant), `noise.<gauge>` [m] added to a reading before it is
-    rounded, `noise.<actuator>` [m] added to a free stroke. Nothing here is random (see `noises`). Between samples the plant is exact for
-    strokes and wrenches that are held and a ground that goes straight (see `held`): there is no error of integration. Raises `DesignError`
-    for unknown names, lengths that differ, and where numbers grow beyond bounds.
+    rounded (not finite: that reading is lost), `noise.<actuator>` [m] added to a free stroke. Nothing here is random (see `noises`).
+    Between samples the plant is exact for strokes and wrenches that are held and a ground that goes straight (see `held`): there is no
+    error of integration. Raises `DesignError` for unknown names, lengths that differ, and where numbers grow beyond bounds.
 
     >>> from flexstage.analysis.loop.example import integral_loop
     >>> from flexstage.analysis.loop.simulation.machine import machine, unlimited
@@ -47,16 +47,18 @@ def simulate(given: Machine, reference: Array, disturbances: Mapping[str, Array]
             stepper.advance(entering.block(form, linear, start, start + size))
             rows[start : start + size] = block[:size]
             block[0, row.computed] = block[size, row.computed]
-            require_bounded(given, rows[start : start + size, row.computed], start)
+            require_bounded(given, rows[start : start + size, row.own], start)
     return simulated(given, entering.reference, _series(given, linear, form, entering, rows=rows))
 
 
 def _series(given: Machine, linear: Parts, form: Fused, entering: Inflow, *, rows: Array) -> Series:
     """What stands in the rows, and what follows from it without a loop: poses and motions."""
     row = form.row
-    readings, stroke = rows[:, row.rounded] * form.scale, rows[:, row.stroke] + entering.strokes
+    sense = rounding(given.resolution) or _copied
+    readings = sense(rows[:, row.reading].T, np.empty((len(form.scale), len(rows)))).T * form.scale
+    stroke = rows[:, row.stroke] + entering.strokes
     return Series(
-        pose=readings @ given.pose.T,
+        pose=rows[:, row.rounded] * form.scale @ given.pose.T,
         motions=rows[:, row.plant] @ linear.motion.T + stroke @ linear.motion_f.T + entering.disturbances @ linear.motion_w.T,
         command=rows[:, row.command].copy(),
         asked=rows[:, row.asked].copy(),
@@ -71,6 +73,7 @@ class _Stepper:
 
     def __init__(self, given: Machine, form: Fused, block: Array) -> None:
         self._sense = rounding(given.resolution) or _copied
+        self._hold, self._seen = holding(given.reach / form.scale), np.zeros(len(form.scale))
         self._proportional = form.proportional if np.any(form.proportional) else None
         self._actuate = Actuation(given)
         self._feeds_back = any(name.startswith("applied.") for name in given.controller.input_names)
@@ -80,11 +83,12 @@ class _Stepper:
     def advance(self, entering: Array) -> None:
         """Take as many samples as there are rows in `entering`, from the block's first row on."""
         proportional, step, actuate, sense, feeds_back = self._proportional, self._step, self._actuate, self._sense, self._feeds_back
+        hold, seen = self._hold, self._seen
         dot, add, subtract = np.dot, np.add, np.subtract
         for entry, (reading, rounded, base, command, asked, given, applied, stroke, taken, computed) in zip(
             entering, self._views, strict=False
         ):
-            sense(reading, rounded)
+            seen = hold(sense(reading, rounded), seen)
             if proportional is None:
                 np.copyto(command, base)
             else:
@@ -93,6 +97,7 @@ class _Stepper:
             if feeds_back:
                 subtract(given, asked, out=applied)
             add(dot(step, taken, out=computed), entry, out=computed)
+        self._seen = seen.copy()  # its place is used again
 
 
 def _views(row: Row, block: Array) -> list[tuple[Array, ...]]:
