@@ -12,7 +12,6 @@ import pytest
 import scipy.io
 
 from flexstage.base.finding import DesignError
-from flexstage.readings.measured.hdf_sound import require_sound
 from flexstage.readings.measured.health import examine
 from flexstage.readings.measured.options import Allow, Kind, Options
 from flexstage.readings.measured.read import read
@@ -55,7 +54,7 @@ def kept(path: Path, options: Options) -> np.ndarray:
 
 def test_what_is_no_record_is_told(tmp_path: Path) -> None:
     assert "there is no such file" in refusal(tmp_path / "none.uff")
-    assert "cannot be read" in refusal(tmp_path)
+    assert "it is a folder" in refusal(tmp_path)
     for content, told in {
         b"": "it is empty",
         b"PK\x03\x04...": "spreadsheets",
@@ -194,6 +193,23 @@ def test_a_head_that_cannot_be_read_is_told_with_its_line(tmp_path: Path) -> Non
     assert "data type is 3" in refusal(path)
 
 
+@pytest.mark.parametrize("form", [Form.UFF, Form.UFF_ASCII])
+@pytest.mark.parametrize("said", ["rate 100.0 Hz", "rate 0 Hz", "rate 1e999 Hz"])
+def test_the_step_in_the_head_counts_not_a_text_beside_it(form: Form, said: str, tmp_path: Path) -> None:
+    path = tmp_path / "a.uff"
+    write(path, in_memory(CHANNELS, 50.0, VALUES), form)
+    path.write_bytes(path.read_bytes().replace(b"rate 50.0 Hz".ljust(len(said)), said.encode().ljust(12)))
+    found = read(path)
+    assert isinstance(found, Record)
+    assert found.rate == 50.0
+
+
+def test_more_values_than_the_head_announces_are_told(tmp_path: Path) -> None:
+    path = plain(tmp_path / "a.uff", Form.UFF_ASCII)
+    path.write_text(path.read_text().replace("         4       400         1", "         4        40         1", 1))
+    assert "it has 400 values where its head announces 40" in refusal(path)
+
+
 # --- gaps, times ---
 
 
@@ -269,6 +285,40 @@ def test_lines_that_cannot_be_read_are_named(tmp_path: Path) -> None:
         _ = kept(path, Options())
 
 
+@pytest.mark.parametrize("at", [2, 3, 6, 9, 200, 399, 400])
+@pytest.mark.parametrize(
+    "wrong", ["{},1,2,3", "{},1", "{},1;2", "{}", "time [s],u1 [V],S1 [um]", "", "{},1.0,1.2.3", "{},1_0,2", "{},1,2\x0c3"]
+)
+def test_one_row_that_is_none_is_named_wherever_it_stands(at: int, wrong: str, tmp_path: Path) -> None:
+    path, lines = tmp_path / "a.csv", lines_of(tmp_path / "a.csv")
+    lines[at] = wrong.format(lines[at].partition(",")[0])
+    path.write_text("\n".join([*lines, ""]))
+    if at == 400 and not wrong:
+        assert len(kept(path, Options())) == 399  # an empty line at the end is none
+        return
+    with pytest.raises(DesignError, match=rf"line {at + 1}\b"):
+        _ = kept(path, Options())
+
+
+def test_a_row_may_end_with_what_divides_it(tmp_path: Path) -> None:
+    path, lines = tmp_path / "a.csv", lines_of(tmp_path / "a.csv")
+    lines[200] += ","
+    path.write_text("\r\n".join(lines))
+    np.testing.assert_array_equal(kept(path, Options()), VALUES)
+
+
+def test_line_ends_of_old_are_refused(tmp_path: Path) -> None:
+    path = tmp_path / "a.csv"
+    path.write_text("\r".join(lines_of(path)), newline="")
+    assert "its lines end in carriage returns alone" in refusal(path)
+
+
+def test_steps_that_are_none_are_told(tmp_path: Path) -> None:
+    path = tmp_path / "a.csv"
+    path.write_text("time [s], u1 [V], S1 [um]\n1e-320, 1, 2\n2e-320, 2, 3\n3e-320, 1, 5\n")
+    assert "its usual step is 1e-320 s, which is none" in refusal(path)
+
+
 def test_missing_fields_are_no_numbers(tmp_path: Path) -> None:
     path = tmp_path / "a.csv"
     lines = lines_of(path)
@@ -320,32 +370,6 @@ def damaged(whole: bytes, draw: np.random.Generator) -> bytes:
             content[place:place] = content[place : place + length]
         content = content or bytearray(b"x")
     return bytes(content)
-
-
-def without_checksums(path: Path) -> Path:
-    with h5py.File(path, "w") as file:
-        file["test/u"], file["test/y"] = np.arange(50.0), np.arange(50.0)
-        file["test"].attrs["fs"], file["test/y"].attrs["unit"] = 50.0, "um"
-    return path
-
-
-def test_an_hdf_file_that_runs_in_circles_is_refused(tmp_path: Path) -> None:
-    """One byte of a group's table: the library follows it for ever, and holds the interpreter's lock meanwhile."""
-    path = without_checksums(tmp_path / "a.h5")
-    require_sound(path, patience=600.0)
-    content = bytearray(path.read_bytes())
-    assert content[6168] == 2, "another version of the library: look for another byte"
-    content[6168] = 85
-    path.write_bytes(content)
-    with pytest.raises(DesignError, match="it is damaged: reading it did not end within 2 s"):
-        require_sound(path, patience=2.0)
-
-
-def test_an_hdf_file_that_crashes_its_library_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    path = without_checksums(tmp_path / "a.h5")
-    (tmp_path / "h5py.py").write_text("import os, signal\nos.kill(os.getpid(), signal.SIGSEGV)")
-    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
-    assert "the library that reads it crashed (signal 11)" in refusal(path)
 
 
 @pytest.mark.parametrize("form", list(Form))

@@ -11,7 +11,7 @@ import numpy as np
 
 from flexstage.base.finding import DesignError, Finding, refuse
 from flexstage.base.number import Array
-from flexstage.readings.measured.record import Record
+from flexstage.readings.measured.record import RATES, Record
 
 _LISTED = 5
 
@@ -24,6 +24,8 @@ def nominal(value: float, uncertainty: float) -> float:
     >>> nominal(1 / 4.88281e-04, 1e-6), nominal(1 / 0.333, 1e-3), nominal(1 / 0.195313, 3e-6), nominal(3.14159, 0.0)
     (2048.0, 3.0, 5.12, 3.14159)
     """
+    if not RATES[0] <= abs(value) <= RATES[1]:
+        return value
     bound = uncertainty * abs(value)
     for digits in range(1, 16):
         for candidate in (float(f"{value:.{digits}g}"), 1.0 / float(f"{1.0 / value:.{digits}g}")):
@@ -192,6 +194,8 @@ def _problem(known: _Steps, where: str) -> Finding | None:
     if not known.typical > 0.0:
         what = f"its times do not rise: the usual step is {known.typical:.4g} s, from {known.first:.6g} s to {known.last:.6g} s"
         return Finding(where, what, "Write times with enough digits to tell samples apart, or state the rate")
+    if not RATES[0] <= 1.0 / known.typical <= RATES[1]:
+        return Finding(where, f"its usual step is {known.typical:.4g} s, which is none", "Write times in s, or state the rate")
     if len(known.jumps) > max(2, 0.01 * known.count):
         share = f"{len(known.jumps)} of {known.count} steps"
         what = f"its samples are not evenly spaced: {share} differ by more than half from {known.typical:.4g} s"

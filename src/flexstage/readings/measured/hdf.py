@@ -2,33 +2,35 @@
 
 from __future__ import annotations
 
+import math
 import os
-from collections.abc import Generator, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from flexstage.base.finding import DesignError, refuse
+from flexstage.base.files import Attribute, Hdf, HdfArray, hdf
+from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array
-from flexstage.readings.measured.hdf_sound import require_sound
 from flexstage.readings.measured.hdf_written import hdf_written
 from flexstage.readings.measured.record import Record, Responses
-from flexstage.readings.measured.variables import OWN_FORM, Attribute, Contents, Variable, complex_of
+from flexstage.readings.measured.variables import OWN_FORM, Contents, Variable
 
 RESPONSES_FORM = "flexstage responses 1"
 BLOCK = 65_536
-_COMPLEX_FIELDS = (("r", "i"), ("real", "imag"))
-_NUMBERS = "fiub"
+_UNWRITTEN, _HARMLESS = 2000, 16_000_000
+"""How many times more numbers an array may have than the file holds (zeros are pressed a thousandfold), and bytes that do no harm."""
+NUMBERS = frozenset("fiub")
+"""Kinds of real numbers, as numpy calls them."""
 
 
 @dataclass(frozen=True, eq=False)
 class Stored:
     """An array in an HDF5 file, or one `column` of a table; `turned` where the file keeps axes in the opposite order, as MAT files do."""
 
-    path: Path
+    file: Hdf
     name: str
     shape: tuple[int, ...]
     is_complex: bool
@@ -47,15 +49,12 @@ class Stored:
 
     def part(self, axis: int, start: int, stop: int) -> Array:
         """The array from `start` to `stop` of an axis, the latter excluded."""
-        chosen = [slice(None)] * len(self.shape)
-        chosen[axis] = slice(start, stop)
+        chosen = [(0, length) for length in self.shape]
+        chosen[axis] = (start, stop)
         return self._read(tuple(reversed(chosen)) if self.turned else tuple(chosen))
 
-    def _read(self, chosen: tuple[slice, ...]) -> Array:
-        with opened(self.path) as file:
-            found: Any = file[self.dataset or self.name]
-            values = np.asarray(found[chosen])
-        values = _as_complex(values[self.column]) if self.column else _as_complex(values)
+    def _read(self, spans: tuple[tuple[int, int], ...]) -> Array:
+        values = self.file.read(self.dataset or self.name, spans, self.column)
         return values.T if self.turned else values
 
 
@@ -78,9 +77,7 @@ class StoredSamples:
 
 
 def hdf_contents(path: Path) -> Contents:
-    """What an HDF5 file holds; nothing is read but texts and attributes.
-
-    Raises `DesignError` where it is none, breaks off, or would take the library down.
+    """What an HDF5 file holds; nothing is read but texts and attributes. Raises `DesignError` where it is none, breaks off or is damaged.
 
     An array has the attributes of its groups too, but for names, which belong to the group.
 
@@ -92,126 +89,61 @@ def hdf_contents(path: Path) -> Contents:
     ...     [(each.name, dict(each.attributes)) for each in hdf_contents(Path(folder) / "a.h5").variables]
     [('test/u', {'fs': 50.0})]
     """
-    require_sound(path)
-    with opened(path) as file:
-        own = attributes_of(file)
-        variables: list[Variable] = []
-        texts = {name: (value,) for name, value in own.items() if isinstance(value, str)}
-        texts |= {name: value for name, value in own.items() if isinstance(value, tuple)}
-        for name, dataset in _datasets(file):
-            if _is_text(dataset):
-                texts[name] = _texts(dataset)
-            else:
-                variables += _variables(path, name, dataset, _inherited(file, name) | attributes_of(dataset))
-        return Contents(str(path), tuple(variables), texts, own)
+    file = recorded(path)
+    own = file.attributes
+    texts = {name: (value,) for name, value in own.items() if isinstance(value, str)}
+    texts |= {name: value for name, value in own.items() if isinstance(value, tuple)}
+    texts |= {each.name: each.texts for each in file.arrays.values() if each.kind == "t"}
+    variables = [variable for each in file.arrays.values() for variable in _variables(file, each)]
+    return Contents(str(path), tuple(variables), texts, own)
 
 
-@contextmanager
-def opened(path: Path) -> Generator[Any]:
-    """The file, open for reading. Raises `DesignError` where it is no HDF5 file, breaks off, or proves damaged while it is read.
+def recorded(path: Path) -> Hdf:
+    """The HDF5 file; raises `DesignError` where its arrays are said to be far larger than what of them was written.
 
     >>> import h5py, tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
-    ...     h5py.File(Path(folder) / "a.h5", "w").close()
-    ...     with opened(Path(folder) / "a.h5") as file:
-    ...         file.mode
-    'r'
+    ...     with h5py.File(Path(folder) / "a.h5", "w") as file:
+    ...         found = file.create_dataset("u", 4_000_000_000, chunks=(1000,))
+    ...     recorded(Path(folder) / "a.h5")
+    Traceback (most recent call last):
+    flexstage.base.finding.DesignError: ...a.h5: u: it is said to have 4e+09 numbers (16 GB), 0 bytes of which are in the file. ...
     """
-    import h5py
-
-    try:
-        with h5py.File(path, "r") as file:
-            yield file
-    except DesignError:
-        raise
-    except Exception as error:  # noqa: BLE001 damaged files make the library stumble in ways of all kinds
-        said = str(error)
-        if "truncated file" in said:
-            numbers = said.partition("truncated file: ")[2].rstrip(")") or said
-            raise refuse(str(path), f"the file breaks off ({numbers})", "HDF5 cannot be read in part: copy or export it anew") from None
-        raise refuse(
-            str(path), f"it cannot be read as HDF5 ({said or type(error).__name__})", "Check the file, or export it anew"
-        ) from None
+    file = hdf(path)
+    require(
+        Finding(f"{path}: {each.name}", _unwritten(each), "They were never written, or pressed beyond belief: export it anew")
+        for each in file.arrays.values()
+        if math.prod(each.shape) * each.size > max(_HARMLESS, _UNWRITTEN * each.stored)
+    )
+    return file
 
 
-def attributes_of(thing: Any) -> dict[str, Attribute]:
-    """Attributes of a file, group or array as texts, floats and tuples of texts; others are left out.
-
-    >>> class Thing:
-    ...     attrs = {"fs": np.array([50]), "unit": b"um", "names": np.array([b"a", b"b"]), "matrix": np.eye(2)}
-    >>> attributes_of(Thing())
-    {'fs': 50.0, 'unit': 'um', 'names': ('a', 'b')}
-    """
-    found: dict[str, Attribute] = {}
-    for name, value in thing.attrs.items():
-        plain = _plain(value)
-        if plain is not None:
-            found[str(name)] = plain
-    return found
+def _unwritten(array: HdfArray) -> str:
+    count = math.prod(array.shape)
+    return f"it is said to have {count:.4g} numbers ({count * array.size / 1e9:.3g} GB), {array.stored} bytes of which are in the file"
 
 
-def _plain(value: Any) -> Attribute | None:
-    if isinstance(value, bytes):
-        return value.decode("utf-8", "replace")
-    if isinstance(value, str):
-        return value
-    array = np.asarray(value)
-    if array.dtype.kind in "OSU":
-        listed = tuple(each.decode("utf-8", "replace") if isinstance(each, bytes) else str(each) for each in array.ravel().tolist())
-        return listed if array.ndim else listed[0]
-    if array.dtype.kind in _NUMBERS and array.size == 1:
-        return float(array.ravel()[0])
-    return None
-
-
-def _datasets(file: Any) -> Iterator[tuple[str, Any]]:
-    """Arrays of a file by their paths, in the order of the file."""
-    import h5py
-
-    found: list[tuple[str, Any]] = []
-    file.visititems(lambda name, thing: found.append((name, thing)) if isinstance(thing, h5py.Dataset) else None)
-    if any(isinstance(name, bytes) for name, _ in found):
-        raise ValueError("a name in it is no text")
-    return iter(found)
-
-
-def _inherited(file: Any, name: str) -> dict[str, Attribute]:
+def _inherited(file: Hdf, name: str) -> dict[str, Attribute]:
+    """The attributes of an array's groups."""
     parts = name.split("/")[:-1]
     found: dict[str, Attribute] = {}
     for depth in range(1, len(parts) + 1):
-        group = file["/".join(parts[:depth])]
-        alone = len(group) == 1
-        found |= {key: value for key, value in attributes_of(group).items() if alone or "name" not in key.lower()}
+        group = "/".join(parts[:depth])
+        alone = sum(each.rpartition("/")[0] == group for each in (*file.groups, *file.arrays)) == 1
+        found |= {key: value for key, value in file.groups[group].items() if alone or "name" not in key.lower()}
     return found
 
 
-def _is_text(dataset: Any) -> bool:
-    return dataset.dtype.kind in "OSU"
-
-
-def _texts(dataset: Any) -> tuple[str, ...]:
-    plain = _plain(dataset[()]) if dataset.shape is not None else ()
-    return (plain,) if isinstance(plain, str) else plain if isinstance(plain, tuple) else ()
-
-
-def _variables(path: Path, name: str, dataset: Any, attributes: dict[str, Attribute]) -> list[Variable]:
+def _variables(file: Hdf, array: HdfArray) -> list[Variable]:
     """The array; of a table its columns; nothing for what has no numbers."""
-    kind = dataset.dtype
-    if dataset.shape is None:
-        return []
-    if kind.names and tuple(kind.names) not in _COMPLEX_FIELDS:
-        columns = [column for column in kind.names if kind[column].kind in _NUMBERS and kind[column].shape == ()]
+    name, attributes = array.name, _inherited(file, array.name) | dict(array.attributes)
+    if array.kind == "V":
         return [
-            Stored(path, f"{name}/{column}", dataset.shape, is_complex=False, attributes=attributes, dataset=name, column=column)
-            for column in columns
+            Stored(file, f"{name}/{column}", array.shape, is_complex=False, attributes=attributes, dataset=name, column=column)
+            for column, kind in array.columns.items()
+            if kind in NUMBERS
         ]
-    is_complex = kind.kind == "c" or bool(kind.names)
-    return [Stored(path, name, dataset.shape, is_complex, attributes)] if is_complex or kind.kind in _NUMBERS else []
-
-
-def _as_complex(values: Array) -> Array:
-    names = values.dtype.names
-    return complex_of(values[names[0]], values[names[1]]) if names in _COMPLEX_FIELDS else values
+    return [Stored(file, name, array.shape, array.kind == "c", attributes)] if array.kind in (*NUMBERS, "c") else []
 
 
 def write_hdf(path: str | os.PathLike[str], what: Record | Responses) -> None:

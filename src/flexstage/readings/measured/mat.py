@@ -3,21 +3,21 @@
 from __future__ import annotations
 
 import os
+import sys
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from flexstage.base.files import Attribute, Hdf, HdfArray, mat
 from flexstage.base.finding import refuse
 from flexstage.base.number import Array
 from flexstage.base.store import atomic_write
-from flexstage.readings.measured.hdf import BLOCK, RESPONSES_FORM, Stored, opened
-from flexstage.readings.measured.hdf_sound import require_sound
+from flexstage.readings.measured.hdf import BLOCK, NUMBERS, RESPONSES_FORM, Stored, recorded
 from flexstage.readings.measured.hdf_written import hdf_written
-from flexstage.readings.measured.mat_tags import tag_problem
 from flexstage.readings.measured.record import Channel, Record, Responses
-from flexstage.readings.measured.variables import OWN_FORM, Attribute, Contents, Held, Variable
+from flexstage.readings.measured.variables import OWN_FORM, Contents, Held, Variable
 
 _LARGEST = 2**31 - 1
 _HEAD = 512
@@ -65,90 +65,49 @@ def _with_siblings(name: str, value: Variable, arrays: list[tuple[str, Variable]
     if isinstance(value, Held):
         return Held(name, value.values, words)
     return (
-        Stored(value.path, name, value.shape, value.is_complex, words, value.dataset, turned=True) if isinstance(value, Stored) else value
+        Stored(value.file, name, value.shape, value.is_complex, words, value.dataset, turned=True) if isinstance(value, Stored) else value
     )
 
 
 def _version_5(path: Path) -> list[tuple[str, Any]]:
-    import scipy.io
-
-    advice = "It breaks off or is damaged: copy or save it anew (MAT files of version 5 cannot be read in part)"
-    problem = tag_problem(path)
-    if problem is not None:
-        raise refuse(str(path), f"it cannot be read as a MAT file ({problem}); it has {path.stat().st_size} bytes", advice)
-    try:
-        content = scipy.io.loadmat(path, appendmat=False)
-    except Exception as error:  # noqa: BLE001 damaged files make scipy stumble in ways of all kinds
-        said = f"it cannot be read as a MAT file ({error or type(error).__name__}); it has {path.stat().st_size} bytes"
-        raise refuse(str(path), said, advice) from None
-    return [each for name, value in content.items() if not name.startswith("__") for each in _flat(name, value)]
-
-
-def _flat(name: str, value: Any) -> Iterator[tuple[str, Any]]:
-    """Arrays and texts of a value, those of structures and cells by their paths."""
-    array = np.asarray(value)
-    if array.dtype.kind == "U":
-        yield name, tuple(text.rstrip() for text in array.ravel().tolist()) or ("",)
-    elif array.dtype.names:
-        for index, each in enumerate(array.ravel()):
-            inner = name if array.size == 1 else f"{name}({index + 1})"
-            for key in array.dtype.names:
-                yield from _flat(f"{inner}.{key}", each[key])
-    elif array.dtype.kind == "O":
-        yield from _cell(name, array)
-    elif array.dtype.kind in "fiubc":
-        yield name, Held(name, array)
-
-
-def _cell(name: str, array: Array) -> Iterator[tuple[str, Any]]:
-    members = [np.asarray(each) for each in array.ravel()]
-    if members and all(each.dtype.kind == "U" for each in members):
-        yield name, tuple(str(each.ravel()[0]).rstrip() if each.size else "" for each in members)
-    else:
-        for index, each in enumerate(members):
-            yield from _flat(f"{name}({index + 1})", each)
+    return [(name, value if isinstance(value, tuple) else Held(name, value)) for name, value in mat(path)]
 
 
 def _version_73(path: Path) -> list[tuple[str, Any]]:
-    require_sound(path)
-    with opened(path) as file:
-        return [each for name in map(_text_of, file) if name != _REFERENCES for each in _node(path, file, name, file[name])]
+    file = recorded(path)
+    outside = (array for name, array in file.arrays.items() if not name.startswith(f"{_REFERENCES}/"))
+    return [each for array in outside for each in _node(file, array.name.replace("/", "."), array, (array.name,))]
 
 
-def _text_of(name: str | bytes) -> str:
-    """A name; those that are no UTF-8 come as bytes, and no array is found by them."""
-    if isinstance(name, bytes):
-        raise ValueError(f"a name in it is no text: {name!r}")
-    return name
-
-
-def _node(path: Path, file: Any, name: str, node: Any) -> Iterator[tuple[str, Any]]:
-    """Arrays and texts of a node of a file of version 7.3; `name` is its path as MATLAB writes it."""
-    import h5py
-
-    if isinstance(node, h5py.Group):
-        for key in node:
-            yield from _node(path, file, f"{name}.{key}", node[key])
-        return
-    kind = node.attrs.get("MATLAB_class", b"")
-    kind = kind.decode() if isinstance(kind, bytes) else str(kind)
-    if node.attrs.get("MATLAB_empty", 0):
+def _node(file: Hdf, name: str, array: HdfArray, above: tuple[str, ...]) -> Iterator[tuple[str, Any]]:
+    """Arrays and texts of an array of a file of version 7.3; `name` is its path as MATLAB writes it, `above` what refers to it."""
+    kind = array.attributes.get("MATLAB_class", "")
+    if array.attributes.get("MATLAB_empty", 0):
         if kind == "char":
             yield name, ("",)
-    elif kind == "char":
-        yield name, tuple("".join(map(chr, line)).rstrip() for line in np.asarray(node[()]).T.tolist())
-    elif node.dtype.kind == "O":
-        yield from _referred(path, file, name, node)
-    elif node.dtype.kind in "fiub" or node.dtype.names:
-        shape = tuple(reversed(node.shape))
-        yield name, Stored(path, name, shape, bool(node.dtype.names), dataset=node.name, turned=True)
+    elif kind == "char" and array.kind in NUMBERS:
+        yield name, tuple("".join(map(_letter, line)).rstrip() for line in np.atleast_2d(file.read(array.name).T).tolist())
+    elif array.kind == "r":
+        yield from _referred(file, name, array, above)
+    elif array.kind in (*NUMBERS, "c"):
+        yield name, Stored(file, name, tuple(reversed(array.shape)), array.kind == "c", dataset=array.name, turned=True)
 
 
-def _referred(path: Path, file: Any, name: str, node: Any) -> Iterator[tuple[str, Any]]:
-    """Members of a cell or of a structure's field; texts alone are a list."""
-    members = [file[reference] for reference in np.asarray(node[()]).T.ravel()]
-    inner = [each for index, member in enumerate(members) for each in _node(path, file, f"{name}({index + 1})", member)]
-    if len(inner) == len(members) and all(isinstance(value, tuple) and len(value) == 1 for _, value in inner):
+def _letter(code: float) -> str:
+    """The character of a code, the sign of what is unknown for one that is none."""
+    return chr(int(code)) if 0 <= code <= sys.maxunicode else "\ufffd"
+
+
+def _referred(file: Hdf, name: str, array: HdfArray, above: tuple[str, ...]) -> Iterator[tuple[str, Any]]:
+    """Members of a cell or of a structure's field, of a group all its arrays; texts alone are a list."""
+    inner: list[tuple[str, Any]] = []
+    for index, member in enumerate(array.references):
+        if member in above:
+            raise refuse(f"{file.path}: {array.name}", "a cell of it holds itself", "It is damaged: save it anew")
+        for each in [member] if member in file.arrays else [each for each in file.arrays if each.startswith(f"{member}/")]:
+            below = each[len(member) :].replace("/", ".")
+            inner += _node(file, f"{name}({index + 1}){below}", file.arrays[each], (*above, each))
+    if len(inner) == len(array.references) and all(isinstance(value, tuple) and len(value) == 1 for _, value in inner):
         yield name, tuple(value[0] for _, value in inner)
     else:
         yield from inner

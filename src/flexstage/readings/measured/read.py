@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
+from flexstage.base.files import require_regular
 from flexstage.base.finding import DesignError, refuse
 from flexstage.readings.measured.hdf import hdf_contents
 from flexstage.readings.measured.mat import is_version_73, mat_contents
@@ -63,11 +64,10 @@ def read(path: str | os.PathLike[str], options: Options = _DEFAULT) -> Record | 
 
 def _opening(path: Path) -> bytes:
     """The first bytes. Raises `DesignError` where there is no file, none that can be read, or an empty one."""
+    require_regular(path)
     try:
         with path.open("rb") as stream:
             start = stream.read(_START)
-    except FileNotFoundError:
-        raise refuse(str(path), "there is no such file", "Check the path") from None
     except OSError as error:
         raise refuse(str(path), f"it cannot be read ({error.strerror})", "Name a file that can be read") from None
     if not start.strip():

@@ -18,6 +18,9 @@ from flexstage.base.finding import Finding, nearest, require
 from flexstage.base.labelled import ratio_units
 from flexstage.base.number import Array
 
+RATES = (1e-12, 1e15)
+"""Sampling rates there can be [Hz]."""
+
 
 class Role(Enum):
     """What a channel was in the test."""
@@ -308,6 +311,6 @@ def name_findings(where: str, channels: tuple[Channel, ...]) -> list[Finding]:
 
 
 def _rate_findings(where: str, rate: float) -> list[Finding]:
-    if np.isfinite(rate) and rate > 0.0:
+    if RATES[0] <= rate <= RATES[1]:
         return []
-    return [Finding(where, f"the sampling rate is {rate:g} Hz", "Give a positive rate")]
+    return [Finding(where, f"the sampling rate is {rate:g} Hz", f"Give a rate between {RATES[0]:g} and {RATES[1]:g} Hz")]

@@ -10,10 +10,11 @@ import re
 from collections import Counter
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import Protocol, TypeAlias
+from typing import Protocol
 
 import numpy as np
 
+from flexstage.base.files import Attribute
 from flexstage.base.finding import refuse
 from flexstage.base.number import Array
 from flexstage.readings.measured.clock import Clock, Told, longest_stretch, settled
@@ -21,7 +22,6 @@ from flexstage.readings.measured.options import Allow, Options, assigned, number
 from flexstage.readings.measured.record import Channel, InMemory, Record, Role, Samples
 from flexstage.readings.measured.unit import plain_unit
 
-Attribute: TypeAlias = str | float | tuple[str, ...]
 _BLOCK = 262_144
 OWN_FORM = "flexstage record 1"
 """What files written here say of themselves: their `samples` are (n, channels), however few."""

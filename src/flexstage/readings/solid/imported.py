@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 from netgen import occ
 
+from flexstage.base.files import require_regular
 from flexstage.base.finding import DesignError, Finding, refuse, require
 from flexstage.base.number import Array, stack
 from flexstage.mechanism.mechanism import Mechanism
@@ -156,6 +157,7 @@ def _version_findings(path: Path, sha256: str) -> Iterator[Finding]:
 
 
 def _sha256(path: Path) -> str:
+    require_regular(path)
     try:
         return hashlib.sha256(path.read_bytes()).hexdigest()
     except (OSError, ValueError) as error:
@@ -164,7 +166,9 @@ def _sha256(path: Path) -> str:
 
 
 def _solid(path: Path) -> occ.TopoDS_Shape:
-    if not path.read_bytes()[:200].lstrip().startswith(b"ISO-10303-21"):
+    with path.open("rb") as stream:
+        start = stream.read(200)
+    if not start.lstrip().startswith(b"ISO-10303-21"):
         raise refuse(str(path), "this is no STEP file (it does not begin with ISO-10303-21)", "Export the solid as STEP")
     if path.suffix.lower() not in {".step", ".stp"}:
         raise refuse(str(path), f'its name ends in "{path.suffix}"', "Name it .step or .stp")

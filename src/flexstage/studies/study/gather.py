@@ -6,7 +6,6 @@ bytes, however often it was interrupted on the way.
 
 from __future__ import annotations
 
-import contextlib
 import os
 import shutil
 from pathlib import Path
@@ -15,12 +14,13 @@ from typing import Any
 import numpy as np
 
 import flexstage
+from flexstage.base.files import Hdf
 from flexstage.base.finding import refuse
 from flexstage.base.number import Array
 from flexstage.base.store import atomic_write
 from flexstage.studies.study.definition import Study
 from flexstage.studies.study.evaluate import Piece
-from flexstage.studies.study.store import FORMAT, columns_of, gathered, opened, read_failures, read_piece, waiting
+from flexstage.studies.study.store import FORMAT, columns_of, gathered, made_by, opened, read_failures, read_piece, stored_failures, waiting
 
 _ROWS = 65_536
 _TABLES = ("variables", "responses", "failed")
@@ -103,17 +103,17 @@ def _written(place: Path, path: Path, pieces: dict[int, Path], what: tuple[Study
 
     done = gathered(path)
     fresh = {start: each for start, each in pieces.items() if not len(done) or not done[start // what[1]]}
-    with opened(path) if path.exists() else contextlib.nullcontext() as old:
-        failures: Failures = [] if old is None else [(int(design), reason.decode()) for design, reason in old["failures"][:]]
-        failures += [(start + row, reason) for start, each in fresh.items() for row, reason in read_failures(each).items()]
-        _reserve(place, needed(what[0], failures))
-        try:
-            with h5py.File(place, "r+", libver="v110", locking=False) as file:
-                _frame(file, *what)
-                _fill(file, old, fresh)
-                _put_failures(file, sorted(failures))
-        except RuntimeError as error:  # what is left to write when a file is closed
-            raise OSError(str(error)) from None
+    old = opened(path) if path.exists() else None
+    failures: Failures = [] if old is None else stored_failures(old)
+    failures += [(start + row, reason) for start, each in fresh.items() for row, reason in read_failures(each).items()]
+    _reserve(place, needed(what[0], failures))
+    try:
+        with h5py.File(place, "r+", libver="v110", locking=False) as file:
+            _frame(file, *what)
+            _fill(file, old, fresh)
+            _put_failures(file, sorted(failures))
+    except RuntimeError as error:  # what is left to write when a file is closed
+        raise OSError(str(error)) from None
 
 
 def _reserve(place: Path, size: int) -> None:
@@ -157,11 +157,11 @@ def _chunks(count: int, width: int) -> tuple[int, int]:
     return min(count, max(1, _ROWS // width)), width
 
 
-def _fill(new: Any, old: Any | None, pieces: dict[int, Path]) -> None:
+def _fill(new: Any, old: Hdf | None, pieces: dict[int, Path]) -> None:
     """What is there, block by block: neither file need fit into memory."""
     size, count = int(new.attrs["piece"]), int(new.attrs["planned"])
-    done = np.zeros(len(new["computed"]), dtype=bool) if old is None else old["computed"][:].astype(bool)
-    made = set[str]() if old is None else {str(each) for each in old.attrs["made"]}
+    done = np.zeros(len(new["computed"]), dtype=bool) if old is None else old.read("computed").astype(bool)
+    made = set[str]() if old is None else set(made_by(old))
     step = size * max(1, _ROWS // size)
     for start in range(0, count, step):
         rows = slice(start, min(start + step, count))
@@ -181,11 +181,11 @@ def _put_failures(new: Any, failures: Failures) -> None:
         new["failures"][first : first + len(some)] = np.array(some, dtype=new["failures"].dtype)
 
 
-def _put(new: Any, old: Any | None, rows: slice, own: list[Piece]) -> None:
+def _put(new: Any, old: Hdf | None, rows: slice, own: list[Piece]) -> None:
     """The designs of some rows: those of the old file, and over them those of the pieces."""
     for name in _TABLES:
         shape = (rows.stop - rows.start, *new[name].shape[1:])
-        table = np.full(shape, new[name].fillvalue, dtype=new[name].dtype) if old is None else old[name][rows]
+        table = np.full(shape, new[name].fillvalue, dtype=new[name].dtype) if old is None else old.read(name, [(rows.start, rows.stop)])
         for found in own:
             values = _failed(found) if name == "failed" else getattr(found, name)
             table[found.start - rows.start : found.start - rows.start + len(values)] = values

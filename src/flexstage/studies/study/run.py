@@ -21,7 +21,7 @@ from flexstage.studies.study.definition import Study
 from flexstage.studies.study.engine import engine_covers, engine_of
 from flexstage.studies.study.evaluate import nominal
 from flexstage.studies.study.gather import gather, require_room
-from flexstage.studies.study.store import Results, computed, differences, folder_of, opened, read_results, waiting
+from flexstage.studies.study.store import Results, computed, count_of, differences, folder_of, opened, read_results, waiting
 from flexstage.studies.study.work import worked
 
 PIECE = 256
@@ -104,10 +104,10 @@ def _tell(progress: Progress | None, study: Study, count: int) -> None:
 def _there(target: Path, study: Study, size: int) -> Array:
     """Which pieces are there; results that were cut in another way are refused."""
     if target.exists():
-        with opened(target) as file:
-            if int(file.attrs["piece"]) != size or len(file["computed"]) != -(-study.plan.designs // size):
-                what = f"its designs are kept in pieces of {file.attrs['piece']}, not {size}"
-                raise refuse(os.fspath(target), what, "Resume with the version of flexstage that wrote it, or name another file")
+        file = opened(target)
+        if count_of(file, "piece") != size or file.arrays["computed"].shape != (-(-study.plan.designs // size),):
+            what = f"its designs are kept in pieces of {count_of(file, 'piece')}, not {size}"
+            raise refuse(os.fspath(target), what, "Resume with the version of flexstage that wrote it, or name another file")
     return computed(target, size, study.plan.designs)
 
 

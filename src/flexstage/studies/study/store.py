@@ -16,10 +16,10 @@ from zipfile import BadZipFile
 
 import numpy as np
 
-from flexstage.base.finding import Finding, refuse
+from flexstage.base.files import Attribute, Hdf, hdf
+from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.number import Array
 from flexstage.base.store import atomic_write
-from flexstage.readings.measured.hdf_sound import require_sound
 from flexstage.studies.study.definition import Study
 from flexstage.studies.study.evaluate import Piece
 
@@ -184,36 +184,54 @@ def gathered(path: Path) -> Array:
     """
     if not path.exists():
         return np.zeros(0, dtype=bool)
-    with opened(path) as file:
-        return np.asarray(file["computed"][:], dtype=bool)
+    return opened(path).read("computed").astype(bool)
 
 
-@contextmanager
-def opened(path: Path) -> Generator[Any]:
-    """The results file, open for reading; nobody writes to one that is there, so that no lock is needed.
+def opened(path: Path) -> Hdf:
+    """The results file, read by the process that reads all HDF5 files; nobody writes to one that is there, so that no lock is needed.
 
     Raises `FileNotFoundError` for a file that is not there, `DesignError` for one that is none.
 
-    >>> with opened(Path("nowhere/results.h5")):
-    ...     pass
+    >>> opened(Path("nowhere/results.h5"))
     Traceback (most recent call last):
         ...
     FileNotFoundError: ...
     """
-    import h5py
+    path.stat()
+    file = hdf(path)
+    if file.attributes.get("format") != FORMAT:
+        raise refuse(os.fspath(path), "it holds no results of a study", f'Name another file: its format is to be "{FORMAT}"')
+    require(_missing(file))
+    return file
 
-    where = os.fspath(path)
-    require_sound(path)
-    try:
-        with h5py.File(path, "r", locking=False) as file:
-            if file.attrs.get("format") != FORMAT:
-                raise refuse(where, "it holds no results of a study", f'Name another file: its format is to be "{FORMAT}"')
-            yield file
-    except FileNotFoundError:
-        raise
-    except (OSError, KeyError) as error:
-        what = " ".join(str(error.args[-1] if error.args else error).split())
-        raise refuse(where, f"it cannot be read as results of a study ({what})", "Take it away, or name another file") from None
+
+def _missing(file: Hdf) -> Iterator[Finding]:
+    """What results have and this file has not, or not as it should."""
+    advice = "It was changed or is damaged: take it away, or name another file"
+    attributes = file.attributes
+    wrong = [key for key in ("planned", "piece") if not _is_count(attributes.get(key))] + ["study"] * (
+        not isinstance(attributes.get("study"), str)
+    )
+    if wrong:
+        yield Finding(os.fspath(file.path), f"its {', '.join(wrong)} cannot be read", advice)
+        return
+    planned, size = (int(float(str(attributes[key]))) for key in ("planned", "piece"))
+    shapes = {name: (planned, len(_labelled(file, name, "names"))) for name in ("variables", "responses")}
+    for name, shape in {**shapes, "computed": (-(-planned // size),), "failed": (planned,)}.items():
+        found = file.arrays.get(name)
+        if found is None or found.shape != shape or found.kind not in ("f", "u", "i", "b"):
+            yield Finding(f"{file.path}: {name}", f"shape {found.shape if found else 'none'} where {shape} is expected", advice)
+    if "failures" not in file.arrays or dict(file.arrays["failures"].columns) != {"design": "i", "reason": "t"}:
+        yield Finding(f"{file.path}: failures", "it has no designs and reasons", advice)
+    if "facts" not in file.groups:
+        yield Finding(f"{file.path}: facts", "they are not there", advice)
+    for name in ("variables", "responses"):
+        if len(_labelled(file, name, "units")) != shapes[name][1]:
+            yield Finding(f"{file.path}: {name}", "it has not as many units as names", advice)
+
+
+def _is_count(value: Attribute | None) -> bool:
+    return isinstance(value, float) and 1.0 <= value < 2.0**53 and value.is_integer()
 
 
 def read_results(path: str | os.PathLike[str]) -> Results:
@@ -231,47 +249,68 @@ def read_results(path: str | os.PathLike[str]) -> Results:
     for _ in range(_ATTEMPTS):  # a piece that is gathered while we look is gone from the folder, and in the file the next time
         pieces = list(waiting(target).values())
         try:
-            with opened(target) as file:
-                return _read(file, pieces)
+            return _read(opened(target), pieces)
         except FileNotFoundError:
             continue
     raise refuse(where, "its pieces are gathered faster than they can be read", "Try again")
 
 
-def _read(file: Any, pieces: list[Path]) -> Results:
-    size, planned = int(file.attrs["piece"]), int(file.attrs["planned"])
-    done = file["computed"][:].astype(bool)
+def _read(file: Hdf, pieces: list[Path]) -> Results:
+    size, planned = (count_of(file, key) for key in ("piece", "planned"))
+    done = file.read("computed").astype(bool)
     more = [found for found in map(read_piece, pieces) if not done[found.start // size]]
     there = np.repeat(done, size)[:planned]
     for found in more:
         there[found.start : found.start + len(found.variables)] = True
     designs = np.flatnonzero(there)
-    failures = {int(design): reason.decode() for design, reason in file["failures"][:]}
+    failures = dict(stored_failures(file))
     failures |= {found.start + row: reason for found in more for row, reason in found.failures.items()}
     return Results(
         designs,
-        _table(file["variables"], [(found.start, found.variables) for found in more], there),
-        _table(file["responses"], [(found.start, found.responses) for found in more], there),
+        _table(file.read("variables"), [(found.start, found.variables) for found in more], there),
+        _table(file.read("responses"), [(found.start, found.responses) for found in more], there),
         dict(sorted(failures.items())),
-        names=_labels(file, "names"),
-        units=_labels(file, "units"),
+        names=(_labelled(file, "variables", "names"), _labelled(file, "responses", "names")),
+        units=(_labelled(file, "variables", "units"), _labelled(file, "responses", "units")),
         planned=planned,
-        facts={key.replace("|", "/"): str(value) for key, value in file["facts"].attrs.items()},
-        text=str(file.attrs["study"]),
-        made=tuple(sorted({*(str(each) for each in file.attrs["made"]), *(found.made for found in more)})),
+        facts=_facts(file),
+        text=str(file.attributes["study"]),
+        made=tuple(sorted({*made_by(file), *(found.made for found in more)})),
     )
 
 
-def _table(data: Any, more: list[tuple[int, Array]], there: Array) -> Array:
+def count_of(file: Hdf, key: str) -> int:
+    """A number of designs that results state: `planned`, or those of a `piece`."""
+    return int(float(str(file.attributes[key])))
+
+
+def made_by(file: Hdf) -> tuple[str, ...]:
+    """What computed results, one text each."""
+    made = file.attributes.get("made", ())
+    return made if isinstance(made, tuple) else (str(made),)
+
+
+def stored_failures(file: Hdf) -> list[tuple[int, str]]:
+    """Failures by design number, with their reasons."""
+    if not file.arrays["failures"].shape[0]:
+        return []
+    return list(zip(file.read("failures", column="design").tolist(), file.texts("failures", "reason"), strict=True))
+
+
+def _facts(file: Hdf) -> dict[str, str]:
+    return {key.replace("|", "/"): str(value) for key, value in file.groups["facts"].items()}
+
+
+def _table(values: Array, more: list[tuple[int, Array]], there: Array) -> Array:
     """All designs that are there, in order of their numbers."""
-    values = np.asarray(data[:])
     for start, rows in more:
         values[start : start + len(rows)] = rows
     return values if there.all() else values[there]
 
 
-def _labels(file: Any, label: str) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    return tuple(file["variables"].attrs[label].tolist()), tuple(file["responses"].attrs[label].tolist())
+def _labelled(file: Hdf, name: str, label: str) -> tuple[str, ...]:
+    found = file.arrays[name].attributes.get(label, ()) if name in file.arrays else ()
+    return found if isinstance(found, tuple) else (str(found),)
 
 
 def differences(path: Path, study: Study) -> Iterator[Finding]:
@@ -286,8 +325,7 @@ def differences(path: Path, study: Study) -> Iterator[Finding]:
     ...     [each.what.partition(",")[0] for each in differences(path, neck_study(designs=8))]
     ['plan was sampling sobol']
     """
-    with opened(path) as file:
-        before = {key.replace("|", "/"): str(value) for key, value in file["facts"].attrs.items()}
+    before = _facts(opened(path))
     now = study.facts
     for key in [*before, *(key for key in now if key not in before)]:
         if before.get(key) != now.get(key):

@@ -7,18 +7,21 @@ Columns are divided by semicolons, tabs, commas or blanks; decimal commas are un
 from __future__ import annotations
 
 import csv
+import io
 import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from flexstage.base.finding import refuse
+from flexstage.base.files import require_regular
+from flexstage.base.finding import Finding, refuse, require
 from flexstage.readings.measured.options import numbered
 from flexstage.readings.measured.unit import plain_unit, unit_problem
 
 _HEAD = 1 << 18
 _LOOKED_AT = 6
-_NUMBER = re.compile(r"[-+]?(\d+([.,]\d*)?|[.,]\d+)([eEdD][-+]?\d+)?")
+NUMBER = re.compile(r"[-+]?(\d+([.,]\d*)?|[.,]\d+)([eEdD][-+]?\d+)?", re.ASCII)
+"""A number as files print it."""
 MISSING = frozenset({"", "nan", "-nan", "na", "n/a", "#n/a", "null", "none", "-", "--", "inf", "-inf", "+inf"})
 """Fields that stand for a number that is missing, in small letters."""
 _COMMENT = re.compile(r"\s*(#|%|//|\*)+\s?")
@@ -55,6 +58,20 @@ class Layout:
         """
         return _fields(line, self.delimiter)
 
+    def fits(self, line: str) -> bool:
+        """Whether a line has as many fields as there are columns; it may end with what divides them.
+
+        >>> two = Layout(("a", "b"), ("", ""), ",", ".", 0, 1, "utf-8", (), None)
+        >>> two.fits("1,2"), two.fits("1,2,"), two.fits("1,2,3"), two.fits("1")
+        (True, True, False, False)
+        """
+        expected = len(self.names)
+        if self.delimiter is None or '"' in line:
+            fields = self.fields(line)
+            return len(fields) == expected or (len(fields) == expected + 1 and not fields[-1])
+        count = line.count(self.delimiter) + 1
+        return count == expected or (count == expected + 1 and line.rstrip("\r ").endswith(self.delimiter))
+
 
 def layout_of(path: Path) -> Layout:
     r"""The layout of a CSV file; raises `DesignError` where it is no text, has no numbers or no header.
@@ -67,6 +84,7 @@ def layout_of(path: Path) -> Layout:
     >>> found.names, found.units, found.delimiter, found.decimal, found.line
     (('time', 'u1'), ('s', 'V'), ';', ',', 2)
     """
+    require_regular(path)
     with path.open("rb") as stream:
         raw = stream.read(_HEAD)
     lines, encoding = _lines(raw, path)
@@ -74,11 +92,32 @@ def layout_of(path: Path) -> Layout:
         form = _form(lines[number : number + _LOOKED_AT]) if _may_be_numbers(line) else None
         if form is not None:
             delimiter, decimal, columns = form
+            require(_lost(path, lines[:number], form))
             head = [_COMMENT.sub("", each) for each in lines[:number]]
             names, units = _header(head, delimiter, columns, path)
             start = sum(len(each.encode(encoding)) for each in lines[:number]) + (3 if raw.startswith(b"\xef\xbb\xbf") else 0)
             return Layout(names, units, delimiter, decimal, start, number + 1, encoding, tuple(each.strip() for each in head), _rate(head))
     raise refuse(str(path), f"no line of numbers was found in its first {len(lines)} lines", _EXAMPLE)
+
+
+def _lost(path: Path, above: list[str], form: tuple[str | None, str, int]) -> Iterator[Finding]:
+    """The line that parts rows of numbers above from those below: it would make a header of them all."""
+    rows = [number for number, line in enumerate(above) if _is_row(line)]
+    if rows:
+        columns = form[2]
+        broken = (at for at in range(rows[0], len(above)) if at not in rows or len(_fields(above[at], form[0])) != columns)
+        at = next(broken, rows[-1])
+        line, count = above[at].strip()[:60], len(_fields(above[at], form[0]))
+        what = f'it has {count} fields where {columns} are expected, numbers before and after it: "{line}"'
+        yield Finding(f"{path}: line {at + 1}", what, f'Mend it; if line {rows[0] + 1} is no row of numbers, begin that with "#"')
+
+
+def _is_row(line: str) -> bool:
+    """Whether a line is two numbers or more and nothing else, however divided."""
+    if not _may_be_numbers(line):
+        return False
+    divided = (_fields(line, delimiter) for delimiter in (";", "\t", ",", None))
+    return any(len(fields) > 1 and all(NUMBER.fullmatch(field) for field in fields) for fields in divided)
 
 
 def _lines(raw: bytes, path: Path) -> tuple[list[str], str]:
@@ -88,7 +127,9 @@ def _lines(raw: bytes, path: Path) -> tuple[list[str], str]:
     if b"\x00" in raw:
         raise refuse(str(path), "it is neither text nor a known form of record", "Export UFF, MAT, HDF5 or CSV")
     raw = raw.removeprefix(b"\xef\xbb\xbf")
-    lines = raw.splitlines(keepends=True)
+    if b"\r" in raw and b"\n" not in raw:
+        raise refuse(str(path), "its lines end in carriage returns alone", "Save it with line feeds")
+    lines = io.BytesIO(raw).readlines()
     whole = lines[:-1] if len(lines) > 1 and len(raw) > _HEAD - 8 else lines
     try:
         return [line.decode("utf-8") for line in whole], "utf-8"
@@ -108,7 +149,7 @@ def _form(lines: list[str]) -> tuple[str | None, str, int] | None:
             continue
         split = [_fields(line, delimiter) for line in sure]
         filled = [field for fields in split for field in fields if field.lower() not in MISSING]
-        if len({len(fields) for fields in split}) != 1 or not filled or not all(_NUMBER.fullmatch(field) for field in filled):
+        if len({len(fields) for fields in split}) != 1 or not filled or not all(NUMBER.fullmatch(field) for field in filled):
             continue
         commas = any("," in field for field in filled)
         if not (commas and any("." in field for field in filled)):

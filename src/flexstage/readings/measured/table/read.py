@@ -121,10 +121,9 @@ def _clock(path: Path, layout: Layout, samples: TableSamples, time: int | None, 
     scale = _TIME_SCALES.get(layout.units[time], 1.0)
     times = replace(samples, columns=(time,))
     told = Told(stated, allow_gaps=Allow.GAPS in options.allow)
-    clock = settled(
+    return settled(
         _times(times, scale), lambda number: float(times.read(number, number + 1)[0, 0]) * scale, told, f"{path}: {layout.names[time]}"
     )
-    return replace(clock, start=float(own["start"])) if own else clock
 
 
 def _times(samples: TableSamples, scale: float) -> Iterator[Array]:

@@ -10,7 +10,7 @@ import numpy as np
 
 from flexstage.base.finding import refuse
 from flexstage.base.number import Array
-from flexstage.readings.measured.table.layout import MISSING, Layout
+from flexstage.readings.measured.table.layout import MISSING, NUMBER, Layout
 
 STRIDE = 4096
 _PIECE = 1 << 22
@@ -84,17 +84,17 @@ class TableSamples:
         with self.path.open("rb") as stream:
             stream.seek(begin)
             raw = stream.read(end - begin)
-        texts = raw.decode(self.layout.encoding).splitlines()[start - first * STRIDE : stop - first * STRIDE]
+        texts = raw.decode(self.layout.encoding, "replace").split("\n")[start - first * STRIDE : stop - first * STRIDE]
         return self._numbers(texts, start)
 
     def _numbers(self, texts: list[str], start: int) -> Array:
         plain = [text.replace(",", ".") for text in texts] if self.layout.decimal == "," else texts
-        source = io.StringIO("\n".join(plain))
+        source = io.StringIO("\n".join(plain), newline="\n")
         try:
             found = np.loadtxt(source, comments=None, delimiter=self.layout.delimiter, usecols=self.columns, ndmin=2, quotechar='"')
         except ValueError:
             found = np.zeros((0, 0))
-        if found.shape == (len(texts), len(self.columns)):
+        if found.shape == (len(texts), len(self.columns)) and all(map(self.layout.fits, texts)):
             return found
         return np.array([self._line(text, start + number) for number, text in enumerate(texts)]).reshape(-1, len(self.columns))
 
@@ -102,16 +102,15 @@ class TableSamples:
         """One line, field by field; raises `DesignError` that names it where it cannot be read."""
         fields, expected = self.layout.fields(text), len(self.layout.names)
         where = f"{self.path}: line {self.layout.line + number}"
-        if len(fields) < expected:
+        if not self.layout.fits(text):
             what = f'it has {len(fields)} of {expected} fields: "{text.strip()[:_LISTED]}"'
-            raise refuse(where, what, "Mend the line or cut the file before it")
+            raise refuse(where, what, "Mend the line, or take it away")
         return [self._field(fields[column], f"{where}, {self.layout.names[column]}") for column in self.columns]
 
     def _field(self, text: str, where: str) -> float:
         plain = text.replace(",", ".") if self.layout.decimal == "," else text
-        try:
+        if NUMBER.fullmatch(plain):
             return float(plain.lower().replace("d", "e"))
-        except ValueError:
-            if plain.lower() in MISSING:
-                return float("nan")
-            raise refuse(where, f'"{text[:_LISTED]}" is not a number', 'Write "nan" where a sample is missing') from None
+        if plain.lower() in MISSING:
+            return float("nan")
+        raise refuse(where, f'"{text[:_LISTED]}" is not a number', 'Write "nan" where a sample is missing')

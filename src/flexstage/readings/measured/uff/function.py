@@ -6,11 +6,12 @@ Fields stand in fixed columns; programs that pad differently are read as far as 
 
 from __future__ import annotations
 
+import math
 import re
 from dataclasses import dataclass
 
 from flexstage.readings.measured.clock import nominal, printed_uncertainty
-from flexstage.readings.measured.record import Role
+from flexstage.readings.measured.record import RATES, Role
 from flexstage.readings.measured.unit import plain_unit
 
 TIME, RESPONSE, TRANSMISSIBILITY, COHERENCE = 1, 4, 5, 6
@@ -148,8 +149,10 @@ def _formed(line: str) -> tuple[int, int, bool, float, float]:
         raise ValueError(f'record 7, the form of the data, cannot be read: "{line.strip()}"') from None
     if precision not in (REAL_SINGLE, REAL_DOUBLE, COMPLEX_SINGLE, COMPLEX_DOUBLE):
         raise ValueError(f"its data type is {precision}, where 2, 4, 5 and 6 are known")
-    if spacing and not step > 0.0:
-        raise ValueError(f"its values are evenly spaced by {step:g}")
+    if spacing and not (1.0 / RATES[1] <= step <= 1.0 / RATES[0] and math.isfinite(first)):
+        raise ValueError(f"its values are evenly spaced by {step:g}, from {first:g}")
+    if count < 0:
+        raise ValueError(f"it has {count} values")
     return precision, count, bool(spacing), first, step
 
 

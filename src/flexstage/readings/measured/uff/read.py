@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections import Counter
 from collections.abc import Iterable
@@ -21,7 +22,7 @@ from flexstage.readings.measured.variables import SideBySide, complex_of
 
 _FLOAT = r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?"
 OWN = re.compile(rf"flexstage (?P<role>input|output|unknown); rate (?P<rate>{_FLOAT}) Hz; start (?P<start>{_FLOAT}) s")
-"""The fifth line of text of functions written here: what the head's few digits cannot hold."""
+"""The fifth line of text of functions written here: what the head's few digits cannot hold; it counts if it rounds to those."""
 OWN_RESPONSE = re.compile(rf"flexstage response; first (?P<first>{_FLOAT}) Hz; step (?P<step>{_FLOAT}) Hz; averages (?P<averages>\d+)")
 COUNTED = re.compile(r"(?P<text>.*?)(?:; )?function (?P<number>\d+) of (?P<count>\d+)")
 """The fourth line of text of functions written here: how many there are, which the format does not say."""
@@ -151,16 +152,30 @@ def _differing(path: Path, clocks: dict[str, Clock]) -> Iterable[Finding]:
 
 def _clock(path: Path, name: str, found: DataSet, options: Options) -> Clock:
     function = found.function
-    if own := OWN.match(function.texts[4]):
-        return Clock(float(own["rate"]), float(own["start"]), ((0, found.values.length),))
     if function.is_even:
-        return Clock(function.rate, function.first, ((0, found.values.length),))
+        own = OWN.match(function.texts[4])
+        whole = ((0, found.values.length),)
+        if own and refines(own["start"], function.first) and refines(own["rate"], function.step, inverse=True):
+            return Clock(float(own["rate"]), float(own["start"]), whole)
+        return Clock(function.rate, function.first, whole)
     if options.rate:
         return Clock(options.rate, 0.0, ((0, found.values.length),))
     values, length = found.values, found.values.length
     blocks = (values.read(start, min(start + _BLOCK, length))[:, 0] for start in range(0, length, _BLOCK))
     told = Told(allow_gaps=Allow.GAPS in options.allow)
     return settled(blocks, lambda number: float(values.read(number, number + 1)[0, 0]), told, f"{path}: {name}")
+
+
+def refines(text: str, field: float, *, inverse: bool = False) -> bool:
+    """Whether a number in a text, or its inverse, is the one that a field of six digits was printed from.
+
+    >>> refines("2048.0", 4.88281e-04, inverse=True), refines("100.0", 0.02, inverse=True), refines("0", 0.02, inverse=True)
+    (True, False, False)
+    """
+    number = float(text)
+    if inverse:
+        number = 1.0 / number if number else math.inf
+    return float(f"{number:.5e}") == field
 
 
 def _responses(path: Path, found: list[DataSet], coherences: list[DataSet], options: Options) -> Responses:
@@ -267,7 +282,7 @@ def _frequencies(path: Path, found: list[DataSet]) -> Array:
 def _axis(found: DataSet) -> Array:
     function, numbers = found.function, np.arange(found.values.length)
     own = OWN_RESPONSE.match(function.texts[4])
-    if own and function.is_even:
+    if own and function.is_even and refines(own["first"], function.first) and refines(own["step"], function.step):
         return float(own["first"]) + float(own["step"]) * numbers
     if function.is_even:
         return function.first + numbers / function.rate

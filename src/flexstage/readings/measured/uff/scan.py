@@ -185,6 +185,8 @@ def _words(stream: BinaryIO, layout: Layout, function: Function) -> tuple[Array,
         chunks.append(_numbers(raw if raw.endswith(b"\n") else _without_last(raw), layout))
     numbers = np.concatenate(chunks) if chunks else np.zeros(0)
     count = min(function.count, len(numbers) // layout.columns)
+    if np.any(numbers[function.count * layout.columns :]):  # zeros may fill the last line
+        raise ValueError(f"it has {len(numbers) // layout.columns} values where its head announces {function.count}")
     problem = f"it breaks off: it has {count} values where its head announces {function.count}" if count < function.count else None
     return numbers[: count * layout.columns].reshape(count, layout.columns), problem
 

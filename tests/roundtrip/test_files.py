@@ -1,0 +1,149 @@
+"""Files that others wrote, read in a process of its own: whatever is wrong with one ends in a finding, and the next file is read."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+from pathlib import Path
+
+import h5py
+import numpy as np
+import psutil
+import pytest
+import scipy.io
+
+from flexstage.base import files
+from flexstage.base.child import environment
+from flexstage.base.files import hdf, mat, require_regular
+from flexstage.base.finding import DesignError
+from flexstage.readings.measured.read import read
+
+
+def without_checksums(path: Path, version: str = "earliest") -> Path:
+    """A file of the older form (superblock 0), or of a newer one."""
+    with h5py.File(path, "w", libver=(version, "latest")) as file:
+        file["test/u"], file["test/y"] = np.arange(50.0), np.arange(50.0)
+        file["test"].attrs["fs"], file["test/y"].attrs["unit"] = 50.0, "um"
+    return path
+
+
+def refusal(path: Path) -> str:
+    with pytest.raises(DesignError) as error:
+        read(path)
+    return str(error.value)
+
+
+def circling(folder: Path) -> Path:
+    """One byte of a group's table: the library follows it for ever, and holds the interpreter's lock meanwhile."""
+    path = without_checksums(folder / "circles.h5")
+    content = bytearray(path.read_bytes())
+    assert content[6168] == 2, "another version of the library: look for another byte"
+    content[6168] = 85
+    path.write_bytes(content)
+    return path
+
+
+def test_a_file_that_runs_in_circles_is_refused_and_the_next_is_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    sound = without_checksums(tmp_path / "a.h5")
+    assert set(hdf(sound).arrays) == {"test/u", "test/y"}
+    monkeypatch.setattr(files, "PATIENCE", 2.0)
+    assert "it is damaged: reading it did not end within 2 s" in refusal(circling(tmp_path))
+    monkeypatch.setattr(files, "PATIENCE", 60.0)
+    np.testing.assert_array_equal(hdf(sound).read("test/u", [(3, 7)]), np.arange(3.0, 7.0))
+
+
+def test_an_interrupt_ends_the_reading_of_a_file_that_runs_in_circles(tmp_path: Path) -> None:
+    hdf(without_checksums(tmp_path / "a.h5"))  # the child is there
+    path = circling(tmp_path)
+    threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT)).start()
+    start = time.monotonic()
+    with pytest.raises(KeyboardInterrupt):
+        hdf(path)
+    assert time.monotonic() - start < files.PATIENCE / 2
+    assert not [each for each in psutil.Process().children() if "flexstage.base.files" in each.cmdline()]
+
+
+def test_a_crash_of_the_library_is_told_by_its_signal(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = without_checksums(tmp_path / "a.h5")
+    (tmp_path / "h5py.py").write_text("import os, signal\nos.kill(os.getpid(), signal.SIGSEGV)")
+    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
+    monkeypatch.setattr(files, "CHILD", files.Child())
+    assert "the library that reads it crashed (signal 11)" in refusal(path)
+
+
+def test_the_child_ends_with_its_caller(tmp_path: Path) -> None:
+    path = without_checksums(tmp_path / "a.h5")
+    text = f"import psutil\nfrom pathlib import Path\nfrom flexstage.base.files import hdf\nhdf(Path({str(path)!r}))\n"
+    text += "print(psutil.Process().children()[0].pid)"
+    done = subprocess.run([sys.executable, "-c", text], capture_output=True, text=True, check=True, env=environment())
+    psutil.wait_procs([psutil.Process(int(done.stdout))] if psutil.pid_exists(int(done.stdout)) else [], timeout=5.0)
+    assert not psutil.pid_exists(int(done.stdout))
+
+
+@pytest.mark.parametrize("version", ["earliest", "v108", "v110"])
+def test_data_in_other_files_are_refused_by_name(version: str, tmp_path: Path) -> None:
+    (tmp_path / "secret").write_bytes(np.arange(50.0).tobytes())
+    without_checksums(tmp_path / "other.h5")
+    ways = {
+        "link": lambda file: file.__setitem__("u", h5py.ExternalLink(str(tmp_path / "other.h5"), "/test/u")),
+        "storage": lambda file: file.create_dataset("u", (50,), "f8", external=[(str(tmp_path / "secret"), 0, 400)]),
+        "virtual": lambda file: file.create_virtual_dataset("u", layout(tmp_path / "other.h5")),
+    }
+    for name, way in ways.items():
+        with h5py.File(tmp_path / f"{name}.h5", "w", libver=(version, "latest")) as file:
+            file["fs"] = 50.0
+            way(file)
+        told = refusal(tmp_path / f"{name}.h5")
+        assert "u: its data stand in another file" in told
+        assert ("secret" if name == "storage" else "other.h5") in told
+
+
+def layout(path: Path) -> h5py.VirtualLayout:
+    found = h5py.VirtualLayout((50,), "f8")
+    found[:] = h5py.VirtualSource(str(path), "test/u", (50,))
+    return found
+
+
+def test_arrays_that_were_never_written_are_refused_before_they_are_read(tmp_path: Path) -> None:
+    with h5py.File(tmp_path / "a.h5", "w") as file:
+        file["fs"] = 50.0
+        file.create_dataset("u1", (4_000_000_000,), "f4", chunks=(1_000_000,), compression="gzip")
+    assert "u1: it is said to have 4e+09 numbers (16 GB), 0 bytes of which are in the file" in refusal(tmp_path / "a.h5")
+
+
+def test_memory_is_estimated_before_it_is_taken(tmp_path: Path) -> None:
+    with h5py.File(tmp_path / "a.h5", "w") as file:
+        file.create_dataset("u", (10**13,), "f4", chunks=(1_000_000,))
+    with pytest.raises(DesignError, match=r"u: reading it takes .* GB of memory, .* GB are free.*would fit"):
+        hdf(tmp_path / "a.h5").read("u")
+
+
+def test_a_mat_file_pressed_beyond_belief_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    scipy.io.savemat(tmp_path / "a.mat", {"u": np.zeros((40_000_000,))}, do_compression=True)
+    assert (tmp_path / "a.mat").stat().st_size < 500_000
+    monkeypatch.setattr(files, "MEMORY", 500_000_000)
+    assert "reading it takes more than" in refusal(tmp_path / "a.mat")
+
+
+def test_what_is_no_regular_file_is_refused(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "pipe.csv")
+    for path, kind in ((tmp_path / "pipe.csv", "a pipe"), (Path("/dev/zero"), "a device"), (tmp_path, "a folder")):
+        with pytest.raises(DesignError, match=f"it is {kind}, no regular file"):
+            require_regular(path)
+        assert kind in refusal(path)
+
+
+def test_structures_and_cells_of_mat_files_are_flattened(tmp_path: Path) -> None:
+    cell = np.empty(2, dtype=object)
+    cell[:] = [np.eye(2), "text"]
+    scipy.io.savemat(
+        tmp_path / "a.mat", {"test": {"fs": 50.0, "note": "run 2"}, "cell": cell, "names": np.array(["a", "bc"], dtype=object)}
+    )
+    found = dict(mat(tmp_path / "a.mat"))
+    assert set(found) == {"test.fs", "test.note", "cell(1)", "cell(2)", "names"}
+    assert (found["test.note"], found["names"]) == (("run 2",), ("a", "bc"))
+    np.testing.assert_array_equal(found["cell(1)"], np.eye(2))
