@@ -19,8 +19,9 @@ from flexstage.readings.linear.frequency import direct
 from flexstage.readings.linear.model import Channel, Contribution, LinearModel
 from flexstage.readings.linear.port import input_names, ports
 from flexstage.readings.linear.state_space import state_space
-from flexstage.readings.linear.static import static_gain
-from tests.laws.models import FORCES, laws, linear_model, models, ratios, seeds
+from flexstage.readings.linear.static import part_deformation, static_gain
+from flexstage.spatial.frame import COMPONENTS
+from tests.laws.models import BODIES, FORCES, laws, linear_model, models, ratios, seeds
 
 GRID = np.array([0.0, 0.1, 0.7, 1.3, 2.9, 11.0])
 
@@ -42,6 +43,32 @@ def test_a_stroke_and_the_force_in_its_stack_are_dual(model, law):
     forward = response(model, ["platform"], ["B1"], GRID, damping=law).values[..., 0]
     backward = response(model, ["pzt.fx"], [f"platform.{name}" for name in FORCES], GRID, damping=law).values[..., 0, :]
     near(forward, backward, 1e-9)
+
+
+@given(models)
+def test_a_stroke_against_nothing_does_not_lag(model):
+    """A stack that carries an arm and nothing else moves it by the stroke at rest, whatever is lost in it and elsewhere."""
+    alone = replace(model, stiffness={name: part for name, part in model.stiffness.items() if name != "side"})
+    values = response(alone, ["arm", "platform"], ["B1"], np.array([0.0]), damping=StructuralDamping()).values[0]
+    expected = np.concatenate([static_gain(alone, (f"{body}.{name}",), ("B1",)).values for body in BODIES[::-1] for name in COMPONENTS])
+    near(values, expected, 1e-9)
+    assert np.abs(expected).max() > 0.1
+
+
+@given(models)
+def test_what_a_stroke_does_is_lost_in_the_parts(model):
+    """Work of the stroke in a cycle, -pi Im F, is what the parts lose, pi sum eta e^H k e: it is never negative."""
+    law, names = StructuralDamping(), [channel.name for channel in model.outputs[: len(model.coordinates)]]
+    motion = response(model, names, ["B1"], GRID, damping=law).values[..., 0].T
+    selector = np.zeros((len(model.inputs), len(GRID)))
+    selector[0] = 1.0
+    strains = part_deformation(model, motion, selector)
+    lost = sum(
+        part.loss_factor * np.real(np.sum(np.conj(strains[name]) * (part.law @ strains[name]), axis=0))
+        for name, part in model.stiffness.items()
+    )
+    force = response(model, ["pzt.fx"], ["B1"], GRID, damping=law).values[:, 0, 0]
+    near(-np.imag(force), lost, 1e-8)
 
 
 @given(models, laws)

@@ -120,7 +120,7 @@ def _budget(kinematics: Kinematics, model: LinearModel, sense: Array) -> dict[st
             ideal = kinematics.strains[link] @ inverse
             shares |= {f"{link}.{freedom.value}": _product(force, ideal, freedom.index) for freedom in kinematics.free[link]}
     if kinematics.mobility < len(names):
-        shares[INTERNAL] = _internal(kinematics, model, strains)
+        shares[INTERNAL] = _internal(kinematics, model, sense, strains)
     return {name: Matrix(share, names, names, "1") for name, share in shares.items()}
 
 
@@ -128,24 +128,16 @@ def _product(force: Array, motion: Array, axis: int) -> Array:
     return force[..., axis, :, None] * motion[..., axis, None, :]
 
 
-def _internal(kinematics: Kinematics, model: LinearModel, strains: Mapping[str, Array]) -> Array:
+def _internal(kinematics: Kinematics, model: LinearModel, sense: Array, strains: Mapping[str, Array]) -> Array:
     """What redundant strokes lose because single strokes are no ideal motion: the misfit and the work of the other actuators."""
+    names = kinematics.actuators
     feasible = kinematics.actuation @ kinematics.inverse
-    total = np.eye(len(kinematics.actuators)) - feasible
-    for link, strain in strains.items():
-        drive = _drive(model, link, kinematics.actuators)
-        if drive is not None:
-            force = (model.stiffness[link].law @ strain)[..., 0, :]
-            total = total + force[..., :, None] * (feasible - np.eye(len(kinematics.actuators)))[..., drive, None, :]
-    return total
-
-
-def _drive(model: LinearModel, link: str, names: tuple[str, ...]) -> int | None:
-    """Which stroke the link imposes, if any."""
-    if link not in model.imposed:
-        return None
-    columns = np.flatnonzero(np.any(np.abs(np.real(model.imposed[link])) > 0.0, axis=tuple(range(model.imposed[link].ndim - 1))))
-    return names.index(model.inputs[int(columns[0])].name)
+    columns = model.input_index(names)
+    work = sense @ model.feedthrough[..., model.output_index(_PLATFORM_TWIST), :][..., columns]
+    for link, imposed in model.imposed.items():
+        force = model.stiffness[link].law @ strains[link]
+        work = work + np.swapaxes(force, -1, -2) @ imposed[..., columns]
+    return np.eye(len(names)) - feasible + work @ (feasible - np.eye(len(names)))
 
 
 def _energy(kinematics: Kinematics, model: LinearModel) -> Matrix:

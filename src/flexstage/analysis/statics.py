@@ -10,6 +10,7 @@ from flexstage.base.labelled import Matrix, ratio_units
 from flexstage.base.number import Array, Number, first_design
 from flexstage.readings.linear.model import LinearModel
 from flexstage.readings.linear.static import displacement
+from flexstage.readings.linear.undetermined import require_unmoved
 from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNITS
 
 _SINGULAR = 1e-11
@@ -62,9 +63,10 @@ def statics(model: LinearModel, *, load_point: str = "platform", read_point: str
     """
     read = tuple(f"{read_point}.{name}" for name in COMPONENTS)
     load = tuple(f"{load_point}.{name}" for name in COMPONENTS)
+    wrench = tuple(f"{load_point}.{name}" for name in FORCES)
+    require_unmoved(model, wrench)
     force = np.swapaxes(model.output[..., model.output_index(load), :], -1, -2)
     values = model.output[..., model.output_index(read), :] @ displacement(model, force)
-    wrench = tuple(f"{load_point}.{name}" for name in FORCES)
     inverse = _inverse(values)
     return Statics(
         load_point,

@@ -82,6 +82,7 @@ def _model(model: LinearModel) -> dict[str, Any]:
         "B": model.input_matrix,
         "C": model.output,
         "D": model.feedthrough,
+        **({} if model.inertial is None else {"Mu": model.inertial}),
         "coordinates": _cells(model.coordinates),
         "coordinate_units": _cells(["rad" if name.rpartition(".")[2].startswith("r") else "m" for name in model.coordinates]),
         **_channels("input", model.inputs),

@@ -7,23 +7,26 @@ R_a = da/dx and R_s = ds/dx (Eqs. 13 and 14 of Shin & Moon), the platform's mobi
 from __future__ import annotations
 
 import itertools
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from flexstage.base.digest import digest
-from flexstage.base.finding import Finding, require
+from flexstage.base.finding import DesignError, Finding, refuse, require
 from flexstage.base.number import Array, first_design
+from flexstage.beams.compliance import law
 from flexstage.mechanism.expand import Assembly, PlacedLink, expand
 from flexstage.mechanism.incidence import Layout, deformation, layout, twist_at
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.parts.freedom import ALL, Freedom
 from flexstage.readings.linear.blockage import Blockage, blockage
-from flexstage.readings.linear.elimination import Elimination, echelon, eliminate, null_space
+from flexstage.readings.linear.elimination import Elimination, echelon, eliminate, null_space, pivoted
 from flexstage.readings.linear.kinematics import Idle, Kinematics, Redundant
 from flexstage.spatial.frame import COMPONENTS
 
 _NEGLIGIBLE = 1e-7
+_ENERGYLESS = 1e-12
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,7 +77,7 @@ def ideal(mechanism: Mechanism) -> Kinematics:
         coordinates=tuple(COMPONENTS[index] for index in freedoms),
         gauges=tuple(graph.assembly.gauges),
         actuation=strokes,
-        sensing=_sensing(graph, bodies),
+        sensing=_sensing(graph, _sensed(graph, (solution, columns, rest), bodies)),
         motion=bodies[..., :6, :],
         body_coordinates=graph.order.coordinates,
         bodies=bodies,
@@ -175,6 +178,75 @@ def _without_idle(graph: _Graph, solution: Elimination, columns: list[int], rest
     return wanted - idle @ np.linalg.solve(transposed @ spun, transposed @ before)
 
 
+def _sensed(graph: _Graph, eliminated: tuple[Elimination, list[int], list[int]], bodies: Array) -> Array:
+    """The bodies' motions (..., N, f) as gauges see them: idle motions that one sees store the least energy in the links they strain."""
+    solution, columns, rest = eliminated
+    size = graph.order.size
+    wanted, idle = solution.basis[..., :size, columns], solution.basis[..., :size, rest]
+    still = np.real(first_design(idle, 2))
+    rows = {name: np.real(first_design(_reading(graph, name), 2)) for name in graph.assembly.gauges}
+    watching = [name for name, row in rows.items() if _sees(row, still)]
+    if not watching:
+        return bodies
+    energy, mixed = np.zeros((len(rest), len(rest))), np.zeros((len(rest), len(columns)))
+    for place, stiffness in _stiffnesses(graph, still, watching):
+        strain = graph.strain[..., place, :]
+        force = np.swapaxes(stiffness @ (strain @ idle), -1, -2)
+        energy, mixed = energy + force @ (strain @ idle), mixed + force @ (strain @ wanted)
+    held, loose = _held(np.real(first_design(energy, 2)))
+    require(_undetermined(graph, [name for name in watching if _sees(rows[name], still @ loose)], still @ loose))
+    return wanted - idle[..., held] @ np.linalg.solve(energy[..., held, :][..., held], mixed[..., held, :])
+
+
+def _sees(row: Array, motions: Array) -> bool:
+    """Whether a gauge's row (1, N) feels one of the motions (N, k) more than by rounding."""
+    return bool(np.any(np.abs(row @ motions) > _NEGLIGIBLE * (np.abs(row) @ np.abs(motions))))
+
+
+def _stiffnesses(graph: _Graph, idle: Array, watching: list[str]) -> Iterator[tuple[slice, Array]]:
+    """Rows in the strain and stiffness of every link that idle motions deform."""
+    strained = np.max(np.abs(_by_link(np.real(first_design(graph.strain, 2)) @ idle)), axis=(1, 2)) > _NEGLIGIBLE
+    for number, (name, link) in enumerate(graph.assembly.links.items()):
+        if strained[number]:
+            try:
+                yield slice(6 * number, 6 * number + 6), law(link.part, link.material).stiffness
+            except DesignError as error:
+                reason = "; ".join(finding.what for finding in error.findings)
+                what = f"it sees an idle motion, and how stiff {name} is against it is not known: {reason}"
+                raise refuse(", ".join(watching), what, "State it, or move the gauge to the platform") from error
+
+
+def _held(energy: Array) -> tuple[list[int], Array]:
+    """Idle motions that store energy, as many as tell the rest, and combinations (k, l) that store none."""
+    diagonal = np.diag(energy)
+    top = np.max(diagonal, initial=0.0)
+    root = np.sqrt(np.where(diagonal > _ENERGYLESS * top, diagonal, top or 1.0))
+    scaled = energy / root / root[:, None]
+    values, vectors = np.linalg.eigh(scaled)
+    loose = values < _ENERGYLESS
+    order = pivoted(scaled)[2][: int(np.sum(~loose))]
+    return sorted(int(index) for index in order), (vectors / root[:, None])[:, loose]
+
+
+def _undetermined(graph: _Graph, gauges: list[str], motions: Array) -> Iterator[Finding]:
+    """Gauges that see an idle motion which no link resists."""
+    moving = np.max(np.abs(_by_link(motions)), axis=(1, 2), initial=0.0) > _NEGLIGIBLE * np.max(np.abs(motions), initial=0.0)
+    bodies = ", ".join(itertools.compress(graph.order.bodies, moving))
+    for name in gauges:
+        yield Finding(
+            name,
+            f"it sees an idle motion that no link resists ({bodies}): its reading does not follow from the platform's motion",
+            "Move the gauge to the platform, give a link of these bodies stiffness in that freedom, or lock it",
+        )
+
+
+def _reading(graph: _Graph, name: str) -> Array:
+    """What a gauge reads (..., 1, N) of the bodies' motions."""
+    gauge = graph.assembly.gauges[name]
+    ends = [twist_at(graph.assembly, graph.order, body, gauge.frame)[..., :1, :] for body in (gauge.body, gauge.base)]
+    return gauge.sign * (ends[0] - ends[1])
+
+
 def _sensing(graph: _Graph, bodies: Array) -> Array:
     """Gauge readings per platform twist; gauges on other bodies see the ideal motions only."""
     motion = bodies[..., :6, :]
@@ -185,9 +257,7 @@ def _sensing(graph: _Graph, bodies: Array) -> Array:
 
 
 def _gauge_row(graph: _Graph, name: str, bodies: Array, motion: Array) -> Array:
-    gauge = graph.assembly.gauges[name]
-    seen = [twist_at(graph.assembly, graph.order, body, gauge.frame)[..., :1, :] for body in (gauge.body, gauge.base)]
-    row = gauge.sign * (seen[0] - seen[1])
+    gauge, row = graph.assembly.gauges[name], _reading(graph, name)
     if {gauge.body, gauge.base} <= {PLATFORM, "ground"}:
         return row[..., :6]
     weighted = np.swapaxes(motion, -1, -2) * _weights(graph.length) ** 2

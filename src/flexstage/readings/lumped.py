@@ -5,7 +5,7 @@ K = sum H^T k H with H the relative twist at each link; M from bodies and parts;
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from enum import Enum
 from typing import TypeVar
@@ -13,7 +13,7 @@ from typing import TypeVar
 import numpy as np
 
 from flexstage.base.digest import digest
-from flexstage.base.finding import refuse
+from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.number import Array, Number, first_design
 from flexstage.beams.compliance import law
 from flexstage.beams.mass import mass
@@ -21,6 +21,7 @@ from flexstage.mechanism.expand import Assembly, PlacedLink, expand
 from flexstage.mechanism.incidence import Layout, end_twists, layout, twist_at, with_ground
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.mechanism.moving_mass import moving_inertia
+from flexstage.parts.freedom import Freedom
 from flexstage.parts.material import Material
 from flexstage.parts.part import Part, Restricted
 from flexstage.readings.linear.channels import (
@@ -34,12 +35,14 @@ from flexstage.readings.linear.channels import (
     place_twists,
     seen_places,
 )
-from flexstage.readings.linear.elimination import eliminate, pivoted
+from flexstage.readings.linear.elimination import Elimination, eliminate, imposed_motion, pivoted
 from flexstage.readings.linear.model import Contribution, LinearModel, assembled, gathered
-from flexstage.spatial.frame import seen_at
+from flexstage.spatial.frame import FORCES, seen_at
 
 _SINGULAR = 1e-11
 _ROUNDING = 1e-12
+_MASSLESS = 1e-12
+_BLOCKED = 1e-7
 _STRETCHED: Array = np.eye(6)[0]
 
 _Value = TypeVar("_Value")
@@ -54,14 +57,20 @@ class Masses(Enum):
 
 @dataclass(frozen=True, eq=False)
 class _Stage:
-    """The stage as operators: twists of every link's `ends`, `strains`, rows of `locked` freedoms, `rigid` motion with the ground."""
+    """The stage as operators: twists of every link's `ends`, `strains`, rows of locked `freedoms`, `rigid` motion with the ground."""
 
     assembly: Assembly
     order: Layout
     ends: Mapping[str, tuple[Array, Array]]
     strains: Mapping[str, Contribution]
-    locked: tuple[Array, ...]
+    freedoms: Mapping[str, tuple[Freedom, ...]]
     rigid: Array
+
+    @property
+    def locked(self) -> Mapping[str, Array]:
+        """The rows (..., l, N) of every link's locked freedoms."""
+        found = {name: [freedom.index for freedom in freedoms] for name, freedoms in self.freedoms.items()}
+        return {name: self.strains[name].operator[..., rows, :] for name, rows in found.items()}
 
     @property
     def motions(self) -> Motions:
@@ -73,21 +82,26 @@ def lumped(mechanism: Mechanism, masses: Masses = Masses.ALL) -> LinearModel:
     """Read a stage as rigid bodies on 6x6 links.
 
     Valid for small displacements about the drawn position and frequencies below the first resonance of the parts themselves. Locked
-    freedoms of `Restricted` and `Joint` parts are eliminated exactly; freedoms without stiffness that nothing feels are pinned and
-    listed in `idle`. Raises `DesignError` for a mechanism (K singular), naming the bodies that can move freely.
+    freedoms of `Restricted` and `Joint` parts are eliminated exactly, a stroke along a locked axis as an imposed motion. Motions without
+    stiffness that nothing feels keep their inertia, drop out with their zero modes and are listed in `idle`. Raises `DesignError` for a
+    mechanism (K singular), naming the bodies that can move freely, and for a stroke that locked freedoms block.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> len(lumped(double_triangle()).coordinates)
     114
     """
     stage = _stage(mechanism)
-    size = stage.order.size
-    basis, coordinates, idle = _reduced(stage, size)
     inertia = _inertia(mechanism, stage, masses)
-    force, imposed = _inputs(stage)
+    carried = _carried(stage, inertia)
+    kept = _kept(stage, inertia)
+    basis = kept.basis
+    force, imposed = _inputs(stage, kept.driven)
     output, feedthrough = _outputs(stage, imposed)
+    if kept.driven is not None:
+        feedthrough = feedthrough + _unsprung(stage, output) @ kept.driven
+    idle = kept.idle
     return LinearModel(
-        coordinates=coordinates,
+        coordinates=kept.coordinates,
         stiffness={name: _through(item, basis) for name, item in stage.strains.items()},
         inertia={name: _through(item, basis) for name, item in inertia.items()},
         inputs=input_channels(stage.assembly),
@@ -96,13 +110,42 @@ def lumped(mechanism: Mechanism, masses: Masses = Masses.ALL) -> LinearModel:
         outputs=output_channels(stage.assembly),
         output=output if basis is None else output @ basis,
         feedthrough=feedthrough,
-        rigid=_rigid_coordinates(stage, coordinates),
-        rigid_output=_rigid_output(stage, output),
-        base_inertia=_project(_carried(stage, inertia), basis),
+        rigid=_rigid_coordinates(stage, kept.coordinates),
+        rigid_output=_rigid_output(stage, output, carried, idle),
+        base_inertia=_project(carried, basis),
         damping=mechanism.damping,
-        idle=idle,
+        idle=() if idle is None else idle.names,
         provenance=f"lumped reading of {digest(mechanism, physics=True)[:16]}",
+        inertial=None if kept.driven is None else _project(_momentum(inertia, kept.driven), basis),
+        idle_output=None if idle is None else output @ idle.motions,
+        idle_inertia=None if idle is None else _transposed(idle.motions) @ carried,
+        unknown=tuple(f"{name}.{FORCES[freedom.index]}" for name, freedoms in stage.freedoms.items() for freedom in freedoms),
     )
+
+
+@dataclass(frozen=True, eq=False)
+class _Idle:
+    """Motions (..., N, k) that no stiffness holds, the coordinates named for them, and which of them have inertia `mass` (..., h, h)."""
+
+    motions: Array
+    names: tuple[str, ...]
+    heavy: tuple[int, ...]
+    mass: Array
+
+    def momentless(self, momentum: Array) -> Array:
+        """What to add to a motion (..., N, m) of `momentum` M z (..., N, m) to leave none in the idle motions."""
+        heavy = self.motions[..., list(self.heavy)]
+        return -(heavy @ np.linalg.solve(*_spread((self.mass, _transposed(heavy) @ momentum))))
+
+
+@dataclass(frozen=True, eq=False)
+class _Kept:
+    """z = `basis` q + `driven` u: the motions that are left (absent: all), and what inputs impose on locked freedoms (absent: nothing)."""
+
+    basis: Array | None
+    driven: Array | None
+    coordinates: tuple[str, ...]
+    idle: _Idle | None
 
 
 def _stage(mechanism: Mechanism) -> _Stage:
@@ -111,13 +154,11 @@ def _stage(mechanism: Mechanism) -> _Stage:
     laws = _by_part(law, assembly)
     ends = {name: end_twists(assembly, order, link) for name, link in assembly.links.items()}
     strains: dict[str, Contribution] = {}
-    locked: list[Array] = []
     for name, link in assembly.links.items():
         operator = ends[name][1] - ends[name][0]
         strains[name] = Contribution(operator, laws[name].stiffness, _loss_factor(link))
-        if laws[name].locked:
-            locked.append(operator[..., [freedom.index for freedom in laws[name].locked], :])
-    return _Stage(assembly, order, ends, strains, tuple(locked), with_ground(assembly, order))
+    locked = {name: item.locked for name, item in laws.items() if item.locked}
+    return _Stage(assembly, order, ends, strains, locked, with_ground(assembly, order))
 
 
 def _by_part(function: Callable[[Part, Material | None], _Value], assembly: Assembly) -> dict[str, _Value]:
@@ -135,27 +176,107 @@ def _loss_factor(link: PlacedLink) -> Number:
     return 0.0 if value is None else value
 
 
-def _reduced(stage: _Stage, size: int) -> tuple[Array | None, tuple[str, ...], tuple[str, ...]]:
-    """Basis that satisfies the locked freedoms and pins idle ones; `None` when there is nothing to eliminate."""
+def _kept(stage: _Stage, inertia: Mapping[str, Contribution]) -> _Kept:
+    """What satisfies the locked freedoms and leaves idle motions without momentum."""
     names = stage.order.coordinates
     scale = np.array([10.0 if name.rpartition(".")[2].startswith("r") else 1.0 for name in names])
     basis: Array | None = None
-    independent = tuple(range(size))
+    driven: Array | None = None
+    independent = tuple(range(stage.order.size))
     if stage.locked:
-        rows = np.concatenate(np.broadcast_arrays(*stage.locked) if _same(stage.locked) else _spread(stage.locked), axis=-2)
+        rows = np.concatenate(_spread(tuple(stage.locked.values())), axis=-2)
         solution = eliminate(rows, scale, keep=tuple(range(6)))
         basis, independent = solution.basis, solution.independent
+        driven = _driven(stage, solution, rows)
     loose = _loose(stage, basis)
     if loose.shape[1] == 0:
-        return basis, tuple(names[index] for index in independent), ()
-    pinned = _pinned(stage, loose, independent)
-    left = [index for index in range(len(independent)) if index not in pinned]
-    full = np.eye(size) if basis is None else basis
-    return full[..., left], tuple(names[independent[index]] for index in left), tuple(names[independent[index]] for index in pinned)
+        return _Kept(basis, driven, tuple(names[index] for index in independent), None)
+    named = _named(stage, loose, independent)
+    left = [index for index in range(len(independent)) if index not in named]
+    full = np.eye(stage.order.size) if basis is None else basis
+    idle = _idle(stage, inertia, full, (left, named), tuple(names[independent[index]] for index in named))
+    kept, driven = (
+        None if motion is None else motion + idle.momentless(_momentum(inertia, motion)) for motion in (full[..., left], driven)
+    )
+    return _Kept(kept, driven, tuple(names[independent[index]] for index in left), idle)
 
 
-def _same(arrays: tuple[Array, ...]) -> bool:
-    return len({array.shape for array in arrays}) == 1
+def _driven(stage: _Stage, solution: Elimination, rows: Array) -> Array | None:
+    """The motion (..., N, inputs) that strokes of locked stacks impose; absent where no stack is locked along its axis."""
+    channels = len(input_channels(stage.assembly))
+    strokes = {(link, Freedom.X): number for number, link in enumerate(stage.assembly.actuators.values())}
+    locked = [(name, freedom) for name, freedoms in stage.freedoms.items() for freedom in freedoms]
+    imposed = np.zeros((len(locked), channels))
+    for row, key in enumerate(locked):
+        if key in strokes:
+            imposed[row, strokes[key]] = 1.0
+    if not imposed.any():
+        return None
+    motion = imposed_motion(solution, rows, imposed)
+    missed = np.abs(np.real(first_design(rows @ motion, 2)) - imposed) > _BLOCKED
+    require(_blocked(stage, locked, missed))
+    return motion
+
+
+def _blocked(stage: _Stage, locked: list[tuple[str, Freedom]], missed: Array) -> Iterator[Finding]:
+    """Strokes (columns) that locked freedoms (rows) cannot follow."""
+    for number, (name, link) in enumerate(stage.assembly.actuators.items()):
+        held = [f"{locked[row][0]}.{locked[row][1].value}" for row in np.flatnonzero(missed[:, number])]
+        if held:
+            what = (
+                f"the stroke of actuator {name} is blocked: its axis is locked, and nothing gives way between it and {', '.join(held[:6])}"
+            )
+            yield Finding(link, what, "Free one of these, or give it stiffness")
+
+
+def _idle(
+    stage: _Stage, inertia: Mapping[str, Contribution], basis: Array, parts: tuple[list[int], list[int]], names: tuple[str, ...]
+) -> _Idle:
+    """The idle motions, each with a unit in one of the `named` coordinates, the `left` ones following: K_ll n_l = -K_ln."""
+    left, named = parts
+    stiffness = assembled({name: _through(item, basis) for name, item in stage.strains.items()}, basis.shape[-1])
+    inner = stiffness[..., left, :][..., left]
+    root = np.sqrt(np.abs(np.diagonal(np.real(inner), axis1=-2, axis2=-1)))
+    root = np.where(root > 0.0, root, 1.0)
+    solved = np.linalg.solve(inner / root[..., None] / root[..., None, :], stiffness[..., left, :][..., named] / root[..., None])
+    small = np.zeros((*stiffness.shape[:-2], basis.shape[-1], len(named)), dtype=stiffness.dtype)
+    small[..., left, :] = -solved / root[..., None]
+    small[..., named, :] = np.eye(len(named))
+    motions = basis @ small
+    mass = _transposed(motions) @ _momentum(inertia, motions)
+    heavy = _heavy(np.real(first_design(mass, 2)), _largest(inertia, np.real(first_design(motions, 2))))
+    return _Idle(motions, names, heavy, mass[..., heavy, :][..., heavy])
+
+
+def _largest(inertia: Mapping[str, Contribution], motions: Array) -> Array:
+    """What n^T M n (k,) would be if nothing in its sum cancelled: an idle motion with much less has no inertia but rounding."""
+    total = np.zeros(motions.shape[1])
+    for item in inertia.values():
+        seen = np.abs(np.real(first_design(item.operator, 2))) @ np.abs(motions)
+        total = total + np.sum(seen * (np.abs(np.real(first_design(item.law, 2))) @ seen), axis=0)
+    return total
+
+
+def _heavy(mass: Array, largest: Array) -> tuple[int, ...]:
+    """As many idle motions as have inertia of their own; M-orthogonal to these is M-orthogonal to all."""
+    some = np.flatnonzero(np.diag(mass) > _MASSLESS * largest)
+    if not len(some):
+        return ()
+    root = np.sqrt(np.diag(mass)[some])
+    _, triangle, order = pivoted(mass[np.ix_(some, some)] / root / root[:, None])
+    rank = int(np.sum(np.abs(np.diag(triangle)) > _MASSLESS))
+    return tuple(sorted(int(some[index]) for index in order[:rank]))
+
+
+def _momentum(inertia: Mapping[str, Contribution], motion: Array) -> Array:
+    """M times a motion (..., N, m)."""
+    return gathered(inertia, {name: item.operator @ motion for name, item in inertia.items()}) if inertia else np.zeros_like(motion)
+
+
+def _unsprung(stage: _Stage, output: Array) -> Array:
+    """The output rows (..., p, N) without those of link forces, which know what is imposed by their own deformation."""
+    forces = 6 * len(stage.assembly.links)
+    return np.concatenate([output[..., : output.shape[-2] - forces, :], np.zeros((*output.shape[:-2], forces, output.shape[-1]))], axis=-2)
 
 
 def _spread(arrays: tuple[Array, ...]) -> list[Array]:
@@ -175,7 +296,7 @@ def _loose(stage: _Stage, basis: Array | None) -> Array:
     scaled = stiffness / diagonal / diagonal[:, None]
     try:
         pivots = np.diag(np.linalg.cholesky(scaled))
-        if np.min(pivots) ** 2 > _SINGULAR:
+        if np.min(pivots, initial=np.inf) ** 2 > _SINGULAR:
             return np.zeros((len(diagonal), 0))
     except np.linalg.LinAlgError:
         pass
@@ -192,8 +313,8 @@ def _without_rounding(operator: Array, basis: Array | None) -> Array:
     return np.where(np.abs(product) > _ROUNDING * largest, product, 0.0)
 
 
-def _pinned(stage: _Stage, loose: Array, independent: tuple[int, ...]) -> list[int]:
-    """Coordinates that pin the loose motions; a loose motion that moves the platform makes the stage a mechanism."""
+def _named(stage: _Stage, loose: Array, independent: tuple[int, ...]) -> list[int]:
+    """Coordinates that tell the loose motions apart; a loose motion that moves the platform makes the stage a mechanism."""
     platform = [position for position, index in enumerate(independent) if index < 6]
     moved = np.max(np.abs(loose), axis=0, initial=0.0)
     if np.any(np.abs(loose[platform]) > 1e-6 * moved):
@@ -249,11 +370,15 @@ def _carried(stage: _Stage, inertia: Mapping[str, Contribution]) -> Array:
     return gathered(inertia, seen) if inertia else np.zeros((stage.order.size, 6))
 
 
-def _inputs(stage: _Stage) -> tuple[Array, dict[str, Array]]:
+def _inputs(stage: _Stage, driven: Array | None) -> tuple[Array, dict[str, Array]]:
+    """Direct forces, and what the inputs impose on links: strokes of sprung stacks, less what a motion imposed elsewhere takes up."""
     drives = stage.assembly.actuators
     wrenches = [_transposed(rows) for rows in place_twists(loaded_places(stage.assembly), stage.motions)]
     columns = _spread((np.zeros((stage.order.size, len(drives))), *wrenches))
-    return np.concatenate(columns, axis=-1), imposed_strokes(stage.assembly, dict.fromkeys(drives.values(), _STRETCHED))
+    imposed = imposed_strokes(stage.assembly, dict.fromkeys(drives.values(), _STRETCHED))
+    if driven is not None:
+        imposed = {name: imposed.get(name, 0.0) - item.operator @ driven for name, item in stage.strains.items()}
+    return np.concatenate(columns, axis=-1), imposed
 
 
 def _outputs(stage: _Stage, imposed: Mapping[str, Array]) -> tuple[Array, Array]:
@@ -271,8 +396,10 @@ def _rigid_coordinates(stage: _Stage, coordinates: tuple[str, ...]) -> Array:
     return stage.rigid[..., [places[name] for name in coordinates], :]
 
 
-def _rigid_output(stage: _Stage, output: Array) -> Array:
-    return np.where(absolute(stage.assembly)[:, None], output @ stage.rigid, 0.0)
+def _rigid_output(stage: _Stage, output: Array, carried: Array, idle: _Idle | None) -> Array:
+    """Outputs that move with the ground (..., p, 6); idle motions stay behind, as nothing but inertia moves them."""
+    carried_along = np.where(absolute(stage.assembly)[:, None], output @ stage.rigid, 0.0)
+    return carried_along if idle is None else carried_along + output @ idle.momentless(carried)
 
 
 def _transposed(matrix: Array) -> Array:

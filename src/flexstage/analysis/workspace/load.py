@@ -13,6 +13,7 @@ from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Force, Mechanism
 from flexstage.readings.linear.model import LinearModel
 from flexstage.readings.linear.static import displacement, static_gain
+from flexstage.readings.linear.undetermined import require_balanced, require_known
 from flexstage.spatial.frame import COMPONENTS, FORCES, WRENCH_UNITS, transport
 
 OWN_WEIGHT = "own weight"
@@ -95,6 +96,7 @@ def load_share(mechanism: Mechanism, model: LinearModel) -> LoadShare:
     assembly = expand(mechanism)
     names = tuple(assembly.actuators)
     axial = tuple(f"{link}.fx" for link in assembly.actuators.values())
+    require_known(model, axial)
     causes = dead_loads(mechanism, model)
     motion = displacement(model, np.stack(np.broadcast_arrays(*causes.values()), axis=-1))
     loads = -(model.output[..., model.output_index(axial), :] @ motion)
@@ -121,6 +123,7 @@ def dead_loads(mechanism: Mechanism, model: LinearModel) -> dict[str, Array]:
     >>> list(dead_loads(double_triangle(), lumped(double_triangle())))
     ['own weight']
     """
+    require_balanced(model, "gravity", stack((*mechanism.gravity, 0.0, 0.0, 0.0)))
     carried = {name: applied(mechanism, model, _weight(mechanism, name)) for name in mechanism.payloads}
     everything = model.base_inertia[..., :3] @ stack(mechanism.gravity)
     own = everything - sum(carried.values(), np.zeros(len(model.coordinates)))
@@ -148,7 +151,9 @@ def applied(mechanism: Mechanism, model: LinearModel, force: Force) -> Array:
     arm = stack(force.at) - expand(mechanism).bodies[force.body].reference
     push = stack((*force.force, 0.0, 0.0, 0.0))
     wrench = np.swapaxes(transport(arm), -1, -2) @ push[..., None]
-    rows = model.output[..., model.output_index(tuple(f"{force.body}.{name}" for name in COMPONENTS)), :]
+    index = model.output_index(tuple(f"{force.body}.{name}" for name in COMPONENTS))
+    require_balanced(model, f"a force on {force.body}", wrench[..., 0], index)
+    rows = model.output[..., index, :]
     return (np.swapaxes(rows, -1, -2) @ wrench)[..., 0]
 
 

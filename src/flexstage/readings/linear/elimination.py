@@ -22,11 +22,15 @@ _PREFERENCE = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class Elimination:
-    """z = `basis` z_independent, basis (..., N, f); `independent` and `dependent` are indices of coordinates."""
+    """z = `basis` z_independent, basis (..., N, f).
+
+    `independent` and `dependent` are indices of coordinates, `rows` of the constraints that the dependent ones follow from.
+    """
 
     basis: Array
     independent: tuple[int, ...]
     dependent: tuple[int, ...]
+    rows: tuple[int, ...]
 
     @property
     def rank(self) -> int:
@@ -53,7 +57,21 @@ def eliminate(constraints: Array, scale: Array, keep: tuple[int, ...] = ()) -> E
     basis = np.zeros((*constraints.shape[:-2], first.shape[1], len(independent)), dtype=constraints.dtype)
     basis[..., dependent, :] = solved
     basis[..., independent, :] = np.eye(len(independent))
-    return Elimination(basis, tuple(independent), tuple(dependent))
+    return Elimination(basis, tuple(independent), tuple(dependent), tuple(rows))
+
+
+def imposed_motion(solution: Elimination, constraints: Array, imposed: Array) -> Array:
+    """The motion z (..., N, m) of the dependent coordinates alone that gives the constraints the values A z = imposed (m of m columns).
+
+    >>> rows = np.array([[1.0, 2.0]])
+    >>> imposed_motion(eliminate(rows, np.ones(2), keep=(0,)), rows, np.array([[3.0]])).ravel().tolist()
+    [0.0, 1.5]
+    """
+    square = constraints[..., solution.rows, :][..., solution.dependent]
+    result = np.zeros((*constraints.shape[:-2], constraints.shape[-1], imposed.shape[-1]), dtype=constraints.dtype)
+    wanted = np.broadcast_to(imposed[list(solution.rows)], (*square.shape[:-2], len(solution.rows), imposed.shape[-1]))
+    result[..., solution.dependent, :] = np.linalg.solve(square, wanted)
+    return result
 
 
 def _pivot_columns(first: Array, keep: tuple[int, ...]) -> list[int]:

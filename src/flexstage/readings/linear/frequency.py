@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -77,7 +77,8 @@ def transfer(model: LinearModel, chosen: Ports, frequencies: Array, damping: Dam
 
     Modal and Rayleigh damping by exact superposition of all modes, H = C Phi d(omega)^-1 Phi^T (B + omega^2 M_b) + R B + D_f;
     the remainder R = C K^-1 - C Phi Lambda^-1 Phi^T makes the freedoms without inertia exact. Structural damping by direct
-    solves of K* - omega^2 M. The force of a stroke is taken as K_p u, without loss. A frequency of zero gives the static gain.
+    solves of K* - omega^2 M, where a stroke u exerts K_p (1 + j eta_p) u and a link's force is lost alike. A frequency of zero gives the
+    static gain.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.readings.linear.port import ports
@@ -90,7 +91,9 @@ def transfer(model: LinearModel, chosen: Ports, frequencies: Array, damping: Dam
     """
     frequencies = np.asarray(frequencies, dtype=float)
     if isinstance(damping, StructuralDamping):
-        return direct(structural_stiffness(model), model.inertia_matrix, chosen, frequencies)
+        lossy = replace(chosen, force=chosen.force + 1j * chosen.lost)
+        found = direct(structural_stiffness(model), model.inertia_matrix, lossy, frequencies)
+        return found * (1.0 + 1j * np.asarray(chosen.loss))[..., None, :, None]
     return superposed(model, chosen, frequencies, damping)
 
 

@@ -36,13 +36,18 @@ Contributions: TypeAlias = Mapping[str, Contribution]
 
 @dataclass(frozen=True, eq=False)
 class LinearModel:
-    """M q'' + D q' + K q = B u, y = C q + D u, with K and M as named sums of contributions.
+    """M q'' + D q' + K q = B u - M_u u'', y = C q + D u, with K and M as named sums of contributions.
 
     `force` (..., n, m) are direct generalised forces of the inputs; `imposed` gives per stiffness contribution the deformation (..., r, m)
     an input imposes (the free stroke of a stack): B = force + sum G^T k imposed. `output` (..., p, n) and `feedthrough` (..., p, m).
     `rigid` (..., n, 6) is the motion of all coordinates with the ground (its twist given at the platform's reference), `rigid_output`
-    (..., p, 6) that of the outputs, `base_inertia` (..., n, 6) the inertial force per unit base acceleration. Batch axes lead, and only
-    where something varies: an array without them holds for every design.
+    (..., p, 6) that of the outputs, `base_inertia` (..., n, 6) the inertial force per unit base acceleration. `inertial` (..., n, m) is
+    M_u, what inputs that impose a motion accelerate (absent: none do). `unknown` names outputs that the model cannot tell: forces of locked
+    freedoms. Batch axes lead, and only where something varies: an array without them holds for every design.
+
+    `idle` names coordinates that no stiffness holds. They are left out with their zero modes: what is kept is M-orthogonal to them, so that
+    neither frequencies nor shapes depend on which were named. `idle_output` (..., p, k) is how the outputs see the k idle motions,
+    `idle_inertia` (..., k, 6) what accelerating the ground exerts on them (both absent: there are none).
     """
 
     coordinates: tuple[str, ...]
@@ -60,6 +65,10 @@ class LinearModel:
     damping: Damping | None
     idle: tuple[str, ...]
     provenance: str
+    inertial: Array | None = None
+    idle_output: Array | None = None
+    idle_inertia: Array | None = None
+    unknown: tuple[str, ...] = ()
 
     @cached_property
     def stiffness_matrix(self) -> Array:
@@ -74,10 +83,19 @@ class LinearModel:
     @property
     def input_matrix(self) -> Array:
         """B (..., n, m): direct forces and the forces of imposed deformations."""
-        total = self.force
+        return self.force + self._of_imposed(lost=False)
+
+    @property
+    def lost_matrix(self) -> Array:
+        """What structural damping adds to B, (..., n, m), to be taken times j: an imposed deformation is lost like any other."""
+        return self._of_imposed(lost=True)
+
+    def _of_imposed(self, *, lost: bool) -> Array:
+        total = np.zeros_like(self.force)
         for name, deformation in self.imposed.items():
             part = self.stiffness[name]
-            total = total + _transposed(part.operator) @ (part.law @ deformation)
+            factor = np.asarray(part.loss_factor)[..., None, None] if lost else 1.0
+            total = total + factor * (_transposed(part.operator) @ (part.law @ deformation))
         return total
 
     def output_index(self, names: tuple[str, ...]) -> list[int]:

@@ -11,6 +11,7 @@ from flexstage.base.finding import Finding, nearest, require
 from flexstage.base.number import Array
 from flexstage.mechanism.mechanism import GROUND
 from flexstage.readings.linear.model import Channel, LinearModel
+from flexstage.readings.linear.undetermined import require_held, require_known
 from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNITS
 
 
@@ -19,7 +20,8 @@ class Ports:
     """Chosen inputs u and outputs y: M z'' + D z' + K z = `force` u - `inertial` u'', y = `output` z + `feedthrough` u.
 
     `force` (..., n, m), `inertial` (..., n, m), `output` (..., p, n), `feedthrough` (..., p, m). For motions of the ground, z is relative
-    to the ground, y absolute; `inertial` is zero for all other inputs.
+    to the ground, y absolute; `inertial` is zero for inputs that impose no motion. `lost` (..., n, m) is what structural damping adds to
+    the force, times j (see `LinearModel.lost_matrix`), `loss` (..., p) the loss factor of the link whose force an output is, else zero.
     """
 
     inputs: tuple[Channel, ...]
@@ -28,6 +30,8 @@ class Ports:
     inertial: Array
     output: Array
     feedthrough: Array
+    lost: Array | float = 0.0
+    loss: Array | float = 0.0
 
 
 def ports(model: LinearModel, outputs: Iterable[str], inputs: Iterable[str]) -> Ports:
@@ -51,6 +55,8 @@ def ports(model: LinearModel, outputs: Iterable[str], inputs: Iterable[str]) -> 
     named = {"outputs": rows, "inputs": columns}
     require(Finding(kind, "none is named", "Name at least one") for kind, names in named.items() if not names)
     picked = [known[name] for name in rows]
+    require_known(model, rows)
+    require_held(model, rows, columns)
     parts = [_column(model, name, known, sources) for name in columns]
     return Ports(
         inputs=tuple(part[0] for part in parts),
@@ -59,6 +65,8 @@ def ports(model: LinearModel, outputs: Iterable[str], inputs: Iterable[str]) -> 
         inertial=_side_by_side([part[2] for part in parts]),
         output=model.output[..., picked, :],
         feedthrough=_side_by_side([part[3] for part in parts])[..., picked, :],
+        lost=_side_by_side([_lost(model, name, sources) for name in columns]),
+        loss=np.stack(np.broadcast_arrays(*(_loss(model, name) for name in rows)), axis=-1),
     )
 
 
@@ -110,7 +118,8 @@ def _column(model: LinearModel, name: str, known: dict[str, int], sources: dict[
     if name in sources:
         number = [sources[name]]
         force = model.input_matrix[..., number]
-        return model.inputs[number[0]], force, np.zeros_like(force), model.feedthrough[..., number]
+        inertial = np.zeros_like(force) if model.inertial is None else model.inertial[..., number]
+        return model.inputs[number[0]], force, inertial, model.feedthrough[..., number]
     owner, _, component = name.rpartition(".")
     if owner == GROUND:
         axis = COMPONENTS.index(component)
@@ -120,6 +129,16 @@ def _column(model: LinearModel, name: str, known: dict[str, int], sources: dict[
     row = model.output[..., [known[f"{owner}.{COMPONENTS[axis]}"]], :]
     force = np.swapaxes(row, -1, -2)
     return Channel(name, WRENCH_UNITS[axis]), force, np.zeros_like(force), np.zeros((len(model.outputs), 1))
+
+
+def _lost(model: LinearModel, name: str, sources: dict[str, int]) -> Array:
+    return model.lost_matrix[..., [sources[name]]] if name in sources else np.zeros((len(model.coordinates), 1))
+
+
+def _loss(model: LinearModel, output: str) -> Array:
+    owner, _, component = output.rpartition(".")
+    force = component in FORCES and owner in model.stiffness
+    return np.asarray(model.stiffness[owner].loss_factor if force else 0.0)
 
 
 def _side_by_side(columns: list[Array]) -> Array:

@@ -7,6 +7,7 @@ import numpy as np
 from flexstage.base.labelled import Matrix
 from flexstage.base.number import Array
 from flexstage.readings.linear.model import LinearModel, labelled
+from flexstage.readings.linear.undetermined import require_known, require_still, require_unmoved
 
 
 def displacement(model: LinearModel, load: Array) -> Array:
@@ -30,6 +31,9 @@ def static_gain(model: LinearModel, outputs: tuple[str, ...], inputs: tuple[str,
     1.0
     """
     rows, columns = model.output_index(outputs), model.input_index(inputs)
+    require_known(model, outputs)
+    require_still(model, outputs)
+    require_unmoved(model, inputs)
     motion = displacement(model, model.input_matrix[..., columns])
     values = model.output[..., rows, :] @ motion + model.feedthrough[..., rows, :][..., columns]
     return labelled(model, values, outputs, inputs)

@@ -1,0 +1,69 @@
+"""A hexapod of rods between ball joints in closed form: how a rod resists spinning about itself cannot matter."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from flexstage.analysis.modes import modes
+from flexstage.mechanism.mechanism import Link, Mechanism
+from flexstage.parts.body import Body, Inertia
+from flexstage.parts.freedom import Freedom
+from flexstage.parts.given import Given, Joint
+from flexstage.parts.part import Restricted
+from flexstage.readings.linear.static import static_gain
+from flexstage.readings.lumped import lumped
+from flexstage.spatial.frame import COMPONENTS, FORCES, cross_matrix
+
+TURNS = (Freedom.RX, Freedom.RY, Freedom.RZ)
+SOFT = 2e7
+ROD, LENGTH = 0.3, 0.08
+MASS, MOMENTS = 1.4, (2e-3, 2e-3, 3e-3)
+
+
+def struts():
+    """Heads and directions of six rods in three pairs around z."""
+    for turn in np.deg2rad((0.0, 120.0, 240.0)):
+        about = np.array([[np.cos(turn), -np.sin(turn), 0.0], [np.sin(turn), np.cos(turn), 0.0], [0.0, 0.0, 1.0]])
+        for side in (1.0, -1.0):
+            yield about @ (0.055, side * 0.012, -0.01), about @ np.array([0.0, -side * 0.8, 0.6])
+
+
+def hexapod(spin):
+    """Rods with the inertia `spin` about themselves, on springs along themselves, between ball joints."""
+    compliance = tuple(tuple(1.0 / SOFT if row == column == 0 else float(row == column) for column in range(6)) for row in range(6))
+    parts = {"foot": Restricted(Given(compliance, TURNS), (Freedom.X,), TURNS), "head": Joint(TURNS)}
+    bodies, links = {"platform": Body(mass=MASS, inertia=Inertia(*MOMENTS), centre=(0.0, 0.0, 0.0))}, {}
+    for number, (head, along) in enumerate(struts()):
+        middle = head - 0.5 * LENGTH * along
+        tensor = ROD * LENGTH**2 / 12.0 * (np.eye(3) - np.outer(along, along)) + spin * np.outer(along, along)
+        moments = Inertia(*np.diag(tensor), *-tensor[[0, 0, 1], [1, 2, 2]])
+        bodies[f"rod{number}"] = Body(mass=ROD, centre=tuple(middle), inertia=moments)
+        for name, joins, at in (("foot", ("ground", f"rod{number}"), head - LENGTH * along), ("head", (f"rod{number}", "platform"), head)):
+            links[f"{name}{number}"] = Link(joins, name, tuple(at), tuple(along))
+    return Mechanism("rods between balls", parts=parts, bodies=bodies, links=links)
+
+
+def closed_form():
+    """K and M of the platform's twist: a rod follows its head, along itself as a whole and across as it turns about its foot."""
+    K, M = np.zeros((6, 6)), np.diag([MASS] * 3 + list(MOMENTS))
+    for head, along in struts():
+        carry = np.hstack([np.eye(3), -cross_matrix(head)])
+        line = along @ carry
+        K += SOFT * np.outer(line, line)
+        M += carry.T @ (ROD / 3.0 * np.eye(3) + (ROD - ROD / 3.0) * np.outer(along, along)) @ carry
+    return K, M
+
+
+@pytest.mark.parametrize("spin", [0.0, 1e-7, 1e-4, 1.0])
+def test_spin_of_rods_between_ball_joints_matters_to_nothing(spin):
+    K, M = closed_form()
+    expected = np.sqrt(np.sort(np.linalg.eigvals(np.linalg.solve(M, K)).real)) / (2.0 * np.pi)
+    model = lumped(hexapod(spin))
+    found = modes(model).frequencies
+    assert len(found) == 6
+    assert np.allclose(found, expected, rtol=1e-9)
+    pairs = found[[0, 1]] if np.isclose(expected[0], expected[1]) else found[[1, 2]]
+    assert abs(pairs[1] / pairs[0] - 1.0) < 1e-9
+    compliance = static_gain(model, tuple(f"platform.{name}" for name in COMPONENTS), tuple(f"platform.{name}" for name in FORCES)).values
+    assert np.allclose(compliance, np.linalg.inv(K), rtol=1e-9, atol=1e-9 * np.abs(np.linalg.inv(K)).max())
