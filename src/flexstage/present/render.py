@@ -5,6 +5,7 @@ from __future__ import annotations
 import html
 from typing import Any
 
+from flexstage.base.text import printable
 from flexstage.present.display import typeset
 from flexstage.present.table import Cell, Column, Mark, Table
 
@@ -124,9 +125,9 @@ def to_rich(table: Table) -> Any:
     from rich.table import Table as RichTable
     from rich.text import Text
 
-    caption = Text("\n".join(table.notes), style="dim", justify="left") if table.notes else None
+    caption = Text(printable("\n".join(table.notes), keep="\n"), style="dim", justify="left") if table.notes else None
     result = RichTable(
-        title=Text(table.title, style="bold"),
+        title=Text(printable(table.title), style="bold"),
         title_justify="left",
         caption=caption,
         caption_justify="left",
@@ -134,8 +135,8 @@ def to_rich(table: Table) -> Any:
         pad_edge=False,
     )
     for column in table.columns:
-        head = Text(f"{column.head}\n[{column.unit}]" if column.unit else column.head)
+        head = Text(printable(f"{column.head}\n[{column.unit}]" if column.unit else column.head, keep="\n"))
         result.add_column(head, justify="right" if column.numeric else "left", overflow="fold")
     for row in table.rows:
-        result.add_row(*(Text(cell.text, style=_STYLES.get(cell.mark, "")) for cell in row))
+        result.add_row(*(Text(printable(cell.text, keep="\n"), style=_STYLES.get(cell.mark, "")) for cell in row))
     return result

@@ -5,19 +5,33 @@ Commands stand by family: `design` (files), `analyses` (one command an analysis)
 
 from __future__ import annotations
 
+import signal
 import sys
 from collections.abc import Sequence
 
-from flexstage.apps.cli.failure import guarded
+from flexstage.apps.cli.failure import ENDINGS, SIGNALLED, guarded
 
 
 def main() -> None:
-    """Run the command of this process and leave with its exit code."""
+    """Run the command of this process and leave with its exit code; signals to end it end it as Ctrl-C does."""
+    for number in ENDINGS:
+        if signal.getsignal(number) is signal.SIG_DFL:
+            signal.signal(number, _end)
     sys.exit(run(sys.argv[1:]))
 
 
+def _end(number: int, _frame: object) -> None:
+    """Leave through everything that cleans up, undisturbed by a second signal."""
+    for each in ENDINGS:
+        signal.signal(each, signal.SIG_IGN)
+    sys.exit(SIGNALLED + number)
+
+
 def run(arguments: Sequence[str]) -> int:
-    """Run a command line and return its exit code: 0 done, 1 requirement missed (`--strict`), 2 bad input or interrupted, 70 a fault."""
+    """Run a command line and return its exit code.
+
+    0 done, 1 requirement missed (`--strict`), 2 bad input, no place for the output or interrupted, 70 a fault, 128 + n ended by signal n.
+    """
     return guarded(lambda: _run(list(arguments)))
 
 

@@ -8,6 +8,8 @@ from collections.abc import Generator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
+from flexstage.base.text import printable
+
 if TYPE_CHECKING:
     from flexstage.readings.solid.progress import Step
 
@@ -34,7 +36,7 @@ class Bar:
 
     def _show(self, text: str, fraction: float, left: str) -> None:
         if self._shown is not None:
-            self._shown.update(self._task, description=text, completed=fraction, left=left)
+            self._shown.update(self._task, description=printable(text), completed=fraction, left=left)
 
 
 def _clock(seconds: float) -> str:
@@ -52,6 +54,6 @@ def bar() -> Generator[Bar]:
     if not console.is_terminal:
         yield Bar(None)
         return
-    columns = (TextColumn("{task.description}"), BarColumn(), TaskProgressColumn(), TextColumn("{task.fields[left]}"))
+    columns = (TextColumn("{task.description}", markup=False), BarColumn(), TaskProgressColumn(), TextColumn("{task.fields[left]}"))
     with Progress(*columns, console=console, transient=True) as shown:
         yield Bar(shown)

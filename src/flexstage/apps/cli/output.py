@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import sys
 import tempfile
 from collections.abc import Generator, Iterable, Iterator
 from contextlib import contextmanager
@@ -11,7 +10,7 @@ from contextvars import ContextVar
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from flexstage.apps.cli.speech import tell
+from flexstage.apps.cli.speech import put_out, tell
 from flexstage.base.finding import Finding, refuse
 
 if TYPE_CHECKING:
@@ -124,9 +123,7 @@ def write(target: str | Path, content: str | bytes, option: str) -> None:
 
     data = content.encode() if isinstance(content, str) else content
     if str(target) == STDOUT:
-        sys.stdout.flush()
-        sys.stdout.buffer.write(data)
-        sys.stdout.buffer.flush()
+        put_out(data)
         return
     if not _is_device(Path(target)):
         pending, waiting = _PENDING.get(), written(target, data)

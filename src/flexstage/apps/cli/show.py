@@ -16,6 +16,7 @@ def show(tables: Iterable[Table]) -> None:
     """Print tables to stdout, one after the other."""
     from rich.console import Console
 
+    from flexstage.apps.cli.speech import styled
     from flexstage.present.render import to_rich
 
     console = Console(file=sys.stdout, highlight=False, markup=False)
@@ -25,4 +26,4 @@ def show(tables: Iterable[Table]) -> None:
         with console.capture() as captured:
             console.print(to_rich(table))
         lines = [line.rstrip() for line in captured.get().splitlines()]
-        sys.stdout.write("\n".join(["", *lines][number == 0 :]).rstrip("\n") + "\n")
+        styled("\n".join(["", *lines][number == 0 :]).rstrip("\n") + "\n")

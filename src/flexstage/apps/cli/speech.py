@@ -1,10 +1,21 @@
-"""Lines for the reader: results to stdout, all else to stderr."""
+"""Lines for the reader: results to stdout, all else to stderr; and what becomes of what cannot be written there, or must not."""
 
 from __future__ import annotations
 
+import contextlib
+import io
 import os
 import sys
-from typing import TextIO
+import time
+from collections.abc import Generator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, TextIO
+
+from flexstage.base.finding import DesignError, refuse
+from flexstage.base.text import printable
+
+if TYPE_CHECKING:
+    from typing_extensions import Buffer
 
 
 def say(text: str = "") -> None:
@@ -13,27 +24,95 @@ def say(text: str = "") -> None:
 
 
 def tell(text: str) -> None:
-    """Print a line that is not the result (progress, where a file was written) to stderr, as long as somebody reads there."""
-    try:
-        sys.stderr.write(f"{text}\n")
-    except BrokenPipeError:
-        silence(sys.stderr)
-
-
-def silence(stream: TextIO) -> None:
-    """Let go of a stream whose reader has gone: what is held back would fail again at the interpreter's end, and change the exit code."""
-    os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
-
-
-def finish() -> None:
-    """Write out what is held back on stdout and stderr, as long as somebody reads there."""
-    for stream in (sys.stdout, sys.stderr):
-        try:
-            stream.flush()
-        except BrokenPipeError:
-            silence(stream)
+    """Print a line that is not the result (progress, where a file was written) to stderr."""
+    sys.stderr.write(f"{text}\n")
 
 
 def warn(text: str) -> None:
     """Print a warning to stderr."""
     tell(f"warning: {text}")
+
+
+def styled(text: str) -> None:
+    """Print a result to stdout in which escape sequences are this program's own: what others wrote in it is printable."""
+    encoding = sys.stdout.encoding or "utf-8"
+    put_out(text.encode(encoding, "backslashreplace"))
+
+
+def put_out(data: bytes) -> None:
+    """Print bytes to stdout as they are."""
+    sys.stdout.flush()
+    sys.stdout.buffer.write(data)
+    sys.stdout.buffer.flush()
+
+
+@contextmanager
+def streams() -> Generator[None]:
+    """Stdout and stderr as a command needs them.
+
+    What would steer the terminal is written as its escape. What stdout refuses (a full disk, a closed stream) is a finding; a reader that
+    has gone is a `BrokenPipeError`, once. What stderr refuses is lost: nobody is there to be told.
+    """
+    _fill()
+    before = sys.stdout, sys.stderr
+    sys.stdout, sys.stderr = _stream(before[0], 1), _stream(before[1], 2)
+    try:
+        yield
+    finally:
+        for each in (sys.stdout, sys.stderr):
+            with contextlib.suppress(DesignError, OSError):
+                each.flush()
+        sys.stdout, sys.stderr = before
+
+
+def _fill() -> None:
+    """Put something in the place of standard streams that are closed, which files that are opened would take. Stdout fails still."""
+    for number, mode in enumerate((os.O_RDONLY, os.O_RDONLY, os.O_WRONLY)):
+        try:
+            os.fstat(number)
+        except OSError:
+            os.open(os.devnull, mode)  # takes the lowest number that is free
+
+
+def _stream(given: TextIO | None, number: int) -> TextIO:
+    try:
+        number = number if given is None else given.fileno()
+    except io.UnsupportedOperation:  # a notebook's
+        return given or sys.__stdout__ or io.StringIO()
+    except ValueError:  # closed by the program that called this
+        pass
+    raw = _Raw(number, told=number != 2 if given is None else given is sys.stdout)
+    return _Printable(io.BufferedWriter(raw), getattr(given, "encoding", None) or "utf-8", "backslashreplace", line_buffering=raw.isatty())
+
+
+class _Raw(io.FileIO):
+    """A stream's bytes. After the first refusal they go nowhere; where `told`, it is a finding, or the reader has gone."""
+
+    def __init__(self, number: int, *, told: bool) -> None:
+        super().__init__(number, "w", closefd=False)
+        self._told, self._refused = told, False
+
+    def write(self, data: Buffer, /) -> int:
+        """Write some of the bytes; how many."""
+        try:
+            while not self._refused:
+                count = super().write(data)
+                if count is not None:
+                    return count
+                time.sleep(0.01)  # the reader's end is full, and does not block
+        except OSError as error:
+            self._refused = True
+            if self._told and isinstance(error, BrokenPipeError):
+                raise
+            if self._told:
+                raise refuse("stdout", f"it cannot be written to: {error.strerror}", "Free space, or send it elsewhere") from None
+        return memoryview(data).nbytes
+
+
+class _Printable(io.TextIOWrapper):
+    """A stream of text without anything that steers a terminal."""
+
+    def write(self, text: str, /) -> int:
+        """Write text."""
+        super().write(printable(text, keep="\n\t"))
+        return len(text)

@@ -77,7 +77,13 @@ def as_text(document: Mapping[str, Any]) -> str:
      }
     }
     """
-    return json.dumps(plain(document), indent=1, ensure_ascii=False, allow_nan=False)
+    text = json.dumps(plain(document), indent=1, ensure_ascii=False, allow_nan=False)
+    return "\n".join(line if line.isprintable() else "".join(map(_escaped, line)) for line in text.split("\n"))
+
+
+def _escaped(letter: str) -> str:
+    """A letter as it stands in JSON; what is not printable as its escape, which means the same and steers no terminal."""
+    return letter if letter.isprintable() else json.dumps(letter)[1:-1]
 
 
 def _plain(value: Any, where: str, reasons: dict[str, str]) -> Any:
