@@ -37,8 +37,9 @@ demo: setup-runtime ## analyse the shipped stage: tables here, the report in dem
 test: setup-dev ## the tests, but for the examples of the documentation
 	$(PYTEST) --ignore=tests/docs
 
-check-all: setup-oracles ## the tests with full counts and sizes, other programs beside ours; writes docs/validation
+check-all: setup-oracles ## the tests with full counts and sizes, on other processors' kernels, other programs beside ours; writes docs/validation
 	FLEXSTAGE_TESTS=full $(PYTEST)
+	JOBS=$(JOBS) $(BIN)/python -m tools.processors
 	$(BIN)/python benchmarks/oracles.py
 	$(BIN)/python -m tools.validation --solids
 

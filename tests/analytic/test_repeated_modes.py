@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 
 from flexstage.analysis.modes import modes
+from flexstage.analysis.response import default_frequencies
+from flexstage.mechanism.mechanism import ModalDamping
 from flexstage.readings.linear.model import Channel, Contribution, LinearModel
 from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
 
@@ -76,3 +78,31 @@ def test_small_clusters_follow_the_platforms_axes() -> None:
     stiffness["platform"] = Contribution(turn[:6], np.diag([1.0, 1.0, 9.0, 16.0, 25.0, 36.0]))
     found = modes(replace(model, stiffness=stiffness))
     np.testing.assert_allclose(np.abs(found.platform_shapes[:2, :2]), np.eye(2), atol=1e-9)
+
+
+@pytest.mark.parametrize("count", [2, 5, 12])
+def test_repeated_modes_are_named_as_a_set_whatever_their_basis(count: int) -> None:
+    """Equal posts swing in any mixture: their modes bear the names of all, and shapes follow the posts in order."""
+    for seed in range(5):
+        turn, _ = np.linalg.qr(np.random.default_rng(seed).normal(size=(6 + count, 6 + count)))
+        found = modes(beside_oscillators(count, 3.5, turn))
+        assert [found.names[index] for index in found.local] == [f"post 1-post {count} local"] * count
+        assert not any(found.in_plane[index] for index in found.local)
+        posts = [found.bodies.index(f"post {number + 1}") for number in range(count)]
+        assert np.linalg.matrix_rank(found.energies[np.ix_(posts, list(found.local))], tol=1e-6) == count
+        plain = modes(beside_oscillators(count, 3.5))
+        np.testing.assert_allclose(plain.energies[np.ix_(posts, list(plain.local))], np.eye(count), atol=1e-9)
+
+
+@pytest.mark.parametrize("rate", [3.5, 4.0])
+def test_frequencies_to_respond_at_do_not_count_rounding(rate: float) -> None:
+    """Modes that repeat but for rounding are passed once, at their mean: as many lines as where one of them is."""
+    lines = [default_frequencies(beside_oscillators(4, rate, turn), (0.1, 2.0), damping=ModalDamping(0.01)) for turn in _turns(10)]
+    for found in lines[1:]:
+        np.testing.assert_allclose(found, lines[0], rtol=1e-9)
+    one = default_frequencies(beside_oscillators(1, rate), (0.1, 2.0), damping=ModalDamping(0.01))
+    np.testing.assert_allclose(lines[0], one, rtol=1e-9)
+
+
+def _turns(size: int) -> list[np.ndarray]:
+    return [np.linalg.qr(np.random.default_rng(seed).normal(size=(size, size)))[0] for seed in range(5)]

@@ -90,8 +90,9 @@ def test_designs_that_fail_keep_their_place_and_reason():
 def test_measures_are_analytic(key):
     """A step of 1e-20 in the imaginary direction is the derivative that central differences find, extrapolated (Richardson).
 
-    Elimination of n freedoms rounds by about sqrt(n) eps times the condition of the equilibrated stiffness (Higham & Mary 2019): of a measure,
-    or of 1 where it is a share, what is left of 1. A difference divides that by its step; what extrapolation left is far below what it took.
+    Elimination of n freedoms rounds by about sqrt(n) eps times the condition of the equilibrated stiffness (Higham & Mary 2019): of a
+    measure, or of 1 where it is a share, what is left of 1. A difference divides that by its step; what extrapolation left is far below
+    what it took.
     """
     stage, step = double_triangle(), 1e-3
     names = ("parts.neck.thickness", "bodies.platform.solids.plate.size.z", "parts.lever_notch.thickness")

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 
 import numpy as np
 
 from flexstage.base.labelled import Matrix
-from flexstage.base.number import Array, first_design
-from flexstage.readings.linear.eigen import Eigen, eigen
+from flexstage.base.number import Array, descending, first_design, foremost
+from flexstage.readings.linear.eigen import Eigen, eigen, sign_weights
 from flexstage.readings.linear.model import LinearModel
 from flexstage.spatial.frame import COMPONENTS
 
@@ -16,6 +17,10 @@ _PLATFORM = "platform"
 _IN_PLANE = [0, 1, 5]
 _NAMES = ("x", "y", "z", "tilt", "tilt", "yaw")
 _LOCAL_WINDOW = 1.5
+_REPEATED = 1e-6
+_ROUNDING = 1e3 * float(np.finfo(float).eps)
+_EQUAL = 1e-6
+_NUMBERED = re.compile(r"([^\d/]+)(0|[1-9]\d*)(|/.*| \(link\))")
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,8 +29,8 @@ class Modes:
 
     `frequencies` (..., k) [Hz]; `shapes` (..., n, k) mass-normalised; `platform_shapes` (..., 6, k) the platform's twist; `share` (..., k)
     kinetic energy of the platform body over the total; `bodies` names the rows of `energies` (..., b, k), the share of every body and
-    link. `names`, `in_plane` and `platform` (indices of the platform's modes) are those of the first design. `margin` is the largest share
-    not chosen.
+    link. `names`, `in_plane` and `platform` (indices of the platform's modes) are those of the first design. A mode in which several bodies
+    have equal shares is named after all of them, and so is each of the modes that repeat. `margin` is the largest share not chosen.
     """
 
     frequencies: Array
@@ -59,12 +64,12 @@ class Modes:
         )
 
 
-def modes(model: LinearModel, *, limit: float = np.inf, count: int = 6, cluster: float = 1e-6) -> Modes:
+def modes(model: LinearModel, *, limit: float = np.inf, count: int = 6, cluster: float = _REPEATED) -> Modes:
     """Modes of the undamped model (Eq. 28 of Shin & Moon).
 
     The platform's modes are the `count` largest platform shares below `limit` [Hz] (absent: of all modes); modes closer than `cluster`
-    (relative) are kept together, and within such a cluster the basis is turned so that shapes follow the platform's axes. Small
-    motions.
+    (relative) are kept together, and within such a cluster the basis is turned so that shapes follow the platform's axes, and those that
+    leave the platform at rest the coordinates that move most. Small motions.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.readings.mapped import mapped
@@ -72,12 +77,14 @@ def modes(model: LinearModel, *, limit: float = np.inf, count: int = 6, cluster:
     ('tilt', 'tilt', 'z', 'yaw')
     """
     platform = model.output[..., model.output_index(tuple(f"{_PLATFORM}.{name}" for name in COMPONENTS)), :]
-    solved = _aligned(platform, eigen(model), cluster)
+    solved = eigen(model)
+    groups = repeated(first_design(solved.values, 1), cluster)
+    solved, moving = _aligned(platform, solved, groups, sign_weights(model.coordinates))
     frequencies = np.sqrt(solved.values) / (2.0 * np.pi)
     bodies, energies, components = _energies(model, solved)
     share = energies[..., bodies.index(_PLATFORM), :] if _PLATFORM in bodies else np.zeros_like(frequencies)
-    chosen, margin = _chosen(first_design(share, 1), first_design(frequencies, 1), limit, count, cluster)
-    names, in_plane = _named(bodies, first_design(energies, 2), components)
+    chosen, margin = _chosen(first_design(share, 1), first_design(frequencies, 1), limit, count, groups)
+    names, in_plane = _named(bodies, *_together(bodies, first_design(energies, 2), components, list(zip(groups, moving, strict=True))))
     return Modes(
         frequencies=frequencies,
         shapes=solved.shapes,
@@ -110,19 +117,57 @@ def clusters(values: Array, gap: float) -> list[list[int]]:
     return groups
 
 
-def _aligned(platform: Array, solved: Eigen, gap: float) -> Eigen:
-    """Turn the basis of repeated modes so that their platform shapes separate along the axes (first design's clusters)."""
-    shapes = np.array(solved.shapes)
-    weighted = (platform @ shapes) * np.array([1.0, 1.0, 1.0, 0.1, 0.1, 0.1])[:, None]
-    for group in clusters(first_design(solved.values, 1), 2.0 * gap):
-        if not 1 < len(group) <= len(COMPONENTS):  # six motions of the platform cannot tell more shapes apart
-            continue
-        seen = weighted[..., group]
-        leading = np.sort(np.argsort(-np.round(np.sum(first_design(seen, 2) ** 2, axis=1), 9), kind="stable")[: len(group)])
-        turn, _ = np.linalg.qr(np.swapaxes(seen[..., leading, :], -1, -2))
-        sign = np.sign(np.sum((seen @ turn)[..., leading, :] * np.eye(len(group)), axis=-2, keepdims=True))
-        shapes[..., group] = shapes[..., group] @ turn * np.where(sign == 0.0, 1.0, sign)
-    return Eigen(solved.values, shapes)
+def repeated(values: Array, gap: float = _REPEATED) -> list[list[int]]:
+    """Groups of ascending eigenvalues omega^2 whose frequencies agree within `gap`, or as well as rounding lets one tell.
+
+    Solved by 1/lambda, an eigenvalue is known to eps times its ratio to the least one, times what rounding grows by.
+
+    >>> repeated(np.array([1.0, 1.0 + 1e-9, 2.0]))
+    [[0, 1], [2]]
+    """
+    groups: list[list[int]] = []
+    for index, value in enumerate(values):
+        slack = (2.0 * gap + _ROUNDING * value / values[0]) * value
+        if groups and value - values[groups[-1][-1]] <= slack:
+            groups[-1].append(index)
+        else:
+            groups.append([index])
+    return groups
+
+
+def _aligned(platform: Array, solved: Eigen, groups: list[list[int]], weights: Array) -> tuple[Eigen, list[int]]:
+    """Turn the basis of repeated modes so that their platform shapes separate along the axes; and how many of each group move the platform.
+
+    Of each group (of the first design) as many shapes as it has motions of the platform come first, along x, y, ...; the others leave the
+    platform at rest and follow the coordinates that move most.
+    """
+    shapes, moving = np.array(solved.shapes), list[int]()
+    own = np.array([1.0, 1.0, 1.0, 0.1, 0.1, 0.1])[:, None]
+    for group in groups:
+        seen, every = own * (platform @ shapes[..., group]), weights[:, None] * shapes[..., group]
+        size = float(np.max(np.sum(first_design(every, 2) ** 2, axis=1)))
+        leading = np.sort(_leading(first_design(seen, 2), _EQUAL**2 * size, np.eye(len(group))))
+        moving.append(len(leading))
+        if len(group) > 1:
+            rows = seen[..., leading, :]
+            rest = np.linalg.qr(first_design(rows, 2).T, mode="complete")[0][:, len(leading) :]
+            rows = np.concatenate([rows, every[..., _leading(first_design(every, 2), 0.0, rest), :]], axis=-2)
+            turn, upper = np.linalg.qr(np.swapaxes(rows, -1, -2))
+            shapes[..., group] = shapes[..., group] @ turn * np.where(np.diagonal(upper, axis1=-2, axis2=-1) < 0.0, -1.0, 1.0)[..., None, :]
+    return Eigen(solved.values, shapes), moving
+
+
+def _leading(rows: Array, least: float, basis: Array) -> Array:
+    """Numbers of the rows (n, k) that span them within `basis` (k, m): each the longest one left, while its square is above `least`."""
+    left, found = rows @ basis, list[int]()
+    while len(found) < basis.shape[1]:
+        squares = np.sum(left**2, axis=1)
+        row = int(np.argmax(squares >= (1.0 - _EQUAL) * np.max(squares)))
+        if squares[row] <= least:
+            break
+        found.append(row)
+        left = left - np.outer(left @ left[row], left[row]) / squares[row]
+    return np.array(found, dtype=int)
 
 
 def _energies(model: LinearModel, solved: Eigen) -> tuple[tuple[str, ...], Array, Array]:
@@ -134,7 +179,8 @@ def _energies(model: LinearModel, solved: Eigen) -> tuple[tuple[str, ...], Array
         rows.append(np.sum(products, axis=-2))
         components.append(_by_component(first_design(products, 2)))
     values = np.stack(np.broadcast_arrays(*rows), axis=-2)
-    return tuple(model.inertia), values / np.sum(values, axis=-2, keepdims=True), np.stack(components)
+    shares = values / np.sum(values, axis=-2, keepdims=True)
+    return tuple(model.inertia), np.where(np.abs(shares) > np.finfo(float).eps, shares, 0.0), np.stack(components)
 
 
 def _by_component(products: Array) -> Array:
@@ -143,32 +189,79 @@ def _by_component(products: Array) -> Array:
     return products.reshape(-1, 6, count).sum(axis=0) if rows in {6, 12} else np.zeros((6, count))
 
 
-def _chosen(share: Array, frequencies: Array, limit: float, count: int, gap: float) -> tuple[tuple[int, ...], float]:
+def _together(bodies: tuple[str, ...], energies: Array, components: Array, groups: list[tuple[list[int], int]]) -> tuple[Array, Array]:
+    """Energy shares (b, k) and their components (b, 6, k) as means over modes that repeat, which no choice of their basis changes.
+
+    Of each group, so many of its first modes move the platform: where they are the platform's own, their components stay apart.
+    """
+    energies, components = energies.copy(), components.copy()
+    for group, count in groups:
+        main = _main(bodies, np.mean(energies[:, group[:count]], axis=1, keepdims=True))[0] if count else -1
+        own = main >= 0 and bodies[main] == _PLATFORM
+        if own:
+            energies[:, group[:count]] = np.mean(energies[:, group[:count]], axis=1, keepdims=True)
+        rest = group[count:] if own else group
+        if rest:
+            energies[:, rest] = np.mean(energies[:, rest], axis=1, keepdims=True)
+            components[..., rest] = np.mean(components[..., rest], axis=-1, keepdims=True)
+    return energies, components
+
+
+def _main(bodies: tuple[str, ...], energies: Array) -> Array:
+    """Which body modes (k) are named after: the platform where it has half of the largest share (b, k) and more."""
+    main = foremost(energies.T, _EQUAL)
+    if _PLATFORM not in bodies:
+        return main
+    platform = bodies.index(_PLATFORM)
+    return np.where(energies[platform] >= 0.5 * np.max(energies, axis=0) - _EQUAL, platform, main)
+
+
+def _chosen(share: Array, frequencies: Array, limit: float, count: int, groups: list[list[int]]) -> tuple[tuple[int, ...], float]:
     """Indices of the largest shares below the limit, clusters whole; and the largest share left out."""
-    groups = [group for group in clusters(frequencies, gap) if frequencies[group[0]] < limit]
-    groups.sort(key=lambda group: -float(np.mean(share[group])))
+    groups = [group for group in groups if frequencies[group[0]] < limit]
+    means = np.array([np.mean(share[group]) for group in groups])
     chosen: list[int] = []
-    for group in groups:
+    for place in descending(means):
         if len(chosen) >= count:
             break
-        chosen += group
+        chosen += groups[place]
     left = [share[index] for group in groups for index in group if index not in chosen]
     return tuple(sorted(chosen)), float(max(left, default=0.0))
 
 
 def _named(bodies: tuple[str, ...], energies: Array, components: Array) -> tuple[tuple[str, ...], tuple[bool, ...]]:
     """Names of modes by the component that carries most of their main body's energy, and whether that motion is in plane."""
-    main = np.argmax(energies, axis=0)
-    if _PLATFORM in bodies:
-        platform = bodies.index(_PLATFORM)
-        main = np.where(energies[platform] >= 0.5 * np.max(energies, axis=0), platform, main)
+    main = _main(bodies, energies)
     parts = components[main, :, np.arange(len(main))]
-    in_plane = np.sum(parts[:, _IN_PLANE], axis=1) > 0.5 * np.sum(parts, axis=1)
+    in_plane = np.sum(parts[:, _IN_PLANE], axis=1) > (0.5 + _EQUAL) * np.sum(parts, axis=1)
     names = (
-        _NAMES[component] if bodies[body] == _PLATFORM else f"{bodies[body]} local"
-        for body, component in zip(main, np.argmax(parts, axis=1), strict=True)
+        _NAMES[component] if bodies[body] == _PLATFORM else f"{_set(_equal(bodies, shares))} local"
+        for body, component, shares in zip(main, foremost(parts, _EQUAL * np.max(parts, axis=1, keepdims=True)), energies.T, strict=True)
     )
     return tuple(names), tuple(in_plane.tolist())
+
+
+def _equal(bodies: tuple[str, ...], shares: Array) -> list[str]:
+    """The bodies with the largest share, in their order."""
+    return [body for body, share in zip(bodies, shares, strict=True) if body != _PLATFORM and share >= np.max(shares) - _EQUAL]
+
+
+def _set(names: list[str]) -> str:
+    """Names in one text, copies in a row as the description writes them: `B1-B3/tip`."""
+    parts = [_NUMBERED.fullmatch(name) for name in names]
+    copies: dict[tuple[str, ...], list[int]] = {}
+    for name, found in zip(names, parts, strict=True):
+        copies.setdefault((name,) if found is None else (found[1], found[3]), []).append(0 if found is None else int(found[2]))
+    return ", ".join(text for key, numbers in copies.items() for text in _range(key, numbers))
+
+
+def _range(key: tuple[str, ...], numbers: list[int]) -> list[str]:
+    if len(key) == 1:
+        return list(key)
+    head, tail = key
+    if len(numbers) > 1 and sorted(numbers) == list(range(min(numbers), max(numbers) + 1)):
+        return [f"{head}{min(numbers)}-{head}{max(numbers)}{tail}"]
+    return [f"{head}{number}{tail}" for number in numbers]
 
 
 def modal_assurance(first: Array, second: Array, weight: Array | None = None) -> Matrix:

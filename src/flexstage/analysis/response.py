@@ -6,8 +6,9 @@ from collections.abc import Iterable
 
 import numpy as np
 
+from flexstage.analysis.modes import repeated
 from flexstage.base.finding import refuse
-from flexstage.base.number import Array
+from flexstage.base.number import Array, distinct, first_design
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Damping
 from flexstage.readings.linear.damping import damping_law, modal_ratios
 from flexstage.readings.linear.eigen import eigen
@@ -61,7 +62,8 @@ def transmissibility(
 def default_frequencies(model: LinearModel, band: tuple[float, float] | None = None, *, damping: Damping | None = None) -> Array:
     """A frequency grid (f,) in Hz: 40 points a decade, and 25 across every resonance f_r (1 + zeta_r tan theta), |theta| < 83 degrees.
 
-    `band` absent: from f_1/50 to twice the twelfth natural frequency. Resonances are those of the first design of a batch.
+    `band` absent: from f_1/50 to twice the twelfth natural frequency. Resonances are those of the first design of a batch; of modes that
+    repeat, the mean.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.readings.lumped import lumped
@@ -70,16 +72,22 @@ def default_frequencies(model: LinearModel, band: tuple[float, float] | None = N
     (10.0, 1000.0)
     """
     solved = eigen(model)
-    natural = np.sqrt(solved.values.reshape(-1, solved.values.shape[-1])[0]) / (2.0 * np.pi)
+    natural = np.sqrt(first_design(solved.values, 1)) / (2.0 * np.pi)
     if not natural.size:
         raise refuse("stage", "the model has no mass, so it has no resonances to choose frequencies by", "Pass the frequencies")
     ratios = modal_ratios(model, solved, damping_law(model, damping))
-    width = np.maximum(ratios.reshape(-1, ratios.shape[-1])[0], 1e-6)
+    groups = repeated(first_design(solved.values, 1))
+    natural, width = _means(natural, groups), np.maximum(_means(first_design(ratios, 1), groups), 1e-6)
     low, high = band if band is not None else (natural[0] / 50.0, 2.0 * natural[min(_MODES_SHOWN, len(natural)) - 1])
     around = (natural[:, None] * (1.0 + width[:, None] * np.tan(_ANGLES))).ravel()
     coarse = np.geomspace(low, high, 1 + max(2, round(40.0 * float(np.log10(high / low)))))
-    grid = np.concatenate([coarse, natural, around])
-    return np.unique(grid[(grid >= low) & (grid <= high)])
+    inner = np.concatenate([natural, around])
+    return distinct(np.concatenate([coarse, inner[(inner > low) & (inner < high * (1.0 - 1e-9))]]))
+
+
+def _means(values: Array, groups: list[list[int]]) -> Array:
+    """Every value as the mean of its group's."""
+    return np.concatenate([np.full(len(group), np.mean(values[group])) for group in groups])
 
 
 def _checked(frequencies: Array) -> Array:

@@ -14,11 +14,15 @@ from flexstage.readings.linear.undetermined import require_unmoved
 from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNITS
 
 _SINGULAR = 1e-11
+_ALIKE = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
 class DirectionalStiffness:
-    """A symmetric in-plane stiffness tensor (..., 2, 2) [N/m] with its principal values and the angle of the stiffest direction [rad]."""
+    """A symmetric in-plane stiffness tensor (..., 2, 2) [N/m] with its principal values and the angle of the stiffest direction [rad].
+
+    The angle is counted from x towards y, in [0, pi); NaN where all directions are alike to 1e-9.
+    """
 
     tensor: Matrix
     principal: Array
@@ -102,6 +106,8 @@ def directional(tensor: Array) -> DirectionalStiffness:
     values, vectors = np.where(failed[..., 0], np.nan, values), np.where(failed, np.nan, vectors)
     stiffest = vectors[..., :, 1]
     angle = np.mod(np.arctan2(stiffest[..., 1], stiffest[..., 0]), np.pi)
+    angle = np.where(angle > np.pi - _ALIKE, 0.0, angle)
+    angle = np.where(values[..., 1] - values[..., 0] > _ALIKE * np.abs(values[..., 1]), angle, np.nan)
     return DirectionalStiffness(Matrix(symmetric, ("x", "y"), ("x", "y"), "N/m"), values[..., ::-1], angle)
 
 

@@ -10,11 +10,14 @@ from flexstage.analysis.workspace.polytope import reachable
 from flexstage.analysis.workspace.stroke import StrokeLimits, beside
 from flexstage.base.finding import refuse
 from flexstage.base.labelled import Matrix
-from flexstage.base.number import Array
+from flexstage.base.number import Array, foremost
+from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.readings.finite import design_shape, forward_kinematics
 from flexstage.readings.linear.kinematics import Kinematics
 from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
+
+_ROUNDING = 64.0 * float(np.finfo(float).eps)
 
 
 @dataclass(frozen=True, eq=False)
@@ -22,7 +25,7 @@ class MapError:
     """Error of the linear map, finite pose less J a, at every point tried.
 
     `strokes` (k, ..., n) [m] tried, `errors` (k, ..., 6) [m, rad] there; `worst` (..., 6) the largest by axis, `worst_strokes` (..., 6, n)
-    where; `residual` (...) [m] how far redundant constraints disagree at worst.
+    where, 0 and the first where nothing but rounding is left; `residual` (...) [m] how far redundant constraints disagree at worst.
     """
 
     actuators: tuple[str, ...]
@@ -78,8 +81,10 @@ def map_error_at(mechanism: Mechanism, kinematics: Kinematics, strokes: Array) -
         raise refuse("linear map error", f"{strokes.shape[-1]} strokes are given for {count} actuators", "Give one stroke an actuator")
     moved = forward_kinematics(mechanism, kinematics, strokes)
     linear = (kinematics.jacobian @ strokes[..., None])[..., 0]
+    rounding = _ROUNDING * np.repeat([_reach(mechanism), 1.0], 3)
     errors = moved.pose.vector - linear
-    place = np.argmax(np.abs(errors), axis=0)
+    errors = np.where(np.abs(errors) > rounding, errors, 0.0)
+    place = foremost(np.moveaxis(np.abs(errors), 0, -1), rounding[:, None])
     return MapError(
         actuators=kinematics.actuators,
         strokes=strokes,
@@ -89,6 +94,11 @@ def map_error_at(mechanism: Mechanism, kinematics: Kinematics, strokes: Array) -
         residual=np.max(moved.residual, axis=0),
         provenance=moved.provenance,
     )
+
+
+def _reach(mechanism: Mechanism) -> float:
+    """The largest coordinate [m] of a link: what poses are computed from, and rounded with."""
+    return max((float(np.max(np.abs(link.frame.position))) for link in expand(mechanism).links.values()), default=0.0)
 
 
 def _picked(strokes: Array, place: Array) -> Array:

@@ -14,7 +14,7 @@ from flexstage.analysis.modes import Modes
 from flexstage.analysis.statics import DirectionalStiffness, Statics
 from flexstage.base.finding import DesignError
 from flexstage.base.labelled import Matrix, ratio_units
-from flexstage.base.number import Array
+from flexstage.base.number import Array, descending
 from flexstage.mechanism.mechanism import Damping, ModalDamping, RayleighDamping
 from flexstage.present.documents.envelope import Document
 from flexstage.readings.linear.frequency import Response
@@ -204,8 +204,7 @@ def _each_mode(modes: Modes, count: int) -> Iterator[Document]:
 
 def _largest(names: tuple[str, ...], shares: Array) -> Document:
     """Kinetic-energy shares of one per cent and more, largest first."""
-    order = np.argsort(-shares, kind="stable")
-    return {names[index]: shares[index] for index in order if shares[index] >= 0.01}
+    return {names[index]: shares[index] for index in descending(shares, 1e-6) if shares[index] >= 0.01}
 
 
 def response_body(response: Response, damping: Damping | None) -> Document:

@@ -89,7 +89,7 @@ def _principal(name: str, stiffness: DirectionalStiffness) -> tuple[Cell, ...]:
     most, least = (float(value) for value in first_design(stiffness.principal, 1))
     angle = float(np.rad2deg(first_design(np.atleast_1d(stiffness.angle), 1)[0]))
     spread = (most - least) / most
-    alike = spread < 1e-9
+    alike = bool(np.isnan(angle))
     direction = "none" if alike else number(angle, 4)
     text = "0 %" if alike else f"{number(100.0 * spread, 3)} %"
     return Cell(name, Mark.STRONG), Cell(number(1e-6 * most)), Cell(number(1e-6 * least)), Cell(direction), Cell(text)

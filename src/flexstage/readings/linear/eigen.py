@@ -31,7 +31,7 @@ def eigen(model: LinearModel) -> Eigen:
     >>> (eigen(mapped(double_triangle())).values[:3] ** 0.5 / (2 * np.pi)).round(2).tolist()
     [110.91, 110.91, 135.15]
     """
-    return solve(model.stiffness_matrix, model.inertia_matrix, _weights(model.coordinates))
+    return solve(model.stiffness_matrix, model.inertia_matrix, sign_weights(model.coordinates))
 
 
 def solve(stiffness: Array, inertia: Array, weights: Array) -> Eigen:
@@ -89,5 +89,10 @@ def _signed(shapes: Array, weights: Array) -> Array:
     return shapes * np.where(picked < 0.0, -1.0, 1.0)
 
 
-def _weights(coordinates: tuple[str, ...]) -> Array:
+def sign_weights(coordinates: tuple[str, ...]) -> Array:
+    """What makes lengths of coordinates (n,) to be compared: 0.1 m for rotations.
+
+    >>> sign_weights(("arm.x", "arm.rz")).tolist()
+    [1.0, 0.1]
+    """
     return np.array([0.1 if name.rpartition(".")[2].startswith("r") else 1.0 for name in coordinates])
