@@ -1,7 +1,9 @@
 """A hinge as a specimen: drawn at the origin, with a stub of the block it grows on at each end that is not held rigid.
 
 Where a profile rises to a block, the stub has the hinge's full height, and hinge and stub are one outline: half-circle arcs are drawn
-whole, so that they end square on the stub's flank, not on a face they touch. A prismatic hinge ends on a stub wider than itself all round.
+whole, so that they end square on the stub's flank, not on a face they touch. A rigid face, which an arc would touch without an angle,
+stands at the arc's true end, and the wedge between them is blunted: it carries next to nothing, and no mesh could fill it. A prismatic
+hinge ends on a stub wider than itself all round.
 """
 
 from __future__ import annotations
@@ -21,10 +23,13 @@ from flexstage.parts.neck import Neck
 from flexstage.parts.notch import Notch
 from flexstage.parts.profile import Elliptic, Filleted, Profile, Straight, length
 from flexstage.parts.rod import Rod
-from flexstage.readings.solid.draw import MILLIMETRES, SHORTENED
+from flexstage.readings.solid.draw import MILLIMETRES
 
 START, END = "start", "end"
 """Names of the specimen's two outer faces, towards -x and +x."""
+
+BLUNTED = 0.06
+"""How thick the wedge between an arc and a rigid face is where it ends, over the arc's lesser axis."""
 
 _NEAR = 1e-6
 """Relative to the hinge's length: what counts as lying in a plane."""
@@ -71,14 +76,17 @@ class _Side:
 
     @property
     def ends(self) -> tuple[float, float]:
-        """Where the specimen starts and ends along x: at a rigid face, which an arc would touch without an angle, its last is left out."""
-        first, last = (stub if stub > 0.0 else -missing(self.profile) * MILLIMETRES for stub in self.stubs)
+        """Where the specimen starts and ends along x."""
+        first, last = self.stubs
         return -self.half - first, self.half + last
 
     @property
     def angles(self) -> tuple[float, float]:
-        """Where the arcs start and end: on a stub's flank they are whole, at a rigid face they stop short."""
-        first, last = (0.5 * np.pi if stub > 0.0 else float(np.arcsin(1.0 - SHORTENED)) for stub in self.stubs)
+        """Where the arcs start and end: on a stub's flank they are whole, at a rigid face the wedge they end in is blunted."""
+        rise = self.height - self.rise
+        along = rise if isinstance(self.profile, Filleted) else self.half
+        blunt = float(np.arcsin(1.0 - BLUNTED * min(1.0, rise / along))) if rise > 0.0 else 0.5 * np.pi
+        first, last = (0.5 * np.pi if stub > 0.0 else blunt for stub in self.stubs)
         return -first, last
 
     @property
@@ -86,18 +94,6 @@ class _Side:
         """Heights at the start and the end."""
         first, last = (self.rise + (self.height - self.rise) * (1.0 - float(np.cos(angle))) for angle in self.angles)
         return first, last
-
-
-def missing(profile: Profile) -> float:
-    """How much of a hinge's length [m] is left out at an end without a stub.
-
-    >>> from flexstage.parts.profile import Circular
-    >>> round(missing(Circular(0.005)), 9), missing(Straight(0.01))
-    (0.00015, 0.0)
-    """
-    if isinstance(profile, Elliptic):
-        return 0.5 * SHORTENED * float(np.real(length(profile)))
-    return SHORTENED * float(np.real(cut_height(profile)))
 
 
 def grain(part: Hinge) -> float:
