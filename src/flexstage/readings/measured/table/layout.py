@@ -161,7 +161,10 @@ def _form(lines: list[str]) -> tuple[str | None, str, int] | None:
 def _fields(line: str, delimiter: str | None) -> list[str]:
     if delimiter is None:
         return line.split()
-    return [field.strip() for field in next(csv.reader([line.strip("\r\n")], delimiter=delimiter, skipinitialspace=True), [])]
+    try:
+        return [field.strip() for field in next(csv.reader([line.strip("\r\n")], delimiter=delimiter, skipinitialspace=True), [])]
+    except csv.Error:  # carriage returns within the line, fields beyond measure
+        return [line]
 
 
 def _header(head: list[str], delimiter: str | None, columns: int, path: Path) -> tuple[tuple[str, ...], tuple[str, ...]]:
