@@ -8,13 +8,12 @@ processor lacks would crash, so they are left out.
 
 from __future__ import annotations
 
+import importlib
 import os
 import subprocess
 import sys
 from collections.abc import Mapping
 
-import scipy.linalg  # noqa: F401 (loads the library that threadpoolctl is asked for)
-from numpy._core import _multiarray_umath as core
 from threadpoolctl import threadpool_info
 
 _NEEDED = {"Nehalem": {"SSE42", "X86_V2"}, "Haswell": {"AVX2", "X86_V3"}, "Zen": {"AVX2", "X86_V3"}, "SkylakeX": {"AVX512_SKX", "X86_V4"}}
@@ -26,6 +25,7 @@ def processors() -> Mapping[str, Mapping[str, str]]:
 
     With the oldest, numpy is told to leave out all that a processor of its family may lack.
     """
+    core = importlib.import_module("numpy._core._multiarray_umath")  # which also loads numpy's own OpenBLAS
     has: Mapping[str, bool] = core.__cpu_features__
     own = {each.get("architecture", "").lower() for each in threadpool_info()}
     names = [name for name, needed in _NEEDED.items() if any(has.get(each, False) for each in needed) and name.lower() not in own]

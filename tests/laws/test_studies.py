@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from flexstage.analysis.requirements import measure
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.mechanism.address import get, set_value
+from flexstage.mechanism.mechanism import Mechanism
 from flexstage.readings.lumped import lumped
 from flexstage.studies.judge import measured
 from flexstage.studies.sensitivities import stepped
@@ -107,7 +108,7 @@ def test_measures_are_analytic(key):
         assert slope * value == pytest.approx(found, rel=0.0, abs=_rounding(stage) * size / step + 0.01 * abs(found - fine)), name
 
 
-def _rounding(stage):
+def _rounding(stage: Mechanism) -> float:
     stiffness = lumped(stage).stiffness_matrix
     scale = np.sqrt(np.diag(stiffness))
-    return np.sqrt(len(scale)) * np.linalg.cond(stiffness / np.outer(scale, scale)) * np.finfo(float).eps
+    return float(np.sqrt(len(scale)) * np.linalg.cond(stiffness / np.outer(scale, scale)) * np.finfo(float).eps)
