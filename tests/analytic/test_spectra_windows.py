@@ -32,6 +32,19 @@ def test_a_sine_has_its_power_in_its_lines(window: Window):
     assert np.sum(np.real(found.yy)) * found.frequencies[1] == pytest.approx(1.0, rel=1e-9)
 
 
+@pytest.mark.parametrize("averages", [1, 2, 3, 7, 40])
+@pytest.mark.parametrize("share", [0.5, 0.25])
+def test_few_segments_are_worth_what_all_their_pairs_share(averages: int, share: float):
+    """The variance of a mean of K is the sum of all K x K correlations over K^2; those of white noise are windows' overlaps squared."""
+    size = 64
+    window, hop = Window.HANN.samples(size), round(share * size)
+    placed = np.zeros((averages, size + hop * (averages - 1)))
+    for number in range(averages):
+        placed[number, number * hop : number * hop + size] = window
+    pairs = (placed @ placed.T / np.sum(window**2)) ** 2
+    assert independent_averages(averages, window, hop) == pytest.approx(averages**2 / np.sum(pairs), rel=1e-12)
+
+
 def test_half_overlapped_hann_segments_are_worth_eleven_twelfths_as_many():
     """Welch 1967: the correlation of neighbours is (1/6)^2."""
     averages = 10_000

@@ -17,6 +17,10 @@ from flexstage.analysis.workspace.map_error import linear_map_error
 from flexstage.analysis.workspace.room import room
 from flexstage.analysis.workspace.strength import hinge_stress
 from flexstage.analysis.workspace.stroke import StrokeLimits, mapping_at, single_axis, stroke_limits
+from flexstage.cases.double_triangle import double_triangle
+from flexstage.mechanism.expand import expand
+from flexstage.parts.neck import Neck
+from flexstage.parts.notch import Notch
 from flexstage.readings.ideal import ideal
 from flexstage.readings.lumped import lumped
 
@@ -119,6 +123,31 @@ def test_a_stack_against_a_spring():
     line = platform_lines(ideal(stage).mapping, lumped(stage), stroke_limits(stage))
     series = 1.0 / (1.0 / 50e6 + 1.0 / rod) + leaves
     assert line.stiffness[0] == pytest.approx(series, rel=0.01)
+
+
+def test_round_necks_bend_by_the_second_moment_of_their_throat():
+    """Of a circle of radius r it is pi r^4 / 4, the integral of y^2 over its strips; of a rectangle b h^3 / 12 about its softer axis."""
+    stage = double_triangle()
+    found = buckling(stage, lumped(stage), stroke_limits(stage).from_zero)
+    assert {"round neck", "notch"} <= {_second_moment(link.part)[0] for link in expand(stage).links.values()}
+    for index, name in enumerate(found.links):
+        link = expand(stage).links[name]
+        kind, moment = _second_moment(link.part)
+        if kind == "other":
+            continue
+        length = found.length[index] * (2.0 if found.ends[index] is Ends.FREE else 1.0)
+        assert found.critical[index] == pytest.approx(np.pi**2 * link.material.young * moment / length**2, rel=1e-6), name
+
+
+def _second_moment(part):
+    """Kind, and second moment by strips of the thinnest section."""
+    if isinstance(part, Neck) and part.width is None:
+        radius, turn = 0.5 * part.thickness, (np.arange(2000) + 0.5) * np.pi / 2000
+        return "round neck", float(np.sum((radius * np.cos(turn)) ** 2 * 2.0 * (radius * np.sin(turn)) ** 2) * np.pi / 2000)
+    if isinstance(part, (Neck, Notch)):
+        wide, thin = max(part.width, part.thickness), min(part.width, part.thickness)
+        return "notch", wide * thin**3 / 12.0
+    return "other", np.nan
 
 
 def test_euler_columns():

@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 import flexstage as fs
+from flexstage.base.finding import DesignError
 from flexstage.cases.double_triangle import SM_REF_B, double_triangle
+from flexstage.mechanism.address import get
 from flexstage.mechanism.expand import expand
+from flexstage.mechanism.mechanism import ModalDamping, RayleighDamping, StructuralDamping
+from flexstage.mechanism.pattern import Polar
+from flexstage.readings.linear.eigen import sign_weights, solve
 from flexstage.readings.linear.static import static_gain
 from flexstage.spatial.frame import COMPONENTS, transport
 
@@ -22,6 +28,28 @@ def stage() -> fs.Mechanism:
 @pytest.fixture(scope="module")
 def model(stage: fs.Mechanism) -> fs.LinearModel:
     return fs.lumped(stage)
+
+
+def test_units_are_si_inside_and_stated_at_the_border(stage: fs.Mechanism) -> None:
+    before, after = fs.dumps(stage).split("[parts.neck]")
+    stated = re.compile(r'thickness = "[^"]* mm"')
+    written = (before + "[parts.neck]" + stated.sub(new, after, count=1) for new in ('thickness = "1500 um"', "thickness = 1.5e-3"))
+    assert get(fs.loads(next(written)), "parts.neck.thickness") == pytest.approx(1.5e-3, rel=1e-15)
+    with pytest.raises(DesignError, match="thickness"):
+        fs.loads(next(written))
+
+
+def test_position_angles_count_from_x_towards_y(stage: fs.Mechanism) -> None:
+    """30 degrees is 0.5236 inside, and lies at (cos, sin)."""
+    turned = replace(stage, gauges={"S": replace(stage.gauges["S1-S3"], pattern=replace(_polar(stage), first=np.deg2rad(30.0)))})
+    found = expand(turned).gauges["S"].frame.position
+    np.testing.assert_allclose(found[:2] / _polar(stage).radius, [np.sqrt(0.75), 0.5], atol=1e-12)
+
+
+def _polar(stage: fs.Mechanism) -> Polar:
+    pattern = stage.gauges["S1-S3"].pattern
+    assert isinstance(pattern, Polar)
+    return pattern
 
 
 def test_component_order() -> None:
@@ -68,6 +96,15 @@ def test_gauge_grows_as_the_gap_opens(stage: fs.Mechanism) -> None:
     np.testing.assert_allclose(fs.ideal(replace(stage, gauges=closing)).gauge_mapping.values, -opens.values)
 
 
+def test_gauge_rows_are_readings_over_platform_coordinates(stage: fs.Mechanism) -> None:
+    """R_s = ds/dx: the motion at the gauge, along its axis, of a platform that moves by a unit of one coordinate."""
+    mapping, reference = fs.ideal(stage).gauge_mapping, expand(stage).bodies["platform"].reference
+    assert (mapping.rows, mapping.columns) == (tuple(expand(stage).gauges), COMPONENTS)
+    for row, gauge in enumerate(expand(stage).gauges.values()):
+        moved = transport(gauge.frame.position - reference)[:3]
+        np.testing.assert_allclose(mapping.values[row], gauge.frame.rotation[:, 0] @ moved, atol=1e-12)
+
+
 def test_amplified_rows_of_the_mapping_carry_one_over_the_amplification(stage: fs.Mechanism) -> None:
     assert fs.ideal(stage).mapping.at("B4", "z") == pytest.approx(1.0 / 3.0)
 
@@ -82,6 +119,42 @@ def test_modes_are_mass_normalised_and_ascend(model: fs.LinearModel) -> None:
     lowest = modes.shapes[:, :12]
     np.testing.assert_allclose(lowest.T @ model.inertia_matrix @ lowest, np.eye(12), atol=1e-9)
     assert np.all(np.diff(modes.frequencies) >= -1e-6)
+
+
+def test_the_largest_component_of_a_shape_is_positive_an_angle_as_a_tenth_of_a_metre(model: fs.LinearModel) -> None:
+    """0.5 m outweighs -1 rad, 0.05 m does not; and so do the stage's own shapes where they do not repeat."""
+    for first, second in ((0.5, -1.0), (0.05, -1.0)):
+        shapes = np.array([[first, 1.0], [second, 1.0]])
+        inverse = np.linalg.inv(shapes)
+        found = solve(inverse.T @ np.diag([1.0, 4.0]) @ inverse, inverse.T @ inverse, sign_weights(("arm.x", "arm.rz"))).shapes[:, 0]
+        np.testing.assert_allclose(found, [first, second] if first > 0.1 else [-first, -second], atol=1e-12)
+    modes = fs.modes(model)
+    length = np.array([0.1 if name.split(".")[-1] in {"rx", "ry", "rz"} else 1.0 for name in modes.coordinates])
+    alone = [index for index in (2, 3) if min(abs(modes.frequencies[index] - modes.frequencies[[index - 1, index + 1]])) > 1.0]
+    assert alone == [2, 3]
+    for index in alone:
+        sized = length * modes.shapes[:, index]
+        assert np.max(sized) >= (1.0 - 1e-6) * np.max(np.abs(sized))
+
+
+def test_damped_responses_lag(model: fs.LinearModel) -> None:
+    """e^{+j omega t}: what moves where it is pushed follows, Im H < 0."""
+    for law in (ModalDamping(0.01), RayleighDamping(1.0, 1e-6), StructuralDamping()):
+        found = fs.response(model, ("platform.x",), ("platform.fx",), np.array([1.0, 100.0, 173.0, 400.0]), damping=law)
+        assert np.all(np.imag(found.values) < 0.0)
+
+
+def test_responses_are_output_over_input(model: fs.LinearModel) -> None:
+    outputs, inputs = ("platform.x", "S4"), ("B1", "B4", "platform.fz")
+    found = fs.response(model, outputs, inputs, np.array([0.0]), damping=ModalDamping(0.01))
+    assert found.values.shape == (1, 2, 3)
+    np.testing.assert_allclose(np.real(found.values[0]), static_gain(model, outputs, inputs).values, rtol=1e-6, atol=1e-9)
+
+
+def test_damping_is_stated_or_refused(stage: fs.Mechanism) -> None:
+    bare = fs.lumped(replace(stage, damping=None))
+    with pytest.raises(DesignError, match="damping"):
+        fs.response(bare, ("platform.x",), ("platform.fx",), np.array([10.0]))
 
 
 def test_position_angle_and_push_direction(stage: fs.Mechanism) -> None:

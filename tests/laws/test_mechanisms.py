@@ -9,6 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from flexstage.analysis.response import transmissibility
+from flexstage.analysis.statics import centre_of_stiffness
 from flexstage.base.number import stack
 from flexstage.beams.compliance import law
 from flexstage.beams.mass import mass
@@ -410,3 +411,19 @@ def test_the_helpers_reach_every_kind_of_number():
         assert path in paths
     assert isinstance(varied(double_triangle(), {("parts", "neck", "thickness"): 1e-3}), Mechanism)
     assert stack((1.0, 2.0)).shape == (2,)
+
+
+@given(st.integers(0, 2**32 - 1))
+def test_forces_through_the_centre_of_stiffness_turn_nothing(seed):
+    """Springs that uncouple at a point have their centre there, in all three coordinates, however unlike they are."""
+    random = np.random.default_rng(seed)
+    halves = random.normal(size=(2, 3, 3))
+    own = np.zeros((6, 6))
+    own[:3, :3], own[3:, 3:] = (half @ half.T + np.eye(3) for half in halves)
+    centre = random.normal(size=3)
+    carry = transport(centre)
+    stiffness = carry.T @ own @ carry
+    np.testing.assert_allclose(centre_of_stiffness(stiffness), centre, atol=1e-11)
+    force = random.normal(size=3)
+    moved = np.linalg.solve(stiffness, np.concatenate([force, np.cross(centre, force)]))
+    np.testing.assert_allclose(moved[3:], 0.0, atol=1e-11)

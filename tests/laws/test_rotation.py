@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from flexstage.spatial.frame import axes
 from flexstage.spatial.rotation import exponential, logarithm, logarithm_rate
 
 angles = st.one_of(st.floats(0.0, 3.1), st.floats(-9.0, 0.0).map(lambda power: 10.0**power))
@@ -50,3 +52,25 @@ def test_batch_is_the_loop():
     looped = np.array([[exponential(vector) for vector in row] for row in vectors_])
     np.testing.assert_array_equal(exponential(vectors_), looped)
     np.testing.assert_allclose(logarithm(looped), [[logarithm(item) for item in row] for row in looped], rtol=1e-14)
+
+
+@given(st.floats(0.0, np.pi), st.floats(-np.pi, np.pi))
+def test_parts_lie_flat_unless_they_stand(tilt, azimuth):
+    """Without a stated z axis a part's is the stage's made perpendicular; within 5 degrees of upright it is the stage's y axis."""
+    along = np.array([np.sin(tilt) * np.cos(azimuth), np.sin(tilt) * np.sin(azimuth), np.cos(tilt)])
+    stage = np.array([0.0, 1.0, 0.0] if min(tilt, np.pi - tilt) < np.deg2rad(5.0) else [0.0, 0.0, 1.0])
+    found = axes(along)
+    np.testing.assert_allclose(found.T @ found, np.eye(3), atol=1e-14)
+    np.testing.assert_allclose(found[:, 0], along, atol=1e-14)
+    assert abs(found[:, 1] @ stage) < 1e-13
+    assert found[:, 2] @ stage > 0.0
+    assert np.linalg.det(found) > 0.0
+
+
+@pytest.mark.parametrize(("degrees", "upright"), [(0.01, True), (4.99, True), (5.01, False), (15.0, False), (24.0, False)])
+def test_upright_ends_at_five_degrees(degrees, upright):
+    for azimuth in (0.3, 1.9, -2.5):
+        tilt = np.deg2rad(degrees)
+        found = axes(np.array([np.sin(tilt) * np.cos(azimuth), np.sin(tilt) * np.sin(azimuth), np.cos(tilt)]))
+        assert bool(abs(found[1, 1]) < 1e-13) == upright
+        assert bool(abs(found[2, 1]) < 1e-13) != upright

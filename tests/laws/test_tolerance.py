@@ -302,3 +302,17 @@ def test_sections_that_cannot_be(guide):
     with pytest.raises(DesignError, match="do not determine the platform"):
         loads_tolerance(ASKED.replace("false", "true"), folder=guide.folder)
     assert loads_tolerance(ASKED.replace("crosstalk = false", ""), folder=guide.folder).commanded is None
+
+
+@pytest.mark.parametrize(("copies", "allowed"), [(64, 4.0 / np.sqrt(128.0)), (4096, 0.1)])
+def test_first_order_is_trusted_to_a_tenth_or_four_standard_errors(guide, copies, allowed):
+    """A sample that deviates by just less than is allowed from what derivatives say keeps their trust, by just more loses it."""
+    study = guide('scatter.w = { of = "leaf.thickness", normal = "1 um" }\n', copies=copies)
+    slope = slopes(study)
+    linear = float(abs(slope.gradient[0, 0]) * study.deviations[0].deviation)
+    shape = np.linspace(-1.0, 1.0, copies)[:, None]
+    for sign in (1.0, -1.0):
+        for part, trusted in ((0.98, True), (1.02, False)):
+            values = shape / np.std(shape, ddof=1) * linear / (1.0 + sign * part * allowed)
+            results = Results(np.arange(copies), np.zeros((copies, 1)), values, {}, ((), ()), ((), ()), copies, {}, "")
+            assert summary(study, results, slope).spread.trusted.tolist() == [trusted]

@@ -10,16 +10,18 @@ import pytest
 from flexstage.analysis.lost_motion import lost_motion
 from flexstage.analysis.modes import modes
 from flexstage.analysis.statics import statics
+from flexstage.analysis.workspace.buckling import Buckling, Ends
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.cases.registry import case
 from flexstage.mechanism.address import set_value
 from flexstage.present.page import Abreast, Folded
 from flexstage.present.render import to_html, to_markdown, to_rich, to_text
-from flexstage.present.table import Table
+from flexstage.present.table import Mark, Table
 from flexstage.present.tables.description import value_tables
 from flexstage.present.tables.lost_motion import budget_table, loss_table
 from flexstage.present.tables.modes import mode_table
 from flexstage.present.tables.statics import principal_table, stiffness_table
+from flexstage.present.tables.strength import buckling_table
 from flexstage.present.tables.workspace import map_error_table, room_table
 from flexstage.readings.ideal import ideal
 from flexstage.readings.lumped import lumped
@@ -159,3 +161,13 @@ def test_only_a_stated_opening_is_spoken_of() -> None:
         stated = case(name).opening is not None
         assert any("clear opening" in note for note in room_table(reach.room).notes) == stated
     assert {case(name).opening is None for name in ("double-triangle", "parallelogram")} == {True, False}
+
+
+@pytest.mark.parametrize(
+    ("factor", "mark"),
+    [(0.999, Mark.FAIL), (np.nan, Mark.FAIL), (1.0, Mark.WARN), (1.499, Mark.WARN), (1.5, Mark.PLAIN), (20.0, Mark.PLAIN)],
+)
+def test_what_would_yield_is_marked_and_what_nearly_would(factor: float, mark: Mark) -> None:
+    """Below 1 a hinge yields and a column buckles; below 1.5 there is no margin to speak of."""
+    column = Buckling(("B1/rod",), np.array([factor * 100.0]), np.array([100.0]), np.array([0.01]), (Ends.GUIDED,), "")
+    assert buckling_table(column).rows[0][-1].mark is mark

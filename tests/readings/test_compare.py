@@ -8,9 +8,11 @@ import numpy as np
 import pytest
 
 from flexstage.analysis.modes import modal_assurance
+from flexstage.analysis.pairing import gyration
 from flexstage.base.finding import DesignError
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.mechanism.address import assign
+from flexstage.parts.body import Body, Inertia
 from flexstage.readings.ideal import ideal
 from flexstage.readings.lumped import lumped
 from flexstage.readings.measured.identified import Identified
@@ -196,3 +198,10 @@ def test_bodies_move_with_the_platform(experiment: Identified) -> None:
     rows = kinematics.bodies[[kinematics.body_coordinates.index(name) for name in names]]
     platform = np.linalg.lstsq(kinematics.motion, found.twists["platform"], rcond=None)[0]
     assert found.twists["B4/pole"] == pytest.approx(rows @ platform, abs=1e-12)
+
+
+def test_angles_are_compared_by_the_platforms_radius_of_gyration() -> None:
+    """Of a platform so heavy that what it carries of its hinges is nothing."""
+    body = Body(mass=9e9, centre=(0.0, 0.0, 0.0), inertia=Inertia(1e8, 2e8, 3e8))
+    stage = replace(double_triangle(), bodies={**double_triangle().bodies, "platform": body})
+    assert gyration(lumped(stage)) == pytest.approx(np.sqrt(0.2 / 9.0), rel=1e-8)

@@ -97,7 +97,7 @@ def _alike(own: Moving, other: Moving) -> tuple[Array, Array]:
     common = tuple(channel.name for channel in own.model.outputs if channel.name in names and channel.unit in _MOTIONS)
     small = min(own, other, key=lambda each: len(each.model.coordinates)).model
     units = {channel.name: channel.unit for channel in small.outputs}
-    weight = np.array([[_radius(small) if units[name] == "rad" else 1.0] for name in common])
+    weight = np.array([[gyration(small) if units[name] == "rad" else 1.0] for name in common])
     back = np.linalg.pinv(weight * _rows(small, common), rcond=_UNSEEN)
     half = _root(first_design(small.inertia_matrix, 2)) @ back
     first, second = (half @ (weight * (_rows(each.model, common) @ first_design(each.modes.shapes, 2))) for each in (own, other))
@@ -114,8 +114,8 @@ def _root(inertia: Array) -> Array:
     return np.sqrt(np.maximum(values, 0.0))[:, None] * vectors.T
 
 
-def _radius(model: LinearModel) -> float:
-    """The platform's radius of gyration [m]; 0.1 m where the model has no rigid platform."""
+def gyration(model: LinearModel) -> float:
+    """The platform's radius of gyration [m], what makes lengths of angles; 0.1 m where the model has no rigid platform."""
     item = model.inertia.get("platform")
     if item is None or item.law.shape[-2:] != (6, 6):
         return _LENGTH

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from flexstage.analysis.modes import Modes, clusters
-from flexstage.analysis.pairing import RELIABLE, Moving, Pair, paired
+from flexstage.analysis.pairing import RELIABLE, Moving, Pair, gyration, paired
 from flexstage.base.finding import Finding, nearest, require
 from flexstage.base.number import Array, first_design
 from flexstage.mechanism.mechanism import Mechanism
@@ -198,17 +198,9 @@ def _sensed(model: LinearModel, theory: Modes, candidates: tuple[int, ...], sens
 def _weighted(shapes: Array, model: LinearModel, sensors: Sequence[str]) -> Array:
     """Shapes of unit length; angles weighted so that the platform's radius of gyration makes lengths of them."""
     units = {channel.name: channel.unit for channel in model.outputs}
-    weight = np.array([_radius(model) if units[name] == "rad" else 1.0 for name in sensors])
+    weight = np.array([gyration(model) if units[name] == "rad" else 1.0 for name in sensors])
     scaled = weight[:, None] * shapes
     return scaled / np.maximum(np.linalg.norm(scaled, axis=0), 1e-300)
-
-
-def _radius(model: LinearModel) -> float:
-    item = model.inertia.get("platform")
-    if item is None or item.law.shape[-2:] != (6, 6):
-        return 0.1
-    law = first_design(item.law, 2)
-    return float(np.sqrt(np.mean(np.diag(law)[3:]) / np.mean(np.diag(law)[:3])))
 
 
 def _pairs(frequencies: Array, experiment: Identified, groups: list[list[int]], both: tuple[Array, Array]) -> tuple[dict[int, int], Array]:
