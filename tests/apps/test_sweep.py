@@ -5,17 +5,22 @@ import signal
 import subprocess
 import sys
 import time
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from flexstage.studies.study.file import load_study
-from flexstage.studies.study.run import PIECE, Run, sweep
+from flexstage.base.finding import DesignError
+from flexstage.studies.optimise.file import load_wanted
+from flexstage.studies.study.file import load_study, loads_study
+from flexstage.studies.study.run import PIECE, Run, require_memory, sweep
 from flexstage.studies.study.store import folder_of, read_results
+from flexstage.studies.tolerance.file import loads_tolerance
 from tests.conftest import FULL
 
 DESIGNS = 20 * PIECE if FULL else 5 * PIECE
 KILLS = 20 if FULL else 2
+KEYS = ("young", "density", "poisson", "expansion", "yield_stress", "loss_factor")
 STUDY = f"""
 format = "flexstage study 1"
 case = "parallelogram"
@@ -105,6 +110,10 @@ def test_sweep_shows_and_writes(study_file, tmp_path, flexstage):
         ("seed = 3", "sed = 3", "nothing of this name is known here"),
         ('"10 %"', '"80 GPa"', "one end is relative"),
         ('case = "parallelogram"', 'design = "none.toml"', "there is no such file"),
+        ("responses.f", "responses.young", 'responses.young: the results have a column "young" already, of variables.young'),
+        ("young = {", "design = {", 'variables.design: the results have a column "design" already, of the number of a design'),
+        ("young = {", '"a\\u0000b" = {', "variables.a\\x00b: its name is empty, or has control characters"),
+        ("young = {", '"a\\u202eb" = {', "variables.a\\u202eb: its name is empty, or has control characters"),
         ("flexstage study 1", "flexstage 1", "Begin the file with"),
     ],
 )
@@ -115,3 +124,53 @@ def test_bad_studies_are_told(study_file, tmp_path, flexstage, old, new, message
     done = flexstage("sweep", "study.toml", "-o", "r.h5")
     assert (done.code, message in " ".join(done.err.split())) == (2, True), done.err
     assert not (tmp_path / "r.h5").exists()
+
+
+SCATTERED = """
+format = "flexstage study 1"
+case = "parallelogram"
+responses."NAME" = "mass"
+scatter.wire = { of = "leaf.thickness", normal = "4 um" }
+"""
+
+
+def test_columns_of_all_studies_have_names_of_their_own():
+    """Copies of a tolerance study, objectives that are one measure, and a study made in Python."""
+    copy = loads_tolerance(SCATTERED.replace("NAME", "m")).variables[0].name
+    with pytest.raises(DesignError, match=f'responses.{copy}: the results have a column "{copy}" already'):
+        loads_tolerance(SCATTERED.replace("NAME", copy))
+    text = f'{STUDY}\n[optimise]\nmaximise = ["f"]\nminimise = ["g"]'.replace("responses.f", 'responses.g = "frequency.1"\nresponses.f')
+    with pytest.raises(DesignError, match='"g" is the same measure as "f", an objective already'):
+        load_wanted(loads_study(text))
+    study = loads_study(STUDY)
+    with pytest.raises(DesignError, match='a column "young" already'):
+        sweep(replace(study, responses={"young": study.responses["f"]}), "nowhere.h5")
+
+
+def test_names_with_any_sign_are_kept(tmp_path):
+    """A study whose names look like paths of files and of HDF5 is resumed, and its columns are found by them."""
+    names = ["a/b", "a|b", "../c", ".", "x" * 300, "\u00e9\u4e2d"]
+    varied = "\n".join(
+        f'"{name}" = {{ of = "materials.aluminium.{key}", from = "-10 %", to = "10 %" }}' for name, key in zip(names, KEYS, strict=True)
+    )
+    text = f'format = "flexstage study 1"\ncase = "parallelogram"\nresponses."f/|." = "mass"\nsweep.designs = 4\n[variables]\n{varied}'
+    study = loads_study(text)
+    once = sweep(study, tmp_path / "r.h5", Run(workers=1))
+    again = sweep(study, tmp_path / "r.h5", Run(workers=1, resume=True))
+    assert once.names == again.names == (tuple(names), ("f/|.",))
+    assert again.facts == study.facts
+    assert len(set(again.column("a/b"))) == 4
+
+
+def test_memory_is_asked_for_before_anything_is_computed(monkeypatch, tmp_path):
+    """What is advised to fit does."""
+    study = loads_study(STUDY)
+    many = replace(study, plan=replace(study.plan, count=10**6), responses={f"f{number}": study.responses["f"] for number in range(999)})
+    monkeypatch.setattr("flexstage.studies.study.run.available", lambda: 1e9)
+    with pytest.raises(DesignError, match="1,000,000 designs in 1000 columns need about 32 GB") as refused:
+        sweep(many, tmp_path / "r.h5")
+    fits = int(refused.value.findings[0].advice.split()[4].replace(",", ""))
+    require_memory(replace(many, plan=replace(many.plan, count=fits)))
+    with pytest.raises(DesignError, match="GB"):
+        require_memory(replace(many, plan=replace(many.plan, count=fits + 1)))
+    assert list(tmp_path.iterdir()) == []

@@ -102,6 +102,7 @@ def panels(figure: Any, rows: int, columns: int, margins: Margins, *, heights: S
     (2, 1)
     """
     width, height = figure.get_size_inches()
+    margins = _within(margins, (width, height), (rows, columns))
     inner_width = (width - margins.left - margins.right - (columns - 1) * margins.across) / columns
     inner_height = (height - margins.bottom - margins.top - (rows - 1) * margins.down) / rows
     figure.subplots_adjust(
@@ -113,6 +114,14 @@ def panels(figure: Any, rows: int, columns: int, margins: Margins, *, heights: S
         hspace=margins.down / inner_height,
     )
     return figure.subplots(rows, columns, squeeze=False, height_ratios=heights, sharex="col" if rows > 1 else False)
+
+
+def _within(margins: Margins, size: tuple[float, float], count: tuple[int, int]) -> Margins:
+    """Margins that leave the panels a fifth of the figure at least: names that are too long for it are cut off."""
+    wide = margins.left + margins.right + (count[1] - 1) * margins.across
+    high = margins.bottom + margins.top + (count[0] - 1) * margins.down
+    x, y = min(1.0, 0.8 * size[0] / wide), min(1.0, 0.8 * size[1] / high)
+    return Margins(x * margins.left, x * margins.right, y * margins.bottom, y * margins.top, x * margins.across, y * margins.down)
 
 
 def text_width(texts: Iterable[str], size: float = 8.0) -> float:

@@ -43,6 +43,8 @@ def _objectives(table: Fields, study: Study) -> list[Objective]:
                 table.note(aim.value, f'there is no response "{name}"', nearest(name, study.responses))
             elif name in (each.name for each in found):
                 table.note(aim.value, f'"{name}" is an objective already', "Name each once")
+            elif (same := next((each for each in found if each.measure == study.responses[name]), None)) is not None:
+                table.note(aim.value, f'"{name}" is the same measure as "{same.name}", an objective already', "Name each once")
             else:
                 found.append(Objective(name, study.responses[name], aim))
     _counted(table, found, next(iter(study.responses), "f1"))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields
 from enum import Enum
 
@@ -11,6 +11,7 @@ import numpy as np
 import flexstage
 from flexstage.analysis.requirements import Measure, Requirement, Verdict
 from flexstage.base.digest import digest
+from flexstage.base.finding import Finding
 from flexstage.base.number import Array, Number
 from flexstage.base.quantity import Quantity
 from flexstage.mechanism.mechanism import Mechanism
@@ -34,6 +35,19 @@ class Study:
     limits: tuple[Requirement, ...]
     plan: Plan
     text: str = ""
+
+    @property
+    def names(self) -> tuple[tuple[str, str], ...]:
+        """Where the file says them, and the names of all columns of the results: variables, responses, what limits are on.
+
+        >>> from flexstage.studies.study.example import neck_study
+        >>> neck_study().names
+        (('variables.neck', 'neck'), ('responses.tilt', 'tilt'))
+        """
+        variables = ((f"variables.{each.name}", each.name) for each in self.variables)
+        responses = ((f"responses.{name}", name) for name in self.responses)
+        limits = ((f"limits.{self.columns[name].key}", name) for name in self.columns if name not in self.responses)
+        return *variables, *responses, *limits
 
     @property
     def columns(self) -> Mapping[str, Measure]:
@@ -118,6 +132,23 @@ class Study:
             Verdict(each, responses[:, measured_by[each.key, each.point]]).passed for each in (self.limits if limits is None else limits)
         ]
         return np.all([np.all(np.isfinite(responses), axis=1), *verdicts], axis=0)
+
+
+def name_findings(study: Study) -> Iterator[Finding]:
+    """Names that two columns of the results would have, and names that are none.
+
+    >>> from dataclasses import replace
+    >>> from flexstage.studies.study.example import neck_study
+    >>> print(*name_findings(replace(neck_study(), responses={"neck": neck_study().responses["tilt"]})))
+    responses.neck: the results have a column "neck" already, of variables.neck. Give every column a name of its own.
+    """
+    owners = {"design": "the number of a design"}
+    for where, name in study.names:
+        if not name.strip() or not name.isprintable():
+            yield Finding(where, "its name is empty, or has control characters or formats in it", "Write a name of letters and digits")
+        elif name in owners:
+            yield Finding(where, f'the results have a column "{name}" already, of {owners[name]}', "Give every column a name of its own")
+        owners[name] = where
 
 
 def _told(value: Plan | Variable) -> str:

@@ -16,7 +16,7 @@ from flexstage.mechanism.address import quantity_of
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.store.file import parse_toml, read_text
 from flexstage.studies.sensitivities import not_numbers
-from flexstage.studies.study.definition import Study
+from flexstage.studies.study.definition import Study, name_findings
 from flexstage.studies.study.fields import Fields
 from flexstage.studies.study.plan import Plan, Sampling
 from flexstage.studies.study.start import one_quantity, parameters_varied, start
@@ -60,8 +60,9 @@ def loads_study(text: str, *, where: str = "text", folder: Path | None = None) -
     plan = _plan(tables["sweep"], variables)
     if not tables["responses"].tree:
         findings.append(Finding("responses", "nothing is asked", 'Name a measure, for example f1 = "frequency.platform.1"'))
-    require(placed([*findings, *variable_findings(design, variables)], where))
-    return Study(head.name, design, variables, Table(head.responses), head.limits, plan, text)
+    study = Study(head.name, design, variables, Table(head.responses), head.limits, plan, text)
+    require(placed([*findings, *variable_findings(design, variables), *name_findings(study)], where))
+    return study
 
 
 @dataclass(frozen=True, eq=False)

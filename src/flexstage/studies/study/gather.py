@@ -140,7 +140,7 @@ def _frame(file: Any, study: Study, size: int) -> None:
     file.attrs["planned"], file.attrs["piece"] = study.plan.designs, size
     facts = file.create_group("facts", track_order=True)
     for key, value in study.facts.items():
-        facts.attrs[key.replace("/", "|")] = value
+        facts.attrs[key] = value
     count = study.plan.designs
     for number, kind in enumerate(("variables", "responses")):
         data = file.create_dataset(kind, (count, len(names[number])), "f8", fillvalue=np.nan, chunks=_chunks(count, len(names[number])))

@@ -17,7 +17,8 @@ from flexstage.analysis.requirements import Subject
 from flexstage.base.child import cores
 from flexstage.base.finding import DesignError, refuse, require
 from flexstage.base.number import Array
-from flexstage.studies.study.definition import Study
+from flexstage.readings.solid.memory import available
+from flexstage.studies.study.definition import Study, name_findings
 from flexstage.studies.study.engine import engine_covers, engine_of
 from flexstage.studies.study.evaluate import nominal
 from flexstage.studies.study.gather import gather, require_room
@@ -28,6 +29,8 @@ PIECE = 256
 """Designs computed and kept together."""
 LARGE, _MANY = 2048, 64
 """Designs together where each takes microseconds; so many pieces of the smaller size must a study have for it."""
+_COPIES = 4.0
+"""How many times over all numbers of the results are in memory at once, where they are read and looked through."""
 _SELDOM = 20.0
 _LEAST = 5.0
 
@@ -96,6 +99,20 @@ def piece_size(study: Study) -> int:
     return LARGE if quick and study.plan.designs >= _MANY * PIECE else PIECE
 
 
+def require_memory(study: Study) -> None:
+    """Raise `DesignError` where the results of all designs would not fit into memory when they are read at the end.
+
+    >>> from flexstage.studies.study.example import neck_study
+    >>> require_memory(neck_study())
+    """
+    columns, most = len(study.names), available()
+    each = _COPIES * 8.0 * columns
+    if study.plan.designs * each > most:
+        what = f"the results of {study.plan.designs:,} designs in {columns} columns need about {study.plan.designs * each / 1e9:.3g} GB"
+        advice = f"Ask for at most {int(most / each):,} designs, or for fewer responses"
+        raise refuse("sweep.designs", f"{what} of memory when they are read, {most / 1e9:.3g} GB are there", advice)
+
+
 def _tell(progress: Progress | None, study: Study, count: int) -> None:
     if progress is not None:
         progress(min(count, study.plan.designs), study.plan.designs)
@@ -113,6 +130,8 @@ def _there(target: Path, study: Study, size: int) -> Array:
 
 def _ready(target: Path, study: Study, how: Run) -> None:
     """Refuse what cannot be begun."""
+    require(name_findings(study))
+    require_memory(study)
     if not target.parent.is_dir():
         raise refuse(os.fspath(target.parent), "there is no such folder", "Create it, or name another")
     there = target.exists() or waiting(target)

@@ -298,7 +298,7 @@ def stored_failures(file: Hdf) -> list[tuple[int, str]]:
 
 
 def _facts(file: Hdf) -> dict[str, str]:
-    return {key.replace("|", "/"): str(value) for key, value in file.groups["facts"].items()}
+    return {key: str(value) for key, value in file.groups["facts"].items()}
 
 
 def _table(values: Array, more: list[tuple[int, Array]], there: Array) -> Array:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from flexstage.analysis.requirements import Requirement, requirements
@@ -15,6 +15,7 @@ from flexstage.mechanism.address import get, quantity_of
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.mechanism.store.file import read_text
 from flexstage.readings.ideal import ideal
+from flexstage.studies.study.definition import name_findings
 from flexstage.studies.study.fields import Fields
 from flexstage.studies.study.file import Opening, opening, placed
 from flexstage.studies.study.plan import Sampling
@@ -100,11 +101,10 @@ def _study(
     wishes, limits, shared = asked
     variables = tuple(one for each in scatters for one in each.variables())
     reached = targets(head.design, variables, shared)
-    require(placed(bound_findings(head.design, reached, variables), origin[1]))
     groups = tuple(len(each.members) for each in scatters)
     alone = max(_FEWEST, wishes.copies // 16) if len(groups) > 1 else 0
     plan = Copies(wishes.sampling, len(variables), wishes.copies, seed=wishes.seed, alone=alone, groups=groups)
-    return Tolerance(
+    study = Tolerance(
         name=head.name,
         design=head.design,
         variables=variables,
@@ -117,6 +117,9 @@ def _study(
         wanted=wishes.wanted,
         commanded=wishes.command,
     )
+    named = (replace(each, where=each.where.replace("variables.", "scatter.", 1)) for each in name_findings(study))
+    require(placed([*bound_findings(head.design, reached, variables), *named], origin[1]))
+    return study
 
 
 def _lines(design: Mechanism, findings: list[Finding]) -> tuple[Requirement, ...]:
