@@ -5,7 +5,11 @@ from __future__ import annotations
 import json
 import re
 import subprocess
+import unicodedata
+import zipfile
+from dataclasses import replace
 from pathlib import Path
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
@@ -145,6 +149,60 @@ def test_exports_are_there_whole(guide: Command, tmp_path: Path) -> None:
     assert all(f"Wrote {name}" in ended.err for name in (*names, "guide.h"))
     plant = scipy.io.loadmat(tmp_path / "plant.mat", simplify_cells=True)
     assert plant["sampled"]["step"] == pytest.approx(1e-4)
+    compiled = ["cc", "-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-c", "guide.c", "-o", "guide.o"]
+    assert subprocess.run(compiled, cwd=tmp_path, check=False).returncode == 0
+
+
+def test_names_that_would_shadow_a_header_are_refused_before_anything_is_computed(guide: Command, tmp_path: Path) -> None:
+    before = sorted(tmp_path.iterdir())
+    names = ("math.c", "plant.mat", "fmi2.c", "2.c", "a.txt")
+    ended = guide("loop", "stage.toml", *(word for name in names for word in ("--export", name)))
+    assert ended.code == 2
+    for text in ("math.h", "Call it stage_math.c", "Call it stage_fmi2.c", "Call it stage_2.c", 'the ending ".txt"', "4 findings"):
+        assert text in ended.err
+    assert sorted(tmp_path.iterdir()) == before
+
+
+def test_exports_of_one_command_are_put_all_or_none(guide: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "g.c").write_text("mine")
+    before = {path: path.read_bytes() for path in tmp_path.iterdir()}
+    compiler = tmp_path.parent / f"{tmp_path.name}-cc"
+    compiler.write_text('#!/bin/sh\n[ "$1" = --version ] && echo one && exit 0\nexit 1\n')
+    compiler.chmod(0o755)
+    monkeypatch.setenv("CC", str(compiler))
+    words = ("--export", "plant.mat", "--export", "g.c", "--json", "loop.json", "--report", "loop.html", "--export", "g.fmu")
+    ended = guide("loop", "stage.toml", *SMALL, *words)
+    assert ended.code == 2
+    assert "refuses a functional mock-up unit" in ended.err
+    assert "Wrote" not in ended.err
+    assert {path: path.read_bytes() for path in tmp_path.iterdir()} == before
+
+
+def test_the_header_is_an_output_too(guide: Command, tmp_path: Path) -> None:
+    (tmp_path / "taken.h").mkdir()
+    ended = guide("loop", "stage.toml", "--export", "taken.c", "--export", "g.c", "--report", "g.h")
+    assert ended.code == 2
+    assert "taken.h cannot be written: it is a folder" in ended.err
+    assert "g.h is the output of --report too" in ended.err
+
+
+STEERING = "a\x1b[31m\u202e\n*/ ??/ \u0085 <b> \ufffe"
+
+
+def test_names_reach_exports_escaped(flexstage: Command, tmp_path: Path) -> None:
+    design = case("parallelogram")
+    dump(replace(design, name=STEERING), tmp_path / "stage.toml")
+    names = ("plant.mat", "guide.c", "model.fmu")
+    words = (word for name in names for word in ("--export", name))
+    ended = flexstage("loop", "stage.toml", *SMALL, *words, "--report", "loop.html", "--json", "loop.json")
+    assert ended.code == 0, ended.err
+    assert "Within model.fmu the model is called stage_model" in ended.err
+    unit = zipfile.ZipFile(tmp_path / "model.fmu")
+    ElementTree.fromstring(unit.read("modelDescription.xml"))  # noqa: S314 made by ourselves
+    texts = [(tmp_path / name).read_bytes() for name in ("guide.c", "guide.h", "loop.html")]
+    texts += [unit.read(name) for name in unit.namelist() if not name.startswith("binaries/")]
+    for text in (each.decode() for each in texts):
+        assert not {letter for letter in text if unicodedata.category(letter) in ("Cc", "Cf", "Cs")} - set("\n\t")
     compiled = ["cc", "-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-c", "guide.c", "-o", "guide.o"]
     assert subprocess.run(compiled, cwd=tmp_path, check=False).returncode == 0
 

@@ -14,6 +14,8 @@ import pytest
 
 from flexstage.analysis.loop.code.controller import controller_code
 from flexstage.analysis.loop.code.whole import loop_code
+from flexstage.analysis.loop.example import integral_loop
+from flexstage.analysis.loop.simulation.machine import machine
 from flexstage.analysis.loop.simulation.run import simulate
 from flexstage.base.native import compiler
 from flexstage.present.fmu.unit import fmu
@@ -127,6 +129,21 @@ def test_a_unit_holds_lost_readings_and_says_so(known, tmp_path):
         assert unit.get(one, status).tolist() == ([1.0, 2.0, 1.0] if lost else [0.0, 0.0, 0.0])
         assert np.all(np.isfinite(unit.get(one, names)))
     assert np.max(np.abs(unit.get(one, names) - found.volts[59])) < 0.05 * 1000.0  # it has followed again
+
+
+@pytest.mark.parametrize("name", ["fmi2", "model", "int", "2 axes \u202e", "FMI2"])
+def test_units_of_any_name_load_and_run(tmp_path, name):
+    """Names that are others' already, in C, FMI or a system, are made their own."""
+    example = integral_loop()
+    program = controller_code(machine(example.plant, example.controller), name)
+    unit = Importer(fmu(program), tmp_path)
+    one = unit.running()
+    assert unit.set(one, {"reference.x": 1e-6}) == OK
+    assert unit.step(one, 0.0, 1e-3) == OK
+    assert unit.get(one, ["given.B"])[0] > 1e-9
+    assert unit.description.get("modelName") == program.name
+    assert program.name.startswith("stage_")
+    assert program.name.isidentifier()
 
 
 def test_steps_of_the_importer_take_the_samples_that_lie_in_them(known, tmp_path):

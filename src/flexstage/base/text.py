@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
-import unicodedata
+import re
 
-_STEERING = frozenset({"Cc", "Cf", "Cs", "Zl", "Zp"})
-"""Categories of Unicode: controls, formats (bidirectional overrides, zero widths), lone surrogates, separators of lines and paragraphs."""
+_CONTROLS = r"\x00-\x1f\x7f-\x9f\u2028\u2029\ud800-\udfff"
+_DIRECTIONS = r"\u061c\u200e\u200f\u202a-\u202e\u2066-\u2069"
+_UNSEEN = r"\xad\u180e\u200b-\u200d\u2060-\u2065\u206a-\u206f\ufeff\ufff9-\ufffb\U0001bca0-\U0001bca3\U0001d173-\U0001d17a"
+_TAGS = r"\U000e0000-\U000e007f"
+_NO_CHARACTERS = r"\ufdd0-\ufdef" + "".join(rf"\U{plane:04x}fffe\U{plane:04x}ffff" for plane in range(17))
+_STEERING = re.compile(f"[{_CONTROLS}{_DIRECTIONS}{_UNSEEN}{_TAGS}{_NO_CHARACTERS}]")
 
 
 def printable(text: str, keep: str = "") -> str:
@@ -17,10 +21,4 @@ def printable(text: str, keep: str = "") -> str:
     >>> printable("a\x1b[31m\u202e b\u00e9\n"), printable("two\nlines", keep="\n")
     ('a\\x1b[31m\\u202e bé\\n', 'two\nlines')
     """
-    if text.isascii() and text.isprintable():
-        return text
-    return "".join(each if each in keep or not _steers(each) else each.encode("unicode_escape").decode("ascii") for each in text)
-
-
-def _steers(letter: str) -> bool:
-    return unicodedata.category(letter) in _STEERING or ord(letter) & 0xFFFE == 0xFFFE
+    return _STEERING.sub(lambda found: found[0] if found[0] in keep else found[0].encode("unicode_escape").decode("ascii"), text)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import os
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -15,16 +16,53 @@ from flexstage.analysis.loop.code.text import identifier
 from flexstage.analysis.loop.plant import Plant, held
 from flexstage.analysis.loop.simulation.machine import Machine
 from flexstage.analysis.loop.system import System
-from flexstage.base.finding import refuse
-from flexstage.base.store import atomic_write
+from flexstage.base.finding import Finding, refuse, require
+from flexstage.base.store import put_together, write, written
+from flexstage.base.text import printable
 from flexstage.present.fmu.unit import fmu
 from flexstage.readings.linear.model import Channel
 
+ENDINGS = {".mat": "the plant for MATLAB", ".c": "the controller in C", ".fmu": "the controller as functional mock-up unit"}
+"""What a loop is exported as, by the ending of the file's name."""
+
+
+def export_findings(path: str | os.PathLike[str]) -> Iterator[Finding]:
+    """What keeps a name from being that of an export: its ending, or what its functions would be called.
+
+    >>> print(*export_findings("math.c"))
+    math.c: its header math.h would stand before a system's, or its functions could not be called "math". Call it stage_math.c.
+    """
+    place = Path(path)
+    name = identifier(place.stem)
+    if place.suffix not in ENDINGS:
+        known = ", ".join(f"{ending} ({what})" for ending, what in ENDINGS.items())
+        yield Finding(os.fspath(path), f'the ending "{place.suffix}" is no export', f"End the name in {known}")
+    elif place.suffix == ".c" and name != place.stem:
+        what = f'its header {place.stem}.h would stand before a system\'s, or its functions could not be called "{place.stem}"'
+        yield Finding(os.fspath(path), what, f"Call it {name}.c")
+
+
+def controller_files(path: str | os.PathLike[str], given: Machine, about: str = "") -> dict[Path, str]:
+    """Texts by file of the controller of a machine as C99: `controller.c` and its header beside it, named as its functions.
+
+    Raises `DesignError` for a name that does not end in `.c` or that functions cannot have.
+
+    >>> from flexstage.analysis.loop.example import integral_loop
+    >>> from flexstage.analysis.loop.simulation.machine import machine
+    >>> example = integral_loop()
+    >>> [each.name for each in controller_files("stage.c", machine(example.plant, example.controller))]
+    ['stage.h', 'stage.c']
+    """
+    source = _ending(path, ".c")
+    require(export_findings(path))
+    program = controller_code(given, source.stem, about)
+    return {source.with_suffix(".h"): program.header, source: program.source}
+
 
 def write_controller(path: str | os.PathLike[str], given: Machine, about: str = "") -> tuple[Path, Path]:
-    """Write the controller of a machine as C99, `controller.c` and its header beside it; their names are those of its functions.
+    """Write the controller of a machine as C99, `controller.c` and its header beside it, both or none (see `controller_files`).
 
-    Raises `DesignError` where a file cannot be written, and for a name that does not end in `.c`.
+    Raises `DesignError` where a file cannot be written too.
 
     >>> import tempfile
     >>> from flexstage.analysis.loop.example import integral_loop
@@ -35,13 +73,9 @@ def write_controller(path: str | os.PathLike[str], given: Machine, about: str = 
     ...     [each.name for each in written], "void stage_step(" in written[1].read_text()
     (['stage.c', 'stage.h'], True)
     """
-    source = _ending(path, ".c")
-    program = controller_code(given, source.stem, about)
-    if program.name != source.stem:
-        raise refuse(os.fspath(path), f'"{source.stem}" is no name for functions of C', f"Call it {program.name}.c")
-    header = source.with_suffix(".h")
-    for place, text in ((header, program.header), (source, program.source)):
-        _write(place, text.encode())
+    files = controller_files(path, given, about)
+    put_together([written(place, text) for place, text in files.items()])
+    header, source = files
     return source, header
 
 
@@ -59,42 +93,49 @@ def write_fmu(path: str | os.PathLike[str], program: Program, *, sources_only: b
     ...     write_fmu(Path(folder) / "stage.fmu", known, sources_only=True).name
     'stage.fmu'
     """
-    place = _ending(path, ".fmu")
-    _write(place, fmu(program, sources_only=sources_only))
-    return place
+    return write(_ending(path, ".fmu"), fmu(program, sources_only=sources_only))
 
 
 def write_plant(path: str | os.PathLike[str], given: Plant) -> Path:
-    """Write a plant as MATLAB file (v5): state space with names and units, continuous and between hold and sampler.
+    """Write a plant as MATLAB file (see `plant_file`); raises `DesignError` where it cannot be written or does not end in `.mat`.
 
-    Structures `continuous` and `sampled` (where the loop has a rate) hold A, B, C, D, `step` [s] (0: continuous), inputs, outputs, their
-    units and `states`; beside them frequencies [Hz] and damping ratios of the modes, what was simplified, where it is from. Raises
-    `DesignError` where the file cannot be written, and for a name that does not end in `.mat`.
-
-    >>> import scipy.io, tempfile
+    >>> import tempfile
     >>> from flexstage.analysis.loop.example import integral_loop
     >>> with tempfile.TemporaryDirectory() as folder:
-    ...     found = scipy.io.loadmat(write_plant(Path(folder) / "plant.mat", integral_loop().plant), simplify_cells=True)
+    ...     write_plant(Path(folder) / "plant.mat", integral_loop().plant).name
+    'plant.mat'
+    """
+    return write(_ending(path, ".mat"), plant_file(given))
+
+
+def plant_file(given: Plant) -> bytes:
+    """A plant as MATLAB file (v5): state space with names and units, continuous and between hold and sampler.
+
+    Structures `continuous` and `sampled` (where the loop has a rate) hold A, B, C, D, `step` [s] (0: continuous), inputs, outputs, their
+    units and `states`; beside them frequencies [Hz] and damping ratios of the modes, what was simplified, where it is from.
+
+    >>> import scipy.io
+    >>> from flexstage.analysis.loop.example import integral_loop
+    >>> found = scipy.io.loadmat(io.BytesIO(plant_file(integral_loop().plant)), simplify_cells=True)
     >>> found["sampled"]["step"], list(found["sampled"]["inputs"][:2]), found["continuous"]["A"].shape
     (0.0001, ['B', 'ground.x'], (7, 7))
     """
     from scipy.io import savemat
 
-    place, content = _ending(path, ".mat"), io.BytesIO()
+    content = io.BytesIO()
     variables: dict[str, Any] = {
         "continuous": _system(given.system, given.states),
         "frequencies_hz": given.frequencies,
         "damping_ratios": given.ratios,
-        "note": given.note,
-        "provenance": given.provenance,
+        "note": printable(given.note),
+        "provenance": printable(given.provenance),
     }
     if given.hardware.step is not None:
         variables["sampled"] = _system(held(given), ())
     savemat(content, variables, oned_as="column")
     made = bytearray(content.getvalue())
     made[:116] = b"MATLAB 5.0 MAT-file, Platform: any".ljust(116)  # scipy writes the time: the same plant is to be the same file
-    _write(place, bytes(made))
-    return place
+    return bytes(made)
 
 
 def _system(system: System, states: tuple[str, ...]) -> dict[str, Any]:
@@ -113,7 +154,7 @@ def _channels(kind: str, channels: tuple[Channel, ...]) -> dict[str, Any]:
 
 
 def _cells(texts: Any) -> Any:
-    return np.array(list(texts), dtype=object).reshape(-1, 1)
+    return np.array([printable(each) for each in texts], dtype=object).reshape(-1, 1)
 
 
 def _ending(path: str | os.PathLike[str], suffix: str) -> Path:
@@ -121,8 +162,3 @@ def _ending(path: str | os.PathLike[str], suffix: str) -> Path:
     if place.suffix != suffix:
         raise refuse(os.fspath(path), f"its name does not end in {suffix}", f"Call it {identifier(place.stem)}{suffix}")
     return place
-
-
-def _write(place: Path, content: bytes) -> None:
-    with atomic_write(place) as beside:
-        beside.write_bytes(content)

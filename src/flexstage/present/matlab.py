@@ -11,6 +11,7 @@ import flexstage
 from flexstage.base.digest import digest
 from flexstage.base.finding import DesignError
 from flexstage.base.labelled import Matrix
+from flexstage.base.text import printable
 from flexstage.readings.linear.damping import damping_law
 from flexstage.readings.linear.model import Channel, LinearModel
 from flexstage.readings.linear.port import ports
@@ -46,7 +47,7 @@ def mat_variables(analysis: Analysis) -> dict[str, Any]:
     """
     kinematics, notes = analysis.kinematics, []
     variables: dict[str, Any] = {
-        "name": analysis.mechanism.name,
+        "name": printable(analysis.mechanism.name),
         "reading": analysis.reading.value,
         "flexstage_version": flexstage.__version__,
         "physics_digest": digest(analysis.mechanism, physics=True),
@@ -109,4 +110,4 @@ def _state_space(model: LinearModel, notes: list[str]) -> dict[str, Any]:
 
 
 def _cells(texts: Any) -> Any:
-    return np.array(list(texts), dtype=object).reshape(-1, 1)
+    return np.array([printable(each) for each in texts], dtype=object).reshape(-1, 1)

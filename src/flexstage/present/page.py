@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from importlib import resources
 from typing import TypeAlias
 
+from flexstage.base.text import printable
 from flexstage.present.render import escaped, to_html
 from flexstage.present.table import Table
 
@@ -113,7 +114,7 @@ def page(head: Head, sections: Sequence[Section]) -> str:
     """
     style = resources.files("flexstage.present").joinpath("static/report.css").read_text(encoding="utf-8")
     contents = "".join(f'<li><a href="#{_anchor(each.title)}">{escaped(each.title)}</a></li>' for each in sections)
-    return "".join(
+    text = "".join(
         [
             '<!doctype html>\n<html lang="en"><head><meta charset="utf-8">',
             '<meta name="viewport" content="width=device-width, initial-scale=1">',
@@ -124,6 +125,7 @@ def page(head: Head, sections: Sequence[Section]) -> str:
             "</main></body></html>\n",
         ]
     )
+    return printable(text, keep="\n\t")
 
 
 def _origin(head: Head) -> str:

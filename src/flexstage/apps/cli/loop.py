@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -33,7 +33,7 @@ from flexstage.apps.cli.loop_options import (
 )
 from flexstage.apps.cli.opening import announce, opened
 from flexstage.apps.cli.options import Changes, Design, Json
-from flexstage.apps.cli.output import STDOUT, write
+from flexstage.apps.cli.output import STDOUT, announced, write
 from flexstage.apps.cli.speech import tell
 
 if TYPE_CHECKING:
@@ -93,11 +93,11 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
 
     With nothing else given: a PI controller with notches, as fast as a margin of 6 dB lets it be, at 10 kHz, one sample late.
     """
-    outputs = [("--json", json), ("--report", report), ("--example", example), *(("--export", path) for path in export or ())]
+    outputs = [("--json", json), ("--report", report), ("--example", example), *_exports(export or [])]
     if example is not None:
         _write_example(design, example)
         return
-    _require_endings(export or [])
+    _require_names(export or [])
     said = Said(
         file=setup,
         reading=reading,
@@ -157,40 +157,45 @@ def _reported(found: LoopStudy, report: Path | None) -> None:
         announce(report)
 
 
-_ENDINGS = {".mat": "the plant for MATLAB", ".c": "the controller in C", ".fmu": "the controller as functional mock-up unit"}
+def _exports(targets: list[Path]) -> Iterator[tuple[str, Path]]:
+    """Files that exports come as: source and header of what is C."""
+    for target in targets:
+        yield from (("--export", each) for each in ((target, target.with_suffix(".h")) if target.suffix == ".c" else (target,)))
 
 
-def _require_endings(targets: list[Path]) -> None:
+def _require_names(targets: list[Path]) -> None:
     """Refuse what no export is, before anything is computed."""
     from flexstage.base.finding import Finding, require
+    from flexstage.present.loop_files import export_findings
 
-    known = ", ".join(f"{ending} ({what})" for ending, what in _ENDINGS.items())
-    require(
-        Finding(f"--export {target}", f'the ending "{target.suffix}" is no export', f"End the name in {known}")
-        for target in targets
-        if target.suffix not in _ENDINGS
-    )
+    require(Finding(f"--export {each.where}", each.what, each.advice) for target in targets for each in export_findings(target))
 
 
 def _exported(found: LoopStudy, targets: list[Path]) -> None:
-    from flexstage.analysis.loop.code.controller import controller_code
     from flexstage.analysis.loop.code.text import identifier
-    from flexstage.present.loop_files import write_controller, write_fmu, write_plant
-    from flexstage.studies.loop.runs import driven_machine
 
     for target in targets:
-        if target.suffix == ".mat":
-            write_plant(target, found.settled.plant)
-            announce(target)
-            continue
-        machine = driven_machine(found.settled, found.control, found.stacks)
-        about = f"{found.settled.mechanism.name or 'stage'}: {found.verdict.sentence}"
-        if target.suffix == ".fmu":
-            write_fmu(target, controller_code(machine, identifier(target.stem), about))
-            announce(target)
-            continue
-        for written in write_controller(target, machine, about):
-            announce(written)
+        for place, content in _export(found, target).items():
+            write(place, content, "--export")
+            announce(place)
+        if target.suffix == ".fmu" and (name := identifier(target.stem)) != target.stem:
+            announced(f"Within {target} the model is called {name}: its own name would not do in C.")
+
+
+def _export(found: LoopStudy, target: Path) -> Mapping[Path, str | bytes]:
+    """What is written for one option, by file."""
+    from flexstage.analysis.loop.code.controller import controller_code
+    from flexstage.present.fmu.unit import fmu
+    from flexstage.present.loop_files import controller_files, plant_file
+    from flexstage.studies.loop.runs import driven_machine
+
+    if target.suffix == ".mat":
+        return {target: plant_file(found.settled.plant)}
+    machine = driven_machine(found.settled, found.control, found.stacks)
+    about = f"{found.settled.mechanism.name or 'stage'}: {found.verdict.sentence}"
+    if target.suffix == ".c":
+        return controller_files(target, machine, about)
+    return {target: fmu(controller_code(machine, target.stem, about))}
 
 
 def _tables(found: LoopStudy) -> Iterator[Table | None]:

@@ -7,6 +7,7 @@ from pathlib import PurePath
 from typing import Any
 
 from flexstage.base.finding import refuse
+from flexstage.base.text import printable
 from flexstage.present.figures.export import to_png
 from flexstage.present.figures.style import styled
 
@@ -38,4 +39,5 @@ def drawing(figure: Any, ending: str) -> bytes:
     with styled():
         dates = {"Date": None} if ending == ".svg" else {"CreationDate": None}
         figure.savefig(buffer, format=ending.removeprefix("."), metadata=dates, facecolor="white")
-    return buffer.getvalue()
+    content = buffer.getvalue()
+    return printable(content.decode(), keep="\n\t").encode() if ending == ".svg" else content

@@ -6,6 +6,7 @@ import io
 import re
 from typing import Any
 
+from flexstage.base.text import printable
 from flexstage.present.figures.style import DRIVE, GAUGE, GRID, INK, MUTED, PAPER, styled
 
 _NUMBER = re.compile(r"-?\d+\.\d+(?:e-?\d+)?")
@@ -68,7 +69,7 @@ def compact(text: str, name: str, description: str) -> str:
     body, classes = _classes(body, name)
     width = round(float(box.split()[2]) * 96.0 / 72.0)
     head = f'<svg viewBox="{_short(box)}" role="img" aria-label="{_attribute(description)}" style="max-width:{width}px">'
-    return f"{head}{classes}{body.strip()}</svg>"
+    return printable(f"{head}{classes}{body.strip()}</svg>", keep="\n\t")
 
 
 def _attribute(text: str) -> str:

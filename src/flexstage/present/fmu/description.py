@@ -9,6 +9,7 @@ from xml.etree import ElementTree
 
 from flexstage.analysis.loop.code.program import Program
 from flexstage.base.dimension import dimension_of
+from flexstage.base.text import printable
 from flexstage.readings.linear.model import Channel
 
 _BASE = {"mass": "kg", "length": "m", "time": "s", "current": "A", "temperature": "K", "angle": "rad"}
@@ -40,7 +41,7 @@ def description(program: Program, sources: Iterable[str]) -> bytes:
         fmiVersion="2.0",
         modelName=program.name,
         guid=guid(program),
-        description=" ".join(program.about),
+        description=printable(" ".join(program.about)),
         generationTool="flexstage",
         variableNamingConvention="flat",
         numberOfEventIndicators="0",
@@ -95,7 +96,7 @@ def _variable(parent: ElementTree.Element, number: int, channel: Channel, meanin
     variable = ElementTree.SubElement(
         parent,
         "ScalarVariable",
-        {"name": channel.name, "valueReference": str(number), "description": meaning, "variability": "discrete", **causality},
+        {"name": printable(channel.name), "valueReference": str(number), "description": meaning, "variability": "discrete", **causality},
     )
     unit = {"unit": channel.unit} if channel.unit else {}
     ElementTree.SubElement(variable, "Real", {**unit, **({"start": "0.0"} if is_input else {})})

@@ -12,6 +12,7 @@ import numpy as np
 import pygltflib as gl
 
 from flexstage.base.number import Array
+from flexstage.base.text import printable
 from flexstage.mechanism.mechanism import PLATFORM
 from flexstage.readings.solid.assemble import Placed
 from flexstage.readings.solid.paint import Colour, palette
@@ -92,12 +93,12 @@ def gltf(stage: str, shown: Mapping[str, Surface], motions: Sequence[Motion]) ->
     buffer = _Buffer(document)
     colours = palette(sorted((name for name, each in shown.items() if each.is_body), key=lambda name: name != PLATFORM))
     for name, surface in shown.items():
-        _add_node(document, buffer, (name, surface), colours.get(name, _LINK), [motion.name for motion in motions])
+        _add_node(document, buffer, (printable(name), surface), colours.get(name, _LINK), [printable(motion.name) for motion in motions])
     if shown:
         _add_animations(document, buffer, motions)
     members = list(range(len(document.nodes)))
-    document.nodes.append(gl.Node(name=stage, children=members, rotation=_UPRIGHT))
-    document.scenes = [gl.Scene(name=stage, nodes=[len(members)])]
+    document.nodes.append(gl.Node(name=printable(stage), children=members, rotation=_UPRIGHT))
+    document.scenes = [gl.Scene(name=printable(stage), nodes=[len(members)])]
     document.buffers = [gl.Buffer(byteLength=len(buffer.data))] if buffer.data else []
     document.set_binary_blob(bytes(buffer.data))
     return b"".join(document.save_to_bytes())
@@ -154,4 +155,4 @@ def _add_animations(document: gl.GLTF2, buffer: _Buffer, motions: Sequence[Motio
         weights[:, number] = np.sin(2.0 * np.pi * times / _SECONDS)
         sampler = gl.AnimationSampler(input=start, output=buffer.put(weights.astype(np.float32).ravel(), gl.SCALAR), interpolation="LINEAR")
         channels = [gl.AnimationChannel(sampler=0, target=gl.AnimationChannelTarget(node=node, path="weights")) for node in nodes]
-        document.animations.append(gl.Animation(name=motion.name, samplers=[sampler], channels=channels))
+        document.animations.append(gl.Animation(name=printable(motion.name), samplers=[sampler], channels=channels))

@@ -13,6 +13,7 @@ from pathlib import Path
 from netgen import occ
 
 from flexstage.base.store import temporary_folder
+from flexstage.base.text import printable
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.readings.solid.draw import drawn, moved
 from flexstage.readings.solid.paint import Colour, palette
@@ -98,7 +99,7 @@ def quoted(text: str) -> str:
     >>> print(quoted("d'Arc"), quoted("Träger"))
     'd''Arc' 'Tr\X2\00E4\X0\ger'
     """
-    return f"'{''.join(_letter(letter) for letter in text)}'"
+    return f"'{''.join(_letter(letter) for letter in printable(text))}'"
 
 
 def _letter(letter: str) -> str:

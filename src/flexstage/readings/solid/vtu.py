@@ -16,6 +16,7 @@ import numpy as np
 
 from flexstage.base.number import Array
 from flexstage.base.store import temporary_folder
+from flexstage.base.text import printable
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.readings.solid.component import Component, components
 from flexstage.readings.solid.content import content
@@ -104,7 +105,7 @@ def _written(grids: Sequence[Grid], data: Mapping[str, Array]) -> bytes:
 def _commented(content: bytes, names: Mapping[str, Sequence[str]]) -> bytes:
     """The file with the names behind its numbers as a comment."""
     lines = ["lengths in metres; numbers of the cell data:"]
-    lines += [f"{kind} {number}: {escape(name)}" for kind, members in names.items() for number, name in enumerate(members)]
+    lines += [f"{kind} {number}: {escape(printable(name))}" for kind, members in names.items() for number, name in enumerate(members)]
     comment = "\n".join(lines).replace("--", "- -")
     head, start, rest = content.partition(b"<VTKFile")
     return head + f"<!--\n{comment}\n-->\n".encode() + start + rest

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import re
 import textwrap
 from collections.abc import Iterable
 
 import numpy as np
 
 from flexstage.base.number import Array
+from flexstage.base.text import printable
 
 _WIDTH = 110
 
@@ -47,12 +49,14 @@ def indented(lines: Iterable[str], depth: int = 1) -> list[str]:
 
 
 def comment(text: str) -> list[str]:
-    """A comment of one line or several, wrapped; what would end it early is taken apart.
+    r"""A comment of one line or several, wrapped; what would end it early is taken apart, what cannot be seen is escaped.
 
-    >>> comment("low is */ fine")
-    ['/* low is * / fine */']
+    >>> comment("low is */ fine"), comment("name \u202e")
+    (['/* low is * / fine */'], ['/* name \\u202e */'])
     """
-    parts = textwrap.wrap(text.replace("*/", "* /").replace("/*", "/ *"), _WIDTH - 6, break_long_words=False) or [""]
+    apart = printable(text).replace("*/", "* /").replace("/*", "/ *")
+    apart = re.sub(r"\?(?=\?)", "? ", apart)  # no trigraphs
+    parts = textwrap.wrap(apart, _WIDTH - 6, break_long_words=False) or [""]
     if len(parts) == 1:
         return [f"/* {parts[0]} */"]
     return [f"/* {parts[0]}", *(f" * {part}" for part in parts[1:-1]), f" * {parts[-1]} */"]
@@ -73,36 +77,31 @@ def wrapped(line: str, further: str = "    ") -> list[str]:
 
 
 def identifier(text: str) -> str:
-    """A name as an identifier of C.
+    """A name by which functions, types, files and an FMU can be called: letters, digits and underlines, begun by a letter.
 
-    >>> identifier("double triangle"), identifier("2nd"), identifier("int")
-    ('double_triangle', '_2nd', 'int_')
+    Where it would mean something else (a word of C, a header of a system, a name of FMI) it is headed by `stage_`.
+
+    >>> identifier("double triangle"), identifier("2nd"), identifier("int"), identifier("math"), identifier("fmi2")
+    ('double_triangle', 'stage_2nd', 'stage_int', 'stage_math', 'stage_fmi2')
     """
-    name = "".join(letter if letter.isascii() and letter.isalnum() else "_" for letter in text) or "_"
-    name = f"_{name}" if name[0].isdigit() else name
-    return f"{name}_" if name in _WORDS else name
+    name = "".join(letter if letter.isascii() and letter.isalnum() else "_" for letter in text)
+    taken = name.lower() in _TAKEN or name.lower().startswith("fmi")
+    return f"stage_{name}" if taken or not name[:1].isalpha() else name
 
 
-_WORDS = frozenset(
-    (
-        *(
-            "auto",
-            "break",
-            "case",
-            "char",
-            "const",
-            "continue",
-            "default",
-            "do",
-            "double",
-            "else",
-            "enum",
-            "extern",
-            "float",
-            "for",
-            "goto",
-        ),
-        *("if", "inline", "int", "long", "register", "restrict", "return", "short", "signed", "sizeof", "static", "struct", "switch"),
-        *("typedef", "union", "unsigned", "void", "volatile", "while", "main"),
-    )
+_WORDS = (
+    "auto break case char const continue default do double else enum extern float for goto if inline int long register restrict "
+    "return short signed sizeof static struct switch typedef union unsigned void volatile while main alignas alignof asm bool catch "
+    "class concept constexpr delete decltype dynamic_cast explicit export false friend module mutable namespace new noexcept nullptr "
+    "operator private protected public requires template this throw true try typeid typename using virtual import "
 )
+_HEADERS = (
+    "assert complex ctype errno fenv float inttypes iso646 limits locale math setjmp signal stdalign stdarg stdatomic stdbit stdbool "
+    "stdckdint stddef stdint stdio stdlib stdnoreturn string tgmath threads time uchar wchar wctype aio alloca ar byteswap conio cpio "
+    "crypt curses direct dirent dlfcn elf endian err execinfo fcntl features fmtmsg fnmatch fts ftw getopt glob grp iconv io langinfo "
+    "libgen libintl limits link mach malloc memory monetary mqueue ncurses ndbm netdb nl_types paths poll process pthread pwd regex "
+    "regexp resolv sched search semaphore spawn stab strings stropts syslog tar termio termios thread tchar trace ucontext ulimit "
+    "unistd utime utmp utmpx values varargs wait windows winbase windef winsock winsock2 wordexp xlocale zlib "
+)
+_OWN = "model"
+_TAKEN = frozenset(f"{_WORDS} {_HEADERS} {_OWN}".split())

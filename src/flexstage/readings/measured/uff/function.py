@@ -10,6 +10,7 @@ import math
 import re
 from dataclasses import dataclass
 
+from flexstage.base.text import printable
 from flexstage.readings.measured.clock import nominal, printed_uncertainty
 from flexstage.readings.measured.record import RATES, Role
 from flexstage.readings.measured.unit import plain_unit
@@ -192,7 +193,7 @@ def head(function: Function, *, binary_bytes: int | None = None) -> bytes:
     start = (
         f"{58:6d}{'':74}" if binary_bytes is None else f"{58:6d}b{1:6d}{2:6d}{HEAD_LINES:12d}{binary_bytes:12d}{0:6d}{0:6d}{0:12d}{0:12d}"
     )
-    lines = [f"{-1:6d}", start, *(f"{text or 'NONE':80}" for text in function.texts)]
+    lines = [f"{-1:6d}", start, *(f"{printable(text) or 'NONE':80}" for text in function.texts)]
     places = "".join(
         f" {(name or 'NONE')[:10]:>10}{node:10d}{direction:4d}" for name, node, direction in (function.response, function.reference)
     )
