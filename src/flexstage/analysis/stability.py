@@ -1,0 +1,336 @@
+"""Stability of a whole stage: by how much its loads could grow before the drawn position gives way.
+
+Linearised buckling of the drawn stage, (K + lambda K_g) x = 0. K_g is the second variation of the energy about the loaded stage: of every
+part under the wrench it carries (`beams.geometric`), and of every rigid body, whose forces act at points that turn with it. With F at r
+from the body's reference, over all forces on it: tr(S) I - (S + S^T)/2, S = sum F r^T.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import numpy as np
+from scipy.linalg import cholesky, eigh, solve_triangular
+
+from flexstage.analysis.workspace.load import dead_loads
+from flexstage.analysis.workspace.stroke import StrokeLimits
+from flexstage.base.finding import DesignError
+from flexstage.base.number import Array, stack
+from flexstage.beams.compliance import law
+from flexstage.beams.geometric import ENDS, Geometric, geometric
+from flexstage.beams.mass import mass
+from flexstage.mechanism.drawn import drawn
+from flexstage.mechanism.expand import Assembly, PlacedLink, expand
+from flexstage.mechanism.mechanism import GROUND, Mechanism
+from flexstage.mechanism.moving_mass import carried
+from flexstage.readings.linear.model import LinearModel
+from flexstage.readings.linear.static import displacement, static_gain
+from flexstage.spatial.frame import COMPONENTS, FORCES, seen_at, transport, turned
+
+_ROUNDS = 8
+_NONE = 1e-9
+"""A share of the stiffness that counts as no softening: rounding."""
+
+
+@dataclass(frozen=True, eq=False)
+class Stability:
+    """What multiplies all loads where the stage gives way (...): `dead` that of weight, payloads and forces, strokes at rest.
+
+    `worst` (...) that of the dead load with the worst `strokes` (..., m) [m]; infinite where nothing softens. `stiffens` (...) is by how
+    much the dead load stiffens at most, as a share of the stiffness. `moving` names the bodies that move most as the dead load gives way.
+    """
+
+    dead: Array
+    worst: Array
+    strokes: Array
+    stiffens: Array
+    moving: tuple[str, ...]
+    provenance: str
+
+
+def stability(mechanism: Mechanism, model: LinearModel, limits: StrokeLimits | None = None) -> Stability:
+    """Load factors of the whole stage; with `limits`, of the worst strokes between them too.
+
+    `model` is the lumped one. The worst strokes lie at a corner, as the reciprocal of the factor is convex in them: found by climbing from
+    several corners.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.readings.lumped import lumped
+    >>> stage = double_triangle()
+    >>> bool(stability(stage, lumped(stage)).dead > 100.0)
+    True
+    """
+    pieces = _Pieces.of(mechanism, model)
+    dead = pieces.softening(*_dead(mechanism, pieces))
+    unit = [pieces.softening(*_stroke(mechanism, pieces, name)) for name in (() if limits is None else limits.actuators)]
+    matrices = np.broadcast_arrays(pieces.stiffness, dead, *unit)
+    batch = matrices[0].shape[:-2]
+    flat = [each.reshape(-1, *each.shape[-2:]) for each in matrices]
+    low, high = (np.zeros((*batch, 0)),) * 2 if limits is None else (_wide(limits.low, batch), _wide(limits.high, batch))
+    rows = [
+        _single(flat[0][place], flat[1][place], [each[place] for each in flat[2:]], (one, other))
+        for place, (one, other) in enumerate(zip(low.reshape(len(flat[0]), -1), high.reshape(len(flat[0]), -1), strict=True))
+    ]
+    return Stability(
+        dead=np.array([row.dead for row in rows]).reshape(batch),
+        worst=np.array([row.worst for row in rows]).reshape(batch),
+        strokes=np.array([row.strokes for row in rows]).reshape(low.shape),
+        stiffens=np.array([row.stiffens for row in rows]).reshape(batch),
+        moving=pieces.moving(rows[0].shape),
+        provenance=f"linearised buckling of the {model.provenance}",
+    )
+
+
+def _wide(values: Array, batch: tuple[int, ...]) -> Array:
+    return np.broadcast_to(np.real(values), (*batch, values.shape[-1]))
+
+
+_Loads: TypeAlias = Mapping[str, list[tuple[Array, Array]]]
+"""Loads by body: pairs of a wrench (..., 6) in the stage's axes and the point (..., 3) it acts at."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Pieces:
+    """The stage in the model's coordinates and the inner bending of its parts: twists of bodies, laws of links."""
+
+    assembly: Assembly
+    model: LinearModel
+    twists: Mapping[str, Array]
+    parts: Mapping[str, Geometric]
+
+    @staticmethod
+    def of(mechanism: Mechanism, model: LinearModel) -> _Pieces:
+        assembly = expand(_shown(mechanism))
+        twists = {name: _rows(model, name, COMPONENTS) for name in assembly.bodies}
+        known: dict[tuple[int, int], Geometric] = {}
+        parts: dict[str, Geometric] = {}
+        for name, link in assembly.links.items():
+            key = id(link.part), id(link.material)
+            if key not in known:
+                known[key] = geometric(link.part, link.material)
+            parts[name] = known[key]
+        return _Pieces(assembly, model, {GROUND: np.zeros((6, len(model.coordinates))), **twists}, parts)
+
+    @property
+    def size(self) -> int:
+        return len(self.model.coordinates) + sum(part.inner.shape[-1] for part in self.parts.values())
+
+    @property
+    def stiffness(self) -> Array:
+        """K (..., n + k, n + k): the model's, and the inner bending of every part beside it."""
+        own = self.model.stiffness_matrix
+        inner = [part.inner for part in self.parts.values()]
+        batch = np.broadcast_shapes(own.shape[:-2], *(each.shape[:-1] for each in inner))
+        result = np.zeros((*batch, self.size, self.size), dtype=np.result_type(own, *inner))
+        count = len(self.model.coordinates)
+        result[..., :count, :count] = own
+        place = count
+        for each in inner:
+            for index in range(each.shape[-1]):
+                result[..., place, place] = each[..., index]
+                place += 1
+        return result
+
+    def ends(self, link: PlacedLink) -> Array:
+        """Twists (..., 12, n) of both ends of a link, at its centre, in its frame."""
+        seen = [self._end(body, link) for body in link.joins]
+        batch = np.broadcast_shapes(*(each.shape[:-2] for each in seen))
+        return np.concatenate([np.broadcast_to(each, (*batch, *each.shape[-2:])) for each in seen], axis=-2)
+
+    def _end(self, body: str, link: PlacedLink) -> Array:
+        return self.twists[body] if body == GROUND else seen_at(link.frame, self.assembly.bodies[body].reference) @ self.twists[body]
+
+    def softening(self, wrenches: Mapping[str, Array], loads: _Loads) -> Array:
+        """K_g (..., n + k, n + k) of the wrenches (..., 6) of all links, and of the loads on bodies."""
+        forces: dict[str, list[tuple[Array, Array]]] = {name: [] for name in self.assembly.bodies}
+        for name, acting in loads.items():
+            forces[name] += [(load[..., :3], point) for load, point in acting]
+        total: Array = np.zeros((self.size, self.size))
+        place = len(self.model.coordinates)
+        for name, link in self.assembly.links.items():
+            part, wrench = self.parts[name], wrenches[name]
+            inner = part.inner.shape[-1]
+            shape = self.ends(link)
+            wide = np.zeros((*shape.shape[:-2], ENDS + inner, self.size), dtype=shape.dtype)
+            wide[..., :ENDS, : shape.shape[-1]] = shape
+            wide[..., range(ENDS, ENDS + inner), range(place, place + inner)] = 1.0
+            place += inner
+            law = np.einsum("...i,...iab->...ab", wrench, part.per_force)
+            total = total + _transposed(wide) @ law @ wide
+            force = link.frame.direction(wrench[..., :3])
+            arm = link.frame.direction(part.half[..., None] * np.eye(3)[0])
+            for body, sign in zip(link.joins, (1.0, -1.0), strict=True):
+                if body != GROUND:
+                    forces[body].append((sign * force, link.frame.position - sign * arm))
+        for name, acting in forces.items():
+            if acting:
+                total = total + self._turning(name, acting)
+        return total
+
+    def _turning(self, name: str, acting: list[tuple[Array, Array]]) -> Array:
+        reference = self.assembly.bodies[name].reference
+        moment = sum((force[..., :, None] * (point - reference)[..., None, :] for force, point in acting), np.zeros((3, 3)))
+        law = np.trace(moment, axis1=-2, axis2=-1)[..., None, None] * np.eye(3) - 0.5 * (moment + _transposed(moment))
+        turns = self.twists[name][..., 3:, :]
+        small = _transposed(turns) @ law @ turns
+        result = np.zeros((*small.shape[:-2], self.size, self.size), dtype=small.dtype)
+        result[..., : small.shape[-1], : small.shape[-1]] = small
+        return result
+
+    def moving(self, shape: Array) -> tuple[str, ...]:
+        """Bodies that move most in a shape (n + k), by the length that each of their points about the reference moves."""
+        own = shape[: len(self.model.coordinates)]
+        first = {name: np.real(twist.reshape(-1, *twist.shape[-2:])[0]) @ own for name, twist in self.twists.items() if name != GROUND}
+        sizes = {name: float(np.linalg.norm(twist[:3])) for name, twist in first.items()}
+        largest = max(sizes.values(), default=0.0)
+        return tuple(name for name, size in sizes.items() if size > 0.5 * largest > 0.0)[:4]
+
+
+def _shown(mechanism: Mechanism) -> Mechanism:
+    """The description with the drawn parts that computed matrices stand for: those have a length."""
+    try:
+        return drawn(mechanism)
+    except DesignError:
+        return mechanism
+
+
+def _dead(mechanism: Mechanism, pieces: _Pieces) -> tuple[dict[str, Array], _Loads]:
+    """Wrenches of the links under weight, payloads and forces, strokes at rest; and these loads."""
+    model = pieces.model
+    loads = _weights(mechanism)
+    total = sum(dead_loads(mechanism, model).values(), np.zeros(len(model.coordinates)))
+    motion = displacement(model, total[..., None])
+    sprung = {name: (_rows(model, name, FORCES) @ motion)[..., 0] for name in pieces.assembly.links}
+    return _whole(mechanism, sprung, loads), loads
+
+
+def _stroke(mechanism: Mechanism, pieces: _Pieces, actuator: str) -> tuple[dict[str, Array], _Loads]:
+    """Wrenches of the links per metre of a stroke."""
+    names = tuple(f"{link}.{force}" for link in pieces.assembly.links for force in FORCES)
+    found = static_gain(pieces.model, names, (actuator,)).values[..., 0]
+    sprung = {name: found[..., 6 * place : 6 * place + 6] for place, name in enumerate(pieces.assembly.links)}
+    return _whole(mechanism, sprung, {}), {}
+
+
+def _weights(mechanism: Mechanism) -> _Loads:
+    """Weights of bodies, payloads and links, and stated forces."""
+    assembly, gravity = expand(mechanism), stack(mechanism.gravity)
+    loads: dict[str, list[tuple[Array, Array]]] = {name: [] for name in assembly.bodies}
+    for name, placed in assembly.bodies.items():
+        loads[name] += [(_force(item.mass[..., None] * gravity), item.centre) for item in carried(mechanism, placed)]
+    for link in assembly.links.values():
+        back = _transposed(link.frame.rotation)
+        fall = (back @ gravity[..., None])[..., 0]
+        pulled = mass(link.part, link.material) @ np.concatenate([_force(fall), _force(fall)], axis=-1)[..., None]
+        for place, body in enumerate(link.joins):
+            if body != GROUND:
+                wrench = (turned(link.frame.rotation) @ pulled[..., 6 * place : 6 * place + 6, :])[..., 0]
+                loads[body].append((wrench, link.frame.position))
+    for force in mechanism.forces.values():
+        if force.body != GROUND:
+            loads[force.body].append((_force(stack(force.force)), stack(force.at)))
+    return loads
+
+
+def _force(force: Array) -> Array:
+    return np.concatenate([force, np.zeros_like(force)], axis=-1)
+
+
+def _whole(mechanism: Mechanism, sprung: dict[str, Array], loads: _Loads) -> dict[str, Array]:
+    """The wrenches of the links with the forces of their locked freedoms, which no spring feels: from the equilibrium of every body."""
+    assembly = expand(mechanism)
+    locked = {name: [freedom.index for freedom in law(link.part, link.material).locked] for name, link in assembly.links.items()}
+    if not any(locked.values()):
+        return sprung
+    order = {name: slice(6 * place, 6 * place + 6) for place, name in enumerate(assembly.bodies)}
+    batch = np.broadcast_shapes(*(each.shape[:-1] for each in sprung.values()))
+    unmet = np.zeros((*batch, 6 * len(order)), dtype=np.result_type(*sprung.values()))
+    for name, placed in assembly.bodies.items():
+        for load, point in loads.get(name, []):
+            unmet[..., order[name]] += (_transposed(transport(point - placed.reference)) @ load[..., None])[..., 0]
+    columns: list[Array] = []
+    for name, link in assembly.links.items():
+        carry = np.zeros((*batch, 6 * len(order), 6), dtype=np.result_type(unmet, link.frame.position))
+        for body, sign in zip(link.joins, (1.0, -1.0), strict=True):
+            if body != GROUND:
+                carry[..., order[body], :] = sign * _transposed(seen_at(link.frame, assembly.bodies[body].reference))
+        unmet = unmet + (carry @ sprung[name][..., None])[..., 0]
+        columns.append(carry[..., locked[name]])
+    held = np.concatenate(columns, axis=-1)
+    forces = -np.linalg.pinv(np.real(held)) @ unmet[..., None]
+    result, place = {}, 0
+    for name, wrench in sprung.items():
+        whole = np.zeros((*batch, 6), dtype=np.result_type(wrench, forces)) + wrench
+        whole[..., locked[name]] += forces[..., place : place + len(locked[name]), 0]
+        place += len(locked[name])
+        result[name] = whole
+    return result
+
+
+@dataclass(frozen=True)
+class _Found:
+    """Factors of one design, and how it gives way under its dead load."""
+
+    dead: complex
+    worst: complex
+    strokes: Array
+    stiffens: float
+    shape: Array
+
+
+def _single(stiffness: Array, dead: Array, unit: list[Array], ends: tuple[Array, Array]) -> _Found:
+    """Factors of one design; of stepped numbers, those that belong to the real design's shape."""
+    root = cholesky(np.real(stiffness), lower=True)
+    matrices = [_normal(root, np.real(each)) for each in (dead, *unit)]
+    low, high = ends
+    corners = [np.where(np.arange(len(low)) == place, high, low) for place in range(-1, len(low))] + [high] if len(low) else []
+    climbed = [_climbed(matrices, ends, start) for start in corners]
+    values, shapes = np.linalg.eigh(matrices[0])
+    shape = _back(root, shapes[:, 0])
+    found = _factor(stiffness, dead, shape)
+    worst, strokes, steep = min(climbed, key=lambda each: each[0], default=(np.inf, low, shapes[:, 0]))
+    total = dead + sum((stroke * each for stroke, each in zip(strokes, unit, strict=True)), np.zeros_like(dead))
+    least = _factor(stiffness, total, _back(root, steep)) if np.isfinite(worst) else np.inf
+    return _Found(found, found if np.real(found) < np.real(least) else least, strokes, float(max(values[-1], 0.0)), shape)
+
+
+def _climbed(matrices: list[Array], ends: tuple[Array, Array], start: Array) -> tuple[float, Array, Array]:
+    """The corner of the strokes that is worst for the shape it gives way in, from a corner on: its factor, strokes and shape."""
+    dead, *unit = matrices
+    strokes = start
+    for _ in range(_ROUNDS):
+        total = dead + sum((stroke * each for stroke, each in zip(strokes, unit, strict=True)), np.zeros_like(dead))
+        value, shape = (each[..., 0] for each in eigh(total, subset_by_index=[0, 0]))
+        slopes = np.array([shape @ each @ shape for each in unit])
+        better = np.where(slopes < 0.0, ends[1], ends[0])
+        if np.all(better == strokes):
+            break
+        strokes = better
+    return (-1.0 / float(value) if value < -_NONE else np.inf), strokes, shape
+
+
+def _factor(stiffness: Array, softening: Array, shape: Array) -> complex:
+    """The factor of a shape: the elastic energy over what the loads take away; infinite where they take nothing."""
+    elastic, taken = shape @ stiffness @ shape, -(shape @ softening @ shape)
+    value = elastic / taken if np.real(taken) > _NONE * np.real(elastic) else np.inf
+    return value if np.iscomplexobj(stiffness) or np.iscomplexobj(softening) else float(np.real(value))
+
+
+def _normal(root: Array, matrix: Array) -> Array:
+    half = solve_triangular(root, matrix, lower=True)
+    whole = solve_triangular(root, half.T, lower=True)
+    return 0.5 * (whole + whole.T)
+
+
+def _back(root: Array, shape: Array) -> Array:
+    return solve_triangular(root, shape, lower=True, trans="T")
+
+
+def _rows(model: LinearModel, owner: str, names: tuple[str, ...]) -> Array:
+    return model.output[..., model.output_index(tuple(f"{owner}.{name}" for name in names)), :]
+
+
+def _transposed(matrix: Array) -> Array:
+    return np.swapaxes(matrix, -1, -2)
