@@ -7,7 +7,9 @@ from pathlib import Path
 
 import pytest
 
+import flexstage as fs
 from flexstage.cases.double_triangle import double_triangle
+from flexstage.mechanism.store import dumps
 from flexstage.studies.cautions import caveats
 from tests.apps.command import Command, design_in
 
@@ -52,3 +54,51 @@ def test_what_is_taken_by_default_stands_apart(flexstage: Command, tmp_path: Pat
 
 def test_caveats_are_worked_out_once_for_one_description() -> None:
     assert caveats(double_triangle()) is caveats(double_triangle())
+
+
+def leaves(folder: Path, mass: float) -> None:
+    """A platform of a mass [kg] on two upright leaves: 5 kg is the border."""
+    leaf = fs.Leaf("steel", 0.06, 0.0003, 0.02)
+    stage = fs.Mechanism(
+        "leaves",
+        materials={"steel": fs.Material(young=200e9, poisson=0.0, density=8000.0)},
+        parts={"leaf": leaf},
+        bodies={"platform": fs.Body(mass=mass, centre=(0.0, 0.0, 0.06), inertia=fs.Inertia(1e-3, 1e-3, 1e-3))},
+        links={
+            name: fs.Link(("ground", "platform"), "leaf", (x, 0.0, 0.03), (0.0, 0.0, 1.0), bends=(0.0, 1.0, 0.0))
+            for name, x in (("a", -0.05), ("b", 0.05))
+        },
+        requirements={"frequency.platform.1": "at least 3 Hz", "buckling": "at least 1"},
+    )
+    (folder / "stage.toml").write_text(dumps(stage))
+
+
+@pytest.mark.parametrize("command", ["check", "analyse", "modes", "stiffness", "response", "sensitivities"])
+def test_a_stage_that_its_weight_topples_has_no_elastic_results(flexstage: Command, tmp_path: Path, command: str) -> None:
+    leaves(tmp_path, 10.0)
+    ended = flexstage(command, "stage.toml")
+    assert ended.code == 2
+    assert "load factor 0.503" in ended.err or "load factor 0.502" in ended.err
+    assert flexstage("mapping", "stage.toml").code == 0
+
+
+def test_verdicts_that_the_weight_may_turn_are_withheld(flexstage: Command, tmp_path: Path) -> None:
+    """3.18 Hz as drawn, 2.27 Hz with the weight of 2.5 kg that has reached half of what topples it."""
+    leaves(tmp_path, 2.5)
+    document = flexstage("analyse", "stage.toml", "--json", "-").document
+    frequency, buckling = document["requirements"]
+    assert (frequency["passed"], frequency["value"]) == (False, None)
+    assert "withheld" in frequency["reason"]
+    assert buckling["value"] == pytest.approx(2.01, rel=5e-3)
+    assert document["buckling"]["stage"]["dead_load"] == pytest.approx(buckling["value"], rel=1e-12)
+    assert "load factor 2.01" in document["cautions"][0]["what"]
+    leaves(tmp_path, 0.1)
+    assert flexstage("modes", "stage.toml", "--json", "-").document["cautions"] == []
+
+
+def test_without_stiffness_nothing_is_met(flexstage: Command, tmp_path: Path) -> None:
+    leaves(tmp_path, 10.0)
+    frequency, buckling = flexstage("analyse", "stage.toml", "--reading", "ideal", "--json", "-").document["requirements"]
+    assert "does not hold" in frequency["reason"]
+    assert not frequency["passed"]
+    assert not buckling["passed"]

@@ -5,11 +5,12 @@ from __future__ import annotations
 from dataclasses import fields, is_dataclass, replace
 
 import numpy as np
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from flexstage.analysis.response import transmissibility
 from flexstage.analysis.statics import centre_of_stiffness
+from flexstage.analysis.stability import stability
 from flexstage.base.number import stack
 from flexstage.beams.compliance import law
 from flexstage.beams.mass import mass
@@ -173,6 +174,16 @@ def test_moving_an_elastic_stage_changes_only_frames(mechanism, move):
     gauges, strokes = tuple(mechanism.gauges), here.strokes
     difference = static_gain(there, gauges, strokes).values - static_gain(here, gauges, strokes).values
     assert np.all(np.abs(difference) <= rounding_per_stroke(here, here.output[here.output_index(gauges)]))
+
+
+@settings(max_examples=20)
+@given(mechanisms(), turns())
+def test_moving_a_loaded_stage_leaves_its_load_factors(mechanism, move):
+    """Gravity turns with the stage; the shares of stiffness that its loads take or add, against the largest of them."""
+    here, there = (stability(stage, lumped(stage)) for stage in (mechanism, moved(mechanism, *move)))
+    bound = 100.0 * rounding(lumped(mechanism)) * max(1.0 / here.dead, here.stiffens)
+    assert abs(1.0 / here.dead - 1.0 / there.dead) <= bound
+    assert abs(here.stiffens - there.stiffens) <= bound
 
 
 @given(actuated_platforms(), turns())

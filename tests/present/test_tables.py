@@ -40,6 +40,7 @@ TITLES = {
     "response": "Frequency responses",
     "transmissibility": "ground.z",
     "workspace": "Single-axis strokes",
+    "buckling": "Buckling",
     "drift": "Thermal drift",
     "error_budget": "Error budget, ideal mapping commanded",
     "verdicts": "Requirements",

@@ -7,7 +7,7 @@ from the body's reference, over all forces on it: tr(S) I - (S + S^T)/2, S = sum
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import TypeAlias
 
@@ -16,7 +16,7 @@ from scipy.linalg import cholesky, eigh, solve_triangular
 
 from flexstage.analysis.workspace.load import dead_loads
 from flexstage.analysis.workspace.stroke import StrokeLimits
-from flexstage.base.finding import DesignError
+from flexstage.base.finding import DesignError, Finding
 from flexstage.base.number import Array, stack
 from flexstage.beams.compliance import law
 from flexstage.beams.geometric import ENDS, Geometric, geometric
@@ -29,7 +29,10 @@ from flexstage.readings.linear.model import LinearModel
 from flexstage.readings.linear.static import displacement, static_gain
 from flexstage.spatial.frame import COMPONENTS, FORCES, seen_at, transport, turned
 
-_ROUNDS = 8
+DOUBTFUL = 20.0
+"""Load factor below which the loaded stage is told apart from the drawn one: 5 % of the stiffness."""
+
+_KEPT, _ALIKE = 3, 1e-9
 _NONE = 1e-9
 """A share of the stiffness that counts as no softening: rounding."""
 
@@ -49,12 +52,50 @@ class Stability:
     moving: tuple[str, ...]
     provenance: str
 
+    @property
+    def refusals(self) -> tuple[Finding, ...]:
+        """What keeps elastic results from being given: a drawn position that its own dead load does not let stand."""
+        least = float(np.min(np.real(self.dead)))
+        if least >= 1.0:
+            return ()
+        what = (
+            f"the drawn position does not hold: weight, payloads and forces are {1.0 / least:.3g} times what it can bear "
+            f"(load factor {least:.3g}), {' and '.join(self.moving)} gives way"
+        )
+        return (Finding("stage", what, "Lighten the load, make the parts it presses on stiffer, or turn them so that it hangs"),)
+
+    @property
+    def cautions(self) -> tuple[Finding, ...]:
+        """Where stiffness and frequencies of the loaded stage are others than those of the drawn one."""
+        return tuple(self._doubts())
+
+    def _doubts(self) -> Iterator[Finding]:
+        dead, worst, stiffer = (float(each) for each in (np.min(np.real(self.dead)), np.min(np.real(self.worst)), np.max(self.stiffens)))
+        if 1.0 <= dead < DOUBTFUL:
+            what = (
+                f"weight, payloads and forces soften it: load factor {dead:.3g}, where {' and '.join(self.moving)} gives way. In that "
+                f"motion the loaded stage is {100.0 / dead:.2g} % less stiff than printed, its frequency {_lower(dead):.2g} % lower"
+            )
+            yield Finding("stage", what, "Count on the lower values; stiffen what the load presses on, or let it hang")
+        if worst < DOUBTFUL and worst < 0.99 * dead:
+            what = f"with the strokes at their worst corner the load factor is {worst:.3g}"
+            if worst >= 1.0:
+                what += f": there the stage is up to {100.0 / worst:.2g} % less stiff than printed, a frequency {_lower(worst):.2g} % lower"
+            yield Finding("stage", what, "Make the parts that the stacks press on stiffer, or limit the strokes")
+        if stiffer > 1.0 / DOUBTFUL:
+            what = f"weight, payloads and forces stiffen it by up to {100.0 * stiffer:.2g} % in one motion, more than is printed"
+            yield Finding("stage", what, "Count on higher frequencies in that motion, or unload it")
+
+
+def _lower(factor: float) -> float:
+    """By how many per cent a frequency is lower at a load factor."""
+    return 100.0 * (1.0 - np.sqrt(1.0 - 1.0 / factor))
+
 
 def stability(mechanism: Mechanism, model: LinearModel, limits: StrokeLimits | None = None) -> Stability:
     """Load factors of the whole stage; with `limits`, of the worst strokes between them too.
 
-    `model` is the lumped one. The worst strokes lie at a corner, as the reciprocal of the factor is convex in them: found by climbing from
-    several corners.
+    `model` is the lumped one. The worst strokes lie at a corner, as the reciprocal of the factor is convex in them.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.readings.lumped import lumped
@@ -68,23 +109,20 @@ def stability(mechanism: Mechanism, model: LinearModel, limits: StrokeLimits | N
     matrices = np.broadcast_arrays(pieces.stiffness, dead, *unit)
     batch = matrices[0].shape[:-2]
     flat = [each.reshape(-1, *each.shape[-2:]) for each in matrices]
-    low, high = (np.zeros((*batch, 0)),) * 2 if limits is None else (_wide(limits.low, batch), _wide(limits.high, batch))
-    rows = [
-        _single(flat[0][place], flat[1][place], [each[place] for each in flat[2:]], (one, other))
-        for place, (one, other) in enumerate(zip(low.reshape(len(flat[0]), -1), high.reshape(len(flat[0]), -1), strict=True))
-    ]
+    corners = np.zeros((1, 0)) if limits is None else np.real(limits.corners)
+    corners = np.broadcast_to(corners, (*batch, *corners.shape[-2:]))
+    each_corners = corners.reshape(len(flat[0]), *corners.shape[-2:])
+    rows = [_single(flat[0][place], flat[1][place], [each[place] for each in flat[2:]], own) for place, own in enumerate(each_corners)]
+    stepped = any(np.iscomplexobj(each) for each in flat)
+    dead_factors, worst = (np.array(each).reshape(batch) for each in ([row.dead for row in rows], [row.worst for row in rows]))
     return Stability(
-        dead=np.array([row.dead for row in rows]).reshape(batch),
-        worst=np.array([row.worst for row in rows]).reshape(batch),
-        strokes=np.array([row.strokes for row in rows]).reshape(low.shape),
+        dead=dead_factors if stepped else np.real(dead_factors),
+        worst=worst if stepped else np.real(worst),
+        strokes=np.array([row.strokes for row in rows]).reshape(*batch, corners.shape[-1]),
         stiffens=np.array([row.stiffens for row in rows]).reshape(batch),
         moving=pieces.moving(rows[0].shape),
         provenance=f"linearised buckling of the {model.provenance}",
     )
-
-
-def _wide(values: Array, batch: tuple[int, ...]) -> Array:
-    return np.broadcast_to(np.real(values), (*batch, values.shape[-1]))
 
 
 _Loads: TypeAlias = Mapping[str, list[tuple[Array, Array]]]
@@ -280,42 +318,43 @@ class _Found:
     shape: Array
 
 
-def _single(stiffness: Array, dead: Array, unit: list[Array], ends: tuple[Array, Array]) -> _Found:
+def _single(stiffness: Array, dead: Array, unit: list[Array], corners: Array) -> _Found:
     """Factors of one design; of stepped numbers, those that belong to the real design's shape."""
     root = cholesky(np.real(stiffness), lower=True)
-    matrices = [_normal(root, np.real(each)) for each in (dead, *unit)]
-    low, high = ends
-    corners = [np.where(np.arange(len(low)) == place, high, low) for place in range(-1, len(low))] + [high] if len(low) else []
-    climbed = [_climbed(matrices, ends, start) for start in corners]
-    values, shapes = np.linalg.eigh(matrices[0])
+    normal = np.stack([_normal(root, np.real(each)) for each in (dead, *unit)])
+    values, shapes = np.linalg.eigh(normal[0])
     shape = _back(root, shapes[:, 0])
-    found = _factor(stiffness, dead, shape)
-    worst, strokes, steep = min(climbed, key=lambda each: each[0], default=(np.inf, low, shapes[:, 0]))
+    strokes, steep = _worst(normal, corners) if unit else (corners[0], shapes[:, 0])
     total = dead + sum((stroke * each for stroke, each in zip(strokes, unit, strict=True)), np.zeros_like(dead))
-    least = _factor(stiffness, total, _back(root, steep)) if np.isfinite(worst) else np.inf
-    return _Found(found, found if np.real(found) < np.real(least) else least, strokes, float(max(values[-1], 0.0)), shape)
+    found, least = _factor(stiffness, dead, shape), _factor(stiffness, total, _back(root, steep))
+    return _Found(found, min(found, least, key=np.real), strokes, float(max(values[-1], 0.0)), shape)
 
 
-def _climbed(matrices: list[Array], ends: tuple[Array, Array], start: Array) -> tuple[float, Array, Array]:
-    """The corner of the strokes that is worst for the shape it gives way in, from a corner on: its factor, strokes and shape."""
-    dead, *unit = matrices
-    strokes = start
-    for _ in range(_ROUNDS):
-        total = dead + sum((stroke * each for stroke, each in zip(strokes, unit, strict=True)), np.zeros_like(dead))
-        value, shape = (each[..., 0] for each in eigh(total, subset_by_index=[0, 0]))
-        slopes = np.array([shape @ each @ shape for each in unit])
-        better = np.where(slopes < 0.0, ends[1], ends[0])
-        if np.all(better == strokes):
-            break
-        strokes = better
-    return (-1.0 / float(value) if value < -_NONE else np.inf), strokes, shape
+def _worst(normal: Array, corners: Array) -> tuple[Array, Array]:
+    """The corner with the least eigenvalue, and its shape.
+
+    Eigenvalues in the space of the softest shapes of some corners are bounds from above for all corners; the corner with the least of them
+    is solved and its shapes added, until that corner is one that was solved.
+    """
+    weights = np.concatenate([np.ones((len(corners), 1)), corners], axis=-1)
+    wanted = [0, len(corners) - 1, *(2**place for place in range(corners.shape[-1]))]
+    space, solved = np.zeros((normal.shape[-1], 0)), dict[int, Array]()
+    while True:
+        for corner in dict.fromkeys(wanted):
+            solved[corner] = eigh(np.tensordot(weights[corner], normal, axes=1), subset_by_index=[0, min(_KEPT, normal.shape[-1]) - 1])[1]
+            space = np.linalg.qr(np.concatenate([space, solved[corner]], axis=-1))[0][:, : normal.shape[-1]]
+        small = space.T @ normal @ space
+        bounds = np.array([np.linalg.eigvalsh(np.tensordot(weight, small, axes=1))[0] for weight in weights])
+        least = int(np.argmax(bounds <= np.min(bounds) + _ALIKE * np.max(np.abs(bounds))))
+        if least in solved:
+            return corners[least], solved[least][:, 0]
+        wanted = [least]
 
 
 def _factor(stiffness: Array, softening: Array, shape: Array) -> complex:
     """The factor of a shape: the elastic energy over what the loads take away; infinite where they take nothing."""
     elastic, taken = shape @ stiffness @ shape, -(shape @ softening @ shape)
-    value = elastic / taken if np.real(taken) > _NONE * np.real(elastic) else np.inf
-    return value if np.iscomplexobj(stiffness) or np.iscomplexobj(softening) else float(np.real(value))
+    return complex(elastic / taken) if np.real(taken) > _NONE * np.real(elastic) else complex(np.inf)
 
 
 def _normal(root: Array, matrix: Array) -> Array:
@@ -325,7 +364,7 @@ def _normal(root: Array, matrix: Array) -> Array:
 
 
 def _back(root: Array, shape: Array) -> Array:
-    return solve_triangular(root, shape, lower=True, trans="T")
+    return solve_triangular(root.T, shape, lower=False)
 
 
 def _rows(model: LinearModel, owner: str, names: tuple[str, ...]) -> Array:

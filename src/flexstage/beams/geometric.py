@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,10 +11,14 @@ from flexstage.base.number import Array
 from flexstage.beams.beam import Beam
 from flexstage.beams.compliance import beam_of
 from flexstage.parts.given import Given, Joint
+from flexstage.parts.leaf import Leaf
 from flexstage.parts.material import Material
 from flexstage.parts.part import Part, Restricted
+from flexstage.parts.rod import Rod
 
 ENDS = 12
+_SLENDER, _STOUT = (2, 3, 3), (0, 2, 2)
+"""Numbers of inner shapes of the twist about x and of the bending about y and z: of leaves and rods, of all other parts."""
 _CROSS = np.zeros((3, 3, 3))
 _CROSS[[0, 1, 2], [1, 2, 0], [2, 0, 1]], _CROSS[[0, 1, 2], [2, 0, 1], [1, 2, 0]] = 1.0, -1.0
 
@@ -41,7 +46,11 @@ def geometric(part: Part, material: Material | None) -> Geometric:
     1.2
     """
     inner = part.part if isinstance(part, Restricted) else part
-    return _of_point() if isinstance(inner, (Given, Joint)) else _of_beam(beam_of(inner, material))
+    return (
+        _of_point()
+        if isinstance(inner, (Given, Joint))
+        else _of_beam(beam_of(inner, material), _SLENDER if isinstance(inner, (Leaf, Rod)) else _STOUT)
+    )
 
 
 def _of_point() -> Geometric:
@@ -56,18 +65,18 @@ def _of_point() -> Geometric:
     return Geometric(_symmetric(np.concatenate([forces, moments])), np.zeros(0), np.asarray(0.0))
 
 
-def _of_beam(beam: Beam) -> Geometric:
+def _of_beam(beam: Beam, inner: tuple[int, int, int]) -> Geometric:
     """Second variation of the exact beam's energy about the straight, loaded beam.
 
     With the rotation theta(x) of its sections in the shapes of linear bending and torsion, and resultants N, Q, m(x) = m_c - x e_x x Q:
     1/2 int N (theta_y^2 + theta_z^2 + r^2 theta_x'^2) - theta_x (Q . theta) - m . (theta x theta') dx, r the polar radius of the section.
     """
-    position, weight, turn, bend, stiffness = _shapes(beam)
+    position, weight, turn, bend, stiffness = _shapes(beam, inner)
     outer = np.einsum("...s,...sia,...sjb->...ijab", weight, turn, turn)
     mixed = np.einsum("...s,...sia,...skb->...ikab", weight, turn, bend)
     moved = np.einsum("...s,...sia,...skb->...ikab", weight * position, turn, bend)
-    polar = np.asarray(beam.section.polar / beam.section.area)
-    wagner = np.einsum("...s,...sa,...sb->...ab", weight * np.concatenate([polar, polar], axis=-1), bend[..., 0, :], bend[..., 0, :])
+    polar = _both(np.broadcast_to(beam.section.polar / beam.section.area, beam.flexibility.shape[:-1]))
+    wagner = np.einsum("...s,...sa,...sb->...ab", weight * polar, bend[..., 0, :], bend[..., 0, :])
     moments = [-np.einsum("jk,...jkab->...ab", _CROSS[axis], mixed) for axis in range(3)]
     along_y, along_z = (-np.einsum("jk,...jkab->...ab", _CROSS[axis], moved) for axis in (1, 2))
     rows = np.broadcast_arrays(
@@ -79,46 +88,74 @@ def _of_beam(beam: Beam) -> Geometric:
     return Geometric(_symmetric(np.stack(rows, axis=-3)), stiffness, position[..., -1])
 
 
-def _shapes(beam: Beam) -> tuple[Array, Array, Array, Array, Array]:
-    """Stations and weights (..., s), rotation and its rate (..., s, 3, 16) of the sections, and the stiffness of the inner shapes (..., 4).
+def _shapes(beam: Beam, inner: tuple[int, int, int]) -> tuple[Array, Array, Array, Array, Array]:
+    """Stations and weights (..., s), rotation and rate (..., s, 3, 12 + k) of sections, stiffness (..., k) of inner shapes.
 
-    Bending by both ends is f (a + b x) with f the flexibility; the inner shapes f (x^2 - F2/F0) and f (x^3 - x F4/F2) move no end. With
-    them the column loads of a uniform beam come out to 1e-4, with the ends' shapes alone to 1 % (one end guided) and 20 % (both pinned).
+    Bending by both ends is f (a + b x) with f the flexibility, twist f a. Inner shapes f p(x), p the next polynomials orthogonal to these
+    and to one another under f, move no end. With them column loads come out to 1e-3, with the ends' shapes alone those of a uniform beam
+    are 1 % off where one end is guided, 20 % where both are pinned.
     """
     points = beam.points
     half = points.position
     position = np.concatenate([-half, half], axis=-1)
-    weight = np.concatenate([points.rate * points.rule.weights] * 2, axis=-1)
+    weight = _both(points.rate * points.rule.weights)
     batch = np.broadcast_shapes(beam.flexibility.shape[:-2], position.shape[:-1])
-    turn = np.zeros((*batch, position.shape[-1], 3, ENDS + 4), dtype=np.result_type(beam.flexibility, position))
+    turn = np.zeros((*batch, position.shape[-1], 3, ENDS + sum(inner)), dtype=np.result_type(beam.flexibility, position))
     bend = np.zeros_like(turn)
-    stiffness: list[Array] = []
     turn[..., [0, 1, 2], [3, 4, 5]] = 1.0
-    rates, angles = _of_step(beam, 3)
-    _step(turn, bend, (0, 3), angles, rates)
-    for axis, across, sign, column in ((1, 2, 1.0, ENDS), (2, 1, -1.0, ENDS + 2)):
-        flexible = beam.flexibility[..., 3 + axis]
-        whole, second, fourth, sixth = (points.whole(flexible * half**power)[..., None] for power in (0, 2, 4, 6))
-        rates, angles = _of_step(beam, 3 + axis)
+    stiffness: list[Array] = []
+    for axis in range(3):
+        angles, rates = _of_step(beam, 3 + axis)
         _step(turn, bend, (axis, 3 + axis), angles, rates)
-        odd = points.running(flexible * half) - points.running(flexible * half)[..., -1:]
-        _step(turn, bend, (axis, across), *(sign * each / second for each in (_both(odd), _both(flexible) * position)))
-        cubic = points.running(flexible * half**2) - second / whole * points.running(flexible)
-        turn[..., axis, column] = np.concatenate([-cubic, cubic], axis=-1)
-        bend[..., axis, column] = _both(flexible * (half**2 - second / whole))
-        even = points.running(flexible * half**3) - fourth / second * points.running(flexible * half)
-        turn[..., axis, column + 1] = _both(even - even[..., -1:])
-        bend[..., axis, column + 1] = _both(flexible * (half**2 - fourth / second)) * position
-        stiffness += [(fourth - second**2 / whole)[..., 0], (sixth - fourth**2 / second)[..., 0]]
+    for axis, across, sign in ((1, 2, 1.0), (2, 1, -1.0)):
+        flexible = beam.flexibility[..., 3 + axis]
+        lever = points.whole(flexible * half**2)[..., None]
+        _step(
+            turn, bend, (axis, across), sign * _turned(beam, flexible * half, odd=True) / lever, sign * _both(flexible) * position / lever
+        )
+    column = ENDS
+    for axis, count in enumerate(inner):
+        flexible = beam.flexibility[..., 3 + axis]
+        for degree, shape, size in _inner(beam, flexible, range(1 if axis == 0 else 2, count + (1 if axis == 0 else 2))):
+            odd = degree % 2 == 1
+            turn[..., axis, column], bend[..., axis, column] = _turned(beam, flexible * shape, odd=odd), _signed(flexible * shape, odd=odd)
+            stiffness.append(size)
+            column += 1
     return position, weight, turn, bend, np.stack(np.broadcast_arrays(*stiffness), axis=-1)
 
 
+def _inner(beam: Beam, flexible: Array, degrees: range) -> Iterator[tuple[int, Array, Array]]:
+    """Inner shapes of the rate of rotation over the flexibility at the stations, and the elastic stiffness of each.
+
+    Each is orthogonal to all polynomials of lower degree: those of the part's ends, and the inner ones before it.
+    """
+    points, half = beam.points, beam.points.position
+    known: list[Array] = []
+    for degree in range(degrees.stop):
+        shape = half**degree
+        for each in known[degree % 2 :: 2]:
+            shape = shape - (points.whole(flexible * shape * each) / points.whole(flexible * each * each))[..., None] * each
+        known.append(shape)
+        if degree in degrees:
+            yield degree, shape, points.whole(flexible * shape * shape)
+
+
+def _turned(beam: Beam, rate: Array, *, odd: bool) -> Array:
+    """Integral from the first end, at -x and x, of a rate that is even or odd and whose whole integral is zero."""
+    running = beam.points.running(rate)
+    return _both(running - running[..., -1:]) if odd else np.concatenate([-running, running], axis=-1)
+
+
+def _signed(half: Array, *, odd: bool) -> Array:
+    return np.concatenate([-half if odd else half, half], axis=-1)
+
+
 def _of_step(beam: Beam, axis: int) -> tuple[Array, Array]:
-    """Rate, and share accumulated from the first end, of a unit step of rotation between the ends."""
+    """Share accumulated from the first end, and its rate, of a unit step of rotation between the ends."""
     flexible = beam.flexibility[..., axis]
     running = beam.points.running(flexible)
     share = running / (2.0 * running[..., -1:])
-    return _both(flexible / (2.0 * running[..., -1:])), np.concatenate([0.5 - share, 0.5 + share], axis=-1)
+    return np.concatenate([0.5 - share, 0.5 + share], axis=-1), _both(flexible / (2.0 * running[..., -1:]))
 
 
 def _step(turn: Array, bend: Array, place: tuple[int, int], angles: Array, rates: Array) -> None:

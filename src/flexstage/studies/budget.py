@@ -16,7 +16,7 @@ from flexstage.mechanism.expansion import ground_material
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.readings.finite import design_shape
 from flexstage.readings.ideal import ideal
-from flexstage.readings.lumped import lumped
+from flexstage.studies.standing import standing
 
 
 def budget(
@@ -43,7 +43,7 @@ def budget(
     body, point = (PLATFORM, assembly.bodies[PLATFORM].reference) if at == PLATFORM else assembly.points[at]
     if body != PLATFORM:
         raise refuse(at, f"is a point of {body}", "An error budget is that of a point of the platform")
-    kinematics, model = ideal(mechanism), lumped(mechanism)
+    kinematics, model = ideal(mechanism), standing(mechanism)
     warmed = drift(mechanism, model, ground=ground_material(mechanism)) if drifted is None else drifted
     corners = command_strokes(kinematics, command, depth=len(design_shape(mechanism, kinematics)))
     evidence = Evidence(

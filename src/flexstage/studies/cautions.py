@@ -18,7 +18,7 @@ from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.parts.part import Restricted
 from flexstage.parts.piezo import Piezo
 from flexstage.readings.ideal import ideal
-from flexstage.readings.lumped import lumped
+from flexstage.studies.standing import load_factors, standing
 
 
 @dataclass(frozen=True)
@@ -66,7 +66,8 @@ def _shared_stacks(mechanism: Mechanism) -> dict[str, Piezo]:
 
 
 def cautions(mechanism: Mechanism) -> tuple[Finding, ...]:
-    """What is doubtful: parts beyond beam theory's range, blocked strokes, outlines that contradict one another or leave their room.
+    """What is doubtful: the drawn stage for the loaded one, parts beyond beam theory's range, blocked strokes, outlines that contradict one
+    another or leave their room.
 
     A part that departs from the shared one is told by its link.
 
@@ -74,7 +75,14 @@ def cautions(mechanism: Mechanism) -> tuple[Finding, ...]:
     >>> cautions(double_triangle())
     ()
     """
-    return (*part_cautions(mechanism), *_blockages(mechanism), *contact_findings(mechanism), *_room(mechanism))
+    factors = load_factors(mechanism)
+    return (
+        *(() if factors is None else factors.cautions),
+        *part_cautions(mechanism),
+        *_blockages(mechanism),
+        *contact_findings(mechanism),
+        *_room(mechanism),
+    )
 
 
 def _blockages(mechanism: Mechanism) -> tuple[Finding, ...]:
@@ -97,7 +105,7 @@ def reading_findings(mechanism: Mechanism) -> tuple[Finding, ...]:
     ()
     """
     found: list[Finding] = []
-    for read in (requirements, ideal, lumped):
+    for read in (requirements, ideal, standing):
         try:
             read(mechanism)
         except DesignError as error:

@@ -15,6 +15,8 @@ from flexstage.analysis.modes import Modes, modes
 from flexstage.analysis.requirements import Sense, Subject, Verdict, requirements
 from flexstage.analysis.response import response, transmissibility
 from flexstage.analysis.statics import Statics, statics
+from flexstage.analysis.workspace.buckling import Buckling, buckling
+from flexstage.analysis.workspace.stroke import stroke_limits
 from flexstage.base.number import Table
 from flexstage.mechanism.expansion import ground_material
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
@@ -22,12 +24,12 @@ from flexstage.readings.ideal import ideal
 from flexstage.readings.linear.frequency import Response
 from flexstage.readings.linear.kinematics import Kinematics
 from flexstage.readings.linear.model import LinearModel
-from flexstage.readings.lumped import lumped
 from flexstage.readings.mapped import mapped
 from flexstage.studies.attempt import Attempts
 from flexstage.studies.budget import budget
 from flexstage.studies.judge import judge
 from flexstage.studies.reading import Reading
+from flexstage.studies.standing import require_standing, standing
 from flexstage.studies.units import UnitResult, units
 from flexstage.studies.workspace import Workspace, workspace
 
@@ -43,9 +45,9 @@ class Analysis:
     """All results of one reading of a stage; `None` where a reading or a stage does not give them, and `missing` says why, by field name.
 
     `response` is that of the platform's twist and all gauges to the strokes, `transmissibility` that of the platform to the ground.
-    `deflection` under dead load, drift, error budget, `units` (each distinct unit alone) and the `verdicts` on the requirements are those
-    of the lumped reading; all but the verdicts are missing for the others. The error budget is that of the required strokes, or of all
-    single-axis strokes at once, and of one kelvin.
+    `deflection` under dead load, `buckling` under it and all strokes, drift, error budget, `units` (each distinct unit alone) and the
+    `verdicts` on the requirements are those of the lumped reading; all but the verdicts are missing for the others. The error budget is
+    that of the required strokes, or of all single-axis strokes at once, and of one kelvin.
     """
 
     mechanism: Mechanism
@@ -54,6 +56,7 @@ class Analysis:
     model: LinearModel | None
     statics: Statics | None
     deflection: Deflection | None
+    buckling: Buckling | None
     lost_motion: LostMotion | None
     modes: Modes | None
     response: Response | None
@@ -67,7 +70,7 @@ class Analysis:
 
 
 def read(mechanism: Mechanism, reading: Reading) -> LinearModel | None:
-    """The linear model of an elastic reading; `None` for the ideal one.
+    """The linear model of an elastic reading; `None` for the ideal one. Refused where the drawn position does not hold its dead load.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> len(read(double_triangle(), Reading.MAPPED).coordinates)
@@ -75,7 +78,11 @@ def read(mechanism: Mechanism, reading: Reading) -> LinearModel | None:
     """
     if reading is Reading.IDEAL:
         return None
-    return mapped(mechanism) if reading is Reading.MAPPED else lumped(mechanism)
+    if reading is Reading.LUMPED:
+        return standing(mechanism)
+    model = mapped(mechanism)
+    require_standing(mechanism)
+    return model
 
 
 def analyse(mechanism: Mechanism, reading: Reading = Reading.LUMPED) -> Analysis:
@@ -105,6 +112,7 @@ def analyse(mechanism: Mechanism, reading: Reading = Reading.LUMPED) -> Analysis
         model=model,
         statics=attempt.given("statics", model, _RIGID, statics),
         deflection=attempt.given("deflection", hinged, _UNLUMPED, lambda known: deflection(mechanism, known)),
+        buckling=attempt.given("buckling", hinged, _UNLUMPED, lambda known: _buckling(mechanism, known, reach)),
         lost_motion=lost,
         modes=attempt.given("modes", model, _RIGID, lambda known: platform_modes(mechanism, known)),
         response=attempt.given("response", model, _RIGID, lambda known: response(known, seen, kinematics.actuators)),
@@ -116,6 +124,11 @@ def analyse(mechanism: Mechanism, reading: Reading = Reading.LUMPED) -> Analysis
         verdicts=verdicts,
         missing=Table(attempt.missing),
     )
+
+
+def _buckling(mechanism: Mechanism, model: LinearModel, reach: Workspace | None) -> Buckling:
+    known = None if reach is None else reach.buckling
+    return buckling(mechanism, model, stroke_limits(mechanism).from_zero) if known is None else known
 
 
 def _errors(mechanism: Mechanism, command: Mapping[str, float] | None, reach: Workspace | None, drifted: Drift) -> ErrorBudget:
@@ -139,6 +152,7 @@ def grounded_drift(mechanism: Mechanism, model: LinearModel) -> Drift:
     """Drift on a ground of the material of the links that stand on it; where they are of several, on one that does not grow.
 
     >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.readings.lumped import lumped
     >>> grounded_drift(double_triangle(), lumped(double_triangle())).ground
     'steel'
     """

@@ -25,6 +25,7 @@ from flexstage.readings.linear.eigen import Eigen, eigen
 from flexstage.readings.linear.model import Contributions, LinearModel
 from flexstage.readings.lumped import lumped
 from flexstage.studies.attempt import Attempts
+from flexstage.studies.standing import standing
 
 _STEP = 1e-20
 _CHUNK = 24
@@ -82,7 +83,7 @@ def sensitivities(
     """
     names = addresses(mechanism) if parameters is None else parameters
     require(not_numbers(mechanism, names))
-    solved = eigen(lumped(mechanism))
+    solved = eigen(standing(mechanism))
     solved = Eigen(solved.values[:modes], solved.shapes[:, :modes])
     groups = clusters(solved.values, cluster)
     attempt = Attempts()

@@ -1,4 +1,4 @@
-"""Buckling: Euler's load of every slender part against the axial force it carries at the worst corner of the strokes."""
+"""Buckling of the whole stage, and Euler's load of every slender part against its axial force, at the worst corner of the strokes."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from enum import Enum
 
 import numpy as np
 
+from flexstage.analysis.stability import Stability, stability
 from flexstage.analysis.workspace.stroke import StrokeLimits
 from flexstage.analysis.workspace.wrench import corner_wrenches
 from flexstage.base.labelled import Matrix
@@ -40,7 +41,8 @@ class Ends(Enum):
 class Buckling:
     """Euler loads, (..., L) each: `critical` [N], `compression` [N] at the worst corner (negative: tension throughout), `length` [m].
 
-    `ends` says how each column was taken as held.
+    `ends` says how each column was taken as held. `stage` is how the whole stage gives way: what a column's ends really do, and several
+    columns and bodies together.
     """
 
     links: tuple[str, ...]
@@ -49,6 +51,7 @@ class Buckling:
     length: Array
     ends: tuple[Ends, ...]
     provenance: str
+    stage: Stability
 
     @property
     def factor(self) -> Array:
@@ -58,12 +61,12 @@ class Buckling:
 
     @property
     def least(self) -> Array:
-        """The least load factor of the stage (...)."""
-        return np.min(self.factor, axis=-1, initial=np.inf)
+        """The load factor of the whole stage over the worst strokes (...)."""
+        return self.stage.worst
 
     @property
     def weakest(self) -> str:
-        """The link with the least load factor on the first design."""
+        """The link with the least factor of its own on the first design."""
         first = self.factor.reshape(-1, len(self.links))[0]
         return self.links[int(foremost(1.0 / first))]
 
@@ -78,7 +81,8 @@ def buckling(mechanism: Mechanism, model: LinearModel, limits: StrokeLimits) -> 
     """Euler's loads of leaves, rods, notches, necks and stacks against their compression over the corners of the strokes and dead load.
 
     P = pi^2 E I / L_e^2 with the least second moment of the thinnest section over the whole length, so hinges are underestimated.
-    Instability of several parts at once is not covered. Forces of less than a billionth of the largest one are rounding, and none.
+    The whole stage's own factor knows how ends are really held. Forces of less than a billionth of the largest one
+    are rounding, and none.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.readings.lumped import lumped
@@ -88,6 +92,7 @@ def buckling(mechanism: Mechanism, model: LinearModel, limits: StrokeLimits) -> 
     True
     """
     assembly = expand(mechanism)
+    whole = stability(mechanism, model, limits)
     columns = {name: _column(assembly, link) for name, link in assembly.links.items() if _is_column(link)}
     wrenches = corner_wrenches(mechanism, model, limits, tuple(columns))
     rigidity = _joined([column[0] for column in columns.values()])
@@ -98,7 +103,7 @@ def buckling(mechanism: Mechanism, model: LinearModel, limits: StrokeLimits) -> 
     compression = np.max(-axial, axis=0)
     compression = np.where(np.abs(compression) > _ROUNDING * np.max(np.abs(axial), axis=(0, -1), initial=0.0)[..., None], compression, 0.0)
     critical = np.broadcast_to(np.pi**2 * rigidity / effective**2, compression.shape)
-    return Buckling(tuple(columns), critical, compression, np.broadcast_to(length_, compression.shape), ends, model.provenance)
+    return Buckling(tuple(columns), critical, compression, np.broadcast_to(length_, compression.shape), ends, model.provenance, whole)
 
 
 def _joined(values: list[Number]) -> Array:

@@ -91,7 +91,7 @@ def drift_tables(drift: Drift) -> Iterator[Table | None]:
 
 def analysis_tables(analysis: Analysis) -> Iterator[Table | None]:
     """Tables of `analyse`: what decides first, one or two an analysis; the commands of one analysis show more."""
-    from flexstage.present.tables import errors, kinematics, lost_motion, statics, workspace
+    from flexstage.present.tables import errors, kinematics, lost_motion, statics, strength, workspace
     from flexstage.present.tables.modes import mode_table
     from flexstage.present.tables.units import omitted_table, unit_table
 
@@ -112,6 +112,8 @@ def analysis_tables(analysis: Analysis) -> Iterator[Table | None]:
     if analysis.workspace is not None:
         yield workspace.stroke_table(analysis.workspace)
         yield from _strength_tables(analysis.workspace)
+    elif analysis.buckling is not None:
+        yield strength.buckling_table(analysis.buckling)
     yield None if analysis.drift is None else errors.drift_table(analysis.drift)
     if analysis.error_budget is not None:
         yield from errors.error_budget_tables(analysis.error_budget)

@@ -90,10 +90,10 @@ def drift(
     from flexstage.analysis.drift import drift as drifted
     from flexstage.mechanism.expansion import ground_material
     from flexstage.present.documents.results import drift_body
-    from flexstage.readings.lumped import lumped
+    from flexstage.studies.standing import standing
 
     material = ground_material(mechanism) if ground is None else None if ground == "none" else ground
-    found = drifted(mechanism, lumped(mechanism), ground=material)
+    found = drifted(mechanism, standing(mechanism), ground=material)
     answer(Asked("drift", mechanism, Reading.LUMPED, json), lambda: drift_body(found), lambda: drift_tables(found))
 
 

@@ -74,8 +74,8 @@ def update(  # noqa: PLR0913 (its options)
     from flexstage.mechanism.store.file import read_text
     from flexstage.present.documents.update import update_body
     from flexstage.present.tables.update import update_tables
-    from flexstage.readings.lumped import lumped
     from flexstage.studies.rig.plan import highest_mode
+    from flexstage.studies.standing import standing
     from flexstage.studies.update import update as updated
     from flexstage.studies.update_free import free as freed
     from flexstage.studies.update_text import updated_text
@@ -84,7 +84,7 @@ def update(  # noqa: PLR0913 (its options)
     mechanism = loads(text, where=str(design))
     names = _names(free)
     freed(mechanism, names, known)  # refused before the records are read
-    model = lumped(mechanism)
+    model = standing(mechanism)
     seen = identified(said, record, model, highest=highest_mode(mechanism, model))
     found = updated(mechanism, seen.found, names, known)
     write(output, updated_text(text, found, ", ".join(path.name for path in record), where=str(design)), "--output")

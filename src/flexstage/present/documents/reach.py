@@ -58,7 +58,7 @@ def workspace_body(workspace: Workspace) -> Document:
         "platform_lines": _of(workspace.platform_lines, lambda found: found.table.to_json()),
         "stack_lines": _of(workspace.stack_lines, _stack_lines),
         "stress": _of(workspace.stress, _stress),
-        "buckling": _of(workspace.buckling, _buckling),
+        "buckling": _of(workspace.buckling, buckling_body),
         "loads": _of(workspace.loads, lambda found: _loads(found, limits.from_zero)),
         **({"reasons": dict(workspace.missing)} if workspace.missing else {}),
     }
@@ -155,10 +155,12 @@ def _stress(stress: HingeStress) -> Document:
     }
 
 
-def _buckling(buckling: Buckling) -> Document:
+def buckling_body(buckling: Buckling) -> Document:
+    """Load factors of the whole stage, and Euler's of each part."""
     ends = {name: item.value for name, item in zip(buckling.links, buckling.ends, strict=True)}
     weakest = buckling.weakest if buckling.links else None
-    return {"least_factor": buckling.least, "weakest": weakest, "ends": ends, "table": buckling.table.to_json()}
+    stage = {"dead_load": buckling.stage.dead, "worst_strokes": buckling.stage.worst, "moving": buckling.stage.moving}
+    return {"least_factor": buckling.least, "stage": stage, "weakest": weakest, "ends": ends, "table": buckling.table.to_json()}
 
 
 def _loads(loads: LoadShare, limits: StrokeLimits) -> Document:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from flexstage.present.documents.envelope import Document, plain
-from flexstage.present.documents.reach import budget_body, requirements_body, workspace_body
+from flexstage.present.documents.reach import buckling_body, budget_body, requirements_body, workspace_body
 from flexstage.present.documents.results import (
     drift_body,
     lost_motion_body,
@@ -40,6 +40,7 @@ def analysis_body(analysis: Analysis) -> Document:
         "response": None if analysis.response is None else response_body(analysis.response, damping),
         "transmissibility": None if analysis.transmissibility is None else response_body(analysis.transmissibility, damping),
         "workspace": None if analysis.workspace is None else workspace_body(analysis.workspace),
+        "buckling": None if analysis.buckling is None else buckling_body(analysis.buckling),
         "drift": None if analysis.drift is None else drift_body(analysis.drift),
         "budget": None if analysis.error_budget is None else budget_body(analysis.error_budget),
         "units": None if analysis.units is None else units_body(analysis.units),

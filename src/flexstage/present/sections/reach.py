@@ -61,7 +61,9 @@ def strength_section(analysis: Analysis) -> Section | None:
     'Forces, strength and room'
     """
     reach = analysis.workspace
-    return None if reach is None else section("Forces, strength and room", _strength(reach))
+    if reach is not None:
+        return section("Forces, strength and room", _strength(reach))
+    return None if analysis.buckling is None else section("Buckling", [buckling_table(analysis.buckling)])
 
 
 def _strength(reach: Workspace) -> list[Block | None]:

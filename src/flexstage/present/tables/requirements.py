@@ -102,5 +102,5 @@ def _row(verdict: Verdict) -> tuple[Cell, ...]:
         Cell(verdict.requirement.text),
         Cell(shown_value(verdict)),
         Cell(margin_text(verdict), mark),
-        Cell("met" if good else "not met", mark),
+        Cell("met" if good else "withheld" if verdict.reason.startswith("withheld") else "not met", mark),
     )

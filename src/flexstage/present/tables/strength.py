@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 
 import numpy as np
 
+from flexstage.analysis.stability import Stability
 from flexstage.analysis.workspace.blocking import PlatformLine, StackLine
 from flexstage.analysis.workspace.buckling import Buckling
 from flexstage.analysis.workspace.load import LoadShare
@@ -121,20 +122,31 @@ def buckling_table(buckling: Buckling) -> Table:
     >>> import numpy as np
     >>> from flexstage.analysis.workspace.buckling import Ends
     >>> one = np.ones(1)
-    >>> buckling_table(Buckling(("B1/a",), 1e3 * one, 100.0 * one, 0.01 * one, (Ends.GUIDED,), "")).texts()[1]
+    >>> stage = Stability(one[0], one[0], np.zeros(0), one[0], (), "")
+    >>> buckling_table(Buckling(("B1/a",), 1e3 * one, 100.0 * one, 0.01 * one, (Ends.GUIDED,), "", stage)).texts()[3]
     ['a', '1', 'B1', '100', '1000', 'guided', '10']
     """
     factor = first_design(buckling.factor, 1)
     compression, critical = (first_design(each, 1) for each in (buckling.compression, buckling.critical))
-    rows: list[tuple[Content, ...]] = []
+    rows: list[tuple[Content, ...]] = [(Cell(name, Mark.STRONG), "", "", "", "", "", cell) for name, cell in _of_stage(buckling.stage)]
     for name, members in _weakest_first(buckling.links, factor):
         worst = members[0]
         forces = [number(float(values[worst]), 4) for values in (compression, critical)]
         ends = buckling.ends[worst].value
         rows.append((Cell(name, Mark.STRONG), str(len(members)), _owner(buckling.links[worst]), *forces, ends, _safe(float(factor[worst]))))
     heads = ["part", Column("copies"), "first in", Column("compression", "N"), Column("critical", "N"), "ends", Column("load factor")]
-    note = "Euler's load of each part alone; several parts giving way together are not covered."
-    return build("Buckling", heads, rows, notes=[note])
+    notes = [
+        "The stage: by how much its loads could grow until it gives way as a whole (linearised; every column with its real ends).",
+        "Parts: Euler's load of each one alone, its ends taken as said.",
+    ]
+    return build("Buckling", heads, rows, notes=notes)
+
+
+def _of_stage(stage: Stability) -> Iterator[tuple[str, Cell]]:
+    factors = {"stage, dead load": stage.dead, "stage, worst strokes": stage.worst}
+    for name, values in factors.items():
+        factor = float(first_design(np.atleast_1d(values), 1)[0])
+        yield name, Cell("never", Mark.FAINT) if np.isinf(factor) else _safe(factor)
 
 
 def load_table(loads: LoadShare, limits: StrokeLimits) -> Table:

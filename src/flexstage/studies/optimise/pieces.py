@@ -77,7 +77,7 @@ def _safety(bench: Bench, _: Measure) -> Array:
 
 
 def _buckling(bench: Bench, _: Measure) -> Array:
-    return buckling(bench.mechanism, bench.model, bench.limits.from_zero).factor
+    return buckling(bench.mechanism, bench.model, bench.limits.from_zero).least[..., None]
 
 
 def _losses(bench: Bench, _: Measure) -> Array:

@@ -1,0 +1,56 @@
+"""Models of stages that stand: elastic results are given only where the drawn position is an equilibrium that holds."""
+
+from __future__ import annotations
+
+from flexstage.analysis.stability import Stability, stability
+from flexstage.analysis.workspace.stroke import stroke_limits
+from flexstage.base.finding import DesignError, require
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.readings.linear.model import LinearModel
+from flexstage.readings.lumped import lumped
+
+_CORNERS = 12
+"""Strokes of more actuators have too many corners."""
+
+
+def standing(mechanism: Mechanism) -> LinearModel:
+    """The lumped model of a stage whose dead load lets the drawn position stand; of a batch nothing is looked at.
+
+    Raises `DesignError` where the load factor of weight, payloads and forces is below 1.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> len(standing(parallelogram()).coordinates)
+    18
+    """
+    model = lumped(mechanism)
+    if model.stiffness_matrix.ndim == 2:
+        require(stability(mechanism, model).refusals)
+    return model
+
+
+def require_standing(mechanism: Mechanism) -> None:
+    """Refuse elastic results of a stage whose drawn position does not hold; where the lumped reading has no answer, nothing is said.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> require_standing(parallelogram())
+    """
+    try:
+        model = lumped(mechanism)
+    except DesignError:
+        return
+    require(stability(mechanism, model).refusals)
+
+
+def load_factors(mechanism: Mechanism) -> Stability | None:
+    """Load factors of the whole stage over all strokes from no voltage; `None` where it has no elastic model.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> bool(load_factors(parallelogram()).worst > 100.0)
+    True
+    """
+    try:
+        model = lumped(mechanism)
+    except DesignError:
+        return None
+    limits = stroke_limits(mechanism).from_zero
+    return stability(mechanism, model, limits if 0 < len(limits.actuators) <= _CORNERS else None)

@@ -1,0 +1,134 @@
+"""Load factors of whole stages against closed forms: Euler's columns, pendulums, lateral buckling (Timoshenko & Gere, 1961)."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import flexstage as fs
+from flexstage.analysis.stability import Stability, stability
+from flexstage.parts.freedom import Freedom
+
+Z = (0.0, 0.0, 1.0)
+STEEL = fs.Material(young=200e9, poisson=0.0, density=1e-3)
+LENGTH, DIAMETER = 0.2, 0.001
+EULER = np.pi**2 * 200e9 * np.pi * DIAMETER**4 / 64.0 / LENGTH**2
+TURNS = (Freedom.RX, Freedom.RY, Freedom.RZ)
+
+
+def of(stage: fs.Mechanism) -> Stability:
+    return stability(stage, fs.lumped(stage))
+
+
+def column(free: tuple[Freedom, ...], foot: tuple[Freedom, ...] = ()) -> fs.Mechanism:
+    """A rod up from a foot on the ground, its top held by a joint with these freedoms to the ground, 1 N pressing down on it."""
+    return fs.Mechanism(
+        "column",
+        materials={"steel": STEEL},
+        parts={"rod": fs.Rod("steel", LENGTH, DIAMETER), "guide": fs.Joint(free), "foot": fs.Joint(foot)},
+        bodies={"platform": fs.Body(reference=(0.0, 0.0, LENGTH)), "base": fs.Body(reference=(0.0, 0.0, 0.0))},
+        links={
+            "foot": fs.Link(("ground", "base"), "foot", (0.0, 0.0, 0.0), Z),
+            "rod": fs.Link(("base", "platform"), "rod", (0.0, 0.0, 0.5 * LENGTH), Z),
+            "guide": fs.Link(("ground", "platform"), "guide", (0.0, 0.0, LENGTH), Z),
+        },
+        forces={"load": fs.Force("platform", (0.0, 0.0, LENGTH), (0.0, 0.0, -1.0))},
+        gravity=(0.0, 0.0, 0.0),
+    )
+
+
+SIDE = (Freedom.X, Freedom.Y, Freedom.Z)
+
+
+@pytest.mark.parametrize(
+    ("free", "foot", "share"),
+    [
+        pytest.param((*SIDE, *TURNS), (), 0.25, id="free"),
+        pytest.param((Freedom.X, *TURNS), TURNS[1:], 1.0, id="pinned"),
+        pytest.param(SIDE, (), 1.0, id="guided"),
+        pytest.param((Freedom.X, *TURNS), (), 2.045748, id="clamped-pinned"),
+        pytest.param((Freedom.X,), (), 4.0, id="clamped"),
+    ],
+)
+def test_eulers_columns(free: tuple[Freedom, ...], foot: tuple[Freedom, ...], share: float) -> None:
+    """The joints' x is the column's axis. The inner shapes of the part leave 1 % where both ends are clamped, far less elsewhere."""
+    assert of(column(free, foot)).dead == pytest.approx(share * EULER, rel=2e-3)
+
+
+def leaves(mass: float) -> fs.Mechanism:
+    leaf = fs.Leaf("steel", 0.06, 0.0003, 0.02)
+    return fs.Mechanism(
+        "leaves",
+        materials={"steel": STEEL},
+        parts={"leaf": leaf},
+        bodies={"platform": fs.Body(mass=mass, centre=(0.0, 0.0, 0.06), inertia=fs.Inertia(1e-3, 1e-3, 1e-3))},
+        links={
+            name: fs.Link(("ground", "platform"), "leaf", (x, 0.0, 0.03), Z, bends=(0.0, 1.0, 0.0))
+            for name, x in (("a", -0.05), ("b", 0.05))
+        },
+    )
+
+
+@pytest.mark.parametrize("mass", [2.5, 5.0, 10.0])
+def test_a_platform_on_two_upright_leaves(mass: float) -> None:
+    """Both give way together, each as a column with one guided end."""
+    critical = 2.0 * np.pi**2 * 200e9 * 0.02 * 0.0003**3 / 12.0 / 0.06**2
+    assert of(leaves(mass)).dead == pytest.approx(critical / (9.80665 * mass), rel=5e-4)
+
+
+def pendulum(height: float) -> fs.Mechanism:
+    """A body of 1 kg whose centre stands above (or hangs below) a notch on the ground."""
+    hinge = fs.Notch("steel", 0.0005, 0.01, fs.Circular(0.002))
+    return fs.Mechanism(
+        "pendulum",
+        materials={"steel": STEEL},
+        parts={"hinge": hinge},
+        bodies={"platform": fs.Body(mass=1.0, centre=(0.0, 0.0, height), inertia=fs.Inertia(1e-4, 1e-4, 1e-4))},
+        links={"hinge": fs.Link(("ground", "platform"), "hinge", (0.0, 0.0, 0.0), (0.0, 0.0, height), bends=(0.0, 1.0, 0.0))},
+    )
+
+
+def test_a_body_standing_on_a_notch_falls_where_its_weight_beats_the_hinge():
+    """c_theta = m g h, the hinge turning about its middle; its own length of 4 mm on 0.5 m is felt as 1 %."""
+    stage = pendulum(0.5)
+    hinge = fs.compliance(stage.parts["hinge"], STEEL)[5, 5]
+    assert of(stage).dead == pytest.approx(1.0 / hinge / (9.80665 * 0.5), rel=0.01)
+
+
+def test_a_hanging_body_is_stiffened():
+    """A pendulum's m g h over the hinge's stiffness; nothing gives way."""
+    stage = pendulum(-0.5)
+    found = of(stage)
+    hinge = fs.compliance(stage.parts["hinge"], STEEL)[5, 5]
+    assert np.isinf(found.dead)
+    assert found.stiffens == pytest.approx(9.80665 * 0.5 * hinge, rel=0.01)
+
+
+def test_a_cantilevered_leaf_on_edge_tips_over():
+    """Lateral buckling under a force at the end: P = 4.013 sqrt(E I G J) / L^2, uniform twist (the leaf's ends are kept from warping)."""
+    length, thickness, width = 0.2, 0.0005, 0.01
+    stage = fs.Mechanism(
+        "edge",
+        materials={"steel": STEEL},
+        parts={"leaf": fs.Leaf("steel", length, thickness, width)},
+        bodies={"platform": fs.Body(reference=(length, 0.0, 0.0))},
+        links={"leaf": fs.Link(("ground", "platform"), "leaf", (0.5 * length, 0.0, 0.0), (1.0, 0.0, 0.0), bends=Z)},
+        forces={"load": fs.Force("platform", (length, 0.0, 0.0), (0.0, 0.0, -1.0))},
+        gravity=(0.0, 0.0, 0.0),
+    )
+    bending = 200e9 * width * thickness**3 / 12.0
+    torsion = 100e9 * width * thickness**3 / 3.0 * (1.0 - 0.63 * thickness / width)
+    assert of(stage).dead == pytest.approx(4.013 * np.sqrt(bending * torsion) / length**2, rel=0.05)
+
+
+def test_loads_scale_the_factor():
+    once, twice = of(leaves(1.0)), of(replace(leaves(1.0), gravity=(0.0, 0.0, -2.0 * 9.80665)))
+    assert once.dead == pytest.approx(2.0 * twice.dead, rel=1e-9)
+
+
+def test_the_reference_point_of_a_body_does_not_matter():
+    stage = leaves(2.0)
+    other = replace(stage, bodies={"platform": replace(stage.bodies["platform"], reference=(0.03, -0.02, 0.2))})
+    assert of(other).dead == pytest.approx(of(stage).dead, rel=1e-7)
