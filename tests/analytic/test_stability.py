@@ -9,6 +9,7 @@ import pytest
 
 import flexstage as fs
 from flexstage.analysis.stability import Stability, stability
+from flexstage.analysis.workspace.stroke import StrokeLimits
 from flexstage.parts.freedom import Freedom
 
 Z = (0.0, 0.0, 1.0)
@@ -132,3 +133,27 @@ def test_the_reference_point_of_a_body_does_not_matter():
     stage = leaves(2.0)
     other = replace(stage, bodies={"platform": replace(stage.bodies["platform"], reference=(0.03, -0.02, 0.2))})
     assert of(other).dead == pytest.approx(of(stage).dead, rel=1e-7)
+
+
+def test_strokes_through_locked_parts_press_as_through_stiff_ones():
+    """A stack that knows its axis only presses on an upright rod held at its top: u k k_rod / (k + k_rod) against Euler's load."""
+    rod = fs.Rod("steel", LENGTH, DIAMETER)
+    piezo = fs.Piezo(stroke=2e-4, stiffness=5e6, length=0.02, diameter=0.01)
+    stage = fs.Mechanism(
+        "pressed",
+        materials={"steel": STEEL},
+        parts={"rod": rod, "pzt": fs.Restricted(piezo, (Freedom.X,))},
+        bodies={"platform": fs.Body(reference=(0.0, 0.0, 0.0))},
+        links={
+            "pzt": fs.Link(("ground", "platform"), "pzt", (0.0, 0.0, -0.01), Z),
+            "rod": fs.Link(("platform", "ground"), "rod", (0.0, 0.0, 0.5 * LENGTH), Z),
+        },
+        gravity=(0.0, 0.0, 0.0),
+    )
+    spring = 200e9 * np.pi / 4.0 * DIAMETER**2 / LENGTH
+    pressed = 2e-4 / (1.0 / 5e6 + 1.0 / spring)
+    limits = StrokeLimits(("pzt",), np.zeros(1), np.full(1, 2e-4))
+    found = stability(stage, fs.lumped(stage), limits)
+    assert np.isinf(found.dead)
+    assert found.worst == pytest.approx(4.0 * EULER / pressed, rel=2e-3)
+    assert found.strokes == pytest.approx([2e-4])

@@ -26,7 +26,7 @@ from flexstage.mechanism.expand import Assembly, PlacedLink, expand
 from flexstage.mechanism.mechanism import GROUND, Mechanism
 from flexstage.mechanism.moving_mass import carried
 from flexstage.readings.linear.model import LinearModel
-from flexstage.readings.linear.static import displacement, static_gain
+from flexstage.readings.linear.static import displacement
 from flexstage.spatial.frame import COMPONENTS, FORCES, seen_at, transport, turned
 
 DOUBTFUL = 20.0
@@ -246,9 +246,13 @@ def _dead(mechanism: Mechanism, pieces: _Pieces) -> tuple[dict[str, Array], _Loa
 
 def _stroke(mechanism: Mechanism, pieces: _Pieces, actuator: str) -> tuple[dict[str, Array], _Loads]:
     """Wrenches of the links per metre of a stroke."""
-    names = tuple(f"{link}.{force}" for link in pieces.assembly.links for force in FORCES)
-    found = static_gain(pieces.model, names, (actuator,)).values[..., 0]
-    sprung = {name: found[..., 6 * place : 6 * place + 6] for place, name in enumerate(pieces.assembly.links)}
+    model = pieces.model
+    column = model.input_index((actuator,))
+    motion = displacement(model, model.input_matrix[..., column])
+    sprung: dict[str, Array] = {}
+    for name in pieces.assembly.links:
+        rows = model.output_index(tuple(f"{name}.{force}" for force in FORCES))
+        sprung[name] = (model.output[..., rows, :] @ motion + model.feedthrough[..., rows, :][..., column])[..., 0]
     return _whole(mechanism, sprung, {}), {}
 
 

@@ -66,8 +66,7 @@ def _shared_stacks(mechanism: Mechanism) -> dict[str, Piezo]:
 
 
 def cautions(mechanism: Mechanism) -> tuple[Finding, ...]:
-    """What is doubtful: the drawn stage for the loaded one, parts beyond beam theory's range, blocked strokes, outlines that contradict one
-    another or leave their room.
+    """What is doubtful: the loaded stage, parts beyond beam theory's range, blocked strokes, outlines that clash or leave their room.
 
     A part that departs from the shared one is told by its link.
 
