@@ -9,8 +9,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from flexstage.analysis.response import transmissibility
-from flexstage.analysis.statics import centre_of_stiffness
 from flexstage.analysis.stability import stability
+from flexstage.analysis.statics import centre_of_stiffness
 from flexstage.base.number import stack
 from flexstage.beams.compliance import law
 from flexstage.beams.mass import mass
