@@ -106,3 +106,25 @@ def test_frequencies_to_respond_at_do_not_count_rounding(rate: float) -> None:
 
 def _turns(size: int) -> list[np.ndarray]:
     return [np.linalg.qr(np.random.default_rng(seed).normal(size=(size, size)))[0] for seed in range(5)]
+
+
+def test_bodies_that_share_a_mode_equally_are_both_named() -> None:
+    """Two equal posts tied by a spring swing together and against each other: both are named, whatever rounding says of their halves."""
+    for turn in _turns(8):
+        model = beside_oscillators(2, 3.5, turn)
+        stiffness = {**model.stiffness, "tie": Contribution(turn[6:7] - turn[7:8], np.ones((1, 1)))}
+        found = modes(replace(model, stiffness=stiffness))
+        rates = 2.0 * np.pi * found.frequencies[list(found.local)]
+        np.testing.assert_allclose(rates, [3.5, np.sqrt(3.5**2 + 2.0)], rtol=1e-9)
+        assert [found.names[index] for index in found.local] == ["post 1-post 2 local"] * 2
+
+
+def test_modes_that_nearly_repeat_are_passed_once() -> None:
+    """Frequencies that differ by 1e-8 of themselves are responded to at their mean; no two lines differ by rounding."""
+    model = beside_oscillators(2, 3.5)
+    second = np.eye(8)[7:]
+    near = replace(model, stiffness={**model.stiffness, "more": Contribution(second, np.full((1, 1), 2e-8 * 3.5**2))})
+    one, both = (default_frequencies(each, (0.1, 2.0), damping=ModalDamping(0.01)) for each in (beside_oscillators(1, 3.5), near))
+    np.testing.assert_allclose(both, one, rtol=1e-7)
+    alone = default_frequencies(model, (1.0 / (20.0 * np.pi), 10.0 / (2.0 * np.pi)), damping=ModalDamping(0.01))
+    assert np.min(np.diff(np.log(alone))) > 1e-9
