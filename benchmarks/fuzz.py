@@ -66,11 +66,9 @@ def survived(kind: str, options: Any) -> bool:
             if (number + 1 - options.start) % _TOLD == 0:
                 print(f"{kind}: {number + 1 - options.start} done, resume with --start {number + 1}", file=sys.stderr, flush=True)
     told = ", ".join(f"{count} {name}" for name, count in counts.most_common())
+    numbers = f"{options.start} to {options.start + options.count - 1}"
     spent = time.perf_counter() - begin
-    print(
-        f"{kind}: {told}; seed {options.seed}, {options.start} to {options.start + options.count - 1}; slowest {1e3 * slowest:.0f} ms; {spent:.0f} s",
-        flush=True,
-    )
+    print(f"{kind}: {told}; seed {options.seed}, {numbers}; slowest {1e3 * slowest:.0f} ms; {spent:.0f} s", flush=True)
     return not set(counts) - {"read", "refused"}
 
 

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from flexstage.base.finding import DesignError
+from flexstage.readings.measured.example import one_mode_record
 from flexstage.readings.measured.identify import Search, identify
 from flexstage.readings.measured.record import Channel, InMemory, Record, Responses, Role, in_memory
 from tests.conftest import FULL
@@ -188,3 +189,10 @@ def test_trials_fail_when_modes_are_wrong():
     found = compared(known, identify(record(other, 9)))
     assert np.min(np.abs(found.frequency)) > 0.0015
     assert trial(CASES[0], 3).found == 6
+
+
+@pytest.mark.parametrize(("unit", "told"), [("m/s^2", True), ("mm/s", True), ("g0", True), ("N", False), ("um", False), ("", False)])
+def test_a_motion_taken_as_input_is_told(unit: str, told: bool) -> None:
+    plain = one_mode_record()
+    driven = replace(plain, channels=tuple(replace(each, unit=unit) if each.role is Role.INPUT else each for each in plain.channels))
+    assert any("taken as input, and a motion: u" in warning for warning in identify(driven).warnings) is told

@@ -13,6 +13,7 @@ import scipy.io
 
 from flexstage.base.finding import DesignError
 from flexstage.readings.measured.health import examine
+from flexstage.readings.measured.identify import identify
 from flexstage.readings.measured.options import Allow, Kind, Options
 from flexstage.readings.measured.read import read
 from flexstage.readings.measured.record import Channel, Record, Responses, in_memory
@@ -348,6 +349,25 @@ def test_responses_that_are_no_numbers_are_told(tmp_path: Path) -> None:
     values[3, 1] = np.nan
     scipy.io.savemat(path, {"f": np.arange(50.0), "H": values})
     assert "y2: 1 of 50 responses are not numbers" in refusal(path)
+
+
+@pytest.mark.parametrize("at", [3, 40])
+@pytest.mark.parametrize("suffix", ["mat", "csv"])
+def test_a_frequency_that_stands_twice_is_told(at: int, suffix: str, tmp_path: Path) -> None:
+    path, lines = tmp_path / f"a.{suffix}", np.arange(50.0)
+    lines[at] = lines[at - 1]
+    if suffix == "mat":
+        scipy.io.savemat(path, {"f": lines, "H": np.ones((50, 2), complex)})
+    else:
+        np.savetxt(path, np.column_stack([lines, lines, lines]), header="f [Hz],H_re,H_im", delimiter=",")
+    assert f"its frequencies do not rise: {at - 1} Hz stands twice, lines {at} and {at + 1}" in refusal(path)
+
+
+def test_lines_of_stepped_sines_are_refused_by_their_name() -> None:
+    lines = np.concatenate([np.arange(1.0, 20.0), np.arange(20.0, 25.0, 0.1)])
+    stepped = Responses(lines, (Channel("S1", "um"),), (Channel("u", "V"),), np.ones((len(lines), 1, 1), complex))
+    with pytest.raises(DesignError, match=r"its lines lie unevenly, 0.1 to 1 Hz apart, as those of stepped or swept sines do"):
+        identify(stepped)
 
 
 # --- files damaged anywhere ---

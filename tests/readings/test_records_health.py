@@ -224,3 +224,32 @@ def test_stored_responses_are_examined() -> None:
     assert responses_findings(found, replace(STAGE, highest=150.0)) == []
     wrong = replace(found, coherence=1.2 * np.ones((101, 3, 3)), frequencies=lines[::-1], inputs=(*CHANNELS[:2], Channel("x", "V")))
     assert [fault.kind for fault in responses_findings(wrong, STAGE)] == [Allow.NAMES, None, Allow.CLIPPED]
+
+
+@pytest.mark.parametrize(("name", "unit"), [("hammer", "N"), ("f1", "")])
+def test_a_force_windowed_hammer_is_refused_by_its_name(name: str, unit: str) -> None:
+    values = sound()
+    values[:200, 0], values[200:, 0] = 0.0, 0.0
+    values[100:180, 0] = np.hanning(80) * 50.0
+    hit = replace(record(values, (Channel(name, unit, Role.INPUT), *CHANNELS[1:])), start=0.5)
+    told = [fault for fault in examine(hit).faults if fault.channel == name and fault.kind is None]
+    at = 0.5 + 179 / RATE  # the window's last sample is nought too
+    assert [fault.finding.what.partition(",")[0] for fault in told] == [f"it looks force-windowed: exact zeros from {at:.6g} s on"]
+    assert "2.19 % of the record" in told[0].finding.what
+    with pytest.raises(DesignError, match="force-windowed"):
+        usable(hit, frozenset(Allow))
+
+
+def test_a_drive_that_rests_is_no_hammer() -> None:
+    values = sound()
+    values[4000:, 0] = 0.0  # volts, driven for half of the record
+    assert "force-windowed" not in str(examine(record(values)).findings)
+    still = sound()
+    still[:3000, 0] = 0.0  # a force that begins late
+    assert "force-windowed" not in str(examine(record(still, (Channel("f", "N", Role.INPUT), *CHANNELS[1:]))).findings)
+
+
+def test_a_frequency_that_stands_twice_is_told_by_its_lines() -> None:
+    frequencies = np.array([1.0, 2.0, 2.0, 3.0])
+    twice = Responses(frequencies, CHANNELS[3:4], CHANNELS[:1], np.ones((4, 1, 1), complex))
+    assert [fault.finding.what for fault in responses_findings(twice)] == ["its frequencies do not rise: 2 Hz stands twice, lines 2 and 3"]

@@ -9,8 +9,11 @@ import numpy as np
 from flexstage.base.number import Array
 from flexstage.readings.measured.adequacy import Reach, not_searched, nothing_found, too_coarse
 from flexstage.readings.measured.evidence import Evidence
+from flexstage.readings.measured.record import Channel
+from flexstage.readings.measured.unit import same_dimension, unit_problem
 
 _MOST_ELSEWHERE = 0.5
+_MOTIONS = ("m/s", "m/s^2", "rad/s", "rad/s^2")
 
 
 @dataclass(frozen=True, eq=False)
@@ -20,6 +23,11 @@ class Modes:
     poles: Array
     close: tuple[tuple[int, ...], ...]
     elsewhere: Array
+
+
+def _is_motion(channel: Channel) -> bool:
+    """Whether a channel measures a velocity or an acceleration: a stroke drives, those do not."""
+    return bool(channel.unit) and unit_problem(channel.unit) is None and any(same_dimension(channel.unit, unit) for unit in _MOTIONS)
 
 
 def warnings(known: Evidence, modes: Modes, reach: Reach) -> tuple[str, ...]:
@@ -46,6 +54,13 @@ def warnings(known: Evidence, modes: Modes, reach: Reach) -> tuple[str, ...]:
         if inputs > 1 and len(group) >= min(inputs, outputs):
             near = ", ".join(f"{abs(poles[index]):.5g}" for index in group)
             found.append(f"as many modes as inputs or outputs lie together ({near} Hz): there may be more. Add inputs and outputs.")
+    moved = [channel for channel in known.responses.inputs if _is_motion(channel)]
+    if moved:
+        listed = ", ".join(f"{channel.name} ({channel.unit})" for channel in moved)
+        found.append(
+            f"taken as input, and a motion: {listed}. What follows a motion shows the modes of a stage held there, not its own: "
+            "right only where the ground was shaken. Record forces, or strokes."
+        )
     shaken = np.flatnonzero(modes.elsewhere > _MOST_ELSEWHERE)
     if len(shaken):
         listed = ", ".join(f"{abs(poles[index]):.5g} Hz ({1.0 - modes.elsewhere[index]:.0%})" for index in shaken)

@@ -11,7 +11,7 @@ import numpy as np
 from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array
 from flexstage.readings.measured.lines import Cells, Lines, block_count, record_lines
-from flexstage.readings.measured.record import Channel, Record, Responses
+from flexstage.readings.measured.record import Channel, Record, Responses, not_rising
 from flexstage.readings.measured.smear import SMEARING, Smear
 from flexstage.readings.measured.spectra import Segments, Spectra, Tell, Window, pooled, spectra
 from flexstage.readings.measured.tones import Tone, quieted
@@ -245,9 +245,12 @@ def _response_findings(known: Responses, steps: Array) -> list[Finding]:
         return [Finding(where, f"there are {len(steps) + 1} lines", "Give responses at 16 frequencies or more")]
     if not np.all(np.isfinite(known.values)):
         return [Finding(where, f"{int(np.sum(~np.isfinite(known.values)))} values are not numbers", "Leave those channels or lines out")]
+    if (falling := not_rising(known.frequencies)) is not None:
+        return [Finding(where, falling, "Export each frequency once, from the lowest to the highest")]
     if np.max(np.abs(steps - np.mean(steps))) > 1e-3 * np.mean(steps):
-        what = f"lines are {np.min(steps):.6g} to {np.max(steps):.6g} Hz apart"
-        return [Finding(where, what, "Give responses at evenly spaced frequencies")]
+        what = f"its lines lie unevenly, {np.min(steps):.6g} to {np.max(steps):.6g} Hz apart, as those of stepped or swept sines do"
+        advice = "Such responses are not identified yet: measure at even spacing, or with random inputs; interpolation bends modes"
+        return [Finding(where, what, advice)]
     return []
 
 

@@ -13,8 +13,8 @@ import numpy as np
 from flexstage.base.finding import DesignError, Finding, nearest
 from flexstage.base.number import Array
 from flexstage.readings.measured.numbers import Gathered, Numbers, explained, gather
-from flexstage.readings.measured.options import Allow
-from flexstage.readings.measured.record import Channel, Record, Responses, Role
+from flexstage.readings.measured.options import Allow, matches
+from flexstage.readings.measured.record import Channel, Record, Responses, Role, not_rising
 from flexstage.readings.measured.unit import same_dimension, unit_problem
 
 _STILL, _STILL_SHARE = 32, 0.05
@@ -24,6 +24,11 @@ _PILE, _PILE_RATIO, _LEVELS = 8, 2.5, 16
 _EXPLAINED, _TIE = 0.9, 1e-6
 _SEGMENTS_AN_INPUT = 5
 _BROKEN_SHARE = 0.5
+_HAMMERS = ("hammer*", "force*", "impact*", "f", "f[0-9]*", "f[xyz]")
+_UNWINDOWED = (
+    "Records of windowed blows are not identified yet: save the blow as recorded, without force and exponential windows, "
+    'or the responses that the analyser made of it (kind "responses")'
+)
 
 
 @dataclass(frozen=True)
@@ -129,8 +134,8 @@ def responses_findings(responses: Responses, needs: Needs = _NEEDS) -> list[Faul
     where = responses.source or responses.name or "responses"
     faults = [*_units((*responses.outputs, *responses.inputs), where), *_named(responses.inputs, responses.outputs, needs, where)]
     frequencies = responses.frequencies
-    if len(frequencies) < 2 or not np.all(np.diff(frequencies) > 0.0):
-        faults.append(Fault(None, "", Finding(where, "its frequencies do not rise", "Export the responses anew")))
+    if (falling := not_rising(frequencies)) is not None:
+        faults.append(Fault(None, "", Finding(where, falling, "Export each frequency once, from the lowest to the highest")))
     elif needs.highest is not None and needs.highest > frequencies[-1]:
         what = f"its responses end at {frequencies[-1]:g} Hz, the highest mode is at {needs.highest:g} Hz"
         faults.append(Fault(Allow.SLOW, "", Finding(where, what, 'Measure a wider band, or allow "slow" to use what there is')))
@@ -156,7 +161,10 @@ def _samples(record: Record, found: Gathered, where: str) -> Iterator[Fault]:
             yield from _broken(record, channel, numbers, (place, found.stretch))
         if numbers.broken < record.length:
             dead = _dead(record, channel, numbers) or _faint(record, found, channel, numbers)
-            if dead:
+            windowed = _force_windowed(record, channel, numbers)
+            if windowed:
+                yield Fault(None, channel.name, Finding(place, windowed, _UNWINDOWED))
+            elif dead:
                 yield Fault(Allow.DEAD, channel.name, Finding(place, dead, 'Check cable and range, or allow "dead" to leave it out'))
             else:
                 yield from _clipped(record, channel, numbers, place)
@@ -186,6 +194,18 @@ def _dead(record: Record, channel: Channel, numbers: Numbers) -> str | None:
             f"it stands still from {start:.6g} s to {start + numbers.still / record.rate:.6g} s, {numbers.still} of {record.length} samples"
         )
     return None
+
+
+def _force_windowed(record: Record, channel: Channel, numbers: Numbers) -> str | None:
+    """Whether a force is exactly nought after a blow, as analysers make it: what it did then was cut off, and none may leave it out."""
+    still = numbers.still >= max(_STILL, _STILL_SHARE * record.length) and numbers.low != numbers.high
+    known = channel.unit and unit_problem(channel.unit) is None
+    force = same_dimension(channel.unit, "N") if known else matches(channel.name, _HAMMERS)
+    if not still or numbers.still_at != 0.0 or numbers.still_from == 0 or not force or channel.role is Role.OUTPUT:
+        return None
+    start = record.start + numbers.still_from / record.rate
+    share, zeros = 100.0 * numbers.still_from / record.length, f"{numbers.still} of {record.length} samples"
+    return f"it looks force-windowed: exact zeros from {start:.6g} s on, at {share:.3g} % of the record, for {zeros}"
 
 
 def _faint(record: Record, found: Gathered, channel: Channel, numbers: Numbers) -> str | None:

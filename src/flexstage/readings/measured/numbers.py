@@ -21,7 +21,7 @@ class Numbers:
 
     `broken` samples are not numbers, the first is number `first_broken`. `rms` is about the mean. `at_low` samples (or more) are equal to
     the least value, `next_low` to the one above it, `flat_low` says whether two in a row are; so for the highest. `levels` is the range
-    over the smallest step. From sample `still_from` the value stays the same for `still` samples, longer than anywhere else.
+    over the smallest step. From sample `still_from` the value stays `still_at` for `still` samples, longer than anywhere else.
     """
 
     broken: int
@@ -39,6 +39,7 @@ class Numbers:
     levels: float
     still_from: int
     still: int
+    still_at: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,6 +66,7 @@ class _State:
     run: Array
     still: Array
     still_from: Array
+    still_at: Array
     pair_low: Array
     pair_high: Array
     spectra: Array
@@ -113,6 +115,7 @@ def _fresh(record: Record) -> _State:
         run=np.zeros(size, dtype=int),
         still=np.zeros(size, dtype=int),
         still_from=np.zeros(size, dtype=int),
+        still_at=np.full(size, np.nan),
         pair_low=np.full(size, np.inf),
         pair_high=np.full(size, -np.inf),
         spectra=np.zeros((segment // 2 + 1, len(inputs), len(inputs)), dtype=complex),
@@ -191,6 +194,7 @@ def _standstill(state: _State, values: Array, column: int) -> None:
     longest = int(np.argmax(lengths))
     if lengths[longest] > state.still[column]:
         state.still[column], state.still_from[column] = lengths[longest], state.seen + starts[longest]
+        state.still_at[column] = values[max(0, int(starts[longest]))]
     state.run[column], state.last[column] = lengths[-1], values[-1]
 
 
@@ -228,6 +232,7 @@ def _numbers(state: _State, column: int) -> Numbers:
         levels=(high - low) / float(state.step[column]) if np.isfinite(state.step[column]) else 0.0,
         still_from=int(state.still_from[column]),
         still=int(state.still[column]),
+        still_at=float(state.still_at[column]),
     )
 
 

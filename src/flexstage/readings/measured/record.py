@@ -296,6 +296,23 @@ def in_memory(channels: Iterable[Channel], rate: float, values: Array) -> Record
     return Record(tuple(channels), float(rate), InMemory(np.asarray(values, dtype=float)))
 
 
+def not_rising(frequencies: Array) -> str | None:
+    """What keeps frequencies from rising: fewer than two, one that stands twice, one below the one before; None if they rise.
+
+    >>> not_rising(np.array([1.0, 2.0, 2.0, 3.0]))
+    'its frequencies do not rise: 2 Hz stands twice, lines 2 and 3'
+    """
+    if len(frequencies) < 2:
+        return f"it has {len(frequencies)} frequencies"
+    falling = np.flatnonzero(~(np.diff(frequencies) > 0.0))
+    if not len(falling):
+        return None
+    line = int(falling[0])
+    first, second = frequencies[line], frequencies[line + 1]
+    how = f"{first:g} Hz stands twice, lines" if first == second else f"{second:g} Hz follows {first:g} Hz, lines"
+    return f"its frequencies do not rise: {how} {line + 1} and {line + 2}"
+
+
 def name_findings(where: str, channels: tuple[Channel, ...]) -> list[Finding]:
     """What is wrong with the names of channels: none at all, empty ones, ones that occur twice.
 

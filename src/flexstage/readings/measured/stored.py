@@ -11,9 +11,18 @@ import numpy as np
 from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.number import Array
 from flexstage.readings.measured.options import Options, assigned, numbered, wanted
-from flexstage.readings.measured.record import Channel, Responses, Role
+from flexstage.readings.measured.record import Channel, Responses, Role, not_rising
 from flexstage.readings.measured.unit import plain_unit
-from flexstage.readings.measured.variables import Contents, Held, Variable, complex_of, frequency_axis, plain_name, vector_length
+from flexstage.readings.measured.variables import (
+    FREQUENCIES,
+    Contents,
+    Held,
+    Variable,
+    complex_of,
+    frequency_axis,
+    plain_name,
+    vector_length,
+)
 
 RESPONSES = re.compile(
     r"(.*_)?(h|h[0-9v]|h_?[0-9]+(_[0-9]+)?|hf|frfs?|tfs?|transfer|responses?|receptance|compliance|mobility|inertance)(_.*)?"
@@ -39,6 +48,7 @@ def responses_of(contents: Contents, options: Options) -> Responses | None:
     """
     lines = frequency_axis(contents)
     if lines is None:
+        require(_unordered(contents))
         return None
     size = vector_length(lines)
     found = _functions([each for each in (*contents.variables, *_joined(contents.variables)) if each.is_complex and size in each.shape])
@@ -65,6 +75,16 @@ def responses_of(contents: Contents, options: Options) -> Responses | None:
         ),
         options,
     )
+
+
+def _unordered(contents: Contents) -> Iterable[Finding]:
+    """Frequencies that do not rise, beside complex arrays as long."""
+    lengths = {size for each in (*contents.variables, *_joined(contents.variables)) if each.is_complex for size in each.shape}
+    for each in contents.variables:
+        if FREQUENCIES.fullmatch(plain_name(each.name)) and not each.is_complex and vector_length(each) in lengths - {0, 1}:
+            problem = not_rising(each.whole().ravel())
+            if problem is not None:
+                yield Finding(f"{contents.where}: {each.name}", problem, "Export each frequency once, from the lowest to the highest")
 
 
 def _functions(arrays: list[Variable]) -> list[Variable]:

@@ -102,7 +102,8 @@ class TableSamples:
         """One line, field by field; raises `DesignError` that names it where it cannot be read."""
         fields, expected = self.layout.fields(text), len(self.layout.names)
         where = f"{self.path}: line {self.layout.line + number}"
-        if not self.layout.fits(text):
+        fields = fields[:-1] if len(fields) == expected + 1 and not fields[-1] else fields
+        if len(fields) != expected:
             what = f'it has {len(fields)} of {expected} fields: "{text.strip()[:_LISTED]}"'
             raise refuse(where, what, "Mend the line, or take it away")
         return [self._field(fields[column], f"{where}, {self.layout.names[column]}") for column in self.columns]
