@@ -9,7 +9,8 @@ import pytest
 
 import flexstage as fs
 from flexstage.analysis.drift import drift
-from flexstage.mechanism.expansion import expansion, ground_material
+from flexstage.mechanism.expansion import Ground, expansion, ground_of
+from flexstage.present.tables.errors import drift_table
 from flexstage.readings.lumped import lumped
 
 X, Y, Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
@@ -43,9 +44,9 @@ def test_a_bar_grows_piece_by_piece():
 
 def test_a_still_ground():
     """Without a ground material only rod and platform grow, from the rod's own foot."""
-    found = drift(bar(), lumped(bar()))
+    found = drift(bar(), lumped(bar()), ground="none")
     assert found.motion.at("platform.x", "uniform") == pytest.approx(0.04 * 10e-6 + 0.03 * 23e-6, rel=1e-12)
-    assert found.taken["ground"] == "does not grow"
+    assert found.taken["ground"] == "does not grow, as asked"
 
 
 def test_a_gradient_along_the_bar():
@@ -77,7 +78,7 @@ def test_two_posts_of_different_materials_share():
             "other": fs.Link(("platform", "ground"), "other", (0.065, 0.0, 0.0), X),
         },
     )
-    found = drift(stage, lumped(stage))
+    found = drift(stage, lumped(stage), ground="none")
     area = np.pi / 4.0 * 0.004**2
     first, second = 200e9 * area / 0.04, 70e9 * area / 0.03
     force = (0.04 * 10e-6 + 0.03 * 23e-6) / (1.0 / first + 1.0 / second)
@@ -114,20 +115,57 @@ def test_bodies_of_several_and_of_no_material():
         links={**bar().links, "other": fs.Link(("ground", "platform"), "other", (0.03, 0.02, 0.0), X)},
     )
     with pytest.raises(fs.DesignError, match=r"platform: how it grows .* its links are of aluminium, steel"):
-        expansion(bare)
+        expansion(bare, ground="steel")
 
 
-def test_the_ground_is_of_most_of_its_links():
-    assert ground_material(bar()) == "steel"
-    joined = replace(bar(), parts={"rod": fs.Joint()})
-    assert ground_material(joined) is None
+def mixed(order):
+    """A bar on a rod of steel, and one of aluminium beside it."""
+    parts = {"rod": fs.Rod("steel", 0.04, 0.004), "other": fs.Rod("aluminium", 0.04, 0.004)}
+    links = {**bar().links, "other": fs.Link(("ground", "platform"), "other", (0.03, 0.02, 0.0), X)}
+    return replace(bar(), parts=parts, links=dict(list(links.items())[::order]))
+
+
+def test_the_ground_is_of_the_one_material_on_it():
+    assert ground_of(bar()) == Ground("steel", "all links that stand on it are of it")
+    assert not ground_of(bar()).stated
+    assert "Ground taken as steel: all links" in " ".join(drift_table(drift(bar(), lumped(bar()))).notes)
+
+
+@pytest.mark.parametrize("order", [1, -1])
+def test_a_ground_of_several_materials_is_asked_for(order):
+    """Never guessed from how many links are of which, nor from their order."""
+    stage = mixed(order)
+    with pytest.raises(fs.DesignError, match=r'ground: .* of aluminium, steel\. State it in the design: ground = "aluminium", or "none"'):
+        drift(stage, lumped(stage))
+    with pytest.raises(fs.DesignError, match="of no material"):
+        ground_of(replace(bar(), parts={"rod": fs.Joint()}))
+    found = fs.analyse(stage)
+    assert found.drift is None
+    assert 'ground = "aluminium"' in found.missing["drift"]
+    required = replace(stage, requirements={"drift.x": "at most 1 um/K"})
+    assert any("ground" in str(verdict) for verdict in fs.judge(required))
+
+
+@pytest.mark.parametrize("order", [1, -1])
+def test_the_stated_ground_counts(order):
+    values = {}
+    for ground in ("steel", "aluminium", "invar", "none"):
+        stage = replace(mixed(order), ground=ground)
+        assert ground_of(stage).stated
+        values[ground] = drift(stage, lumped(stage)).motion.at("platform.x", "uniform")
+        asked = drift(mixed(order), lumped(mixed(order)), ground=ground)
+        assert asked.motion.at("platform.x", "uniform") == values[ground]
+        assert fs.loads(fs.dumps(stage)) == stage
+    assert values["none"] < values["invar"] < values["steel"] < values["aluminium"]
+    findings = fs.check(replace(bar(), ground="stele"))
+    assert any(finding.where == "ground" and "steel" in finding.advice for finding in findings)
 
 
 def test_a_batch_of_expansions():
     """An array of coefficients gives an array of drifts."""
     values = np.array([10e-6, 12e-6])
     stage = replace(bar(), materials={**bar().materials, "steel": replace(STEEL, expansion=values)})
-    found = drift(stage, lumped(stage)).motion.at("platform.x", "uniform")
+    found = drift(stage, lumped(stage), ground="none").motion.at("platform.x", "uniform")
     np.testing.assert_allclose(found, 0.04 * values + 0.03 * 23e-6, rtol=1e-12)
 
 
@@ -143,4 +181,4 @@ def test_locked_freedoms_that_cannot_follow_are_refused():
     )
     loose = bar()
     with pytest.raises(fs.DesignError, match="locked freedoms cannot follow the growth"):
-        drift(stage, lumped(loose))
+        drift(stage, lumped(loose), ground="none")

@@ -97,7 +97,7 @@ def test_drift_and_sums():
     np.testing.assert_allclose(found.sums.at("x", "linear"), np.sum(line), rtol=1e-12)
     np.testing.assert_allclose(found.sums.at("x", "rss"), np.sqrt(np.sum(line**2)), rtol=1e-12)
     np.testing.assert_allclose(found.sums.at("x", "linear corrected"), np.sum(found.corrected.values[0]), rtol=1e-12)
-    own = budget(stage, {"x": 5e-6}, temperature=0.1, drifted=drift(stage, lumped(stage)))
+    own = budget(stage, {"x": 5e-6}, temperature=0.1, drifted=drift(stage, lumped(stage), ground="none"))
     assert own.ideal.at("z", "drift") != pytest.approx(found.ideal.at("z", "drift"), rel=1e-3)
 
 

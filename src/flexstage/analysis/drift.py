@@ -16,7 +16,7 @@ from flexstage.base.labelled import Matrix, ratio_units
 from flexstage.base.number import Array, Vector, stack
 from flexstage.beams.compliance import law
 from flexstage.mechanism.expand import Assembly, PlacedLink, expand
-from flexstage.mechanism.expansion import Expansion, expansion
+from flexstage.mechanism.expansion import Expansion, Ground, expansion
 from flexstage.mechanism.incidence import deformation, layout
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
 from flexstage.parts.given import Joint
@@ -35,14 +35,14 @@ class Drift:
     """Motion and forces per unit of a temperature field: uniform [per K], linear along x, y and z [per K/m].
 
     `motion` (platform and named points, six components each), `gauges` the readings, `forces` (six an elastic link). `ground` is the
-    material the ground was taken to be of (`None`: it does not grow), `datum` (..., 3) [m] the point of the ground that stays and where
-    gradients are zero, `taken` each body's material.
+    material the ground was taken to be of (`None`: it does not grow) and from where that is known, `datum` (..., 3) [m] the point of the
+    ground that stays and where gradients are zero, `taken` each body's material.
     """
 
     motion: Matrix
     gauges: Matrix
     forces: Matrix
-    ground: str | None
+    ground: Ground
     datum: Array
     taken: Mapping[str, str]
     provenance: str
@@ -83,9 +83,9 @@ class _Thermal:
 def drift(mechanism: Mechanism, model: LinearModel, *, ground: str | None = None, datum: Vector = (0.0, 0.0, 0.0)) -> Drift:
     """Thermal drift of a stage: free growth of all bodies and parts, elastically redistributed by the model's links, strokes held.
 
-    `ground` names the ground's material (`None`: it does not grow; see `ground_material`). Motions are counted from the ground's `datum`.
-    A stage of one material, its ground included, scales without stress. Raises `DesignError` naming what states no expansion, and where
-    locked freedoms cannot follow the growth.
+    `ground` names the ground's material (absent: as `ground_of` finds it in the description; `none`: it does not grow). Motions are counted
+    from the ground's `datum`. A stage of one material, its ground included, scales without stress. Raises `DesignError` naming what states
+    no expansion, where the ground's material is not known, and where locked freedoms cannot follow the growth.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.readings.lumped import lumped
@@ -107,7 +107,7 @@ def drift(mechanism: Mechanism, model: LinearModel, *, ground: str | None = None
         motion=_motions(thermal, twists),
         gauges=_gauges(thermal, twists),
         forces=_labelled(forces, FORCES, WRENCH_UNITS),
-        ground=ground,
+        ground=thermal.expansion.ground,
         datum=thermal.datum,
         taken=thermal.expansion.taken,
         provenance=f"{model.provenance}, ground {thermal.expansion.taken[GROUND]}",
@@ -119,7 +119,7 @@ def held_by_gauges(drifted: Drift, gauge_inverse: Matrix) -> Matrix:
 
     >>> zero = Matrix(np.zeros((1, 4)), ("S1",), FIELDS, "m/K")
     >>> moved = Matrix(np.eye(6)[:, :4], tuple(f"platform.{name}" for name in COMPONENTS), FIELDS, "m/K")
-    >>> free = Drift(moved, zero, zero, None, np.zeros(3), {}, "")
+    >>> free = Drift(moved, zero, zero, Ground(None, "as asked"), np.zeros(3), {}, "")
     >>> held_by_gauges(free, Matrix(np.ones((6, 1)), COMPONENTS, ("S1",), "1")).values[0].tolist()
     [1.0, 0.0, 0.0, 0.0]
     """

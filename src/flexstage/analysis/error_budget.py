@@ -13,6 +13,7 @@ from flexstage.analysis.workspace.map_error import MapError
 from flexstage.base.finding import Finding, nearest, require
 from flexstage.base.labelled import Matrix
 from flexstage.base.number import Array, Number, stack
+from flexstage.mechanism.expansion import Ground
 from flexstage.readings.linear.kinematics import Kinematics
 from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS, transport
 
@@ -33,13 +34,15 @@ class Evidence:
     resolution: PoseResolution
     drift: Matrix
     arm: Array
+    ground: Ground | None = None
 
 
 @dataclass(frozen=True, eq=False)
 class ErrorBudget:
     """Largest errors by axis (rows) and source (columns) [m, rad], commanded by the ideal mapping, and with the lost-motion gains.
 
-    `missing` names sources that could not be counted (no gauge noise stated): they are NaN and left out of the sums.
+    `missing` names sources that could not be counted (no gauge noise stated): they are NaN and left out of the sums. `ground` is what drift
+    took it to be of.
     """
 
     ideal: Matrix
@@ -48,6 +51,7 @@ class ErrorBudget:
     temperature: Number
     missing: tuple[str, ...]
     provenance: str
+    ground: Ground | None = None
 
     @property
     def sums(self) -> Matrix:
@@ -89,7 +93,7 @@ def error_budget(evidence: Evidence, command: Mapping[str, Number], *, temperatu
     found = {key: _table(values) for key, values in rows.items()}
     missing = tuple(name for index, name in enumerate(SOURCES) if np.any(np.isnan(found[False].values[..., index])))
     provenance = f"{evidence.lost_motion.provenance}; {evidence.map_error.provenance}"
-    return ErrorBudget(found[False], found[True], dict(command), temperature, missing, provenance)
+    return ErrorBudget(found[False], found[True], dict(command), temperature, missing, provenance, evidence.ground)
 
 
 def command_columns(kinematics: Kinematics, command: Mapping[str, Number]) -> list[int]:

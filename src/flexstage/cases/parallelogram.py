@@ -67,6 +67,7 @@ def parallelogram(parameters: Parallelogram | None = None) -> Mechanism:
         damping=ModalDamping(0.01),
         envelope=(160 * mm, 80 * mm, 25 * mm),
         mode_limit=10 * kHz,
+        ground="aluminium",
         requirements={"stroke.x": "at least 18 um", "frequency.platform.1": "at least 500 Hz", "safety": "at least 2"},
         tags=stock_tags(("aluminium", "steel"), ("stack",), ("probe",)),
         sources=SOURCES,

@@ -75,6 +75,7 @@ def xy_stage(parameters: XYStage | None = None) -> Mechanism:
         damping=ModalDamping(0.01),
         envelope=(280 * mm, 280 * mm, 15 * mm),
         mode_limit=5 * kHz,
+        ground="aluminium",
         requirements=_requirements(p),
         tags=stock_tags(("aluminium", "steel"), ("stack",), ("probe",)),
         sources=SOURCES,

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from flexstage.base.finding import Finding, nearest, require
+from flexstage.base.finding import Finding, nearest, refuse, require
 from flexstage.base.number import Number
 from flexstage.mechanism.expand import Assembly, PlacedLink, expand
-from flexstage.mechanism.mechanism import GROUND, Mechanism
+from flexstage.mechanism.mechanism import GROUND, NOT_GROWING, Mechanism
 from flexstage.parts.body import Solid
 from flexstage.parts.given import Given, Joint
 from flexstage.parts.leaf import Leaf
@@ -22,21 +22,37 @@ from flexstage.parts.piezo import Piezo
 from flexstage.parts.profile import length
 from flexstage.parts.rod import Rod
 
+_STATED, _ASKED = "as stated", "as asked"
+
+
+@dataclass(frozen=True)
+class Ground:
+    """The `material` the ground grows with (`None`: it does not grow), and from where that is known."""
+
+    material: str | None
+    source: str
+
+    @property
+    def stated(self) -> bool:
+        """Whether the description, or who asked, states it."""
+        return self.source in (_STATED, _ASKED)
+
 
 @dataclass(frozen=True, eq=False)
 class Expansion:
     """Expansion coefficients [1/K] of the `bodies` (the ground's too) and of the `parts` with a length [m].
 
-    `taken` says for each body which material was taken, and from where (its solids, its links, or as asked for the ground).
+    `taken` says for each body which material was taken, and from where (its solids, its links); `ground` is that of the ground.
     """
 
     bodies: Mapping[str, Number]
     parts: Mapping[str, tuple[Number, Number]]
     taken: Mapping[str, str]
+    ground: Ground
 
 
 def expansion(mechanism: Mechanism, ground: str | None = None) -> Expansion:
-    """Expansion coefficients of everything; `ground` names the ground's material (`None`: it does not grow).
+    """Expansion coefficients of everything; `ground` names the ground's material (absent: see `ground_of`; `none`: it does not grow).
 
     A body takes the material of its solids, of several the heaviest solid's; without solids that of its links, where they agree. Given
     matrices and ideal joints have no length and do not grow. Raises `DesignError` with all materials and stacks that state no expansion,
@@ -49,13 +65,14 @@ def expansion(mechanism: Mechanism, ground: str | None = None) -> Expansion:
     """
     assembly = expand(mechanism)
     choices = {name: _body_material(mechanism, assembly, name) for name in assembly.bodies}
-    if ground is not None:
-        choices[GROUND] = (ground, "as asked")
+    floor = ground_of(mechanism, ground)
+    if floor.material is not None:
+        choices[GROUND] = (floor.material, floor.source)
     require([*_unknown(mechanism, choices), *_unstated(mechanism, assembly, choices)])
     bodies = {name: _stated(mechanism, material) for name, (material, _) in choices.items()}
     parts = {name: (coefficient(link), span(link.part)) for name, link in assembly.links.items() if _grows(link)}
     taken = {name: f"{material}, {source}" for name, (material, source) in choices.items()}
-    return Expansion({GROUND: 0.0, **bodies}, parts, {GROUND: "does not grow", **taken})
+    return Expansion({GROUND: 0.0, **bodies}, parts, {GROUND: f"does not grow, {floor.source}", **taken}, floor)
 
 
 def _stated(mechanism: Mechanism, material: str) -> Number:
@@ -63,16 +80,30 @@ def _stated(mechanism: Mechanism, material: str) -> Number:
     return np.nan if value is None else value
 
 
-def ground_material(mechanism: Mechanism) -> str | None:
-    """The material of most links that stand on the ground, as a frame of the same block has; `None` where no link has a material.
+def ground_of(mechanism: Mechanism, asked: str | None = None) -> Ground:
+    """What the ground grows with: as asked (`none`: it does not grow), as the description states, else as all that stands on it.
+
+    Taken are the outlines that belong to the ground, else the links on it, if they are of one material. Raises `DesignError` where they are
+    of several, or of none: then drift does not follow from the description.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> ground_material(double_triangle())
-    'steel'
+    >>> ground_of(double_triangle())
+    Ground(material='steel', source='all links that stand on it are of it')
     """
-    names = [material_of(link.part) for link in expand(mechanism).links.values() if GROUND in link.joins]
-    found = [name for name in names if name is not None]
-    return max(found, key=found.count) if found else None
+    given = asked if asked is not None else mechanism.ground
+    if given is not None:
+        return Ground(None if given == NOT_GROWING else given, _STATED if asked is None else _ASKED)
+    assembly = expand(mechanism)
+    solids = sorted({placed.solid.material for placed in assembly.ground.values()})
+    links = _link_materials(assembly, GROUND)
+    if len(solids) == 1:
+        return Ground(solids[0], "all its outlines are of it")
+    if not solids and len(links) == 1:
+        return Ground(links[0], "all links that stand on it are of it")
+    found = f"its outlines are of {', '.join(solids)}" if solids else f"the links on it are of {', '.join(links) or 'no material'}"
+    example = (*solids, *links, *mechanism.materials, "steel")[0]
+    advice = f'State it in the design: ground = "{example}", or "{NOT_GROWING}" if it does not grow'
+    raise refuse("ground", f"how it grows with temperature is not known: {found}", advice)
 
 
 def coefficient(link: PlacedLink) -> Number:

@@ -30,6 +30,8 @@ from flexstage.parts.part import Part
 
 GROUND = "ground"
 PLATFORM = "platform"
+NOT_GROWING = "none"
+"""Said of the ground in place of a material: it does not grow with temperature."""
 
 
 def _empty() -> Any:
@@ -134,6 +136,7 @@ class Mechanism(Description):
     A graph of rigid `bodies` and elastic `links`, drawn directly or in `units` placed by pattern (`place`), with `gauges`. Body `ground` is
     implied, body `platform` is the moving part. `changes` are departures of link parts from the shared part, by address
     (`horizontal/front.thickness`, `B2/front.thickness`). `mode_limit` is the frequency below which the platform's modes are looked for.
+    `ground` names the material that the ground grows with (`none`: it does not grow).
     """
 
     name: str = field(metadata=DOCUMENT_ONLY)
@@ -154,6 +157,7 @@ class Mechanism(Description):
     ) = None
     opening: Opening | None = None
     mode_limit: Annotated[Number, FREQUENCY, POSITIVE] | None = None
+    ground: str | None = None
     changes: Mapping[str, Any] = _empty()
     requirements: Mapping[str, str] = field(default_factory=lambda: Table({}), metadata=DOCUMENT_ONLY)
     tags: Mapping[str, str] = field(default_factory=lambda: Table({}), metadata=DOCUMENT_ONLY)

@@ -12,7 +12,6 @@ from flexstage.analysis.workspace.map_error import map_error_at
 from flexstage.base.finding import nearest, refuse
 from flexstage.base.number import Number
 from flexstage.mechanism.expand import expand
-from flexstage.mechanism.expansion import ground_material
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.readings.finite import design_shape
 from flexstage.readings.ideal import ideal
@@ -30,7 +29,7 @@ def budget(
 ) -> ErrorBudget:
     """Error budget at a point of the platform over a box of commands (half widths by coordinate [m, rad]) and a temperature change [K].
 
-    Lost motion and drift (strokes held) by the lumped reading. `drifted` absent: the ground is of the material of the links on it.
+    Lost motion and drift (strokes held) by the lumped reading. `drifted` absent: the ground as the description has it (`ground_of`).
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> found = budget(double_triangle(), {"x": 50e-6}, temperature=0.1)
@@ -44,7 +43,7 @@ def budget(
     if body != PLATFORM:
         raise refuse(at, f"is a point of {body}", "An error budget is that of a point of the platform")
     kinematics, model = ideal(mechanism), standing(mechanism)
-    warmed = drift(mechanism, model, ground=ground_material(mechanism)) if drifted is None else drifted
+    warmed = drift(mechanism, model) if drifted is None else drifted
     corners = command_strokes(kinematics, command, depth=len(design_shape(mechanism, kinematics)))
     evidence = Evidence(
         kinematics=kinematics,
@@ -53,5 +52,6 @@ def budget(
         resolution=pose_resolution(mechanism, kinematics),
         drift=warmed.of(at),
         arm=point - assembly.bodies[PLATFORM].reference,
+        ground=warmed.ground,
     )
     return error_budget(evidence, command, temperature=temperature, coverage=coverage)

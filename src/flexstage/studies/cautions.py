@@ -8,12 +8,13 @@ from functools import lru_cache
 
 import numpy as np
 
-from flexstage.analysis.requirements import requirements
+from flexstage.analysis.requirements import Subject, requirements
 from flexstage.analysis.workspace.room import room
 from flexstage.base.finding import DesignError, Finding
 from flexstage.beams.validity import validity
 from flexstage.mechanism.contact import contact_findings
 from flexstage.mechanism.expand import expand
+from flexstage.mechanism.expansion import ground_of
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.parts.part import Restricted
 from flexstage.parts.piezo import Piezo
@@ -46,7 +47,7 @@ def defaults(mechanism: Mechanism) -> tuple[Finding, ...]:
     >>> defaults(Mechanism("stage"))
     ()
     """
-    return tuple(_stack_defaults(mechanism))
+    return (*_stack_defaults(mechanism), *_ground_default(mechanism))
 
 
 def _stack_defaults(mechanism: Mechanism) -> Iterator[Finding]:
@@ -56,6 +57,18 @@ def _stack_defaults(mechanism: Mechanism) -> Iterator[Finding]:
         if piezo.bias is None and piezo.voltage_low is not None and piezo.voltage_high is not None:
             middle = np.ravel(0.5 * (np.real(piezo.voltage_low) + np.real(piezo.voltage_high)))[0]
             yield Finding(f"parts.{name}", f"the bias is the middle of the range, {middle:g} V", 'Strokes count from it: bias = "50 V"')
+
+
+def _ground_default(mechanism: Mechanism) -> Iterator[Finding]:
+    """What the ground is taken as, where a requirement asks for drift."""
+    if any(line.subject is Subject.DRIFT for line in requirements(mechanism)):
+        try:
+            ground = ground_of(mechanism)
+        except DesignError:
+            return  # the requirement says what is missing
+        if not ground.stated:
+            advice = f'Drift rests on it: ground = "{ground.material}"'
+            yield Finding("ground", f"it is taken as {ground.material}: {ground.source}", advice)
 
 
 def _shared_stacks(mechanism: Mechanism) -> dict[str, Piezo]:

@@ -18,7 +18,6 @@ from flexstage.analysis.statics import Statics, statics
 from flexstage.analysis.workspace.buckling import Buckling, buckling
 from flexstage.analysis.workspace.stroke import stroke_limits
 from flexstage.base.number import Table
-from flexstage.mechanism.expansion import ground_material
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.readings.ideal import ideal
 from flexstage.readings.linear.frequency import Response
@@ -33,7 +32,7 @@ from flexstage.studies.standing import require_standing, standing
 from flexstage.studies.units import UnitResult, units
 from flexstage.studies.workspace import Workspace, workspace
 
-__all__ = ["Analysis", "Reading", "analyse", "grounded_drift", "platform_modes", "read", "required_command"]
+__all__ = ["Analysis", "Reading", "analyse", "platform_modes", "read", "required_command"]
 
 _RIGID = "the ideal reading has no elasticity"
 _UNLUMPED = "this needs the lumped reading"
@@ -104,7 +103,7 @@ def analyse(mechanism: Mechanism, reading: Reading = Reading.LUMPED) -> Analysis
     command = required_command(mechanism)
     reach = attempt.of("workspace", lambda: workspace(mechanism, kinematics, model, lost=lost, command=command))
     hinged = model if reading is Reading.LUMPED else None
-    drifted = attempt.given("drift", hinged, _UNLUMPED, lambda known: grounded_drift(mechanism, known))
+    drifted = attempt.given("drift", hinged, _UNLUMPED, lambda known: drift(mechanism, known))
     return Analysis(
         mechanism=mechanism,
         reading=reading,
@@ -146,17 +145,6 @@ def required_command(mechanism: Mechanism) -> Mapping[str, float] | None:
     lines = (line for line in requirements(mechanism) if line.subject is Subject.STROKE and line.sense is Sense.AT_LEAST)
     found = {line.name: line.limit for line in lines if line.point == PLATFORM}
     return found or None
-
-
-def grounded_drift(mechanism: Mechanism, model: LinearModel) -> Drift:
-    """Drift on a ground of the material of the links that stand on it; where they are of several, on one that does not grow.
-
-    >>> from flexstage.cases.double_triangle import double_triangle
-    >>> from flexstage.readings.lumped import lumped
-    >>> grounded_drift(double_triangle(), lumped(double_triangle())).ground
-    'steel'
-    """
-    return drift(mechanism, model, ground=ground_material(mechanism))
 
 
 def platform_modes(mechanism: Mechanism, model: LinearModel) -> Modes:

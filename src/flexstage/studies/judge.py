@@ -27,7 +27,6 @@ from flexstage.base.labelled import Matrix
 from flexstage.base.number import Array, magnitude
 from flexstage.beams.mass import mass
 from flexstage.mechanism.expand import Assembly, expand
-from flexstage.mechanism.expansion import ground_material
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.mechanism.outline import outlines
 from flexstage.readings.batch.choice import Choice, chosen
@@ -192,7 +191,7 @@ class Bench:
     @cached_property
     def drift(self) -> Drift:
         """Motion by temperature."""
-        return drift(self.mechanism, self.model, ground=ground_material(self.mechanism))
+        return drift(self.mechanism, self.model)
 
     @cached_property
     def room(self) -> Room:

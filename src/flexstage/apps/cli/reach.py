@@ -75,7 +75,7 @@ def drift(
         str | None,
         typer.Option(
             metavar="MATERIAL",
-            help="Material of the ground, or none if it does not grow. Default: that of the links on it.",
+            help="Material of the ground, or none if it does not grow. Default: the design's, else that of all links on it.",
             show_default=False,
         ),
     ] = None,
@@ -88,12 +88,10 @@ def drift(
     """
     mechanism = opened(design, changes, [("--json", json)])
     from flexstage.analysis.drift import drift as drifted
-    from flexstage.mechanism.expansion import ground_material
     from flexstage.present.documents.results import drift_body
     from flexstage.studies.standing import standing
 
-    material = ground_material(mechanism) if ground is None else None if ground == "none" else ground
-    found = drifted(mechanism, standing(mechanism), ground=material)
+    found = drifted(mechanism, standing(mechanism), ground=ground)
     answer(Asked("drift", mechanism, Reading.LUMPED, json), lambda: drift_body(found), lambda: drift_tables(found))
 
 

@@ -9,7 +9,7 @@ from collections.abc import Iterable, Iterator
 from flexstage.base.finding import Finding, nearest
 from flexstage.mechanism.expand import copy_names
 from flexstage.mechanism.grammar import RESERVED
-from flexstage.mechanism.mechanism import GROUND, PLATFORM, Link, Mechanism, Unit
+from flexstage.mechanism.mechanism import GROUND, NOT_GROWING, PLATFORM, Link, Mechanism, Unit
 from flexstage.parts.body import Body, owner_of
 from flexstage.parts.given import Given
 from flexstage.parts.part import material_of
@@ -136,6 +136,7 @@ def _materials(mechanism: Mechanism) -> Iterator[Finding]:
     for where, body in _all_bodies(mechanism):
         for name, solid in body.solids.items():
             yield from _known(f"{where}.solids.{name}.material", "material", solid.material, mechanism.materials)
+    yield from _known("ground", "material", mechanism.ground, (*mechanism.materials, NOT_GROWING))
 
 
 def _known(where: str, kind: str, name: str | None, names: Iterable[str]) -> Iterator[Finding]:

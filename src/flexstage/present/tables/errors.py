@@ -7,6 +7,7 @@ import numpy as np
 from flexstage.analysis.drift import Drift
 from flexstage.analysis.error_budget import ErrorBudget
 from flexstage.base.labelled import Matrix
+from flexstage.mechanism.expansion import Ground
 from flexstage.present.display import number
 from flexstage.present.table import Cell, Column, Mark, Table, build, first_design, matrix_table, short_names
 from flexstage.present.tables.workspace import command_text
@@ -31,10 +32,20 @@ def drift_table(drift: Drift) -> Table:
         for name, line in zip(short_names(drift.motion.rows), kept, strict=True)
     ]
     heads = ["motion", Column("uniform", "per K"), *(Column(f"gradient {axis}", "per K/m") for axis in "xyz")]
-    ground = f"made of {drift.ground}" if drift.ground else "taken not to grow"
     at = ", ".join(number(1e3 * float(value)) for value in first_design(drift.datum, 1))
-    notes = [f"Strokes held. Ground {ground}; its point ({at}) mm stays."]
+    notes = [f"Strokes held. {ground_text(drift.ground)}; its point ({at}) mm stays."]
     return build("Thermal drift", heads, rows, notes=notes, provenance=drift.provenance)
+
+
+def ground_text(ground: Ground) -> str:
+    """What the ground was taken to be of, and why.
+
+    >>> ground_text(Ground("steel", "as stated")), ground_text(Ground("steel", "all links that stand on it are of it"))
+    ('Ground made of steel', 'Ground taken as steel: all links that stand on it are of it')
+    """
+    if ground.material is None:
+        return "Ground does not grow"
+    return f"Ground made of {ground.material}" if ground.stated else f"Ground taken as {ground.material}: {ground.source}"
 
 
 def _fine(value: float) -> Cell:
@@ -66,6 +77,7 @@ def _budget_table(title: str, matrix: Matrix, sums: np.ndarray, budget: ErrorBud
     heads = ["along", *(Column(name) for name in matrix.columns), Column("linear sum"), Column("root sum square")]
     warm = number(float(np.real(np.ravel(budget.temperature)[0])))
     notes = [f"Largest errors over {command_text(budget.command)}, all at once, and {warm} K of uniform temperature change."]
+    notes += [] if budget.ground is None else [f"{ground_text(budget.ground)}."]
     notes += [f"Not stated, so not counted: {', '.join(budget.missing)}."] if budget.missing else []
     return build(title, heads, rows, notes=notes, provenance=budget.provenance)
 
