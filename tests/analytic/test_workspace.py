@@ -63,7 +63,11 @@ def test_strokes_count_from_the_bias():
     """Bias 30 V in -30 to 150 V: a third of the stroke below, two thirds above."""
     limits = stroke_limits(guide())
     np.testing.assert_allclose([limits.low[0], limits.high[0]], [-20e-6 / 3.0, 40e-6 / 3.0])
-    np.testing.assert_allclose([limits.from_zero.low[0], limits.from_zero.high[0]], [0.0, 20e-6])
+    np.testing.assert_allclose([limits.from_zero.low[0], limits.from_zero.high[0]], [-20e-6 / 6.0, 20e-6 * 5.0 / 6.0])
+    above = stroke_limits(guide(replace(STACK, voltage_low=30.0, voltage_high=120.0, bias=60.0))).from_zero
+    np.testing.assert_allclose([above.low[0], above.high[0]], [20e-6 / 3.0, 80e-6 / 3.0])
+    unstated = stroke_limits(guide(replace(STACK, voltage_low=None, voltage_high=None, bias=None))).from_zero
+    np.testing.assert_allclose([unstated.low[0], unstated.high[0]], [0.0, 20e-6])
     found = single_axis(ideal(guide()).mapping, limits)
     np.testing.assert_allclose(found.symmetric, 20e-6 / 3.0)
     np.testing.assert_allclose(found.table.at("x", "full"), 20e-6)
@@ -95,11 +99,11 @@ def test_leaf_stress_is_that_of_a_guided_beam():
     """Guided deflection x: M = 6 E I x / L^2 at the ends, sigma = 3 E t x / L^2 (long thin leaf: shear below 1e-3)."""
     stage = guide()
     model = lumped(stage)
-    moved = 20e-6 * float(_gain(model))
+    moved = 5.0 / 6.0 * 20e-6 * float(_gain(model))  # of -30 to 150 V, five sixths lie above no voltage
     found = hinge_stress(stage, model, stroke_limits(stage).from_zero)
     nominal = found.nominal[found.links.index("left")]
     assert nominal == pytest.approx(3.0 * 200e9 * 0.0005 * moved / 0.05**2, rel=0.015)
-    assert found.strokes[found.links.index("left")] == pytest.approx([20e-6])
+    assert found.strokes[found.links.index("left")] == pytest.approx([5.0 / 6.0 * 20e-6])
     np.testing.assert_allclose(found.safety, 1e9 / found.peak)
     assert found.unchecked == ("pzt",)
 
@@ -185,6 +189,22 @@ def test_loads_against_limits():
     assert lifting == pytest.approx((300.0 + found.compression[0]) / (found.compression[0] / 100.0), rel=1e-6)
     loose = load_share(guide(replace(STACK, preload=None, tensile_limit=None)), lumped(guide()))
     assert np.isinf(loose.pull(np.array([-1.0]))).all()
+
+
+def test_stacks_are_pulled_below_no_voltage():
+    """Of -70 to 70 V half the stroke is contraction: as much tension as compression, against what the stack allows."""
+    even = replace(STACK, voltage_low=-70.0, voltage_high=70.0, bias=None, preload=None, tensile_limit=0.01)
+    share, limits = load_share(guide(even), lumped(guide(even))), stroke_limits(guide(even)).from_zero
+    least, largest = share.range(limits)
+    assert least[0] == pytest.approx(-largest[0], rel=1e-9)
+    assert largest[0] == pytest.approx(0.5 * share.stroke.values[0, 0] * 20e-6, rel=1e-9)
+    assert share.use(limits)[0] == pytest.approx(-least[0] / 0.01, rel=1e-9)
+    assert ["times what its limits allow" in each.what for each in share.pulled(limits)] == [True]
+    unknown = replace(even, tensile_limit=None)
+    told = load_share(guide(unknown), lumped(guide(unknown))).pulled(limits)
+    assert ["neither preload nor tensile limit" in each.what for each in told] == [True]
+    positive = replace(even, voltage_low=0.0)
+    assert not list(load_share(guide(positive), lumped(guide(positive))).pulled(stroke_limits(guide(positive)).from_zero))
 
 
 def test_a_point_turns_about_itself():

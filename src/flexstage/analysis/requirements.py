@@ -123,7 +123,7 @@ KINDS: Mapping[Subject, Kind] = {
     Subject.RESOLUTION: Kind("pose error of one resolution step of every gauge, worst signs", FINE, FINE_ROTATION, pointed=True),
     Subject.GAUGE_RANGE: Kind("share of half the gauges' range that all required strokes at once ask for, worst gauge", RATIO),
     Subject.OWN_GAUGE_RANGE: Kind("share of half the gauge's range that all required strokes at once ask for", RATIO),
-    Subject.LOAD: Kind("share of its maximum load the most loaded stack bears at the worst corner of the strokes", RATIO),
+    Subject.LOAD: Kind("share of its maximum load, or of what may pull it, that the most loaded stack bears at the worst corner", RATIO),
     Subject.OWN_LOAD: Kind("largest compression of the stack at the worst corner of the strokes, dead load included", FORCE),
 }
 

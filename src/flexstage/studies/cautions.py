@@ -9,7 +9,9 @@ from functools import lru_cache
 import numpy as np
 
 from flexstage.analysis.requirements import Subject, requirements
+from flexstage.analysis.workspace.load import load_share
 from flexstage.analysis.workspace.room import room
+from flexstage.analysis.workspace.stroke import stroke_limits
 from flexstage.base.finding import DesignError, Finding
 from flexstage.beams.validity import validity
 from flexstage.mechanism.contact import contact_findings
@@ -19,6 +21,7 @@ from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.parts.part import Restricted
 from flexstage.parts.piezo import Piezo
 from flexstage.readings.ideal import ideal
+from flexstage.readings.lumped import lumped
 from flexstage.studies.standing import load_factors, standing
 
 
@@ -90,11 +93,20 @@ def cautions(mechanism: Mechanism) -> tuple[Finding, ...]:
     factors = load_factors(mechanism)
     return (
         *(() if factors is None else factors.cautions),
+        *_pulled(mechanism),
         *part_cautions(mechanism),
         *_blockages(mechanism),
         *contact_findings(mechanism),
         *_room(mechanism),
     )
+
+
+def _pulled(mechanism: Mechanism) -> tuple[Finding, ...]:
+    """Stacks in tension beyond what they bear; nothing where their forces are not known."""
+    try:
+        return tuple(load_share(mechanism, lumped(mechanism)).pulled(stroke_limits(mechanism).from_zero))
+    except DesignError:
+        return ()
 
 
 def _blockages(mechanism: Mechanism) -> tuple[Finding, ...]:

@@ -22,7 +22,7 @@ from flexstage.analysis.workspace.map_error import linear_map_error
 from flexstage.analysis.workspace.room import Room, bounds, room
 from flexstage.analysis.workspace.strength import HingeStress, hinge_stress
 from flexstage.analysis.workspace.stroke import StrokeLimits, mapping_at, single_axis, stroke_limits, utilisation
-from flexstage.base.finding import DesignError, refuse
+from flexstage.base.finding import DesignError, refuse, require
 from flexstage.base.labelled import Matrix
 from flexstage.base.number import Array, magnitude
 from flexstage.beams.mass import mass
@@ -356,13 +356,15 @@ def _gauge_range(bench: Bench, line: Measure) -> Array:
 
 def _load(bench: Bench, line: Measure) -> Array:
     share = load_share(bench.mechanism, bench.model)
-    compression = share.range(bench.limits.from_zero)[1]
+    limits = bench.limits.from_zero
     if line.name:
-        return compression[..., share.actuators.index(line.name)]
-    usage = share.usage(compression)
-    if np.any(np.isnan(usage)):
+        return share.range(limits)[1][..., share.actuators.index(line.name)]
+    use = share.use(limits)
+    if np.any(np.isnan(use)) or np.any(np.isnan(share.maximum)):
         raise refuse("load", "not every stack states its maximum load", 'Add for example maximum_load = "5000 N" to the stack')
-    return np.max(usage, axis=-1)
+    if use.ndim == 1:
+        require(each for each in share.pulled(limits) if "neither" in each.what)
+    return np.max(use, axis=-1)
 
 
 _SOFTENED = {

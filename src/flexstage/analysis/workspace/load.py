@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
 from flexstage.analysis.workspace.stroke import StrokeLimits, stacks
+from flexstage.base.finding import Finding, refuse
 from flexstage.base.labelled import Matrix, ratio_units
 from flexstage.base.number import Array, Number, stack
 from flexstage.mechanism.expand import expand
@@ -17,6 +19,7 @@ from flexstage.readings.linear.undetermined import require_balanced, require_kno
 from flexstage.spatial.frame import COMPONENTS, FORCES, WRENCH_UNITS, transport
 
 OWN_WEIGHT = "own weight"
+_ROUNDING = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,6 +71,26 @@ class LoadShare:
         safe = np.where(allowed > 0.0, allowed, 1.0)
         return np.where(tension <= 0.0, 0.0, np.where(allowed > 0.0, tension / safe, np.inf))
 
+    def use(self, limits: StrokeLimits) -> Array:
+        """Share of its limits that each stack bears over the box of strokes (..., n): of the maximum load, or of what pulls it."""
+        least, largest = self.range(limits)
+        pressed, pulled = np.broadcast_arrays(self.usage(largest), self.pull(least))
+        return np.where(np.real(pulled) > np.real(np.nan_to_num(pressed)), pulled, pressed)
+
+    def pulled(self, limits: StrokeLimits) -> Iterator[Finding]:
+        """Stacks that are pulled with more than their preload and tensile limit allow, or that state neither."""
+        least, pull = self.range(limits)[0], self.pull(self.range(limits)[0])
+        first, share = (np.real(each).reshape(-1, len(self.actuators))[0] for each in (least, pull))
+        scale = np.max(np.abs(first), initial=0.0)
+        for place, name in enumerate(self.actuators):
+            if share[place] <= 1.0 or -first[place] <= _ROUNDING * scale:
+                continue
+            what = f"at the worst corner of the strokes its stack is pulled with {-first[place]:.4g} N"
+            if np.isinf(share[place]):
+                yield Finding(name, f"{what}, and it states neither preload nor tensile limit", 'Add for example preload = "200 N"')
+            else:
+                yield Finding(name, f"{what}, {share[place]:.3g} times what its limits allow", "Preload it, or limit the volts")
+
     def capacity(self, direction: Array, at: Array) -> Array:
         """Largest force (...) [N] along a unit direction at a point of the platform that no stack refuses, on top of the dead load."""
         added = self.under(direction, at)
@@ -95,6 +118,8 @@ def load_share(mechanism: Mechanism, model: LinearModel) -> LoadShare:
     """
     assembly = expand(mechanism)
     names = tuple(assembly.actuators)
+    if not names:
+        raise refuse("stacks", "the stage has none, so none shares its loads", "Ask for the deflection under dead load instead")
     axial = tuple(f"{link}.fx" for link in assembly.actuators.values())
     require_known(model, axial)
     causes = dead_loads(mechanism, model)

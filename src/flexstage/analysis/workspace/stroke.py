@@ -21,11 +21,15 @@ from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS, Frame
 
 @dataclass(frozen=True, eq=False)
 class StrokeLimits:
-    """The interval `low` to `high` (..., n) [m] each actuator's stroke may take, counted from its bias (or middle)."""
+    """The interval `low` to `high` (..., n) [m] each actuator's stroke may take, counted from its bias (or middle).
+
+    `zero` (..., n) is the stroke without voltage, counted the same way (absent: the lowest).
+    """
 
     actuators: tuple[str, ...]
     low: Array
     high: Array
+    zero: Array | None = None
 
     @property
     def full(self) -> Array:
@@ -34,8 +38,9 @@ class StrokeLimits:
 
     @property
     def from_zero(self) -> StrokeLimits:
-        """The same strokes counted from no voltage, as a stage assembled without voltage feels them: 0 to the full stroke."""
-        return StrokeLimits(self.actuators, np.zeros_like(self.full), self.full)
+        """The same strokes counted from no voltage, as a stage assembled without voltage feels them: negative with the volts."""
+        zero = self.low if self.zero is None else self.zero
+        return StrokeLimits(self.actuators, self.low - zero, self.high - zero, np.zeros_like(self.low - zero))
 
     @property
     def corners(self) -> Array:
@@ -141,13 +146,21 @@ def stroke_limits(mechanism: Mechanism) -> StrokeLimits:
     piezos = stacks(mechanism)
     low = stack([-piezo.stroke * _below_bias(piezo) for piezo in piezos.values()])
     full = stack([piezo.stroke for piezo in piezos.values()])
-    return StrokeLimits(tuple(piezos), *np.broadcast_arrays(low, low + full))
+    below = stack([piezo.stroke * _below_zero(piezo) for piezo in piezos.values()])
+    return StrokeLimits(tuple(piezos), *np.broadcast_arrays(low, low + full, low + below))
 
 
 def _below_bias(piezo: Piezo) -> Number:
     if piezo.bias is None or piezo.voltage_low is None or piezo.voltage_high is None:
         return 0.5
     return (piezo.bias - piezo.voltage_low) / (piezo.voltage_high - piezo.voltage_low)
+
+
+def _below_zero(piezo: Piezo) -> Number:
+    """The share of the stroke that lies below no voltage (negative: the range begins above it); none where no range is stated."""
+    if piezo.voltage_low is None or piezo.voltage_high is None:
+        return 0.0
+    return -piezo.voltage_low / (piezo.voltage_high - piezo.voltage_low)
 
 
 def mapping_at(mechanism: Mechanism, kinematics: Kinematics, point: str = PLATFORM, *, mapping: Matrix | None = None) -> Matrix:

@@ -158,19 +158,19 @@ def load_table(loads: LoadShare, limits: StrokeLimits) -> Table:
     >>> per_stroke, unknown = Matrix(np.array([[1e6]]), ("B1",), ("B1",), "N/m"), np.full(1, np.nan)
     >>> share = LoadShare(("B1",), one, one, per_stroke, np.array([5e3]), unknown, unknown, np.zeros(3), "")
     >>> load_table(share, StrokeLimits(("B1",), np.zeros(1), np.array([1e-4]))).texts()[1]
-    ['B1', '1', '1', '101', '-', '5000', '2.02 %']
+    ['B1', '1', '1', '101', '-', '-', '5000', '2.02 %']
     """
     least, largest = (first_design(values, 1) for values in loads.range(limits))
-    usage = first_design(loads.usage(loads.range(limits)[1]), 1)
+    usage = first_design(loads.use(limits), 1)
     dead = first_design(loads.loads.values, 2)
     rows: list[tuple[Content, ...]] = []
     for index, name in enumerate(loads.actuators):
         own = [number(float(value), 4) for value in dead[index]]
-        limit = [_limit(loads.preload, index), _limit(loads.maximum, index)]
+        limit = [_limit(loads.preload, index), _limit(loads.tensile, index), _limit(loads.maximum, index)]
         used = Cell(NO_VALUE) if np.isnan(usage[index]) else Cell(percent(float(usage[index])), bar=float(usage[index]))
         rows.append((Cell(name, Mark.STRONG), *own, number(float(least[index]), 4), number(float(largest[index]), 4), *limit, used))
     heads = ["actuator", *(Column(name, "N") for name in loads.loads.columns), Column("least", "N"), Column("largest", "N")]
-    heads += [Column("preload", "N"), Column("limit", "N"), Column("used")]
+    heads += [Column("preload", "N"), Column("tensile", "N"), Column("limit", "N"), Column("used")]
     return build("Axial forces of the stacks", heads, rows, notes=_load_notes(loads, least))
 
 
@@ -180,5 +180,8 @@ def _limit(values: Array, index: int) -> str:
 
 def _load_notes(loads: LoadShare, least: Iterable[float]) -> list[str]:
     pulled = [name for name, force in zip(loads.actuators, least, strict=True) if force < 0.0]
-    note = ["Compression is positive. Least and largest over all corners of the strokes, dead load included, preload not counted."]
+    note = [
+        "Compression is positive. Least and largest over all strokes from no voltage, dead load included, preload not counted.",
+        "Used: of the limit, or of preload and tensile limit where that is more.",
+    ]
     return note + ([f"In tension at some corner: {', '.join(pulled)}."] if pulled else [])

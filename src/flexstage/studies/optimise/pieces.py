@@ -95,7 +95,7 @@ def _swings(bench: Bench, _: Measure) -> Array:
 
 def _load(bench: Bench, _: Measure) -> Array:
     share = load_share(bench.mechanism, bench.model)
-    return share.usage(share.range(bench.limits.from_zero)[1])
+    return share.use(bench.limits.from_zero)
 
 
 _PIECES: Mapping[Subject, tuple[Extreme, Callable[[Bench, Measure], Array]]] = {
