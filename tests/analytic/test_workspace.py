@@ -193,12 +193,12 @@ def test_loads_against_limits():
 
 def test_stacks_are_pulled_below_no_voltage():
     """Of -70 to 70 V half the stroke is contraction: as much tension as compression, against what the stack allows."""
-    even = replace(STACK, voltage_low=-70.0, voltage_high=70.0, bias=None, preload=None, tensile_limit=0.01)
+    even = replace(STACK, voltage_low=-70.0, voltage_high=70.0, bias=None, preload=None, tensile_limit=0.001)
     share, limits = load_share(guide(even), lumped(guide(even))), stroke_limits(guide(even)).from_zero
     least, largest = share.range(limits)
     assert least[0] == pytest.approx(-largest[0], rel=1e-9)
     assert largest[0] == pytest.approx(0.5 * share.stroke.values[0, 0] * 20e-6, rel=1e-9)
-    assert share.use(limits)[0] == pytest.approx(-least[0] / 0.01, rel=1e-9)
+    assert share.use(limits)[0] == pytest.approx(-least[0] / 0.001, rel=1e-9)
     assert ["times what its limits allow" in each.what for each in share.pulled(limits)] == [True]
     unknown = replace(even, tensile_limit=None)
     told = load_share(guide(unknown), lumped(guide(unknown))).pulled(limits)

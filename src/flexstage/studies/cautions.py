@@ -64,14 +64,14 @@ def _stack_defaults(mechanism: Mechanism) -> Iterator[Finding]:
 
 def _ground_default(mechanism: Mechanism) -> Iterator[Finding]:
     """What the ground is taken as, where a requirement asks for drift."""
-    if any(line.subject is Subject.DRIFT for line in requirements(mechanism)):
-        try:
-            ground = ground_of(mechanism)
-        except DesignError:
-            return  # the requirement says what is missing
-        if not ground.stated:
-            advice = f'Drift rests on it: ground = "{ground.material}"'
-            yield Finding("ground", f"it is taken as {ground.material}: {ground.source}", advice)
+    try:
+        asked = any(line.subject is Subject.DRIFT for line in requirements(mechanism))
+        ground = ground_of(mechanism) if asked else None
+    except DesignError:
+        return  # the requirement says what is missing
+    if ground is not None and not ground.stated:
+        advice = f'Drift rests on it: ground = "{ground.material}"'
+        yield Finding("ground", f"it is taken as {ground.material}: {ground.source}", advice)
 
 
 def _shared_stacks(mechanism: Mechanism) -> dict[str, Piezo]:
