@@ -81,7 +81,7 @@ def test_an_unknown_entry_of_the_catalogue_is_all_that_is_told() -> None:
         ('"30 mm"', '"nan mm"', ["parts.wire.length", "not finite"]),
         ('"30 mm"', '"-30 mm"', ["parts.wire.length", "-30 mm", "greater than 0 mm"]),
         ('"30 mm"', '"0 mm"', ["parts.wire.length", "0 mm", "greater than 0 mm"]),
-        ('"30 mm"', "0x" + "f" * 300, ["parts.wire.length", "many digits"]),
+        ('"30 mm"', "0x" + "f" * 300, ["parts.wire.length", "more than 64 bits"]),
         ('"30 mm"', '"1e300 mm"', ["parts.wire.length", "1e300 mm", "nothing that is made", "exponent"]),
         ('"30 mm"', '"1e-300 mm"', ["parts.wire.length", "1e-300 mm", "nothing that is made", "exponent"]),
         ('along = "z"', "along = [0, 0, 1e-200]", ["along", "of length 1e-200"]),
@@ -110,7 +110,7 @@ def test_an_unknown_entry_of_the_catalogue_is_all_that_is_told() -> None:
         ("[bodies.platform]", "[parts.wire]\n[bodies.platform]", ["line 18", "stands twice"]),
         ("[place]", "x = " + "[" * 2000 + "]" * 2000 + "\n[place]", ["characters", "4000"]),
         ("[place]", "x = " + "[" * 1500 + "]" * 1500 + "\n[place]", ["nests too deeply"]),
-        ("[place]", "x = " + "9" * 3990 + "\n[place]", ["links.x", "many digits", "a table"]),
+        ("[place]", "x = " + "9" * 3990 + "\n[place]", ["links.x", "more than 64 bits"]),
         ("[place]", "[links]\na.b.c.d = 1\n[place]", ["links.a", "not known"]),
     ],
 )

@@ -5,14 +5,16 @@ from __future__ import annotations
 import os
 import re
 import tomllib
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from flexstage.base.finding import DesignError, refuse
+from flexstage.base.finding import DesignError, Finding, refuse, require
 
 LARGEST = 5_000_000
 """Bytes of the largest file that is read: a thousand times a usual design."""
 LONGEST_LINE = 4_000
+_LEAST, _MOST = -(2**63), 2**63 - 1
 
 
 def read_text(path: str | os.PathLike[str]) -> str:
@@ -51,12 +53,23 @@ def parse_toml(text: str, where: str) -> dict[str, Any]:
             what = f"it has {len(line)} characters, at most {LONGEST_LINE} are allowed"
             raise refuse(f"{where}: line {number}", what, "Break it into several lines")
     try:
-        return tomllib.loads(text)
+        tree = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         raise _not_toml(where, str(error)) from None
     except (RecursionError, ValueError) as error:
         reason = "it nests too deeply" if isinstance(error, RecursionError) else "a number in it has too many digits"
         raise refuse(where, reason, "Check that this is a design file") from None
+    require(Finding(f"{where}: {key}", "this whole number has more than 64 bits", "Give a smaller one") for key in _vast(tree, ""))
+    return tree
+
+
+def _vast(value: Any, where: str) -> Iterator[str]:
+    """Keys of whole numbers beyond the 64 bits that TOML promises."""
+    if isinstance(value, int) and not _LEAST <= value <= _MOST:
+        yield where
+    members = value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ()
+    for key, item in members:
+        yield from _vast(item, f"{where}.{key}" if where else str(key))
 
 
 def _reason(error: OSError | ValueError) -> str:
