@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from flexstage.analysis.modes import modes
+from flexstage.analysis.random_response import Spectrum, random_response
 from flexstage.analysis.response import default_frequencies
 from flexstage.mechanism.mechanism import ModalDamping
 from flexstage.readings.linear.model import Channel, Contribution, LinearModel
@@ -128,3 +129,13 @@ def test_modes_that_nearly_repeat_are_passed_once() -> None:
     np.testing.assert_allclose(both, one, rtol=1e-7)
     alone = default_frequencies(model, (1.0 / (20.0 * np.pi), 10.0 / (2.0 * np.pi)), damping=ModalDamping(0.01))
     assert np.min(np.diff(np.log(alone))) > 1e-9
+
+
+def test_modes_that_repeat_are_integrated_over_once() -> None:
+    """As many panels for equal posts as for one, whatever their basis; and the same motion of the platform."""
+    posts = [beside_oscillators(1, 3.5), *(beside_oscillators(4, 3.5, turn) for turn in _turns(10))]
+    push, band, law = {"platform.fx": Spectrum(1.0)}, (0.01, 2.0), ModalDamping(0.01)
+    found = [random_response(each, ("platform.x",), push, band, damping=law) for each in posts]
+    for each in found[1:]:
+        np.testing.assert_allclose(each.frequencies, found[0].frequencies, rtol=1e-9)
+        np.testing.assert_allclose(each.rms, found[0].rms, rtol=1e-9)

@@ -49,6 +49,17 @@ def test_the_end_is_found_where_moment_and_force_add(side):
     assert found.nominal == pytest.approx(np.hypot(32.0 * moment / (np.pi * 8.0), np.sqrt(3.0) * 4.0 / (3.0 * np.pi)), rel=1e-12)
 
 
+def test_a_leaf_loaded_at_its_tip_both_ways_bears_both_moments_at_its_root():
+    """A cantilever of length L under F_y and F_z at its second end: 6 F_y L / (b t^2) + 6 F_z L / (t b^2), both at the first end."""
+    leaf = Leaf("m", length=40.0, thickness=1.0, width=10.0)
+    along, across = 3.0, 2.0
+    found = stress(leaf, STEEL, load(fy=along, fz=across, my=-20.0 * across, mz=20.0 * along))
+    shear = 1.5 * np.hypot(along, across) / 10.0
+    bending = 6.0 * along * 40.0 / 10.0 + 6.0 * across * 40.0 / 100.0
+    assert found.nominal == pytest.approx(np.sqrt(bending**2 + 3.0 * shear**2), rel=1e-9)
+    assert found.position == pytest.approx(-20.0, rel=1e-12)
+
+
 def test_moments_about_both_axes_add_as_vectors_in_a_round_neck():
     found = stress(Neck("m", thickness=1.0, profile=Circular(5.0)), STEEL, load(my=3.0, mz=4.0))
     assert found.nominal == pytest.approx(32.0 * 5.0 / np.pi, rel=1e-13)

@@ -135,6 +135,15 @@ def repeated(values: Array, gap: float = _REPEATED) -> list[list[int]]:
     return groups
 
 
+def averaged(values: Array, groups: list[list[int]]) -> Array:
+    """Every value (k,) as the mean of its group's.
+
+    >>> averaged(np.array([1.0, 3.0, 5.0]), [[0, 1], [2]]).tolist()
+    [2.0, 2.0, 5.0]
+    """
+    return np.concatenate([np.full(len(group), np.mean(values[group])) for group in groups])
+
+
 def _aligned(platform: Array, solved: Eigen, groups: list[list[int]], weights: Array) -> tuple[Eigen, list[int]]:
     """Turn the basis of repeated modes so that their platform shapes separate along the axes; and how many of each group move the platform.
 

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from flexstage.analysis.modes import averaged, repeated
 from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array
 from flexstage.mechanism.mechanism import Damping
@@ -151,13 +152,20 @@ def _panels(model: LinearModel, law: Damping, spectra: Mapping[str, Spectrum], b
     """Ends of the panels (k,) in Hz, for all designs of a batch."""
     solved = eigen(model)
     natural = np.sqrt(solved.values) / (2.0 * np.pi)
-    width = np.maximum(modal_ratios(model, solved, law), 1e-9)
-    around = natural[..., None] * (1.0 + width[..., None] * _OFFSETS)
+    rows = (part.reshape(-1, natural.shape[-1]) for part in np.broadcast_arrays(natural, modal_ratios(model, solved, law)))
+    around = np.concatenate([_around(*each) for each in zip(*rows, strict=True)])
     low, high = band
     coarse = np.geomspace(low, high, 2 + int(_PANELS_PER_DECADE * np.log10(high / low)))
     knots = [np.asarray(item.frequencies) for item in spectra.values() if item.frequencies is not None]
     ends = np.concatenate([coarse, around[np.isfinite(around)].ravel(), *knots])
     return np.unique(np.concatenate([[low, high], ends[(ends > low) & (ends < high)]]))
+
+
+def _around(natural: Array, ratios: Array) -> Array:
+    """Ends of panels around the resonances of one design; modes that repeat are one, at their mean."""
+    groups = repeated(natural**2)
+    width = np.maximum(averaged(ratios, groups), 1e-9)
+    return (averaged(natural, groups)[:, None] * (1.0 + width[:, None] * _OFFSETS)).ravel()
 
 
 def quadrature(ends: Array) -> tuple[Array, Array]:

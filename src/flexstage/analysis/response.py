@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from flexstage.analysis.modes import repeated
+from flexstage.analysis.modes import averaged, repeated
 from flexstage.base.finding import refuse
 from flexstage.base.number import Array, distinct, first_design
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Damping
@@ -77,17 +77,12 @@ def default_frequencies(model: LinearModel, band: tuple[float, float] | None = N
         raise refuse("stage", "the model has no mass, so it has no resonances to choose frequencies by", "Pass the frequencies")
     ratios = modal_ratios(model, solved, damping_law(model, damping))
     groups = repeated(first_design(solved.values, 1))
-    natural, width = _means(natural, groups), np.maximum(_means(first_design(ratios, 1), groups), 1e-6)
+    natural, width = averaged(natural, groups), np.maximum(averaged(first_design(ratios, 1), groups), 1e-6)
     low, high = band if band is not None else (natural[0] / 50.0, 2.0 * natural[min(_MODES_SHOWN, len(natural)) - 1])
     around = (natural[:, None] * (1.0 + width[:, None] * np.tan(_ANGLES))).ravel()
     coarse = np.geomspace(low, high, 1 + max(2, round(40.0 * float(np.log10(high / low)))))
     inner = np.concatenate([natural, around])
     return distinct(np.concatenate([coarse, inner[(inner > low) & (inner < high * (1.0 - 1e-9))]]))
-
-
-def _means(values: Array, groups: list[list[int]]) -> Array:
-    """Every value as the mean of its group's."""
-    return np.concatenate([np.full(len(group), np.mean(values[group])) for group in groups])
 
 
 def _checked(frequencies: Array) -> Array:
