@@ -17,7 +17,7 @@ from flexstage.mechanism.path import complete, replaced
 from flexstage.mechanism.pattern import Facing, Pattern, Polar
 from flexstage.parts.body import Body, Solid, owner_of, solid_frame
 from flexstage.parts.gauge import Gauge, Positive
-from flexstage.parts.mass import MassProperties, combined, mass_properties, within
+from flexstage.parts.mass import MassProperties, drawn_solids, mass_properties, united, within
 from flexstage.parts.material import Material
 from flexstage.parts.part import Part, is_actuator, material_of
 from flexstage.spatial.frame import Frame, axes, identity, turn_z
@@ -166,7 +166,9 @@ def _expanded(key: _Same) -> Assembly:
     links = {link.name: link for link in _links(mechanism, placed)}
     drawn = tuple(_bodies(mechanism, placed))
     lent = _by_owner(drawn)
-    bodies = {item.name: _placed_body((item, *lent.get(item.name, ())), links) for item in drawn if item.body.of is None}
+    bodies = {
+        item.name: _placed_body((item, *lent.get(item.name, ())), links, mechanism.materials) for item in drawn if item.body.of is None
+    }
     ground = {address: solid for item in lent.get(GROUND, ()) for address, solid in item.solids()}
     return Assembly(bodies, links, dict(_gauges(mechanism)), _actuators(links), dict(_points(drawn)), ground)
 
@@ -215,9 +217,12 @@ class _DrawnLink:
 
 def _bodies(mechanism: Mechanism, placed: tuple[_Copy, ...]) -> Iterator[_DrawnBody]:
     for name, body in mechanism.bodies.items():
-        yield _DrawnBody(name, body, mass_properties(body, mechanism.materials), identity())
+        yield _DrawnBody(name, body, mass_properties(body, mechanism.materials, name), identity())
     units = {unit: mechanism.units[unit].bodies for _, unit, _ in placed}
-    masses = {unit: {name: mass_properties(body, mechanism.materials) for name, body in bodies.items()} for unit, bodies in units.items()}
+    masses = {
+        unit: {name: mass_properties(body, mechanism.materials, f"{unit}/{name}") for name, body in bodies.items()}
+        for unit, bodies in units.items()
+    }
     for copy, unit, frame in placed:
         for name, body in units[unit].items():
             yield _DrawnBody(f"{copy}/{name}", body, masses[unit][name], frame)
@@ -295,11 +300,10 @@ def departed(mechanism: Mechanism, link: Link, owners: tuple[str, ...]) -> tuple
     return link, part
 
 
-def _placed_body(drawn: tuple[_DrawnBody, ...], links: Mapping[str, PlacedLink]) -> PlacedBody:
+def _placed_body(drawn: tuple[_DrawnBody, ...], links: Mapping[str, PlacedLink], materials: Mapping[str, Material]) -> PlacedBody:
     """The first body, with what the others lend it."""
     name, body, frame = drawn[0].name, drawn[0].body, drawn[0].frame
-    masses = [mass for item in drawn if (mass := item.mass()) is not None]
-    mass = combined(masses) if len(masses) > 1 else masses[0] if masses else None
+    mass = _mass(drawn, materials)
     if body.reference is not None:
         reference = frame.point(stack(body.reference))
     elif mass is not None:
@@ -308,6 +312,13 @@ def _placed_body(drawn: tuple[_DrawnBody, ...], links: Mapping[str, PlacedLink])
         joints = [link.frame.position for link in links.values() if name in link.joins]
         reference = sum(joints, np.zeros(3)) / len(joints) if joints else frame.position
     return PlacedBody(name, body, frame, reference, mass, dict(solid for item in drawn for solid in item.solids()))
+
+
+def _mass(drawn: tuple[_DrawnBody, ...], materials: Mapping[str, Material]) -> MassProperties | None:
+    masses = [mass for item in drawn if (mass := item.mass()) is not None]
+    if len(masses) > 1:
+        return united([solid for item in drawn for solid in drawn_solids(item.body, materials, item.name, item.frame)])
+    return masses[0] if masses else None
 
 
 def _actuators(links: Mapping[str, PlacedLink]) -> dict[str, str]:

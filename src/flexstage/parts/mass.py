@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,7 +10,8 @@ import numpy as np
 from flexstage.base.number import Array, Number, stack
 from flexstage.parts.body import Block, Body, Cylinder, Imported, Inertia, Solid, solid_frame
 from flexstage.parts.material import Material
-from flexstage.spatial.frame import Frame
+from flexstage.parts.union import Drawn, Moments, common_moments
+from flexstage.spatial.frame import Frame, identity
 
 
 @dataclass(frozen=True, eq=False)
@@ -22,10 +23,11 @@ class MassProperties:
     inertia: Array
 
 
-def mass_properties(body: Body, materials: Mapping[str, Material]) -> MassProperties | None:
+def mass_properties(body: Body, materials: Mapping[str, Material], name: str = "") -> MassProperties | None:
     """Mass properties of a body, `None` if it states none and has no solids.
 
-    Solids add up by the parallel-axis theorem, J = sum J_i + m_i (|r|^2 I - r r^T).
+    Solids add up by the parallel-axis theorem, J = sum J_i + m_i (|r|^2 I - r r^T); what they have in common weighs once. Where that cannot
+    be weighed, raises `DesignError`, which calls the body by its `name`.
 
     >>> block = Block("steel", size=(0.1, 0.1, 0.01))
     >>> steel = Material(young=200e9, poisson=0.3, density=7750.0)
@@ -38,7 +40,39 @@ def mass_properties(body: Body, materials: Mapping[str, Material]) -> MassProper
         return MassProperties(np.asarray(body.mass), centre, inertia)
     if not body.solids:
         return None
-    return combined([solid_properties(solid, materials[solid.material].density) for solid in body.solids.values()])
+    return united(drawn_solids(body, materials, name, identity()))
+
+
+def drawn_solids(body: Body, materials: Mapping[str, Material], name: str, frame: Frame) -> list[Drawn]:
+    """The solids of a body by their addresses, with their densities, drawn in a frame.
+
+    >>> steel = Material(young=200e9, poisson=0.3, density=7750.0)
+    >>> drawn_solids(Body(solids={"plate": Block("steel", size=(0.1, 0.1, 0.01))}), {"steel": steel}, "platform", identity())[0].name
+    'platform.plate'
+    """
+    prefix = f"{name}." if name else ""
+    return [Drawn(f"{prefix}{key}", solid, materials[solid.material].density, frame) for key, solid in body.solids.items()]
+
+
+def united(solids: Sequence[Drawn]) -> MassProperties:
+    """Mass properties of the union of solids, in the frame that theirs stand in.
+
+    >>> half = Block("steel", size=(1.0, 1.0, 1.0))
+    >>> float(united([Drawn("a", half, 2.0, identity()), Drawn("b", half, 2.0, identity())]).mass)
+    2.0
+    """
+    own = [within(solid_properties(each.solid, each.density), each.frame) for each in solids]
+    return combined([*own, *(_of_moments(density, moments) for density, moments in common_moments(solids))])
+
+
+def _of_moments(density: Number, moments: Moments) -> MassProperties:
+    """Mass properties of a region from its volume and moments: J = rho (tr S I - S) about its centre."""
+    safe = np.where(np.real(moments.volume) == 0.0, 1.0, moments.volume)
+    centre = moments.first / safe[..., None]
+    central = moments.second - moments.first[..., :, None] * centre[..., None, :]
+    spread = np.trace(central, axis1=-2, axis2=-1)[..., None, None] * np.eye(3) - central
+    weight = np.asarray(density)
+    return MassProperties(weight * moments.volume, centre, weight[..., None, None] * spread)
 
 
 def combined(items: list[MassProperties]) -> MassProperties:

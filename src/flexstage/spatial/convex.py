@@ -107,3 +107,21 @@ def distance(first: Array, second: Array) -> float:
     rest = matrix @ weights - np.array([0.0, 0.0, 0.0, 1.0])
     size = float(np.linalg.norm(rest[:3]))
     return 0.0 if -rest[3] <= 1e-15 or size <= 1e-15 else scale * float(-rest[3]) / size
+
+
+def separations(ones: tuple[Array, Array, Array], others: tuple[Array, Array, Array]) -> Array:
+    """A lower bound (k,) of the distances of boxes, given as rotations (k, 3, 3), centres and half sizes (k, 3) [m]; below 0: they meet.
+
+    >>> box = np.eye(3)[None], np.zeros((1, 3)), np.full((1, 3), 0.5)
+    >>> other = np.eye(3)[None], np.array([[2.0, 0.0, 0.0]]), np.full((1, 3), 0.5)
+    >>> separations(box, other).tolist()
+    [1.0]
+    """
+    (turn, centre, half), (face, middle, size) = ones, others
+    edges = [np.cross(turn[..., i], face[..., j]) for i, j in product(range(3), range(3))]
+    directions = np.stack([*(turn[..., i] for i in range(3)), *(face[..., i] for i in range(3)), *edges], axis=1)
+    lengths = np.linalg.norm(directions, axis=-1, keepdims=True)
+    units = np.divide(directions, lengths, out=np.zeros_like(directions), where=lengths > 1e-6)
+    between = np.abs(np.einsum("kai,ki->ka", units, middle - centre))
+    own = np.einsum("kaj,kj->ka", np.abs(units @ turn), half) + np.einsum("kaj,kj->ka", np.abs(units @ face), size)
+    return np.max(np.where(lengths[..., 0] > 1e-6, between - own, -np.inf), axis=1)

@@ -134,7 +134,7 @@ def reading_findings(mechanism: Mechanism) -> tuple[Finding, ...]:
             read(mechanism)
         except DesignError as error:
             found += error.findings
-    return tuple(found)
+    return tuple(dict.fromkeys(found))
 
 
 def part_cautions(mechanism: Mechanism) -> tuple[Finding, ...]:

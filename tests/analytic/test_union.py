@@ -1,0 +1,190 @@
+"""Outlines of one body that overlap weigh once: closed forms, the CAD kernel's volumes, derivatives, batches, refusals."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from netgen import occ
+
+from flexstage.base.finding import DesignError
+from flexstage.cases.registry import case
+from flexstage.mechanism.expand import expand
+from flexstage.parts.body import Block, Body, Cylinder, Solid
+from flexstage.parts.mass import MassProperties, mass_properties
+from flexstage.parts.material import Material
+from flexstage.readings.solid.draw import drawn, moved
+from flexstage.readings.solid.stage_pieces import stage_pieces
+
+DENSITY = 1000.0
+MATERIALS = {"steel": Material(young=200e9, poisson=0.3, density=DENSITY), "lead": Material(young=16e9, poisson=0.4, density=11340.0)}
+ROUND_OFF = 1e-12
+"""Relative: sums of some hundred terms of one size."""
+
+
+def weighed(*solids: Solid) -> MassProperties:
+    found = mass_properties(Body(solids={f"s{number}": solid for number, solid in enumerate(solids)}), MATERIALS)
+    assert found is not None
+    return found
+
+
+def same(found: MassProperties, wanted: MassProperties) -> bool:
+    size = float(np.max(np.abs(wanted.inertia)))
+    return (
+        bool(np.isclose(found.mass, wanted.mass, rtol=ROUND_OFF))
+        and np.allclose(found.centre, wanted.centre, rtol=0.0, atol=ROUND_OFF)
+        and np.allclose(found.inertia, wanted.inertia, rtol=0.0, atol=ROUND_OFF * size)
+    )
+
+
+def block(low: tuple[float, ...], high: tuple[float, ...], **more: Any) -> Block:
+    x, y, z = (b - a for a, b in zip(low, high, strict=True))
+    u, v, w = (0.5 * (a + b) for a, b in zip(low, high, strict=True))
+    return Block("steel", (x, y, z), (u, v, w), **more)
+
+
+UNIT = block((0.0, 0.0, 0.0), (0.01, 0.01, 0.01))
+
+L_SHAPE = (block((0.0, 0.0, 0.0), (0.03, 0.01, 0.02)), block((0.0, 0.0, 0.0), (0.01, 0.04, 0.02)))
+L_PARTS = (block((0.0, 0.0, 0.0), (0.03, 0.01, 0.02)), block((0.0, 0.01, 0.0), (0.01, 0.04, 0.02)))
+CROSS = (block((-0.02, -0.005, 0.0), (0.02, 0.005, 0.01)), block((-0.005, -0.03, 0.0), (0.005, 0.03, 0.01)))
+CROSS_PARTS = (
+    CROSS[0],
+    block((-0.005, 0.005, 0.0), (0.005, 0.03, 0.01)),
+    block((-0.005, -0.03, 0.0), (0.005, -0.005, 0.01)),
+)
+STAR = tuple(block(tuple(-0.005 * s for s in a), tuple(0.005 * s for s in a)) for a in ((4.0, 1.0, 1.0), (1.0, 4.0, 1.0), (1.0, 1.0, 4.0)))
+STAR_PARTS = (
+    STAR[0],
+    *(block((-0.005, a, -0.005), (0.005, b, 0.005)) for a, b in ((0.005, 0.02), (-0.02, -0.005))),
+    *(block((-0.005, -0.005, a), (0.005, 0.005, b)) for a, b in ((0.005, 0.02), (-0.02, -0.005))),
+)
+FRAME = block((-0.02, -0.02, 0.0), (0.02, 0.02, 0.01), hole=(0.03, 0.03))
+HALF = block((-0.02, -0.02, 0.0), (0.0, 0.02, 0.01))
+HALF_FRAME = (
+    HALF,
+    *(block((0.0, a, 0.0), (0.02, b, 0.01)) for a, b in ((0.015, 0.02), (-0.02, -0.015))),
+    block((0.015, -0.015, 0.0), (0.02, 0.015, 0.01)),
+)
+TUBE = Cylinder("steel", 0.02, 0.03, bore=0.01)
+PLATE = block((-0.02, -0.02, 0.0), (0.02, 0.02, 0.01))
+BOSSED = (PLATE, *(Cylinder("steel", 0.02, size, (0.0, 0.0, z)) for size, z in ((0.015, -0.0075), (0.005, 0.0125))))
+
+
+@pytest.mark.parametrize(
+    ("overlapping", "apart"),
+    [
+        (L_SHAPE, L_PARTS),
+        (CROSS, CROSS_PARTS),
+        (STAR, STAR_PARTS),
+        ((UNIT, UNIT, UNIT), (UNIT,)),
+        ((UNIT, block((0.002, 0.002, 0.002), (0.004, 0.004, 0.004))), (UNIT,)),
+        ((FRAME, block((-0.003, -0.003, 0.0), (0.003, 0.003, 0.01))), (FRAME, block((-0.003, -0.003, 0.0), (0.003, 0.003, 0.01)))),
+        ((FRAME, HALF), HALF_FRAME),
+        ((TUBE, replace(TUBE, at=(0.0, 0.0, 0.01))), (replace(TUBE, length=0.04, at=(0.0, 0.0, 0.005)),)),
+        ((TUBE, Cylinder("steel", 0.01, 0.03)), (replace(TUBE, bore=None),)),
+        ((TUBE, Cylinder("steel", 0.005, 0.05)), (TUBE, Cylinder("steel", 0.005, 0.05))),
+        ((PLATE, replace(TUBE, bore=None)), BOSSED),
+    ],
+    ids=["L", "cross", "star", "identical", "nested", "in a hole", "over a hole", "tubes", "pin in a bore", "rod in a bore", "boss"],
+)
+def test_unions_weigh_as_their_parts_do(overlapping: tuple[Solid, ...], apart: tuple[Solid, ...]) -> None:
+    assert same(weighed(*overlapping), weighed(*apart))
+    assert same(weighed(*reversed(overlapping)), weighed(*apart))
+
+
+def test_two_cubes_turned_by_an_eighth_share_an_octagon() -> None:
+    found = weighed(Block("steel", (0.01, 0.01, 0.01)), Block("steel", (0.01, 0.01, 0.01), along=(1.0, 1.0, 0.0)))
+    assert np.isclose(found.mass, DENSITY * 1e-6 * (2.0 - 2.0 * (np.sqrt(2.0) - 1.0)), rtol=ROUND_OFF)
+
+
+def _thrown(seed: int) -> list[Block]:
+    chance = np.random.default_rng([seed, 11])
+    solids: list[Block] = []
+    for _ in range(4):
+        x, y, z = (float(each) for each in chance.uniform(0.01, 0.03, size=3))
+        at, along = (tuple(float(each) for each in row) for row in (chance.uniform(-0.01, 0.01, size=3), chance.normal(size=3)))
+        up = tuple(float(each) for each in np.cross(along, chance.normal(size=3)))
+        hole = (0.5 * x, 0.6 * y) if chance.random() < 0.4 else None
+        solids.append(Block("steel", (x, y, z), at, hole, along, up))  # type: ignore[arg-type]
+    return solids
+
+
+@pytest.mark.parametrize("seed", [*range(4), *(pytest.param(seed, marks=pytest.mark.full) for seed in range(4, 40))])
+def test_unions_have_the_volume_and_centre_that_cad_gives_them(seed: int) -> None:
+    solids = _thrown(seed)
+    found = weighed(*solids)
+    stage = replace(case("parallelogram"), bodies={"platform": Body(solids={f"s{n}": solid for n, solid in enumerate(solids)})})
+    shown = replace(stage, materials={**stage.materials, "steel": MATERIALS["steel"]}, gauges={}, requirements={})
+    shapes = [moved(drawn(piece.form), piece.frame) for piece in stage_pieces(shown).bodies["platform"]]
+    fused = occ.Fuse(shapes)
+    assert np.isclose(float(found.mass) / DENSITY * 1e9, fused.mass, rtol=1e-8)  # the CAD kernel integrates with its own tolerance
+    centre = np.array([fused.center.x, fused.center.y, fused.center.z])
+    assert np.allclose(1e3 * found.centre, centre, rtol=0.0, atol=1e-6)
+
+
+def _tilted(x: Any) -> Block:
+    return Block("steel", (0.02, 0.005, 0.003), (x, 0.001, 0.002), along=(1.0, 0.2, 0.1), up=(-0.1, 0.0, 1.0))
+
+
+def test_derivatives_pass_through_the_union() -> None:
+    def mass_at(x: Any) -> MassProperties:
+        return weighed(block((-0.015, -0.005, -0.005), (0.015, 0.005, 0.005)), _tilted(x))
+
+    step, at = 1e-6, 0.01
+    exact, low, high = mass_at(at + 1e-30j), mass_at(at - step), mass_at(at + step)
+    for name in ("mass", "centre", "inertia"):
+        slope = np.imag(getattr(exact, name)) / 1e-30
+        assert np.allclose(slope, (getattr(high, name) - getattr(low, name)) / (2.0 * step), rtol=1e-6, atol=1e-6 * np.max(np.abs(slope)))
+
+
+def test_a_batch_weighs_as_its_designs_do() -> None:
+    places = np.array([0.0, 0.004, 0.009, 0.014, 0.02, 0.024, 0.03])  # within, cut by different faces, apart
+    base = block((-0.015, -0.005, -0.005), (0.015, 0.005, 0.005))
+    together = weighed(base, _tilted(places))
+    for number, place in enumerate(places):
+        alone = weighed(base, _tilted(float(place)))
+        assert np.isclose(together.mass[number], alone.mass, rtol=ROUND_OFF)
+        assert np.allclose(together.inertia[number], alone.inertia, rtol=0.0, atol=ROUND_OFF * np.max(np.abs(alone.inertia)))
+
+
+@pytest.mark.parametrize(
+    ("solids", "volume", "exact"),
+    [
+        ((block((-0.02, -0.005, -0.005), (0.02, 0.005, 0.005)), Cylinder("steel", 0.012, 0.03)), None, False),
+        ((Cylinder("steel", 0.01, 0.04), Cylinder("steel", 0.01, 0.04, along=(1.0, 0.0, 0.0))), 16.0 / 3.0 * 125.0, False),
+        ((UNIT, replace(UNIT, material="lead", size=(0.004, 0.004, 0.004))), 64.0, True),
+    ],
+)
+def test_what_cannot_be_weighed_is_refused_with_its_volume(solids: tuple[Solid, ...], volume: float | None, *, exact: bool) -> None:
+    with pytest.raises(DesignError) as told:
+        weighed(*solids)
+    (finding,) = told.value.findings
+    assert "s1" in finding.what
+    assert "state the body's mass" in finding.advice
+    if volume is not None:
+        said = float(finding.what.split(" mm^3")[0].split()[-1])
+        assert np.isclose(said, volume, rtol=1e-3 if exact else 5e-3)
+
+
+def test_outlines_that_only_touch_or_pass_each_other_are_let_be() -> None:
+    beside = Cylinder("steel", 0.01, 0.03, at=(0.0156, 0.0156, 0.0))  # its box meets the block's, it does not
+    assert np.isclose(
+        weighed(block((-0.01, -0.012, -0.01), (0.012, 0.012, 0.01)), beside).mass, DENSITY * (0.022 * 0.024 * 0.02 + np.pi * 25e-6 * 0.03)
+    )
+    assert np.isclose(weighed(UNIT, block((0.01, 0.0, 0.0), (0.02, 0.01, 0.01))).mass, DENSITY * 2e-6)
+
+
+def test_what_is_lent_to_a_body_weighs_once_with_it() -> None:
+    stage = case("double-triangle")
+    pad = stage.units["vertical"].bodies["pad"]
+    name, solid = next(iter(pad.solids.items()))
+    twice = replace(pad, solids={**pad.solids, f"{name} again": solid})
+    unit = replace(stage.units["vertical"], bodies={**stage.units["vertical"].bodies, "pad": twice})
+    doubled = expand(replace(stage, units={**stage.units, "vertical": unit})).bodies["platform"].mass
+    single = expand(stage).bodies["platform"].mass
+    assert doubled is not None
+    assert single is not None
+    assert np.isclose(doubled.mass, single.mass, rtol=ROUND_OFF)
