@@ -1,7 +1,7 @@
 """Union: what outlines of one body have in common, so that it weighs once.
 
 The union of solids follows by inclusion and exclusion from their intersections, each solid being its outer form less its hole. Those
-of blocks, however they are turned, are polytopes; with a cylinder they are exact where it lies within the other's sides, or is cut square.
+of blocks, however they are turned, are polytopes; with cylinders they are prisms where all axes are parallel to faces that cross them.
 Which corners a polytope has is told from the real parts of one design; their places are formulas, so that derivatives by complex step and
 batches pass through. Designs of a batch that have other corners are told for themselves.
 """
@@ -21,7 +21,7 @@ from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array, Number, stack
 from flexstage.parts.body import Cylinder, Imported, Solid, solid_frame
 from flexstage.spatial.convex import separations
-from flexstage.spatial.frame import Frame
+from flexstage.spatial.frame import Frame, axes
 
 _FLUSH = 1e-9
 """Faces nearer than this share of the solids' size coincide."""
@@ -360,66 +360,170 @@ def _corners(normals: Array, offsets: Array, planes: Sequence[int], within: floa
 
 
 def _round_moments(cell: _Cell, scale: float) -> _Values:
-    """Moments of a region with round faces, of one design: a cylinder cut square, or nothing."""
-    empty = (np.zeros(()), np.zeros(3), np.zeros((3, 3)))
+    """Moments of a region with round faces, of one design: a prism along the rounds' common axis, or nothing."""
     within = _FLUSH * scale
     try:
-        kept = _narrowest(cell.rounds, within)
-        if kept is None:
-            return empty
-        ends = _ends(cell, kept, within)
+        found = _prism(cell, within)
     except _InexactError:
         volume = _by_numbers(cell, scale)
-        if volume <= _FLUSH * scale**3:
-            return empty
-        raise _InexactError(volume) from None
-    if ends is None:
-        return empty
-    low, high = ends
-    size, radius = high - low, kept.radius
-    volume = np.pi * radius**2 * size
-    along = kept.axis[:, None] * kept.axis[None, :]
-    second = volume * (size**2 / 12.0 * along + radius**2 / 4.0 * (np.eye(3) - along))
-    return _shifted((np.asarray(volume), np.zeros(3), second), kept.point + 0.5 * (low + high) * kept.axis)
+        if volume > _FLUSH * scale**3:
+            raise _InexactError(volume) from None
+        found = None
+    if found is None:
+        return np.zeros(()), np.zeros(3), np.zeros((3, 3))
+    frame, (low, high), (area, first, second) = found
+    size, middle = high - low, 0.5 * (low + high)
+    moments = np.zeros((3, 3), dtype=np.result_type(area, size, frame.rotation))
+    moments[0, 0] = area * size**3 / 12.0
+    moments[1:, 1:] = second * size
+    flat = np.concatenate([np.zeros(1), first * size])
+    turn = frame.rotation
+    own = (np.asarray(area * size), turn @ flat, turn @ moments @ turn.T)
+    return _shifted(own, frame.position + middle * turn[:, 0])
 
 
-def _narrowest(rounds: Sequence[_Round], within: float) -> _Round | None:
-    """The round that lies within all others; `None` where two do not meet."""
-    kept = rounds[0]
-    for other in rounds[1:]:
-        if np.linalg.norm(np.cross(np.real(kept.axis), np.real(other.axis))) > _FLUSH:
-            raise _InexactError(0.0)
-        arm = np.real(other.point - kept.point)
-        apart = float(np.linalg.norm(arm - (arm @ np.real(kept.axis)) * np.real(kept.axis)))
-        here, there = float(np.real(kept.radius)), float(np.real(other.radius))
-        if apart >= here + there - within:
-            return None
-        if apart + min(here, there) > max(here, there) + within:
-            raise _InexactError(0.0)
-        kept = kept if here <= there else other
-    return kept
+def _prism(cell: _Cell, within: float) -> tuple[Frame, tuple[Array, Array], _Values] | None:
+    """A region as a prism: its frame (x along the axis), where it begins and ends, and the moments of its section; `None`: it is empty.
 
-
-def _ends(cell: _Cell, kept: _Round, within: float) -> tuple[Array, Array] | None:
-    """Where square planes cut a cylinder, measured along its axis; `None` where nothing is left. Other planes must pass it by."""
-    slopes = cell.normals @ kept.axis
-    offsets = cell.offsets - cell.normals @ kept.point
-    real = np.real(slopes)
-    square = np.sqrt(np.maximum(0.0, 1.0 - real**2)) < _FLUSH
-    cuts = offsets / np.where(square, slopes, 1.0)
-    above, below = np.flatnonzero(square & (real > 0.0)), np.flatnonzero(square & (real < 0.0))
-    high = cuts[above[np.argmin(np.real(cuts[above]))]]
-    low = cuts[below[np.argmax(np.real(cuts[below]))]]
+    Raises `_InexactError` where rounds are not parallel, or a plane cuts them aslant.
+    """
+    axis = cell.rounds[0].axis
+    if any(np.linalg.norm(np.cross(np.real(axis), np.real(other.axis))) > _FLUSH for other in cell.rounds[1:]):
+        raise _InexactError(0.0)
+    frame = Frame(axes(axis), cell.rounds[0].point)
+    slopes = cell.normals @ frame.rotation
+    offsets = cell.offsets - cell.normals @ frame.position
+    steep = np.real(slopes[:, 0])
+    square, sideways = np.hypot(np.real(slopes[:, 1]), np.real(slopes[:, 2])) < _FLUSH, np.abs(steep) < _FLUSH
+    cuts = offsets / np.where(square, slopes[:, 0], 1.0)
+    above, below = np.flatnonzero(square & (steep > 0.0)), np.flatnonzero(square & (steep < 0.0))
+    high, low = cuts[above[np.argmin(np.real(cuts[above]))]], cuts[below[np.argmax(np.real(cuts[below]))]]
     if np.real(high - low) <= within:
         return None
-    for slope, offset in zip(real[~square], np.real(offsets[~square]), strict=True):
-        sideways = float(np.real(kept.radius)) * np.sqrt(max(0.0, 1.0 - slope**2))
-        reach = (slope * float(np.real(low)), slope * float(np.real(high)))
-        if min(reach) - sideways >= offset - within:
+    circles = [((item.point - frame.position) @ frame.rotation[:, 1:], item.radius) for item in cell.rounds]
+    lines = [(slopes[number, 1:], offsets[number]) for number in np.flatnonzero(sideways)]
+    for slope, offset in zip(np.real(slopes[~square & ~sideways]), np.real(offsets[~square & ~sideways]), strict=True):
+        across, radius = float(np.hypot(slope[1], slope[2])), float(np.real(cell.rounds[0].radius))
+        ends = (slope[0] * float(np.real(low)), slope[0] * float(np.real(high)))
+        if min(ends) - radius * across >= offset - within:
             return None
-        if max(reach) + sideways > offset + within:
+        if max(ends) + radius * across > offset + within:
             raise _InexactError(0.0)
-    return low, high
+    section = _section(circles, lines, within)
+    return None if section is None else (frame, (low, high), section)
+
+
+_Circle: TypeAlias = tuple[Array, Array]
+_Line: TypeAlias = tuple[Array, Array]
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(24)
+"""Exact to rounding for the trigonometric and other polynomials of second moments along an arc or a side."""
+
+
+def _section(circles: Sequence[_Circle], lines: Sequence[_Line], within: float) -> _Values | None:
+    """Moments of the region within all circles (centre, radius) and lines (normal, offset): by Green, along what is left of each."""
+    circles, lines = _needed(circles, lines, within)
+    sides = [
+        *(_along_line(number, circles, lines) for number in range(len(lines))),
+        *(piece for number in range(len(circles)) for piece in _along_circle(number, circles, lines)),
+    ]
+    paths = [side for side in sides if side is not None]
+    area = sum((0.5 * np.sum(turn) for _, turn in paths), np.zeros(()))
+    if np.real(area) <= within * within or not paths:
+        return None
+    first = sum((np.sum(places * turn[:, None], axis=0) / 3.0 for places, turn in paths), np.zeros(2))
+    second = sum((np.einsum("nx,ny,n->xy", places, places, turn) / 4.0 for places, turn in paths), np.zeros((2, 2)))
+    return np.asarray(area), first, second
+
+
+def _needed(circles: Sequence[_Circle], lines: Sequence[_Line], within: float) -> tuple[list[_Circle], list[_Line]]:
+    """The circles and lines that differ from those before them."""
+    rounds: list[_Circle] = []
+    for centre, radius in circles:
+        same = [np.abs(np.real([*(centre - other), radius - size])).max() < within for other, size in rounds]
+        rounds += [] if any(same) else [(centre, radius)]
+    straight: list[_Line] = []
+    for normal, offset in lines:
+        same = [np.abs(np.real(normal - other)).max() < _FLUSH and abs(np.real(offset - size)) < within for other, size in straight]
+        straight += [] if any(same) else [(normal, offset)]
+    return rounds, straight
+
+
+def _along_line(number: int, circles: Sequence[_Circle], lines: Sequence[_Line]) -> tuple[Array, Array] | None:
+    """Places along the part of a line that bounds the region, and p x dp there."""
+    normal, offset = lines[number]
+    along = np.stack([-normal[1], normal[0]])
+    lows, highs = [], []
+    for centre, radius in circles:
+        reach = radius**2 - (offset - normal @ centre) ** 2
+        if np.real(reach) <= 0.0:
+            return None
+        half, middle = np.sqrt(reach), along @ centre
+        lows.append(middle - half)
+        highs.append(middle + half)
+    for other, (slope, limit) in enumerate(lines):
+        rate, left = slope @ along, limit - offset * (slope @ normal)
+        if other == number:
+            continue
+        if abs(np.real(rate)) < _FLUSH:
+            if np.real(left) < 0.0:
+                return None
+        elif np.real(rate) > 0.0:
+            highs.append(left / rate)
+        else:
+            lows.append(left / rate)
+    low, high = lows[int(np.argmax(np.real(lows)))], highs[int(np.argmin(np.real(highs)))]
+    if np.real(high - low) <= 0.0:
+        return None
+    places = offset * normal + (0.5 * (low + high) + 0.5 * (high - low) * _NODES)[:, None] * along
+    return places, offset * 0.5 * (high - low) * _WEIGHTS
+
+
+def _along_circle(number: int, circles: Sequence[_Circle], lines: Sequence[_Line]) -> Iterator[tuple[Array, Array]]:
+    """Places along the arcs of a circle that bound the region, and p x dp there."""
+    centre, radius = circles[number]
+    limits = [(normal, (offset - normal @ centre) / radius) for normal, offset in lines]
+    for other, (middle, size) in enumerate(circles):
+        arm = centre - middle
+        apart = np.sqrt(np.sum(arm * arm))
+        if other == number:
+            continue
+        if np.real(apart) < _FLUSH * np.real(radius):
+            limits.append((np.array([1.0, 0.0]), np.asarray(2.0 if np.real(radius) <= np.real(size) else -2.0)))
+        else:
+            limits.append((arm / apart, (size**2 - apart**2 - radius**2) / (2.0 * radius * apart)))
+    for low, high in _allowed(limits):
+        angles = 0.5 * (low + high) + 0.5 * (high - low) * _NODES
+        outward = np.column_stack([np.cos(angles), np.sin(angles)])
+        yield centre + radius * outward, (radius**2 + radius * (outward @ centre)) * 0.5 * (high - low) * _WEIGHTS
+
+
+def _allowed(limits: Sequence[tuple[Array, Array]]) -> Iterator[tuple[Array, Array]]:
+    """Intervals of the angle where e(angle) . direction <= limit holds for all limits."""
+    cut = [(direction, limit) for direction, limit in limits if np.real(limit) < 1.0]
+    if any(np.real(limit) <= -1.0 for _, limit in cut):
+        return
+    if not cut:
+        yield np.asarray(-np.pi), np.asarray(np.pi)
+        return
+    banned = []
+    for direction, limit in cut:
+        middle, half = _angle(direction), np.arccos(limit)
+        low = middle - half
+        turns = 2.0 * np.pi * np.floor((np.real(low) + np.pi) / (2.0 * np.pi))
+        banned.append((low - turns, middle + half - turns))
+    banned.sort(key=lambda ends: float(np.real(ends[0])))
+    reached = max([banned[0][1], *(high - 2.0 * np.pi for _, high in banned)], key=np.real)  # the last may reach round to the first
+    for low, high in [*banned[1:], (banned[0][0] + 2.0 * np.pi, banned[0][1] + 2.0 * np.pi)]:
+        if np.real(low) > np.real(reached):
+            yield reached, low
+        reached = high if np.real(high) > np.real(reached) else reached
+
+
+def _angle(direction: Array) -> Array:
+    """The angle of a direction, analytic in its components."""
+    base = np.arctan2(np.real(direction[1]), np.real(direction[0]))
+    turned = direction[1] * np.cos(base) - direction[0] * np.sin(base)
+    return base + turned / np.sqrt(np.sum(direction * direction))
 
 
 _SIDES = 64
