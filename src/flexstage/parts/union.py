@@ -73,9 +73,16 @@ class _Cell:
         return _Cell(np.concatenate(normals, axis=-2), np.concatenate(offsets, axis=-1), self.rounds + other.rounds)
 
 
-_Sum: TypeAlias = list[tuple[float, _Cell]]
-"""Convex regions with their signs."""
-_Group: TypeAlias = tuple[tuple[int, ...], _Sum]
+@dataclass(frozen=True, eq=False)
+class _Region:
+    """A convex region with its sign and its moments."""
+
+    sign: float
+    cell: _Cell
+    moments: Moments
+
+
+_Group: TypeAlias = tuple[tuple[int, ...], list[_Region]]
 """Solids, and the regions that they have in common."""
 
 
@@ -106,14 +113,14 @@ def common_moments(solids: Sequence[Drawn]) -> Iterator[tuple[Number, Moments]]:
     scale = max(float(np.max(np.abs(_first(drawn.frame.position, 1)) + np.max(_first(_size(drawn.solid), 1)))) for drawn in seen)
     problems: list[Finding] = []
     groups: list[_Group] = []
-    for pair in near:
+    for pair, where in near.items():
         try:
-            found = _product(cells[pair[0]], cells[pair[1]], scale)
+            found = _product(cells[pair[0]], cells[pair[1]], where, scale)
         except _InexactError as crossing:
             problems += _refused(seen, pair, crossing.volume)
             continue
         if found and _differ(seen, pair):
-            problems += _mixed(seen, pair, sum(sign * float(_first(_moments(cell, scale).volume, 0)) for sign, cell in found))
+            problems += _mixed(seen, pair, sum(float(np.max(region.sign * np.real(region.moments.volume))) for region in found))
         elif found:
             groups.append((pair, found))
     require(problems)
@@ -121,10 +128,7 @@ def common_moments(solids: Sequence[Drawn]) -> Iterator[tuple[Number, Moments]]:
 
 
 def _alternating(
-    seen: Sequence[Drawn],
-    cells: Mapping[int, _Sum],
-    groups: list[_Group],
-    scale: float,
+    seen: Sequence[Drawn], cells: Mapping[int, list[tuple[float, _Cell]]], groups: list[_Group], scale: float
 ) -> Iterator[tuple[Number, Moments]]:
     """Inclusion and exclusion: pairs count -1, triples +1, and so on."""
     pairs = {group for group, _ in groups}
@@ -132,14 +136,14 @@ def _alternating(
     while groups:
         larger: list[_Group] = []
         for group, found in groups:
-            for sign, cell in found:
-                moments = _moments(cell, scale)
-                weight = sign * (-1.0) ** (len(group) - 1)
+            for region in found:
+                weight, moments = region.sign * (-1.0) ** (len(group) - 1), region.moments
                 yield seen[group[0]].density, Moments(weight * moments.volume, weight * moments.first, weight * moments.second)
             for other in range(group[-1] + 1, len(seen)):
                 if all((member, other) in pairs for member in group):
+                    where = np.any(np.stack(np.broadcast_arrays(*(region.moments.volume != 0.0 for region in found))), axis=0)
                     try:
-                        wider = _product(found, cells[other], scale)
+                        wider = _product([(region.sign, region.cell) for region in found], cells[other], where, scale)
                     except _InexactError as crossing:
                         require(_refused(seen, (*group, other), crossing.volume))
                         continue
@@ -152,38 +156,51 @@ def _alternating(
         groups = larger
 
 
-def _near(seen: Sequence[Drawn]) -> list[tuple[int, int]]:
-    """Pairs whose boxes overlap, in any design of a batch."""
-    if len(seen) < 2:
-        return []
+def _near(seen: Sequence[Drawn]) -> dict[tuple[int, int], Array]:
+    """Pairs whose boxes overlap, and in which designs of a batch."""
     frames = [solid_frame(drawn.solid).within(drawn.frame) for drawn in seen]
-    turns, centres, halves = (
-        [frame.rotation for frame in frames], [frame.position for frame in frames], [0.5 * _size(drawn.solid) for drawn in seen],
-    )  # fmt: skip
-    shape = np.broadcast_shapes(*(each.shape[:-2] for each in turns), *(each.shape[:-1] for each in (*centres, *halves)))
-    turns, centres, halves = (
-        np.stack([np.broadcast_to(np.real(each), (*shape, *each.shape[each.ndim - depth :])).reshape(-1, *[3] * depth) for each in items])
-        for items, depth in ((turns, 2), (centres, 1), (halves, 1))
-    )
-    first, second = np.triu_indices(len(seen), k=1)
-    reach = np.linalg.norm(halves, axis=-1)
-    close = np.linalg.norm(centres[first] - centres[second], axis=-1) < reach[first] + reach[second]
-    pairs = [(int(one), int(other)) for one, other in zip(first[close.any(axis=1)], second[close.any(axis=1)], strict=True)]
-    return [
-        (one, other)
-        for one, other in pairs
-        if np.any(
-            separations((turns[one], centres[one], halves[one]), (turns[other], centres[other], halves[other]))
-            < -_FLUSH * (reach[one] + reach[other])
-        )
+    boxes = [
+        (np.real(frame.rotation), np.real(frame.position), 0.5 * np.real(_size(drawn.solid)))
+        for frame, drawn in zip(frames, seen, strict=True)
     ]
+    reach = [np.linalg.norm(half, axis=-1) for _, _, half in boxes]
+    middle = np.array([_first(centre, 1) for _, centre, _ in boxes]).reshape(-1, 3)
+    loose = np.array([_spread(centre) + float(np.max(far)) for (_, centre, _), far in zip(boxes, reach, strict=True)])
+    close = np.linalg.norm(middle[:, None] - middle, axis=-1) < loose[:, None] + loose
+    found: dict[tuple[int, int], Array] = {}
+    for one, other in np.argwhere(np.triu(close, k=1)).tolist():
+        shape = np.broadcast_shapes(
+            *(turn.shape[:-2] for turn, _, _ in (boxes[one], boxes[other])),
+            *(each.shape[:-1] for _, *box in (boxes[one], boxes[other]) for each in box),
+        )
+        first, second = (_flat(boxes[number], shape) for number in (one, other))
+        gaps = separations(first, second).reshape(shape)
+        meet = gaps < -_FLUSH * (reach[one] + reach[other])
+        if np.any(meet):
+            found[(one, other)] = meet
+    return found
+
+
+def _flat(box: tuple[Array, Array, Array], shape: tuple[int, ...]) -> tuple[Array, Array, Array]:
+    """A box' axes, centre and half sizes with one batch axis."""
+    turn, centre, half = box
+    return (
+        np.broadcast_to(turn, (*shape, 3, 3)).reshape(-1, 3, 3),
+        np.broadcast_to(centre, (*shape, 3)).reshape(-1, 3),
+        np.broadcast_to(half, (*shape, 3)).reshape(-1, 3),
+    )
+
+
+def _spread(centres: Array) -> float:
+    """How far the centres of a batch lie from the first of them at most [m]."""
+    return float(np.max(np.linalg.norm(centres - _first(centres, 1), axis=-1)))
 
 
 def _size(solid: Solid) -> Array:
     return stack((solid.length, solid.diameter, solid.diameter)) if isinstance(solid, Cylinder) else stack(solid.size)
 
 
-def _cells(drawn: Drawn) -> _Sum:
+def _cells(drawn: Drawn) -> list[tuple[float, _Cell]]:
     """A solid as a sum of convex regions: its outer form, less its hole."""
     solid, frame = drawn.solid, solid_frame(drawn.solid).within(drawn.frame)
     if isinstance(solid, Cylinder):
@@ -208,14 +225,15 @@ def _box(frame: Frame, size: Array) -> _Cell:
     return _Cell(np.concatenate([normals, -normals], axis=-2), offsets)
 
 
-def _product(first: _Sum, second: _Sum, scale: float) -> _Sum:
-    """The common regions of two sums, without those that are empty in every design."""
-    found: _Sum = []
+def _product(first: Sequence[tuple[float, _Cell]], second: Sequence[tuple[float, _Cell]], where: Array, scale: float) -> list[_Region]:
+    """The common regions of two sums in the designs `where` they may meet, without those that are empty in every design."""
+    found: list[_Region] = []
     for (sign, one), (other_sign, other) in ((a, b) for a in first for b in second):
         cell = one.common(other)
-        if np.any(np.real(_moments(cell, scale).volume) > 0.0):
-            found.append((sign * other_sign, cell))
-    total = sum((sign * np.real(_moments(cell, scale).volume) for sign, cell in found), np.zeros(()))
+        moments = _moments(cell, where, scale)
+        if np.any(np.real(moments.volume) > 0.0):
+            found.append(_Region(sign * other_sign, cell, moments))
+    total = sum((region.sign * np.real(region.moments.volume) for region in found), np.zeros(()))
     return found if np.any(np.abs(total) > (_FLUSH * scale) * scale**2) else []
 
 
@@ -244,11 +262,11 @@ def _volume(cubic_metres: float) -> str:
 # Moments of regions
 
 
-def _moments(cell: _Cell, scale: float) -> Moments:
-    """Moments of a region, design by design where its corners differ."""
+def _moments(cell: _Cell, where: Array, scale: float) -> Moments:
+    """Moments of a region in the designs `where`, nothing in the others; design by design where its corners differ."""
     rounds = cell.rounds
     arrays = [cell.offsets[..., 0], *(each for item in rounds for each in (item.axis[..., 0], item.point[..., 0], item.radius))]
-    shape = np.broadcast_shapes(*(each.shape for each in arrays))
+    shape = np.broadcast_shapes(where.shape, *(each.shape for each in arrays))
     kind = np.result_type(cell.normals, cell.offsets, *(each for item in rounds for each in (item.axis, item.point, item.radius)))
     count = int(np.prod(shape, dtype=int))
     normals = np.broadcast_to(cell.normals, (*shape, *cell.normals.shape[-2:])).reshape(count, -1, 3)
@@ -262,7 +280,7 @@ def _moments(cell: _Cell, scale: float) -> Moments:
         for item in rounds
     ]
     volume, first, second = np.zeros(count, kind), np.zeros((count, 3), kind), np.zeros((count, 3, 3), kind)
-    pending = np.arange(count)
+    pending = np.flatnonzero(np.broadcast_to(where, shape))
     while pending.size:
         number = pending[0]
         if flat:
