@@ -18,6 +18,7 @@ from flexstage.analysis.loop.simulation.noise import noises, series
 from flexstage.analysis.loop.simulation.run import simulate
 from flexstage.analysis.random_response import Rate, Spectrum
 from flexstage.base.finding import DesignError
+from flexstage.base.number import Table
 from flexstage.cases.parallelogram import parallelogram
 from tests.laws.shared import ideal, lumped
 
@@ -93,3 +94,20 @@ def test_the_simulated_variance_is_that_of_the_budget(kind):
     mean, deviation = np.mean(squares, axis=0), np.std(squares, axis=0, ddof=1) / 8.0**0.5
     assert np.all(np.abs(mean - expected) < 4.0 * deviation + 0.01 * expected), (mean / expected, deviation / expected)
     assert np.all(deviation < 0.1 * expected)
+
+
+@pytest.mark.parametrize("density", [1e-13, 1e-11])
+def test_readings_move_from_sample_to_sample_as_the_budget_says(density):
+    """Of the loop without rounding, all its noise simulated: eight seeds, their mean within four deviations."""
+    closed = small_loop()
+    sensors = Table({"S": replace(closed.plant.hardware.sensors["S"], noise_density=density)})
+    plant = replace(closed.plant, hardware=replace(closed.plant.hardware, sensors=sensors))
+    closed = loop(plant, closed.controller)
+    floor, count = {"ground.x": Spectrum(np.array([1e-18, 1e-21]), np.array([5.0, 1500.0]))}, 4000
+    budget = noise_budget(closed, floor, (0.5 * RATE / count, 0.5 * RATE), ("relative.x",))
+    known = replace(machine(plant, closed.controller, motions=("relative.x",)), resolution=np.zeros(1))
+    readings = (simulate(known, np.zeros((count, 1)), noises(plant, floor, count, seed)).readings[500:, 0] for seed in range(8))
+    squares = [np.mean(np.diff(each) ** 2) for each in readings]
+    expected = (budget.changes[0] * sensors["S"].resolution) ** 2
+    assert abs(np.mean(squares) - expected) < 4.0 * np.std(squares, ddof=1) / 8.0**0.5 + 0.01 * expected
+    assert bool(budget.slow) == (expected < 1e-20)  # half a step of 0.2 nm

@@ -7,24 +7,32 @@ import pytest
 
 from flexstage.analysis.loop.closed import loop
 from flexstage.analysis.loop.reduced import reduced, resonances
+from flexstage.analysis.loop.simulation.result import others
 from flexstage.analysis.workspace.drive import drive
 from flexstage.base.finding import DesignError
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.cases.parallelogram import parallelogram
+from flexstage.present.display import value_with_unit
+from flexstage.present.documents.loop import loop_body
+from flexstage.present.tables.loop import step_table
+from flexstage.present.tables.loop_error import noise_table
 from flexstage.studies.loop.choices import Compensation, ControllerKind, StackKind
+from flexstage.studies.loop.runs import rest_rms
 from flexstage.studies.loop.settle import settled, usual_rate
 from flexstage.studies.loop.setup import (
     Amplifying,
     Controlling,
+    Floor,
     Gauging,
     HystereticStacks,
     LoopSetup,
     Motion,
+    Shaking,
     SineMotion,
     StepMotion,
 )
 from flexstage.studies.loop.stacks import stacks_of, swept
-from flexstage.studies.loop.study import loop_study
+from flexstage.studies.loop.study import LoopStudy, loop_study
 
 CALM = Controlling(integral=300.0)
 
@@ -119,3 +127,74 @@ def test_the_same_seed_gives_the_same_noise() -> None:
     other = loop_study(parallelogram(), LoopSetup(**{**setup.__dict__, "seed": 1})).runs[0].simulated.true_error
     np.testing.assert_array_equal(first, again)
     assert np.any(first != other)
+
+
+def resting(density: float) -> LoopStudy:
+    """A gauge of 0.5 nm on a floor that sways at 1 to 5 Hz, which the loop follows."""
+    swaying = Floor(x=Shaking(acceleration=(0.023, 0.023), frequencies=(1.0, 5.0)))
+    return loop_study(
+        parallelogram(), LoopSetup(controller=CALM, floor=swaying, gauges=Gauging(noise=density, resolution=5e-10), seconds=0.05)
+    )
+
+
+def test_slow_rounding_is_told_and_its_rms_simulated() -> None:
+    """The loop waits until the reading moves by a step: rounding is no white noise, and what the budget says is far off."""
+    found = resting(1e-14)
+    assert found.noise.slow == ("S",)
+    assert found.noise.changes[0] < 0.01
+    assert found.resting is not None
+    assert 2.0 * found.noise.rms[0] < found.resting.low[0] < found.resting.rms[0] < found.resting.high[0] < 5e-10
+    assert any("rounding is slow" in each.what for each in found.cautions)
+    table = noise_table(found)
+    assert [column.head for column in table.columns] == [
+        "motion",
+        "rms",
+        "interval",
+        "as if white",
+        "floor",
+        "gauge noise",
+        "gauge rounding",
+    ]
+    assert any("counted as white noise, and is none" in note for note in table.notes)
+    document = loop_body(found)["noise"]
+    assert document["rounding_is_white"] is False
+    assert document["simulated_interval"] == [found.resting.low, found.resting.high]
+    assert document["simulated_rms"] is found.resting.rms
+
+
+def test_rounding_in_noise_of_its_step_is_white() -> None:
+    """Noise of half a step and more leaves the budget as it is, and simulations hold it."""
+    found = resting(1e-11)
+    assert not found.noise.slow
+    assert found.resting is None
+    repeated = rest_rms(found.settled, found.control, found.closed)
+    assert repeated.low[0] < found.noise.rms[0] < repeated.high[0]
+    assert [column.head for column in noise_table(found).columns][-1] == "simulated"
+    assert loop_body(found)["noise"]["simulated_interval"] is None
+
+
+def test_steps_tell_what_every_other_axis_does() -> None:
+    """A stage of one loop turns and sways as well: the table names the most of both, the document all."""
+    found = loop_study(parallelogram(), LoopSetup(controller=CALM, seconds=0.05))
+    run = found.runs[0]
+    told = others(run.simulated, "x")
+    assert set(told) == {"y", "z", "rx", "ry", "rz"}
+    for name, (value, unit) in told.items():
+        assert unit == ("rad" if name.startswith("r") else "m")
+        assert value == np.max(np.abs(run.simulated.motion(f"relative.{name}")))
+    turned = max((value, name) for name, (value, unit) in told.items() if unit == "rad")
+    assert turned[0] > 1e-9
+    table = step_table(found.runs)
+    (cell,) = (row[[column.head for column in table.columns].index("others move")].text for row in table.rows)
+    assert cell.endswith(f"{value_with_unit(turned[0], 'rad', 3)} {turned[1]}")
+    assert loop_body(found)["runs"][0]["step"]["others"][turned[1]]["largest"] == turned[0]
+
+
+def test_others_count_departures_from_what_was_asked() -> None:
+    """Of six loops: along the axis itself nothing, along others the error."""
+    setup = LoopSetup(controller=Controlling(integral=5.0), trajectory=StepMotion(by=Motion(x=1e-6)), seconds=0.02)
+    found = loop_study(double_triangle(), setup)
+    seen = found.runs[0].simulated
+    told = others(seen, "x")
+    assert set(told) == {"y", "z", "rx", "ry", "rz"}
+    assert told["y"][0] == np.max(np.abs(seen.true_error[:, 1]))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -24,6 +24,7 @@ from flexstage.readings.linear.model import Channel
 from flexstage.spatial.frame import COMPONENTS
 
 _PER_DECADE = 6
+_HALF = 0.5
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,8 +32,9 @@ class NoiseBudget:
     """Mean squares of outputs by source, which are uncorrelated and add up; of a sampled loop, at the samples.
 
     `squares` (p, k) [unit^2] by `outputs` and `sources`. `density` (f, p, k) is one-sided [unit^2/Hz] over `frequencies` (f,) [Hz]: what
-    the floor does at its own frequencies, what white sources do up to half the sampling rate, aliased. `notes` say how each kind was
-    taken and what was not stated.
+    the floor does at its own frequencies, what white sources do up to half the sampling rate, aliased. `changes` (g,) is by how much each
+    of the `gauges` moves from one sample to the next, rms, in its steps, rounding left out (NaN: it rounds nothing). `notes` say how each
+    kind was taken and what was not stated.
     """
 
     outputs: tuple[Channel, ...]
@@ -41,7 +43,20 @@ class NoiseBudget:
     frequencies: Array
     density: Array
     band: tuple[float, float]
+    gauges: tuple[str, ...]
+    changes: Array
     notes: tuple[str, ...]
+
+    @property
+    def slow(self) -> tuple[str, ...]:
+        """Gauges whose rounding is no white noise, where that matters: their readings move by less than half a step a sample.
+
+        Errors of successive samples of a Gaussian series with changes of s steps correlate by about exp(-2 pi^2 s^2), 0.7 % at a half
+        (Widrow & Kollar, Quantization Noise, 2008).
+        """
+        counts = np.any(self.squares > 0.0, axis=0)
+        felt = {each.channel for each, some in zip(self.sources, counts, strict=True) if some and each.kind is Kind.ROUNDING}
+        return tuple(name for name, change in zip(self.gauges, self.changes, strict=True) if change < _HALF and name in felt)
 
     @property
     def rms(self) -> Array:
@@ -62,7 +77,7 @@ class NoiseBudget:
         return Matrix(values, tuple(channel.name for channel in self.outputs), tuple(kind.value for kind in self.kinds), units)
 
     def to_json(self) -> dict[str, Any]:
-        """The budget as {outputs, units, sources, mean_square, rms, band_hz, notes}."""
+        """The budget as {outputs, units, sources, mean_square, rms, band_hz, steps_per_sample, rounding_is_white, notes}."""
         return {
             "outputs": [channel.name for channel in self.outputs],
             "units": [channel.unit for channel in self.outputs],
@@ -70,6 +85,8 @@ class NoiseBudget:
             "mean_square": self.squares.tolist(),
             "rms": self.rms.tolist(),
             "band_hz": list(self.band),
+            "steps_per_sample": {name: float(each) for name, each in zip(self.gauges, self.changes, strict=True) if not np.isnan(each)},
+            "rounding_is_white": not self.slow,
             "notes": list(self.notes),
         }
 
@@ -94,24 +111,50 @@ def noise_budget(
     require_stable(closed, "rms values")
     require([*spectrum_findings(floor, band), *_findings(floor)] if floor else _findings(floor))
     outputs = tuple(f"relative.{name}" for name in COMPONENTS) if outputs is None else outputs
-    channels = picked(closed.system, (), outputs).outputs
-    white, sources = white_system(closed, outputs)
+    gauges = closed.plant.gauges
+    seen, count = (*outputs, *(name for name in gauges if name not in outputs)), len(outputs)
+    both, sources = white_system(closed, seen)
+    white, readings = (picked(both, both.input_names, names) for names in (outputs, gauges))
     squares, listed = _summed(mean_squares(white), sources)
-    spectra = driving(closed, floor, outputs)
-    response = Disturbed(closed, tuple(spectra), outputs)
+    spectra = driving(closed, floor, seen)
     nodes, weights = quadrature(_panels(closed, floor, band))
-    gains = np.abs(response.at(nodes)) ** 2
+    every = np.abs(Disturbed(closed, tuple(spectra), seen).at(nodes)) ** 2
+    gains = every[:, :count]
     densities = np.stack([spectrum.at(nodes) for spectrum in spectra.values()], axis=-1) if spectra else np.zeros((len(nodes), 0))
     shares = np.einsum("f,fpm,fm->pm", weights, gains, densities)
-    return NoiseBudget(
-        outputs=channels,
+    driven = np.einsum("f,fgm,fm->g", weights, every[:, [seen.index(name) for name in gauges]], _differences(closed, nodes) * densities)
+    changes = _changes(closed, readings, sources, driven)
+    budget = NoiseBudget(
+        outputs=white.outputs,
         sources=(*listed, *(_source(name) for name in spectra)),
         squares=np.hstack([squares, shares]),
         frequencies=nodes,
         density=np.concatenate([_white_density(white, sources, nodes), gains * densities[:, None, :]], axis=-1),
         band=band,
-        notes=tuple(_notes(closed, outputs)),
+        gauges=gauges,
+        changes=changes,
+        notes=(),
     )
+    return replace(budget, notes=tuple(_notes(closed, outputs, budget)))
+
+
+def _differences(closed: Loop, frequencies: Array) -> Array:
+    """|e^{j omega T} - 1|^2 (f, 1): what is left of a square in the difference of successive samples."""
+    return 4.0 * np.sin(np.pi * frequencies * (closed.step or 0.0))[:, None] ** 2
+
+
+def _changes(closed: Loop, readings: System, sources: tuple[Source, ...], driven: Array) -> Array:
+    """Rms changes (g,) of readings from sample to sample, in their steps: white sources through y[k] - y[k-1], and what is `driven`."""
+    gauges = closed.plant.gauges
+    steps = np.array([closed.plant.hardware.sensors.get(name, Sensor()).resolution for name in gauges])
+    if closed.step is None:
+        return np.full(len(gauges), np.nan)
+    states, count = len(readings.A), len(gauges)
+    A = np.block([[readings.A, np.zeros((states, count))], [readings.C, np.zeros((count, count))]])
+    B, C = np.vstack([readings.B, readings.D]), np.hstack([readings.C, -np.eye(count)])
+    moving = [source.kind not in (Kind.ROUNDING, Kind.CONVERTER) for source in sources]
+    squares = np.sum(mean_squares(replace(readings, A=A, B=B, C=C))[:, moving], axis=1) + driven
+    return np.sqrt(squares) / np.where(steps > 0.0, steps, np.nan)
 
 
 def _summed(squares: Array, sources: tuple[Source, ...]) -> tuple[Array, tuple[Source, ...]]:
@@ -192,7 +235,7 @@ def _findings(floor: Mapping[str, Spectrum]) -> list[Finding]:
     return [Finding(name, "the ground has no such motion", nearest(name, known)) for name in floor if name not in known]
 
 
-def _notes(closed: Loop, outputs: tuple[str, ...]) -> Iterator[str]:
+def _notes(closed: Loop, outputs: tuple[str, ...], budget: NoiseBudget) -> Iterator[str]:
     """How each kind of source was taken, and what was not stated."""
     given = closed.plant
     sensors = {name: given.hardware.sensors.get(name, Sensor()) for name in given.gauges}
@@ -205,12 +248,13 @@ def _notes(closed: Loop, outputs: tuple[str, ...]) -> Iterator[str]:
         yield f"{', '.join(bare)}: neither bandwidth nor filter is stated; noise is taken to end at {end}"
     if len(bare) < len(sensors) - len(silent) and closed.step is not None:
         yield "gauge noise is white before the gauge's lag and filter; what passes them above half the sampling rate is aliased, exactly"
-    still = [name for name, sensor in sensors.items() if closed.step is not None and _too_still(sensor, closed.step)]
-    if still:
-        half = 1e9 * 0.5 * max(sensors[name].resolution for name in still)
+    if budget.slow:
+        half = 1e9 * 0.5 * max(sensors[name].resolution for name in budget.slow)
+        most = max(change for name, change in zip(budget.gauges, budget.changes, strict=True) if name in budget.slow)
         yield (
-            f"rounding counts as noise, as if readings moved by half a step by themselves; the noise stated of {', '.join(still)} moves "
-            f"them less: unless the floor does, a reading at rest may stay off by half a step, {half:.3g} nm, which no loop sees"
+            f"rounding is counted as white noise, and is none: from sample to sample the readings of {', '.join(budget.slow)} move by "
+            f"{most:.2g} steps rms at most, where half a step is needed; it is slow and correlated, and a reading at rest may stay off "
+            f"by half a step, {half:.3g} nm, which no loop sees"
         )
     if closed.step is None and any(sensor.resolution for sensor in sensors.values()):
         yield "a continuous loop rounds nothing: rounding of gauges and converters is left out"
@@ -220,9 +264,3 @@ def _notes(closed: Loop, outputs: tuple[str, ...]) -> Iterator[str]:
     unbounded = list(driving(closed, {}, outputs))
     if unbounded:
         yield f"the amplifiers of {', '.join(unbounded)} have no lag: their noise is counted over the band only"
-
-
-def _too_still(sensor: Sensor, step: float) -> bool:
-    """Whether a gauge's noise is below half its step rms, so that rounding is not noise (Widrow & Kollar, Quantization Noise, 2008)."""
-    density = sensor.noise_density or 0.0
-    return density * np.sqrt(min(0.5 / step, 0.5 * np.pi * sensor.bandwidth)) < 0.5 * sensor.resolution

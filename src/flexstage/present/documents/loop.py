@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from flexstage.analysis.loop.margins import ChannelMargins, Edge
+from flexstage.analysis.loop.simulation.result import others
 from flexstage.present.documents.envelope import Document
 from flexstage.present.tables.loop_error import settled_rms
 from flexstage.studies.loop.rest import RestErrors
@@ -143,7 +144,12 @@ def _rest(found: RestErrors) -> Document:
 
 
 def _noise(found: LoopStudy) -> Document:
-    return {**found.noise.to_json(), "simulated_rms": None if found.still is None else settled_rms(found)}
+    resting = found.resting
+    return {
+        **found.noise.to_json(),
+        "simulated_rms": None if found.still is None else settled_rms(found),
+        "simulated_interval": None if resting is None else [resting.low, resting.high],
+    }
 
 
 def _hysteresis(found: LoopStudy) -> Document | None:
@@ -183,6 +189,9 @@ def run_body(test: Run) -> Document:
             "settling_s": float(figures.settling[index]),
             "overshoot": float(figures.overshoot[index]),
             "residual": float(figures.residual[index]),
+            "others": {
+                name: {"largest": value, "unit": unit} for name, (value, unit) in others(seen, seen.coordinates[index].name).items()
+            },
             "largest": np.max(np.abs(seen.true_error), axis=0),
         }
     return result

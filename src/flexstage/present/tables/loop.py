@@ -12,7 +12,7 @@ from flexstage.analysis.loop.controllers.pi import PI
 from flexstage.analysis.loop.controllers.pid import PID
 from flexstage.analysis.loop.controllers.resonant import IntegralResonant
 from flexstage.analysis.loop.disk import DiskMargin
-from flexstage.analysis.loop.simulation.result import StepFigures
+from flexstage.analysis.loop.simulation.result import Simulated, StepFigures, others
 from flexstage.present.display import NO_VALUE, number, percent, value_with_unit
 from flexstage.present.table import Cell, Column, Content, Mark, Table, build
 from flexstage.studies.loop.choices import ControllerKind
@@ -167,7 +167,10 @@ def step_table(tests: Sequence[Run]) -> Table | None:
         Column("others move"),
         "limits",
     ]
-    note = "Settled: the true error stays within 2 % of the step. Others: the largest motion along any other coordinate, of the same unit."
+    note = (
+        "Settled: the true error stays within 2 % of the step. Others: the largest motion in metres and the largest in radians along all "
+        "other axes of the platform, at any time, and along which."
+    )
     return build("Steps", heads, [tuple(_step(test, figures)) for test, figures in stepped], notes=[note])
 
 
@@ -181,10 +184,18 @@ def _step(test: Run, figures: StepFigures) -> Iterator[Content]:
     yield Cell("not", Mark.FAIL) if np.isinf(settling) else number(1e3 * settling, 4)
     yield percent(float(figures.overshoot[index]), 3)
     yield _length(float(figures.residual[index]), size, unit)
-    others = [other for other, each in enumerate(seen.coordinates) if other != index and each.unit == unit]
-    moved = float(np.max(np.abs(seen.true_error[:, others]), initial=0.0))
-    yield _length(moved, size, unit) if others else Cell(NO_VALUE, Mark.FAINT)
+    yield _others(seen, seen.coordinates[index].name)
     yield limits_text(test)
+
+
+def _others(seen: Simulated, moved: str) -> Cell:
+    """The largest motion of each unit, and its axis; what is far below an atom is rounding."""
+    known = others(seen, moved)
+    largest = {unit: max((value, name) for name, (value, each) in known.items() if each == unit) for _, unit in known.values()}
+    told = [f"{value_with_unit(value, unit, 3)} {name}" for unit, (value, name) in largest.items() if value > _NOTHING]
+    if not told:
+        return Cell("0" if known else NO_VALUE, Mark.FAINT)
+    return Cell(", ".join(told))
 
 
 def _length(value: float, size: float, unit: str) -> Cell:

@@ -17,6 +17,7 @@ from flexstage.present.table import Cell, Column, Mark, Table, build
 from flexstage.present.tables.loop import motion_cell
 from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
 from flexstage.studies.loop.rest import RestErrors
+from flexstage.studies.loop.runs import RestRms
 from flexstage.studies.loop.stacks import Stacks, Sweep
 from flexstage.studies.loop.study import LoopStudy
 
@@ -79,25 +80,36 @@ def _twist(values: Array, against: Array) -> str:
 
 def noise_table(found: LoopStudy) -> Table:
     """The rms of every coordinate at rest by kind of source, and as simulated."""
-    budget = found.noise
+    budget, resting = found.noise, found.resting
     squares = np.asarray(budget.by_kind.values)
     simulated = None if found.still is None else settled_rms(found)
-    heads = ["motion", Column("rms"), *(Column(kind.value) for kind in budget.kinds)]
-    heads += [Column("simulated")] if simulated is not None else []
+    heads = ["motion", Column("rms"), *([] if resting is None else [Column("interval"), Column("as if white")])]
+    heads += [Column(kind.value) for kind in budget.kinds]
+    heads += [Column("simulated")] if simulated is not None and resting is None else []
     rows = []
     for index, channel in enumerate(budget.outputs):
         cells = [motion_cell(float(np.sqrt(value)), channel.unit) for value in squares[index]]
-        told = [] if simulated is None else [motion_cell(float(simulated[index]), channel.unit)]
-        total = replace(motion_cell(float(budget.rms[index]), channel.unit), mark=Mark.STRONG)
-        rows.append((Cell(channel.name.removeprefix("relative."), Mark.STRONG), total, *cells, *told))
-    return build("Noise at rest", heads, rows, notes=_noise_notes(budget, found.still))
+        total = motion_cell(float(budget.rms[index]), channel.unit)
+        if resting is not None:
+            ends = (value_with_unit(float(each[index]), channel.unit, 3) for each in (resting.low, resting.high))
+            told = [motion_cell(float(resting.rms[index]), channel.unit), Cell(" to ".join(ends)), replace(total, mark=Mark.FAINT), *cells]
+        else:
+            told = [total, *cells, *([] if simulated is None else [motion_cell(float(simulated[index]), channel.unit)])]
+        rows.append((Cell(channel.name.removeprefix("relative."), Mark.STRONG), replace(told[0], mark=Mark.STRONG), *told[1:]))
+    return build("Noise at rest", heads, rows, notes=_noise_notes(budget, found.still, resting))
 
 
-def _noise_notes(budget: NoiseBudget, still: Simulated | None) -> Sequence[str]:
+def _noise_notes(budget: NoiseBudget, still: Simulated | None, resting: RestRms | None) -> Sequence[str]:
     first = "Rms of the platform's true motion against the ground; squares add up."
+    if resting is not None:
+        first = (
+            f"Rms of the platform's true motion against the ground, of {resting.count} simulations of {number(resting.seconds, 3)} s "
+            "with all noise, rounding and limits, and the interval that holds it by 95 %. Squares of the sources add up to what is told "
+            "as if rounding were white, not to the rms."
+        )
     first += f" The floor from {number(budget.band[0], 3)} to {number(budget.band[1], 4)} Hz." if Kind.FLOOR in budget.kinds else ""
     more = []
-    if still is not None:
+    if still is not None and resting is None:
         seconds = number(float(still.times[-1]), 3)
         more = [f"Simulated: {seconds} s of the same noise, rounding and limits included; chance parts it from the budget."]
     return [first, *more, *(f"{each[0].upper()}{each[1:]}." for each in budget.notes)]
@@ -105,6 +117,8 @@ def _noise_notes(budget: NoiseBudget, still: Simulated | None) -> Sequence[str]:
 
 def settled_rms(found: LoopStudy) -> Array:
     """Rms (f,) of the simulated true motion at rest."""
+    if found.resting is not None:
+        return found.resting.rms
     if found.still is None:
         return np.zeros(0)
     return np.sqrt(np.mean(found.still.true_error**2, axis=0))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import TypeVar
 
@@ -24,7 +24,7 @@ from flexstage.studies.identification import Told
 from flexstage.studies.loop.choices import Compensation, ControllerKind
 from flexstage.studies.loop.control import Control, controlled
 from flexstage.studies.loop.rest import RestErrors, rest_errors
-from flexstage.studies.loop.runs import Run, at_rest, runs
+from flexstage.studies.loop.runs import RestRms, Run, at_rest, rest_rms, runs
 from flexstage.studies.loop.settle import Settled, settled
 from flexstage.studies.loop.setup import LoopSetup
 from flexstage.studies.loop.stacks import Stacks, Sweep, stacks_of, swept
@@ -41,8 +41,9 @@ class LoopStudy:
     `closed` is the loop with the modes it feels, `growth` [1/s] that of the slowest motion with all modes below half the rate.
     `margins`, `peaks`, `disk` (of all loops at once), `bandwidths`, `curves` are at the pose; missing, as `missing` says, of a stage in
     open loop. `rest` are the errors at rest of the stage without its loop. `noise` is the budget at rest, `still` (where there is any
-    noise) a simulation of it. `stacks` are those with hysteresis, if the set-up states any, and `sweep` what they do in open loop. `runs`
-    are the simulations. `cautions` are what one should know of all this.
+    noise) a simulation of it, `resting` what several find where rounding is no white noise, so that the budget does not hold. `stacks` are
+    those with hysteresis, if the set-up states any, and `sweep` what they do in open loop. `runs` are the simulations. `cautions` are
+    what one should know of all this.
     """
 
     settled: Settled
@@ -60,6 +61,7 @@ class LoopStudy:
     rest: RestErrors
     noise: NoiseBudget
     still: Simulated | None
+    resting: RestRms | None
     stacks: Stacks | None
     sweep: Sweep | None
     runs: tuple[Run, ...]
@@ -94,6 +96,9 @@ def loop_study(mechanism: Mechanism, setup: LoopSetup | None = None, *, tell: To
     stacks = None if given.setup.hysteresis is None else stacks_of(mechanism, given.setup.hysteresis)
     is_closed = setup is None or setup.controller.kind is not ControllerKind.NONE
     tested = said.of(0.6, "simulating", lambda: runs(given, control, closed, stacks, carried))
+    noise = said.of(0.9, "noise", lambda: noise_budget(closed, given.floor, (_LOWEST, 0.5 * given.rate), _relative(given)))
+    still = at_rest(given, control, closed)
+    resting = rest_rms(given, control, closed) if noise.slow and still is not None else None
     return LoopStudy(
         settled=given,
         lost=lost,
@@ -108,12 +113,13 @@ def loop_study(mechanism: Mechanism, setup: LoopSetup | None = None, *, tell: To
         crosstalk=crosstalk(closed),
         disk=disk_margins(closed, Cut.POSE) if is_closed else None,
         rest=rest,
-        noise=said.of(0.9, "noise", lambda: noise_budget(closed, given.floor, (_LOWEST, 0.5 * given.rate), _relative(given))),
-        still=at_rest(given, control, closed),
+        noise=noise,
+        still=still,
+        resting=resting,
         stacks=stacks,
         sweep=None if stacks is None else swept(stacks),
         runs=tested,
-        cautions=(*_cautions(given), *(each for run in tested for each in run.cautions)),
+        cautions=(*_cautions(given), *_slow_rounding(noise, resting), *(each for run in tested for each in run.cautions)),
         missing=Table({} if is_closed else dict.fromkeys(("margins", "peaks", "disk", "bandwidths", "curves"), _NO_LOOP)),
     )
 
@@ -150,6 +156,16 @@ def _whole_growth(given: Settled, control: Control) -> float:
         what = verdict(whole).sentence
         raise refuse("modes", f"with all modes below half the sampling rate {what}", "Keep more of them (modes), or lower the bandwidth")
     return float(whole.system.growth)
+
+
+def _slow_rounding(noise: NoiseBudget, resting: RestRms | None) -> Iterator[Finding]:
+    """Rounding that is no white noise."""
+    if noise.slow:
+        what = f"readings of {', '.join(noise.slow)} move by less than half a step a sample: rounding is slow, no white noise"
+        told = (
+            "A reading may stay off by half a step, which nothing tells" if resting is None else "Take the simulated rms, with its interval"
+        )
+        yield Finding("gauges", what, f"{told}; a finer step, or noise of half a step, would make it white")
 
 
 def _cautions(given: Settled) -> list[Finding]:

@@ -11,6 +11,7 @@ from flexstage.base.finding import nearest, refuse
 from flexstage.base.labelled import Matrix
 from flexstage.base.number import Array
 from flexstage.readings.linear.model import Channel
+from flexstage.spatial.frame import COMPONENTS
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,6 +61,30 @@ class Simulated:
         names = [f"relative.{channel.name}" for channel in self.coordinates]
         kept = [name if name in known else f"platform.{name.partition('.')[2]}" for name in names]
         return self.reference - np.stack([self.motion(name) for name in kept], axis=-1)
+
+
+def others(found: Simulated, moved: str) -> dict[str, tuple[float, str]]:
+    """The largest motion along every axis but the one that is `moved`, and its unit: what it departs from its reference, or from rest.
+
+    All of the platform's axes that were kept count, whether the loop controls them or not, and whatever their unit.
+
+    >>> from flexstage.analysis.loop.example import integral_loop
+    >>> from flexstage.analysis.loop.simulation.machine import machine
+    >>> from flexstage.analysis.loop.simulation.run import simulate
+    >>> example = integral_loop(gain=300.0)
+    >>> list(others(simulate(machine(example.plant, example.controller), np.full((10, 1), 1e-6)), "x"))
+    ['y', 'z', 'rx', 'ry', 'rz']
+    """
+    known = {channel.name: channel.unit for channel in found.channels}
+    largest = np.max(np.abs(found.true_error), axis=0).tolist()
+    result = {
+        channel.name: (value, channel.unit) for channel, value in zip(found.coordinates, largest, strict=True) if channel.name != moved
+    }
+    for name in COMPONENTS:
+        kept = next((each for each in (f"relative.{name}", f"platform.{name}") if each in known), None)
+        if kept is not None and name != moved and name not in result:
+            result[name] = (float(np.max(np.abs(found.motion(kept)))), known[kept])
+    return result
 
 
 @dataclass(frozen=True, eq=False)
