@@ -51,12 +51,12 @@ def controller_files(path: str | os.PathLike[str], given: Machine, about: str = 
     >>> from flexstage.analysis.loop.simulation.machine import machine
     >>> example = integral_loop()
     >>> [each.name for each in controller_files("stage.c", machine(example.plant, example.controller))]
-    ['stage.h', 'stage.c']
+    ['stage.c', 'stage.h']
     """
     source = _ending(path, ".c")
     require(export_findings(path))
     program = controller_code(given, source.stem, about)
-    return {source.with_suffix(".h"): program.header, source: program.source}
+    return {source: program.source, source.with_suffix(".h"): program.header}
 
 
 def write_controller(path: str | os.PathLike[str], given: Machine, about: str = "") -> tuple[Path, Path]:
@@ -75,7 +75,7 @@ def write_controller(path: str | os.PathLike[str], given: Machine, about: str = 
     """
     files = controller_files(path, given, about)
     put_together([written(place, text) for place, text in files.items()])
-    header, source = files
+    source, header = files
     return source, header
 
 
