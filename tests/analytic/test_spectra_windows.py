@@ -7,14 +7,16 @@ import pytest
 
 from flexstage.readings.measured.bands import extents
 from flexstage.readings.measured.cluster import stabilisation
+from flexstage.readings.measured.confidence import deviations
 from flexstage.readings.measured.identify import identify
+from flexstage.readings.measured.likelihood import Fit, Modal
 from flexstage.readings.measured.lines import edges, expanded, nodes
 from flexstage.readings.measured.lscf import lscf
 from flexstage.readings.measured.record import Channel, Responses, Role, in_memory
 from flexstage.readings.measured.smear import Smear
 from flexstage.readings.measured.spectra import Segments, Window, independent_averages, spectra
 from tests.readings.identification_study import assurance, bound
-from tests.readings.synthetic_records import WIDE, Truth, truth
+from tests.readings.synthetic_records import WIDE, Truth, record, truth
 
 
 def test_white_noise_has_the_density_of_its_variance():
@@ -174,3 +176,26 @@ def test_the_bound_is_that_of_one_mode_in_closed_form():
     quality = noise**2 * np.mean(np.abs(known.response(np.arange(1.0, rate / 2.0, 0.125))) ** 2) * (2.0 * zeta) ** 2
     found = bound(known, noise, seconds, rate)[:, 0] * np.array([natural, half])
     np.testing.assert_allclose(found**2, np.array([1.0, 2.0]) * half * quality / (np.pi * seconds), rtol=0.05)
+
+
+def test_deviations_of_one_mode_are_the_closed_form():
+    """With R complex and not known, the phase takes half of what tells f away too: var(f) = var(h) = 2 h q / (pi T).
+
+    What lies outside the band is not known either, and takes as much again at most.
+    """
+    zeta, natural, seconds, noise, rate = 0.01, 100.0, 60.0, 0.1, 512.0
+    known = Truth(np.array([natural]), np.array([zeta]), np.ones((1, 1)), np.ones((1, 1)))
+    found = identify(record(known, 1, seconds=seconds, rate=rate, noise=noise))
+    half = zeta * natural
+    power = np.mean(np.abs(known.response(np.arange(1.0, rate / 2.0, 0.125))) ** 2)
+    expected = 2.0 * half * noise**2 * power * (2.0 * zeta) ** 2 / (np.pi * seconds)
+    for deviation in (found.frequency_deviations[0], natural * found.damping_deviations[0]):
+        assert 0.95 * expected < deviation**2 < 2.2 * expected
+
+
+def test_a_deviation_of_the_pole_is_one_of_frequency_and_of_damping():
+    """p = f (-z + j sqrt(1 - z^2)) with parts that deviate alike, by s: f deviates by s, z by s sqrt(1 - z^2) / f."""
+    pole = 50.0 * np.array([-0.6 + 0.8j])
+    found = deviations(Fit(Modal(pole, np.ones((1, 1), complex), np.ones((1, 1), complex)), 0.0, np.eye(3, dtype=complex), converged=True))
+    assert found.frequencies[0] == pytest.approx(np.sqrt(0.5), rel=1e-12)
+    assert found.damping[0] == pytest.approx(np.sqrt(0.5) * 0.8 / 50.0, rel=1e-12)
