@@ -102,3 +102,24 @@ def test_without_stiffness_nothing_is_met(flexstage: Command, tmp_path: Path) ->
     assert "does not hold" in frequency["reason"]
     assert not frequency["passed"]
     assert not buckling["passed"]
+
+
+def test_a_mass_without_extent_is_told_unless_it_is_meant(flexstage: Command, tmp_path: Path) -> None:
+    leaves(tmp_path, 0.1)
+    sound = (tmp_path / "stage.toml").read_text()
+    inertia = next(line for line in sound.splitlines() if line.startswith("inertia"))
+    load = '\n[payloads]\nmirror = {{ body = "platform", mass = "20 g", at = ["0 mm", "0 mm", "60 mm"]{} }}\n'
+    text = sound.replace(inertia, "") + load.format("")
+    (tmp_path / "stage.toml").write_text(text)
+    told = flexstage("modes", "stage.toml", "--json", "-").document
+    assert [each["where"] for each in told["cautions"]] == ["bodies.platform", "payloads.mirror"]
+    assert all("count as a point" in each["what"] for each in told["cautions"])
+    shares = [told["modes"][place]["platform_share"] for place in told["platform_modes"]]
+    assert len(shares) < 6
+    assert min(shares) >= 1e-3
+    (tmp_path / "stage.toml").write_text(sound.replace(inertia, "point = true") + load.format(", point = true"))
+    assert flexstage("check", "stage.toml", "--json", "-").document["cautions"] == []
+    (tmp_path / "stage.toml").write_text(sound.replace(inertia, f"{inertia}\npoint = true"))
+    ended = flexstage("check", "stage.toml")
+    assert ended.code == 2
+    assert "bodies.platform.point" in ended.err

@@ -14,6 +14,7 @@ from flexstage.mechanism.grammar import (
     RESERVED,
     ChoiceNode,
     DirectionNode,
+    FlagNode,
     ListNode,
     MatrixNode,
     Node,
@@ -78,8 +79,8 @@ def values(node: Node) -> st.SearchStrategy[Any]:
         return DIRECTIONS
     if isinstance(node, MatrixNode):
         return st.tuples(*(st.tuples(*(values(entry(row, column)) for column in range(6))) for row in range(6)))
-    if isinstance(node, TextNode):
-        return TEXTS
+    if isinstance(node, (TextNode, FlagNode)):
+        return TEXTS if isinstance(node, TextNode) else st.booleans()
     if isinstance(node, ChoiceNode):
         return st.sampled_from(list(node.choices))
     if isinstance(node, ListNode):

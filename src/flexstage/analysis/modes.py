@@ -9,6 +9,7 @@ import numpy as np
 
 from flexstage.base.labelled import Matrix
 from flexstage.base.number import Array, descending, first_design, foremost
+from flexstage.readings.batch.choice import NEGLIGIBLE
 from flexstage.readings.linear.eigen import Eigen, eigen, sign_weights
 from flexstage.readings.linear.model import LinearModel
 from flexstage.spatial.frame import COMPONENTS
@@ -226,8 +227,8 @@ def _main(bodies: tuple[str, ...], energies: Array) -> Array:
 
 
 def _chosen(share: Array, frequencies: Array, limit: float, count: int, groups: list[list[int]]) -> tuple[tuple[int, ...], float]:
-    """Indices of the largest shares below the limit, clusters whole; and the largest share left out."""
-    groups = [group for group in groups if frequencies[group[0]] < limit]
+    """Indices of the largest shares below the limit that are no rounding, clusters whole; and the largest share left out."""
+    groups = [group for group in groups if frequencies[group[0]] < limit and np.mean(share[group]) >= NEGLIGIBLE]
     means = np.array([np.mean(share[group]) for group in groups])
     chosen: list[int] = []
     for place in descending(means):

@@ -121,6 +121,11 @@ class WholeNode:
 
 
 @dataclass(frozen=True)
+class FlagNode:
+    """Whether something is so: true or false."""
+
+
+@dataclass(frozen=True)
 class TextNode:
     """A text: a name or a remark."""
 
@@ -183,6 +188,7 @@ Node: TypeAlias = (
     | MatrixNode
     | RowNode
     | WholeNode
+    | FlagNode
     | TextNode
     | ChoiceNode
     | ListNode
@@ -258,7 +264,9 @@ def _node(hint: Any) -> Node:
     return _named(hint)
 
 
-def _named(hint: type) -> TextNode | WholeNode | ChoiceNode | RecordNode:
+def _named(hint: type) -> TextNode | WholeNode | FlagNode | ChoiceNode | RecordNode:
+    if hint is bool:
+        return FlagNode()
     if hint in (str, int):
         return TextNode() if hint is str else WholeNode()
     return ChoiceNode(hint) if issubclass(hint, Enum) else RecordNode(hint)

@@ -99,8 +99,9 @@ def solid_frame(solid: Solid) -> Frame:
 class Body(Description):
     """A rigid body: `solids` (outlines with materials), or a stated `mass`, `centre` of mass and `inertia`; named `points`.
 
-    Stated mass properties and solids exclude one another; a body with neither has no mass of its own. `reference` is the point its twist is
-    given at (absent: its centre of mass, or without mass the mean of its joints).
+    Stated mass properties and solids exclude one another; a body with neither has no mass of its own. `point`: the stated mass is meant as
+    a point, without inertia. `reference` is the point its twist is given at (absent: its centre of mass, or without mass the mean of its
+    joints).
 
     `of` names another body of the stage, or the ground, that these solids belong to: a lug of the platform drawn once in a unit's frame and
     so placed with every copy. Such a body does not move by itself: its solids, mass and points are its owner's, and links that join it join
@@ -111,6 +112,7 @@ class Body(Description):
     mass: Annotated[Number, MASS, NOT_NEGATIVE] | None = None
     centre: Annotated[Vector, LENGTH] | None = None
     inertia: Inertia | None = None
+    point: bool = field(default=False, metadata=DOCUMENT_ONLY)
     points: Mapping[str, Annotated[Vector, LENGTH]] = field(default_factory=lambda: Table({}))
     reference: Annotated[Vector, LENGTH] | None = None
     of: str | None = None
@@ -128,9 +130,13 @@ def owner_of(bodies: Mapping[str, Body], name: str) -> str:
 
 @dataclass(frozen=True, eq=False)
 class Payload(Description):
-    """A mass carried by a body: `mass`, its centre `at` (in the stage's frame) and optionally its own inertia about that centre."""
+    """A mass carried by a body: `mass`, its centre `at` (in the stage's frame) and its own `inertia` about that centre.
+
+    `point`: it is meant as a point, without inertia of its own.
+    """
 
     body: str
     mass: Annotated[Number, MASS, NOT_NEGATIVE]
     at: Annotated[Vector, LENGTH]
     inertia: Inertia | None = None
+    point: bool = field(default=False, metadata=DOCUMENT_ONLY)

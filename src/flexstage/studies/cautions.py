@@ -59,7 +59,9 @@ def _stack_defaults(mechanism: Mechanism) -> Iterator[Finding]:
             yield Finding(f"parts.{name}", "the stack weighs nothing", 'Its mass adds local modes and lowers others: mass = "0.12 kg"')
         if piezo.bias is None and piezo.voltage_low is not None and piezo.voltage_high is not None:
             middle = np.ravel(0.5 * (np.real(piezo.voltage_low) + np.real(piezo.voltage_high)))[0]
-            yield Finding(f"parts.{name}", f"the bias is the middle of the range, {middle:g} V", 'Strokes count from it: bias = "50 V"')
+            yield Finding(
+                f"parts.{name}", f"the bias is the middle of the range, {middle:g} V", f'Strokes count from it: bias = "{middle:g} V"'
+            )
 
 
 def _ground_default(mechanism: Mechanism) -> Iterator[Finding]:
@@ -94,11 +96,24 @@ def cautions(mechanism: Mechanism) -> tuple[Finding, ...]:
     return (
         *(() if factors is None else factors.cautions),
         *_pulled(mechanism),
+        *_points(mechanism),
         *part_cautions(mechanism),
         *_blockages(mechanism),
         *contact_findings(mechanism),
         *_room(mechanism),
     )
+
+
+def _points(mechanism: Mechanism) -> Iterator[Finding]:
+    """Masses without extent that nobody called a point."""
+    bodies = {f"bodies.{name}": body for name, body in mechanism.bodies.items()}
+    bodies |= {f"units.{unit}.bodies.{name}": body for unit, drawn in mechanism.units.items() for name, body in drawn.bodies.items()}
+    loads = {f"payloads.{name}": load for name, load in mechanism.payloads.items()}
+    for where, item in (bodies | loads).items():
+        if item.mass is not None and np.any(np.real(item.mass) > 0.0) and item.inertia is None and not item.point:
+            size = float(np.max(np.real(item.mass)))
+            what = f"its {size:.4g} kg count as a point, without inertia: rotations come out too fast or have no mode"
+            yield Finding(where, what, 'State inertia = { xx = "...", yy = "...", zz = "..." } or an outline, or point = true if it is one')
 
 
 def _pulled(mechanism: Mechanism) -> tuple[Finding, ...]:

@@ -50,6 +50,8 @@ def geometry_findings(mechanism: Mechanism, *, departures: bool = True) -> Itera
     for where, body in bodies.items():
         yield from _body(where, body) if body.of is None else _lent(where, body, mechanism.bodies.get(body.of))
     for name, payload in mechanism.payloads.items():
+        if payload.point and payload.inertia is not None:
+            yield Finding(f"payloads.{name}.point", "it states an inertia, and a point has none", "Leave one of them out")
         if payload.inertia is not None:
             yield from _inertia(f"payloads.{name}.inertia", payload.inertia)
 
@@ -142,6 +144,8 @@ def _body(where: str, body: Body) -> Iterator[Finding]:
         yield Finding(where, f"it states its {', '.join(stated)} without a mass", "State the mass too")
     if body.inertia is not None:
         yield from _inertia(f"{where}.inertia", body.inertia)
+    if body.point and (body.mass is None or body.inertia is not None):
+        yield Finding(f"{where}.point", "only a stated mass without inertia can be meant as a point", "Leave out point, or the inertia")
     for name, solid in body.solids.items():
         yield from _solid(f"{where}.solids.{name}", solid)
 

@@ -12,6 +12,7 @@ from flexstage.mechanism.grammar import (
     ChangesNode,
     ChoiceNode,
     DirectionNode,
+    FlagNode,
     ListNode,
     MatrixNode,
     Node,
@@ -68,6 +69,8 @@ def wanted(node: Node, value: Any) -> tuple[str, str] | None:
 def _wanted_name(node: Node, value: Any) -> tuple[str, str] | None:
     if isinstance(node, TextNode):
         return None if isinstance(value, str) else ("a text", "Give a str")
+    if isinstance(node, FlagNode):
+        return None if isinstance(value, bool) else ("true or false", "Give a bool")
     if isinstance(node, ChoiceNode):
         return None if isinstance(value, node.choices) else (f"a {node.choices.__name__}", f"Give a member of {node.choices.__name__}")
     if isinstance(node, ListNode):

@@ -20,6 +20,7 @@ from flexstage.mechanism.grammar import (
     ChangesNode,
     ChoiceNode,
     DirectionNode,
+    FlagNode,
     ListNode,
     MatrixNode,
     Node,
@@ -83,6 +84,8 @@ class Reader:
             return self._text(raw, where)
         if isinstance(node, WholeNode):
             return self._whole(raw, where)
+        if isinstance(node, FlagNode):
+            return raw if isinstance(raw, bool) else self.refuse(where, f"found {_kind(raw)}", "Write true or false, without quotes")
         if isinstance(node, ChoiceNode):
             return self._choice(node, raw, where)
         if isinstance(node, (VectorNode, ListNode, MatrixNode)):
@@ -392,5 +395,11 @@ def _example(node: Node) -> str:
         return f'"{next(iter(node.choices)).value}"'
     if isinstance(node, UnionNode) and node.key:
         return f'{{ {node.key} = "{node.options[0][0]}", ... }}'
-    fixed: dict[type, str] = {DirectionNode: '"x"', WholeNode: "1", TextNode: '"a name"', MatrixNode: '[["2.91 um/N", 0, 0, 0, 0, 0], ...]'}
+    fixed: dict[type, str] = {
+        DirectionNode: '"x"',
+        WholeNode: "1",
+        FlagNode: "true",
+        TextNode: '"a name"',
+        MatrixNode: '[["2.91 um/N", 0, 0, 0, 0, 0], ...]',
+    }
     return fixed.get(type(node), "{ ... }")

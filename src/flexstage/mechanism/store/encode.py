@@ -17,6 +17,7 @@ from flexstage.mechanism.grammar import (
     ChangesNode,
     ChoiceNode,
     DirectionNode,
+    FlagNode,
     ListNode,
     MatrixNode,
     Node,
@@ -97,6 +98,8 @@ def _plain(findings: list[Finding], node: Node, value: Any, where: str) -> Any:
         return _direction(value, where)
     if isinstance(node, ListNode):
         return [_collected(findings, node.item, item, where) for item in value]
+    if isinstance(node, FlagNode):
+        return bool(value)
     return value.value if isinstance(node, ChoiceNode) else _text(value, where)
 
 

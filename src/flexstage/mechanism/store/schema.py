@@ -13,6 +13,7 @@ from flexstage.mechanism.grammar import (
     ChangesNode,
     ChoiceNode,
     DirectionNode,
+    FlagNode,
     ListNode,
     MatrixNode,
     Node,
@@ -137,6 +138,8 @@ def _leaf(node: Node) -> dict[str, Any]:
         return {"enum": [choice.value for choice in node.choices], "description": _meaning(node.choices)}
     if isinstance(node, ChangesNode):
         return {"type": "object", "description": "Departures by address: unit/link.field of all copies, copy/link.field of one."}
+    if isinstance(node, FlagNode):
+        return {"type": "boolean"}
     if isinstance(node, WholeNode):
         return {"type": "integer"}
     return {"type": "string"} if isinstance(node, TextNode) else {}

@@ -9,6 +9,9 @@ import numpy as np
 
 from flexstage.base.number import Array
 
+NEGLIGIBLE = 1e-3
+"""A platform share below which a mode is not the platform's: rounding, or links that swing beside a platform at rest."""
+
 
 @dataclass(frozen=True)
 class Choice:
@@ -39,7 +42,7 @@ def chosen(values: Array, share: Array, choice: Choice) -> Chosen:
     group = groups(frequencies, choice.cluster)
     first = np.take_along_axis(frequencies, _first_members(group), axis=1)
     mean = means(share, group)
-    key = np.where(first < choice.limit, mean, -np.inf)
+    key = np.where((first < choice.limit) & (mean >= NEGLIGIBLE), mean, -np.inf)
     order = np.argsort(-key, axis=1, kind="stable")
     rank = np.empty_like(order)
     np.put_along_axis(rank, order, np.arange(order.shape[1])[None], axis=1)
