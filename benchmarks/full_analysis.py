@@ -18,6 +18,7 @@ import numpy as np
 from flexstage.analysis.lost_motion import lost_motion
 from flexstage.analysis.modes import modes
 from flexstage.cases.double_triangle import double_triangle
+from flexstage.mechanism.contact import contact_findings
 from flexstage.readings.ideal import ideal
 from flexstage.readings.lumped import lumped
 
@@ -54,6 +55,7 @@ def main() -> None:
         "lumped reading": lambda: lumped(double_triangle()),
         "modes": lambda: modes(model),
         "lost motion": lambda: lost_motion(ideal(double_triangle()), model),
+        "contact of outlines": lambda: contact_findings.__wrapped__(double_triangle()),
     }
     floor = warm_seconds(lambda: np.linalg.eigh(matrix))
     whole = warm_seconds(full_analysis)

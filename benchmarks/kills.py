@@ -216,7 +216,9 @@ def main() -> None:
     parser.add_argument("--start", type=int, default=0)
     parser.add_argument("--only", default="")
     asked = parser.parse_args()
-    killed, wrong = survey([each for each in SCENES if not asked.only or each.name in asked.only.split(",")], asked.count, asked.seed, asked.start)
+    killed, wrong = survey(
+        [each for each in SCENES if not asked.only or each.name in asked.only.split(",")], asked.count, asked.seed, asked.start
+    )
     print(f"{killed} of {asked.count} killed before they ended; {len(wrong)} findings")
     print("\n".join(wrong))
     sys.exit(bool(wrong))

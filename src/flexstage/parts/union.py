@@ -106,7 +106,7 @@ def common_moments(solids: Sequence[Drawn]) -> Iterator[tuple[Number, Moments]]:
     -0.5
     """
     seen = [drawn for drawn in solids if not isinstance(drawn.solid, Imported)]
-    near = _near(seen)
+    near = _near(seen) if len(seen) > 1 else {}
     if not near:
         return
     cells = {number: _cells(seen[number]) for pair in near for number in pair}
@@ -163,22 +163,28 @@ def _near(seen: Sequence[Drawn]) -> dict[tuple[int, int], Array]:
         (np.real(frame.rotation), np.real(frame.position), 0.5 * np.real(_size(drawn.solid)))
         for frame, drawn in zip(frames, seen, strict=True)
     ]
-    reach = [np.linalg.norm(half, axis=-1) for _, _, half in boxes]
+    reach = [np.sqrt(np.sum(half * half, axis=-1)) for _, _, half in boxes]
     middle = np.array([_first(centre, 1) for _, centre, _ in boxes]).reshape(-1, 3)
     loose = np.array([_spread(centre) + float(np.max(far)) for (_, centre, _), far in zip(boxes, reach, strict=True)])
-    close = np.linalg.norm(middle[:, None] - middle, axis=-1) < loose[:, None] + loose
-    found: dict[tuple[int, int], Array] = {}
-    for one, other in np.argwhere(np.triu(close, k=1)).tolist():
-        shape = np.broadcast_shapes(
-            *(turn.shape[:-2] for turn, _, _ in (boxes[one], boxes[other])),
-            *(each.shape[:-1] for _, *box in (boxes[one], boxes[other]) for each in box),
-        )
-        first, second = (_flat(boxes[number], shape) for number in (one, other))
-        gaps = separations(first, second).reshape(shape)
-        meet = gaps < -_FLUSH * (reach[one] + reach[other])
-        if np.any(meet):
-            found[(one, other)] = meet
-    return found
+    apart = middle[:, None] - middle
+    close = np.einsum("ijk,ijk->ij", apart, apart) < (loose[:, None] + loose) ** 2
+    first, second = np.nonzero(np.triu(close, k=1))
+    pairs = list(zip(first.tolist(), second.tolist(), strict=True))
+    if all(turn.ndim == 2 and centre.ndim == half.ndim == 1 for turn, centre, half in boxes):
+        turns, centres, halves = (np.array(each) for each in zip(*boxes, strict=True))
+        gaps = separations((turns[first], centres[first], halves[first]), (turns[second], centres[second], halves[second]))
+    else:
+        gaps = [_gaps(boxes[one], boxes[other]) for one, other in pairs]
+    meet = ((pair, gap < -_FLUSH * (reach[pair[0]] + reach[pair[1]])) for pair, gap in zip(pairs, gaps, strict=True))
+    return {pair: np.asarray(where) for pair, where in meet if np.any(where)}
+
+
+def _gaps(first: tuple[Array, Array, Array], second: tuple[Array, Array, Array]) -> Array:
+    """How far two boxes are apart at least, in each design."""
+    shape = np.broadcast_shapes(
+        *(turn.shape[:-2] for turn, _, _ in (first, second)), *(each.shape[:-1] for _, *box in (first, second) for each in box)
+    )
+    return separations(_flat(first, shape), _flat(second, shape)).reshape(shape)
 
 
 def _flat(box: tuple[Array, Array, Array], shape: tuple[int, ...]) -> tuple[Array, Array, Array]:
@@ -193,7 +199,7 @@ def _flat(box: tuple[Array, Array, Array], shape: tuple[int, ...]) -> tuple[Arra
 
 def _spread(centres: Array) -> float:
     """How far the centres of a batch lie from the first of them at most [m]."""
-    return float(np.max(np.linalg.norm(centres - _first(centres, 1), axis=-1)))
+    return 0.0 if centres.ndim == 1 else float(np.max(np.linalg.norm(centres - _first(centres, 1), axis=-1)))
 
 
 def _size(solid: Solid) -> Array:
