@@ -15,6 +15,7 @@ from flexstage.analysis.workspace.gauging import _pseudo_inverse
 from flexstage.analysis.workspace.load import load_share
 from flexstage.analysis.workspace.map_error import linear_map_error
 from flexstage.analysis.workspace.room import room
+from flexstage.analysis.workspace.small import small_motion
 from flexstage.analysis.workspace.strength import hinge_stress
 from flexstage.analysis.workspace.stroke import StrokeLimits, mapping_at, single_axis, stroke_limits
 from flexstage.cases.double_triangle import double_triangle
@@ -23,6 +24,8 @@ from flexstage.parts.neck import Neck
 from flexstage.parts.notch import Notch
 from flexstage.readings.ideal import ideal
 from flexstage.readings.lumped import lumped
+from flexstage.studies.cautions import caveats
+from flexstage.studies.judge import judge
 
 X, Y, Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
 STEEL = fs.Material(young=200e9, poisson=0.3, density=7750.0, yield_stress=1e9)
@@ -292,3 +295,27 @@ def test_the_pseudo_inverse_lets_complex_steps_through_and_stays_exact_for_gauge
     np.testing.assert_allclose(slope, central, rtol=1e-7, atol=1e-8)
     near = tall * [1.0, 1.0, 0.0] + tall[:, [0]] * [0.0, 0.0, 1.0] + 1e-8 * step * [0.0, 0.0, 1.0]
     np.testing.assert_allclose(_pseudo_inverse(near) @ near, np.eye(3), atol=1e-6)
+
+
+def test_motions_that_are_not_small_are_told_and_verdicts_on_them_withheld():
+    """Leaves of 50 mm: beyond sqrt(2 x 1 %) of their length linear models are 1 % off; a demand below that is judged."""
+    far = guide(replace(STACK, stroke=30e-3, bias=None), requirements={"stroke.x": "at least 8 mm", "safety": "at least 0.1"})
+    (told,) = (each for each in caveats(far).cautions if each.where == "stroke.x")
+    assert "bends by 0.3 of its length" in told.what
+    assert told.advice == f"Count on +-{np.sqrt(0.02) * 0.05:.4g} m"
+    stroke, safety = judge(far)
+    assert "withheld" in stroke.reason
+    assert "withheld" in safety.reason
+    near = replace(far, requirements={"stroke.x": "at least 5 mm"})
+    assert [bool(verdict.passed) for verdict in judge(near)] == [True]
+
+
+def test_the_faces_of_a_deep_notch_touch_first():
+    """An ellipse of 1 mm by 20 mm: its faces meet after 2 atan(1 / (20 + 0.1)), 0.0995 rad."""
+    deep = fs.Notch("steel", 0.0002, 0.01, fs.Elliptic(along=0.001, across=0.02))
+    stage = guide(leaf=deep)
+    found = small_motion(stage, ideal(stage))
+    place = found.names.index("left")
+    assert found.limit[place] == pytest.approx(2.0 * np.arctan(1.0 / 20.1))
+    assert found.closes[place]
+    assert found.limit[found.names.index("rod")] == pytest.approx(np.sqrt(0.02))

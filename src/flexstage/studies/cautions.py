@@ -11,7 +11,8 @@ import numpy as np
 from flexstage.analysis.requirements import Subject, requirements
 from flexstage.analysis.workspace.load import load_share
 from flexstage.analysis.workspace.room import room
-from flexstage.analysis.workspace.stroke import stroke_limits
+from flexstage.analysis.workspace.small import small_motion
+from flexstage.analysis.workspace.stroke import single_axis, stroke_limits
 from flexstage.base.finding import DesignError, Finding
 from flexstage.beams.validity import validity
 from flexstage.mechanism.contact import contact_findings
@@ -99,9 +100,20 @@ def cautions(mechanism: Mechanism) -> tuple[Finding, ...]:
         *_points(mechanism),
         *part_cautions(mechanism),
         *_blockages(mechanism),
+        *_large_motions(mechanism),
         *contact_findings(mechanism),
         *_room(mechanism),
     )
+
+
+def _large_motions(mechanism: Mechanism) -> tuple[Finding, ...]:
+    """Single-axis strokes beyond what linear models answer for; nothing where the strokes do not determine the platform."""
+    try:
+        kinematics = ideal(mechanism)
+        single = single_axis(kinematics.mapping, stroke_limits(mechanism))
+    except DesignError:
+        return ()
+    return tuple(small_motion(mechanism, kinematics).cautions(single))
 
 
 def _points(mechanism: Mechanism) -> Iterator[Finding]:

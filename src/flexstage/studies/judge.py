@@ -11,7 +11,7 @@ from flexstage.analysis.deflection import deflection
 from flexstage.analysis.drift import Drift, drift
 from flexstage.analysis.lost_motion import LostMotion, lost_motion
 from flexstage.analysis.modes import Modes, modes
-from flexstage.analysis.requirements import Measure, Requirement, Subject, Verdict, direction_of, requirements
+from flexstage.analysis.requirements import Measure, Requirement, Sense, Subject, Verdict, direction_of, requirements
 from flexstage.analysis.stability import Stability, stability
 from flexstage.analysis.statics import statics
 from flexstage.analysis.workspace.blocking import platform_lines
@@ -20,6 +20,7 @@ from flexstage.analysis.workspace.gauging import gauge_swing, half_ranges, pose_
 from flexstage.analysis.workspace.load import load_share
 from flexstage.analysis.workspace.map_error import linear_map_error
 from flexstage.analysis.workspace.room import Room, bounds, room
+from flexstage.analysis.workspace.small import small_motion
 from flexstage.analysis.workspace.strength import HingeStress, hinge_stress
 from flexstage.analysis.workspace.stroke import StrokeLimits, mapping_at, single_axis, stroke_limits, utilisation
 from flexstage.base.finding import DesignError, refuse, require
@@ -102,11 +103,29 @@ def _judged(bench: Bench, line: Requirement) -> Verdict:
     if isinstance(value, str):
         return Verdict(line, None, value)
     drawn = Verdict(line, value)
-    doubt = _doubt(bench, drawn)
+    doubt = _loaded_doubt(bench, drawn) or _large_doubt(bench, drawn)
     return Verdict(line, None, doubt) if doubt else drawn
 
 
-def _doubt(bench: Bench, drawn: Verdict) -> str:
+def _large_doubt(bench: Bench, drawn: Verdict) -> str:
+    """Why a line about motion that linear models say is met is not known: what it asks for is no small motion; empty where it is."""
+    line = drawn.requirement
+    if drawn.value is None or np.ndim(drawn.value) or not drawn.passed:
+        return ""
+    if line.subject is Subject.STROKE and line.sense is Sense.AT_LEAST:
+        asked: Mapping[str, float] = {line.name: line.limit}
+    elif line.subject is Subject.CORNER:
+        asked = bench.box()
+    elif line.subject in _BY_STROKES:
+        single = single_axis(bench.kinematics.mapping, bench.limits)
+        asked = dict(zip(single.coordinates, (float(each) for each in single.symmetric), strict=True)) if bench.kinematics.actuated else {}
+    else:
+        return ""
+    doubt = small_motion(bench.mechanism, bench.kinematics).doubt(asked)
+    return f"withheld: {doubt}" if doubt else ""
+
+
+def _loaded_doubt(bench: Bench, drawn: Verdict) -> str:
     """Why a line that the drawn stage meets may be missed by the loaded one: its weight softens it; empty where it is met either way."""
     line = drawn.requirement
     power = _SOFTENED.get(line.subject)
@@ -376,6 +395,9 @@ _SOFTENED = {
     Subject.DEFLECTION: -1.0,
 }
 """With which power of 1 - 1/factor a measure changes where the load softens it most."""
+
+_BY_STROKES = (Subject.SAFETY, Subject.BUCKLING, Subject.LOAD, Subject.OWN_LOAD)
+"""Measures over all strokes."""
 
 _MEASURES: Mapping[Subject, Callable[[Bench, Measure], Array]] = {
     Subject.STROKE: _stroke,

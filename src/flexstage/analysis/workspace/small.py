@@ -1,0 +1,129 @@
+"""How far a stage may move until its linear models are off: hinges that turn, leaves that bend, and the platform itself.
+
+Linear kinematics leave out theta^2/2 of what a turned lever does, and u/L of a leaf's deflection to the same order. Where that passes
+1 % (0.141 rad) the linear model no longer answers; where the faces of a notch would touch before, that is the bound.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.analysis.workspace.stroke import SingleAxis
+from flexstage.base.finding import Finding
+from flexstage.base.number import Array, Number
+from flexstage.mechanism.expand import PlacedLink, expand
+from flexstage.mechanism.mechanism import PLATFORM, Mechanism
+from flexstage.parts.leaf import Leaf
+from flexstage.parts.neck import Neck
+from flexstage.parts.notch import Notch
+from flexstage.parts.part import Part, Restricted
+from flexstage.parts.profile import Circular, Elliptic, Straight, length
+from flexstage.parts.rod import Rod
+from flexstage.readings.linear.kinematics import Kinematics
+
+ERROR = 0.01
+"""Relative error of second order that linear models may have."""
+
+
+@dataclass(frozen=True, eq=False)
+class SmallMotion:
+    """Per unit of each coordinate (names (f)): `turn` [rad] and `bend` (deflection over length) of every link and of the platform (L, f).
+
+    `limit` (L) is the turn [rad] that each may make: of second-order error, or where the faces of a notch touch; `closes` says which.
+    """
+
+    coordinates: tuple[str, ...]
+    names: tuple[str, ...]
+    turn: Array
+    bend: Array
+    limit: Array
+    closes: tuple[bool, ...]
+
+    def use(self, command: Mapping[str, Number]) -> tuple[float, str]:
+        """Share of its bound that the most moved link makes of it over a box of commands (half widths), and its name."""
+        half = np.array([float(np.max(np.abs(command.get(name, 0.0)))) for name in self.coordinates])
+        shares = np.maximum((self.turn @ half) / self.limit, (self.bend @ half) / _SMALL)
+        worst = int(np.argmax(shares > (1.0 - 1e-9) * np.max(shares)))
+        return float(shares[worst]), self.names[worst]
+
+    def doubt(self, command: Mapping[str, Number]) -> str:
+        """Why linear models do not answer for a box of commands; empty where they do."""
+        share, name = self.use(command)
+        if share <= 1.0:
+            return ""
+        place = self.names.index(name)
+        half = np.array([float(np.max(np.abs(command.get(each, 0.0)))) for each in self.coordinates])
+        turned, bent = 1e3 * float(self.turn[place] @ half), float(self.bend[place] @ half)
+        if turned / (1e3 * self.limit[place]) < bent / _SMALL:
+            return f"{name} bends by {bent:.3g} of its length, beyond {_SMALL:.3g} linear models are more than {100.0 * ERROR:g} % off"
+        why = "its faces touch" if self.closes[place] else f"linear models are more than {100.0 * ERROR:g} % off"
+        return f"{name} turns by {turned:.4g} mrad, beyond {1e3 * self.limit[place]:.4g} mrad {why}"
+
+    def cautions(self, single: SingleAxis) -> Iterator[Finding]:
+        """Single-axis strokes that are no small motions, and what is left of them."""
+        for name, stroke in zip(single.coordinates, np.atleast_2d(single.symmetric)[0], strict=True):
+            doubt = self.doubt({name: float(stroke)})
+            if doubt:
+                unit = "rad" if name.startswith("r") else "m"
+                left = float(stroke) / self.use({name: float(stroke)})[0]
+                what = f"over the +-{float(stroke):.4g} {unit} that the strokes allow {doubt}"
+                yield Finding(f"stroke.{name}", what, f"Count on +-{left:.4g} {unit}")
+
+
+_SMALL = float(np.sqrt(2.0 * ERROR))
+
+
+def small_motion(mechanism: Mechanism, kinematics: Kinematics) -> SmallMotion:
+    """How much of the range of small motion the ideal motions take (of a batch, the first design).
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.readings.ideal import ideal
+    >>> stage = double_triangle()
+    >>> small_motion(stage, ideal(stage)).doubt({"x": 50e-6})
+    ''
+    """
+    assembly = expand(mechanism)
+    moved = {name: _first(kinematics.strains[name]) for name in assembly.links}
+    turn = [np.linalg.norm(each[3:], axis=0) for each in moved.values()]
+    bend = [np.linalg.norm(each[1:3], axis=0) / _span(assembly.links[name]) for name, each in moved.items()]
+    closing = [_closing(link.part) for link in assembly.links.values()]
+    platform = _first(kinematics.motion)
+    return SmallMotion(
+        coordinates=kinematics.coordinates,
+        names=(*assembly.links, PLATFORM),
+        turn=np.stack([*turn, np.linalg.norm(platform[3:], axis=0)]),
+        bend=np.stack([*bend, np.zeros(platform.shape[-1])]),
+        limit=np.array([*(min(_SMALL, each) for each in closing), _SMALL]),
+        closes=(*(each < _SMALL for each in closing), False),
+    )
+
+
+def _first(values: Array) -> Array:
+    return np.real(values[(0,) * (values.ndim - 2)])
+
+
+def _one(value: Number) -> float:
+    return float(np.real(np.ravel(value)[0]))
+
+
+def _inner(part: Part) -> Part:
+    return part.part if isinstance(part, Restricted) else part
+
+
+def _span(link: PlacedLink) -> float:
+    part = _inner(link.part)
+    return _one(part.length) if isinstance(part, (Leaf, Rod)) else np.inf
+
+
+def _closing(part: Part) -> float:
+    """The angle [rad] at which the faces on both sides of a notch or neck touch: its cut is as wide as the hinge is long, and as deep."""
+    part = _inner(part)
+    if not isinstance(part, (Notch, Neck)) or isinstance(part.profile, Straight):
+        return np.inf
+    profile = part.profile
+    depth = profile.radius if not isinstance(profile, Elliptic) else profile.across
+    wide = 2.0 * profile.radius if isinstance(profile, Circular) else length(profile)
+    return 2.0 * float(np.arctan2(0.5 * _one(wide), _one(depth) + 0.5 * _one(part.thickness)))
