@@ -186,6 +186,35 @@ def test_the_header_is_an_output_too(guide: Command, tmp_path: Path) -> None:
     assert "g.h is the output of --report too" in ended.err
 
 
+@pytest.mark.parametrize(
+    ("rows", "message"),
+    [
+        ("0,0\n0.01,nan", "row 2 is no number"),
+        ("0,0\n0.01,1e400", "row 2 is no number"),
+        ("0,0\n0.01,\u202e1", "\\u202e1"),
+        ("0,0\n1e300,1", "1e+304 samples"),
+    ],
+)
+def test_a_trajectory_of_what_is_no_number_is_refused(guide: Command, tmp_path: Path, rows: str, message: str) -> None:
+    (tmp_path / "way.csv").write_text(f"time [s],x [um]\n{rows}\n")
+    before = sorted(tmp_path.iterdir())
+    ended = guide("loop", "stage.toml", "--trajectory", "way.csv", "--export", "g.c")
+    assert ended.code == 2
+    assert message in ended.err
+    assert sorted(tmp_path.iterdir()) == before
+
+
+def test_a_set_up_may_say_what_steers_and_is_refused_by_its_escape(guide: Command, tmp_path: Path) -> None:
+    (tmp_path / "loop.toml").write_text(
+        'format = "flexstage loop 1"\n"x\\u202e\\u001b[31m" = 1\nseed = -1\n[controller]\nbandwidth = "nan Hz"\n'
+    )
+    ended = guide("loop", "stage.toml", "--setup", "loop.toml")
+    assert ended.code == 2
+    assert "x\\u202e\\x1b[31m: this key is not known" in ended.err
+    assert "controller.bandwidth" in ended.err
+    assert not {letter for letter in ended.err if unicodedata.category(letter) in ("Cc", "Cf")} - {"\n"}
+
+
 STEERING = "a\x1b[31m\u202e\n*/ ??/ \u0085 <b> \ufffe"
 
 

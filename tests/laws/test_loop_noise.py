@@ -111,3 +111,21 @@ def test_readings_move_from_sample_to_sample_as_the_budget_says(density):
     expected = (budget.changes[0] * sensors["S"].resolution) ** 2
     assert abs(np.mean(squares) - expected) < 4.0 * np.std(squares, ddof=1) / 8.0**0.5 + 0.01 * expected
     assert bool(budget.slow) == (expected < 1e-20)  # half a step of 0.2 nm
+
+
+@pytest.mark.parametrize("change", [0.25, 0.5])
+def test_rounding_errors_of_successive_samples_correlate_as_the_criterion_says(change):
+    """Of Gaussian numbers far wider than a step: 6/pi^2 sum exp(-2 pi^2 k^2 s^2)/k^2, whose first term tells where white noise ends."""
+    random, count = np.random.default_rng(3), 400_000
+    first = 50.0 * random.standard_normal(count)
+    errors = [each - np.rint(each) for each in (first, first + change * random.standard_normal(count))]
+    orders = np.arange(1, 20)
+    expected = 6.0 / np.pi**2 * np.sum(np.exp(-2.0 * (np.pi * orders * change) ** 2) / orders**2)
+    found = 12.0 * np.mean(errors[0] * errors[1])
+    assert abs(found - expected) < 4.0 / np.sqrt(count)
+    assert (expected < 0.01) == (change >= 0.5)
+
+
+def test_rounding_is_white_from_half_a_step_on():
+    budget = noise_budget(small_loop(), {}, (1.0, 100.0), ("relative.x",))
+    assert [replace(budget, changes=np.array([change])).slow for change in (0.0, 0.49, 0.51, np.nan)] == [("S",), ("S",), (), ()]

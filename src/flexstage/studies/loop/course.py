@@ -135,7 +135,7 @@ def sampled_course(course: Course, coordinates: Coordinates, step: float, second
     """
     count = round(seconds / step)
     if not 2 <= count <= _MOST_SAMPLES:
-        what = f"{seconds:g} s at {1.0 / step:g} Hz are {count} samples"
+        what = f"{seconds:g} s at {1.0 / step:g} Hz are {float(count):.7g} samples"
         require([Finding("seconds", what, f"Simulate between 2 and {_MOST_SAMPLES} samples")])
     times = step * np.arange(count)
     return times, reference(course.trajectory, coordinates.names, times)
