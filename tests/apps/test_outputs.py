@@ -40,6 +40,42 @@ def test_unwritable_outputs_are_found_before_anything_is_computed(
     assert (tmp_path / "stage.toml").read_bytes() == before
 
 
+LONG = 300 * "x"
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        f"modes stage.toml --json {LONG}.json",
+        f"modes stage.toml --json {LONG}/x.json",
+        "modes stage.toml --json stage.toml/x.json",
+        "modes stage.toml --json loop/x.json",
+        f"modes {LONG}.toml",
+        f"new {LONG}.toml",
+        f"plan stage.toml -o {LONG}.svg",
+        f"cad stage.toml -o {LONG}.step",
+        f"rig stage.toml --seconds 1 -o {LONG}.uff",
+        f"identify {LONG}.uff",
+        f"loop stage.toml --export {LONG}.c",
+        f"loop stage.toml --trajectory {LONG}.csv",
+        f"sweep {LONG}.toml -o r.h5",
+        f"sweep study.toml -o {LONG}.h5",
+        f"sweep study.toml -o {248 * 'x'}.h5",
+        f"tolerance study.toml -o {LONG}.h5",
+    ],
+)
+def test_names_that_no_disk_takes_are_refused(flexstage: Command, tmp_path: Path, words: str) -> None:
+    (tmp_path / "study.toml").write_text(
+        'format = "flexstage study 1"\ndesign = "stage.toml"\nresponses.m = "mass"\n'
+        'variables.t = { of = "neck.thickness", from = "1 mm", to = "2 mm" }\nscatter.t = { of = "neck.thickness", normal = "1 um" }\n'
+    )
+    (tmp_path / "loop").symlink_to("loop")
+    before = sorted(tmp_path.iterdir())
+    ended = flexstage(*words.split())
+    assert ended.code == 2, ended.err
+    assert sorted(tmp_path.iterdir()) == before
+
+
 def test_two_outputs_need_two_files(flexstage: Command) -> None:
     ended = flexstage("analyse", "stage.toml", "--json", "out", "--mat", "./out")
     assert ended.code == 2

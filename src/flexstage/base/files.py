@@ -165,8 +165,10 @@ def require_memory(where: str, needed: float) -> None:
     """
     if needed < MEMORY // 10:
         return
-    import psutil
-
+    try:
+        import psutil
+    except ImportError:  # where the system lacks what it asks
+        return
     free = psutil.virtual_memory().available
     if needed > _SHARE * free:
         advice = f"Read less of it, or free memory: {_SHARE * free / 1e9:.3g} GB would fit"
@@ -287,6 +289,11 @@ def _watched(process: subprocess.Popen[bytes], memory: int) -> Generator[None]:
 
 
 def _watch(process: subprocess.Popen[bytes], memory: int, done: threading.Event) -> None:
+    with contextlib.suppress(ImportError):  # where the system lacks what it asks, there is the limit of time alone
+        _watch_memory(process, memory, done)
+
+
+def _watch_memory(process: subprocess.Popen[bytes], memory: int, done: threading.Event) -> None:
     import psutil
 
     with contextlib.suppress(psutil.Error):

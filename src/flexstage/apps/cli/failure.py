@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import signal
 import sys
@@ -20,6 +21,7 @@ SIGNALLED = 128
 """To this the number of a signal is added that ended the command."""
 ENDINGS = tuple(getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name))
 _FRAMEWORKS_INTERRUPTED = 130
+_DISKS = {getattr(errno, name, None) for name in ("ENAMETOOLONG", "EACCES", "EPERM", "ENOTDIR", "ELOOP", "EROFS", "EIO", "ENOSPC")}
 _DEBUG = "FLEXSTAGE_DEBUG"
 _THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
 
@@ -87,6 +89,8 @@ def _bad_input(error: DesignError) -> int:
 
 
 def _fault(error: Exception) -> int:
+    if isinstance(error, OSError) and error.filename and error.errno in _DISKS:
+        return _bad_input(refuse(os.fsdecode(error.filename), f"the system refuses it: {error.strerror}", "Name another file or folder"))
     if isinstance(error, FileNotFoundError) and _folder_is_gone():
         what = "it has been removed, so that no file can be named from here"
         return _bad_input(refuse("the folder this runs in", what, "Change to another folder"))

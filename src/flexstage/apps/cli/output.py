@@ -77,7 +77,7 @@ def announced(text: str) -> None:
 
 def output_findings(wanted: Iterable[tuple[str, str | Path | None]], design: Path | None = None) -> Iterator[Finding]:
     """What keeps the outputs, pairs of an option and its path, from being written; `design` is the file that must not be overwritten."""
-    taken: dict[Path, str] = {} if design is None else {design.resolve(): "the design file"}
+    taken: dict[Path, str] = {} if design is None else {_whole(design): "the design file"}
     spoken: str | None = None
     for option, target in wanted:
         if target is not None and str(target) == STDOUT:
@@ -87,30 +87,39 @@ def output_findings(wanted: Iterable[tuple[str, str | Path | None]], design: Pat
         if target is None or str(target) == STDOUT:
             continue
         path = Path(target)
-        if (owner := taken.get(path.resolve())) is not None:
+        if (owner := taken.get(_whole(path))) is not None:
             yield Finding(option, f"{path} is {owner} too", "Choose another file")
         elif (problem := _problem(path)) is not None:
             yield Finding(option, f"{path} cannot be written: {problem}", "Choose another file or folder")
         else:
-            taken[path.resolve()] = f"the output of {option}"
+            taken[_whole(path)] = f"the output of {option}"
+
+
+def _whole(path: Path) -> Path:
+    """The path without links, where they do not end in a loop."""
+    return Path(os.path.realpath(path))
 
 
 def _problem(path: Path) -> str | None:
     """Why a file cannot be written; tried, not concluded from its mode."""
+    try:
+        return _refused(path)
+    except OSError as error:  # a name that is too long, a loop of links, a folder that may not be looked into
+        return error.strerror or str(error)
+
+
+def _refused(path: Path) -> str | None:
     if path.is_dir():
         return "it is a folder"
     if path.exists() and not os.access(path, os.W_OK):
         return "it is write-protected"
     if _is_device(path):
         return None
-    folder = path.resolve().parent
+    folder = _whole(path).parent
     if not folder.is_dir():
         return f"there is no folder {path.parent}"
-    try:
-        with tempfile.TemporaryFile(dir=folder):
-            return None
-    except OSError as error:
-        return error.strerror or str(error)
+    with tempfile.TemporaryFile(dir=folder):
+        return None
 
 
 def _is_device(path: Path) -> bool:
