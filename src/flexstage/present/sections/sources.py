@@ -90,7 +90,8 @@ def error_of_theory_table(mechanism: Mechanism) -> Table | None:
     >>> error_of_theory_table(double_triangle()).texts()[0]
     ['part', 'x', 'y', 'z', 'rx', 'ry', 'rz']
     """
-    known = {name: validity(part, name).errors for name, part in mechanism.parts.items()}
+    materials = mechanism.materials
+    known = {name: validity(part, name, materials.get(getattr(part, "material", ""))).errors for name, part in mechanism.parts.items()}
     rows = [
         (Cell(name, Mark.STRONG), *(percent(plain(errors[axis]), 2) if axis in errors else NO_VALUE for axis in COMPONENTS))
         for name, errors in known.items()
