@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 
@@ -12,7 +14,8 @@ from flexstage.analysis.requirements import Subject, requirements
 from flexstage.analysis.workspace.load import load_share
 from flexstage.analysis.workspace.room import room
 from flexstage.analysis.workspace.small import small_motion
-from flexstage.analysis.workspace.stroke import single_axis, stroke_limits
+from flexstage.analysis.workspace.strength import hinge_stress
+from flexstage.analysis.workspace.stroke import StrokeLimits, single_axis, stroke_limits
 from flexstage.base.finding import DesignError, Finding
 from flexstage.beams.validity import validity
 from flexstage.mechanism.contact import contact_findings
@@ -21,7 +24,9 @@ from flexstage.mechanism.expansion import ground_of
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.parts.part import Restricted
 from flexstage.parts.piezo import Piezo
+from flexstage.parts.plausible import implausible
 from flexstage.readings.ideal import ideal
+from flexstage.readings.linear.model import LinearModel
 from flexstage.readings.lumped import lumped
 from flexstage.studies.standing import load_factors, standing
 
@@ -97,6 +102,8 @@ def cautions(mechanism: Mechanism) -> tuple[Finding, ...]:
     return (
         *(() if factors is None else factors.cautions),
         *_pulled(mechanism),
+        *implausible(_catalogued(mechanism)),
+        *_overloaded(mechanism),
         *_points(mechanism),
         *part_cautions(mechanism),
         *_blockages(mechanism),
@@ -114,6 +121,45 @@ def _large_motions(mechanism: Mechanism) -> tuple[Finding, ...]:
     except DesignError:
         return ()
     return tuple(small_motion(mechanism, kinematics).cautions(single))
+
+
+def _catalogued(mechanism: Mechanism) -> Iterator[tuple[str, Any]]:
+    """Materials, parts and gauges by address, those of single copies too."""
+    for name in ("materials", "parts", "sensors"):
+        yield from ((f"{name}.{key}", item) for key, item in getattr(mechanism, name).items())
+    for link in expand(mechanism).links.values():
+        if link.part != mechanism.parts[link.link.part]:
+            yield link.name, link.part
+
+
+def _overloaded(mechanism: Mechanism) -> tuple[Finding, ...]:
+    """Hinges beyond yield and stacks beyond their maximum load under weight, payloads and forces alone."""
+    try:
+        model = lumped(mechanism)
+    except DesignError:
+        return ()
+    found: list[Finding] = []
+    for judged in (_overstressed, _overpressed):
+        with suppress(DesignError):
+            found += judged(mechanism, model)
+    return tuple(found)
+
+
+def _overstressed(mechanism: Mechanism, model: LinearModel) -> Iterator[Finding]:
+    stress = hinge_stress(mechanism, model, StrokeLimits((), np.zeros(0), np.zeros(0)))
+    safety = np.nan_to_num(np.real(stress.safety).reshape(-1, len(stress.links))[0], nan=np.inf)
+    if np.min(safety, initial=np.inf) < 1.0:
+        what = f"weight, payloads and forces alone bring it to {1.0 / float(np.min(safety)):.3g} times its yield stress"
+        yield Finding(stress.weakest, what, "Check masses and forces, or make it stronger")
+
+
+def _overpressed(mechanism: Mechanism, model: LinearModel) -> Iterator[Finding]:
+    share = load_share(mechanism, model)
+    uses = np.real(share.usage(share.compression)).reshape(-1, len(share.actuators))[0]
+    for name, use in zip(share.actuators, uses, strict=True):
+        if use > 1.0:
+            what = f"weight, payloads and forces alone press on its stack with {use:.3g} times its maximum load"
+            yield Finding(name, what, "Check masses and forces, or take a stronger stack")
 
 
 def _points(mechanism: Mechanism) -> Iterator[Finding]:

@@ -9,6 +9,7 @@ import numpy as np
 
 from flexstage.analysis.workspace.stroke import StrokeLimits
 from flexstage.analysis.workspace.wrench import corner_wrenches
+from flexstage.base.finding import refuse
 from flexstage.base.labelled import Matrix
 from flexstage.base.number import Array
 from flexstage.beams.stress import has_section, stress
@@ -81,6 +82,8 @@ def hinge_stress(mechanism: Mechanism, model: LinearModel, limits: StrokeLimits)
     """
     assembly = expand(mechanism)
     sized = {name: link for name, link in assembly.links.items() if _has_section(link)}
+    if not sized:
+        raise refuse("stress", "no link has a section to check", "Stress is that of notches, necks, leaves and rods")
     wrenches = corner_wrenches(mechanism, model, limits, tuple(sized))
     points = limits.points(wrenches.ndim - 3)
     rows = _rows(list(sized.values()), wrenches, points)

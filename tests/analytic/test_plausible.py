@@ -1,0 +1,79 @@
+"""Plausibility against the shipped catalogue: nothing real is doubted, a slip of the unit is."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+import flexstage as fs
+from flexstage.cases.registry import CASES, case
+from flexstage.mechanism.store import loads, shipped
+from flexstage.parts.plausible import implausible
+from flexstage.studies.cautions import caveats
+
+STEEL = fs.Material(young=200e9, poisson=0.3, density=7800.0, expansion=10.8e-6, yield_stress=1e9)
+STACK = fs.Piezo(
+    stroke=38e-6,
+    stiffness=50e6,
+    length=0.036,
+    diameter=0.0079,
+    voltage_low=-20.0,
+    voltage_high=120.0,
+    maximum_load=2000.0,
+    capacitance=4e-6,
+)
+
+
+def told(item: object) -> list[str]:
+    return [finding.where for finding in implausible([("it", item)])]
+
+
+def test_nothing_shipped_is_doubted() -> None:
+    tables = {fs.Material: "materials", fs.Piezo: "parts", fs.Gauge: "sensors"}
+    for section in shipped().sections:
+        table = tables[section.record]
+        kind = 'kind = "piezo", ' if table == "parts" else ""
+        lines = [f'e{number} = {{ {kind}like = "{name}" }}' for number, name in enumerate(section.entries)]
+        text = "\n".join(['format = "flexstage 1"', 'name = "all"', f"[{table}]", *lines])
+        entries = getattr(loads(text, checked=False), table)
+        assert len(entries) > 1
+        assert [str(finding) for finding in implausible(entries.items())] == []
+    for name in CASES:
+        assert not any("plausible" in each.what for each in caveats(case(name, {})).cautions), name
+
+
+@pytest.mark.parametrize(
+    ("item", "field"),
+    [
+        (replace(STEEL, young=200e6), "young"),
+        (replace(STEEL, density=7.8), "density"),
+        (replace(STEEL, density=7.8e6), "density"),
+        (replace(STEEL, expansion=10.8), "expansion"),
+        (replace(STEEL, yield_stress=1e12), "yield_stress"),
+        (replace(STACK, stiffness=0.025), "stiffness"),
+        (replace(STACK, stroke=0.038), "stroke"),
+        (replace(STACK, voltage_low=-0.02), "voltage_low"),
+        (replace(STACK, capacitance=4.0), "capacitance"),
+        (replace(STACK, mass=15.0), "mass"),
+        (fs.Gauge(range=0.5e-3, resolution=100e-6), "resolution"),
+        (fs.Gauge(range=0.5), "range"),
+        (fs.Leaf("steel", 4.0, 0.4, 2.0), "thickness"),
+        (fs.Rod("steel", 1e-3, 1e-8), "diameter"),
+    ],
+)
+def test_slips_of_units_are_told(item: object, field: str) -> None:
+    assert told(STEEL) == told(STACK) == []
+    assert f"it.{field}" in told(item)
+
+
+def test_a_load_that_no_part_bears_is_told() -> None:
+    """2000 kg on a stack of 7 mm that bears 2000 N."""
+    stage = fs.Mechanism(
+        "press",
+        materials={"steel": STEEL},
+        parts={"stack": STACK},
+        bodies={"platform": fs.Body(mass=2000.0, centre=(0.0, 0.0, 0.036), inertia=fs.Inertia(1.0, 1.0, 1.0))},
+        links={"pzt": fs.Link(("ground", "platform"), "stack", (0.0, 0.0, 0.018), (0.0, 0.0, 1.0))},
+    )
+    assert "9.81 times its maximum load" in {each.where: each.what for each in caveats(stage).cautions}["pzt"]
