@@ -40,8 +40,9 @@ class HingeStress:
 
     @property
     def safety(self) -> Array:
-        """Yield stress over peak stress (..., L)."""
-        return self.yield_stress / self.peak
+        """Yield stress over peak stress (..., L); infinite where nothing is stressed."""
+        loaded = self.peak != 0.0
+        return np.where(loaded | np.isnan(self.yield_stress), self.yield_stress / np.where(loaded, self.peak, 1.0), np.inf)
 
     @property
     def least(self) -> Array:
