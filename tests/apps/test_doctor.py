@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import os
 import subprocess
 import sys
 import zipfile
@@ -16,6 +17,7 @@ from flexstage.apps.cure import MakeFolder, Reinstall
 from flexstage.apps.doctor import Row, Verdict, examine, examine_package, mend, writable
 from flexstage.apps.installed import packages
 from flexstage.apps.pins import Need, needs, needs_of, parsed_pins, pins
+from flexstage.base.native import compiler
 
 
 def distribution(folder: Path, code: str = "value = 1\n", version: str = "1.0") -> Path:
@@ -221,3 +223,19 @@ def test_bare_interpreter_gives_a_row(tmp_path: Path) -> None:
     done = subprocess.run([sys.executable, "-I", "-S", "-c", code], cwd=tmp_path, capture_output=True, text=True, check=False)
     assert done.stderr == ""
     assert "ensurepip" in done.stdout
+
+
+@pytest.mark.skipif(not hasattr(os, "geteuid"), reason="files have no owners here")
+def test_the_folder_of_compiled_code_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("FLEXSTAGE_CACHE", str(tmp_path / "cache"))
+    if compiler() is None:
+        pytest.skip("no compiler of C")
+    (row,) = doctor.native_code()
+    assert (row.verdict, row.found) == (doctor.Verdict.GOOD, f"kept in {tmp_path / 'cache' / 'native'}")
+    (tmp_path / "cache").chmod(0o777)
+    (row,) = doctor.native_code()
+    assert row.verdict is doctor.Verdict.NOTE
+    assert "others may write to" in row.found
+    monkeypatch.setenv("CC", "no-such-compiler")
+    (row,) = doctor.native_code()
+    assert row.found == "no compiler of C"

@@ -190,6 +190,19 @@ def test_a_gauge_beyond_its_range_is_held_until_it_returns():
     assert not simulate(unlimited(given), reference).held.any()
 
 
+@pytest.mark.parametrize(("reading", "held"), [(3e-10, 0.0), (4e-10, 1.0)])
+def test_a_reading_at_the_very_end_of_its_range_is_taken(reading, held):
+    """Three steps of 0.1 nm are more than 0.3 nm by a bit of rounding, and the gauge measures 0.3 nm."""
+    example = integral_loop()
+    through = static(np.zeros((1, 1)), (Channel("reference.x", "m"),), (Channel("command.B", "m"),), example.step)
+    given = replace(machine(example.plant, through, motions=()), resolution=np.array([1e-10]), half_range=np.array([3e-10]))
+    assert 3.0 * given.resolution[0] > given.half_range[0]
+    entering = np.zeros((4, 1)), {"noise.S": np.full(4, reading)}
+    found = [simulate(given, *entering), *([simulate_compiled(given, *entering)] if compiler() is not None else [])]
+    assert [each.held.tolist() for each in found] == [[held]] * len(found)
+    assert [each.pose.any() for each in found] == [held == 0.0] * len(found)
+
+
 def spoilt_replay(given: Machine, tmp_path, reference: np.ndarray, readings: np.ndarray) -> dict[str, np.ndarray]:
     """Outputs of the exported controller, compiled by itself, for these references and readings."""
     source, _ = write_controller(tmp_path / "stage.c", given)

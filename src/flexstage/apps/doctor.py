@@ -56,7 +56,7 @@ def examine(folder: Path, self_test: Callable[[], Row] | None = None) -> tuple[R
     if not can_parse():
         remedy = "python -m ensurepip, or flexstage doctor --mend; then examine again"
         return (Row("packaging", "missing, and pip too", "installed", Verdict.BAD, remedy, Reinstall("packaging")),)
-    rows = [_python(), _itself(), *_packages(), _threads(), writable("current folder", folder), _cache()]
+    rows = [_python(), _itself(), *_packages(), _threads(), writable("current folder", folder), _cache(), *native_code()]
     return tuple(rows + [_tested(self_test)] * (self_test is not None))
 
 
@@ -198,6 +198,33 @@ def figure_cache() -> Path:
     if chosen := os.environ.get("MPLCONFIGDIR"):
         return Path(chosen).absolute()
     return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache").absolute() / "matplotlib"
+
+
+def native_code() -> Iterator[Row]:
+    """Where compiled code is kept. A note only: without a folder each process builds its own, without a compiler numpy does the work.
+
+    >>> [row.verdict is Verdict.BAD for row in native_code()]
+    [False]
+    """
+    try:
+        from flexstage.base.finding import DesignError
+        from flexstage.base.native import compiler, folder, unfit
+    except ImportError:
+        return
+    what, wanted = "compiled code", "a compiler of C, a folder of your own"
+    if compiler() is None:
+        remedy = "install gcc or clang, or set CC: some computations run several times as fast"
+        yield Row(what, "no compiler of C", wanted, Verdict.NOTE, remedy)
+        return
+    try:
+        why, place = unfit(folder()), str(folder())
+    except DesignError as error:
+        why, place = str(error), ""
+    if why:
+        remedy = "take the right to write there from others, or let FLEXSTAGE_CACHE name another folder"
+        yield Row(what, f"built anew by each process: {why}", wanted, Verdict.NOTE, remedy)
+    else:
+        yield Row(what, f"kept in {place}", wanted, Verdict.GOOD)
 
 
 def _tested(self_test: Callable[[], Row] | None) -> Row:

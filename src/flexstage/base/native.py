@@ -102,8 +102,8 @@ def compiled(recipe: Recipe) -> bytes:
     True
     """
     found = require_compiler(recipe.what)
-    with temporary_folder() as folder:
-        return _compiled(recipe, found, folder)
+    with temporary_folder() as empty:
+        return _compiled(recipe, found, empty)
 
 
 def loaded(recipe: Recipe, answers: Answers) -> ctypes.CDLL:
@@ -116,11 +116,11 @@ def loaded(recipe: Recipe, answers: Answers) -> ctypes.CDLL:
     1
     """
     found = require_compiler(recipe.what)
-    folder = (cache_folder() / "native").resolve()
+    place = folder()
     name = f"{recipe.what.replace(' ', '_')}-{key(recipe, found)}"
-    if not unfit(folder):
+    if not unfit(place):
         with suppress(OSError, AttributeError, NotImplementedError):  # a full or read-only disk, or one without locks or programs
-            return _kept(folder, name, answers) or _renewed(folder, name, answers, lambda place: _compiled(recipe, found, place))
+            return _kept(place, name, answers) or _renewed(place, name, answers, lambda empty: _compiled(recipe, found, empty))
     with temporary_folder() as private:
         _compiled(recipe, found, private)
         try:
@@ -128,6 +128,15 @@ def loaded(recipe: Recipe, answers: Answers) -> ctypes.CDLL:
         except (OSError, AttributeError) as error:
             what = f"what {found.command[0]} makes of {recipe.what} does not work ({error})"
             raise refuse("compiler", what, "Set CC to another compiler") from None
+
+
+def folder() -> Path:
+    """Where libraries are kept, if nobody else may write to it (see `unfit`).
+
+    >>> folder().name
+    'native'
+    """
+    return (cache_folder() / "native").resolve()
 
 
 def unfit(folder: Path) -> str:
