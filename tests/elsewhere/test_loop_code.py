@@ -190,12 +190,12 @@ def test_a_gauge_beyond_its_range_is_held_until_it_returns():
     assert not simulate(unlimited(given), reference).held.any()
 
 
-@pytest.mark.parametrize(("reading", "held"), [(3e-10, 0.0), (4e-10, 1.0)])
+@pytest.mark.parametrize(("reading", "held"), [(3e-9, 0.0), (4e-9, 1.0)])
 def test_a_reading_at_the_very_end_of_its_range_is_taken(reading, held):
-    """Three steps of 0.1 nm are more than 0.3 nm by a bit of rounding, and the gauge measures 0.3 nm."""
+    """Three steps of 1 nm are more than 3 nm by a bit of rounding, and the gauge measures 3 nm."""
     example = integral_loop()
     through = static(np.zeros((1, 1)), (Channel("reference.x", "m"),), (Channel("command.B", "m"),), example.step)
-    given = replace(machine(example.plant, through, motions=()), resolution=np.array([1e-10]), half_range=np.array([3e-10]))
+    given = replace(machine(example.plant, through, motions=()), resolution=np.array([1e-9]), half_range=np.array([3e-9]))
     assert 3.0 * given.resolution[0] > given.half_range[0]
     entering = np.zeros((4, 1)), {"noise.S": np.full(4, reading)}
     found = [simulate(given, *entering), *([simulate_compiled(given, *entering)] if compiler() is not None else [])]
