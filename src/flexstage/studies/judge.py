@@ -116,9 +116,9 @@ def _large_doubt(bench: Bench, drawn: Verdict) -> str:
         asked: Mapping[str, float] = {line.name: line.limit}
     elif line.subject is Subject.CORNER:
         asked = bench.box()
-    elif line.subject in _BY_STROKES:
+    elif line.subject in _BY_STROKES and bench.kinematics.actuated:
         single = single_axis(bench.kinematics.mapping, bench.limits)
-        asked = dict(zip(single.coordinates, (float(each) for each in single.symmetric), strict=True)) if bench.kinematics.actuated else {}
+        asked = dict(zip(single.coordinates, (float(each) for each in single.symmetric), strict=True))
     else:
         return ""
     doubt = small_motion(bench.mechanism, bench.kinematics).doubt(asked)
