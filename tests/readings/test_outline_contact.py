@@ -206,7 +206,14 @@ def test_a_solid_within_another_one_clashes_for_both(buried: float) -> None:
 
 
 @pytest.mark.parametrize(
-    ("at", "said"), [((0.03, 0.26, 0.0), "250 mm away"), ((0.29, 0.0, 0.0), "on its axis"), ((0.0305, 0.0, 0.0), None)]
+    ("at", "said"),
+    [
+        ((0.03, 0.26, 0.0), "250 mm away"),
+        ((0.29, 0.0, 0.0), "260 mm away from the outline of platform, on its axis"),
+        ((0.0315, 0.0, 0.0), "1.5 mm away"),
+        ((0.0305, 0.0, 0.0), None),
+        ((0.02, 0.0, 0.0), None),
+    ],
 )
 def test_a_gauge_beside_its_target_is_told(at: tuple[float, float, float], said: str | None) -> None:
     gauge = Probe("probe", "platform", Pose(at, along=(1.0, 0.0, 0.0)), Positive.OPENS)

@@ -32,6 +32,8 @@ _SHARE = 1e-3
 """What of an end face may lie beside its body."""
 _BRACKET = 0.05
 """A gauge's target may stand on a bracket that is not drawn: this share of its body's longest side away."""
+_ENOUGH = 300
+"""Pairs of pieces looked at for the deepest overlap once there is one."""
 _RIM = 128
 """Corners of the polygon that a round end face is measured with."""
 _MARGIN = (5e-5, 0.05)
@@ -364,9 +366,11 @@ def _meet_in_a_point(first: _Thing, second: _Thing, drawn_bodies: set[str]) -> b
 
 
 def _overlap(first: Sequence[Convex], second: Sequence[Convex]) -> tuple[float, Array]:
-    """How deep two sets of pieces overlap at most [m] (negative: how far they are apart at least), and the middle of that place."""
+    """How deep two sets of pieces overlap [m] (negative: how far they are apart at least), and the middle of that place."""
     deepest, around = -np.inf, np.zeros(3)
-    for one, other in _close(first, second):
+    for count, (one, other) in enumerate(_close(first, second)):
+        if count > _ENOUGH and deepest > TOUCHING:
+            break
         gap, _, _ = separation(one, other)
         if -gap > deepest:
             low, high = np.maximum(one.box[0], other.box[0]), np.minimum(one.box[1], other.box[1])

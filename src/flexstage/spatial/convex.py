@@ -103,7 +103,10 @@ def distance(first: Array, second: Array) -> float:
     if scale == 0.0:
         return 0.0
     matrix = np.concatenate([between.T / scale, np.ones((1, len(between)))])
-    weights, _ = nnls(matrix, np.array([0.0, 0.0, 0.0, 1.0]), maxiter=100 * matrix.shape[1])
+    try:
+        weights, _ = nnls(matrix, np.array([0.0, 0.0, 0.0, 1.0]), maxiter=100 * matrix.shape[1])
+    except RuntimeError:  # corners so near that rounding makes the choice among them go round: that of two corners is as good
+        return float(np.min(np.linalg.norm(between, axis=1)))
     rest = matrix @ weights - np.array([0.0, 0.0, 0.0, 1.0])
     size = float(np.linalg.norm(rest[:3]))
     return 0.0 if -rest[3] <= 1e-15 or size <= 1e-15 else scale * float(-rest[3]) / size
