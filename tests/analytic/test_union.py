@@ -229,3 +229,10 @@ def test_what_is_lent_to_a_body_weighs_once_with_it() -> None:
     assert doubled is not None
     assert single is not None
     assert np.isclose(doubled.mass, single.mass, rtol=ROUND_OFF)
+
+
+def test_a_shifted_copy_neither_gains_nor_loses_mass() -> None:
+    """Its lugs are flush with the platform: moved by 10 um they would sink in on one side and come off on the other."""
+    stage = case("double-triangle")
+    masses = [expand(replace(stage, changes={"B2.shift.y": shift})).bodies["platform"].mass for shift in (-1e-5, 0.0, 1e-5)]
+    assert all(mass is not None and masses[1] is not None and np.isclose(mass.mass, masses[1].mass, rtol=ROUND_OFF) for mass in masses)

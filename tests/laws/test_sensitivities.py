@@ -50,7 +50,7 @@ ADDRESSES = [
     "units.vertical.bodies.lever.solids.left.at.y",
     "place.B4-B6.pattern.radius",
     "place.B4-B6.pattern.turn",
-    "place.B1-B3.pattern.height",
+    "place.B1-B3.pattern.turn",
     "B5/pivot.at.z",
 ]
 

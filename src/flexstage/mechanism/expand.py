@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from functools import lru_cache
 from typing import TypeAlias
 
 import numpy as np
 
-from flexstage.base.number import Array, Number, stack
+from flexstage.base.number import Array, Number, Table, stack
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Link, Mechanism, Probe
 from flexstage.mechanism.misalignment import MISALIGNED, misaligned
 from flexstage.mechanism.path import complete, replaced
@@ -189,12 +189,13 @@ def copies(mechanism: Mechanism) -> Iterator[tuple[str, str, Frame]]:
 
 @dataclass(frozen=True, eq=False)
 class _DrawnBody:
-    """A body and its own mass properties, seen from the frame it is drawn in; `frame` is that of this copy."""
+    """A body and its own mass properties, seen from the frame it is drawn in; `frame` is that of this copy, `aligned` as it is meant."""
 
     name: str
     body: Body
     own: MassProperties | None
     frame: Frame
+    aligned: Frame
 
     def mass(self) -> MassProperties | None:
         """The mass properties in the stage's frame."""
@@ -217,15 +218,16 @@ class _DrawnLink:
 
 def _bodies(mechanism: Mechanism, placed: tuple[_Copy, ...]) -> Iterator[_DrawnBody]:
     for name, body in mechanism.bodies.items():
-        yield _DrawnBody(name, body, mass_properties(body, mechanism.materials, name), identity())
+        yield _DrawnBody(name, body, mass_properties(body, mechanism.materials, name), identity(), identity())
     units = {unit: mechanism.units[unit].bodies for _, unit, _ in placed}
     masses = {
         unit: {name: mass_properties(body, mechanism.materials, f"{unit}/{name}") for name, body in bodies.items()}
         for unit, bodies in units.items()
     }
+    meant = {copy: frame for copy, _, frame in copies(replace(mechanism, changes=Table({})))} if mechanism.changes else {}
     for copy, unit, frame in placed:
         for name, body in units[unit].items():
-            yield _DrawnBody(f"{copy}/{name}", body, masses[unit][name], frame)
+            yield _DrawnBody(f"{copy}/{name}", body, masses[unit][name], frame, meant.get(copy, frame))
 
 
 def _by_owner(drawn: tuple[_DrawnBody, ...]) -> dict[str, list[_DrawnBody]]:
@@ -315,9 +317,17 @@ def _placed_body(drawn: tuple[_DrawnBody, ...], links: Mapping[str, PlacedLink],
 
 
 def _mass(drawn: tuple[_DrawnBody, ...], materials: Mapping[str, Material]) -> MassProperties | None:
+    """The mass of a body and of what is lent to it; what they have in common is told where the copies are meant to stand.
+
+    A lug that is shifted by a few micrometres neither sinks into its body nor comes off it: no mass is gained or lost.
+    """
     masses = [mass for item in drawn if (mass := item.mass()) is not None]
     if len(masses) > 1:
-        return united([solid for item in drawn for solid in drawn_solids(item.body, materials, item.name, item.frame)])
+        actual, meant = (
+            [solid for item in drawn for solid in drawn_solids(item.body, materials, item.name, frame(item))]
+            for frame in (lambda item: item.frame, lambda item: item.aligned)
+        )
+        return united(actual, meant)
     return masses[0] if masses else None
 
 

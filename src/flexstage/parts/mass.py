@@ -54,15 +54,17 @@ def drawn_solids(body: Body, materials: Mapping[str, Material], name: str, frame
     return [Drawn(f"{prefix}{key}", solid, materials[solid.material].density, frame) for key, solid in body.solids.items()]
 
 
-def united(solids: Sequence[Drawn]) -> MassProperties:
+def united(solids: Sequence[Drawn], meant: Sequence[Drawn] | None = None) -> MassProperties:
     """Mass properties of the union of solids, in the frame that theirs stand in.
+
+    What they have in common is that of the solids as they are `meant` to stand, where that is told.
 
     >>> half = Block("steel", size=(1.0, 1.0, 1.0))
     >>> float(united([Drawn("a", half, 2.0, identity()), Drawn("b", half, 2.0, identity())]).mass)
     2.0
     """
     own = [within(solid_properties(each.solid, each.density), each.frame) for each in solids]
-    return combined([*own, *(_of_moments(density, moments) for density, moments in common_moments(solids))])
+    return combined([*own, *(_of_moments(density, moments) for density, moments in common_moments(meant or solids))])
 
 
 def _of_moments(density: Number, moments: Moments) -> MassProperties:
