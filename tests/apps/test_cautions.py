@@ -123,3 +123,11 @@ def test_a_mass_without_extent_is_told_unless_it_is_meant(flexstage: Command, tm
     ended = flexstage("check", "stage.toml")
     assert ended.code == 2
     assert "bodies.platform.point" in ended.err
+
+
+def test_the_error_budget_says_what_its_gauge_noise_is(flexstage: Command, tmp_path: Path) -> None:
+    design_in(tmp_path, "parallelogram")
+    ended = flexstage("budget", "stage.toml", "--set", "ground=steel", "--json", "out.json")
+    assert ended.code == 0, ended.err
+    assert "Gauge noise: 3 standard deviations" in ended.out
+    assert json.loads((tmp_path / "out.json").read_text())["coverage"] == 3.0

@@ -42,7 +42,7 @@ class ErrorBudget:
     """Largest errors by axis (rows) and source (columns) [m, rad], commanded by the ideal mapping, and with the lost-motion gains.
 
     `missing` names sources that could not be counted (no gauge noise stated): they are NaN and left out of the sums. `ground` is what drift
-    took it to be of.
+    took it to be of; `coverage` how many standard deviations of gauge noise count.
     """
 
     ideal: Matrix
@@ -52,6 +52,7 @@ class ErrorBudget:
     missing: tuple[str, ...]
     provenance: str
     ground: Ground | None = None
+    coverage: float = 3.0
 
     @property
     def sums(self) -> Matrix:
@@ -93,7 +94,7 @@ def error_budget(evidence: Evidence, command: Mapping[str, Number], *, temperatu
     found = {key: _table(values) for key, values in rows.items()}
     missing = tuple(name for index, name in enumerate(SOURCES) if np.any(np.isnan(found[False].values[..., index])))
     provenance = f"{evidence.lost_motion.provenance}; {evidence.map_error.provenance}"
-    return ErrorBudget(found[False], found[True], dict(command), temperature, missing, provenance, evidence.ground)
+    return ErrorBudget(found[False], found[True], dict(command), temperature, missing, provenance, evidence.ground, coverage)
 
 
 def command_columns(kinematics: Kinematics, command: Mapping[str, Number]) -> list[int]:

@@ -190,6 +190,7 @@ def budget_body(budget: ErrorBudget) -> Document:
     return {
         "command": motions(budget.command),
         "temperature_k": budget.temperature,
+        "coverage": budget.coverage,
         "ideal": budget.ideal.to_json(),
         "corrected": budget.corrected.to_json(),
         "sums": budget.sums.to_json(),
