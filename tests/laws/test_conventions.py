@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import flexstage as fs
+from flexstage.analysis.statics import directional
 from flexstage.base.finding import DesignError
 from flexstage.cases.double_triangle import SM_REF_B, double_triangle
 from flexstage.mechanism.address import get
@@ -162,3 +163,30 @@ def test_position_angle_and_push_direction(stage: fs.Mechanism) -> None:
     frame = expand(stage).links["B1/pzt"].frame
     assert frame.position[1] == pytest.approx(-0.085)
     np.testing.assert_allclose(frame.rotation[:, 0], [1.0, 0.0, 0.0], atol=1e-12)
+
+
+def test_stiffness_along_a_direction_is_force_over_displacement() -> None:
+    """Springs of 1 and 4 under a force at 45 degrees: 1 / (0.5/1 + 0.5/4), not their mean."""
+    found = directional(np.diag([1.0, 4.0]))
+    np.testing.assert_allclose(found.along(np.array([0.0, 0.25, 0.5]) * np.pi), [1.0, 1.6, 4.0], rtol=1e-12)
+    assert found.angle == pytest.approx(0.5 * np.pi)
+
+
+def test_strain_energy_of_a_stroke_is_half_its_force(stage: fs.Mechanism, model: fs.LinearModel) -> None:
+    """A stack k whose base and tip the stage moves by c per unit force strains by u (1 - k c): U = k u^2 (1 - k c) / 2."""
+    energy = fs.lost_motion(fs.ideal(stage), model).energy
+    for number, name in enumerate(energy.columns):
+        own = model.stiffness[f"{name}/pzt"].law[0, 0]
+        force = model.input_matrix[:, model.input_index((name,))[0]]
+        expected = 0.5 * (own - force @ np.linalg.solve(model.stiffness_matrix, force))
+        assert np.sum(energy.values[:, number]) == pytest.approx(expected, rel=1e-6)
+
+
+def test_parasitic_motion_is_what_the_stage_does_beside_the_ideal_one() -> None:
+    """Of a guide along x, all motion in the other coordinates, with its sign."""
+    guide = fs.case("parallelogram")
+    found = fs.lost_motion(fs.ideal(guide), fs.lumped(guide))
+    assert fs.ideal(guide).coordinates == ("x",)
+    others = found.gain.values[1:]
+    assert np.max(np.abs(others)) > 1e-9
+    np.testing.assert_allclose(found.parasitic.values[1:], others, rtol=1e-9, atol=1e-15)
