@@ -9,7 +9,7 @@ import pytest
 
 import flexstage as fs
 from flexstage.analysis.modes import modal_assurance
-from flexstage.analysis.pairing import RELIABLE, Moving, paired
+from flexstage.analysis.pairing import RELIABLE, Moving, Pair, paired
 from flexstage.base.number import Array
 from flexstage.cases.bridge import bridge
 from flexstage.cases.double_triangle import double_triangle
@@ -115,3 +115,8 @@ def test_the_masses_may_differ_a_little() -> None:
     first, second = chain(np.array([2e6]), np.array([1.0])), chain(np.array([2e6]), np.array([1.03]))
     for pairs in (paired(first, second), paired(second, first)):
         assert 1.0 / 1.03 - 1e-9 < pairs[0].assurance < 1.0 + 1e-9
+
+
+def test_a_pair_is_reliable_from_four_fifths_on() -> None:
+    assert not Pair(0, 100.0, 0.79).reliable
+    assert Pair(0, 100.0, 0.81).reliable
