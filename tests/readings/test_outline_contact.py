@@ -11,7 +11,9 @@ import pytest
 from flexstage.cases.registry import CASES, case
 from flexstage.mechanism.contact import contact_findings
 from flexstage.mechanism.mechanism import Link, Mechanism, Probe
+from flexstage.mechanism.outline import rise
 from flexstage.mechanism.pattern import Pose
+from flexstage.mechanism.pieces import SAGITTA, pieces
 from flexstage.parts.body import Block, Body, Cylinder, Solid
 from flexstage.parts.gauge import Gauge, Positive
 from flexstage.parts.given import Joint
@@ -20,7 +22,7 @@ from flexstage.parts.material import Material
 from flexstage.parts.neck import Neck
 from flexstage.parts.notch import Notch
 from flexstage.parts.part import Part
-from flexstage.parts.profile import Circular, Elliptic, Filleted
+from flexstage.parts.profile import Circular, Elliptic, Filleted, length
 from flexstage.parts.rod import Rod
 from flexstage.readings.solid.contact import contact_findings as cad_findings
 from flexstage.readings.solid.draw import drawn, moved
@@ -231,3 +233,18 @@ def test_a_face_lies_in_the_material_of_a_tube_not_in_its_bore() -> None:
     tube = Cylinder("steel", 0.02, 0.02, (0.02, 0.0, 0.0), (1.0, 0.0, 0.0), bore=0.004)
     (finding,) = contact_findings(stage({"tube": tube}))
     assert "% of its end face" in finding.what
+
+
+@pytest.mark.parametrize("name", ["notch", "oval", "filleted"])
+def test_pieces_of_hinges_lie_within_their_cuts_and_fill_them(name: str) -> None:
+    part = PARTS[name]
+    assert isinstance(part, Notch)
+    half, height = 0.5 * float(length(part.profile)), float(rise(part.profile))
+    along = float(part.profile.along) if isinstance(part.profile, Elliptic) else height
+    for piece in pieces(part):
+        curved = np.maximum(0.0, np.abs(piece.points[:, 0]) - (half - along)) / along
+        surface = 0.5 * float(part.thickness) + height * (1.0 - np.sqrt(1.0 - np.minimum(1.0, curved) ** 2))
+        below = surface - np.abs(piece.points[:, 1])
+        assert np.all(below >= -1e-12)
+        upright = height * curved / np.sqrt(np.maximum(1e-12, 1.0 - np.minimum(1.0, curved) ** 2)) / along
+        assert np.all(below / np.sqrt(1.0 + upright**2) <= 2.0 * SAGITTA)
