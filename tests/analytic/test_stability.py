@@ -58,8 +58,8 @@ def test_eulers_columns(free: tuple[Freedom, ...], foot: tuple[Freedom, ...], sh
     assert of(column(free, foot)).dead == pytest.approx(share * EULER, rel=2e-3)
 
 
-def leaves(mass: float) -> fs.Mechanism:
-    leaf = fs.Leaf("steel", 0.06, 0.0003, 0.02)
+def leaves(mass: float, sides: tuple[float, float] = (0.0003, 0.02)) -> fs.Mechanism:
+    leaf = fs.Leaf("steel", 0.06, *sides)
     return fs.Mechanism(
         "leaves",
         materials={"steel": STEEL},
@@ -72,11 +72,12 @@ def leaves(mass: float) -> fs.Mechanism:
     )
 
 
+@pytest.mark.parametrize(("sides", "share"), [((0.0003, 0.02), 1.0), ((0.02, 0.0003), 0.25)], ids=["guided", "free"])
 @pytest.mark.parametrize("mass", [2.5, 5.0, 10.0])
-def test_a_platform_on_two_upright_leaves(mass: float) -> None:
-    """Both give way together, each as a column with one guided end."""
-    critical = 2.0 * np.pi**2 * 200e9 * 0.02 * 0.0003**3 / 12.0 / 0.06**2
-    assert of(leaves(mass)).dead == pytest.approx(critical / (9.80665 * mass), rel=5e-4)
+def test_a_platform_on_two_upright_leaves(mass: float, sides: tuple[float, float], share: float) -> None:
+    """Both give way together: as columns with a guided end, or, bent the other way, with a free one, as the platform tilts with them."""
+    critical = share * 2.0 * np.pi**2 * 200e9 * 0.02 * 0.0003**3 / 12.0 / 0.06**2
+    assert of(leaves(mass, sides)).dead == pytest.approx(critical / (9.80665 * mass), rel=2e-3)
 
 
 def pendulum(height: float) -> fs.Mechanism:
@@ -107,16 +108,17 @@ def test_a_hanging_body_is_stiffened():
     assert found.stiffens == pytest.approx(9.80665 * 0.5 * hinge, rel=0.01)
 
 
-def test_a_cantilevered_leaf_on_edge_tips_over():
+@pytest.mark.parametrize(("sides", "down"), [((0.0005, 0.01), (0.0, 0.0, -1.0)), ((0.01, 0.0005), (0.0, -1.0, 0.0))], ids=["z", "y"])
+def test_a_cantilevered_leaf_on_edge_tips_over(sides: tuple[float, float], down: tuple[float, float, float]) -> None:
     """Lateral buckling under a force at the end: P = 4.013 sqrt(E I G J) / L^2, uniform twist (the leaf's ends are kept from warping)."""
     length, thickness, width = 0.2, 0.0005, 0.01
     stage = fs.Mechanism(
         "edge",
         materials={"steel": STEEL},
-        parts={"leaf": fs.Leaf("steel", length, thickness, width)},
+        parts={"leaf": fs.Leaf("steel", length, *sides)},
         bodies={"platform": fs.Body(reference=(length, 0.0, 0.0))},
         links={"leaf": fs.Link(("ground", "platform"), "leaf", (0.5 * length, 0.0, 0.0), (1.0, 0.0, 0.0), bends=Z)},
-        forces={"load": fs.Force("platform", (length, 0.0, 0.0), (0.0, 0.0, -1.0))},
+        forces={"load": fs.Force("platform", (length, 0.0, 0.0), down)},
         gravity=(0.0, 0.0, 0.0),
     )
     bending = 200e9 * width * thickness**3 / 12.0
@@ -157,3 +159,19 @@ def test_strokes_through_locked_parts_press_as_through_stiff_ones():
     assert np.isinf(found.dead)
     assert found.worst == pytest.approx(4.0 * EULER / pressed, rel=2e-3)
     assert found.strokes == pytest.approx([2e-4])
+
+
+def test_a_squeezed_body_turns_about_the_line_of_its_forces_for_nothing():
+    """Forces of F inward at +-r along x soften turns about y and z by 2 F r, those about x, the hinge's own axis, by nothing."""
+    hinge = fs.Notch("steel", 0.0002, 0.01, fs.Circular(0.002))
+    stage = fs.Mechanism(
+        "squeezed",
+        materials={"steel": STEEL},
+        parts={"hinge": hinge},
+        bodies={"platform": fs.Body(reference=(0.0, 0.0, 0.0))},
+        links={"hinge": fs.Link(("ground", "platform"), "hinge", (0.0, 0.0, 0.0), Z, bends=(1.0, 0.0, 0.0))},
+        forces={name: fs.Force("platform", (x, 0.0, 0.0), (-np.sign(x), 0.0, 0.0)) for name, x in (("a", -0.1), ("b", 0.1))},
+        gravity=(0.0, 0.0, 0.0),
+    )
+    others = 1.0 / np.diag(fs.compliance(hinge, STEEL))[3:5]
+    assert of(stage).dead == pytest.approx(np.min(others) / (2.0 * 0.1), rel=1e-3)
