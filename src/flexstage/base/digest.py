@@ -12,6 +12,7 @@ from typing import Any, get_type_hints
 
 import numpy as np
 
+from flexstage.base.finding import refuse
 from flexstage.base.number import freeze
 from flexstage.base.quantity import Quantity
 
@@ -35,7 +36,7 @@ class Description:
         for field in fields(self):  # type: ignore[arg-type]
             value = freeze(getattr(self, field.name))
             if field.name in quantities:
-                value = _as_floats(value)
+                value = _as_floats(_numeric(value, f"{type(self).__name__}.{field.name}"))
             object.__setattr__(self, field.name, value)
 
     def __eq__(self, other: object) -> bool:
@@ -58,6 +59,17 @@ def _has_quantity(hint: Any) -> bool:
     if any(isinstance(item, Quantity) for item in getattr(hint, "__metadata__", ())):
         return True
     return any(_has_quantity(item) for item in getattr(hint, "__args__", ()))
+
+
+def _numeric(value: Any, where: str) -> Any:
+    """A value of numbers as it is; refused if any is something else."""
+    for item in value.values() if isinstance(value, Mapping) else value if isinstance(value, tuple) else (value,):
+        if isinstance(item, (Mapping, tuple)):
+            _numeric(item, where)
+        elif isinstance(item, (str, bytes)):
+            advice = "Write a number in SI units, for example 0.4 * fs.mm; texts with units stand in design files (fs.load)"
+            raise refuse(where, f"found the text {item!r}, expected a number", advice)
+    return value
 
 
 def _as_floats(value: Any) -> Any:

@@ -10,6 +10,7 @@ from typing import TypeAlias
 
 import numpy as np
 
+from flexstage.base.finding import Finding, nearest, require
 from flexstage.base.number import Array, Number, Table, stack
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Link, Mechanism, Probe
 from flexstage.mechanism.misalignment import MISALIGNED, misaligned
@@ -162,6 +163,7 @@ class _Same:
 def _expanded(key: _Same) -> Assembly:
     """The assembly, kept for the next reading or analysis of the same description: each of them asks for it."""
     mechanism = key.mechanism
+    require(_unknown_names(mechanism))
     placed = tuple(copies(mechanism))
     links = {link.name: link for link in _links(mechanism, placed)}
     drawn = tuple(_bodies(mechanism, placed))
@@ -169,8 +171,38 @@ def _expanded(key: _Same) -> Assembly:
     bodies = {
         item.name: _placed_body((item, *lent.get(item.name, ())), links, mechanism.materials) for item in drawn if item.body.of is None
     }
+    require(_unknown_bodies(bodies, links, mechanism.gauges))
     ground = {address: solid for item in lent.get(GROUND, ()) for address, solid in item.solids()}
     return Assembly(bodies, links, dict(_gauges(mechanism)), _actuators(links), dict(_points(drawn)), ground)
+
+
+def _unknown_names(mechanism: Mechanism) -> Iterator[Finding]:
+    """What a description names and does not hold, for those that are built without having passed the checks."""
+    drawn = [(f"links.{name}", link) for name, link in mechanism.links.items()]
+    drawn += [(f"units.{unit}.links.{name}", link) for unit, item in mechanism.units.items() for name, link in item.links.items()]
+    bodies = [(f"bodies.{name}", body) for name, body in mechanism.bodies.items()]
+    bodies += [(f"units.{unit}.bodies.{name}", body) for unit, item in mechanism.units.items() for name, body in item.bodies.items()]
+    named: list[tuple[str, str, str | None, Mapping[str, object]]] = [
+        (f"{where}.part", "part", link.part, mechanism.parts) for where, link in drawn
+    ]
+    named += [(f"parts.{name}.material", "material", material_of(part), mechanism.materials) for name, part in mechanism.parts.items()]
+    named += [
+        (f"{where}.solids.{name}.material", "material", solid.material, mechanism.materials)
+        for where, body in bodies
+        for name, solid in body.solids.items()
+    ]
+    named += [(f"place.{name}.unit", "unit", item.unit, mechanism.units) for name, item in mechanism.place.items()]
+    named += [(f"gauges.{name}.gauge", "sensor", probe.gauge, mechanism.sensors) for name, probe in mechanism.gauges.items()]
+    for where, kind, name, known in named:
+        if name and name not in known:
+            yield Finding(where, f'there is no {kind} "{name}"', nearest(name, known))
+
+
+def _unknown_bodies(bodies: Mapping[str, PlacedBody], links: Mapping[str, PlacedLink], gauges: Mapping[str, Probe]) -> Iterator[Finding]:
+    known = (*bodies, GROUND)
+    ends = [(f"{link.name}.joins", body) for link in links.values() for body in link.joins]
+    ends += [(f"gauges.{name}", body) for name, probe in gauges.items() for body in (probe.body, probe.base or GROUND)]
+    yield from (Finding(where, f'there is no body "{body}"', nearest(body, known)) for where, body in ends if body not in known)
 
 
 def copies(mechanism: Mechanism) -> Iterator[tuple[str, str, Frame]]:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from flexstage.base.memory import available, require_memory
 from flexstage.base.number import Array
 from flexstage.mechanism.expand import Assembly, PlacedLink
 from flexstage.mechanism.mechanism import GROUND, PLATFORM
@@ -51,6 +52,20 @@ def layout(assembly: Assembly) -> Layout:
     names = tuple(assembly.bodies)
     first = tuple(name for name in names if name == "platform")
     return Layout(first + tuple(name for name in names if name != "platform"))
+
+
+def require_room(assembly: Assembly, matrices: float) -> None:
+    """Refuse a stage whose dense matrices do not fit: so many at once of (coordinates x rows of bodies or links), 8 bytes an entry.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.mechanism.expand import expand
+    >>> require_room(expand(double_triangle()), matrices=20.0)
+    """
+    bodies, links = len(assembly.bodies), len(assembly.links)
+    needed = 8.0 * matrices * 36.0 * bodies * max(bodies, links)
+    fits = int(np.sqrt(available() / needed) * bodies) if needed else bodies
+    advice = f"About {fits:,} bodies would fit with as many links to each; join bodies that move as one, or read parts of it"
+    require_memory("stage", f"matrices of {bodies:,} bodies and {links:,} links", needed, advice)
 
 
 def twist_at(assembly: Assembly, order: Layout, body: str, frame: Frame) -> Array:

@@ -48,9 +48,8 @@ def load_factors(mechanism: Mechanism) -> Stability | None:
     >>> bool(load_factors(parallelogram()).worst > 100.0)
     True
     """
+    limits = stroke_limits(mechanism).from_zero
     try:
-        model = lumped(mechanism)
+        return stability(mechanism, lumped(mechanism), limits if 0 < len(limits.actuators) <= _CORNERS else None)
     except DesignError:
         return None
-    limits = stroke_limits(mechanism).from_zero
-    return stability(mechanism, model, limits if 0 < len(limits.actuators) <= _CORNERS else None)

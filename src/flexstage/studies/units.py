@@ -69,7 +69,10 @@ def driven_units(mechanism: Mechanism) -> dict[str, tuple[str, Array]]:
             for value, name in zip(row, mapping.columns, strict=True):
                 if name in ("x", "y", "z"):
                     pushed["xyz".index(name)] = value
-            direction = frame.rotation.T @ pushed / (np.linalg.norm(pushed) or 1.0)
+            reach = np.linalg.norm(pushed)
+            if not 0.0 < reach < np.inf:
+                continue  # it turns the platform, and pushes it nowhere
+            direction = frame.rotation.T @ pushed / reach
             if ideal(isolate(mechanism, copy, guide=as_vector(direction))).actuated:
                 first[unit] = copy, direction
     return first

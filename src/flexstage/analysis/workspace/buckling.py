@@ -107,7 +107,7 @@ def buckling(mechanism: Mechanism, model: LinearModel, limits: StrokeLimits) -> 
 
 
 def _joined(values: list[Number]) -> Array:
-    return np.stack(np.broadcast_arrays(*(np.asarray(value) for value in values)), axis=-1)
+    return np.stack(np.broadcast_arrays(*(np.asarray(value) for value in values)), axis=-1) if values else np.zeros(0)
 
 
 def _is_column(link: PlacedLink) -> bool:

@@ -49,6 +49,8 @@ def _ended(action: Callable[[], object]) -> int:
         return DONE  # `| head`
     except KeyboardInterrupt:
         return _interrupted()
+    except MemoryError as error:
+        return _bad_input(refuse("memory", f"there is not enough for this: {error}", "Ask for less at once, or free memory"))
     except Exception as error:  # noqa: BLE001 (the last resort: a message instead of a traceback)
         return _fault(error)
     return DONE

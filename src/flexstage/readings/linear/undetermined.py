@@ -12,6 +12,8 @@ from flexstage.readings.linear.model import Channel, LinearModel
 from flexstage.spatial.frame import COMPONENTS, FORCES
 
 _SEEN = 1e-9
+_ONES, _METRE = np.ones(6), np.array([1.0, 1.0, 1.0, 0.1, 0.1, 0.1])
+"""Rotations are compared with translations over 0.1 m."""
 _ADVICE = "Give a link of these bodies stiffness in that freedom, or lock it"
 
 
@@ -92,7 +94,8 @@ def require_balanced(model: LinearModel, where: str, load: Array, rows: list[int
         return
     works = model.idle_inertia if rows is None else np.swapaxes(model.idle_output[..., rows, :], -1, -2)
     works, load = np.real(first_design(works, 2)), np.real(first_design(load, 1))
-    if np.any(np.abs(works @ load) > _SEEN * (np.abs(works) @ np.abs(load))):
+    scale = _ONES if rows is None else _METRE  # of the inertia, rounding is gone
+    if np.any(np.abs(works @ load) > _SEEN * np.linalg.norm(works * scale, axis=1) * np.linalg.norm(load / scale)):
         raise refuse(where, f"it drives an idle motion that no stiffness holds, so there is no rest: {_named(model)}", _ADVICE)
 
 

@@ -6,12 +6,11 @@ of the matrix on hinges, levers, plates and stacks of 26,000 to 150,000 degrees 
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from pathlib import Path
 
 from flexstage.base.finding import Finding
+from flexstage.base.memory import gigabytes
 from flexstage.readings.solid.fineness import Fineness
 
 _PROCESS = 180e6
@@ -23,8 +22,6 @@ _FACTOR, _FACTOR_FREEDOMS, _FACTOR_GROWTH = 60.0, 1e5, 1.0 / 6.0
 _COPIES = 4.0
 """Copies of the basis that are alive at once."""
 _LANCZOS = 40
-_USABLE = 0.9
-"""Share of what is left that a reading may plan with."""
 _COARSER, _COARSEST = 1.25, 12.0
 
 
@@ -105,8 +102,8 @@ def refusal(where: str, counts: Counts, fineness: Fineness, columns: int, limit:
     wanted = needed(counts, fineness.order, columns)
     if wanted <= limit:
         return None
-    what = f"its reduction at order {fineness.order} needs about {_gigabytes(wanted)}"
-    what += f" ({freedoms(counts, fineness.order):,.0f} degrees of freedom), and {_gigabytes(limit)} are there"
+    what = f"its reduction at order {fineness.order} needs about {gigabytes(wanted)}"
+    what += f" ({freedoms(counts, fineness.order):,.0f} degrees of freedom), and {gigabytes(limit)} are there"
     smaller = [*_lower_order(counts, fineness, columns, limit), *_larger_elements(counts, fineness, columns, limit)]
     remedy = f"Ask for {', or for '.join(smaller)}" if smaller else "Free memory, or read its parts one by one"
     return Finding(where, what, remedy)
@@ -116,7 +113,7 @@ def _lower_order(counts: Counts, fineness: Fineness, columns: int, limit: float)
     for order in range(fineness.order - 1, 1, -1):
         wanted = needed(counts, order, columns)
         if wanted <= limit:
-            yield f"order {order}, about {_gigabytes(wanted)}"
+            yield f"order {order}, about {gigabytes(wanted)}"
             return
 
 
@@ -126,65 +123,6 @@ def _larger_elements(counts: Counts, fineness: Fineness, columns: int, limit: fl
         wanted = needed(counts.coarser(factor), fineness.order, columns)
         if wanted <= limit:
             found = replace(fineness, neck=round(fineness.neck * factor, 1), block=round(fineness.block * factor, 1))
-            yield f"larger elements, Fineness(neck={found.neck:g}, block={found.block:g}, order={found.order}), about {_gigabytes(wanted)}"
+            yield f"larger elements, Fineness(neck={found.neck:g}, block={found.block:g}, order={found.order}), about {gigabytes(wanted)}"
             return
         factor *= _COARSER
-
-
-def _gigabytes(size: float) -> str:
-    return f"{size / 1e9:.3g} GB"
-
-
-def available() -> float:
-    """Memory a reading may plan with [bytes]: 90 % of what the machine, its control group and the limits on processes leave.
-
-    >>> available() > 0.0
-    True
-    """
-    return _USABLE * min((*_machine(), *_control_group(), *_process_limits()), default=float("inf"))
-
-
-def _machine() -> Iterator[float]:
-    table = Path("/proc/meminfo")
-    if table.is_file():
-        rows = dict(line.split(":", 1) for line in table.read_text(encoding="utf-8").splitlines() if ":" in line)
-        if "MemAvailable" in rows:
-            yield 1024.0 * float(rows["MemAvailable"].split()[0])
-    elif "SC_PHYS_PAGES" in getattr(os, "sysconf_names", {}):
-        yield 0.5 * os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
-
-
-def _control_group(root: Path = Path("/sys/fs/cgroup"), own: Path = Path("/proc/self/cgroup")) -> Iterator[float]:
-    """What is left to the control groups (version 2) this process is in, page cache not counted."""
-    if not own.is_file():
-        return
-    paths = [line[3:].strip().lstrip("/") for line in own.read_text(encoding="utf-8").splitlines() if line.startswith("0::")]
-    for path in paths:
-        group = root / path
-        for folder in (group, *group.parents):
-            if not folder.is_relative_to(root):
-                break
-            yield from _left(folder)
-
-
-def _left(folder: Path) -> Iterator[float]:
-    try:
-        most = (folder / "memory.max").read_text(encoding="utf-8").strip()
-        used = float((folder / "memory.current").read_text(encoding="utf-8"))
-        rows = (line.split() for line in (folder / "memory.stat").read_text(encoding="utf-8").splitlines())
-        cached = sum(float(size) for name, size in rows if name == "inactive_file")
-    except OSError:
-        return
-    if most != "max":
-        yield max(0.0, float(most) - used + cached)
-
-
-def _process_limits() -> Iterator[float]:
-    try:
-        import resource
-    except ImportError:  # Windows
-        return
-    for kind in (resource.RLIMIT_AS, resource.RLIMIT_DATA):
-        soft, _ = resource.getrlimit(kind)
-        if soft != resource.RLIM_INFINITY:
-            yield float(soft)

@@ -16,8 +16,8 @@ from filelock import FileLock, Timeout
 from flexstage.analysis.requirements import Subject
 from flexstage.base.child import cores
 from flexstage.base.finding import DesignError, refuse, require
+from flexstage.base.memory import available
 from flexstage.base.number import Array
-from flexstage.readings.solid.memory import available
 from flexstage.studies.study.definition import Study, name_findings
 from flexstage.studies.study.engine import engine_covers, engine_of
 from flexstage.studies.study.evaluate import nominal

@@ -1,0 +1,81 @@
+"""Memory: what may be planned with, and the refusal of what needs more, with the numbers compared, before it is taken."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import psutil
+
+from flexstage.base.finding import refuse
+
+_USABLE = 0.9
+"""Share of what is left that may be planned with."""
+
+
+def require_memory(where: str, what: str, needed: float, fits: str) -> None:
+    """Refuse what needs more memory [bytes] than there is; `fits` says what would.
+
+    >>> require_memory("stage", "its matrices", 1e3, "fewer bodies")
+    """
+    left = available()
+    if needed > left:
+        raise refuse(where, f"{what} need about {gigabytes(needed)}, and {gigabytes(left)} are there", fits)
+
+
+def gigabytes(size: float) -> str:
+    """A size of memory in words.
+
+    >>> gigabytes(1.5e9)
+    '1.5 GB'
+    """
+    return f"{size / 1e9:.3g} GB"
+
+
+def available() -> float:
+    """Memory a reading may plan with [bytes]: 90 % of what the machine, its control group and the limits on processes leave.
+
+    >>> available() > 0.0
+    True
+    """
+    return _USABLE * min((*_machine(), *_control_group(), *_process_limits()), default=float("inf"))
+
+
+def _machine() -> Iterator[float]:
+    yield float(psutil.virtual_memory().available)
+
+
+def _control_group(root: Path = Path("/sys/fs/cgroup"), own: Path = Path("/proc/self/cgroup")) -> Iterator[float]:
+    """What is left to the control groups (version 2) this process is in, page cache not counted."""
+    if not own.is_file():
+        return
+    paths = [line[3:].strip().lstrip("/") for line in own.read_text(encoding="utf-8").splitlines() if line.startswith("0::")]
+    for path in paths:
+        group = root / path
+        for folder in (group, *group.parents):
+            if not folder.is_relative_to(root):
+                break
+            yield from _left(folder)
+
+
+def _left(folder: Path) -> Iterator[float]:
+    try:
+        most = (folder / "memory.max").read_text(encoding="utf-8").strip()
+        used = float((folder / "memory.current").read_text(encoding="utf-8"))
+        rows = (line.split() for line in (folder / "memory.stat").read_text(encoding="utf-8").splitlines())
+        cached = sum(float(size) for name, size in rows if name == "inactive_file")
+    except OSError:
+        return
+    if most != "max":
+        yield max(0.0, float(most) - used + cached)
+
+
+def _process_limits() -> Iterator[float]:
+    try:
+        import resource
+    except ImportError:  # Windows
+        return
+    for kind in (resource.RLIMIT_AS, resource.RLIMIT_DATA):
+        soft, _ = resource.getrlimit(kind)
+        if soft != resource.RLIM_INFINITY:
+            yield max(0.0, float(soft) - psutil.Process().memory_info().vms)

@@ -1,0 +1,109 @@
+"""Descriptions made in Python: what is no number, names nothing or was not read is refused in words where it is given."""
+
+from __future__ import annotations
+
+import copy
+import pickle
+from dataclasses import replace
+
+import pytest
+
+import flexstage as fs
+from flexstage.mechanism.address import set_value
+
+STAGE = fs.case("parallelogram")
+
+
+@pytest.mark.parametrize(
+    "made",
+    [
+        lambda: fs.Leaf("steel", length=0.05, thickness="0.4 mm", width=0.01),
+        lambda: fs.Notch("steel", thickness="0.4 mm", width=0.01, profile=fs.Circular(0.002)),
+        lambda: fs.Body(mass="1 kg"),
+        lambda: fs.Link(("ground", "platform"), "leaf", at=("1 mm", 0.0, 0.0), along=(1.0, 0.0, 0.0)),
+        lambda: fs.Body(points={"tip": (0.0, "1 mm", 0.0)}),
+    ],
+)
+def test_a_text_is_no_number(made):
+    with pytest.raises(fs.DesignError, match=r"found the text '.*', expected a number"):
+        made()
+
+
+@pytest.mark.parametrize(
+    "asked",
+    [
+        fs.modes,
+        fs.statics,
+        fs.transmissibility,
+        lambda stage: fs.response(stage, ["platform"], ["B"]),
+        lambda stage: fs.deflection(stage, stage),
+        lambda stage: fs.lost_motion(fs.ideal(stage), stage),
+        lambda stage: fs.lost_motion(stage, fs.lumped(stage)),
+        lambda stage: fs.drift(stage, stage),
+    ],
+)
+def test_a_description_is_no_model(asked):
+    with pytest.raises(fs.DesignError, match=r"read the description first, for example fs\.modes\(fs\.lumped\(stage\)\)"):
+        asked(STAGE)
+
+
+def test_a_description_without_an_attribute_is_like_any_value():
+    assert not hasattr(STAGE, "frequencies")
+    assert copy.deepcopy(STAGE) == pickle.loads(pickle.dumps(STAGE)) == STAGE  # noqa: S301
+    with pytest.raises(AttributeError) as told:
+        _ = STAGE.frequencies
+    assert str(pickle.loads(pickle.dumps(told.value))) == str(told.value)  # noqa: S301
+
+
+def test_names_that_name_nothing_are_told_with_the_nearest():
+    left = STAGE.links["left"]
+    for wrong, message in (
+        (replace(STAGE, links={**STAGE.links, "left": replace(left, part="leav")}), r'links\.left\.part: .* "leav".*leaf'),
+        (replace(STAGE, links={**STAGE.links, "left": replace(left, joins=("ground", "platfrm"))}), r'left\.joins: .*"platfrm".*platform'),
+        (replace(STAGE, materials={"aluminum": STAGE.materials["aluminium"]}), r'parts\.leaf\.material: .*"aluminium".*aluminum'),
+        (replace(STAGE, sensors={}), r"gauges\.S\.gauge"),
+    ):
+        for read in (fs.ideal, fs.lumped):
+            with pytest.raises(fs.DesignError, match=message):
+                read(wrong)
+
+
+@pytest.mark.parametrize(
+    ("changes", "told"),
+    [
+        ({"parts.leaf.length": 25e-12}, r"left: its stiffness is beyond what can be computed.* length 2\.5e-11 m"),
+        ({"parts.leaf.width": 1e9}, r"left: its stiffness is beyond what can be computed.* width 1e\+09 m"),
+        ({"parts.stack.stiffness": 1e36}, r"B/pzt: stiffnesses from .* N/m \(left\) to 1e\+36 N/m \(B/pzt\)"),
+    ],
+)
+def test_numbers_beyond_computing_are_told_with_their_link(changes, told):
+    stage = STAGE
+    for name, value in changes.items():
+        stage = set_value(stage, name, value)
+    with pytest.raises(fs.DesignError, match=told):
+        fs.modes(fs.lumped(stage))
+
+
+def test_a_stage_without_sections_or_freedoms_is_told():
+    stack = fs.Piezo(stroke=50e-6, stiffness=50e6, length=0.05, diameter=0.01)
+    stage = fs.Mechanism(
+        "minimal",
+        parts={"stack": stack},
+        bodies={"platform": fs.Body(mass=1.0)},
+        links={"pzt": fs.Link(("ground", "platform"), "stack", (0.0, 0.0, 0.0), (1.0, 0.0, 0.0))},
+    )
+    found = fs.analyse(stage)
+    assert found.workspace.stress is None
+    assert "no link has a section" in found.workspace.missing["stress"]
+    locked = replace(stage, parts={"stack": fs.Restricted(stack, ())})
+    assert fs.ideal(locked).mapping.values[0, 0] == 1.0
+    with pytest.raises(fs.DesignError, match="every freedom is locked, by pzt"):
+        fs.lumped(locked)
+
+
+def test_what_does_not_fit_into_memory_is_refused_with_what_would(monkeypatch):
+    monkeypatch.setattr("flexstage.base.memory.available", lambda: 1e3)
+    monkeypatch.setattr("flexstage.mechanism.incidence.available", lambda: 1e3)
+    for read in (fs.ideal, fs.lumped):
+        with pytest.raises(fs.DesignError, match=r"3 bodies and .* links need about .* GB, and 1e-06 GB are there\. About \d+ bodies"):
+            read(STAGE)
