@@ -95,6 +95,8 @@ def test_what_a_killed_process_left_is_swept(tmp_path, monkeypatch):
     others = [tmp_path / name for name in (".results.h5.part", ".a.0123abcd.part", "flexstage-notes", "flexstage-00000000-1-abc")]
     for each in others:
         each.mkdir()
+    others.append(tmp_path / ".a.00000000-999999999-abc.part")  # of another machine, which alone knows its processes
+    others[-1].touch()
     write(tmp_path / "other.toml", "")
     temporary().rmdir()
     assert sorted(left_in(tmp_path)) == sorted([*others, tmp_path / "other.toml"])
