@@ -35,7 +35,10 @@ def made(built: Mechanism, seed: int = 0, noise: Noise = Noise()) -> Identified:
     theory = exact * np.exp(noise.model * random.standard_normal(6)[groups])
     order = np.argsort(measured := theory * (1.0 + noise.frequency * random.standard_normal(6)))
     shapes = (model.output[list(model.output_index(gauges))] @ found.shapes[:, chosen])[:, order]
-    shapes = shapes / shapes[np.argmax(np.abs(shapes), axis=0), np.arange(6)]
+    largest = shapes[np.argmax(np.abs(shapes), axis=0), np.arange(6)]
+    shapes = shapes / largest
+    driven = model.input_matrix[:, list(model.input_index(model.strokes))]
+    felt = (found.shapes[:, chosen][:, order] * largest).T @ driven / (4j * np.pi * exact[order, None])  # residues of M q'' + K q = B u
     outputs = tuple(Channel(name, "um", Role.OUTPUT) for name in gauges)
     inputs = tuple(Channel(name, "um", Role.INPUT) for name in model.strokes)
     lines = np.linspace(0.0, 60.0, 241)
@@ -45,7 +48,7 @@ def made(built: Mechanism, seed: int = 0, noise: Noise = Noise()) -> Identified:
         frequencies=measured[order],
         damping=np.full(6, 0.01),
         shapes=shapes.astype(complex),
-        participation=np.ones((6, len(inputs)), dtype=complex),
+        participation=felt,
         frequency_deviations=noise.frequency * measured[order],
         damping_deviations=np.full(6, 1e-4),
         shape_deviations=np.full(shapes.shape, 1e-3),

@@ -9,9 +9,10 @@ import pytest
 
 from flexstage.analysis.modes import modal_assurance
 from flexstage.analysis.pairing import gyration
+from flexstage.analysis.workspace.stroke import stacks
 from flexstage.base.finding import DesignError
 from flexstage.cases.double_triangle import double_triangle
-from flexstage.mechanism.address import assign
+from flexstage.mechanism.address import assign, set_value
 from flexstage.parts.body import Body, Inertia
 from flexstage.readings.ideal import ideal
 from flexstage.readings.lumped import lumped
@@ -22,8 +23,10 @@ from flexstage.studies.complete import platform_modes
 from flexstage.studies.fea_modes import FeaModes
 from flexstage.studies.identification import identification, sound
 from flexstage.studies.measured_shapes import stage_shapes
+from flexstage.studies.rig.plan import volts_per_metre
 from flexstage.studies.rig.rig import rig
 from flexstage.studies.rig.setup import NoiseDrive, RigSetup
+from tests.readings.made_tests import made
 from tests.readings.stage_records import stage_record
 
 STAGE = double_triangle()
@@ -205,3 +208,55 @@ def test_angles_are_compared_by_the_platforms_radius_of_gyration() -> None:
     body = Body(mass=9e9, centre=(0.0, 0.0, 0.0), inertia=Inertia(1e8, 2e8, 3e8))
     stage = replace(double_triangle(), bodies={**double_triangle().bodies, "platform": body})
     assert gyration(lumped(stage)) == pytest.approx(np.sqrt(0.2 / 9.0), rel=1e-8)
+
+
+# --- channels that are not what they are called ---
+
+SOUND = made(STAGE)
+
+
+def renamed(channels: tuple[Channel, ...], **names: str) -> tuple[Channel, ...]:
+    return tuple(replace(channel, name=names.get(channel.name, channel.name)) for channel in channels)
+
+
+def times(values: np.ndarray, index: int, factor: float) -> np.ndarray:
+    changed = values.copy()
+    changed[index] *= factor
+    return changed
+
+
+MISNAMED = {
+    "B4 and B1 look exchanged": replace(SOUND, inputs=renamed(SOUND.inputs, B1="B4", B4="B1")),
+    "B4, B1 and B2 look exchanged": replace(SOUND, inputs=renamed(SOUND.inputs, B1="B4", B4="B2", B2="B1")),
+    "S4 and S1 look exchanged": replace(SOUND, outputs=renamed(SOUND.outputs, S1="S4", S4="S1")),
+    "B3 looks inverted": replace(SOUND, participation=times(SOUND.participation.T, 2, -1.0).T),
+    "S4 looks inverted": replace(SOUND, shapes=times(SOUND.shapes, 3, -1.0)),
+    "B3 looks scaled: its part in the modes is 2 times": replace(SOUND, participation=times(SOUND.participation.T, 2, 2.0).T),
+    "S4 looks scaled: its part in the modes is 0.1 times": replace(SOUND, shapes=times(SOUND.shapes, 3, 0.1)),
+}
+
+
+@pytest.mark.parametrize("told", MISNAMED)
+def test_channels_that_are_not_what_they_are_called_are_named(told: str) -> None:
+    found = compare(STAGE, MISNAMED[told])
+    wanted = "look exchanged: " if told.startswith("B4, ") else told
+    assert [each for each in found.misnamed if wanted in each], found.misnamed
+    assert any(wanted in each for each in found.warnings)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_sound_channels_are_not_doubted(seed: int) -> None:
+    """Modes off by some per cent, a weak drive, other units: nothing of that is a channel's fault."""
+    built = set_value(STAGE, "parts.neck.thickness", (1.0 + 0.05 * seed) * 1.54e-3)
+    plain = made(built, seed)
+    volts = tuple(replace(channel, unit="V") for channel in plain.inputs)
+    assert compare(STAGE, plain).misnamed == ()
+    assert compare(STAGE, replace(plain, inputs=tuple(replace(each, unit="") for each in plain.inputs))).misnamed == ()
+    known = stacks(STAGE)
+    rated = np.array([1.0 / volts_per_metre(known[channel.name]) for channel in volts]) * 1e6
+    assert compare(STAGE, replace(plain, inputs=volts, participation=plain.participation * rated)).misnamed == ()
+
+
+def test_two_outputs_of_three_are_compared_without_doubts() -> None:
+    one = replace(SOUND, outputs=SOUND.outputs[:1], shapes=SOUND.shapes[:1], shape_deviations=SOUND.shape_deviations[:1])
+    assert compare(STAGE, one).misnamed == ()

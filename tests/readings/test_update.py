@@ -10,6 +10,7 @@ import pytest
 
 from flexstage.base.finding import DesignError
 from flexstage.cases.double_triangle import double_triangle
+from flexstage.cases.parallelogram import parallelogram
 from flexstage.mechanism.address import get, set_value, tag_of
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.store import dumps, loads
@@ -270,3 +271,22 @@ def test_gains_are_led_back_past_the_lowest_mode() -> None:
     found, deviations = _led_back(lines, values)
     np.testing.assert_allclose(found, mode + rest, atol=1e-12)
     assert np.max(deviations) < 1e-12
+
+
+def test_nothing_is_said_of_numbers_where_theory_and_test_contradict_each_other() -> None:
+    plain = made(STAGE)
+    names = {"B1": "B4", "B4": "B1"}
+    renamed = tuple(replace(channel, name=names.get(channel.name, channel.name)) for channel in plain.responses.inputs)
+    test = replace(plain, inputs=renamed, responses=replace(plain.responses, inputs=renamed))
+    found = update(STAGE, test, [NECK], Known(gain_error=0.02))
+    assert found.chi_square > 1e3
+    assert found.told == (Told.WITHHELD,)
+    assert found.verdicts[0].startswith("withheld: chi-square ")
+    assert any("look exchanged" in each for each in found.warnings)
+    assert "theory and test contradict each other" in updated_text(dumps(STAGE), found, "test.uff")
+
+
+def test_a_design_with_other_coordinates_is_no_step() -> None:
+    here = begun(STAGE, (ModeRow("z", (2,), (0,), 126.0, 1e-4),))
+    with pytest.raises(DesignError, match="its numbers moved so far that the model has"):
+        followed(here, parallelogram())

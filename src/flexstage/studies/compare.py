@@ -14,10 +14,12 @@ from flexstage.base.number import Array, first_design
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.readings.linear.model import LinearModel
 from flexstage.readings.measured.identified import Identified
+from flexstage.studies.channels import Residues, gain_doubts, shape_doubts, sized
 from flexstage.studies.complete import platform_modes, read
 from flexstage.studies.fea_modes import FeaModes
-from flexstage.studies.measured_shapes import si_shapes
+from flexstage.studies.measured_shapes import si_factor, si_shapes
 from flexstage.studies.reading import Reading
+from flexstage.studies.update_gains import metres
 
 _REPEATED = 0.01
 _FAR, _FARTHEST = 0.3, np.log(1.6)
@@ -102,7 +104,8 @@ class Compared:
     """Theory, FEA and experiment mode by mode.
 
     `further` are measured modes without a partner among the platform's; `sensors` the outputs shapes are compared at;
-    `warnings` say what the experiment cannot tell and which pairings not to rely on.
+    `warnings` say what the experiment cannot tell and which pairings not to rely on; those of `misnamed` which channels look
+    exchanged, inverted or scaled.
     """
 
     rows: tuple[ComparedMode, ...]
@@ -114,6 +117,7 @@ class Compared:
     fea: FeaModes | None
     warnings: tuple[str, ...]
     provenance: str
+    misnamed: tuple[str, ...] = ()
 
 
 def compare(mechanism: Mechanism, experiment: Identified, fea: FeaModes | None = None, *, reading: Reading = Reading.LUMPED) -> Compared:
@@ -142,7 +146,15 @@ def compare(mechanism: Mechanism, experiment: Identified, fea: FeaModes | None =
     seen = _weighted(si_shapes(experiment, sensors), model, sensors)
     own = _sensed(model, theory, candidates, sensors)
     groups = _groups(theory, candidates)
-    pairs, likeness = _pairs(first_design(theory.frequencies, 1)[list(candidates)], experiment, groups, (own, seen))
+    frequencies = first_design(theory.frequencies, 1)[list(candidates)]
+    pairs, likeness = _pairs(frequencies, experiment, groups, (own, seen))
+
+    def score(shapes: Array) -> float:
+        found, alike = _pairs(frequencies, experiment, groups, (own, shapes))
+        return sum(float(alike[place, index]) for place, index in found.items()) / max(1, shapes.shape[1])
+
+    misnamed = shape_doubts(sensors, seen, score)
+    misnamed = misnamed or gain_doubts(_residues(mechanism, (model, theory), experiment, sensors, _matched(groups, candidates, pairs)))
     rows = _rows(theory, experiment, pairs, likeness)
     rows = rows if fea is None else _with_fea(rows, theory, fea, model)
     repeated = tuple(_repeated(group, pairs, own, seen) for group in groups if len(group) > 1 and group[-1] < len(rows))
@@ -154,7 +166,8 @@ def compare(mechanism: Mechanism, experiment: Identified, fea: FeaModes | None =
         reading=reading,
         experiment=experiment,
         fea=fea,
-        warnings=(*experiment.warnings, *_cautions(rows, repeated, sensors)),
+        warnings=(*experiment.warnings, *(f"{each}." for each in misnamed), *_cautions(rows, repeated, sensors)),
+        misnamed=misnamed,
         provenance=f"{theory.provenance}; {experiment.provenance}",
     )
 
@@ -228,6 +241,40 @@ def _in_order(found: dict[int, int], groups: list[list[int]]) -> dict[int, int]:
         members = sorted(found[index] for index in group if index in found)
         ordered |= dict(zip(group, members, strict=False))
     return ordered
+
+
+def _matched(groups: list[list[int]], candidates: tuple[int, ...], pairs: dict[int, int]) -> list[tuple[list[int], list[int]]]:
+    """Theory's modes of every group all of whose modes were found, and the measured ones."""
+    whole = (group for group in groups if all(index in pairs for index in group))
+    return [([candidates[index] for index in group], [pairs[index] for index in group]) for group in whole]
+
+
+def _residues(
+    mechanism: Mechanism,
+    known: tuple[LinearModel, Modes],
+    experiment: Identified,
+    sensors: Sequence[str],
+    matched: list[tuple[list[int], list[int]]],
+) -> Residues:
+    """Modal gains of theory and test between shared sensors and shared inputs: repeated modes together, whatever their basis."""
+    model, theory = known
+    names = {channel.name for channel in model.inputs}
+    columns = [index for index, channel in enumerate(experiment.inputs) if channel.name in names]
+    inputs = tuple(experiment.inputs[index].name for index in columns)
+    sizes = np.array([metres(mechanism, experiment.inputs[index]) for index in columns])
+    shapes, drive = first_design(theory.shapes, 2), first_design(model.input_matrix, 2)[:, list(model.input_index(inputs))]
+    sense = first_design(model.output, 2)[list(model.output_index(tuple(sensors)))]
+    rows = [[channel.name for channel in experiment.outputs].index(name) for name in sensors]
+    seen = np.array([si_factor(experiment.outputs[row]) for row in rows])[:, None] * experiment.shapes[rows]
+    felt = (
+        4.0 * np.pi * experiment.frequencies[:, None] * 1j * experiment.participation[:, columns] / np.where(np.isfinite(sizes), sizes, 1.0)
+    )
+    own = [(sense @ shapes[:, modes]) @ (shapes[:, modes].T @ drive) for modes, _ in matched]
+    found = [np.real(seen[:, modes] @ felt[modes]) for _, modes in matched]
+    shape = (-1, len(sensors), len(inputs))
+    if not own or not inputs:
+        return Residues(tuple(sensors), inputs, np.zeros((0, *shape[1:])), np.zeros((0, *shape[1:])), np.isfinite(sizes))
+    return sized(Residues(tuple(sensors), inputs, np.reshape(own, shape), np.reshape(found, shape), np.isfinite(sizes)))
 
 
 def _basis(shapes: Array) -> Array:

@@ -37,6 +37,7 @@ _ROUNDS = 5
 _ALONE = 0.9
 _IMPROBABLE = 0.01
 _FAR = 3.0
+_CONTRADICTING = 10.0
 
 
 class Told(Enum):
@@ -48,6 +49,8 @@ class Told(Enum):
     """At most 20 %."""
     NOT = "not identifiable"
     """More: the value is the prior's as much as the test's."""
+    WITHHELD = "withheld"
+    """Theory and test are so far apart that the test tells nothing of single numbers."""
 
 
 @dataclass(frozen=True)
@@ -133,8 +136,15 @@ class Updated:
 
     @property
     def told(self) -> tuple[Told, ...]:
-        """How well the test tells each number."""
+        """How well the test tells each number; nothing is said where data miss theory by more than three deviations on average."""
+        if self.withheld:
+            return (Told.WITHHELD,) * len(self.parameters)
         return tuple(Told.WELL if share <= _TOLD else Told.WEAKLY if share <= _HARDLY else Told.NOT for share in self.left)
+
+    @property
+    def withheld(self) -> bool:
+        """Whether theory and test contradict each other beyond what any of the numbers may be."""
+        return self.chi_square > _CONTRADICTING * max(1, self.freedoms)
 
     @property
     def data(self) -> str:
@@ -159,6 +169,8 @@ class Updated:
         return float(chdtrc(self.freedoms, self.chi_square))
 
     def _verdict(self, index: int, told: Told) -> str:
+        if told is Told.WITHHELD:
+            return f"withheld: chi-square {self.chi_square:.2g} with {self.freedoms} data"
         if told is not Told.NOT:
             return told.value
         row = np.where(np.arange(len(self.parameters)) == index, 0.0, self.correlations.values[index])

@@ -66,8 +66,8 @@ def measured_gains(mechanism: Mechanism, model: LinearModel, experiment: Identif
     columns = [[each.name for each in experiment.responses.inputs].index(name) for name in inputs]
     lines, values = _low(experiment)
     fitted, deviations = _led_back(lines, np.real(values[:, rows][:, :, columns]))
-    top = np.array([_size(mechanism, known[name]) for name in outputs])[:, None]
-    scale = top / np.array([_size(mechanism, known[name]) for name in inputs])
+    top = np.array([metres(mechanism, known[name]) for name in outputs])[:, None]
+    scale = top / np.array([metres(mechanism, known[name]) for name in inputs])
     return Gains(outputs, inputs, fitted * scale, deviations * scale)
 
 
@@ -99,11 +99,11 @@ def _unit_findings(mechanism: Mechanism, channels: list[Channel]) -> list[Findin
     return [
         Finding(channel.name, f'its unit "{channel.unit}" leads to no stroke or gap in metres', advice)
         for channel in channels
-        if not np.isfinite(_size(mechanism, channel))
+        if not np.isfinite(metres(mechanism, channel))
     ]
 
 
-def _size(mechanism: Mechanism, channel: Channel) -> float:
+def metres(mechanism: Mechanism, channel: Channel) -> float:
     """Metres per unit of a channel; NaN where its unit leads to none."""
     if unit_problem(channel.unit) is not None:
         return float("nan")

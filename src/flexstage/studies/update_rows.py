@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from flexstage.base.finding import refuse
 from flexstage.base.number import Array
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.readings.linear.eigen import Eigen, eigen
@@ -99,6 +100,9 @@ def followed(before: Design, mechanism: Mechanism) -> Design:
 
     model = lumped(mechanism)
     solved = eigen(model)
+    if len(solved.shapes) != len(before.solved.shapes):
+        what = f"its numbers moved so far that the model has {len(solved.shapes)} coordinates where it had {len(before.solved.shapes)}"
+        raise refuse("update", what, "Check units and names of the record's channels (flexstage compare), or state narrower priors")
     weighted = before.model.inertia_matrix @ before.solved.shapes
     likeness = []
     for modes in before.modes:

@@ -20,5 +20,5 @@ def updated_text(text: str, found: Updated, record: str, *, where: str = "text")
 
 
 def _tag(found: Updated, index: int, record: str) -> str:
-    known = f"+- {100.0 * found.deviations[index]:.2g} %" if found.told[index] is not Told.NOT else f"not identifiable from {found.data}"
-    return f"derived update {record}, {known}"
+    known = {Told.NOT: f"not identifiable from {found.data}", Told.WITHHELD: "theory and test contradict each other"}
+    return f"derived update {record}, {known.get(found.told[index], f'+- {100.0 * found.deviations[index]:.2g} %')}"

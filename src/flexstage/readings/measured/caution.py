@@ -18,11 +18,12 @@ _MOTIONS = ("m/s", "m/s^2", "rad/s", "rad/s^2")
 
 @dataclass(frozen=True, eq=False)
 class Modes:
-    """Modes found: `poles` (k,) in Hz, which lie `close` together, and the share (k,) of motion from `elsewhere`."""
+    """Modes found: `poles` (k,) in Hz, which lie `close` together, the share (k,) of motion from `elsewhere`, the `misfit` near each."""
 
     poles: Array
     close: tuple[tuple[int, ...], ...]
     elsewhere: Array
+    misfit: Array
 
 
 def _is_motion(channel: Channel) -> bool:
@@ -35,7 +36,7 @@ def warnings(known: Evidence, modes: Modes, reach: Reach) -> tuple[str, ...]:
 
     >>> from flexstage.readings.measured.evidence import evidence
     >>> from flexstage.readings.measured.example import POLE, one_mode_record
-    >>> warnings(evidence(one_mode_record(), None), Modes(np.array([POLE]), (), np.zeros(1)), Reach(1.0, 26.0))[0][:20]
+    >>> warnings(evidence(one_mode_record(), None), Modes(np.array([POLE]), (), np.zeros(1), np.ones(1)), Reach(1.0, 26.0))[0][:20]
     'only u was driven: o'
     """
     poles, close = modes.poles, modes.close
@@ -54,6 +55,13 @@ def warnings(known: Evidence, modes: Modes, reach: Reach) -> tuple[str, ...]:
         if inputs > 1 and len(group) >= min(inputs, outputs):
             near = ", ".join(f"{abs(poles[index]):.5g}" for index in group)
             found.append(f"as many modes as inputs or outputs lie together ({near} Hz): there may be more. Add inputs and outputs.")
+    systematic = np.flatnonzero(modes.misfit > 1.0)
+    if len(systematic):
+        listed = ", ".join(f"{abs(poles[index]):.5g} Hz ({modes.misfit[index]:.2g} times the noise)" for index in systematic)
+        found.append(
+            f"the fit leaves a systematic residual near {listed}: there intervals are widened by as much. Such a mode is not "
+            "linear, not alone, or changes during the test: smaller or longer drives, or finer lines, tell."
+        )
     moved = [channel for channel in known.responses.inputs if _is_motion(channel)]
     if moved:
         listed = ", ".join(f"{channel.name} ({channel.unit})" for channel in moved)

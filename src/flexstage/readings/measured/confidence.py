@@ -7,12 +7,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexstage.base.number import Array
-from flexstage.readings.measured.likelihood import Band, Fit, Modal, fit
+from flexstage.readings.measured.likelihood import Band, Fit, Modal, fit, residual_power
 
 NORMAL_95 = 1.959964
 """Half the width of a 95 % interval, in standard deviations."""
 _DOUBTFUL = 50.0
 _LINES = 3
+_NEAR, _NEAREST, _BY_CHANCE = 4.0, 2.0, 1e-3
+"""Near a mode: within so many half-widths, at least so many lines for each that its parameters take; how often chance may pass."""
 SAME = 0.1
 """Share of the power by which inputs must differ from transients to be told from them."""
 
@@ -27,6 +29,51 @@ class Deviations:
     frequencies: Array
     damping: Array
     shapes: Array
+
+    def widened(self, factors: Array) -> Deviations:
+        """All deviations of each mode times its factor.
+
+        >>> Deviations(np.ones(1), np.ones(1), np.ones((2, 1))).widened(np.array([3.0])).shapes.tolist()
+        [[3.0], [3.0]]
+        """
+        return Deviations(self.frequencies * factors, self.damping * factors, self.shapes * factors)
+
+
+def misfits(band: Band, modal: Modal) -> Array:
+    """How many times larger (k,) than the noise of the band is what the fit leaves near each mode; 1 where chance would leave as much.
+
+    Noise alone leaves as much near a mode as elsewhere, less what the mode's own parameters take. More than once in 1000 by chance is
+    systematic: a mode that is none of linear, viscous and alone. What is left has as much room near the pole as along any other direction
+    of the data: deviations grow in proportion.
+
+    >>> from flexstage.readings.measured.example import one_mode_band
+    >>> from flexstage.readings.measured.likelihood import fit, noise
+    >>> from dataclasses import replace
+    >>> band, start = one_mode_band()
+    >>> found = fit(band, start).modal
+    >>> misfits(replace(band, variance=noise(band, found)), found).tolist()
+    [1.0]
+    """
+    from scipy.stats import gamma
+
+    cells = band.cells
+    left = np.real(np.einsum("ooc->oc", residual_power(band, modal))) / band.variance
+    outputs, taken = len(left), 1.0 + (1.0 + cells.width) / len(left)
+    result = np.ones(len(modal.poles))
+    for mode, pole in enumerate(modal.poles):
+        away = np.abs(cells.middle - pole.imag)
+        order = np.argsort(away)
+        lines = np.cumsum(cells.count[order])
+        wide = int(np.searchsorted(away[order], _NEAR * -pole.real, side="right"))
+        number = min(len(order), max(wide, 1 + int(np.searchsorted(lines, _NEAREST * taken))))
+        free = lines[number - 1] - taken
+        share = np.abs(modal.shapes[:, mode]) ** 2 / np.mean(band.variance, axis=1)
+        share = share / np.sum(share)
+        ratio = float(share @ np.sum(left[:, order[:number]], axis=1)) / max(free, 1.0)
+        freedom = max(free, 1.0) / float(np.sum(share**2)) if outputs > 1 else max(free, 1.0)
+        if ratio > float(gamma.isf(_BY_CHANCE, freedom)) / freedom:
+            result[mode] = np.sqrt(ratio)
+    return result
 
 
 def deviations(found: Fit, inflation: float = 1.0, scatter: Array | None = None) -> Deviations:

@@ -9,7 +9,7 @@ import numpy as np
 from flexstage.base.number import Array
 from flexstage.readings.measured.bands import Extent
 from flexstage.readings.measured.cluster import Candidate, alike
-from flexstage.readings.measured.confidence import Deviations, deviations, drive_strength, freedoms, significance
+from flexstage.readings.measured.confidence import Deviations, deviations, drive_strength, freedoms, misfits, significance
 from flexstage.readings.measured.evidence import Evidence
 from flexstage.readings.measured.likelihood import Band, Fit, Modal, background, fit, noise, scatter, shaped, silence
 from flexstage.readings.measured.lines import Cells
@@ -42,20 +42,20 @@ class Hunt:
 
 @dataclass(frozen=True, eq=False)
 class Found:
-    """The modes of one band, with deviations and significance, and the outputs' noise variance per line (p,)."""
+    """The modes of one band, with deviations, significance, and by how much what is left near each exceeds the noise (`misfit`)."""
 
     band: Band
     modal: Modal
     deviations: Deviations
     significance: Array
+    misfit: Array
 
     def only(self, chosen: Array) -> Found:
         """Some of the modes, by their numbers.
 
         >>> from flexstage.readings.measured.example import one_mode_band
         >>> band, start = one_mode_band()
-        >>> len(Found(band, start, Deviations(*np.ones((2, 1)), np.ones((1, 1))), np.ones(1)).only(np.array([], dtype=int)).modal.poles)
-        0
+        XX
         """
         modal, spread = self.modal, self.deviations
         return Found(
@@ -63,6 +63,7 @@ class Found:
             Modal(modal.poles[chosen], modal.participation[chosen], modal.shapes[:, chosen]),
             Deviations(spread.frequencies[chosen], spread.damping[chosen], spread.shapes[:, chosen]),
             self.significance[chosen],
+            self.misfit[chosen],
         )
 
 
@@ -98,8 +99,9 @@ def grouped(known: Evidence, cells: Cells, candidates: tuple[Candidate, ...], hu
         band, found, strength = _extended(band, (found, strength), hunt)
     if not len(found.modal.poles):
         return None
-    spread = deviations(found, known.inflation, scatter(band, found.modal))
-    return Found(band, found.modal, spread, strength / _limit(found.modal))
+    beyond = misfits(band, found.modal)
+    spread = deviations(found, known.inflation, scatter(band, found.modal)).widened(beyond)
+    return Found(band, found.modal, spread, strength / _limit(found.modal), beyond)
 
 
 def _limit(modal: Modal) -> float:

@@ -48,7 +48,8 @@ def identify(what: Record | Responses | Sequence[Record], search: Search = Searc
     `what` is a record, or several of the same stage (six with one actuator each are put together as one test), or responses of an analyser.
     Candidates are the stable poles of pLSCF on H1; each group of near ones is then fitted by maximum likelihood to the transform of the
     whole record, its transient included, so that there is neither window nor leakage: inputs are taken as exact, outputs' noise as of
-    slowly varying density; intervals hold for noise correlated between outputs too (Pintelon & Schoukens 2012, ch. 9 and 10). A mode is
+    slowly varying density; intervals hold for noise correlated between outputs too (Pintelon & Schoukens 2012, ch. 9 and 10), and are wider
+    where the fit leaves more near a mode than noise would, by as much. A mode is
     kept if leaving it out costs more likelihood than noise would once in 1e9, thrice that where its damping is not known to a third, and if
     the recorded inputs drive it, whatever else does (an F-test at 1e-9). Tones that no input holds are taken out of the outputs before.
     What is seen and is none of the modes is listed as `peaks`.
@@ -160,6 +161,7 @@ def _result(
     spread = [np.concatenate([getattr(part.deviations, name) for part in found] or [np.zeros(0)]) for name in ("frequencies", "damping")]
     wide = np.concatenate([part.deviations.shapes for part in found] or [np.zeros((outputs, 0))], axis=1)
     strength = np.concatenate([part.significance for part in found] or [np.zeros(0)])
+    beyond = np.concatenate([part.misfit for part in found] or [np.zeros(0)])
     order = np.argsort(np.abs(modal.poles))
     poles, (shapes, participation, wide) = modal.poles[order], _in_units(known, modal, wide, order)
     inside = (known.responses.frequencies >= band[0]) & (known.responses.frequencies <= band[1])
@@ -183,7 +185,7 @@ def _result(
         stabilisation=diagrams,
         band=band,
         noise=np.median(known.density[inside], axis=0) * 2.0 / known.rate,
-        warnings=warnings(known, Modes(poles, close, share[order]), reach),
+        warnings=warnings(known, Modes(poles, close, share[order], beyond[order]), reach),
         peaks=peaks(known, Left(lines, rest, poles), *doubted),
         provenance=f"identified from {known.where}: pLSCF, then maximum likelihood",
     )
