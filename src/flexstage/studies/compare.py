@@ -261,6 +261,9 @@ def _residues(
     names = {channel.name for channel in model.inputs}
     columns = [index for index, channel in enumerate(experiment.inputs) if channel.name in names]
     inputs = tuple(experiment.inputs[index].name for index in columns)
+    shape = (-1, len(sensors), len(inputs))
+    if not matched or not inputs:
+        return Residues(tuple(sensors), inputs, np.zeros((0, *shape[1:])), np.zeros((0, *shape[1:])), np.zeros(len(inputs), dtype=bool))
     sizes = np.array([metres(mechanism, experiment.inputs[index]) for index in columns])
     shapes, drive = first_design(theory.shapes, 2), first_design(model.input_matrix, 2)[:, list(model.input_index(inputs))]
     sense = first_design(model.output, 2)[list(model.output_index(tuple(sensors)))]
@@ -271,9 +274,6 @@ def _residues(
     )
     own = [(sense @ shapes[:, modes]) @ (shapes[:, modes].T @ drive) for modes, _ in matched]
     found = [np.real(seen[:, modes] @ felt[modes]) for _, modes in matched]
-    shape = (-1, len(sensors), len(inputs))
-    if not own or not inputs:
-        return Residues(tuple(sensors), inputs, np.zeros((0, *shape[1:])), np.zeros((0, *shape[1:])), np.isfinite(sizes))
     return sized(Residues(tuple(sensors), inputs, np.reshape(own, shape), np.reshape(found, shape), np.isfinite(sizes)))
 
 

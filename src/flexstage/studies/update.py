@@ -136,10 +136,9 @@ class Updated:
 
     @property
     def told(self) -> tuple[Told, ...]:
-        """How well the test tells each number; nothing is said where data miss theory by more than three deviations on average."""
-        if self.withheld:
-            return (Told.WITHHELD,) * len(self.parameters)
-        return tuple(Told.WELL if share <= _TOLD else Told.WEAKLY if share <= _HARDLY else Told.NOT for share in self.left)
+        """How well the test tells each number; withheld where data miss theory by more than three deviations on average."""
+        known = (Told.WELL if share <= _TOLD else Told.WEAKLY if share <= _HARDLY else Told.NOT for share in self.left)
+        return tuple(Told.WITHHELD if self.withheld and told is not Told.NOT else told for told in known)
 
     @property
     def withheld(self) -> bool:
