@@ -245,6 +245,21 @@ def test_the_exported_controller_survives_numbers_that_overflow(tmp_path):
 
 
 @needs_compiler
+def test_a_command_that_is_no_number_leaves_the_strokes(tmp_path):
+    """Infinity less infinity, within one sum, before there was any other command: the stroke stays that at the bias."""
+    given = replace(full_loop(), compensation=None)
+    wide = np.tile([10.0, -10.0, 0.0, 0.0, 0.0, 0.0], (6, 1))
+    channels = (
+        Channel(f"{kind}.{name}", "m") for kind, names in (("reference", given.names), ("command", given.actuators)) for name in names
+    )
+    every = tuple(channels)
+    given = replace(given, controller=static(wide, every[:6], every[6:], given.step))
+    found = spoilt_replay(given, tmp_path, np.full((3, 6), 1e308), np.zeros((3, 6)))
+    assert np.all(np.isnan(found["command"]))
+    assert np.array_equal(found["volts"], np.broadcast_to(given.amplifiers.bias, (3, 6)))
+
+
+@needs_compiler
 def test_fast_mathematics_is_refused(tmp_path):
     source, _ = write_controller(tmp_path / "stage.c", full_loop())
     done = subprocess.run(
