@@ -155,6 +155,49 @@ def test_a_rod_sinks_as_a_leaf_does():
     assert found.pose.displacement[1] == pytest.approx(-0.6 * found.pose.displacement[0] ** 2 / 0.05, rel=1e-9)
 
 
+def _clamped(kind, aside, about):
+    """A beam along x whose far end two slides push along `aside`, at the end and 30 mm beyond; a slot keeps the motion in that plane."""
+    to, arm = (Y, 0.03) if aside is fs.Freedom.Y else (Z, 0.03)
+    push = fs.Joint((fs.Freedom.Y, fs.Freedom.Z, fs.Freedom.RX, fs.Freedom.RY, fs.Freedom.RZ))
+    places = {"near": (0.0, 0.0, 0.0), "far": (arm, 0.0, 0.0)}
+    return fs.Mechanism(
+        name="clamped",
+        materials={"metal": ALUMINIUM},
+        parts={"beam": kind, "stack": STACK, "push": push, "slot": fs.Joint((fs.Freedom.X, aside, about))},
+        bodies={"platform": fs.Body(reference=(0.0, 0.0, 0.0)), **{name: fs.Body(reference=place) for name, place in places.items()}},
+        links={
+            "beam": fs.Link(("ground", "platform"), "beam", (-0.025, 0.0, 0.0), X, bends=Z),
+            "slot": fs.Link(("ground", "platform"), "slot", (0.0, 0.0, 0.0), X, bends=Z),
+            **{f"{name}_pzt": fs.Link(("ground", name), "stack", place, to) for name, place in places.items()},
+            **{f"{name}_push": fs.Link((name, "platform"), "push", place, to) for name, place in places.items()},
+        },
+    )
+
+
+@pytest.mark.parametrize(
+    ("kind", "aside", "about"),
+    [
+        (fs.Leaf("metal", 0.05, 0.0005, 0.02), fs.Freedom.Y, fs.Freedom.RZ),
+        (fs.Rod("metal", 0.05, 0.001), fs.Freedom.Y, fs.Freedom.RZ),
+        (fs.Rod("metal", 0.05, 0.001), fs.Freedom.Z, fs.Freedom.RY),
+    ],
+    ids=["leaf", "rod", "rod the other way"],
+)
+@pytest.mark.parametrize(("deflection", "angle"), [(2e-4, 0.0), (0.0, 6e-3), (2e-4, 6e-3), (2e-4, -6e-3)])
+def test_the_end_of_a_beam_comes_nearer_by_half_the_square_of_its_slope(kind, aside, about, deflection, angle):
+    """1/2 int v'^2 dx of the cubic v that a beam of 50 mm bends to, its end moved aside and turned; exactly, by Gauss's rule."""
+    mechanism = _clamped(kind, aside, about)
+    found = forward_kinematics(mechanism, ideal(mechanism), np.array([deflection, deflection + 0.03 * np.sin(angle)]))
+    points, weights = np.polynomial.legendre.leggauss(3)
+    along, length = 0.5 * (points + 1.0), 0.05
+    slope = 6.0 * (along - along**2) * deflection / length + (3.0 * along**2 - 2.0 * along) * angle
+    assert found.consistent
+    assert found.pose.displacement[0] == pytest.approx(-0.25 * length * weights @ slope**2, rel=1e-6)
+    index, turned, sign = (1, 2, 1.0) if aside is fs.Freedom.Y else (2, 1, -1.0)
+    assert found.pose.displacement[index] == pytest.approx(deflection, abs=1e-13)
+    assert sign * found.pose.rotation_vector[turned] == pytest.approx(angle, abs=1e-11)
+
+
 def test_unequal_redundant_legs_disagree():
     """Leaves of 40, 50 and 40 mm ask for different heights: 0.6 x^2 (1/40 - 1/50 mm) between them; reported, not hidden."""
     mechanism = parallel((0.04, 0.05, 0.04), lambda length: fs.Leaf("metal", length, 0.0005, 0.02))

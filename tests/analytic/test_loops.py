@@ -16,6 +16,7 @@ from flexstage.analysis.loop.example import integral
 from flexstage.analysis.loop.hardware import AmplifierSettings, GaugeSettings, Hardware, hardware
 from flexstage.analysis.loop.margins import bandwidths, crosstalk, delay_margin, margins, peaks
 from flexstage.analysis.loop.plant import Plant, held, plant
+from flexstage.analysis.loop.sampling import ramped
 from flexstage.analysis.loop.system import System, picked
 from flexstage.analysis.loop.verdict import verdict
 from flexstage.base.finding import DesignError
@@ -114,6 +115,16 @@ def test_integrator_with_delay():
     assert np.isclose(later.gain_high.frequency, rate / 10.0)
 
 
+def test_the_gain_of_an_integrator_at_once_ends_at_half_the_rate():
+    """A rectangle that the last sample ends, read a sample later: L = g T/(z - 1), real and negative at z = -1 only, so up to 2/(g T)."""
+    rate, gain = 1000.0, 100.0
+    one = _integrator(rate, gain, 0.0)
+    own = margins(loop(one.plant, replace(one.controller, D=one.controller.C)), Cut.POSE).of("x")
+    assert np.isclose(own.gain_high.value, 2.0 * rate / gain, rtol=1e-9)
+    assert np.isclose(own.gain_high.frequency, 0.5 * rate, rtol=1e-9)
+    assert own.gain_low.value == 0.0
+
+
 def test_delay_margin_of_an_integrator():
     """Continuous e^{-s tau} g/s: tau = pi/(2 g); sampled ever faster with its own sample and a half of delay: the rest of that."""
     for rate, tolerance in ((1e3, 0.05), (1e4, 0.005)):
@@ -174,6 +185,18 @@ def test_hold_of_the_plant_alone():
         exact = picked(one.system, ["B"], ["gap.S"]).transfer(at)[:, 0, 0] * np.exp(-2j * np.pi * at * (0.5 / rate + 30e-6))
         errors.append(np.abs(found / exact - 1.0))
     assert np.all(np.abs(errors[0] / errors[1] - 4.0) < 0.2)
+
+
+def test_straight_lines_between_samples_are_met_exactly():
+    """An oscillator without damping follows u = t by t - sin(w t)/w, however long the steps are."""
+    omega, step = 3.0, 0.7
+    A, B = np.array([[0.0, 1.0], [-(omega**2), 0.0]]), np.array([[0.0], [omega**2]])
+    found = ramped(System(A, B, np.array([[1.0, 0.0]]), np.zeros((1, 1)), METRE[:1], METRE[1:]), step)
+    state, times, answers = np.zeros(2), step * np.arange(12), []
+    for time in times:
+        answers.append(found.C @ state + found.D[:, 0] * time)
+        state = found.A @ state + found.B[:, 0] * time
+    np.testing.assert_allclose(np.ravel(answers), times - np.sin(omega * times) / omega, rtol=0.0, atol=1e-12)
 
 
 @pytest.mark.parametrize("name", ["double-triangle", "parallelogram", "xy-stage", "bridge", "hexapod", "tip-tilt", "tip-tilt-four"])

@@ -96,6 +96,15 @@ def test_the_simulated_variance_is_that_of_the_budget(kind):
     assert np.all(deviation < 0.1 * expected)
 
 
+def test_densities_of_white_sources_add_up_to_their_mean_squares():
+    """One-sided, up to half the sampling rate; by trapezoids over the budget's own frequencies, so to a hundredth."""
+    budget = noise_budget(small_loop(), {}, (0.1, 0.5 * RATE), ("relative.x", "platform.x"))
+    assert len(budget.sources) > 2
+    widths = np.diff(budget.frequencies)[:, None, None]
+    areas = np.sum(0.5 * (budget.density[1:] + budget.density[:-1]) * widths, axis=0)
+    np.testing.assert_allclose(areas, budget.squares, rtol=0.01)
+
+
 @pytest.mark.parametrize("density", [1e-13, 1e-11])
 def test_readings_move_from_sample_to_sample_as_the_budget_says(density):
     """Of the loop without rounding, all its noise simulated: eight seeds, their mean within four deviations."""

@@ -213,6 +213,20 @@ def test_settling_and_overshoot_of_a_known_answer():
     assert tracking(found).at("x", "peak") == 1.0
 
 
+def test_what_goes_the_other_way_first_is_undershoot():
+    """Answers given by hand, to a step up and to one down: a fifth the wrong way, then three tenths beyond."""
+    known = unlimited(machine(integral_loop().plant, integral_loop().controller, motions=("platform.x",)))
+    found = simulate(known, np.zeros((6, 1)))
+    answer = np.array([0.0, -0.2, 0.6, 1.3, 0.99, 1.0])[:, None]
+    for size in (2e-6, -2e-6):
+        given = replace(found, reference=np.full((6, 1), size), motions=size * answer)
+        figures = step_figures(given, 0.02)
+        assert (figures.overshoot[0], figures.undershoot[0]) == pytest.approx((0.3, 0.2), rel=1e-12)
+        assert figures.settling[0] == pytest.approx(4.0 * known.step, rel=1e-12)
+        late = step_figures(given, 0.02, start=2.0 * known.step)
+        assert (late.overshoot[0], late.undershoot[0]) == pytest.approx((0.3, 0.0), rel=1e-12)
+
+
 def test_jerk_limited_steps_ring_less_than_steps_at_once():
     known = unlimited(full_loop())
     times = known.step * np.arange(4000)

@@ -5,6 +5,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from scipy.special import ndtr, ndtri
+from scipy.stats import binom
 
 from flexstage.base.finding import DesignError
 from flexstage.cases.double_triangle import double_triangle
@@ -247,6 +248,18 @@ def test_intervals_cover_the_truth_as_often_as_they_say():
     kept = np.random.default_rng(1).random((400, 200)) < 0.93
     covered = [found.low <= 0.93 <= found.high for found in map(binomial, kept)]
     assert np.mean(covered) >= 0.95 - 3.0 * np.sqrt(0.05 * 0.95 / 400)
+
+
+@pytest.mark.parametrize(("kept", "copies"), [(0, 20), (1, 20), (13, 40), (19, 20), (20, 20)])
+def test_the_ends_of_an_interval_leave_a_fortieth_on_either_side(kept, copies):
+    """At the low end as many kept as there were have a chance of 2.5 %, at the high end as few; nothing lies beyond 0 and 1."""
+    found = binomial(np.arange(copies) < kept)
+    assert (found.low == 0.0) == (kept == 0)
+    assert (found.high == 1.0) == (kept == copies)
+    if kept:
+        assert binom.sf(kept - 1, copies, found.low) == pytest.approx(0.025, rel=1e-9)
+    if kept < copies:
+        assert binom.cdf(kept, copies, found.high) == pytest.approx(0.025, rel=1e-9)
 
 
 def test_copies_that_fail_are_kept_and_count_against_the_yield(guide):

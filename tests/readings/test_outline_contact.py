@@ -176,6 +176,14 @@ def test_joints_off_their_faces_are_told_as_cad_does(part: str, by: tuple[float,
     assert {each.where for each in cad_findings(mechanism)} == {"link"}
 
 
+@pytest.mark.parametrize(("height", "told"), [(4e-5, False), (8e-5, True)])
+def test_beside_its_end_face_a_link_keeps_clear_but_for_a_twentieth_of_a_millimetre(height: float, *, told: bool) -> None:
+    """A bead of 0.4 mm on the face that the end stands on: let be up to 0.05 mm, told by what lies beyond that."""
+    bead = Block("steel", (height, 0.02, 0.0004), at=(0.01 - 0.5 * height, 0.0, 0.001))
+    found = contact_findings(stage({"block": BLOCK, "bead": bead}))
+    assert [finding.what for finding in found] == (["it meets platform beside its end face too, 0.03 mm deep"] if told else [])
+
+
 def test_what_has_no_outline_is_not_judged() -> None:
     assert contact_findings(stage({"block": BLOCK})) == ()
     assert contact_findings(stage({"block": shifted(BLOCK, 0.5, 0.0, 0.0)}, "ball")) == ()

@@ -131,15 +131,15 @@ def observer_gain(model: System, coordinates: Coordinates, expected: Disturbance
     >>> observer_gain(seen_plant(plant), plant.coordinates, Disturbances(1e-9, {"S": 1e-12})).shape
     (8, 1)
     """
-    half = 0.5 if model.step is None else 0.5 / model.step
     densities = np.array([expected.gauges[name] for name in coordinates.gauges])
     weight = np.diag(coordinates.scale)
     C, D = weight @ model.C, weight @ model.D
     entry = model.B * expected.strokes
     pose = weight @ coordinates.pose * densities
-    state, cross = half * entry @ entry.T, half * entry @ (D * expected.strokes).T
-    output = half * (pose @ pose.T + expected.strokes**2 * D @ D.T)
-    # of the order 1e-20 m^2: made numbers of order one, which the solver's tolerances need
+    state, cross = entry @ entry.T, entry @ (D * expected.strokes).T
+    output = pose @ pose.T + expected.strokes**2 * D @ D.T
+    # Of the order 1e-20 m^2: made numbers of order one, which the solver's tolerances need. Only ratios of noises count, so that
+    # densities stand for the intensities G^2/2 of a continuous model and the variances G^2/(2 T) of a sampled one.
     unit = np.trace(output) / len(output)
     state, output, cross = state / unit, output / unit, cross / unit
     solution = _riccati((model.A.T, C.T, state, output, cross), sampled=model.step is not None)
