@@ -109,6 +109,18 @@ def test_leaf_stress_is_that_of_a_guided_beam():
     assert found.strokes[found.links.index("left")] == pytest.approx([5.0 / 6.0 * 20e-6])
     np.testing.assert_allclose(found.safety, 1e9 / found.peak)
     assert found.unchecked == ("pzt",)
+    assert replace(found, peak=0.0 * found.peak).weakest == found.links[0]  # nothing is stressed: a tie of infinite factors
+
+
+def test_force_on_the_stage_counts_the_stroke_lost_in_the_stack():
+    """From no voltage, s u of the stroke moves the stage (springs in series), k_s of the guide against k of the stack."""
+    stage = guide()
+    model = lumped(stage)
+    line = stack_lines(stage, model)
+    low, high = load_share(stage, model).range(stroke_limits(stage).from_zero)
+    assert line.stiffness == pytest.approx(STACK.stiffness)
+    series = 1.0 / (1.0 / line.against + 1.0 / line.stiffness)
+    np.testing.assert_allclose(np.concatenate([low, high]), series * 20e-6 * np.array([-1.0, 5.0]) / 6.0, rtol=1e-9)
 
 
 def _gain(model):

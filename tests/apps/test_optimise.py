@@ -1,7 +1,10 @@
 """The command `optimise`: a design file that keeps its promises, and studies that cannot be."""
 
+from dataclasses import replace
+
 import pytest
 
+from flexstage import Inertia, Payload
 from flexstage.cases.registry import case
 from flexstage.mechanism.store import dump, load
 from flexstage.studies.judge import judge
@@ -100,3 +103,14 @@ def test_three_objectives_and_its_own_design_are_refused(study_file, flexstage):
     study_file.write_text(three)
     done = flexstage("optimise", "study.toml")
     assert (done.code, "Keep two" in " ".join(done.err.split())) == (2, True)
+
+
+def test_a_best_design_that_its_weight_brings_down_is_refused(study_file, tmp_path, flexstage):
+    inertia = Inertia(0.01, 0.01, 0.01)
+    heavy = {"weight": Payload("platform", mass=200.0, at=(0.0, 0.0, 0.0), inertia=inertia)}
+    dump(replace(case("parallelogram"), gravity=(0.0, 9.80665, 0.0), payloads=heavy, requirements={}), tmp_path / "guide.toml")
+    text = study_file.read_text().replace("maximise", "minimise").replace(', step = "50 um"', "")
+    study_file.write_text(text.replace("0.6 mm", "0.1 mm"))
+    done = flexstage("optimise", "study.toml", "-o", "worse.toml")
+    assert (done.code, "does not hold" in done.err) == (2, True), done.err
+    assert not (tmp_path / "worse.toml").exists()

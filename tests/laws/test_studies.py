@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from itertools import pairwise
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -15,8 +16,10 @@ from flexstage.mechanism.mechanism import Mechanism
 from flexstage.readings.lumped import lumped
 from flexstage.studies.judge import measured
 from flexstage.studies.sensitivities import stepped
+from flexstage.studies.study.definition import Study
 from flexstage.studies.study.evaluate import piece
-from flexstage.studies.study.file import loads_study
+from flexstage.studies.study.file import load_study, loads_study
+from flexstage.studies.study.loaded import loaded_findings
 from flexstage.studies.study.plan import Plan, Sampling, shares
 from flexstage.studies.study.variable import varied
 
@@ -60,6 +63,50 @@ def test_a_batch_is_its_designs_one_by_one():
     for values, responses in zip(found.variables, found.responses, strict=True):
         alone = measured(varied(study.design, study.variables, values), tuple(study.columns.values()))
         np.testing.assert_allclose(responses, [float(value) for value in alone], rtol=1e-12)
+
+
+MASS = """
+format = "flexstage 1"
+name = "upright leaves"
+damping = { law = "modal", ratio = 0.01 }
+materials.steel = { young = "200 GPa", poisson = 0.0, density = "8000 kg/m^3", yield_stress = "1000 MPa" }
+parts.leaf = { kind = "leaf", material = "steel", length = "60 mm", thickness = "0.3 mm", width = "20 mm" }
+parts.stack = { kind = "piezo", stroke = "10 um", stiffness = "0.001 N/um", length = "10 mm", diameter = "5 mm" }
+bodies.platform.mass = "2.5 kg"
+bodies.platform.centre = ["0 mm", "0 mm", "60 mm"]
+bodies.platform.inertia = { xx = "1e-3 kg*m^2", yy = "1e-3 kg*m^2", zz = "1e-3 kg*m^2" }
+[links]
+a = { joins = ["ground", "platform"], part = "leaf", at = ["-50 mm", "0 mm", "30 mm"], along = "z", bends = "y" }
+b = { joins = ["ground", "platform"], part = "leaf", at = ["50 mm", "0 mm", "30 mm"], along = "z", bends = "y" }
+push = { joins = ["ground", "platform"], part = "stack", at = ["-60 mm", "0 mm", "60 mm"], along = "x" }
+"""
+
+
+def upright(tmp_path: Path, responses: str) -> Study:
+    """Upright leaves under 1 to 14 kg: four of six designs hold, as the leaves' critical load and the stack's stiffness bear 97.1 N."""
+    (tmp_path / "stage.toml").write_text(MASS)
+    variable = 'variables.mass = { of = "bodies.platform.mass", from = "1 kg", to = "14 kg", levels = 6 }'
+    head = f'format = "flexstage study 1"\ndesign = "stage.toml"\n{variable}\nsweep = {{ sampling = "grid" }}\n'
+    (tmp_path / "study.toml").write_text(head + responses)
+    return load_study(tmp_path / "study.toml")
+
+
+def test_designs_that_differ_in_their_load_alone_are_those_one_by_one(tmp_path: Path):
+    """The stiffness is that of one design then, stresses, loads and load factors are those of many."""
+    study = upright(tmp_path, 'responses = { b = "buckling", s = "safety", z = "deflection.z", f = "frequency.1" }')
+    found = piece(study, 0, 4)
+    for values, responses in zip(found.variables, found.responses, strict=True):
+        alone = measured(varied(study.design, study.variables, values), tuple(study.columns.values()))
+        np.testing.assert_allclose(responses, [float(value) for value in alone], rtol=1e-9)
+
+
+@pytest.mark.parametrize("responses", ['responses.f = "frequency.platform.1"', 'responses.k = "stiffness.x"'], ids=["engine", "dense"])
+def test_designs_that_fall_under_their_weight_have_no_values(tmp_path: Path, responses: str):
+    study = upright(tmp_path, responses)
+    found = piece(study, 0, 6)
+    assert np.isfinite(found.responses[:, 0]).tolist() == [True] * 4 + [False] * 2
+    assert all("does not hold" in found.failures[row] for row in (4, 5))
+    assert "0.707 (mass 14 kg)" in loaded_findings(study)[0].what
 
 
 def test_variables_reach_the_numbers_they_name():

@@ -11,14 +11,12 @@ from flexstage.analysis.workspace.stroke import StrokeLimits
 from flexstage.analysis.workspace.wrench import corner_wrenches
 from flexstage.base.finding import refuse
 from flexstage.base.labelled import Matrix
-from flexstage.base.number import Array
+from flexstage.base.number import Array, foremost
 from flexstage.beams.stress import has_section, stress
 from flexstage.mechanism.expand import PlacedLink, expand
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.parts.part import Part, Restricted
 from flexstage.readings.linear.model import LinearModel
-
-_ALIKE = 1.0 + 1e-9
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,7 +51,7 @@ class HingeStress:
     def weakest(self) -> str:
         """The link with the least safety factor among those that are known, on the first design."""
         first = np.nan_to_num(self.safety.reshape(-1, len(self.links))[0], nan=np.inf)
-        return self.links[int(np.argmin(first > np.min(first) * _ALIKE))]
+        return self.links[int(foremost(1.0 / first))]
 
     @property
     def unknown(self) -> tuple[str, ...]:

@@ -27,7 +27,8 @@ def corner_wrenches(mechanism: Mechanism, model: LinearModel, limits: StrokeLimi
     """
     names = tuple(f"{link}.{force}" for link in links for force in FORCES)
     gain = static_gain(model, names, limits.actuators).values
-    total = (gain @ limits.points(gain.ndim - 2)[..., None])[..., 0] + dead_wrenches(mechanism, model, names)
+    dead = dead_wrenches(mechanism, model, names)
+    total = (gain @ limits.points(max(gain.ndim - 2, dead.ndim - 1))[..., None])[..., 0] + dead
     return total.reshape(*total.shape[:-1], len(links), len(FORCES))
 
 

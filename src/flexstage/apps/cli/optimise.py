@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -13,8 +12,6 @@ from flexstage.apps.cli.output import STDOUT
 from flexstage.apps.cli.study import Report, StudyFile
 
 if TYPE_CHECKING:
-    from flexstage.present.documents.envelope import Document
-    from flexstage.present.table import Table
     from flexstage.studies.optimise.result import Front, Optimum
     from flexstage.studies.optimise.wanted import Wanted
     from flexstage.studies.study.definition import Study
@@ -56,6 +53,7 @@ def optimise(
 
 
 def _one(asked: Study, wanted: Wanted, files: tuple[Path, Path | None, Path | None], json: str | None) -> None:
+    from flexstage.apps.cli.answer import Asked, answer
     from flexstage.apps.cli.bar import bar
     from flexstage.apps.cli.opening import announce
     from flexstage.apps.cli.output import announced, write
@@ -65,11 +63,14 @@ def _one(asked: Study, wanted: Wanted, files: tuple[Path, Path | None, Path | No
     from flexstage.studies.optimise.optimum import optimise as optimised
     from flexstage.studies.optimise.rounding import values_of
     from flexstage.studies.optimise.stage_text import design_text, optimised_text
+    from flexstage.studies.reading import Reading
+    from flexstage.studies.study.loaded import require_holding
 
     study, output, report = files
     with bar() as shown:
         found = optimised(asked, wanted, lambda text: shown.share(text, 0.0))
     _refused(found)
+    cautions = () if found.final is None else require_holding(asked, values_of(asked, found.final.shares))
     if output is not None and found.final is not None:
         text = design_text(asked, study.parent)
         write(output, optimised_text(text, asked, wanted, values_of(asked, found.final.shares), where=str(study)), "--output")
@@ -79,10 +80,12 @@ def _one(asked: Study, wanted: Wanted, files: tuple[Path, Path | None, Path | No
         write(report, optimise_report(found), "--report")
         announce(report)
     if str(output) != STDOUT:
-        _answered(asked, json, lambda: optimise_body(found), lambda: optimise_tables(found))
+        answered = Asked("optimise", asked.design, Reading.LUMPED, json, cautions)
+        answer(answered, lambda: optimise_body(found), lambda: optimise_tables(found))
 
 
 def _front(asked: Study, wanted: Wanted, report: Path | None, json: str | None) -> None:
+    from flexstage.apps.cli.answer import Asked, answer
     from flexstage.apps.cli.bar import bar
     from flexstage.apps.cli.opening import announce
     from flexstage.apps.cli.output import write
@@ -90,6 +93,8 @@ def _front(asked: Study, wanted: Wanted, report: Path | None, json: str | None) 
     from flexstage.present.optimise_report import front_report
     from flexstage.present.tables.optimise import front_tables
     from flexstage.studies.optimise.front import pareto_front
+    from flexstage.studies.reading import Reading
+    from flexstage.studies.study.loaded import loaded_findings
 
     with bar() as shown:
         found = pareto_front(asked, wanted, lambda text: shown.share(text, 0.0))
@@ -97,14 +102,8 @@ def _front(asked: Study, wanted: Wanted, report: Path | None, json: str | None) 
     if report is not None:
         write(report, front_report(found), "--report")
         announce(report)
-    _answered(asked, json, lambda: front_body(found), lambda: front_tables(found))
-
-
-def _answered(asked: Study, json: str | None, body: Callable[[], Document], tables: Callable[[], Iterable[Table]]) -> None:
-    from flexstage.apps.cli.answer import Asked, answer
-    from flexstage.studies.reading import Reading
-
-    answer(Asked("optimise", asked.design, Reading.LUMPED, json), body, tables)
+    answered = Asked("optimise", asked.design, Reading.LUMPED, json, loaded_findings(asked))
+    answer(answered, lambda: front_body(found), lambda: front_tables(found))
 
 
 def _refused(found: Optimum | Front) -> None:

@@ -85,13 +85,14 @@ def _told(asked: Study, results: Results, found: Effects, report: Path | None, j
     from flexstage.present.study_report import sweep_report
     from flexstage.present.tables.study import study_tables
     from flexstage.studies.reading import Reading
+    from flexstage.studies.study.loaded import loaded_findings
 
     if report is not None:
         write(report, sweep_report(asked, results, found), "--report")
         announce(report)
     design = asked.design
     answer(
-        Asked("sweep", design, Reading.LUMPED, json),
+        Asked("sweep", design, Reading.LUMPED, json, loaded_findings(asked)),
         lambda: sweep_body(asked, results, found),
         lambda: study_tables(asked, results, found),
     )

@@ -59,9 +59,10 @@ def _told(found: Toleranced, report: Path | None, json: str | None) -> None:
     from flexstage.present.tables.tolerance import tolerance_tables
     from flexstage.present.tolerance_report import tolerance_report
     from flexstage.studies.reading import Reading
+    from flexstage.studies.study.loaded import loaded_findings
 
     if report is not None:
         write(report, tolerance_report(found), "--report")
         announce(report)
-    asked = Asked("tolerance", found.study.design, Reading.LUMPED, json)
+    asked = Asked("tolerance", found.study.design, Reading.LUMPED, json, loaded_findings(found.study))
     answer(asked, lambda: tolerance_body(found), lambda: tolerance_tables(found))

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import platform
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy
@@ -24,6 +24,7 @@ from flexstage.readings.batch.engine import Plan, Status, planned, platform_mode
 from flexstage.readings.batch.kernel import kernel_name
 from flexstage.readings.batch.numbers import Family, drawn_family, family
 from flexstage.studies.study.definition import Study
+from flexstage.studies.study.loaded import loaded
 from flexstage.studies.study.numbers import Numbers
 
 _MODES = 6
@@ -40,12 +41,13 @@ _SURE = (Status.ITERATED, Status.WHOLE)
 class Engine:
     """What the engine answers of a study: platform modes (from 0) by name of the response, none where there is no `plan`.
 
-    The plan is for `numbers`, or else for the variables themselves.
+    The plan is for `numbers`, or else for the variables themselves. `loaded`: designs may not hold under their dead load.
     """
 
     modes: Mapping[str, int]
     plan: Plan | None = None
     numbers: Numbers | None = None
+    loaded: bool = False
 
     def answers(self, values: Array) -> tuple[Array, Array]:
         """Frequencies (n, m) [Hz] of the m responses for designs with `values` (n, d) of the variables, and which designs (n,) have them.
@@ -93,6 +95,10 @@ def engine_of(study: Study) -> Engine:
     >>> dict(engine_of(neck_study()).modes)
     {'tilt': 0}
     """
+    return replace(_engine_of(study), loaded=loaded(study))
+
+
+def _engine_of(study: Study) -> Engine:
     wanted = {name: int(each.name) - 1 for name, each in study.columns.items() if each.subject is Subject.PLATFORM_FREQUENCY}
     modes = Table({name: mode for name, mode in wanted.items() if mode < _MODES})
     if not modes or not engine_covers(study) or _limit_varies(study):

@@ -12,6 +12,7 @@ from flexstage.base.number import Array
 from flexstage.mechanism.checks import checked
 from flexstage.studies.study.definition import Study
 from flexstage.studies.study.engine import Engine, engine_of
+from flexstage.studies.study.loaded import falling
 
 _LONGEST_REASON = 400
 _MOST = 256
@@ -71,7 +72,10 @@ def _computed(study: Study, values: Array, engine: Engine) -> tuple[Array, Reaso
     others = tuple(name for name in columns if name not in engine.modes)
     result = np.full((len(values), len(columns)), np.nan)
     failures = _halved(values, 0, lambda part: _refused(study, part))[1]
-    sound = np.array([row for row in range(len(values)) if row not in failures], dtype=int)
+    sound = _others(values, failures)
+    if engine.loaded:
+        failures |= {int(sound[row]): reason for row, reason in falling(study, values[sound]).items()}
+        sound = _others(values, failures)
     found, reasons = _halved(values[sound], len(others), lambda part: _batch(study, part, others))
     frequencies, sure = engine.answers(values[sound])
     for names, part in ((others, found), (engine.modes, frequencies)):
@@ -83,6 +87,11 @@ def _computed(study: Study, values: Array, engine: Engine) -> tuple[Array, Reaso
     result[list(failures)] = np.nan
     lost = np.flatnonzero(~np.all(np.isfinite(result), axis=-1))
     return result, {int(row): failures.get(int(row)) or _unfinished(study, result[row]) for row in lost}
+
+
+def _others(values: Array, failures: Reasons) -> Array:
+    """Rows of the designs that have not failed."""
+    return np.array([row for row in range(len(values)) if row not in failures], dtype=int)
 
 
 def _halved(values: Array, width: int, batch: Callable[[Array], Array | str]) -> tuple[Array, Reasons]:
