@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from flexstage.studies.study.effects import effects
+from flexstage.studies.study.interactions import paired_shares, second_order, single_effects
 from flexstage.studies.study.plan import Plan, Sampling, shares
 from flexstage.studies.study.store import Results
 
@@ -72,6 +73,35 @@ def test_what_adds_up_does_not_interact(plan):
     assert np.nanmax(np.abs(seen.pairs)) < 0.01
     slopes = np.diff(seen.means[2, :, 0]) / np.diff(seen.places[2])
     np.testing.assert_allclose(slopes[np.isfinite(slopes)], -5.0, rtol=0.2)
+
+
+def test_what_cells_explain_by_chance_is_taken_off_as_in_an_analysis_of_variance():
+    """Two levels each, eight designs a cell: a sum of squares of 32 c^2 with one degree of freedom, errors with 28 of 32 less 4 cells."""
+    step, error, spread = 0.3, np.array([1.0, -1.0, 2.0, -2.0, 0.5, -0.5, 1.5, -1.5]), 4.0 * 15.0
+    at = np.array([[i + 0.05 * k + 0.02 * j, j + 0.05 * k + 0.02 * i] for i in (0, 1) for j in (0, 1) for k in range(8)])
+    values = np.array([step * (-1.0) ** (i + j) + error[k] for i in (0, 1) for j in (0, 1) for k in range(8)])[:, None]
+    share = paired_shares(at, values, grid=False)[0, 1, 0]
+    assert share == pytest.approx((32.0 * step**2 - spread / 28.0) / (32.0 * step**2 + spread), rel=1e-12)
+
+
+def test_effects_of_uneven_bins_are_about_their_mean_over_the_designs():
+    chance = np.random.default_rng(4)
+    bins = [chance.choice(3, 60, p=[0.6, 0.3, 0.1]), chance.choice(2, 60, p=[0.8, 0.2])]
+    own = [np.array([1.0, 4.0, -3.0]), np.array([2.0, 7.0])]
+    values = own[0][bins[0]] + own[1][bins[1]]
+    for effect, known, group in zip(single_effects(bins, values[:, None]), own, bins, strict=True):
+        np.testing.assert_allclose(effect[:, 0], known - known[group].mean(), rtol=0.0, atol=1e-12)
+
+
+def test_the_error_of_a_pair_that_only_adds_up_is_that_of_its_rows():
+    """Of x1 + x2 a row is (a1 - b1) (b2 - a2)/V, of variance 1: the error is 1/n^(1/2), and the index 0 within four of them."""
+    count = 4096
+    first, second = np.random.default_rng(5).random((2, count, 2))
+    swapped = [np.where(np.arange(2) == place, other, own) for own, other in ((first, second), (second, first)) for place in range(2)]
+    blocks = np.stack([first, second, *swapped]).sum(axis=-1, keepdims=True)
+    index, error = second_order(blocks, 2)
+    assert error[0] == pytest.approx(1.0 / np.sqrt(count), rel=0.1)
+    assert abs(index[0, 1, 0]) < 4.0 / np.sqrt(count)
 
 
 def test_how_a_pair_acts_is_seen():

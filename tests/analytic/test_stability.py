@@ -159,6 +159,11 @@ def test_strokes_through_locked_parts_press_as_through_stiff_ones():
     assert np.isinf(found.dead)
     assert found.worst == pytest.approx(4.0 * EULER / pressed, rel=2e-3)
     assert found.strokes == pytest.approx([2e-4])
+    loaded = replace(stage, forces={"push": fs.Force("platform", (0.0, 0.0, 0.0), (0.0, 0.0, 20.0))})
+    both = stability(loaded, fs.lumped(loaded), limits)
+    weighed = 20.0 * spring / (spring + 5e6)
+    assert both.dead == pytest.approx(4.0 * EULER / weighed, rel=2e-3)
+    assert both.worst == pytest.approx(4.0 * EULER / (pressed + weighed), rel=2e-3)
 
 
 def test_a_squeezed_body_turns_about_the_line_of_its_forces_for_nothing():
@@ -175,3 +180,14 @@ def test_a_squeezed_body_turns_about_the_line_of_its_forces_for_nothing():
     )
     others = 1.0 / np.diag(fs.compliance(hinge, STEEL))[3:5]
     assert of(stage).dead == pytest.approx(np.min(others) / (2.0 * 0.1), rel=1e-3)
+
+
+@pytest.mark.parametrize(("factor", "softer", "slower"), [(2.0, "50 %", "29 %"), (4.0 / 3.0, "75 %", "50 %"), (10.0, "10 %", "5.1 %")])
+def test_a_load_factor_is_told_as_stiffness_and_frequency(factor: float, softer: str, slower: str) -> None:
+    """Of the stiffness 1/factor is gone, of the frequency 1 - (1 - 1/factor)^(1/2)."""
+    found = replace(of(leaves(1.0)), dead=np.array(factor), worst=np.array(factor), stiffens=np.zeros(()))
+    (told,) = found.cautions
+    assert f"is {softer} less stiff than printed, its frequency {slower} lower" in told.what
+    assert not found.refusals
+    (worse,) = replace(found, dead=np.array(100.0)).cautions
+    assert f"up to {softer} less stiff than printed, a frequency {slower} lower" in worse.what

@@ -13,7 +13,7 @@ from netgen import occ
 from flexstage.base.finding import DesignError
 from flexstage.cases.registry import case
 from flexstage.mechanism.expand import expand
-from flexstage.parts.body import Block, Body, Cylinder, Solid
+from flexstage.parts.body import Block, Body, Cylinder, Inertia, Solid
 from flexstage.parts.mass import MassProperties, mass_properties
 from flexstage.parts.material import Material
 from flexstage.readings.solid.draw import drawn, moved
@@ -229,6 +229,23 @@ def test_what_is_lent_to_a_body_weighs_once_with_it() -> None:
     assert doubled is not None
     assert single is not None
     assert np.isclose(doubled.mass, single.mass, rtol=ROUND_OFF)
+
+
+def test_a_stated_mass_counts_with_what_is_lent_to_its_body() -> None:
+    """The platform's outlines weigh nothing beside its stated mass; its lugs and pads do, as they do without it."""
+    stage = case("double-triangle")
+    platform = stage.bodies["platform"]
+    stated = replace(platform, mass=2.0, centre=(0.0, 0.0, 0.0), inertia=Inertia(0.1, 0.2, 0.3))
+    masses = [
+        expand(replace(stage, bodies={"platform": body})).bodies["platform"].mass for body in (stated, replace(stated, mass=5.0), platform)
+    ]
+    light, heavy, plain = (mass for mass in masses if mass is not None)
+    assert np.isclose(heavy.mass - light.mass, 3.0, rtol=1e-12)
+    own = mass_properties(platform, stage.materials)
+    assert own is not None
+    assert np.isclose(light.mass - 2.0, plain.mass - own.mass, rtol=1e-9)  # lugs are flush with the plate: they share nothing with it
+    lent = (light.mass * light.centre, plain.mass * plain.centre - own.mass * own.centre)
+    np.testing.assert_allclose(*lent, rtol=0.0, atol=1e-9)
 
 
 def test_a_shifted_copy_neither_gains_nor_loses_mass() -> None:

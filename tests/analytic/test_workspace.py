@@ -262,12 +262,17 @@ def test_discs_and_boxes_against_the_opening():
 
 
 def test_holes_and_bores_leave_the_opening_clear():
-    """A plate with a hole and a ring with a bore around the opening are clear; one too small is not."""
+    """A plate with a hole and a ring with a bore around the opening are clear; one too small is not, nor what stands on its edge."""
     plate = fs.Block("steel", (0.2, 0.2, 0.01), hole=(0.11, 0.11))
     ring = fs.Cylinder("steel", 0.2, 0.01, bore=0.11 * np.sqrt(2.0) + 1e-6)
     narrow = fs.Cylinder("steel", 0.2, 0.01, bore=0.15)
+    wheel = fs.Cylinder("steel", 0.2, 0.01, along=X, bore=0.18)
+    wall = fs.Block("steel", (0.2, 0.2, 0.01), hole=(0.19, 0.19), along=Z, up=X)
     found = room(solids(plate, ring, narrow, opening=fs.Opening((0.11, 0.11))))
     assert [item.name for item in found.intrusions] == ["platform.s2"]
+    for standing in (wheel, wall):
+        (intrusion,) = room(solids(standing, opening=fs.Opening((0.11, 0.11)))).intrusions
+        assert intrusion.depth == pytest.approx(0.055 + 0.005, rel=1e-9)
 
 
 def test_bounding_box_and_envelope():

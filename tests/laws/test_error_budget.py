@@ -80,6 +80,7 @@ def test_noise_and_steps_of_the_gauges():
     found = budget(stage, {"z": 1e-6})
     seen = pose_resolution(stage, ideal(stage))
     np.testing.assert_allclose(found.ideal.values[:, 3], 3.0 * seen.noise, rtol=1e-9)
+    assert found.ideal.at("z", "gauge noise") == pytest.approx(3.0 * 0.1e-9 * np.sqrt(1000.0 / 3.0), rel=1e-9)  # the mean of three
     np.testing.assert_allclose(found.ideal.values[:, 4], 0.5 * seen.worst, rtol=1e-9)
     assert found.missing == ()
     assert budget(case("double-triangle"), {"z": 1e-6}).missing == ("gauge noise",)

@@ -12,21 +12,25 @@ from flexstage.cases.double_triangle import SM_REF_A, SM_REF_B, double_triangle
 from flexstage.cases.tip_tilt import tip_tilt
 from flexstage.mechanism.address import addresses, get, set_value
 from flexstage.present.tables.sensitivities import loss_sensitivity_table
+from flexstage.readings.linear.static import static_gain
 
 MODES = 6
 
 
-def _frequencies_and_loss(stage: fs.Mechanism) -> tuple[np.ndarray, np.ndarray]:
-    model = fs.lumped(stage)
+def _frequencies_loss_and_gain(stage: fs.Mechanism) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """The gain: how much of its own stroke each actuator moves the platform by, read back by the ideal mapping."""
+    model, kinematics = fs.lumped(stage), fs.ideal(stage)
     frequencies = fs.modes(model).frequencies[:MODES]
-    return frequencies, np.diag(fs.lost_motion(fs.ideal(stage), model).loss.values)
+    moved = static_gain(model, tuple(f"platform.{name}" for name in kinematics.coordinates), kinematics.actuators).values
+    return frequencies, np.diag(fs.lost_motion(kinematics, model).loss.values), np.diag(kinematics.mapping.values @ moved)
 
 
-def _differences(stage: fs.Mechanism, address: str, step: float) -> tuple[np.ndarray, np.ndarray]:
+def _differences(stage: fs.Mechanism, address: str, step: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     value = get(stage, address)
-    high = _frequencies_and_loss(set_value(stage, address, value + step))
-    low = _frequencies_and_loss(set_value(stage, address, value - step))
-    return (high[0] - low[0]) / (2 * step), (high[1] - low[1]) / (2 * step)
+    high = _frequencies_loss_and_gain(set_value(stage, address, value + step))
+    low = _frequencies_loss_and_gain(set_value(stage, address, value - step))
+    frequencies, loss, gain = ((more - less) / (2 * step) for more, less in zip(high, low, strict=True))
+    return frequencies, loss, gain
 
 
 def _means(values: np.ndarray, groups: tuple[tuple[int, ...], ...]) -> np.ndarray:
@@ -60,11 +64,24 @@ def test_against_finite_differences(address: str) -> None:
     stage = double_triangle(SM_REF_B)
     exact = fs.sensitivities(stage, (address,), modes=MODES)
     value = abs(get(stage, address)) or 0.1
-    slope, loss = _differences(stage, address, 1e-5 * value)
+    slope, loss, gain = _differences(stage, address, 1e-5 * value)
     found = _means(slope, exact.clusters)
     np.testing.assert_allclose(exact.frequency[0] * value, found * value, atol=2e-6 * exact.frequencies.max())
     np.testing.assert_allclose(exact.loss[0] * value, loss * value, atol=2e-8)
+    np.testing.assert_allclose(exact.gain[0] * value, gain * value, atol=2e-8)
     assert np.max(np.abs(exact.frequency[0] * value)) > 1e-6
+
+
+@pytest.mark.parametrize(
+    ("kinds", "power"), [((".young", ".stiffness", ".bending_rigidity"), 0.5), ((".density", ".mass"), -0.5)], ids=["stiffness", "mass"]
+)
+def test_all_stiffness_or_all_mass_together_scale_frequencies_by_their_root(kinds: tuple[str, ...], power: float) -> None:
+    """Whatever the stage, relative sensitivities add up to +-1/2; strokes are lost by ratios of stiffness, so those of loss to nothing."""
+    stage = double_triangle(SM_REF_B)
+    names = tuple(name for name in addresses(stage) if name.endswith(kinds) and get(stage, name) is not None)
+    found = fs.sensitivities(stage, names, modes=MODES)
+    np.testing.assert_allclose(found.relative_frequency.values.sum(axis=0), power, rtol=1e-7)
+    np.testing.assert_allclose(found.relative_loss.values.sum(axis=0), 0.0, atol=1e-9)
 
 
 def test_a_symmetric_change_keeps_clusters_and_a_single_one_splits_them() -> None:

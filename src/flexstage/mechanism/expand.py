@@ -18,7 +18,7 @@ from flexstage.mechanism.path import complete, replaced
 from flexstage.mechanism.pattern import Facing, Pattern, Polar
 from flexstage.parts.body import Body, Solid, owner_of, solid_frame
 from flexstage.parts.gauge import Gauge, Positive
-from flexstage.parts.mass import MassProperties, drawn_solids, mass_properties, united, within
+from flexstage.parts.mass import MassProperties, combined, drawn_solids, mass_properties, united, within
 from flexstage.parts.material import Material
 from flexstage.parts.part import Part, is_actuator, material_of
 from flexstage.spatial.frame import Frame, axes, identity, turn_z
@@ -351,16 +351,19 @@ def _placed_body(drawn: tuple[_DrawnBody, ...], links: Mapping[str, PlacedLink],
 def _mass(drawn: tuple[_DrawnBody, ...], materials: Mapping[str, Material]) -> MassProperties | None:
     """The mass of a body and of what is lent to it; what they have in common is told where the copies are meant to stand.
 
-    A lug that is shifted by a few micrometres neither sinks into its body nor comes off it: no mass is gained or lost.
+    A lug that is shifted by a few micrometres neither sinks into its body nor comes off it: no mass is gained or lost. A stated mass counts
+    as it is, whatever is drawn of its body.
     """
-    masses = [mass for item in drawn if (mass := item.mass()) is not None]
-    if len(masses) > 1:
+    weighed = [item for item in drawn if item.body.mass is None and item.own is not None]
+    single = [item for item in drawn if item.body.mass is not None or len(weighed) == 1]
+    masses = [mass for item in single if (mass := item.mass()) is not None]
+    if len(weighed) > 1:
         actual, meant = (
-            [solid for item in drawn for solid in drawn_solids(item.body, materials, item.name, frame(item))]
+            [solid for item in weighed for solid in drawn_solids(item.body, materials, item.name, frame(item))]
             for frame in (lambda item: item.frame, lambda item: item.aligned)
         )
-        return united(actual, meant)
-    return masses[0] if masses else None
+        masses.append(united(actual, meant))
+    return combined(masses) if len(masses) > 1 else masses[0] if masses else None
 
 
 def _actuators(links: Mapping[str, PlacedLink]) -> dict[str, str]:
