@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import pytest
@@ -58,6 +59,26 @@ def test_nothing_shipped_is_doubted() -> None:
         (replace(STACK, mass=15.0), "mass"),
         (fs.Gauge(range=0.5e-3, resolution=100e-6), "resolution"),
         (fs.Gauge(range=0.5), "range"),
+        (fs.Gauge(range=0.5e-3, resolution=1e-9, noise_density=1e-8, bandwidth=5e3), "noise_density"),
+        (fs.Gauge(range=0.5e-3, bandwidth=5.0), "bandwidth"),
+        (replace(STEEL, expansion=10.8e-9), "expansion"),
+        (replace(STEEL, loss_factor=2.5), "loss_factor"),
+        (replace(STACK, capacitance=4e-3), "capacitance"),
+        (replace(STACK, capacitance=4e-9), "capacitance"),
+        (replace(STACK, maximum_load=2.0), "maximum_load"),
+        (replace(STACK, maximum_load=2e6), "maximum_load"),
+        (replace(STACK, tensile_limit=0.05), "tensile_limit"),
+        (replace(STACK, tensile_limit=50e3), "tensile_limit"),
+        (replace(STACK, preload=0.2), "preload"),
+        (replace(STACK, bias=0.05), "bias"),
+        (replace(STACK, resonance=40.0), "resonance"),
+        (replace(STACK, resonance=40e6), "resonance"),
+        (replace(STACK, expansion=-3e-9), "expansion"),
+        (replace(STACK, expansion=-3e-3), "expansion"),
+        (fs.Block("steel", (0.04, 0.03, 0.03e-3)), "size"),
+        (fs.Cylinder("steel", 0.02e-3, 0.03), "size"),
+        (fs.Body(mass=5.0, centre=(0.0, 0.0, 0.0), inertia=fs.Inertia(1e-6, 1e-6, 1e-6)), "inertia"),
+        (fs.Payload("platform", 2000.0, (0.0, 0.0, 0.0), fs.Inertia(1e-3, 1e-3, 1e-3)), "inertia"),
         (fs.Leaf("steel", 4.0, 0.4, 2.0), "thickness"),
         (fs.Rod("steel", 1e-3, 1e-8), "diameter"),
     ],
@@ -77,3 +98,33 @@ def test_a_load_that_no_part_bears_is_told() -> None:
         links={"pzt": fs.Link(("ground", "platform"), "stack", (0.0, 0.0, 0.018), (0.0, 0.0, 1.0))},
     )
     assert "9.81 times its maximum load" in {each.where: each.what for each in caveats(stage).cautions}["pzt"]
+
+
+def test_no_ball_of_osmium_is_doubted() -> None:
+    mass, density = 0.3, 22.5e3
+    inertia = 0.4 * mass * (mass / density * 0.75 / math.pi) ** (2 / 3)
+    assert told(fs.Body(mass=mass, centre=(0.0, 0.0, 0.0), inertia=fs.Inertia(inertia, inertia, inertia))) == []
+    assert told(fs.Payload("platform", mass, (0.0, 0.0, 0.0), fs.Inertia(*(0.9 * inertia,) * 3))) == ["it.inertia"]
+
+
+@pytest.mark.parametrize(
+    ("path", "value", "where"),
+    [
+        ("gravity", (0.0, 0.0, -9806.65), "gravity"),
+        ("gravity", (0.0, 0.0, -9.80665e-3), "gravity"),
+        ("envelope", (160.0, 0.08, 0.025), "envelope.x"),
+        ("payloads", {"mirror": fs.Payload("platform", 0.01, (0.0, 0.0, 0.0), fs.Inertia(5.0, 5.0, 5.0))}, "payloads.mirror.inertia"),
+        ("opening", fs.Opening((0.1e-3, 0.1e-3)), "opening.size"),
+    ],
+)
+def test_what_does_not_fit_the_stage_is_told(path: str, value: object, where: str) -> None:
+    stage = replace(case("parallelogram", {}), **{path: value})
+    told = [each.where for each in caveats(stage).cautions if "not plausible" in each.what]
+    assert told == [where]
+
+
+def test_a_point_far_outside_is_told_wherever_the_stage_stands() -> None:
+    stage = case("parallelogram", {})
+    body = stage.bodies["platform"]
+    far = replace(stage, bodies={**stage.bodies, "platform": replace(body, points={"corner": (30.0, 0.0, 0.0)})})
+    assert [each.where for each in caveats(far).cautions if "not plausible" in each.what] == ["platform.points.corner"]

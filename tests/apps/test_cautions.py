@@ -45,11 +45,20 @@ def test_a_check_with_cautions_succeeds(flexstage: Command) -> None:
 
 
 def test_what_is_taken_by_default_stands_apart(flexstage: Command, tmp_path: Path) -> None:
-    ended = flexstage("mapping", "stage.toml", "--set", "parts.stack_vertical.mass=0 kg", "--json", "out.json")
+    massless = ("--set", "parts.stack_vertical.mass=0 kg")
+    ended = flexstage("modes", "stage.toml", *massless, "--json", "out.json")
     document = json.loads((tmp_path / "out.json").read_text())
     assert document["cautions"] == []
     assert [each["what"] for each in document["defaults"]] == ["the stack weighs nothing"]
-    assert "Taken by default" in ended.out
+    assert ended.out.startswith("Taken by default\n\n  parts.stack_vertical: the stack weighs nothing. ")
+    assert "Taken by default" not in flexstage("mapping", "stage.toml", *massless).out, "mappings weigh nothing"
+
+
+def test_caveats_are_lines_that_nothing_folds(flexstage: Command) -> None:
+    lines = flexstage("modes", "stage.toml", *THICK).out.splitlines()
+    assert lines[:2] == ["Cautions", ""]
+    assert lines[2].startswith("  parts.foot_notch: ")
+    assert all(line.startswith("  ") and line.endswith(".") for line in lines[2 : lines.index("", 2)])
 
 
 def test_caveats_are_worked_out_once_for_one_description() -> None:

@@ -12,16 +12,21 @@ import numpy as np
 
 from flexstage.analysis.requirements import Subject, requirements
 from flexstage.analysis.workspace.load import load_share
-from flexstage.analysis.workspace.room import room
+from flexstage.analysis.workspace.room import bounds, room
 from flexstage.analysis.workspace.small import small_motion
 from flexstage.analysis.workspace.strength import hinge_stress
 from flexstage.analysis.workspace.stroke import StrokeLimits, single_axis, stroke_limits
 from flexstage.base.finding import DesignError, Finding
+from flexstage.base.number import stack
+from flexstage.base.quantity import LENGTH
+from flexstage.base.unit import show
 from flexstage.beams.validity import validity
 from flexstage.mechanism.contact import contact_findings
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.expansion import ground_of
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
+from flexstage.mechanism.outline import outlines
+from flexstage.parts.body import Body
 from flexstage.parts.part import Restricted
 from flexstage.parts.piezo import Piezo
 from flexstage.parts.plausible import implausible
@@ -32,11 +37,28 @@ from flexstage.studies.standing import load_factors, standing
 
 
 @dataclass(frozen=True)
+class Default(Finding):
+    """What was taken where the description leaves it open, and the kinds of results that are the same `without` it."""
+
+    without: frozenset[str] = frozenset()
+
+
+_LEAST_FALL, _MOST_FALL = 0.16, 250.0
+_STILL = frozenset({"mapping", "lost-motion", "drift", "budget"})
+_LINEAR = frozenset({"mapping", "stiffness", "lost-motion", "modes", "response", "drift", "sensitivities", "solid", "verify", "calibrate"})
+_MEASURED = frozenset({"rig", "identify", "compare", "update"})
+
+
+@dataclass(frozen=True)
 class Caveats:
     """Known with every result: `cautions` (something is doubtful), and `defaults` (what the description leaves open, as taken)."""
 
     cautions: tuple[Finding, ...] = ()
-    defaults: tuple[Finding, ...] = ()
+    defaults: tuple[Default, ...] = ()
+
+    def defaults_of(self, kind: str) -> tuple[Default, ...]:
+        """Those a kind of result (`modes`, `workspace`) rests on."""
+        return tuple(each for each in self.defaults if kind not in each.without)
 
 
 @lru_cache(maxsize=8)
@@ -50,7 +72,7 @@ def caveats(mechanism: Mechanism) -> Caveats:
     return Caveats(cautions(mechanism), defaults(mechanism))
 
 
-def defaults(mechanism: Mechanism) -> tuple[Finding, ...]:
+def defaults(mechanism: Mechanism) -> tuple[Default, ...]:
     """What a result may rest on that the description does not state, and the value taken: `what` was taken, and by what it is stated.
 
     >>> defaults(Mechanism("stage"))
@@ -59,18 +81,18 @@ def defaults(mechanism: Mechanism) -> tuple[Finding, ...]:
     return (*_stack_defaults(mechanism), *_ground_default(mechanism))
 
 
-def _stack_defaults(mechanism: Mechanism) -> Iterator[Finding]:
+def _stack_defaults(mechanism: Mechanism) -> Iterator[Default]:
     for name, piezo in _shared_stacks(mechanism).items():
         if np.all(np.asarray(piezo.mass) == 0.0):
-            yield Finding(f"parts.{name}", "the stack weighs nothing", 'Its mass adds local modes and lowers others: mass = "0.12 kg"')
+            advice = 'Its mass adds local modes and lowers others: mass = "0.12 kg"'
+            yield Default(f"parts.{name}", "the stack weighs nothing", advice, _STILL)
         if piezo.bias is None and piezo.voltage_low is not None and piezo.voltage_high is not None:
             middle = np.ravel(0.5 * (np.real(piezo.voltage_low) + np.real(piezo.voltage_high)))[0]
-            yield Finding(
-                f"parts.{name}", f"the bias is the middle of the range, {middle:g} V", f'Strokes count from it: bias = "{middle:g} V"'
-            )
+            what, advice = f"the bias is the middle of the range, {middle:g} V", f'Strokes count from it: bias = "{middle:g} V"'
+            yield Default(f"parts.{name}", what, advice, _LINEAR | _MEASURED)
 
 
-def _ground_default(mechanism: Mechanism) -> Iterator[Finding]:
+def _ground_default(mechanism: Mechanism) -> Iterator[Default]:
     """What the ground is taken as, where a requirement asks for drift."""
     try:
         asked = any(line.subject is Subject.DRIFT for line in requirements(mechanism))
@@ -79,7 +101,9 @@ def _ground_default(mechanism: Mechanism) -> Iterator[Finding]:
         return  # the requirement says what is missing
     if ground is not None and not ground.stated:
         advice = f'Drift rests on it: ground = "{ground.material}"'
-        yield Finding("ground", f"it is taken as {ground.material}: {ground.source}", advice)
+        yield Default(
+            "ground", f"it is taken as {ground.material}: {ground.source}", advice, _LINEAR - {"drift"} | _MEASURED | {"workspace", "loop"}
+        )
 
 
 def _shared_stacks(mechanism: Mechanism) -> dict[str, Piezo]:
@@ -103,6 +127,7 @@ def cautions(mechanism: Mechanism) -> tuple[Finding, ...]:
         *(() if factors is None else factors.cautions),
         *_pulled(mechanism),
         *implausible(_catalogued(mechanism)),
+        *_disproportions(mechanism),
         *_overloaded(mechanism),
         *_points(mechanism),
         *part_cautions(mechanism),
@@ -124,12 +149,49 @@ def _large_motions(mechanism: Mechanism) -> tuple[Finding, ...]:
 
 
 def _catalogued(mechanism: Mechanism) -> Iterator[tuple[str, Any]]:
-    """Materials, parts and gauges by address, those of single copies too."""
-    for name in ("materials", "parts", "sensors"):
+    """Materials, parts, gauges, payloads, bodies and their outlines by address; parts of single copies too."""
+    for name in ("materials", "parts", "sensors", "payloads"):
         yield from ((f"{name}.{key}", item) for key, item in getattr(mechanism, name).items())
     for link in expand(mechanism).links.values():
         if link.part != mechanism.parts[link.link.part]:
             yield link.name, link.part
+    for where, body in _drawn_bodies(mechanism).items():
+        yield where, body
+        yield from ((f"{where}.solids.{name}", solid) for name, solid in body.solids.items())
+
+
+def _drawn_bodies(mechanism: Mechanism) -> dict[str, Body]:
+    """Bodies by address, those of units once."""
+    bodies = {f"bodies.{name}": body for name, body in mechanism.bodies.items()}
+    return bodies | {f"units.{unit}.bodies.{name}": body for unit, drawn in mechanism.units.items() for name, body in drawn.bodies.items()}
+
+
+def _disproportions(mechanism: Mechanism) -> Iterator[Finding]:
+    """Gravity that no place has; envelope, opening, inertias and points of another order of size than the stage."""
+    check = "Check the unit and the power of ten"
+    fall = float(np.max(np.linalg.norm(np.real(stack(mechanism.gravity)), axis=-1)))
+    if fall and not _LEAST_FALL <= fall <= _MOST_FALL:
+        yield Finding("gravity", f"{fall:.4g} m/s^2 is not plausible: the moon has 1.6, Jupiter 25; a factor of 10 more either way", check)
+    assembly = expand(mechanism)
+    low, high, _ = bounds(outlines(assembly))
+    extent = float(np.max(np.linalg.norm(high - low, axis=-1)))
+    middle = 0.5 * (low + high)
+    points = {f"{body}.points.{name}": float(np.max(np.linalg.norm(at - middle, axis=-1))) for name, (body, at) in assembly.points.items()}
+    for where, size, least, most in (*_sizes(mechanism), *((name, distance, 0.0, 50.0) for name, distance in points.items())):
+        if extent and not least * extent <= size <= most * extent:
+            yield Finding(where, f"{show(size, LENGTH, digits=4)} is not plausible in a stage of {show(extent, LENGTH, digits=4)}", check)
+
+
+def _sizes(mechanism: Mechanism) -> Iterator[tuple[str, float, float, float]]:
+    """Lengths by address, and their plausible range in sizes of the stage; of an inertia the radius of gyration."""
+    for axis, side in zip("xyz", mechanism.envelope or (), strict=False):
+        yield f"envelope.{axis}", float(np.max(np.real(side))), 0.0, 50.0
+    if mechanism.opening is not None:
+        yield "opening.size", float(np.min(np.real(stack(mechanism.opening.size)))), 2e-3, np.inf
+    for where, item in (_drawn_bodies(mechanism) | {f"payloads.{name}": load for name, load in mechanism.payloads.items()}).items():
+        if item.mass is not None and item.inertia is not None and np.all(np.real(item.mass) > 0.0):
+            largest = np.real(np.max(np.stack(np.broadcast_arrays(item.inertia.xx, item.inertia.yy, item.inertia.zz)), axis=0))
+            yield f"{where}.inertia", float(np.max(np.sqrt(largest / np.real(item.mass)))), 0.0, 3.0
 
 
 def _overloaded(mechanism: Mechanism) -> tuple[Finding, ...]:
@@ -164,8 +226,7 @@ def _overpressed(mechanism: Mechanism, model: LinearModel) -> Iterator[Finding]:
 
 def _points(mechanism: Mechanism) -> Iterator[Finding]:
     """Masses without extent that nobody called a point."""
-    bodies = {f"bodies.{name}": body for name, body in mechanism.bodies.items()}
-    bodies |= {f"units.{unit}.bodies.{name}": body for unit, drawn in mechanism.units.items() for name, body in drawn.bodies.items()}
+    bodies = _drawn_bodies(mechanism)
     loads = {f"payloads.{name}": load for name, load in mechanism.payloads.items()}
     for where, item in (bodies | loads).items():
         if item.mass is not None and np.any(np.real(item.mass) > 0.0) and item.inertia is None and not item.point:

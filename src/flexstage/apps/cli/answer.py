@@ -44,17 +44,17 @@ def answer(asked: Asked, body: Callable[[], Document], tables: Callable[[], Iter
         announced(f"Wrote {asked.json}")
     from flexstage.apps.cli.show import show
 
-    show(table for table in (*caveat_tables(asked.mechanism, asked.cautions), *tables()) if table is not None)
+    show((*caveat_lines(asked.kind, asked.mechanism, asked.cautions), *tables()))
 
 
-def caveat_tables(mechanism: Mechanism | None, more: tuple[Finding, ...] = ()) -> Iterator[Table | None]:
-    """Cautions about a description (none: a record alone) and `more` about the result, and what was taken by default."""
-    from flexstage.present.tables.caveats import caution_table, default_table
+def caveat_lines(kind: str, mechanism: Mechanism | None, more: tuple[Finding, ...] = ()) -> Iterator[str]:
+    """Cautions about a description (none: a record alone) and `more` about the result, and what this kind of result takes by default."""
     from flexstage.studies.cautions import Caveats, caveats
 
     found = Caveats() if mechanism is None else caveats(mechanism)
-    yield caution_table((*found.cautions, *more))
-    yield default_table(found.defaults)
+    for title, findings in (("Cautions", (*found.cautions, *more)), ("Taken by default", found.defaults_of(kind))):
+        if findings:
+            yield "\n".join([title, "", *(f"  {each}" for each in findings)])
 
 
 def tell_missing(missing: Mapping[str, str]) -> None:

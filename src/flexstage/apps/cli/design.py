@@ -113,12 +113,12 @@ def check(design: Design, *, changes: Changes = None, json: Json = None) -> None
 
 
 def _tell_sound(design: Path, mechanism: Mechanism) -> None:
-    from flexstage.apps.cli.answer import caveat_tables
+    from flexstage.apps.cli.answer import caveat_lines
     from flexstage.apps.cli.show import show
     from flexstage.present.tables.description import composition_table
     from flexstage.studies.cautions import caveats
 
-    show(table for table in (composition_table(mechanism), *caveat_tables(mechanism)) if table is not None)
+    show((composition_table(mechanism), *caveat_lines("check", mechanism)))
     count = len(caveats(mechanism).cautions)
     said = f", {count} caution{'' if count == 1 else 's'}" if count else ""
     say(f"{design}: no findings{said}.")

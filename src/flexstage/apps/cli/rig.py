@@ -97,6 +97,7 @@ def rig(  # noqa: PLR0913  a test has that many knobs
 
 
 def _run(mechanism: Any, model: Any, setup: RigSetup, output: Path) -> None:
+    from flexstage.apps.cli.answer import caveat_lines
     from flexstage.apps.cli.bar import bar
     from flexstage.apps.cli.opening import announce
     from flexstage.apps.cli.show import show
@@ -107,7 +108,7 @@ def _run(mechanism: Any, model: Any, setup: RigSetup, output: Path) -> None:
     with bar() as shown:
         test = simulated(mechanism, model, setup, tell=lambda share: shown.share("testing", share))
         write(output, as_record(test))
-    show([rig_table(test)])
+    show((*caveat_lines("rig", mechanism), rig_table(test)))
     announce(output)
 
 

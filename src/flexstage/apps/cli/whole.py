@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from flexstage.apps.cli.answer import caveat_tables, tell_missing
+from flexstage.apps.cli.answer import caveat_lines, tell_missing
 from flexstage.apps.cli.failure import MISSED
 from flexstage.apps.cli.options import Changes, Design, Json, Theory
 from flexstage.apps.cli.output import STDOUT, announced, output_findings, write
@@ -108,17 +108,17 @@ def _json_text(analysis: Analysis, compared: Comparison | None) -> str:
 def _show(analysis: Analysis, compared: Comparison | None) -> None:
     from flexstage.apps.cli.show import show
 
-    show(table for table in _tables(analysis, compared) if table is not None)
+    show(_tables(analysis, compared))
     tell_missing(analysis.missing)
 
 
-def _tables(analysis: Analysis, compared: Comparison | None) -> Iterator[Table | None]:
+def _tables(analysis: Analysis, compared: Comparison | None) -> Iterator[Table | str | None]:
     from flexstage.apps.cli.grouped import analysis_tables
     from flexstage.present.tables.change import change_table, set_table
     from flexstage.present.tables.requirements import verdict_table
 
     yield verdict_table(analysis.verdicts)
-    yield from caveat_tables(analysis.mechanism)
+    yield from caveat_lines("analyse", analysis.mechanism)
     if compared is not None:
         yield set_table(compared.stated, analysis.mechanism, compared.addresses)
         yield change_table(compared.figures)
