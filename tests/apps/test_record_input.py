@@ -53,7 +53,7 @@ def refused(ended: Ended, said: str) -> None:
     ("name", "data", "said"),
     [
         ("missing.uff", None, "missing.uff: there is no such file"),
-        ("folder", None, "folder: it cannot be read"),
+        ("folder", None, "folder: it is a folder"),
         ("empty.h5", b"", "empty.h5: it is empty"),
         ("junk.uff", np.random.default_rng(0).bytes(20_000), "junk.uff: it is neither text nor a known form of record"),
         ("junk.h5", b"\x89HDF\r\n\x1a\n" + np.random.default_rng(0).bytes(20_000), "junk.h5: it cannot be read as HDF5"),
@@ -135,4 +135,4 @@ def test_a_full_disk_leaves_no_part_of_a_record(flexstage: Command, tmp_path: Pa
             [sys.executable, "-c", FULL_DISK, *names], check=False, capture_output=True, text=True, cwd=tmp_path, env=os.environ
         )
     assert (ended.returncode, ended.stdout.split()) == (0, ["2"] * len(names)), ended.stderr
-    assert ended.stderr.count("it cannot be written (File too large)") == len(names)
+    assert ended.stderr.count("it cannot be written: File too large") == len(names)

@@ -166,8 +166,8 @@ def test_memory_is_asked_for_before_anything_is_computed(monkeypatch, tmp_path):
     """What is advised to fit does."""
     study = loads_study(STUDY)
     many = replace(study, plan=replace(study.plan, count=10**6), responses={f"f{number}": study.responses["f"] for number in range(999)})
-    monkeypatch.setattr("flexstage.studies.study.run.available", lambda: 1e9)
-    with pytest.raises(DesignError, match="1,000,000 designs in 1000 columns need about 32 GB") as refused:
+    monkeypatch.setattr("flexstage.base.memory.available", lambda: 1e9)
+    with pytest.raises(DesignError, match="1,000,000 designs in 1000 columns need about 32 GB of memory") as refused:
         sweep(many, tmp_path / "r.h5")
     fits = int(refused.value.findings[0].advice.split()[4].replace(",", ""))
     require_memory(replace(many, plan=replace(many.plan, count=fits)))

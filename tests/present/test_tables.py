@@ -9,6 +9,7 @@ import pytest
 
 from flexstage.analysis.lost_motion import lost_motion
 from flexstage.analysis.modes import modes
+from flexstage.analysis.stability import Stability
 from flexstage.analysis.statics import statics
 from flexstage.analysis.workspace.buckling import Buckling, Ends
 from flexstage.cases.double_triangle import double_triangle
@@ -164,11 +165,14 @@ def test_only_a_stated_opening_is_spoken_of() -> None:
     assert {case(name).opening is None for name in ("double-triangle", "parallelogram")} == {True, False}
 
 
+STANDING = Stability(np.array(9.0), np.array(9.0), np.zeros(0), np.array(9.0), (), "")
+
+
 @pytest.mark.parametrize(
     ("factor", "mark"),
     [(0.999, Mark.FAIL), (np.nan, Mark.FAIL), (1.0, Mark.WARN), (1.499, Mark.WARN), (1.5, Mark.PLAIN), (20.0, Mark.PLAIN)],
 )
 def test_what_would_yield_is_marked_and_what_nearly_would(factor: float, mark: Mark) -> None:
     """Below 1 a hinge yields and a column buckles; below 1.5 there is no margin to speak of."""
-    column = Buckling(("B1/rod",), np.array([factor * 100.0]), np.array([100.0]), np.array([0.01]), (Ends.GUIDED,), "")
-    assert buckling_table(column).rows[0][-1].mark is mark
+    column = Buckling(("B1/rod",), np.array([factor * 100.0]), np.array([100.0]), np.array([0.01]), (Ends.GUIDED,), "", STANDING)
+    assert buckling_table(column).rows[-1][-1].mark is mark

@@ -250,7 +250,7 @@ DANGLING = {"tip": Body(mass=1.0), **STAGE.bodies}
         (part(Rod("steel", length=np.array([0.1, np.inf]), diameter=0.01)), ["parts.p.length at index 1", "not finite"]),
         (part(Notch("steel", np.array([[0.001], [0.02]]), np.array([0.01, 0.03]), Circular(1.0))), ["at index 1, 0", "20 mm", "10 mm"]),
         (part(Rod("steel", length=np.ones(2), diameter=np.ones(3))), ["batch", "(2,)", "(3,)", "broadcast"]),
-        (part(Rod("steel", length="1 mm", diameter=0.1)), ["parts.p.length", "'1 mm'", "a length"]),
+        (part(Rod("steel", length=None, diameter=0.1)), ["parts.p.length", "None", "a length"]),
         (part(Rod("steel", length=True, diameter=0.1)), ["parts.p.length", "True"]),
         (part("wire"), ["parts.p", "'wire'", "Rod"]),
         (part(Given(matrix(x05=1e-7), (Freedom.RZ,))), ["parts.p.compliance at index 0, 5", "not symmetric", "1e-07"]),

@@ -27,6 +27,7 @@ import numpy as np
 
 from flexstage.base.child import command, environment
 from flexstage.base.finding import refuse
+from flexstage.base.memory import gigabytes, require_memory
 from flexstage.base.number import Array
 
 Attribute: TypeAlias = str | float | tuple[str, ...]
@@ -39,7 +40,6 @@ _COPIES = 3
 _LONGEST = 256_000_000
 _OBJECTS = 100_000
 _TEXTS = 100_000
-_SHARE = 0.8
 _LENGTH = struct.Struct("<Q")
 _NUMBERS = "fiub"
 _COMPLEX_FIELDS = (("r", "i"), ("real", "imag"))
@@ -102,7 +102,7 @@ class Hdf:
         array = self.arrays[name]
         lengths = [max(0, min(stop, length) - max(start, 0)) for (start, stop), length in zip(spans, array.shape, strict=False)]
         needed = math.prod((*lengths, *array.shape[len(lengths) :])) * array.size
-        require_memory(f"{self.path}: {name}", _COPIES * needed)
+        require_memory(f"{self.path}: {name}", "its numbers", _COPIES * needed, _less)
         asked = {"task": "array", "path": str(self.path.absolute()), "name": name, "spans": list(map(list, spans)), "column": column}
         return _ask(self.path, asked, needed)[1][0]
 
@@ -151,28 +151,13 @@ def mat(path: Path) -> list[tuple[str, Array | tuple[str, ...]]]:
     """
     require_regular(path)
     size = path.stat().st_size
-    require_memory(str(path), _COPIES * size)
+    require_memory(str(path), "its numbers", _COPIES * size, _less)
     told, arrays = _ask(path, {"task": "mat", "path": str(path.absolute())}, size)
     return [(name, tuple(value) if isinstance(value, list) else arrays[value]) for name, value in told]
 
 
-def require_memory(where: str, needed: float) -> None:
-    """Raise `DesignError` where something needs more memory [B] than is free.
-
-    >>> require_memory("a.h5", 1e18)
-    Traceback (most recent call last):
-    flexstage.base.finding.DesignError: a.h5: reading it takes 1e+09 GB of memory, ... GB are free. Read less of it, ...
-    """
-    if needed < MEMORY // 10:
-        return
-    try:
-        import psutil
-    except ImportError:  # where the system lacks what it asks
-        return
-    free = psutil.virtual_memory().available
-    if needed > _SHARE * free:
-        advice = f"Read less of it, or free memory: {_SHARE * free / 1e9:.3g} GB would fit"
-        raise refuse(where, f"reading it takes {needed / 1e9:.3g} GB of memory, {free / 1e9:.3g} GB are free", advice)
+def _less(there: float) -> str:
+    return f"Read less of it, export it in parts, or free memory: {gigabytes(there / _COPIES)} of numbers would fit"
 
 
 # --- the child as the caller sees it ---

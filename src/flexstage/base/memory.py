@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from contextlib import suppress
 from pathlib import Path
-
-import psutil
 
 from flexstage.base.finding import refuse
 
@@ -13,14 +12,14 @@ _USABLE = 0.9
 """Share of what is left that may be planned with."""
 
 
-def require_memory(where: str, what: str, needed: float, fits: str) -> None:
-    """Refuse what needs more memory [bytes] than there is; `fits` says what would.
+def require_memory(where: str, what: str, needed: float, fits: Callable[[float], str]) -> None:
+    """Refuse what needs more memory [bytes] than there is; `fits` says by the memory that is there what would fit into it.
 
-    >>> require_memory("stage", "its matrices", 1e3, "fewer bodies")
+    >>> require_memory("stage", "its matrices", 1e3, lambda there: f"{there / 1e6:.0f} bodies would fit")
     """
-    left = available()
-    if needed > left:
-        raise refuse(where, f"{what} need about {gigabytes(needed)}, and {gigabytes(left)} are there", fits)
+    there = available()
+    if needed > there:
+        raise refuse(where, f"{what} need about {gigabytes(needed)} of memory, and {gigabytes(there)} are there", fits(there))
 
 
 def gigabytes(size: float) -> str:
@@ -42,7 +41,10 @@ def available() -> float:
 
 
 def _machine() -> Iterator[float]:
-    yield float(psutil.virtual_memory().available)
+    with suppress(ImportError, OSError):  # a system that does not tell
+        import psutil
+
+        yield float(psutil.virtual_memory().available)
 
 
 def _control_group(root: Path = Path("/sys/fs/cgroup"), own: Path = Path("/proc/self/cgroup")) -> Iterator[float]:
@@ -73,7 +75,9 @@ def _left(folder: Path) -> Iterator[float]:
 def _process_limits() -> Iterator[float]:
     try:
         import resource
-    except ImportError:  # Windows
+
+        import psutil
+    except ImportError:  # a system without limits
         return
     for kind in (resource.RLIMIT_AS, resource.RLIMIT_DATA):
         soft, _ = resource.getrlimit(kind)

@@ -78,7 +78,8 @@ class Waiting:
 
     def drop(self) -> None:
         """Remove it, where it has not been put."""
-        self.place.unlink(missing_ok=True)
+        with contextlib.suppress(OSError):
+            self.place.unlink()
 
 
 @contextmanager

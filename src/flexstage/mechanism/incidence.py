@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from flexstage.base.memory import available, require_memory
+from flexstage.base.finding import refuse
+from flexstage.base.memory import require_memory
 from flexstage.base.number import Array
 from flexstage.mechanism.expand import Assembly, PlacedLink
 from flexstage.mechanism.mechanism import GROUND, PLATFORM
@@ -63,9 +64,12 @@ def require_room(assembly: Assembly, matrices: float) -> None:
     """
     bodies, links = len(assembly.bodies), len(assembly.links)
     needed = 8.0 * matrices * 36.0 * bodies * max(bodies, links)
-    fits = int(np.sqrt(available() / needed) * bodies) if needed else bodies
-    advice = f"About {fits:,} bodies would fit with as many links to each; join bodies that move as one, or read parts of it"
-    require_memory("stage", f"matrices of {bodies:,} bodies and {links:,} links", needed, advice)
+
+    def fits(there: float) -> str:
+        most = int(np.sqrt(there / needed) * bodies)
+        return f"About {most:,} bodies would fit with as many links to each; join bodies that move as one, or read parts of it"
+
+    require_memory("stage", f"matrices of {bodies:,} bodies and {links:,} links", needed, fits)
 
 
 def twist_at(assembly: Assembly, order: Layout, body: str, frame: Frame) -> Array:
@@ -114,12 +118,16 @@ def deformation(assembly: Assembly, order: Layout, link: PlacedLink) -> Array:
 def with_ground(assembly: Assembly, order: Layout) -> Array:
     """The (..., n, 6) rigid motion of all bodies moving with the ground, whose twist is given at the platform's reference point.
 
+    Raises `DesignError` where there is no platform.
+
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.mechanism.expand import expand
     >>> assembly = expand(double_triangle())
     >>> with_ground(assembly, layout(assembly))[:6].tolist() == np.eye(6).tolist()  # the platform itself
     True
     """
+    if PLATFORM not in assembly.bodies:
+        raise refuse("bodies", f'there is no body "{PLATFORM}"', f"Declare the moving part under bodies.{PLATFORM}")
     centre = assembly.bodies[PLATFORM].reference
     carries = [transport(assembly.bodies[body].reference - centre) for body in order.bodies]
     batch = np.broadcast_shapes(*(carry.shape[:-2] for carry in carries))

@@ -143,7 +143,8 @@ def _section(form: Notch | Neck) -> Callable[[float, float], Array]:
 def rise_at(profile: Profile, station: float) -> float:
     """How far the cuts have risen at a share of the curved part, from 0 at the neck to 1 at its end [m].
 
-    >>> rise_at(Circular(0.005), 1.0)
+    >>> from flexstage.parts.profile import Circular
+    >>> float(rise_at(Circular(0.005), 1.0))
     0.005
     """
     if isinstance(profile, Straight):

@@ -99,6 +99,7 @@ def common_moments(solids: Sequence[Drawn]) -> Iterator[tuple[Number, Moments]]:
 
     Raises `DesignError` where the common volume cannot be weighed: of several materials, or of forms that cross with round faces.
 
+    >>> from flexstage.parts.body import Block
     >>> from flexstage.spatial.frame import identity
     >>> here, there = Block("steel", (2.0, 1.0, 1.0)), Block("steel", (1.0, 1.0, 1.0), at=(1.0, 0.0, 0.0))
     >>> [(_, found)] = common_moments([Drawn("a", here, 1.0, identity()), Drawn("b", there, 1.0, identity())])

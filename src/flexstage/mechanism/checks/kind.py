@@ -31,8 +31,8 @@ def kind_findings(mechanism: Mechanism) -> Iterator[Finding]:
     """Findings about values of another kind than their field's.
 
     >>> from flexstage.parts.rod import Rod
-    >>> print(*kind_findings(Mechanism("", parts={"wire": Rod("steel", length="3 mm", diameter=0.001)})))
-    parts.wire.length: found '3 mm' where a length is expected. Give a number or an array in SI units.
+    >>> print(*kind_findings(Mechanism("", parts={"wire": Rod("steel", length=None, diameter=0.001)})))
+    parts.wire.length: found None where a length is expected. Give a number or an array in SI units.
     """
     yield from _kinds(node_of(Mechanism), mechanism, "")
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from flexstage.base.labelled import Matrix, ratio_units
-from flexstage.base.memory import available, require_memory
+from flexstage.base.memory import require_memory
 from flexstage.base.number import Array
 from flexstage.mechanism.mechanism import Damping, RayleighDamping, StructuralDamping
 from flexstage.readings.linear.damping import modal_ratios, structural_stiffness
@@ -94,8 +94,12 @@ def transfer(model: LinearModel, chosen: Ports, frequencies: Array, damping: Dam
     frequencies = np.asarray(frequencies, dtype=float)
     lines, outputs, inputs = max(1, len(frequencies)), len(chosen.outputs), len(chosen.inputs)
     each = 16.0 * math.prod(model.stiffness_matrix.shape[:-2]) * (outputs * (2 * len(model.coordinates) + 3 * inputs) + 1)
-    advice = f"Ask for {int(available() / each):,} lines at most, or for fewer outputs and inputs"
-    require_memory("response", f"{lines:,} lines of {outputs:,} outputs and {inputs:,} inputs", each * lines, advice)
+    require_memory(
+        "response",
+        f"{lines:,} lines of {outputs:,} outputs and {inputs:,} inputs",
+        each * lines,
+        lambda there: f"Ask for {int(there / each):,} lines at most, or for fewer outputs and inputs",
+    )
     if isinstance(damping, StructuralDamping):
         lossy = replace(chosen, force=chosen.force + 1j * chosen.lost)
         found = direct(structural_stiffness(model), model.inertia_matrix, lossy, frequencies)

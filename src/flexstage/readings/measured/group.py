@@ -51,12 +51,7 @@ class Found:
     misfit: Array
 
     def only(self, chosen: Array) -> Found:
-        """Some of the modes, by their numbers.
-
-        >>> from flexstage.readings.measured.example import one_mode_band
-        >>> band, start = one_mode_band()
-        XX
-        """
+        """Some of the modes, by their numbers."""
         modal, spread = self.modal, self.deviations
         return Found(
             self.band,

@@ -104,7 +104,7 @@ def recorded(path: Path) -> Hdf:
     >>> import h5py, tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     with h5py.File(Path(folder) / "a.h5", "w") as file:
-    ...         found = file.create_dataset("u", 4_000_000_000, chunks=(1000,))
+    ...         found = file.create_dataset("u", 4_000_000_000, dtype="f4", chunks=(1000,))
     ...     recorded(Path(folder) / "a.h5")
     Traceback (most recent call last):
     flexstage.base.finding.DesignError: ...a.h5: u: it is said to have 4e+09 numbers (16 GB), 0 bytes of which are in the file. ...

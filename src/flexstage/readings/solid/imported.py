@@ -57,7 +57,7 @@ def measured(path: Path) -> Measured:
 
     >>> measured(Path("nowhere.step"))
     Traceback (most recent call last):
-    flexstage.base.finding.DesignError: nowhere.step: it cannot be read: No such file or directory. ...
+    flexstage.base.finding.DesignError: nowhere.step: there is no such file. Check the path.
     """
     digest = _sha256(path)
     solid = _solid(path)

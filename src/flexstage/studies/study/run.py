@@ -14,9 +14,9 @@ import numpy as np
 from filelock import FileLock, Timeout
 
 from flexstage.analysis.requirements import Subject
+from flexstage.base import memory
 from flexstage.base.child import cores
 from flexstage.base.finding import DesignError, refuse, require
-from flexstage.base.memory import available
 from flexstage.base.number import Array
 from flexstage.studies.study.definition import Study, name_findings
 from flexstage.studies.study.engine import engine_covers, engine_of
@@ -105,12 +105,14 @@ def require_memory(study: Study) -> None:
     >>> from flexstage.studies.study.example import neck_study
     >>> require_memory(neck_study())
     """
-    columns, most = len(study.names), available()
+    columns, designs = len(study.names), study.plan.designs
     each = _COPIES * 8.0 * columns
-    if study.plan.designs * each > most:
-        what = f"the results of {study.plan.designs:,} designs in {columns} columns need about {study.plan.designs * each / 1e9:.3g} GB"
-        advice = f"Ask for at most {int(most / each):,} designs, or for fewer responses"
-        raise refuse("sweep.designs", f"{what} of memory when they are read, {most / 1e9:.3g} GB are there", advice)
+    memory.require_memory(
+        "sweep.designs",
+        f"the results of {designs:,} designs in {columns} columns",
+        designs * each,
+        lambda there: f"Ask for at most {int(there / each):,} designs, or for fewer responses",
+    )
 
 
 def _tell(progress: Progress | None, study: Study, count: int) -> None:
