@@ -67,3 +67,17 @@ def test_spin_of_rods_between_ball_joints_matters_to_nothing(spin):
     assert abs(pairs[1] / pairs[0] - 1.0) < 1e-9
     compliance = static_gain(model, tuple(f"platform.{name}" for name in COMPONENTS), tuple(f"platform.{name}" for name in FORCES)).values
     assert np.allclose(compliance, np.linalg.inv(K), rtol=1e-9, atol=1e-9 * np.abs(np.linalg.inv(K)).max())
+
+
+def test_a_rod_that_spins_freely_follows_its_head_all_the_same():
+    """Along itself as a whole, across by half at its middle, and it turns about its foot; how far it spins is not told by anything."""
+    model = lumped(hexapod(1e-4))
+    forces = tuple(f"platform.{name}" for name in FORCES)
+    platform = static_gain(model, tuple(f"platform.{name}" for name in COMPONENTS), forces).values
+    for number, (head, along) in enumerate(struts()):
+        moved = np.hstack([np.eye(3), -cross_matrix(head)]) @ platform
+        line = np.outer(along, along)
+        rod = static_gain(model, tuple(f"rod{number}.{name}" for name in COMPONENTS), forces).values
+        np.testing.assert_allclose(rod[:3], (line + 0.5 * (np.eye(3) - line)) @ moved, rtol=0.0, atol=1e-9 * np.abs(moved).max())
+        turned = cross_matrix(along) @ moved / LENGTH
+        np.testing.assert_allclose((np.eye(3) - line) @ rod[3:], turned, rtol=0.0, atol=1e-9 * np.abs(turned).max())
