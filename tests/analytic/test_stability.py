@@ -10,7 +10,9 @@ import pytest
 import flexstage as fs
 from flexstage.analysis.stability import Stability, stability
 from flexstage.analysis.workspace.stroke import StrokeLimits
+from flexstage.cases.double_triangle import double_triangle
 from flexstage.parts.freedom import Freedom
+from flexstage.readings.lumped import lumped
 
 Z = (0.0, 0.0, 1.0)
 STEEL = fs.Material(young=200e9, poisson=0.0, density=1e-3)
@@ -191,3 +193,10 @@ def test_a_load_factor_is_told_as_stiffness_and_frequency(factor: float, softer:
     assert not found.refusals
     (worse,) = replace(found, dead=np.array(100.0)).cautions
     assert f"up to {softer} less stiff than printed, a frequency {slower} lower" in worse.what
+
+
+def test_a_repeated_load_factor_names_the_bodies_of_all_its_shapes():
+    """Three equal units give way at one factor: which of them a solver mixes first says nothing."""
+    stage = double_triangle()
+    wanted = tuple(f"{unit}/{body}" for unit in ("B4", "B5", "B6") for body in ("base", "tip"))
+    assert stability(stage, lumped(stage)).moving == wanted

@@ -32,7 +32,7 @@ from flexstage.spatial.frame import COMPONENTS, FORCES, seen_at, transport, turn
 DOUBTFUL = 20.0
 """Load factor below which the loaded stage is told apart from the drawn one: 5 % of the stiffness."""
 
-_KEPT, _ALIKE = 3, 1e-9
+_KEPT, _ALIKE, _REPEATED, _NAMED = 3, 1e-9, 1e-6, 6
 _NONE = 1e-9
 """A share of the stiffness that counts as no softening: rounding."""
 
@@ -120,7 +120,7 @@ def stability(mechanism: Mechanism, model: LinearModel, limits: StrokeLimits | N
         worst=worst if stepped else np.real(worst),
         strokes=np.array([row.strokes for row in rows]).reshape(*batch, corners.shape[-1]),
         stiffens=np.array([row.stiffens for row in rows]).reshape(batch),
-        moving=pieces.moving(rows[0].shape),
+        moving=pieces.moving(rows[0].shapes),
         provenance=f"linearised buckling of the {model.provenance}",
     )
 
@@ -217,13 +217,13 @@ class _Pieces:
         result[..., : small.shape[-1], : small.shape[-1]] = small
         return result
 
-    def moving(self, shape: Array) -> tuple[str, ...]:
-        """Bodies that move most in a shape (n + k), by the length that each of their points about the reference moves."""
-        own = shape[: len(self.model.coordinates)]
+    def moving(self, shapes: Array) -> tuple[str, ...]:
+        """Bodies that move most in the shapes (n + k, s) of one load factor, by what their reference points move in all of them."""
+        own = shapes[: len(self.model.coordinates)]
         first = {name: np.real(twist.reshape(-1, *twist.shape[-2:])[0]) @ own for name, twist in self.twists.items() if name != GROUND}
         sizes = {name: float(np.linalg.norm(twist[:3])) for name, twist in first.items()}
         largest = max(sizes.values(), default=0.0)
-        return tuple(name for name, size in sizes.items() if size > 0.5 * largest > 0.0)[:4]
+        return tuple(name for name, size in sizes.items() if size > 0.5 * largest > 0.0)[:_NAMED]
 
 
 def _shown(mechanism: Mechanism) -> Mechanism:
@@ -313,13 +313,13 @@ def _whole(mechanism: Mechanism, sprung: dict[str, Array], loads: _Loads) -> dic
 
 @dataclass(frozen=True)
 class _Found:
-    """Factors of one design, and how it gives way under its dead load."""
+    """Factors of one design, and the `shapes` (n + k, s) in which it gives way under its dead load: several where the factor repeats."""
 
     dead: complex
     worst: complex
     strokes: Array
     stiffens: float
-    shape: Array
+    shapes: Array
 
 
 def _single(stiffness: Array, dead: Array, unit: list[Array], corners: Array) -> _Found:
@@ -327,11 +327,12 @@ def _single(stiffness: Array, dead: Array, unit: list[Array], corners: Array) ->
     root = cholesky(np.real(stiffness), lower=True)
     normal = np.stack([_normal(root, np.real(each)) for each in (dead, *unit)])
     values, shapes = np.linalg.eigh(normal[0])
+    alike = values <= values[0] + _REPEATED * np.abs(values[0]) + _ALIKE * np.max(np.abs(values))
     shape = _back(root, shapes[:, 0])
     strokes, steep = _worst(normal, corners) if unit else (corners[0], shapes[:, 0])
     total = dead + sum((stroke * each for stroke, each in zip(strokes, unit, strict=True)), np.zeros_like(dead))
     found, least = _factor(stiffness, dead, shape), _factor(stiffness, total, _back(root, steep))
-    return _Found(found, min(found, least, key=np.real), strokes, float(max(values[-1], 0.0)), shape)
+    return _Found(found, min(found, least, key=np.real), strokes, float(max(values[-1], 0.0)), _back(root, shapes[:, alike]))
 
 
 def _worst(normal: Array, corners: Array) -> tuple[Array, Array]:
