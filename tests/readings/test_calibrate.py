@@ -23,6 +23,7 @@ from flexstage.readings.solid.piece import span
 from flexstage.readings.solid.roots import Roots
 from flexstage.spatial.frame import transport
 from flexstage.studies.calibrate import with_matrices
+from flexstage.studies.cautions import defaults
 from flexstage.studies.solid_hinge import distinct_hinges, solid_hinges
 from flexstage.studies.trust import Trust
 from flexstage.studies.verify import Row, hinge_rows, verdict
@@ -66,6 +67,24 @@ def test_mass_stays(stage: fs.Mechanism) -> None:
     assert masses[1] == pytest.approx(masses[0], rel=1e-6)
     frequencies = [fs.modes(fs.lumped(each)).frequencies[:2] for each in (stage, after)]
     np.testing.assert_allclose(frequencies[1], frequencies[0], rtol=2e-3)  # a given part has its mass at its centre
+
+
+@pytest.mark.parametrize("stage", [parallelogram(), double_triangle()])
+def test_calibrated_hinges_grow_and_lose_energy_as_the_drawn_ones(stage: fs.Mechanism) -> None:
+    materials = {name: replace(each, loss_factor=0.003, expansion=1e-5) for name, each in stage.materials.items()}
+    drawn_stage = replace(stage, materials=materials, damping=fs.StructuralDamping(), ground="none")
+    after = fs.loads(fs.calibrate(fs.dumps(drawn_stage), softened(1.0)).text)
+    first, second = (fs.lumped(each) for each in (drawn_stage, after))
+    assert {name: part.loss_factor for name, part in second.stiffness.items()} == {
+        name: part.loss_factor for name, part in first.stiffness.items()
+    }
+    moved = [fs.drift(*each).of().values for each in ((drawn_stage, first), (after, second))]
+    np.testing.assert_allclose(moved[1], moved[0], atol=1e-4 * np.abs(moved[0]).max())  # six digits of the file, over lever arms
+    assert not [each for each in defaults(after) if "loss factor" in each.what]
+    bare = replace(
+        after, parts={name: replace(part, stands_for="") if isinstance(part, fs.Given) else part for name, part in after.parts.items()}
+    )
+    assert len([each for each in defaults(bare) if "loss factor" in each.what]) == len(calibrated(bare))
 
 
 def test_softer_hinges_are_read_softer() -> None:

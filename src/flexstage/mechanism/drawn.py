@@ -5,8 +5,10 @@ from __future__ import annotations
 from dataclasses import replace
 
 from flexstage.base.finding import Finding, require
+from flexstage.mechanism.expand import PlacedLink
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.parts.given import Given, Origin
+from flexstage.parts.part import Restricted, material_of
 
 
 def drawn(mechanism: Mechanism) -> Mechanism:
@@ -27,6 +29,23 @@ def drawn(mechanism: Mechanism) -> Mechanism:
     if not stand_ins:
         return mechanism
     return replace(mechanism, parts={**mechanism.parts, **{name: mechanism.parts[kept] for name, kept in stand_ins.items()}})
+
+
+def as_drawn(mechanism: Mechanism, link: PlacedLink) -> PlacedLink:
+    """The link with the drawn part that its given one stands for, and that part's material: how long it is, how it grows and loses energy.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.mechanism.expand import expand
+    >>> link = expand(double_triangle()).links["B1/front"]
+    >>> as_drawn(double_triangle(), link) is link
+    True
+    """
+    inner = link.part.part if isinstance(link.part, Restricted) else link.part
+    kept = mechanism.parts.get(inner.stands_for) if isinstance(inner, Given) else None
+    if kept is None:
+        return link
+    material = material_of(kept)
+    return replace(link, part=kept, material=mechanism.materials[material] if material else None)
 
 
 def calibrated(mechanism: Mechanism) -> tuple[str, ...]:

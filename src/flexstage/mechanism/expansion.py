@@ -9,6 +9,7 @@ import numpy as np
 
 from flexstage.base.finding import Finding, nearest, refuse, require
 from flexstage.base.number import Number
+from flexstage.mechanism.drawn import as_drawn
 from flexstage.mechanism.expand import Assembly, PlacedLink, expand
 from flexstage.mechanism.mechanism import GROUND, NOT_GROWING, Mechanism
 from flexstage.parts.body import Solid
@@ -55,8 +56,8 @@ def expansion(mechanism: Mechanism, ground: str | None = None) -> Expansion:
     """Expansion coefficients of everything; `ground` names the ground's material (absent: see `ground_of`; `none`: it does not grow).
 
     A body takes the material of its solids, of several the heaviest solid's; without solids that of its links, where they agree. Given
-    matrices and ideal joints have no length and do not grow. Raises `DesignError` with all materials and stacks that state no expansion,
-    and all bodies of unknown material.
+    matrices grow as the drawn parts that they stand for; others and ideal joints have no length and do not grow. Raises `DesignError` with
+    all materials and stacks that state no expansion, and all bodies of unknown material.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> found = expansion(double_triangle(), ground="steel")
@@ -70,7 +71,8 @@ def expansion(mechanism: Mechanism, ground: str | None = None) -> Expansion:
         choices[GROUND] = (floor.material, floor.source)
     require([*_unknown(mechanism, choices), *_unstated(mechanism, assembly, choices)])
     bodies = {name: _stated(mechanism, material) for name, (material, _) in choices.items()}
-    parts = {name: (coefficient(link), span(link.part)) for name, link in assembly.links.items() if _grows(link)}
+    drawn = {name: as_drawn(mechanism, link) for name, link in assembly.links.items()}
+    parts = {name: (coefficient(link), span(link.part)) for name, link in drawn.items() if _grows(link)}
     taken = {name: f"{material}, {source}" for name, (material, source) in choices.items()}
     return Expansion({GROUND: 0.0, **bodies}, parts, {GROUND: f"does not grow, {floor.source}", **taken}, floor)
 
@@ -95,7 +97,7 @@ def ground_of(mechanism: Mechanism, asked: str | None = None) -> Ground:
         return Ground(None if given == NOT_GROWING else given, _STATED if asked is None else _ASKED)
     assembly = expand(mechanism)
     solids = sorted({placed.solid.material for placed in assembly.ground.values()})
-    links = _link_materials(assembly, GROUND)
+    links = _link_materials(mechanism, assembly, GROUND)
     if len(solids) == 1:
         return Ground(solids[0], "all its outlines are of it")
     if not solids and len(links) == 1:
@@ -144,7 +146,7 @@ def _body_material(mechanism: Mechanism, assembly: Assembly, name: str) -> tuple
     if solids:
         heaviest = max(solids, key=lambda solid: _weight(mechanism, solids[solid]))
         return solids[heaviest].material, f"of its heaviest solid, {heaviest}"
-    found = _link_materials(assembly, name)
+    found = _link_materials(mechanism, assembly, name)
     if len(found) == 1:
         return found[0], "of its links"
     return "", f"it has no solids, and its links are of {', '.join(found) or 'no material'}"
@@ -155,8 +157,8 @@ def _weight(mechanism: Mechanism, solid: Solid) -> float:
     return float(np.real(np.ravel(solid_properties(solid, mechanism.materials[solid.material].density).mass)[0]))
 
 
-def _link_materials(assembly: Assembly, body: str) -> list[str]:
-    names = [material_of(link.part) for link in assembly.links.values() if body in link.joins]
+def _link_materials(mechanism: Mechanism, assembly: Assembly, body: str) -> list[str]:
+    names = [material_of(as_drawn(mechanism, link).part) for link in assembly.links.values() if body in link.joins]
     return sorted({name for name in names if name is not None})
 
 
@@ -172,7 +174,7 @@ def _unknown(mechanism: Mechanism, choices: Mapping[str, tuple[str, str]]) -> li
 
 def _unstated(mechanism: Mechanism, assembly: Assembly, choices: Mapping[str, tuple[str, str]]) -> list[Finding]:
     used = {material for material, _ in choices.values()}
-    used |= {name for name in (material_of(link.part) for link in assembly.links.values()) if name is not None}
+    used |= {name for name in (material_of(as_drawn(mechanism, link).part) for link in assembly.links.values()) if name is not None}
     missing = [
         Finding(f"materials.{name}", "states no thermal expansion, and drift needs it", 'Add for example expansion = "10.3e-6 1/K"')
         for name in sorted(used)

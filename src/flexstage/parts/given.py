@@ -25,7 +25,8 @@ class Given(Description):
     """A part known by its 6x6 compliance about its centre, in its link frame, SI: rows (x, y, z, rx, ry, rz).
 
     Entries are m/N, rad/N (= m/(N m)) and rad/(N m); the matrix is symmetric and positive definite. `free` states its intended freedoms.
-    `stands_for` names the drawn part that the matrix was computed from, so that the solid reading knows the shape.
+    `stands_for` names the drawn part that the matrix was computed from, so that the solid reading knows the shape,
+    and drift and structural damping the material.
     """
 
     compliance: Annotated[tuple[tuple[Number, ...], ...], COMPLIANCE_MATRIX]
@@ -33,7 +34,7 @@ class Given(Description):
     mass: Annotated[Number, MASS, NOT_NEGATIVE] = 0.0
     origin: Origin = Origin.STATED
     source: str = field(default="", metadata=DOCUMENT_ONLY)
-    stands_for: str = field(default="", metadata=DOCUMENT_ONLY)
+    stands_for: str = ""
 
     @property
     def intended(self) -> tuple[Freedom, ...]:

@@ -17,6 +17,7 @@ from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.number import Array, Number, first_design
 from flexstage.beams.compliance import law
 from flexstage.beams.mass import mass
+from flexstage.mechanism.drawn import as_drawn
 from flexstage.mechanism.expand import Assembly, PlacedLink, expand
 from flexstage.mechanism.grammar import node_of, numbers
 from flexstage.mechanism.incidence import Layout, end_twists, layout, require_room, twist_at, with_ground
@@ -164,7 +165,7 @@ def _stage(mechanism: Mechanism) -> _Stage:
     strains: dict[str, Contribution] = {}
     for name, link in assembly.links.items():
         operator = ends[name][1] - ends[name][0]
-        strains[name] = Contribution(operator, laws[name].stiffness, _loss_factor(link))
+        strains[name] = Contribution(operator, laws[name].stiffness, _loss_factor(as_drawn(mechanism, link)))
     require(_endless(assembly, {name: item.stiffness for name, item in laws.items()}, "stiffness"))
     locked = {name: item.locked for name, item in laws.items() if item.locked}
     return _Stage(assembly, order, ends, strains, locked, with_ground(assembly, order))

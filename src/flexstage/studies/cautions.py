@@ -22,12 +22,14 @@ from flexstage.base.quantity import LENGTH
 from flexstage.base.unit import show
 from flexstage.beams.validity import validity
 from flexstage.mechanism.contact import contact_findings
+from flexstage.mechanism.drawn import as_drawn
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.expansion import ground_of
-from flexstage.mechanism.mechanism import PLATFORM, Mechanism
+from flexstage.mechanism.mechanism import PLATFORM, Mechanism, StructuralDamping
 from flexstage.mechanism.outline import outlines
 from flexstage.parts.body import Body
-from flexstage.parts.part import Restricted
+from flexstage.parts.given import Given, Joint
+from flexstage.parts.part import Restricted, material_of
 from flexstage.parts.piezo import Piezo
 from flexstage.parts.plausible import implausible
 from flexstage.readings.ideal import ideal
@@ -46,6 +48,7 @@ class Default(Finding):
 _LEAST_FALL, _MOST_FALL = 0.16, 250.0
 _STILL = frozenset({"mapping", "lost-motion", "drift", "budget"})
 _LINEAR = frozenset({"mapping", "stiffness", "lost-motion", "modes", "response", "drift", "sensitivities", "solid", "verify", "calibrate"})
+_UNDAMPED = _STILL | {"stiffness", "workspace", "sensitivities", "calibrate"}
 _MEASURED = frozenset({"rig", "identify", "compare", "update"})
 
 
@@ -78,7 +81,7 @@ def defaults(mechanism: Mechanism) -> tuple[Default, ...]:
     >>> defaults(Mechanism("stage"))
     ()
     """
-    return (*_stack_defaults(mechanism), *_ground_default(mechanism))
+    return (*_stack_defaults(mechanism), *_lossless(mechanism), *_ground_default(mechanism))
 
 
 def _stack_defaults(mechanism: Mechanism) -> Iterator[Default]:
@@ -90,6 +93,23 @@ def _stack_defaults(mechanism: Mechanism) -> Iterator[Default]:
             middle = np.ravel(0.5 * (np.real(piezo.voltage_low) + np.real(piezo.voltage_high)))[0]
             what, advice = f"the bias is the middle of the range, {middle:g} V", f'Strokes count from it: bias = "{middle:g} V"'
             yield Default(f"parts.{name}", what, advice, _LINEAR | _MEASURED)
+
+
+def _lossless(mechanism: Mechanism) -> Iterator[Default]:
+    """Materials, stacks and matrices that structural damping takes as losing nothing, as they state no loss factor."""
+    if not isinstance(mechanism.damping, StructuralDamping):
+        return
+    told: dict[str, str] = {}
+    for link in expand(mechanism).links.values():
+        part = as_drawn(mechanism, link).part
+        inner = part.part if isinstance(part, Restricted) else part
+        material = material_of(inner)
+        holder = mechanism.materials[material] if material else inner
+        if not isinstance(inner, Joint) and getattr(holder, "loss_factor", None) is None:
+            where = f"materials.{material}" if material else f"parts.{link.link.part}"
+            told[where] = "State the drawn part that it stands_for" if isinstance(inner, Given) else "State it: loss_factor = 0.002"
+    for where, advice in told.items():
+        yield Default(where, "it states no loss factor: structural damping takes it as losing nothing", advice, _UNDAMPED)
 
 
 def _ground_default(mechanism: Mechanism) -> Iterator[Default]:
