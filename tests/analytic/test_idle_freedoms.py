@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from flexstage.analysis.modes import modes
-from flexstage.mechanism.mechanism import Link, Mechanism
+from flexstage.analysis.workspace.load import applied, dead_loads
+from flexstage.base.finding import DesignError
+from flexstage.mechanism.mechanism import Force, Link, Mechanism
 from flexstage.parts.body import Body, Inertia
 from flexstage.parts.freedom import Freedom
 from flexstage.parts.given import Given, Joint
 from flexstage.parts.part import Restricted
-from flexstage.readings.linear.static import static_gain
+from flexstage.readings.linear.static import displacement, static_gain
 from flexstage.readings.lumped import lumped
 from flexstage.spatial.frame import COMPONENTS, FORCES, cross_matrix
 
@@ -81,3 +85,33 @@ def test_a_rod_that_spins_freely_follows_its_head_all_the_same():
         np.testing.assert_allclose(rod[:3], (line + 0.5 * (np.eye(3) - line)) @ moved, rtol=0.0, atol=1e-9 * np.abs(moved).max())
         turned = cross_matrix(along) @ moved / LENGTH
         np.testing.assert_allclose((np.eye(3) - line) @ rod[3:], turned, rtol=0.0, atol=1e-9 * np.abs(turned).max())
+
+
+def test_loads_that_turn_a_rod_about_itself_have_no_rest():
+    """A force beside a rod's axis, or the weight of a rod whose centre lies beside it; through the axis both are borne."""
+    stage = hexapod(1e-4)
+    head, along = next(struts())
+    middle, across = head - 0.5 * LENGTH * along, np.array([1.0, 0.0, 0.0])
+    model = lumped(stage)
+    borne = Force("rod0", tuple(middle), tuple(across))
+    assert np.all(np.isfinite(displacement(model, applied(stage, model, borne))))
+    beside = tuple(middle + 1e-4 * np.cross(along, across))
+    with pytest.raises(DesignError, match=r"a force on rod0: it drives an idle motion that no stiffness holds.*rod0"):
+        applied(stage, model, replace(borne, at=beside))
+    hanging = replace(stage, gravity=(0.0, 0.0, -9.80665))
+    assert len(dead_loads(hanging, lumped(hanging))) == 1
+    lopsided = replace(hanging, bodies={**hanging.bodies, "rod0": replace(hanging.bodies["rod0"], centre=tuple(middle + 1e-4 * across))})
+    with pytest.raises(DesignError, match=r"gravity: it drives an idle motion that no stiffness holds.*rod0"):
+        dead_loads(lopsided, lumped(lopsided))
+
+
+def test_a_force_at_a_point_beside_a_rod_has_no_answer_at_rest():
+    """At a point on the axis it has one."""
+    stage = hexapod(1e-4)
+    head, along = next(struts())
+    middle = head - 0.5 * LENGTH * along
+    points = {"on": tuple(middle), "beside": tuple(middle + 0.003 * np.cross(along, (1.0, 0.0, 0.0)))}
+    model = lumped(replace(stage, bodies={**stage.bodies, "rod0": replace(stage.bodies["rod0"], points=points)}))
+    assert np.isfinite(static_gain(model, ("platform.x",), ("rod0.on.fx",)).values).all()
+    with pytest.raises(DesignError, match=r"rod0\.beside\.fx: it drives an idle motion that no stiffness holds"):
+        static_gain(model, ("platform.x",), ("rod0.beside.fx",))

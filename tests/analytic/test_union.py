@@ -158,6 +158,18 @@ def _tilted(x: Any) -> Block:
     return Block("steel", (0.02, 0.005, 0.003), (x, 0.001, 0.002), along=(1.0, 0.2, 0.1), up=(-0.1, 0.0, 1.0))
 
 
+@pytest.mark.parametrize("second", [_tilted(0.01), Cylinder("steel", 0.02, 0.01, (0.015, 0.0, 0.0))], ids=["tilted block", "cut disc"])
+def test_the_inertia_of_a_union_does_not_depend_on_where_it_stands(second: Block | Cylinder) -> None:
+    """What is shared has its middle beside the mean of its corners; it is taken off about its own centre all the same."""
+    solids = (block((-0.015, -0.005, -0.005), (0.015, 0.005, 0.005)), second)
+    by = np.array([0.03, -0.05, 0.02])
+    here = weighed(*solids)
+    there = weighed(*(replace(each, at=tuple(np.array(each.at) + by)) for each in solids))
+    assert here.mass < sum(weighed(each).mass for each in solids) * (1.0 - 1e-3)
+    assert np.allclose(there.centre, here.centre + by, rtol=0.0, atol=ROUND_OFF)
+    assert np.allclose(there.inertia, here.inertia, rtol=0.0, atol=100.0 * ROUND_OFF * np.max(np.abs(here.inertia)))  # of a place far off
+
+
 def test_derivatives_pass_through_the_union() -> None:
     def mass_at(x: Any) -> MassProperties:
         return weighed(block((-0.015, -0.005, -0.005), (0.015, 0.005, 0.005)), _tilted(x))

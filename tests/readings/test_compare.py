@@ -18,7 +18,7 @@ from flexstage.readings.ideal import ideal
 from flexstage.readings.lumped import lumped
 from flexstage.readings.measured.identified import Identified
 from flexstage.readings.measured.record import Channel, InMemory, Record, in_memory
-from flexstage.studies.compare import Compared, ComparedMode, compare
+from flexstage.studies.compare import Compared, ComparedMode, Measured, compare
 from flexstage.studies.complete import platform_modes
 from flexstage.studies.fea_modes import FeaModes
 from flexstage.studies.identification import identification, sound
@@ -26,7 +26,7 @@ from flexstage.studies.measured_shapes import stage_shapes
 from flexstage.studies.rig.plan import volts_per_metre
 from flexstage.studies.rig.rig import rig
 from flexstage.studies.rig.setup import NoiseDrive, RigSetup
-from tests.readings.made_tests import made
+from tests.readings.made_tests import Noise, made
 from tests.readings.stage_records import stage_record
 
 STAGE = double_triangle()
@@ -69,6 +69,11 @@ def test_the_stage_differs_as_it_was_made_to(compared: Compared) -> None:
         assert row.difference == pytest.approx(known, abs=3.0 * (row.uncertainty or 0.0) + 1e-12)
         assert 0.0 < (row.uncertainty or 0.0) < 1e-3
         assert (row.assurance or 0.0) > 0.99
+
+
+def test_a_difference_stands_beside_half_of_the_interval_it_is_known_to() -> None:
+    row = ComparedMode(1, "z", 103.0, fea=99.0, experiment=Measured(0, 100.0, (98.0, 103.0), 0.01, (0.009, 0.011)))
+    assert (row.difference, row.fea_difference, row.uncertainty) == pytest.approx((0.03, -0.01, 0.025), rel=1e-12)
 
 
 def test_repeated_modes_are_one_plane(compared: Compared) -> None:
@@ -170,6 +175,49 @@ def test_names_that_are_none_of_the_stage(record: Record) -> None:
     renamed = replace(record, channels=tuple(Channel(f"probe {each.name}", each.unit, each.role) for each in record.channels))
     with pytest.raises(DesignError, match="no output of this name"):
         compare(STAGE, identified(renamed))
+
+
+@pytest.mark.parametrize(("ratio", "is_pair"), [(1.59, True), (1.61, False), (1.0 / 1.59, True), (1.0 / 1.61, False)])
+def test_modes_more_than_1_6_times_apart_are_no_pair(ratio: float, *, is_pair: bool) -> None:
+    exact = made(STAGE, noise=Noise(frequency=0.0, model=0.0))
+    moved = exact.frequencies * np.where(np.arange(6) == 2, ratio, 1.0)
+    found = compare(STAGE, replace(exact, frequencies=moved))
+    assert [row.experiment is not None for row in found.rows] == [True, True, is_pair, True, True, True]
+    assert is_pair == (not found.further)
+
+
+@pytest.mark.parametrize(("assurance", "is_pair"), [(0.51, True), (0.49, False)])
+def test_modes_that_share_less_than_half_of_their_shape_are_no_pair(assurance: float, *, is_pair: bool) -> None:
+    """z, turned towards what no other mode does: two of the gauges' motions are left out of the test."""
+    exact = made(STAGE, noise=Noise(frequency=0.0, model=0.0))
+    kept = [0, 1, 2, 3]
+    shapes = np.real(exact.shapes[:, kept] / np.linalg.norm(exact.shapes[:, kept], axis=0))
+    beside = np.linalg.qr(np.hstack([np.real(exact.shapes[:, kept]), np.real(exact.shapes[:, 4:5])]))[0][:, 4]
+    shapes[:, 2] = np.sqrt(assurance) * shapes[:, 2] + np.sqrt(1.0 - assurance) * beside
+    fewer = {name: getattr(exact, name)[kept] for name in ("frequencies", "damping", "participation", "frequency_deviations")}
+    fewer |= {name: getattr(exact, name)[kept] for name in ("damping_deviations", "significance")}
+    few = replace(exact, **fewer, shapes=shapes.astype(complex), shape_deviations=exact.shape_deviations[:, kept])
+    found = compare(STAGE, few)
+    assert (found.rows[2].experiment is not None) == is_pair
+    if is_pair:
+        assert found.rows[2].assurance == pytest.approx(assurance, abs=1e-9)
+
+
+def test_what_sensors_cannot_tell_apart_goes_to_the_nearer_mode() -> None:
+    """One upright gauge sees z and both tilts alike: a measured mode at the frequency of z is that one."""
+    exact = made(STAGE, noise=Noise(frequency=0.0, model=0.0))
+    row = [channel.name for channel in exact.outputs].index("S4")
+    names = ("frequencies", "damping", "participation", "frequency_deviations", "damping_deviations", "significance")
+    one = {name: getattr(exact, name)[2:3] for name in names}
+    few = replace(
+        exact,
+        **one,
+        shapes=np.ones((1, 1), complex),
+        shape_deviations=np.full((1, 1), 1e-3),
+        outputs=exact.outputs[row : row + 1],
+        noise=np.ones(1),
+    )
+    assert [each.number for each in compare(STAGE, few).rows if each.experiment is not None] == [3]
 
 
 def test_noise_alone_is_compared_with_nothing() -> None:

@@ -12,7 +12,8 @@ from flexstage.readings.linear.model import Channel, LinearModel
 from flexstage.spatial.frame import COMPONENTS, FORCES
 
 _SEEN = 1e-9
-_ONES, _METRE = np.ones(6), np.array([1.0, 1.0, 1.0, 0.1, 0.1, 0.1])
+_TENTH = 0.1
+_METRE = np.array([1.0, 1.0, 1.0, _TENTH, _TENTH, _TENTH])
 """Rotations are compared with translations over 0.1 m."""
 _ADVICE = "Give a link of these bodies stiffness in that freedom, or lock it"
 
@@ -92,10 +93,16 @@ def require_balanced(model: LinearModel, where: str, load: Array, rows: list[int
     """
     if model.idle_output is None or model.idle_inertia is None:
         return
-    works = model.idle_inertia if rows is None else np.swapaxes(model.idle_output[..., rows, :], -1, -2)
-    works, load = np.real(first_design(works, 2)), np.real(first_design(load, 1))
-    scale = _ONES if rows is None else _METRE  # of the inertia, rounding is gone
-    if np.any(np.abs(works @ load) > _SEEN * np.linalg.norm(works * scale, axis=1) * np.linalg.norm(load / scale)):
+    load = np.real(first_design(load, 1))
+    if rows is None:
+        works = np.real(first_design(model.idle_inertia, 2))
+        least = np.linalg.norm(works, axis=1) * np.linalg.norm(load)
+    else:
+        motions = np.real(first_design(model.idle_output, 2))
+        works = motions[rows].T
+        # by what the motion does to any output: of a body that takes no part in it, only rounding is seen
+        least = _TENTH * np.max(np.abs(motions), axis=0) * np.linalg.norm(load / _METRE)
+    if np.any(np.abs(works @ load) > _SEEN * least):
         raise refuse(where, f"it drives an idle motion that no stiffness holds, so there is no rest: {_named(model)}", _ADVICE)
 
 
