@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -10,7 +11,9 @@ import pytest
 import flexstage as fs
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.mechanism.store import dumps
-from flexstage.studies.cautions import caveats
+from flexstage.parts.freedom import Freedom
+from flexstage.parts.part import Restricted
+from flexstage.studies.cautions import caveats, defaults
 from tests.apps.command import Command, design_in
 
 THICK = ("--set", "parts.foot_notch.profile.radius=0.9 mm")
@@ -52,6 +55,14 @@ def test_what_is_taken_by_default_stands_apart(flexstage: Command, tmp_path: Pat
     assert [each["what"] for each in document["defaults"]] == ["the stack weighs nothing"]
     assert ended.out.startswith("Taken by default\n\n  parts.stack_vertical: the stack weighs nothing. ")
     assert "Taken by default" not in flexstage("mapping", "stage.toml", *massless).out, "mappings weigh nothing"
+
+
+def test_the_mass_of_a_restricted_part_is_named() -> None:
+    """It counts as a spring only; of a stack of 0.49 kg that is a tenth of a frequency."""
+    stage = double_triangle()
+    bent = Restricted(stage.parts["stack_vertical"], tuple(each for each in Freedom if each is not Freedom.X))
+    found = defaults(replace(stage, parts={**stage.parts, "stack_vertical": bent}))
+    assert [(each.where, "its 0.49 kg are left out" in each.what) for each in found] == [("parts.stack_vertical", True)]
 
 
 def test_caveats_are_lines_that_nothing_folds(flexstage: Command) -> None:

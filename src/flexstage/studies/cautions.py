@@ -20,6 +20,7 @@ from flexstage.base.finding import DesignError, Finding
 from flexstage.base.number import stack
 from flexstage.base.quantity import LENGTH
 from flexstage.base.unit import show
+from flexstage.beams.mass import mass
 from flexstage.beams.validity import validity
 from flexstage.mechanism.contact import contact_findings
 from flexstage.mechanism.drawn import as_drawn
@@ -81,7 +82,7 @@ def defaults(mechanism: Mechanism) -> tuple[Default, ...]:
     >>> defaults(Mechanism("stage"))
     ()
     """
-    return (*_stack_defaults(mechanism), *_lossless(mechanism), *_ground_default(mechanism))
+    return (*_stack_defaults(mechanism), *_left_out(mechanism), *_lossless(mechanism), *_ground_default(mechanism))
 
 
 def _stack_defaults(mechanism: Mechanism) -> Iterator[Default]:
@@ -93,6 +94,22 @@ def _stack_defaults(mechanism: Mechanism) -> Iterator[Default]:
             middle = np.ravel(0.5 * (np.real(piezo.voltage_low) + np.real(piezo.voltage_high)))[0]
             what, advice = f"the bias is the middle of the range, {middle:g} V", f'Strokes count from it: bias = "{middle:g} V"'
             yield Default(f"parts.{name}", what, advice, _LINEAR | _MEASURED)
+
+
+def _left_out(mechanism: Mechanism) -> Iterator[Default]:
+    """The mass of restricted parts, which count as springs only."""
+    told: dict[str, float] = {}
+    for link in expand(mechanism).links.values():
+        if isinstance(link.part, Restricted) and not isinstance(link.part.part, Joint):
+            try:
+                own = np.real(mass(link.part.part, link.material))
+            except DesignError:
+                continue  # a material without density
+            told[f"parts.{link.link.part}"] = float(np.max(own[..., 0, 0] + 2.0 * own[..., 0, 6] + own[..., 6, 6]))
+    for where, size in told.items():
+        if size > 0.0:
+            advice = "Add it to the bodies that it joins, as it moves with them"
+            yield Default(where, f"a restricted part has no mass: its {size:.4g} kg are left out", advice, _STILL | {"stiffness"})
 
 
 def _lossless(mechanism: Mechanism) -> Iterator[Default]:
