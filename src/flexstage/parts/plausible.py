@@ -191,12 +191,12 @@ RULES: Mapping[type, tuple[Rule, ...]] = {
 
 
 def implausible(items: Iterable[tuple[str, Any]]) -> Iterator[Finding]:
-    """Findings about named items whose numbers lie outside the table.
+    """Findings about named items whose numbers lie outside the table, one a number.
 
     >>> [finding.where for finding in implausible([("materials.steel", Material(young=200e6, poisson=0.3, density=7800.0))])]
     ['materials.steel.young']
     """
     for where, each in items:
         item = each.part if isinstance(each, Restricted) else each
-        found = (rule.finding(where, item) for rule in RULES.get(type(item), ()))
-        yield from (finding for finding in found if finding is not None)
+        found = [finding for rule in RULES.get(type(item), ()) if (finding := rule.finding(where, item)) is not None]
+        yield from {finding.where: finding for finding in reversed(found)}.values()
