@@ -162,6 +162,15 @@ def test_slow_rounding_is_told_and_its_rms_simulated() -> None:
     assert document["simulated_rms"] is found.resting.rms
 
 
+def test_a_loop_at_rest_strays_to_the_edge_of_its_gauges_step() -> None:
+    """Held u steps off the middle, a loop without noise ends where the reading changes, (1/2 - |u|) away: over all u, 1/sqrt(12) rms."""
+    step = 5e-9
+    found = loop_study(parallelogram(), LoopSetup(controller=CALM, gauges=Gauging(noise=1e-14, resolution=step), seconds=0.05)).resting
+    assert found is not None
+    assert found.low[0] < step / np.sqrt(12.0) < found.high[0]
+    assert found.rms[0] > 0.1 * step
+
+
 def test_rounding_in_noise_of_its_step_is_white() -> None:
     """Noise of half a step and more leaves the budget as it is, and simulations hold it."""
     found = resting(1e-11)

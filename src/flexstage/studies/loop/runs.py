@@ -131,14 +131,21 @@ class RestRms:
 
 
 def rest_rms(given: Settled, control: Control, closed: Loop) -> RestRms:
-    """The rms at rest of several simulations, each from its own random numbers, for noise that no budget adds up."""
+    """The rms at rest of several simulations, each from its own random numbers, for noise that no budget adds up.
+
+    Each holds another place within the gauges' steps: on the middle of a step a loop rests, near its edge it wanders to and fro.
+    """
     from scipy.special import stdtrit
 
     rest = rest_time(closed)
     count = int(np.clip((_STILL * rest) / given.step, _FEWEST, _MOST)) // 3
-    computed, poses = driven_machine(given, control), np.zeros((count, len(given.plant.coordinates.names)))
-    seeds = (replace(given, setup=replace(given.setup, seed=given.setup.seed + number)) for number in range(_REPEATED))
-    squares = np.array([np.mean(_shaken(each, computed, poses, rest).true_error ** 2, axis=0) for each in seeds])
+    computed, to_pose = driven_machine(given, control), given.plant.coordinates.pose
+    squares: list[Array] = []
+    for seed in range(given.setup.seed, given.setup.seed + _REPEATED):
+        within = np.random.default_rng([seed, _REPEATED]).uniform(-0.5, 0.5, to_pose.shape[1]) * computed.resolution
+        held = to_pose @ within
+        found = _shaken(replace(given, setup=replace(given.setup, seed=seed)), computed, np.tile(held, (count, 1)), rest, held)
+        squares.append(np.mean(found.true_error**2, axis=0))
     mean = np.mean(squares, axis=0)
     reach = stdtrit(_REPEATED - 1, 0.975) * np.std(squares, axis=0, ddof=1) / np.sqrt(_REPEATED)
     low, high = np.sqrt(np.maximum(mean - reach, 0.0)), np.sqrt(mean + reach)
@@ -168,16 +175,20 @@ def rest_time(closed: Loop, *, ringing: bool = False) -> float:
     return float(next(step * power for step in (1.0, 2.0, 5.0, 10.0) if step * power >= wanted * (1.0 - 1e-9)))
 
 
-def _shaken(given: Settled, computed: Machine, poses: Array, rest: float) -> Simulated:
-    """A simulation in noise, begun early enough that the loop has got used to it: the floor begins to shake gently, not at once."""
+def _shaken(given: Settled, computed: Machine, poses: Array, rest: float, held: Array | float = 0.0) -> Simulated:
+    """A simulation in noise, begun early enough that the loop has got used to it, and to the pose it is `held` at before.
+
+    The floor begins to shake gently, not at once.
+    """
     lead = int(rest / given.step)
     noise = noises(given.plant, given.floor, lead + len(poses), given.setup.seed)
-    if not noise:
+    if not noise and not np.any(held):
         return simulate(computed, poses)
+    before = np.zeros((lead, poses.shape[1])) + held
     share = np.clip(np.arange(lead + len(poses)) / max(lead, 1), 0.0, 1.0)
     gentle = share**3 * (10.0 - 15.0 * share + 6.0 * share**2)
     series = {name: values * gentle if name.startswith("ground.") else values for name, values in noise.items()}
-    return _after(simulate(computed, np.concatenate([np.zeros((lead, poses.shape[1])), poses]), series), lead)
+    return _after(simulate(computed, np.concatenate([before, poses]), series), lead)
 
 
 def _after(found: Simulated, lead: int) -> Simulated:
