@@ -128,6 +128,7 @@ _ROOMS = {
     "studies.measured_shapes": "StageShapes stage_shapes",
     "studies.calibrate": "Calibration calibrate",
     "studies.workspace": "Workspace workspace",
+    "studies.cautions": "Caveats caveats",
     "studies.complete": "Analysis Reading analyse",
     "studies.judge": "judge",
     "studies.budget": "budget",

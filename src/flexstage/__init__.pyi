@@ -334,6 +334,10 @@ from flexstage.studies.compare import (
     Compared as Compared,
     compare as compare,
 )
+from flexstage.studies.cautions import (
+    Caveats as Caveats,
+    caveats as caveats,
+)
 from flexstage.studies.complete import (
     Analysis as Analysis,
     Reading as Reading,

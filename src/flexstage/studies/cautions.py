@@ -161,7 +161,7 @@ def cautions(mechanism: Mechanism) -> tuple[Finding, ...]:
     """
     factors = load_factors(mechanism)
     return (
-        *(() if factors is None else factors.cautions),
+        *(() if factors is None else (*factors.refusals, *factors.cautions)),
         *_pulled(mechanism),
         *implausible(_catalogued(mechanism)),
         *_disproportions(mechanism),

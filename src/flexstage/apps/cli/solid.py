@@ -107,6 +107,8 @@ def solid(
     """
     asked = _wishes(accuracy, order, memory)
     mechanism = _opened(design, changes, [("--json", json), ("--report", report)])
+    if what is What.STAGE:
+        _require_standing(mechanism)
     with bar() as shown:
         found = _STUDIES[what](mechanism, asked, shown)
     if report is not None:
@@ -132,6 +134,7 @@ def verify(
     """
     asked = _wishes(accuracy, order, memory)
     mechanism = _opened(design, changes, [("--json", json), ("--report", report)])
+    _require_standing(mechanism)
     from flexstage.present.documents.solid import verification_body
     from flexstage.present.sections.solid import hinge_section, stage_solid_section, unit_section, verification_section
     from flexstage.studies.verify import verify as verified
@@ -193,6 +196,12 @@ def _opened(design: Path, changes: list[str] | None, outputs: list[tuple[str, st
 
     require(output_findings(outputs, design))
     return changed(load(design), changes or ())
+
+
+def _require_standing(mechanism: Mechanism) -> None:
+    from flexstage.studies.standing import require_standing
+
+    require_standing(mechanism)
 
 
 def _wishes(accuracy: str, order: int | None, memory: str | None) -> _Wishes:
