@@ -56,10 +56,6 @@ def _first_difference(old, new):
     return next((f"page: {one}\nnow:  {other}" for one, other in pairs if not _same(one, other)), "they differ in length")
 
 
-def test_no_page_is_longer_than_a_reader_bears(found):
-    assert all(len(chapter.markdown().splitlines()) <= 400 for chapter in found)
-
-
 @pytest.mark.parametrize(
     ("row", "verdict"),
     [

@@ -10,16 +10,20 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 from scipy.linalg import eigh
 
+from flexstage.analysis.modes import modes
 from flexstage.analysis.response import response
 from flexstage.base.finding import DesignError
+from flexstage.cases.double_triangle import EQUATION_18, double_triangle
 from flexstage.mechanism.address import addresses, get, set_value
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import PLATFORM, ModalDamping, Probe
 from flexstage.mechanism.pattern import Pose
+from flexstage.mechanism.restrict import restrict
 from flexstage.parts.gauge import Positive
 from flexstage.parts.given import Given, Joint
 from flexstage.parts.part import Restricted
 from flexstage.parts.piezo import Piezo
+from flexstage.readings import lumped as readings
 from flexstage.readings.linear.eigen import eigen
 from flexstage.readings.linear.port import ports
 from flexstage.readings.linear.state_space import state_space
@@ -148,3 +152,11 @@ def test_gauges_on_struts_that_spin_freely_are_refused_by_name(mechanism, where)
         ideal(watched)
     with pytest.raises(DesignError, match=f"G-{spinning.replace('/', '-')}"):
         static_gain(lumped(watched), tuple(watched.gauges), lumped(watched).strokes)
+
+
+def test_idle_motions_that_only_rounding_moves_have_no_inertia() -> None:
+    """Massless struts turned by 120 degrees: what of their spin reaches the platform is rounding, and must not become a mode."""
+    simple = {name: EQUATION_18[name] for name in EQUATION_18 if name != "stack_horizontal"}
+    model = readings.lumped(restrict(double_triangle(), simple), readings.Masses.PLATFORM)
+    assert np.all(np.isfinite(modes(model).platform_frequencies))
+    assert np.linalg.eigvalsh(model.stiffness_matrix)[0] > 0.0

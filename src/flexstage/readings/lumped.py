@@ -44,6 +44,7 @@ from flexstage.spatial.frame import COMPONENTS, FORCES, seen_at
 _SINGULAR = 1e-11
 _ROUNDING = 1e-12
 _MASSLESS = 1e-12
+_STILL = 1e-7
 _BLOCKED = 1e-7
 _MATRICES = 20.0
 """Dense matrices alive at once, modes and their energies by body included: 19 to 24 on chains of 200 and 300 rods, measured."""
@@ -293,15 +294,20 @@ def _idle(
     small[..., named, :] = np.eye(len(named))
     motions = basis @ small
     mass = _transposed(motions) @ _momentum(inertia, motions)
-    heavy = _heavy(np.real(first_design(mass, 2)), _largest(inertia, np.real(first_design(motions, 2))))
+    heavy = _heavy(np.real(first_design(mass, 2)), _largest(inertia, np.real(first_design(motions, 2)), stage.order.coordinates))
     return _Idle(motions, names, heavy, mass[..., heavy, :][..., heavy])
 
 
-def _largest(inertia: Mapping[str, Contribution], motions: Array) -> Array:
-    """What n^T M n (k,) would be if nothing in its sum cancelled: an idle motion with much less has no inertia but rounding."""
+def _largest(inertia: Mapping[str, Contribution], motions: Array, coordinates: tuple[str, ...]) -> Array:
+    """What n^T M n (k,) would be if nothing in its sum cancelled: an idle motion with much less has no inertia but rounding.
+
+    Coordinates that stand still but for rounding count as if they moved by a share of the largest, 0.1 m making lengths of angles.
+    """
+    lengths = np.array([0.1 if name.rpartition(".")[2].startswith("r") else 1.0 for name in coordinates])[:, None]
+    least = _STILL * np.max(lengths * np.abs(motions), axis=0) / lengths
     total = np.zeros(motions.shape[1])
     for item in inertia.values():
-        seen = np.abs(np.real(first_design(item.operator, 2))) @ np.abs(motions)
+        seen = np.abs(np.real(first_design(item.operator, 2))) @ np.maximum(np.abs(motions), least)
         total = total + np.sum(seen * (np.abs(np.real(first_design(item.law, 2))) @ seen), axis=0)
     return total
 
@@ -426,7 +432,9 @@ def _carried(stage: _Stage, inertia: Mapping[str, Contribution]) -> Array:
 def _idle_inertia(stage: _Stage, inertia: Mapping[str, Contribution], idle: _Idle, carried: Array) -> Array:
     """What accelerating the ground exerts on the idle motions (..., k, 6), without what is only rounding."""
     exerted = _transposed(idle.motions) @ carried
-    most = _largest(inertia, np.real(first_design(idle.motions, 2)))[:, None] * _largest(inertia, np.real(first_design(stage.rigid, 2)))
+    names = stage.order.coordinates
+    spin, rigid = (_largest(inertia, np.real(first_design(motions, 2)), names) for motions in (idle.motions, stage.rigid))
+    most = spin[:, None] * rigid
     return np.where(np.abs(np.real(exerted)) > _ROUNDING * np.sqrt(most), exerted, 0.0)
 
 
