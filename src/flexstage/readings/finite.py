@@ -52,8 +52,8 @@ class FinitePose:
 class FiniteMotion:
     """A solved finite motion.
 
-    `strokes` (..., n) [m] by `actuators`; `pose` of the platform at its reference point; `bodies` the poses of all bodies at theirs, of idle
-    bodies those of least turn (which does not say what a gauge on them reads: `Kinematics.sensing` does, or refuses);
+    `strokes` (..., n) [m] by `actuators`; `pose` of the platform at its reference point; `bodies` the poses of all bodies at theirs, of
+    idle bodies those of least turn (which does not say what a gauge on them reads: `Kinematics.sensing` does, or refuses);
     `residual` (...) the largest constraint error left [m, rotations times `length`]; `iterations` the steps taken.
     """
 
