@@ -206,6 +206,17 @@ def test_loads_against_limits():
     assert np.isinf(loose.pull(np.array([-1.0]))).all()
 
 
+def test_the_range_of_compression_is_that_of_the_corners_of_all_strokes():
+    """A stroke presses its own stack and pulls at others: corner by corner, and the weight with all of them."""
+    stage = double_triangle()
+    share, limits = load_share(stage, lumped(stage)), stroke_limits(stage)
+    assert np.any(share.stroke.values < 0.0)
+    assert np.any(share.stroke.values > 0.0)
+    forces = share.compression + limits.corners @ share.stroke.values.T
+    size = np.abs(forces).max()
+    np.testing.assert_allclose(share.range(limits), (forces.min(axis=0), forces.max(axis=0)), rtol=0.0, atol=1e-12 * size)
+
+
 def test_stacks_are_pulled_below_no_voltage():
     """Of -70 to 70 V half the stroke is contraction: as much tension as compression, against what the stack allows."""
     even = replace(STACK, voltage_low=-70.0, voltage_high=70.0, bias=None, preload=None, tensile_limit=0.001)

@@ -12,7 +12,7 @@ import scipy.signal
 
 import flexstage as fs
 from flexstage.base.number import Array
-from flexstage.mechanism.mechanism import Mechanism, StructuralDamping
+from flexstage.mechanism.mechanism import Mechanism, ModalDamping, StructuralDamping
 from flexstage.readings.linear.damping import modal_ratios
 from flexstage.readings.linear.eigen import eigen
 from flexstage.readings.linear.model import LinearModel
@@ -25,7 +25,8 @@ from flexstage.readings.measured.spectra import Segments, Window, spectra
 from flexstage.readings.measured.transfer import h1, multiple_coherence, noise_density
 from flexstage.readings.measured.write import write
 from flexstage.studies.complete import platform_modes
-from flexstage.studies.rig.chain import butterworth, density_shape
+from flexstage.studies.rig.chain import butterworth, chain, density_shape
+from flexstage.studies.rig.plan import planned
 from flexstage.studies.rig.rig import as_record, simulated
 from tests.readings.solid_studies import small, small_stage
 
@@ -124,6 +125,27 @@ def test_the_amplifier_and_the_filter_are_part_of_responses_to_the_command() -> 
     expected = plain * lag[:, None, :] * butterworth(known.frequencies, 4, 400.0)[:, None, None]
     np.testing.assert_allclose(np.std(record.values[:, :6], axis=0), 2.0, rtol=0.01)
     assert np.max(np.abs(h1(known).values - expected)) < 0.01 * np.max(np.abs(expected))
+
+
+def test_the_lag_of_a_gauge_is_that_of_its_bandwidth() -> None:
+    """Of first order, 1/(1 + j f/b): the same chain with and without it."""
+    mechanism, model = stage()
+    slow = replace(mechanism, sensors={name: replace(each, bandwidth=300.0) for name, each in mechanism.sensors.items()})
+    setup = replace(BARE, rate=2048.0)
+    with_lag, without = (chain(model, planned(each, model, setup), model.damping) for each in (slow, mechanism))
+    count = min(len(with_lag.outputs), len(without.outputs))
+    assert with_lag.size == without.size
+    lag = 1.0 / (1.0 + 1j * with_lag.frequencies[:count] / 300.0)
+    expected = without.outputs[:count] * lag[:, None, None]
+    np.testing.assert_allclose(with_lag.outputs[:count], expected, rtol=0.0, atol=1e-12 * np.abs(expected).max())
+
+
+def test_blocks_are_longer_than_the_chain_remembers() -> None:
+    """Whatever the stage rings on for: a block after an impulse, and a block before it, nothing is left."""
+    mechanism, model = stage()
+    found = chain(model, planned(mechanism, model, replace(BARE, rate=2048.0)), ModalDamping(0.002))
+    answers = np.abs(np.fft.irfft(found.outputs, 3 * found.size, axis=0))
+    assert np.max(answers[found.size : 2 * found.size]) < 1e-9 * np.max(answers)
 
 
 def test_without_noise_the_modes_come_back_to_seven_digits() -> None:

@@ -253,6 +253,17 @@ def test_a_search_without_end_is_refused() -> None:
         fitted(uphill, np.zeros(1), np.zeros(1))
 
 
+def test_steps_that_lead_up_are_halved() -> None:
+    """Theory 20 atan 4 u and data 0: from 1.5 a whole Gauss-Newton step leads to -9.4, and from there back; the end is 0."""
+    found = fitted(
+        Problem(lambda u, _: u, lambda u: -20.0 * np.arctan(4.0 * u), lambda u: np.diag(80.0 / (1.0 + 16.0 * u**2))),
+        np.array([1.5]),
+        np.array([1.5]),
+    )
+    assert found.parameters == pytest.approx([0.0], abs=1e-9)
+    assert found.cost == pytest.approx(0.0, abs=1e-12)
+
+
 def test_designs_that_cannot_be_read_shorten_the_step() -> None:
     def state(place: np.ndarray, _: np.ndarray) -> np.ndarray:
         if place[0] > 0.6:
