@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -12,6 +14,7 @@ from flexstage.analysis.workspace.drive import drive
 from flexstage.base.finding import DesignError
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.cases.parallelogram import parallelogram
+from flexstage.parts.gauge import Gauge
 from flexstage.present.display import value_with_unit
 from flexstage.present.documents.loop import loop_body
 from flexstage.present.tables.loop import step_table
@@ -169,6 +172,16 @@ def test_a_loop_at_rest_strays_to_the_edge_of_its_gauges_step() -> None:
     assert found is not None
     assert found.low[0] < step / np.sqrt(12.0) < found.high[0]
     assert found.rms[0] > 0.1 * step
+
+
+def test_steps_alone_are_simulated_too() -> None:
+    """Without any noise the budget of white rounding is as wrong, and nothing else would tell."""
+    silent = replace(parallelogram(), sensors={"probe": Gauge(range=1e-4, resolution=5e-9)})
+    found = loop_study(silent, LoopSetup(controller=CALM, seconds=0.05))
+    assert found.still is None
+    assert found.resting is not None
+    assert found.resting.low[0] < 5e-9 / np.sqrt(12.0) < found.resting.high[0]
+    assert loop_body(found)["noise"]["simulated_rms"] is found.resting.rms
 
 
 def test_rounding_in_noise_of_its_step_is_white() -> None:

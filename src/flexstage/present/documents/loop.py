@@ -147,7 +147,7 @@ def _noise(found: LoopStudy) -> Document:
     resting = found.resting
     return {
         **found.noise.to_json(),
-        "simulated_rms": None if found.still is None else settled_rms(found),
+        "simulated_rms": None if found.still is None and resting is None else settled_rms(found),
         "simulated_interval": None if resting is None else [resting.low, resting.high],
     }
 

@@ -98,7 +98,7 @@ def loop_study(mechanism: Mechanism, setup: LoopSetup | None = None, *, tell: To
     tested = said.of(0.6, "simulating", lambda: runs(given, control, closed, stacks, carried))
     noise = said.of(0.9, "noise", lambda: noise_budget(closed, given.floor, (_LOWEST, 0.5 * given.rate), _relative(given)))
     still = at_rest(given, control, closed)
-    resting = rest_rms(given, control, closed) if noise.slow and still is not None else None
+    resting = rest_rms(given, control, closed) if noise.slow else None
     return LoopStudy(
         settled=given,
         lost=lost,
@@ -119,7 +119,7 @@ def loop_study(mechanism: Mechanism, setup: LoopSetup | None = None, *, tell: To
         stacks=stacks,
         sweep=None if stacks is None else swept(stacks),
         runs=tested,
-        cautions=(*_cautions(given), *_slow_rounding(noise, resting), *(each for run in tested for each in run.cautions)),
+        cautions=(*_cautions(given), *_slow_rounding(noise), *(each for run in tested for each in run.cautions)),
         missing=Table({} if is_closed else dict.fromkeys(("margins", "peaks", "disk", "bandwidths", "curves"), _NO_LOOP)),
     )
 
@@ -158,14 +158,12 @@ def _whole_growth(given: Settled, control: Control) -> float:
     return float(whole.system.growth)
 
 
-def _slow_rounding(noise: NoiseBudget, resting: RestRms | None) -> Iterator[Finding]:
+def _slow_rounding(noise: NoiseBudget) -> Iterator[Finding]:
     """Rounding that is no white noise."""
     if noise.slow:
         what = f"readings of {', '.join(noise.slow)} move by less than half a step a sample: rounding is slow, no white noise"
-        told = (
-            "A reading may stay off by half a step, which nothing tells" if resting is None else "Take the simulated rms, with its interval"
-        )
-        yield Finding("gauges", what, f"{told}; a finer step, or noise of half a step, would make it white")
+        advice = "Take the simulated rms, with its interval; a finer step, or noise of half a step, would make it white"
+        yield Finding("gauges", what, advice)
 
 
 def _cautions(given: Settled) -> list[Finding]:
