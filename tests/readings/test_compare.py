@@ -280,7 +280,16 @@ MISNAMED = {
     "B3 looks inverted": replace(SOUND, participation=times(SOUND.participation.T, 2, -1.0).T),
     "S4 looks inverted": replace(SOUND, shapes=times(SOUND.shapes, 3, -1.0)),
     "B3 looks scaled: its part in the modes is 2 times": replace(SOUND, participation=times(SOUND.participation.T, 2, 2.0).T),
-    "S4 looks scaled: its part in the modes is 0.1 times": replace(SOUND, shapes=times(SOUND.shapes, 3, 0.1)),
+    "S4 (0.1": replace(SOUND, shapes=times(SOUND.shapes, 3, 0.1)),
+    "looks scaled against the others": replace(SOUND, shapes=times(SOUND.shapes, 0, 1e3)),
+    "look scaled against the others": replace(SOUND, shapes=times(times(times(SOUND.shapes, 3, 1e3), 4, 1e3), 5, 1e3)),
+    "S1 and S2 look inverted": replace(SOUND, shapes=times(times(SOUND.shapes, 0, -1.0), 1, -1.0)),
+    "S1 looks inverted": replace(SOUND, shapes=times(SOUND.shapes, 0, -1.0), participation=times(SOUND.participation.T, 0, -1.0).T),
+    "B6 looks scaled: its part in the modes is 0.001 times": replace(
+        SOUND, participation=np.concatenate([SOUND.participation[:, :3], 1e-3 * SOUND.participation[:, 3:]], axis=1)
+    ),
+    "all gains are 1e+03 times theory's": replace(SOUND, shapes=1e3 * SOUND.shapes),
+    "all gains are 0.001 times theory's": replace(SOUND, participation=1e-3 * SOUND.participation),
 }
 
 

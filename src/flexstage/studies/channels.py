@@ -12,7 +12,12 @@ from flexstage.base.number import Array
 
 _ALIKE, _UNLIKE = 0.9, 0.6
 """Correlation of a channel with theory's that a doubt must lead to, and that it must do without."""
-_SCALED = 1.5
+_LEFT = 0.25
+"""Share of what shapes lack of theory's that may be left where what they gain is less than a tenth."""
+_SCALED, _ALL_SCALED = 1.5, 3.0
+"""How many times larger than others one channel must be to be named, and than theory's all: its masses are less sure."""
+_LEAST = 0.02
+_ROUNDS = 5
 _FEWEST = 3
 _MOST_OUTPUTS = 24
 
@@ -22,17 +27,21 @@ Score = Callable[[Array], float]
 
 @dataclass(frozen=True, eq=False)
 class Residues:
-    """Modal gains (groups, outputs, inputs) of theory and test, in the same units; `inputs_known` (m,) whose units lead to theory's."""
+    """Modal gains (groups, outputs, inputs) of theory and test, in the same units; `inputs_known` (m,) whose units lead to theory's.
+
+    `strokes` (m,) are inputs given as strokes: of volts an amplifier may be in between.
+    """
 
     outputs: tuple[str, ...]
     inputs: tuple[str, ...]
     theory: Array
     measured: Array
     inputs_known: Array
+    strokes: Array
 
 
-def shape_doubts(outputs: tuple[str, ...], shapes: Array, score: Score) -> tuple[str, ...]:
-    """Outputs that make shapes alike when two of them are exchanged, or one is inverted, and are unlike as they stand.
+def shape_doubts(outputs: tuple[str, ...], shapes: Array, score: Score, scales: Array | None = None) -> tuple[str, ...]:
+    """Outputs that make shapes alike when two are exchanged, one or two inverted, or all divided by `scales` (p,), and are unlike as is.
 
     >>> theory = np.array([[1.0, 0.0, 0.5], [0.0, 1.0, 0.5], [0.0, 0.0, 1.0]])
     >>> theory = theory / np.linalg.norm(theory, axis=0)
@@ -43,24 +52,56 @@ def shape_doubts(outputs: tuple[str, ...], shapes: Array, score: Score) -> tuple
     count = len(outputs)
     if count < _FEWEST or count > _MOST_OUTPUTS or not shapes.shape[1]:
         return ()
+    pairs = list(combinations(range(count), 2))
     tried = [
-        *((_flipped(shapes, index), f"{outputs[index]} looks inverted: with its sign changed") for index in range(count)),
+        *((_flipped(shapes, (index,)), f"{outputs[index]} looks inverted: with its sign changed") for index in range(count)),
+        *((_exchanged(shapes, pair), f"{outputs[pair[0]]} and {outputs[pair[1]]} look exchanged: the other way round") for pair in pairs),
         *(
-            (_exchanged(shapes, pair), f"{outputs[pair[0]]} and {outputs[pair[1]]} look exchanged: the other way round")
-            for pair in combinations(range(count), 2)
+            (
+                _flipped(shapes, pair),
+                f"{outputs[pair[0]]} and {outputs[pair[1]]} look inverted against the others: with their signs changed",
+            )
+            for pair in pairs
         ),
+        *(() if scales is None else _divided(outputs, shapes, scales)),
     ]
     before = score(shapes)
-    scores = [score(each) for each, _ in tried]
-    best = int(np.argmax(scores))
-    if scores[best] < _ALIKE or scores[best] < before + (1.0 - _ALIKE):
+    scores = np.array([score(each) for each, _ in tried])
+    best = int(np.argmax(scores > np.max(scores) - 1e-6))  # the first of those that say as much
+    gained, left = scores[best] - before, 1.0 - scores[best]
+    if scores[best] < _ALIKE or (gained < 1.0 - _ALIKE and left > _LEFT * (1.0 - before)) or gained < _LEAST:
         return ()
     return (f"{tried[best][1]}, measured shapes are like theory to {scores[best]:.2f}, as they are to {before:.2f}",)
 
 
-def _flipped(shapes: Array, index: int) -> Array:
+def output_scales(theory: Array, measured: Array) -> Array:
+    """How much larger each output (p, groups) is measured than theory has it, against the usual one; groups may have any size.
+
+    >>> theory = np.array([[1.0, 2.0, 1.0], [3.0, 1.0, 2.0], [1.0, 1.0, 3.0]])
+    >>> output_scales(theory, theory * [[1.0], [1.0], [1000.0]] / [1.0, 2.0, 7.0]).round(3).tolist()
+    [1.0, 1.0, 1000.0]
+    """
+    seen = (theory > 0.1 * np.max(theory, axis=0, initial=0.0)) & (measured > 0.0)
+    ratio = np.ma.masked_array(np.log(np.where(seen, measured, 1.0) / np.where(seen, theory, 1.0)), ~seen)
+    rows = np.zeros(len(theory))
+    for _ in range(_ROUNDS):  # rows and columns in turn, by medians
+        columns = np.ma.median(ratio - rows[:, None], axis=0).filled(0.0)
+        rows = np.ma.median(ratio - columns, axis=1).filled(0.0)
+    return np.exp(rows - np.percentile(rows, 50.0, method="lower"))
+
+
+def _divided(outputs: tuple[str, ...], shapes: Array, scales: Array) -> Iterator[tuple[Array, str]]:
+    wrong = [index for index, scale in enumerate(scales) if not 1.0 / _SCALED < scale < _SCALED]
+    if wrong:
+        divided = shapes / scales[:, None]
+        listed = ", ".join(f"{outputs[index]} ({scales[index]:.3g} times)" for index in wrong)
+        look = "looks" if len(wrong) == 1 else "look"
+        yield divided / np.maximum(np.linalg.norm(divided, axis=0), 1e-300), f"{listed} {look} scaled against the others: divided by that"
+
+
+def _flipped(shapes: Array, indices: tuple[int, ...]) -> Array:
     signs = np.ones((len(shapes), 1))
-    signs[index] = -1.0
+    signs[list(indices)] = -1.0
     return signs * shapes
 
 
@@ -74,7 +115,7 @@ def gain_doubts(residues: Residues) -> tuple[str, ...]:
     """Inputs that look exchanged or inverted, and inputs and outputs that look scaled, by their part in the modes.
 
     >>> theory = np.array([[[1.0, 0.2], [0.1, 1.0]], [[0.3, -1.0], [1.0, 0.5]]])
-    >>> gain_doubts(Residues(("S1", "S2"), ("B1", "B2"), theory, theory[:, :, ::-1], np.ones(2, dtype=bool)))
+    >>> gain_doubts(Residues(("S1", "S2"), ("B1", "B2"), theory, theory[:, :, ::-1], *np.ones((2, 2), dtype=bool)))
     ('B1 and B2 look exchanged: the other way round, their parts in the modes are like theory to 1.00, as they are to 0.23',)
     """
     theory, measured = (_columns(each) for each in (residues.theory, residues.measured))
@@ -83,6 +124,7 @@ def gain_doubts(residues: Residues) -> tuple[str, ...]:
     likeness = _correlations(theory, measured)
     found = [*_misnamed(residues.inputs, likeness, _correlations(theory, theory))]
     if not found:
+        found += _all_scaled(theory, measured, residues.strokes)
         found += _scaled(residues.inputs, theory, measured, residues.inputs_known)
         rows = _columns(np.swapaxes(residues.theory, 1, 2)), _columns(np.swapaxes(residues.measured, 1, 2))
         found += _scaled(residues.outputs, *rows, np.ones(len(residues.outputs), dtype=bool))
@@ -121,6 +163,17 @@ def _misnamed(names: tuple[str, ...], likeness: Array, among: Array) -> Iterator
         yield f"{listed} {look} inverted: with the sign changed, the part in the modes is like theory's"
 
 
+def _all_scaled(theory: Array, measured: Array, known: Array) -> Iterator[str]:
+    """All gains together: not as large as theory's masses lead to."""
+    sizes = np.linalg.norm(theory, axis=0)
+    sure = known & (sizes > 1e-3 * np.max(sizes)) & (np.diag(_correlations(theory, measured)) > _ALIKE)
+    if not np.any(sure):
+        return
+    usual = _usual(np.linalg.norm(measured, axis=0)[sure] / sizes[sure])
+    if not 1.0 / _ALL_SCALED < usual < _ALL_SCALED:
+        yield f"all gains are {usual:.3g} times theory's: the unit or the scale of all inputs or of all outputs looks wrong"
+
+
 def _scaled(names: tuple[str, ...], theory: Array, measured: Array, known: Array) -> Iterator[str]:
     """Channels whose part in the modes is not as large as that of the others leads one to expect."""
     sizes = np.linalg.norm(theory, axis=0)
@@ -128,10 +181,16 @@ def _scaled(names: tuple[str, ...], theory: Array, measured: Array, known: Array
     if np.sum(sure) < _FEWEST:
         return
     ratio = np.linalg.norm(measured, axis=0) / np.maximum(sizes, 1e-300)
-    usual = float(np.median(ratio[sure]))
+    usual = _usual(ratio[sure])
     for index in np.flatnonzero(sure):
         if not 1.0 / _SCALED < ratio[index] / usual < _SCALED:
             yield f"{names[index]} looks scaled: its part in the modes is {ratio[index] / usual:.3g} times what that of the others leads to"
+
+
+def _usual(ratios: Array) -> float:
+    """The median; between two, the one nearer to theory's: half of the channels may be scaled."""
+    both = np.percentile(ratios, 50.0, method="lower"), np.percentile(ratios, 50.0, method="higher")
+    return float(min(both, key=lambda ratio: abs(np.log(ratio))))
 
 
 def sized(residues: Residues) -> Residues:

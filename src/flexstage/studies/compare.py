@@ -14,18 +14,19 @@ from flexstage.base.number import Array, first_design
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.readings.linear.model import LinearModel
 from flexstage.readings.measured.identified import Identified
-from flexstage.studies.channels import Residues, gain_doubts, shape_doubts, sized
+from flexstage.studies.channels import Residues, gain_doubts, output_scales, shape_doubts, sized
 from flexstage.studies.complete import platform_modes, read
 from flexstage.studies.fea_modes import FeaModes
 from flexstage.studies.measured_shapes import si_factor, si_shapes
 from flexstage.studies.reading import Reading
-from flexstage.studies.update_gains import metres
+from flexstage.studies.update_gains import is_length, metres
 
 _REPEATED = 0.01
 _FAR, _FARTHEST = 0.3, np.log(1.6)
 _SILENT = 1e-6
 _PAIRED = 0.5
 _TRUSTED = 0.9
+_ROUNDS = 5
 _TURNED = np.deg2rad(20.0)
 
 
@@ -153,7 +154,7 @@ def compare(mechanism: Mechanism, experiment: Identified, fea: FeaModes | None =
         found, alike = _pairs(frequencies, experiment, groups, (own, shapes))
         return sum(float(alike[place, index]) for place, index in found.items()) / max(1, shapes.shape[1])
 
-    misnamed = shape_doubts(sensors, seen, score)
+    misnamed = shape_doubts(sensors, seen, score, _scales(frequencies, experiment, groups, (own, seen)))
     misnamed = misnamed or gain_doubts(_residues(mechanism, (model, theory), experiment, sensors, _matched(groups, candidates, pairs)))
     rows = _rows(theory, experiment, pairs, likeness)
     rows = rows if fea is None else _with_fea(rows, theory, fea, model)
@@ -234,6 +235,32 @@ def _pairs(frequencies: Array, experiment: Identified, groups: list[list[int]], 
     return _in_order(found, groups), likeness
 
 
+def _scales(frequencies: Array, experiment: Identified, groups: list[list[int]], both: tuple[Array, Array]) -> Array:
+    """How much larger every output is measured than theory has it, modes paired by frequency alone: scaled shapes tell no pairs."""
+    from scipy.optimize import linear_sum_assignment
+
+    own, seen = both
+    apart = np.abs(np.log(experiment.frequencies[None, :] / frequencies[:, None]))
+    first, second = linear_sum_assignment(np.minimum(apart, _FARTHEST))
+    found = {i: j for i, j in zip(first.tolist(), second.tolist(), strict=True) if apart[i, j] <= _FARTHEST}
+    whole = [group for group in groups if all(index in found for index in group)]
+    theory = _sizes(own, whole)
+    scales = np.ones(len(own))
+    for _ in range(_ROUNDS):  # repeated modes count by their sizes, which scaled channels distort
+        divided = seen / scales[:, None]
+        measured = _sizes(
+            divided / np.maximum(np.linalg.norm(divided, axis=0), 1e-300), [[found[index] for index in group] for group in whole]
+        )
+        scales = scales * output_scales(theory, measured)
+    return scales
+
+
+def _sizes(shapes: Array, groups: list[list[int]]) -> Array:
+    """How large every group of modes is at every output (p, groups)."""
+    sizes = [np.linalg.norm(shapes[:, group], axis=1) for group in groups]
+    return np.stack(sizes, axis=1) if sizes else np.zeros((len(shapes), 0))
+
+
 def _in_order(found: dict[int, int], groups: list[list[int]]) -> dict[int, int]:
     """Within a subspace the lower measured frequency goes to the lower mode."""
     ordered: dict[int, int] = {}
@@ -263,7 +290,7 @@ def _residues(
     inputs = tuple(experiment.inputs[index].name for index in columns)
     shape = (-1, len(sensors), len(inputs))
     if not matched or not inputs:
-        return Residues(tuple(sensors), inputs, np.zeros((0, *shape[1:])), np.zeros((0, *shape[1:])), np.zeros(len(inputs), dtype=bool))
+        return Residues(tuple(sensors), inputs, *np.zeros((2, 0, *shape[1:])), *np.zeros((2, len(inputs)), dtype=bool))
     sizes = np.array([metres(mechanism, experiment.inputs[index]) for index in columns])
     shapes, drive = first_design(theory.shapes, 2), first_design(model.input_matrix, 2)[:, list(model.input_index(inputs))]
     sense = first_design(model.output, 2)[list(model.output_index(tuple(sensors)))]
@@ -274,7 +301,8 @@ def _residues(
     )
     own = [(sense @ shapes[:, modes]) @ (shapes[:, modes].T @ drive) for modes, _ in matched]
     found = [np.real(seen[:, modes] @ felt[modes]) for _, modes in matched]
-    return sized(Residues(tuple(sensors), inputs, np.reshape(own, shape), np.reshape(found, shape), np.isfinite(sizes)))
+    strokes = [is_length(experiment.inputs[index].unit) for index in columns]
+    return sized(Residues(tuple(sensors), inputs, np.reshape(own, shape), np.reshape(found, shape), np.isfinite(sizes), np.array(strokes)))
 
 
 def _basis(shapes: Array) -> Array:

@@ -103,6 +103,15 @@ def _unit_findings(mechanism: Mechanism, channels: list[Channel]) -> list[Findin
     ]
 
 
+def is_length(unit: str) -> bool:
+    """Whether a unit is one of length.
+
+    >>> is_length("um"), is_length("mV"), is_length("")
+    (True, False, False)
+    """
+    return unit_problem(unit) is None and dimension_of(unit).powers == _LENGTH.powers
+
+
 def metres(mechanism: Mechanism, channel: Channel) -> float:
     """Metres per unit of a channel; NaN where its unit leads to none."""
     if unit_problem(channel.unit) is not None:

@@ -4,21 +4,26 @@ from __future__ import annotations
 
 import os
 import re
+import stat
 import tomllib
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+from flexstage.base.files import require_regular
 from flexstage.base.finding import DesignError, Finding, refuse, require
 
 LARGEST = 5_000_000
 """Bytes of the largest file that is read: a thousand times a usual design."""
 LONGEST_LINE = 4_000
 _LEAST, _MOST = -(2**63), 2**63 - 1
+_OPEN_STREAMS = ("/dev/stdin", "/dev/fd/")
 
 
 def read_text(path: str | os.PathLike[str]) -> str:
-    """Return the text of a design file; raises `DesignError` if it is missing, a directory, too large or not UTF-8.
+    """Return the text of a design file; raises `DesignError` if it is missing, no regular file, too large or not UTF-8.
+
+    What a shell hands over open (`/dev/stdin`, `/dev/fd/63`) is read too; opening a named pipe could wait for ever.
 
     >>> read_text("nowhere/stage.toml")
     Traceback (most recent call last):
@@ -27,8 +32,12 @@ def read_text(path: str | os.PathLike[str]) -> str:
     """
     where = os.fspath(path)
     try:
+        if not where.startswith(_OPEN_STREAMS) and not stat.S_ISDIR(Path(path).stat().st_mode):
+            require_regular(Path(path))
         with Path(path).open("rb") as stream:
             raw = stream.read(LARGEST + 1)
+    except DesignError:
+        raise
     except (OSError, ValueError) as error:
         raise _unreadable(where, error) from None
     if len(raw) > LARGEST:
