@@ -122,6 +122,15 @@ def test_memory_is_estimated_before_it_is_taken(tmp_path: Path) -> None:
         hdf(tmp_path / "a.h5").read("u")
 
 
+def test_types_that_a_file_names_are_no_data(tmp_path: Path) -> None:
+    with h5py.File(tmp_path / "a.h5", "w") as file:
+        file["kind"] = np.dtype("f4")
+        file.create_dataset("u", data=[1.0, 2.0], dtype=file["kind"])
+    found = hdf(tmp_path / "a.h5")
+    assert list(found.arrays) == ["u"]
+    np.testing.assert_array_equal(found.read("u"), [1.0, 2.0])
+
+
 def test_a_mat_file_pressed_beyond_belief_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     scipy.io.savemat(tmp_path / "a.mat", {"u": np.zeros((40_000_000,))}, do_compression=True)
     assert (tmp_path / "a.mat").stat().st_size < 500_000

@@ -397,7 +397,7 @@ def _look(question: dict[str, Any], _arrays: list[Array]) -> dict[str, Any]:
             seen.add(thing.id)
             if len(seen) > _OBJECTS:
                 raise _WrongError("", f"it has more than {_OBJECTS} groups and arrays", "Export what is needed")
-            if hasattr(thing, "dtype"):
+            if hasattr(thing, "external"):  # committed types have a dtype and no data
                 found.append(_told(file, name, thing))
             elif hasattr(thing, "keys"):
                 groups.append((name, _plain_attributes(thing)))
