@@ -301,6 +301,16 @@ def test_one_row_that_is_none_is_named_wherever_it_stands(at: int, wrong: str, t
         _ = kept(path, Options())
 
 
+@pytest.mark.parametrize("at", [2, 40, 399])
+def test_a_comma_among_points_is_no_number(at: int, tmp_path: Path) -> None:
+    path = tmp_path / "a.txt"
+    rows = [f"{np.sin(number):.4f} {np.cos(3 * number):.4f}" for number in range(400)]
+    rows[at] = "1,5 -0.1108"
+    path.write_text("\n".join(["% fs: 100 Hz", "% u1 S1", *rows, ""]))
+    with pytest.raises(DesignError, match=rf"line {at + 3}\b.*\b(not a|no) number"):
+        _ = kept(path, Options())
+
+
 def test_a_row_may_end_with_what_divides_it(tmp_path: Path) -> None:
     path, lines = tmp_path / "a.csv", lines_of(tmp_path / "a.csv")
     lines[200] += ","

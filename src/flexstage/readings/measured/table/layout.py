@@ -108,7 +108,8 @@ def _lost(path: Path, above: list[str], form: tuple[str | None, str, int]) -> It
         broken = (at for at in range(rows[0], len(above)) if at not in rows or len(_fields(above[at], form[0])) != columns)
         at = next(broken, rows[-1])
         line, count = above[at].strip()[:60], len(_fields(above[at], form[0]))
-        what = f'it has {count} fields where {columns} are expected, numbers before and after it: "{line}"'
+        wrong = "it holds what is no number here" if count == columns else f"it has {count} fields where {columns} are expected"
+        what = f'{wrong}, numbers before and after it: "{line}"'
         yield Finding(f"{path}: line {at + 1}", what, f'Mend it; if line {rows[0] + 1} is no row of numbers, begin that with "#"')
 
 

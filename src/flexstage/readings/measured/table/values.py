@@ -110,7 +110,7 @@ class TableSamples:
 
     def _field(self, text: str, where: str) -> float:
         plain = text.replace(",", ".") if self.layout.decimal == "," else text
-        if NUMBER.fullmatch(plain):
+        if NUMBER.fullmatch(plain) and "," not in plain:
             return float(plain.lower().replace("d", "e"))
         if plain.lower() in MISSING:
             return float("nan")
