@@ -128,3 +128,11 @@ def test_a_point_far_outside_is_told_wherever_the_stage_stands() -> None:
     body = stage.bodies["platform"]
     far = replace(stage, bodies={**stage.bodies, "platform": replace(body, points={"corner": (30.0, 0.0, 0.0)})})
     assert [each.where for each in caveats(far).cautions if "not plausible" in each.what] == ["platform.points.corner"]
+
+
+def test_a_link_farther_away_than_any_stage_is_large_is_told() -> None:
+    """By a slip of the power of ten it stands 27 km away."""
+    stage = case("parallelogram", {})
+    links = {name: replace(link, at=(-27e3, 0.0, 0.0)) if name == "left" else link for name, link in stage.links.items()}
+    told = {each.where: each.what for each in caveats(replace(stage, links=links)).cautions if "not plausible" in each.what}
+    assert told["left"].startswith("it stands 2.7e+04 m from the platform")

@@ -16,6 +16,7 @@ from flexstage.readings.solid.fineness import Reduction
 from flexstage.studies.complete import platform_modes
 from flexstage.studies.resolution import Resolution, Resolved, resolved
 from flexstage.studies.solid_read import read_solid, solids
+from flexstage.studies.solid_stage import solid_stage
 from flexstage.studies.solid_stress import link_stress
 from flexstage.studies.solid_surface import magnification, mode_surfaces, stress_surfaces
 from flexstage.studies.trust import Trust
@@ -76,6 +77,7 @@ def test_stress_of_a_pulled_rod() -> None:
     load = read.model.input_matrix[:, read.model.input_index(("platform.fx",))] * force
     found = link_stress(read, displacement(read.model, load), {})
     mean = force / (np.pi * (4e-3) ** 2 / 4.0)
+    assert found is not None
     assert found.names == ("prop 1",)
     assert mean < found.highest[0] < 1.3 * mean
     assert found.safety[0] == pytest.approx(found.yield_stress[0] / found.highest[0])
@@ -157,3 +159,14 @@ def test_a_mode_without_a_partner_has_no_theory() -> None:
         assert row.theory is None
         assert row.trust is Trust.UNKNOWN
         assert "is needed" in row.reason
+
+
+def test_a_stack_without_mass_between_the_ground_and_a_mass_is_a_spring() -> None:
+    """Nothing drawn but a stack that weighs nothing: no modes of its own, no hinge to be stressed, K/m along it."""
+    stack = fs.Piezo(stroke=50e-6, stiffness=50e6, length=50e-3, diameter=10e-3)
+    body = fs.Body(mass=1.0, centre=(25e-3, 0.0, 0.0), inertia=fs.Inertia(1e-3, 1e-3, 1e-3))
+    link = fs.Link(("ground", "platform"), "stack", (0.0, 0.0, 0.0), along=(1.0, 0.0, 0.0))
+    found = solid_stage(fs.Mechanism("push", parts={"stack": stack}, bodies={"platform": body}, links={"pzt": link}), COARSE, solids())
+    assert found.stress is None
+    along = found.modes.frequencies[found.modes.names.index("x")]
+    assert along == pytest.approx(np.sqrt(50e6) / (2.0 * np.pi), rel=0.02)

@@ -24,7 +24,7 @@ from flexstage.beams.mass import mass
 from flexstage.beams.validity import validity
 from flexstage.mechanism.contact import contact_findings
 from flexstage.mechanism.drawn import as_drawn
-from flexstage.mechanism.expand import expand
+from flexstage.mechanism.expand import Assembly, expand
 from flexstage.mechanism.expansion import ground_of
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism, StructuralDamping
 from flexstage.mechanism.outline import outlines
@@ -47,6 +47,7 @@ class Default(Finding):
 
 
 _LEAST_FALL, _MOST_FALL = 0.16, 250.0
+_FARTHEST = 10.0
 _STILL = frozenset({"mapping", "lost-motion", "drift", "budget"})
 _LINEAR = frozenset({"mapping", "stiffness", "lost-motion", "modes", "response", "drift", "sensitivities", "solid", "verify", "calibrate"})
 _UNDAMPED = _STILL | {"stiffness", "workspace", "sensitivities", "calibrate"}
@@ -210,6 +211,7 @@ def _disproportions(mechanism: Mechanism) -> Iterator[Finding]:
     if fall and not _LEAST_FALL <= fall <= _MOST_FALL:
         yield Finding("gravity", f"{fall:.4g} m/s^2 is not plausible: the moon has 1.6, Jupiter 25; a factor of 10 more either way", check)
     assembly = expand(mechanism)
+    yield from _far_links(assembly)
     low, high, _ = bounds(outlines(assembly))
     extent = float(np.max(np.linalg.norm(high - low, axis=-1)))
     middle = 0.5 * (low + high)
@@ -217,6 +219,18 @@ def _disproportions(mechanism: Mechanism) -> Iterator[Finding]:
     for where, size, least, most in (*_sizes(mechanism), *((name, distance, 0.0, 50.0) for name, distance in points.items())):
         if extent and not least * extent <= size <= most * extent:
             yield Finding(where, f"{show(size, LENGTH, digits=4)} is not plausible in a stage of {show(extent, LENGTH, digits=4)}", check)
+
+
+def _far_links(assembly: Assembly) -> Iterator[Finding]:
+    """Links farther from the platform than any stage is large."""
+    if PLATFORM not in assembly.bodies:
+        return
+    centre = assembly.bodies[PLATFORM].reference
+    for name, link in assembly.links.items():
+        distance = float(np.max(np.linalg.norm(np.real(link.frame.position - centre), axis=-1)))
+        if distance > _FARTHEST:
+            what = f"it stands {distance:.4g} m from the platform, which is not plausible: stages measure a metre"
+            yield Finding(name, f"{what}; a factor of 10 more is let pass", "Check the unit and the power of ten")
 
 
 def _sizes(mechanism: Mechanism) -> Iterator[tuple[str, float, float, float]]:

@@ -45,11 +45,16 @@ class LinkStress:
         return float(self.highest[self.names.index(name)])
 
 
-def link_stress(read: SolidRead, motion: Array, strokes: Mapping[str, Array]) -> LinkStress:
-    """The highest stress over k load cases: coordinates (N, k) of the model, and the strokes (k,) [m] of its inputs that belong to them."""
+def link_stress(read: SolidRead, motion: Array, strokes: Mapping[str, Array]) -> LinkStress | None:
+    """The highest stress over k load cases: coordinates (N, k) of the model, and the strokes (k,) [m] of its inputs that belong to them.
+
+    `None` where nothing but stacks is drawn.
+    """
     assembly = expand(read.mechanism)
     by_link = {assembly.actuators[name]: values for name, values in strokes.items()}
     found = [row for item in read.placed for row in _component(item, element_coordinates(item, motion, by_link), assembly)]
+    if not found:
+        return None
     names, highest, case = zip(*found, strict=True)
     limits = [_yield(read, assembly, name) for name in names]
     return LinkStress(tuple(names), np.array(highest), np.array(case), np.array(limits))

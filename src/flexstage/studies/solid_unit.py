@@ -35,7 +35,7 @@ class SolidUnit(UnitOutput):
     """
 
     strokes: Array
-    stress: LinkStress
+    stress: LinkStress | None
     motion: Array
     read: SolidRead
 

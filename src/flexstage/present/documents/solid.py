@@ -62,7 +62,7 @@ def _unit(unit: SolidUnit) -> Document:
         "stroke_m": unit.strokes,
         "command_m": unit.commands,
         "output_m": unit.outputs,
-        "stress": stress_body(unit.stress),
+        "stress": None if unit.stress is None else stress_body(unit.stress),
         "stiffness": unit.stiffness.to_json(),
         "elements": unit.read.elements,
         "freedoms": unit.read.freedoms,

@@ -57,7 +57,7 @@ def unit_section(found: Resolved[dict[str, SolidUnit]]) -> Section | None:
             skin_figure(surfaces, "MPa", exponent=_STRESS_EXPONENT),
             f"The {name} unit at its full stroke, output guided: von Mises stress; motion magnified.",
         )
-        stress = stress_table(f"Stress in the {name} unit at full stroke", unit.stress)
+        stress = None if unit.stress is None else stress_table(f"Stress in the {name} unit at full stroke", unit.stress)
         tables = (command_table(name, unit), *(() if stress is None else (stress,)))
         blocks += [Abreast((picture, *tables))] if stress is not None else list(tables)
     return section("Units alone", blocks)

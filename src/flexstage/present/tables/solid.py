@@ -105,7 +105,9 @@ def solid_unit_table(found: Resolved[dict[str, SolidUnit]]) -> Table:
     return build("Units alone as solids", heads, rows, notes=notes)
 
 
-def _weakest(stress: LinkStress) -> tuple[str, str, str]:
+def _weakest(stress: LinkStress | None) -> tuple[str, str, str]:
+    if stress is None:
+        return NO_VALUE, NO_VALUE, NO_VALUE
     at = stress.names.index(stress.weakest)
     safety = float(stress.safety[at])
     low = stress.highest[at] < _SILENT

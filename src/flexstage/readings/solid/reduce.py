@@ -138,6 +138,8 @@ def _modes(problem: _Problem, count: int, springs: Array | None) -> Array:
         return np.concatenate([problem.solve(full)[free], np.linalg.solve(boundary, force.ravel()[len(free) :])])
 
     start = np.random.default_rng(0).standard_normal(size)
+    if not np.any(weighed(start)):  # without mass there are no modes
+        return np.zeros((problem.field.size, 0))
     mass, solve = (_operator(size, function) for function in (weighed, inverse))
     # With OPinv the first argument is used for its shape only.
     _, vectors = eigsh(solve, k=count, M=mass, sigma=0.0, OPinv=solve, v0=start, tol=_EIGENVALUES)  # pyright: ignore[reportArgumentType]
