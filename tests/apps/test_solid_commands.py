@@ -213,7 +213,7 @@ def test_impossible_memory_is_refused_at_once(command: Command, memory: str, sai
         assert said in ended.err
 
 
-@pytest.mark.parametrize("scope", ["hinge", "stage"])
+@pytest.mark.parametrize("scope", [pytest.param("hinge", marks=pytest.mark.full), "stage"])
 def test_too_little_memory_is_refused_by_name(command: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, scope: str) -> None:
     monkeypatch.setenv("FLEXSTAGE_CACHE", str(tmp_path / "cache"))
     ended = command("solid", "stage.toml", "--what", scope, "--memory", "1 MB")
