@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 from flexstage.analysis.stability import Stability, stability
 from flexstage.analysis.workspace.stroke import stroke_limits
 from flexstage.base.finding import DesignError, require
@@ -22,10 +24,17 @@ def standing(mechanism: Mechanism) -> LinearModel:
     >>> len(standing(parallelogram()).coordinates)
     18
     """
-    model = lumped(mechanism)
-    if model.stiffness_matrix.ndim == 2:
-        require(stability(mechanism, model).refusals)
+    model, found = _under_load(mechanism)
+    if found is not None:
+        require(found.refusals)
     return model
+
+
+@lru_cache(maxsize=2)
+def _under_load(mechanism: Mechanism) -> tuple[LinearModel, Stability | None]:
+    """The lumped model and how it stands, kept for what else one command asks of the same description."""
+    model = lumped(mechanism)
+    return model, stability(mechanism, model) if model.stiffness_matrix.ndim == 2 else None
 
 
 def require_standing(mechanism: Mechanism) -> None:
@@ -35,12 +44,14 @@ def require_standing(mechanism: Mechanism) -> None:
     >>> require_standing(parallelogram())
     """
     try:
-        model = lumped(mechanism)
+        found = _under_load(mechanism)[1]
     except DesignError:
         return
-    require(stability(mechanism, model).refusals)
+    if found is not None:
+        require(found.refusals)
 
 
+@lru_cache(maxsize=2)
 def load_factors(mechanism: Mechanism) -> Stability | None:
     """Load factors of the whole stage over all strokes from no voltage; `None` where it has no elastic model.
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -77,6 +78,7 @@ class Room:
                 yield Finding(f"envelope.{axis}", f"the stage is {shown[0]} wide, the envelope {shown[1]}", f"Look at {ends}")
 
 
+@lru_cache(maxsize=2)
 def room(mechanism: Mechanism) -> Room:
     """The bounding box of all outlines against the envelope, and the outlines that enter the opening (a rectangle about the z axis).
 
