@@ -57,7 +57,7 @@ def unit_section(found: Resolved[dict[str, SolidUnit]]) -> Section | None:
             skin_figure(surfaces, "MPa", exponent=_STRESS_EXPONENT),
             f"The {name} unit at its full stroke, output guided: von Mises stress; motion magnified.",
         )
-        stress = None if unit.stress is None else stress_table(f"Stress in the {name} unit at full stroke", unit.stress)
+        stress = stress_table(f"Stress in the {name} unit at full stroke", unit.stress)
         tables = (command_table(name, unit), *(() if stress is None else (stress,)))
         blocks += [Abreast((picture, *tables))] if stress is not None else list(tables)
     return section("Units alone", blocks)
@@ -78,7 +78,7 @@ def stage_solid_section(found: Resolved[SolidStage]) -> Section | None:
         f"resolution: {error}."
     )
     polar = to_svg(directional_figure(stage.statics), "solid-polar", "Stiffness by direction in the plane")
-    table = None if stage.stress is None else stress_table("Highest stress", stage.stress)
+    table = stress_table("Highest stress", stage.stress)
     stress = [] if table is None else [Abreast((_stress_picture(stage), table))]
     return section(
         "The whole stage",

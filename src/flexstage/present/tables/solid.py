@@ -127,9 +127,9 @@ def command_table(name: str, unit: SolidUnit) -> Table:
     return build(f"Output of the {name} unit by command", heads, list(zip(*columns, strict=True)))
 
 
-def stress_table(title: str, stress: LinkStress, listed: int = _LISTED) -> Table | None:
+def stress_table(title: str, stress: LinkStress | None, listed: int = _LISTED) -> Table | None:
     """The highest von Mises stress of links and bodies, highest first; `None` where there is none worth a line."""
-    if np.max(stress.highest) < _SILENT:
+    if stress is None or np.max(stress.highest) < _SILENT:
         return None
     order = np.argsort(-stress.highest, kind="stable")
     shown = [int(index) for index in order[:listed]]
