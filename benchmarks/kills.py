@@ -4,7 +4,7 @@
 
 Each kill follows from seed and number. Commands run in copies of this process, which has loaded everything, so that the moments fall into
 their work. A target is absent, as it was, or what an undisturbed run writes; processes of the command end within seconds of it; after
-the next run the folder holds its targets alone, and the folder for temporary files nothing.
+the next run the folder holds its targets alone, the folder for temporary files nothing, and the cache nothing half-written.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ import tomllib
 import zipfile
 from collections.abc import Callable, Sequence
 from contextlib import redirect_stderr, redirect_stdout
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
@@ -34,8 +34,14 @@ import psutil
 from scipy.io import loadmat
 
 from flexstage.apps.cli import run
+from flexstage.base.scale import X, Z, mm
 from flexstage.cases.registry import case
+from flexstage.mechanism.mechanism import Link, Mechanism
 from flexstage.mechanism.store import dump
+from flexstage.parts.body import Body, Inertia
+from flexstage.parts.rod import Rod
+from flexstage.readings.measured.write import write
+from flexstage.studies.hysteresis_example import example_record
 
 MARK = "FLEXSTAGE_KILLS"
 OLD = b"as it was"
@@ -54,31 +60,49 @@ optimise = { maximise = "f", starts = 1 }
 
 @dataclass(frozen=True)
 class Scene:
-    """A command, the files it writes, and what the next run is told besides; `fresh`: it refuses to write over a file."""
+    """A command, the files it writes, and what the next run is told besides.
+
+    `fresh`: it refuses to write over a file; `cold`: it starts with an empty cache, so that it computes, and is killed over that too.
+    """
 
     name: str
     words: str
     targets: str
     resumed: str = ""
     fresh: bool = False
+    cold: bool = False
 
 
+DOCUMENTS = "check mapping stiffness lost-motion modes response workspace drift sensitivities budget"
+"""Commands that write a JSON document alone."""
 SCENES = (
+    *(Scene(each, f"{each} stage.toml --json {each}.json", f"{each}.json") for each in DOCUMENTS.split()),
+    Scene("catalogue", "catalogue --json c.json", "c.json"),
     Scene("new", "new new.toml --case parallelogram --force", "new.toml"),
     Scene("analyse", "analyse stage.toml --report a.html --json a.json --mat a.mat", "a.html a.json a.mat"),
-    Scene("modes", "modes stage.toml --json m.json", "m.json"),
-    Scene("loop", "loop stage.toml --bandwidth 100Hz --export c.c --export c.fmu --export c.mat", "c.c c.h c.fmu c.mat"),
-    Scene("sweep", "sweep study.toml -o s.h5 --workers 1 --report s.html", "s.h5 s.html", "--resume", fresh=True),
+    Scene(
+        "loop",
+        "loop stage.toml --bandwidth 100Hz --export c.c --export c.fmu --export c.mat --report l.html --json l.json",
+        "c.c c.h c.fmu c.mat l.html l.json",
+    ),
+    Scene("loop example", "loop stage.toml --example l.toml", "l.toml"),
+    Scene("sweep", "sweep study.toml -o s.h5 --workers 2 --report s.html", "s.h5 s.html", "--resume", fresh=True),
     Scene("optimise", "optimise study.toml -o o.toml --json o.json", "o.toml o.json"),
+    Scene("front", "optimise front.toml --report o.html --json o.json", "o.html o.json"),
     Scene("tolerance", "tolerance study.toml -o t.h5 --workers 1 --json t.json", "t.h5 t.json", "--resume", fresh=True),
     Scene("rig uff", "rig stage.toml --seconds 2 --reading mapped -o w.uff", "w.uff"),
     Scene("rig hdf5", "rig stage.toml --seconds 2 --reading mapped -o w.h5", "w.h5"),
     Scene("rig mat", "rig stage.toml --seconds 2 --reading mapped -o w.mat", "w.mat"),
+    Scene("rig csv", "rig stage.toml --seconds 2 --reading mapped -o w.csv", "w.csv"),
     Scene("identify", "identify record.uff --report i.html --json i.json", "i.html i.json"),
     Scene("update", "update stage.toml --record record.uff --free leaf.thickness -o u.toml --json u.json", "u.toml u.json"),
     Scene("plan", "plan stage.toml -o p.svg", "p.svg"),
-    Scene("cad", "cad stage.toml -o d.step", "d.step"),
-    Scene("calibrate", "calibrate stage.toml -o k.toml --order 2", "k.toml"),
+    Scene("hysteresis", "hysteresis stack.csv -o h.toml --report h.html --json h.json", "h.toml h.html h.json"),
+    Scene("compare", "compare rods.toml --record rods.uff --fea --report c.html --json c.json", "c.html c.json"),
+    Scene("cad", "cad rods.toml -o d.step --mesh d.vtu --gltf d.glb --order 1", "d.step d.vtu d.glb", cold=True),
+    Scene("solid", "solid rods.toml --what hinge --order 2 --report s.html --json s.json", "s.html s.json", cold=True),
+    Scene("verify", "verify rods.toml --order 2 --report v.html --json v.json", "v.html v.json", cold=True),
+    Scene("calibrate", "calibrate rods.toml -o k.toml --json k.json --order 2", "k.toml k.json", cold=True),
 )
 WHOLE: dict[str, Callable[[Path], object]] = {
     ".html": lambda path: path.read_text(encoding="utf-8").rstrip().endswith("</html>") or 1 / 0,
@@ -91,13 +115,33 @@ WHOLE: dict[str, Callable[[Path], object]] = {
 """How a file is looked at whose bytes depend on the run (times, stretches of a search); others are compared."""
 
 
+def rods() -> Mechanism:
+    """A stage of few elements: a rigid platform on two rods, pushed by a stack."""
+    stage = case("parallelogram")
+    links = {name: Link(("ground", "platform"), "rod", (0.0, y, 0.0), Z) for name, y in (("left", -20 * mm), ("right", 20 * mm))}
+    return replace(
+        stage,
+        parts={"rod": Rod("steel", 30 * mm, 4 * mm), "stack": stage.parts["stack"]},
+        bodies={"platform": Body(mass=0.1, centre=(0.0, 0.0, 0.0), inertia=Inertia(1e-5, 1e-5, 1e-5))},
+        links=links | {"B": Link(("ground", "platform"), "stack", (-30 * mm, 0.0, 0.0), X)},
+        units={},
+        place={},
+        requirements={},
+        tags={},
+    )
+
+
 def prepared(folder: Path, scenes: Sequence[Scene]) -> dict[str, dict[str, bytes]]:
     """Fill a folder with what the commands read; the files that each writes undisturbed. What they load is loaded then."""
     folder.mkdir()
     dump(case("parallelogram"), folder / "stage.toml")
+    dump(rods(), folder / "rods.toml")
     (folder / "study.toml").write_text(STUDY)
+    (folder / "front.toml").write_text(STUDY.replace('maximise = "f"', 'maximise = "f", minimise = "m"'))
+    write(folder / "stack.csv", example_record())
     made = {}
-    ended(folder, "rig stage.toml --seconds 2 --reading mapped -o record.uff")
+    for name, record in (("stage", "record"), ("rods", "rods")):
+        ended(folder, f"rig {name}.toml --seconds 2 --reading mapped -o {record}.uff")
     read = set(folder.iterdir())
     for scene in scenes:
         ended(folder, scene.words)
@@ -116,12 +160,12 @@ def ended(folder: Path, words: str) -> None:
         raise SystemExit(f"{words}: exit code {code}")
 
 
-def begun(folder: Path, words: str, mark: str) -> int:
+def begun(folder: Path, words: str, mark: str, cache: Path | None) -> int:
     """Run a command in a copy of this process; its number."""
     number = os.fork()
     if number:
         return number
-    os.environ |= {MARK: mark, "TMPDIR": str(folder / "temporary")}
+    os.environ |= {MARK: mark, "TMPDIR": str(folder / "temporary")} | ({"FLEXSTAGE_CACHE": str(cache)} if cache else {})
     tempfile.tempdir = None
     log = os.open(folder.parent / "log", os.O_WRONLY | os.O_CREAT | os.O_APPEND)
     for stream in (1, 2):
@@ -144,8 +188,9 @@ def orphans(mark: str) -> list[psutil.Process]:
 
 def kill(scene: Scene, workshop: Path, made: dict[str, bytes], chance: random.Random, longest: float) -> tuple[list[str], bool]:
     """Kill a command once at a random moment and run it again; what must not be, and whether it was killed before it ended."""
-    folder = workshop / "killed"
-    shutil.rmtree(folder, ignore_errors=True)
+    folder, cache = workshop / "killed", workshop / "cold" if scene.cold else None
+    for each in (folder, workshop / "cold"):
+        shutil.rmtree(each, ignore_errors=True)
     (folder / "temporary").mkdir(parents=True)
     for each in (workshop / "prepared").iterdir():
         shutil.copy(each, folder)
@@ -154,7 +199,7 @@ def kill(scene: Scene, workshop: Path, made: dict[str, bytes], chance: random.Ra
     for name, content in before.items():
         (folder / name).write_bytes(content)
     mark = f"{os.getpid()}-{chance.random()}"
-    number = begun(folder, scene.words, mark)
+    number = begun(folder, scene.words, mark, cache)
     time.sleep(chance.random() * longest)
     os.kill(number, signal.SIGKILL)
     killed = os.WIFSIGNALED(os.waitpid(number, 0)[1])
@@ -165,10 +210,11 @@ def kill(scene: Scene, workshop: Path, made: dict[str, bytes], chance: random.Ra
     wrong += [f"process {each.pid} lives: {' '.join(each.cmdline())[:100]}" for each in left]
     words = f"{scene.words} {scene.resumed}" if (folder / "s.h5.pieces").exists() or (folder / "t.h5.pieces").exists() else scene.words
     words = f"{words} {scene.resumed}" if any((folder / each).exists() for each in ("s.h5", "t.h5")) and words == scene.words else words
-    code = os.waitstatus_to_exitcode(os.waitpid(begun(folder, words, mark), 0)[1])
+    code = os.waitstatus_to_exitcode(os.waitpid(begun(folder, words, mark, cache), 0)[1])
     wrong += [f"the next run ends with {code}"] if code else []
     wrong += [f"{name} is not there after the next run" for name in made if not _sound(folder / name, None, made[name], there=True)]
     wrong += [f"{each.name} is left" for each in folder.iterdir() if each.name not in inputs and each.name not in made]
+    wrong += [f"{each.relative_to(workshop)} is left" for each in (workshop / ("cold" if scene.cold else "cache")).rglob("*.part")]
     return wrong + [f"temporary/{each.name} is left" for each in (folder / "temporary").iterdir()], killed
 
 

@@ -7,7 +7,7 @@ import sys
 import pytest
 
 from flexstage.base.finding import DesignError
-from flexstage.base.store import atomic_write, put_together, sweep, temporary, write, written
+from flexstage.base.store import Waiting, atomic_write, put_together, sweep, temporary, write, written
 
 
 def test_a_file_keeps_its_mode(tmp_path):
@@ -59,6 +59,32 @@ def test_files_are_put_together_or_not_at_all(tmp_path, name):
         put_together(waiting)
     assert sorted(each.name for each in tmp_path.iterdir()) == sorted(["a", name])
     assert (tmp_path / "a").read_text() == "old"
+
+
+def test_only_renames_lie_between_the_first_file_and_the_last(tmp_path, monkeypatch):
+    """A kill while files wait for the disk leaves all as they were; one of the renames fails, and those before it are undone."""
+    (tmp_path / "a").write_text("old")
+    (tmp_path / "c").write_text("old")
+    waiting = [written(tmp_path / each, "new") for each in ("a", "b", "c")]
+    steps, fsync, rename = [], os.fsync, Waiting.rename
+
+    def settled(number):
+        steps.append("disk")
+        fsync(number)
+
+    def renamed(self):
+        steps.append("rename")
+        if steps.count("rename") == 3:
+            raise DesignError([])
+        rename(self)
+        assert self.target.read_text() == "new"
+
+    monkeypatch.setattr(os, "fsync", settled)
+    monkeypatch.setattr(Waiting, "rename", renamed)
+    with pytest.raises(DesignError):
+        put_together(waiting)
+    assert steps == ["disk"] * 3 + ["rename"] * 3
+    assert {each.name: each.read_text() for each in tmp_path.iterdir()} == {"a": "old", "c": "old"}
 
 
 LEAVER = """

@@ -62,16 +62,28 @@ class Waiting:
     target: Path
     where: str
 
-    def put(self) -> Path:
-        """Rename it onto its target, on the disk before it is there; raises `DesignError` if that cannot be."""
+    def settle(self) -> None:
+        """Bring it to the disk, with the rights of the file it replaces; raises `DesignError` if that cannot be."""
         try:
             with self.place.open("rb+") as stream:
                 os.fsync(stream.fileno())  # a disk may report only now that it is full
             if self.target.exists():
                 self.place.chmod(self.target.stat().st_mode & 0o777)
+        except OSError as error:
+            raise _unwritable(self.where, error) from None
+
+    def rename(self) -> None:
+        """Rename it onto its target; raises `DesignError` if that cannot be."""
+        try:
             self.place.replace(self.target)
         except OSError as error:
             raise _unwritable(self.where, error) from None
+
+    def put(self) -> Path:
+        """Rename it onto its target, on the disk before it is there; raises `DesignError` if that cannot be."""
+        try:
+            self.settle()
+            self.rename()
         finally:
             self.drop()
         return self.target
@@ -137,27 +149,34 @@ def written(path: str | os.PathLike[str], content: str | bytes) -> Waiting:
 def put_together(files: Iterable[Waiting]) -> None:
     """Put all files or none: where one cannot be put, those before it are as they were.
 
+    All are on the disk before the first is renamed, and only renames lie between the first and the last: a process that is killed within
+    these few microseconds leaves files that are whole, some of them new.
+
     >>> with temporary_folder() as folder:
     ...     put_together(written(folder / name, "whole") for name in ("a.c", "a.h"))
     ...     sorted(each.name for each in folder.iterdir())
     ['a.c', 'a.h']
     """
     waiting = tuple(files)
-    before: list[tuple[Path, Path | None]] = []
+    before: list[Path | None] = []
+    begun = 0
     try:
         for each in waiting:
-            before.append((each.target, _second_name(each) if len(waiting) > 1 else None))
-            each.put()
+            each.settle()
+            before.append(_second_name(each) if len(waiting) > 1 else None)
+        for each in waiting:
+            begun += 1
+            each.rename()
     except BaseException:
-        for target, old in before if len(waiting) > 1 else ():
+        for each, old in zip(waiting[:begun] if len(waiting) > 1 else (), before, strict=False):
             if old is None:
-                target.unlink(missing_ok=True)
+                each.target.unlink(missing_ok=True)
             else:
-                old.replace(target)
+                old.replace(each.target)
         raise
     finally:
-        for old in (*(old for _, old in before if old is not None), *(each.place for each in waiting)):
-            old.unlink(missing_ok=True)
+        for left in (*filter(None, before), *(each.place for each in waiting)):
+            left.unlink(missing_ok=True)
 
 
 def _second_name(waiting: Waiting) -> Path | None:
