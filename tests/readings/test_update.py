@@ -14,6 +14,7 @@ from flexstage.cases.parallelogram import parallelogram
 from flexstage.mechanism.address import get, set_value, tag_of
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.store import dumps, loads
+from flexstage.present.tables.update import update_table
 from flexstage.readings.lumped import lumped
 from flexstage.readings.measured.record import Channel
 from flexstage.studies.identification import identification, sound
@@ -293,6 +294,7 @@ def test_nothing_is_said_of_numbers_where_theory_and_test_contradict_each_other(
     assert found.chi_square > 1e3
     assert found.told == (Told.WITHHELD,)
     assert found.verdicts[0].startswith("withheld: chi-square ")
+    assert update_table(found).texts()[1][-1] == found.verdicts[0]
     assert any("look exchanged" in each for each in found.warnings)
     assert "theory and test contradict each other" in updated_text(dumps(STAGE), found, "test.uff")
 

@@ -8,7 +8,7 @@ from flexstage.present.display import number, percent, value_with_unit
 from flexstage.present.table import Cell, Column, Mark, Table, build, matrix_table
 from flexstage.studies.update import Residual, Told, Updated
 
-_MARKS = {Told.WELL: Mark.PASS, Told.WEAKLY: Mark.WARN, Told.NOT: Mark.FAIL}
+_MARKS = {Told.WELL: Mark.PASS, Told.WEAKLY: Mark.WARN, Told.NOT: Mark.FAIL, Told.WITHHELD: Mark.FAIL}
 _MOST_GAINS = 12
 
 
