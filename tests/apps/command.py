@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import html
 import json
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -34,6 +35,16 @@ def _no_constant(name: str) -> Any:
 
 
 Command = Callable[..., Ended]
+
+
+def told_everywhere(ended: Ended, document: Path, report: Path) -> str:
+    """All cautions of a document, each of which the terminal and the report tell too."""
+    found = json.loads(document.read_text(encoding="utf-8"))
+    said = [each if isinstance(each, str) else each["what"] for each in (*found["cautions"], *found.get("warnings", ()))]
+    page = html.unescape(report.read_text(encoding="utf-8")).replace("\N{MINUS SIGN}", "-")
+    for place in (ended.out + ended.err, page):
+        assert [each for each in said if each not in place] == []
+    return "\n".join(said)
 
 
 def command_in(folder: Path, monkeypatch: pytest.MonkeyPatch, capfdbinary: Any) -> Command:

@@ -4,17 +4,21 @@ from __future__ import annotations
 
 import json
 from dataclasses import replace
+from inspect import signature
 from pathlib import Path
 
 import pytest
 
 import flexstage as fs
+from flexstage.apps.cli.application import COMMANDS
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.mechanism.store import dumps
 from flexstage.parts.freedom import Freedom
 from flexstage.parts.part import Restricted
+from flexstage.readings.measured.write import write
 from flexstage.studies.cautions import caveats, defaults
-from tests.apps.command import Command, design_in
+from flexstage.studies.hysteresis_example import example_record
+from tests.apps.command import Command, design_in, told_everywhere
 
 THICK = ("--set", "parts.foot_notch.profile.radius=0.9 mm")
 
@@ -34,7 +38,8 @@ def test_every_command_tells_cautions_in_its_document_and_its_tables(flexstage: 
 def test_cautions_follow_the_verdicts(flexstage: Command, tmp_path: Path) -> None:
     design_in(tmp_path, "parallelogram")
     beyond = ("--set", "envelope.x=1 mm")
-    ended = flexstage("analyse", "stage.toml", *beyond, "--report", "out.html")
+    ended = flexstage("analyse", "stage.toml", *beyond, "--report", "out.html", "--json", "out.json")
+    assert "122 mm wide, the envelope 1 mm" in told_everywhere(ended, tmp_path / "out.json", tmp_path / "out.html")
     assert ended.out.index("Requirements") < ended.out.index("Cautions") < ended.out.index("Mobility")
     page = (tmp_path / "out.html").read_text(encoding="utf-8")
     assert page.index("<h2>Requirements</h2>") < page.index("<h2>Cautions</h2>") < page.index("<h2>Summary</h2>")
@@ -115,6 +120,62 @@ def test_verdicts_that_the_weight_may_turn_are_withheld(flexstage: Command, tmp_
     assert "load factor 2.01" in document["cautions"][0]["what"]
     leaves(tmp_path, 0.1)
     assert flexstage("modes", "stage.toml", "--json", "-").document["cautions"] == []
+
+
+STUDY = """format = "flexstage study 1"
+design = "leaves.toml"
+variables.mass = { of = "bodies.platform.mass", from = "0.1 kg", to = "2.5 kg", levels = 2 }
+responses = { f = "frequency.platform.1", m = "mass" }
+sweep.sampling = "grid"
+"""
+TOLERANCE = """format = "flexstage study 1"
+design = "leaves.toml"
+responses.f = "frequency.platform.1"
+scatter.leaf = { of = "leaf.thickness", normal = "50 um" }
+tolerance.copies = 8
+"""
+REPORTED = {
+    "identify record.uff": "S is the only output",
+    "compare stage.toml --record record.uff": "not found in the experiment",
+    "hysteresis stack.csv": "67% of the actuator's range",
+    "sweep study.toml -o r.h5 --workers 1": "load factor goes down to 2.01 (mass 2.5 kg)",
+    "optimise least.toml": "load factor 2.01",
+    "optimise front.toml": "load factor goes down to 2.01",
+    "tolerance tolerance.toml --workers 1": "load factor goes down to 0.232 (leaf -0.25 mm)",
+    "loop stage.toml --bandwidth 100Hz --hysteresis 15%": "margins, noise and poles are those of stacks without it",
+}
+
+
+@pytest.fixture
+def reported(flexstage: Command, tmp_path: Path) -> Command:
+    """The command line in a folder with what the commands that write reports read."""
+    leaves(tmp_path, 0.1)
+    (tmp_path / "stage.toml").rename(tmp_path / "leaves.toml")
+    (tmp_path / "study.toml").write_text(STUDY)
+    (tmp_path / "least.toml").write_text(STUDY + 'optimise = { minimise = "f", starts = 1 }')
+    (tmp_path / "front.toml").write_text(STUDY + 'optimise = { maximise = ["f", "m"], pareto_points = 3 }')
+    (tmp_path / "tolerance.toml").write_text(TOLERANCE)
+    design_in(tmp_path, "parallelogram")
+    return flexstage
+
+
+@pytest.mark.parametrize(("words", "expected"), REPORTED.items())
+def test_every_report_tells_the_cautions_of_the_document(reported: Command, tmp_path: Path, words: str, expected: str) -> None:
+    if "record" in words:
+        assert reported(*["rig", "stage.toml", "--seconds", "2", "--reading", "mapped", "-o", "record.uff"]).code == 0
+    write(tmp_path / "stack.csv", example_record())
+    beyond = ("--limits", "0 V", "1500 V") if "stack" in words else ("--set", "envelope.x=1 mm") if "stage.toml" in words else ()
+    ended = reported(*words.split(), *beyond, "--json", "out.json", "--report", "out.html")
+    assert ended.code == 0, ended.err
+    told = told_everywhere(ended, tmp_path / "out.json", tmp_path / "out.html")
+    assert expected in told
+
+
+def test_every_command_with_a_report_is_looked_at() -> None:
+    asked = {name for _, name, function, _ in COMMANDS if "report" in signature(function).parameters}
+    assert {each.split()[0] for each in REPORTED} | {"analyse", "solid", "verify"} == asked, (
+        "analyse: above; the solid ones: test_solid_commands"
+    )
 
 
 def test_without_stiffness_nothing_is_met(flexstage: Command, tmp_path: Path) -> None:

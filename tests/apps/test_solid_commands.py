@@ -20,7 +20,7 @@ from flexstage.parts.freedom import Freedom
 from flexstage.readings.solid import install
 from flexstage.readings.solid.progress import Step
 from flexstage.studies import resolution
-from tests.apps.command import Command, command_in
+from tests.apps.command import Command, command_in, told_everywhere
 from tests.apps.test_documents import ENVELOPE, page_section
 from tests.readings.small_solids import propped
 from tests.readings.solid_studies import COARSE, small, small_unit
@@ -60,9 +60,12 @@ def test_units(command: Command, tmp_path: Path) -> None:
     assert "Output of the drive unit by command" in page
 
 
-def test_the_stage(command: Command, tmp_path: Path) -> None:
-    ended = command("solid", "stage.toml", "--report", "stage.html", "--json", "stage.json")
+def test_the_stage(command: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(resolution, "changes", lambda *_: {"mode 1": 0.3})
+    ended = command("solid", "stage.toml", "--order", "3", "--report", "stage.html", "--json", "stage.json")
     assert ended.code == 0, ended.err
+    told = told_everywhere(ended, tmp_path / "stage.json", tmp_path / "stage.html")
+    assert "30 % at order 3; 1 % was asked" in told
     for title in ("Stiffness at platform", "Modes", "Elasticity of the bodies", "Highest stress over the strokes"):
         assert title in ended.out
     page = (tmp_path / "stage.html").read_text(encoding="utf-8")
@@ -70,9 +73,12 @@ def test_the_stage(command: Command, tmp_path: Path) -> None:
     assert "http" not in page.replace("http://www.w3.org/", "")
 
 
-def test_verification(command: Command, tmp_path: Path) -> None:
-    ended = command("verify", "stage.toml", "--accuracy", "5 %", "--json", "v.json", "--report", "v.html")
+def test_verification(command: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(resolution, "changes", lambda *_: {"mode 1": 0.3})
+    ended = command("verify", "stage.toml", "--accuracy", "5 %", "--order", "3", "--json", "v.json", "--report", "v.html")
     assert ended.code == 0, ended.err
+    told = told_everywhere(ended, tmp_path / "v.json", tmp_path / "v.html")
+    assert told.count("30 % at order 3; 5 % was asked") == 2, "units and stage"
     assert "Which to trust" in ended.out
     assert "Stage: theory and finite elements" in ended.out
     assert "Theory and finite elements" in (tmp_path / "v.html").read_text(encoding="utf-8")

@@ -6,13 +6,16 @@ from collections.abc import Iterable
 
 import flexstage
 from flexstage.base.digest import digest
+from flexstage.base.finding import Finding
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.present.page import Head, Section, page
 from flexstage.present.sections.caveats import caveat_section
 
 
-def solid_report(mechanism: Mechanism, sections: Iterable[Section | None], kind: str = "A flexure stage as solids") -> str:
-    """Sections of the solid reading as a page of HTML; those that are absent are left out.
+def solid_report(mechanism: Mechanism, sections: Iterable[Section | None], cautions: tuple[Finding, ...] = ()) -> str:
+    """Sections of the solid reading as a page of HTML, after cautions about the description and `cautions` about the result.
+
+    Sections that are absent are left out.
 
     >>> solid_report(Mechanism("stage"), [None])[:15]
     '<!doctype html>'
@@ -23,6 +26,5 @@ def solid_report(mechanism: Mechanism, sections: Iterable[Section | None], kind:
         ("document", digest(mechanism)[:16]),
         ("flexstage", flexstage.__version__),
     )
-    return page(
-        Head(mechanism.name or "stage", kind, origin), [each for each in (caveat_section(mechanism), *sections) if each is not None]
-    )
+    head = Head(mechanism.name or "stage", "A flexure stage as solids", origin)
+    return page(head, [each for each in (caveat_section(mechanism, cautions), *sections) if each is not None])

@@ -14,6 +14,7 @@ from flexstage.present.sections.caveats import caveat_section
 from flexstage.present.tables.study import failure_table, pair_table, response_table, share_table, variable_table
 from flexstage.studies.study.definition import Study
 from flexstage.studies.study.effects import Effects
+from flexstage.studies.study.loaded import loaded_findings
 from flexstage.studies.study.store import Results
 
 _STEEP = "All panels of a row have one scale: the steeper, the stronger. Means over designs, the other variables anywhere in their ranges."
@@ -28,7 +29,7 @@ def sweep_report(study: Study, results: Results, found: Effects) -> str:
         effects = Picture(to_svg(effects_figure(study, found), "effects", "mean responses over the variables"), _STEEP)
         designs = Picture(to_svg(designs_figure(study, results), "designs", "designs over parallel axes"), _parallel(study, found))
     sections: list[Section | None] = [
-        caveat_section(study.design),
+        caveat_section(study.design, loaded_findings(study)),
         section("What was varied", [variable_table(study, results)]),
         section("Responses", [response_table(study, results, found), designs]),
         section("Effects", [share_table(found), effects]),

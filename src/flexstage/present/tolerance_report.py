@@ -10,6 +10,7 @@ from flexstage.present.page import Head, Picture, Section, page, section
 from flexstage.present.sections.caveats import caveat_section
 from flexstage.present.tables.study import failure_table
 from flexstage.present.tables.tolerance import allowance_table, crosstalk_table, scatter_table, share_table, spread_table, yield_table
+from flexstage.studies.study.loaded import loaded_findings
 from flexstage.studies.tolerance.run import Toleranced
 
 _LIMITS = "Copies by value; black: the design as drawn; red: the limits, and copies beyond them."
@@ -25,7 +26,7 @@ def tolerance_report(found: Toleranced) -> str:
     yields = Picture(to_svg(yields_figure(found), "yields", "yields of the specification's lines"), _YIELDS) if said.lines else None
     shares = Picture(to_svg(shares_figure(found), "shares", "shares of the variance"), _SHARES)
     sections: list[Section | None] = [
-        caveat_section(study.design),
+        caveat_section(study.design, loaded_findings(study)),
         section("What scatters", [scatter_table(found)]),
         section("Yield", [yield_table(found), yields]),
         section("Responses", [spread_table(found), drawn if study.asked else None]),

@@ -10,9 +10,9 @@ import typer
 from flexstage.apps.cli.answer import Asked, answer
 from flexstage.apps.cli.identify import Report, writable
 from flexstage.apps.cli.options import Json
-from flexstage.apps.cli.output import STDOUT, write
+from flexstage.apps.cli.output import STDOUT, announced, write
 from flexstage.apps.cli.record import Rate, Said, Units, opened_records
-from flexstage.apps.cli.speech import tell, warn
+from flexstage.apps.cli.speech import warn
 
 if TYPE_CHECKING:
     from flexstage.readings.measured.record import Record
@@ -109,4 +109,4 @@ def _volts(limits: tuple[str, str]) -> tuple[float, float]:
 def _written(target: Path, text: str, option: str) -> None:
     write(target, text, option)
     if str(target) != STDOUT:
-        tell(f"Wrote {target}")
+        announced(f"Wrote {target}")

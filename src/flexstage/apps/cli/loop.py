@@ -34,7 +34,6 @@ from flexstage.apps.cli.loop_options import (
 from flexstage.apps.cli.opening import announce, opened
 from flexstage.apps.cli.options import Changes, Design, Json
 from flexstage.apps.cli.output import STDOUT, announced, write
-from flexstage.apps.cli.speech import tell
 
 if TYPE_CHECKING:
     from flexstage.mechanism.mechanism import Mechanism
@@ -137,7 +136,7 @@ def _write_example(design: Path, example: Path) -> None:
 
     require(output_findings([("--example", example)], design))
     write(example, commented(), "--example")
-    tell(f"Wrote {example}. Next: flexstage loop {design} --setup {example}")
+    announced(f"Wrote {example}. Next: flexstage loop {design} --setup {example}")
 
 
 def _studied(mechanism: Mechanism, asked: LoopSetup) -> LoopStudy:

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from flexstage.readings.solid.hinge_cache import HingeForm
     from flexstage.readings.solid.parts import Parts, Ways
     from flexstage.studies.resolution import Resolution, Resolved
-    from flexstage.studies.solid_hinge import Hinges
+    from flexstage.studies.solid_hinge import Hinges, SolidHinge
     from flexstage.studies.solid_read import Solids
     from flexstage.studies.verify import Verification
 
@@ -81,11 +81,12 @@ class _Wishes:
 
 @dataclass(frozen=True)
 class _Found:
-    """A result of the solid reading, as a document, tables, and sections of a report."""
+    """A result of the solid reading, as a document, tables, and sections of a report; cautions about it."""
 
     body: Callable[[], dict[str, object]]
     tables: Callable[[], Iterator[Table | None]]
     sections: Callable[[], Iterator[Section | None]]
+    cautions: tuple[Finding, ...]
 
 
 def solid(
@@ -112,9 +113,9 @@ def solid(
     with bar() as shown:
         found = _STUDIES[what](mechanism, asked, shown)
     if report is not None:
-        _write_report(report, mechanism, found.sections())
+        _write_report(report, mechanism, found.sections(), found.cautions)
     if _shows(json, report):
-        answer(Asked("solid", mechanism, None, json), lambda: {"what": what.value, **found.body()}, found.tables)
+        answer(Asked("solid", mechanism, None, json, found.cautions), lambda: {"what": what.value, **found.body()}, found.tables)
 
 
 def verify(
@@ -141,16 +142,15 @@ def verify(
 
     with bar() as shown:
         found = verified(mechanism, asked.resolution, _solids(asked, shown), _hinges(asked, shown))
+    read = [(name, each) for name, each in (("units", found.units), ("stage", found.stage)) if each is not None]
+    cautions = (*_inexact(found.hinges), *(caution for name, each in read for caution in _missed(name, each, asked.resolution)))
     if report is not None:
         units = None if found.units is None else unit_section(found.units)
         stage = None if found.stage is None else stage_solid_section(found.stage)
-        _write_report(report, mechanism, iter([verification_section(found), hinge_section(found.hinges), units, stage]))
-    for each in (found.units, found.stage):
-        if each is not None:
-            _tell_error(each, asked.resolution)
+        _write_report(report, mechanism, iter([verification_section(found), hinge_section(found.hinges), units, stage]), cautions)
     tell_missing(found.missing)
     if _shows(json, report):
-        answer(Asked("verify", mechanism, None, json), lambda: verification_body(found), lambda: _verification_tables(found))
+        answer(Asked("verify", mechanism, None, json, cautions), lambda: verification_body(found), lambda: _verification_tables(found))
 
 
 def calibrate(
@@ -181,12 +181,10 @@ def calibrate(
     with bar() as shown:
         found = calibrated(text, _hinges(asked, shown), where=str(design))
     write(output, found.text, "--output")
-    for hinge in found.hinges.values():
-        if hinge.found.finding is not None:
-            warn(f"{hinge.name}: {hinge.found.finding.what}")
     if str(output) != STDOUT:
         announced(f"Wrote {output}")
-        answer(Asked("calibrate", mechanism, None, json), lambda: calibration_body(found), lambda: [calibration_table(found)])
+        asking = Asked("calibrate", mechanism, None, json, _inexact(found.hinges))
+        answer(asking, lambda: calibration_body(found), lambda: [calibration_table(found)])
 
 
 def _opened(design: Path, changes: list[str] | None, outputs: list[tuple[str, str | Path | None]]) -> Mechanism:
@@ -267,13 +265,11 @@ def _hinge_study(mechanism: Mechanism, asked: _Wishes, shown: Bar) -> _Found:
     from flexstage.studies.solid_hinge import solid_hinges
 
     found = solid_hinges(mechanism, _hinges(asked, shown))
-    for hinge in found.values():
-        if hinge.found.finding is not None:
-            warn(f"{hinge.name}: {hinge.found.finding.what}. {hinge.found.finding.advice}.")
     return _Found(
         body=lambda: {"hinges": hinges_body(found)},
         tables=lambda: iter([hinge_table(found), *hinge_matrices(found)]),
         sections=lambda: iter([hinge_section(found)]),
+        cautions=_inexact(found),
     )
 
 
@@ -284,7 +280,6 @@ def _unit_study(mechanism: Mechanism, asked: _Wishes, shown: Bar) -> _Found:
     from flexstage.studies.verify import units_solid
 
     found = units_solid(mechanism, asked.resolution, _solids(asked, shown))
-    _tell_error(found, asked.resolution)
 
     def tables() -> Iterator[Table | None]:
         yield solid_unit_table(found)
@@ -292,7 +287,7 @@ def _unit_study(mechanism: Mechanism, asked: _Wishes, shown: Bar) -> _Found:
             yield command_table(name, unit)
             yield stress_table(f"Stress in the {name} unit at full stroke", unit.stress)
 
-    return _Found(lambda: solid_units_body(found), tables, lambda: iter([unit_section(found)]))
+    return _Found(lambda: solid_units_body(found), tables, lambda: iter([unit_section(found)]), _missed("units", found, asked.resolution))
 
 
 def _stage_study(mechanism: Mechanism, asked: _Wishes, shown: Bar) -> _Found:
@@ -304,7 +299,6 @@ def _stage_study(mechanism: Mechanism, asked: _Wishes, shown: Bar) -> _Found:
     from flexstage.studies.verify import stage_solid
 
     found = stage_solid(mechanism, asked.resolution, _solids(asked, shown))
-    _tell_error(found, asked.resolution)
     stage = found.result
 
     def tables() -> Iterator[Table | None]:
@@ -315,20 +309,32 @@ def _stage_study(mechanism: Mechanism, asked: _Wishes, shown: Bar) -> _Found:
         yield block_table(stage)
         yield None if stage.stress is None else stress_table("Highest stress over the strokes", stage.stress)
 
-    return _Found(lambda: solid_stage_body(found), tables, lambda: iter([stage_solid_section(found)]))
+    cautions = _missed("stage", found, asked.resolution)
+    return _Found(lambda: solid_stage_body(found), tables, lambda: iter([stage_solid_section(found)]), cautions)
 
 
 _STUDIES = {What.HINGE: _hinge_study, What.UNIT: _unit_study, What.STAGE: _stage_study}
 
 
-def _tell_error(found: Resolved[Any], asked: Resolution) -> None:
+def _inexact(hinges: Mapping[str, SolidHinge]) -> tuple[Finding, ...]:
+    """Cautions about hinges whose 6x6 is not as exact as was asked."""
+    from flexstage.base.finding import Finding
+
+    found = ((name, hinge.found.finding) for name, hinge in hinges.items())
+    return tuple(Finding(name, each.what, each.advice) for name, each in found if each is not None)
+
+
+def _missed(what: str, found: Resolved[Any], asked: Resolution) -> tuple[Finding, ...]:
+    """A caution where the error estimated is not as small as was asked; where it is, it is told."""
+    from flexstage.base.finding import Finding
+
     size = f"{100.0 * found.error:.2g} %" if found.errors else "unknown"
-    text = f"error estimated: {size}, at order {found.order}"
+    text = f"the error estimated of finite elements is {size} at order {found.order}"
     if found.error <= asked.accuracy:
-        tell(text)
-        return
-    more = found.stopped or (f"ask for --order {found.order + 1}" if asked.order is not None else "this is the highest order")
-    warn(f"{text}; {100.0 * asked.accuracy:.2g} % was asked: {more}")
+        tell(f"{what}: {text}")
+        return ()
+    more = found.stopped or (f"Ask for --order {found.order + 1}" if asked.order is not None else "This is the highest order")
+    return (Finding(what, f"{text}; {100.0 * asked.accuracy:.2g} % was asked", more.rstrip(".")),)
 
 
 def _verification_tables(found: Verification) -> Iterator[Table]:
@@ -339,10 +345,10 @@ def _verification_tables(found: Verification) -> Iterator[Table]:
     yield verdict_table_of(found)
 
 
-def _write_report(target: Path, mechanism: Mechanism, sections: Iterator[Section | None]) -> None:
+def _write_report(target: Path, mechanism: Mechanism, sections: Iterator[Section | None], cautions: tuple[Finding, ...]) -> None:
     from flexstage.present.solid_report import solid_report
 
-    write(target, solid_report(mechanism, sections), "--report")
+    write(target, solid_report(mechanism, sections, cautions), "--report")
     if str(target) != STDOUT:
         announced(f"Wrote {target}")
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 
 from flexstage.analysis.stability import DOUBTFUL, stability
@@ -76,6 +78,7 @@ def require_holding(study: Study, values: Array) -> tuple[Finding, ...]:
     return tuple(Finding("the best design", each.what, each.advice) for each in factors.cautions)
 
 
+@lru_cache(maxsize=2)
 def _least(study: Study) -> tuple[float, Array]:
     """The least load factor among the ends of every range, others as drawn, and the corner of the worse ends; and the values there."""
     if not _bears(study.design):
