@@ -16,7 +16,6 @@ _FREE, _SMALL = 1e-9, 1e-4
 _MIXING = 0.25
 _STEPS = 60
 _CONVERGED = 1e-3
-_NEGLIGIBLE = 1e-5
 _NOISE_LINES = 100
 _DIGITS = 1e-6
 
@@ -211,8 +210,8 @@ def silence(cells: Cells, rounding: Array | float) -> Array:
 def scatter(band: Band, modal: Modal) -> Array:
     """Covariance of the gradient, noise of outputs correlated as what is left shows: with it, deviations hold for noise of that kind too.
 
-    The middle of the sandwich estimator (White 1982); for noise independent between outputs it tends to the information. Of the parameters
-    of `Fit.information`.
+    The middle of the sandwich estimator (White 1982); for noise independent between outputs it tends to the information. Where less is left
+    than `silence`, that counts. Of the parameters of `Fit.information`.
 
     >>> from flexstage.readings.measured.example import one_mode_band
     >>> found = fit(*one_mode_band())
@@ -222,6 +221,8 @@ def scatter(band: Band, modal: Modal) -> Array:
     cells, outputs = band.cells, len(modal.shapes)
     left = np.conj(residual_power(band, modal))
     noise = _pooled(left.reshape(-1, left.shape[2]), cells).reshape(left.shape) / _free(band, modal)
+    alone = np.arange(outputs)
+    noise[alone, alone] = np.maximum(np.real(noise[alone, alone]), silence(cells, band.rounding))
     weights = (noise / band.variance[:, None, :] / band.variance[None, :, :]).reshape(outputs**2, -1)
     near = _functions(band, modal.poles)
     functions = np.concatenate([near, band.background], axis=1)
@@ -268,7 +269,7 @@ def _pooled(power: Array, cells: Cells) -> Array:
 def background(cells: Cells, outside: Array, degree: int = 3) -> Array:
     """An orthonormal basis (c, b, 8) of polynomials up to `degree` and of the tails 1/(j f - p) of the poles `outside` (Hz).
 
-    Directions that add less than 1e-5 to it are left out.
+    Directions that add less to it than the 1e-6 to which cells hold numbers are left out.
 
     >>> from flexstage.readings.measured.example import one_mode_band
     >>> background(one_mode_band()[0].cells, np.zeros(0), 1).shape[1:]
@@ -282,7 +283,7 @@ def background(cells: Cells, outside: Array, degree: int = 3) -> Array:
     rows = every.reshape(-1, every.shape[2])
     rows = rows / np.linalg.norm(rows * weight[:, None], axis=0)
     left, values, _ = np.linalg.svd(rows * weight[:, None], full_matrices=False)
-    kept = left[:, values > _NEGLIGIBLE * values[0]] / weight[:, None]
+    kept = left[:, values > _DIGITS * values[0]] / weight[:, None]
     return expanded(np.moveaxis(kept.reshape(*points.shape, -1), 2, 1))
 
 
