@@ -138,6 +138,20 @@ def test_a_mat_file_pressed_beyond_belief_is_refused(tmp_path: Path, monkeypatch
     assert "reading it takes more than" in refusal(tmp_path / "a.mat")
 
 
+def test_where_the_system_limits_no_memory_a_child_that_takes_too_much_is_ended(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    scipy.io.savemat(tmp_path / "a.mat", {"u": np.zeros((40_000_000,))}, do_compression=True)
+    (tmp_path / "resource.py").write_text("raise ImportError")
+    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
+    monkeypatch.setitem(sys.modules, "resource", None)
+    monkeypatch.setattr(files, "CHILD", files.Child())
+    monkeypatch.setattr(files, "PATIENCE", 60.0)
+    monkeypatch.setattr(files, "MEMORY", 200_000_000)
+    assert "reading it takes more than 0.201 GB of memory. Export it anew, or in parts" in refusal(tmp_path / "a.mat")
+    assert files.CHILD.code() == -signal.SIGKILL, "it ended by itself"
+    assert set(hdf(without_checksums(tmp_path / "a.h5")).arrays) == {"test/u", "test/y"}
+    files.CHILD.end()
+
+
 def test_what_is_no_regular_file_is_refused(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "pipe.csv")
     for path, kind in ((tmp_path / "pipe.csv", "a pipe"), (Path("/dev/zero"), "a device"), (tmp_path, "a folder")):

@@ -163,6 +163,10 @@ def _less(there: float) -> str:
 # --- the child as the caller sees it ---
 
 
+class _TooMuchError(EOFError):
+    """The child took more memory than it may."""
+
+
 class Child:
     """A process that answers questions about files; started by the first one, and anew after one that ended it."""
 
@@ -259,34 +263,35 @@ def _into(stream: Any, array: Array) -> None:
 
 @contextlib.contextmanager
 def _watched(process: subprocess.Popen[bytes], memory: int) -> Generator[None]:
-    """Where the system does not limit memory itself, a thread looks, and ends a child that takes more."""
+    """Where the system does not limit memory itself, a thread looks, and ends a child that takes more: raises `_TooMuchError` then."""
     if sys.platform == "linux" and _resource() is not None:
         yield
         return
-    done = threading.Event()
-    watch = threading.Thread(target=_watch, args=(process, memory, done), daemon=True)
+    done, exceeded = threading.Event(), threading.Event()
+    watch = threading.Thread(target=_watch, args=(process, memory, done, exceeded), daemon=True)
     watch.start()
     try:
         yield
+    except EOFError:
+        if exceeded.is_set():
+            raise _TooMuchError from None
+        raise
     finally:
         done.set()
         watch.join()
 
 
-def _watch(process: subprocess.Popen[bytes], memory: int, done: threading.Event) -> None:
+def _watch(process: subprocess.Popen[bytes], memory: int, done: threading.Event, exceeded: threading.Event) -> None:
     with contextlib.suppress(ImportError):  # where the system lacks what it asks, there is the limit of time alone
-        _watch_memory(process, memory, done)
+        import psutil
 
-
-def _watch_memory(process: subprocess.Popen[bytes], memory: int, done: threading.Event) -> None:
-    import psutil
-
-    with contextlib.suppress(psutil.Error):
-        seen = psutil.Process(process.pid)
-        while not done.wait(0.05):
-            if seen.memory_info().rss > memory:
-                process.kill()
-                return
+        with contextlib.suppress(psutil.Error):
+            seen = psutil.Process(process.pid)
+            while not done.wait(0.05):
+                if seen.memory_info().rss > memory:
+                    exceeded.set()
+                    process.kill()
+                    return
 
 
 def _resource() -> Any:
@@ -299,9 +304,11 @@ def _resource() -> Any:
 
 def _ask(path: Path, question: dict[str, Any], size: int) -> tuple[Any, list[Array]]:
     """What the child says about a file, at most `size` bytes of numbers; raises `DesignError` with what keeps it from being read."""
-    seconds, start = PATIENCE + _SLOW * size, time.monotonic()
+    seconds, memory, start = PATIENCE + _SLOW * size, MEMORY + _COPIES * size, time.monotonic()
     try:
-        answer, arrays = CHILD.ask(question | {"seconds": seconds, "memory": MEMORY + _COPIES * size})
+        answer, arrays = CHILD.ask(question | {"seconds": seconds, "memory": memory})
+    except _TooMuchError:
+        raise refuse(str(path), *_too_much(memory)) from None
     except (EOFError, ValueError, KeyError, TypeError):
         what = _ended(CHILD.code(), seconds if time.monotonic() - start >= seconds else None)
         raise refuse(str(path), f"it is damaged: {what}", "Copy or export it anew") from None
@@ -309,6 +316,10 @@ def _ask(path: Path, question: dict[str, Any], size: int) -> tuple[Any, list[Arr
         where, what, advice = answer["wrong"]
         raise refuse(f"{path}: {where}" if where else str(path), what, advice)
     return answer["result"], arrays
+
+
+def _too_much(memory: int) -> tuple[str, str]:
+    return f"reading it takes more than {gigabytes(memory)} of memory", "Export it anew, or in parts"
 
 
 def _ended(code: int, seconds: float | None) -> str:
@@ -364,7 +375,7 @@ def _wrong(question: dict[str, Any], error: Exception) -> tuple[str, str, str]:
     if isinstance(error, _WrongError):
         return error.args[0], error.args[1], error.args[2]
     if isinstance(error, MemoryError):
-        return "", f"reading it takes more than {question['memory'] / 1e9:.3g} GB of memory", "Export it anew, or in parts"
+        return "", *_too_much(question["memory"])
     said = _said(error)
     if question["task"] == "mat":
         size = Path(question["path"]).stat().st_size
