@@ -129,6 +129,7 @@ _ROOMS = {
     "studies.calibrate": "Calibration calibrate",
     "studies.workspace": "Workspace workspace",
     "studies.cautions": "Caveats caveats",
+    "studies.standing": "standing",
     "studies.complete": "Analysis Reading analyse",
     "studies.judge": "judge",
     "studies.budget": "budget",

@@ -412,6 +412,9 @@ from flexstage.studies.solid_unit import (
     SolidUnit as SolidUnit,
     solid_units as solid_units,
 )
+from flexstage.studies.standing import (
+    standing as standing,
+)
 from flexstage.studies.study.effects import (
     Effects as Effects,
     effects as effects,

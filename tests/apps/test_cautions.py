@@ -7,6 +7,7 @@ from dataclasses import replace
 from inspect import signature
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import flexstage as fs
@@ -106,6 +107,15 @@ def test_a_stage_that_its_weight_topples_has_no_elastic_results(flexstage: Comma
     assert "load factor 0.503" in ended.err or "load factor 0.502" in ended.err
     told = flexstage("mapping", "stage.toml")
     assert (told.code, "does not hold" in told.out) == (0, True)
+
+
+def test_a_model_in_python_is_refused_alike(tmp_path: Path) -> None:
+    leaves(tmp_path, 10.0)
+    with pytest.raises(fs.DesignError, match="does not hold"):
+        fs.standing(fs.load(tmp_path / "stage.toml"))
+    leaves(tmp_path, 2.5)
+    stage = fs.load(tmp_path / "stage.toml")
+    np.testing.assert_array_equal(fs.standing(stage).stiffness_matrix, fs.lumped(stage).stiffness_matrix)
 
 
 def test_verdicts_that_the_weight_may_turn_are_withheld(flexstage: Command, tmp_path: Path) -> None:
