@@ -22,8 +22,9 @@ import sys
 import tomllib
 import zipfile
 from collections import Counter, defaultdict
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Generator, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
 from dataclasses import dataclass
 from html.parser import HTMLParser
 from itertools import pairwise
@@ -32,6 +33,7 @@ from typing import Any
 
 import h5py
 import numpy as np
+from filelock import FileLock
 from platformdirs import user_cache_path
 from scipy.io import loadmat
 
@@ -110,6 +112,21 @@ def stack() -> str:
     return "\n".join(lines) + "\n"
 
 
+@contextmanager
+def whole(folder: Path) -> Generator[Path | None]:
+    """A folder to fill that is then `folder`, or None where that is there already: made once, whoever else wants it at the same time."""
+    folder.parent.mkdir(parents=True, exist_ok=True)
+    with FileLock(folder.with_name(f"{folder.name}.lock")):
+        if folder.is_dir():
+            yield None
+            return
+        begun = folder.with_name(f"{folder.name}.part")
+        shutil.rmtree(begun, ignore_errors=True)
+        begun.mkdir()
+        yield begun
+        begun.rename(folder)
+
+
 @dataclass(frozen=True)
 class Side:
     """Where one side's source is, what runs it, and where its outputs are kept."""
@@ -121,16 +138,14 @@ class Side:
     def outputs(self, task: Task) -> Path:
         """Folder of what the task wrote; it runs now if it has not run whole."""
         folder = self.kept / f"{task.name}-{hashlib.sha256(repr(task).encode()).hexdigest()[:8]}"
-        if not folder.is_dir():
-            begun = folder.with_suffix(".part")
-            shutil.rmtree(begun, ignore_errors=True)
-            (begun / "out").mkdir(parents=True)
-            for name, text in task.files.items():
-                (begun / "out" / name).write_text(text, encoding="utf-8")
-            for number, line in enumerate(task.commands, 1):
-                self._run(line, begun, f"{number:02}-{line.split()[0]}")
-            shutil.rmtree(begun / "cache", ignore_errors=True)
-            begun.rename(folder)
+        with whole(folder) as begun:
+            if begun is not None:
+                (begun / "out").mkdir()
+                for name, text in task.files.items():
+                    (begun / "out" / name).write_text(text, encoding="utf-8")
+                for number, line in enumerate(task.commands, 1):
+                    self._run(line, begun, f"{number:02}-{line.split()[0]}")
+                shutil.rmtree(begun / "cache", ignore_errors=True)
         return folder / "out"
 
     def _run(self, line: str, folder: Path, name: str) -> None:
@@ -154,9 +169,10 @@ def _command(*words: str | Path) -> str:
 def base_side(commit: str, cache: Path) -> Side:
     """A commit, laid out beside; with an environment of its own where it needs other packages."""
     source, python, needed = cache / commit / "source", Path(sys.executable), "requirements/runtime.txt"
-    if not source.is_dir():
-        _command("git", "worktree", "prune")
-        _command("git", "worktree", "add", "--detach", source, commit)
+    with whole(source) as begun:
+        if begun is not None:
+            _command("git", "archive", "--output", begun / "all.tar", commit)
+            shutil.unpack_archive(begun / "all.tar", begun, filter="data")
     if (source / needed).read_bytes() != (ROOT / needed).read_bytes():
         _command("make", "-C", source, "setup-runtime")
         python = source / ".venv" / "bin" / "python"
@@ -168,11 +184,11 @@ def head_side(cache: Path) -> Side:
     digest = hashlib.sha256()
     for path in sorted(each for each in (ROOT / "src").rglob("*") if each.is_file() and each.suffix != ".pyc"):
         digest.update(f"{path} {path.stat().st_size}\n".encode() + path.read_bytes())
-    kept = cache / f"tree-{digest.hexdigest()[:12]}"
-    for each in cache.glob("tree-*"):
-        if each != kept:
+    tree = cache / f"tree-{hashlib.sha256(str(ROOT).encode()).hexdigest()[:12]}"
+    for each in tree.glob("*"):
+        if each.name != digest.hexdigest()[:12]:
             shutil.rmtree(each)
-    return Side(ROOT, Path(sys.executable), kept / KERNEL)
+    return Side(ROOT, Path(sys.executable), tree / digest.hexdigest()[:12] / KERNEL)
 
 
 # Reading: documents and lines -----------------------------------------------------------------------------------------------------------
@@ -394,6 +410,8 @@ def compared_folders(name: str, old: Path, new: Path) -> Iterator[tuple[str, Fin
             yield where, (DIFFERENT, f"only at {'BASE' if each in at_old else 'HEAD'}")
             continue
         first, second = read(old / each), read(new / each)
+        if each.endswith(".stderr") and isinstance(first, list) and first[0] != "exit code 0" and not name.startswith("refused"):
+            yield where, (DIFFERENT, f"{first[0]} at BASE: {' / '.join(first[1:])[:200]}")
         if isinstance(first, list) and isinstance(second, list):
             found = compared_texts(first, second)
         else:
