@@ -10,14 +10,15 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tools.compare_outputs import DIFFERENT, EQUAL, SKIPPED, WITHIN, Rule, compared, compared_folders, deviation, document, searched, tasks
+from tools.compare_outputs import tasks
+from tools.differences import DIFFERENT, EQUAL, SKIPPED, WITHIN, Meant, Rule, compared, compared_folders, deviation, document, searched
 
 MODES = [{"name": "tilt", "frequency_hz": 106.0}, {"name": "tilt", "frequency_hz": 106.5}]
 RESULT = {"version": "1", "modes": MODES, "map": {"unit": "m", "values": [[1.0, 2.0]]}}
 
 
 def found(old: Any, new: Any, rules: tuple[Rule, ...] = (), paths: Mapping[str, str] | None = None) -> list[tuple[str, str]]:
-    return list(compared("run/a.json", document(old), document(new), rules, paths or {}))
+    return list(compared("run/a.json", document(old), document(new), Meant({}, paths or {}, rules)))
 
 
 def told(old: Any, new: Any, paths: Mapping[str, str] | None = None) -> list[str]:
@@ -80,8 +81,12 @@ def test_files_are_compared_as_what_they_are(tmp_path: Path) -> None:
         (tmp_path / side / "a.html").write_text(page.format(style, value, style))
         (tmp_path / side / "b.stdout").write_text(f"gain {' ' * len(style)} 1\n\nmade by flexstage 0.1.0\n")
         (tmp_path / side / f"{side}.json").write_text("{}")
-    seen = [(where, text) for where, (state, text) in compared_folders("run", tmp_path / "old", tmp_path / "new") if state == DIFFERENT]
+    seen = [
+        (where, text) for where, (state, text) in compared_folders("run", tmp_path / "old", tmp_path / "new", Meant()) if state == DIFFERENT
+    ]
     assert seen == [("run/a.html", 'line 2: "0.98" -> "0.97"'), ("run/new.json", "only at HEAD"), ("run/old.json", "only at BASE")]
+    meant = Meant({"0.98": "0.97"})
+    assert EQUAL in {state for where, (state, _) in compared_folders("run", tmp_path / "old", tmp_path / "new", meant) if "html" in where}
 
 
 def test_runs_are_spelled_in_the_words_of_each_side() -> None:
