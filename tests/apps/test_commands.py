@@ -2,35 +2,38 @@
 
 from __future__ import annotations
 
+import inspect
 import os
 import shlex
 import subprocess
 import sys
 import warnings
+from importlib import import_module
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
+import typer
 from netgen import occ
 
 from flexstage.apps import doctor
-from flexstage.apps.cli import run
-from flexstage.apps.cli.application import COMMANDS
+from flexstage.apps.cli import analyses, commands, run
+from flexstage.apps.cli.commands import COMMANDS
 from flexstage.apps.cli.installation import self_test
 from flexstage.apps.cure import MakeFolder
 from flexstage.apps.doctor import Row, Verdict
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.readings.measured.write import write
-from flexstage.studies import complete
 from flexstage.studies.hysteresis_example import example_record
 from tests.apps.command import Command, design_in
 from tests.readings.stage_records import stage_record
 
 PROCESS = [sys.executable, "-c", "from flexstage.apps.cli import main; main()"]
-NAMES = [name for _, name, _, _ in COMMANDS]
+NAMES = [each.name for each in COMMANDS]
 LONG = ("verify", "solid", "calibrate", "identify", "compare", "loop")
 """Commands whose examples take minutes on the shipped stage, or whose reports have tests of their own: run in full only."""
 
-EXAMPLES = [pytest.param(example, marks=pytest.mark.full if name in LONG else ()) for _, name, _, example in COMMANDS if name != "doctor"]
+EXAMPLES = [pytest.param(each.example, marks=pytest.mark.full if each.name in LONG else ()) for each in COMMANDS if each.name != "doctor"]
 
 STUDY = """
 format = "flexstage study 1"
@@ -70,10 +73,54 @@ def test_examples_run(flexstage: Command, tmp_path: Path, example: str) -> None:
     assert ended.out or "Wrote" in ended.err
 
 
-def test_help_names_every_command(flexstage: Command) -> None:
+def test_help_names_every_command_under_its_purpose(flexstage: Command) -> None:
     out = flexstage("--help").out
-    assert all(f"\n  {name} " in out for name in NAMES)
+    assert all(f"\n  {each.name} " in out for each in COMMANDS)
     assert "..." not in out.replace("[ARGS]...", "")
+    groups = [each.group for each in COMMANDS]
+    assert all(out.count(f"\n{group}:\n") == 1 for group in groups)
+    assert [out.index(f"\n{group}:\n") for group in groups] == sorted(out.index(f"\n{group}:\n") for group in groups)
+
+
+@pytest.mark.parametrize("command", COMMANDS, ids=NAMES)
+def test_the_line_of_each_command_is_that_of_its_docstring(command: commands.Command) -> None:
+    module, _, name = command.home.partition(":")
+    docstring = inspect.getdoc(getattr(import_module(module), name))
+    assert docstring is not None
+    assert docstring.splitlines()[0] == command.help
+
+
+def test_only_the_module_of_the_command_is_imported() -> None:
+    code = "import sys; from flexstage.apps.cli import run; run(sys.argv[1:]); print(*sys.modules)"
+    homes = {each.home.partition(":")[0] for each in COMMANDS}
+    for words, expected in ((["--help"], set()), (["version"], {"about"}), (["sweep", "--help"], {"sweep"})):
+        done = subprocess.run([sys.executable, "-c", code, *words], capture_output=True, text=True, check=True)
+        assert homes & set(done.stdout.splitlines()[-1].split()) == {f"flexstage.apps.cli.{name}" for name in expected}
+
+
+def test_version_is_an_option_too(flexstage: Command) -> None:
+    assert flexstage("--version").out == flexstage("version").out
+    assert flexstage("--version").code == 0
+
+
+def test_unknown_commands_suggest(flexstage: Command) -> None:
+    ended = flexstage("analse")
+    assert ended.code == 2
+    assert "No such command 'analse'. Did you mean 'analyse'?" in ended.err
+
+
+def test_groups_of_commands_are_lazy_too(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    app = typer.Typer(rich_markup_mode=None)
+    app.command("slow")(lambda: typer.echo("slow it is"))
+    app.command("fast")(lambda: typer.echo("fast it is"))
+    group = commands.application((commands.Command("tune", "Control it", "Tune loops.", "tuning:app", ""),))
+    with pytest.raises(ModuleNotFoundError, match="tuning"):
+        group(["tune", "slow"], standalone_mode=False)
+    monkeypatch.setitem(sys.modules, "tuning", SimpleNamespace(app=app))
+    group(["tune", "slow"], standalone_mode=False)
+    assert capsys.readouterr().out == "slow it is\n"
+    with pytest.raises(Exception, match=r"No such command 'slo'. Did you mean 'slow'\?"):
+        group(["tune", "slo"], standalone_mode=False)
 
 
 def test_a_new_design_is_sound_and_commented(flexstage: Command, tmp_path: Path) -> None:
@@ -113,7 +160,7 @@ def test_faults_of_the_program_are_told_without_traceback(flexstage: Command, mo
     def broken(*_: object) -> None:
         raise RuntimeError("a gear fell out")
 
-    monkeypatch.setattr(complete, "platform_modes", broken)
+    monkeypatch.setattr(analyses, "platform_modes", broken)
     monkeypatch.delenv("FLEXSTAGE_DEBUG", raising=False)
     ended = flexstage("modes", "stage.toml")
     assert ended.code == 70
@@ -126,13 +173,13 @@ def test_faults_of_the_program_are_told_without_traceback(flexstage: Command, mo
 
 
 def test_warnings_of_libraries_are_one_line_each(flexstage: Command, monkeypatch: pytest.MonkeyPatch) -> None:
-    found = complete.platform_modes
+    found = analyses.platform_modes
 
     def loud(*arguments: object) -> object:
         warnings.warn("overflow somewhere", RuntimeWarning, stacklevel=1)
         return found(*arguments)  # type: ignore[arg-type]
 
-    monkeypatch.setattr(complete, "platform_modes", loud)
+    monkeypatch.setattr(analyses, "platform_modes", loud)
     with warnings.catch_warnings():
         warnings.simplefilter("default")
         ended = flexstage("modes", "stage.toml")
@@ -143,7 +190,7 @@ def test_interruption_is_told(flexstage: Command, monkeypatch: pytest.MonkeyPatc
     def interrupted(*_: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(complete, "platform_modes", interrupted)
+    monkeypatch.setattr(analyses, "platform_modes", interrupted)
     ended = flexstage("modes", "stage.toml")
     assert ended.code == 2
     assert ended.err.startswith("Interrupted; nothing was written.")

@@ -15,10 +15,11 @@ import numpy as np
 import pytest
 
 import flexstage as fs
+from flexstage.base.progress import Step
 from flexstage.cases.bridge import bridge
 from flexstage.parts.freedom import Freedom
+from flexstage.present.command.progress import progress_bar
 from flexstage.readings.solid import install
-from flexstage.readings.solid.progress import Step
 from flexstage.studies import resolution
 from tests.apps.command import Command, command_in, told_everywhere
 from tests.apps.test_documents import ENVELOPE, page_section
@@ -231,8 +232,8 @@ def test_too_little_memory_is_refused_by_name(command: Command, tmp_path: Path, 
 def test_memory_is_the_limit_of_all_that_is_computed(command: Command, monkeypatch: pytest.MonkeyPatch) -> None:
     asked: list[float | None] = []
     monkeypatch.setattr("flexstage.studies.verify.verify", lambda *_: pytest.fail("computed"))
-    monkeypatch.setattr("flexstage.studies.solid_read.solids", lambda ways, _: asked.append(ways.limits.memory))
-    monkeypatch.setattr("flexstage.studies.solid_hinge.hinges", lambda _accuracy, _order, ways, _notice: asked.append(ways.limits.memory))
+    monkeypatch.setattr("flexstage.apps.cli.solid.solids", lambda ways, _: asked.append(ways.limits.memory))
+    monkeypatch.setattr("flexstage.apps.cli.solid.hinges", lambda _accuracy, _order, ways, _notice: asked.append(ways.limits.memory))
     with pytest.raises(pytest.fail.Exception):
         command("verify", "stage.toml", "--memory", "3 GB")
     assert asked == [3e9, 3e9]
@@ -249,8 +250,6 @@ def test_outlines_that_do_not_meet_are_named(command: Command, tmp_path: Path) -
 
 
 def test_the_bar_is_silent_without_a_terminal(capfd: Any) -> None:
-    from flexstage.apps.cli.bar import bar
-
-    with bar() as shown:
+    with progress_bar() as shown:
         shown.step(Step("lever: meshing", 0.5, 70.0))
     assert capfd.readouterr() == ("", "")

@@ -17,7 +17,6 @@ from flexstage.parts.body import Body
 from flexstage.parts.freedom import Freedom
 from flexstage.parts.given import Joint
 from flexstage.parts.mass import mass_properties
-from flexstage.readings.solid import sound
 from flexstage.readings.solid.imported import import_findings
 from tests.apps.command import Command
 from tests.roundtrip.test_gltf import leaf_stage
@@ -79,7 +78,7 @@ def test_what_does_not_meet_is_warned_of_in_step_and_refused_in_a_mesh(flexstage
 def test_bad_outputs_are_found_before_anything_is_drawn(
     flexstage: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, arguments: tuple[str, ...], said: str
 ) -> None:
-    monkeypatch.setattr(sound, "stage_findings", lambda *_: pytest.fail("drawn all the same"))
+    monkeypatch.setattr("flexstage.apps.cli.exchange.stage_findings", lambda *_: pytest.fail("drawn all the same"))
     before = (tmp_path / "stage.toml").read_bytes()
     ended = flexstage("cad", "stage.toml", *arguments)
     assert ended.code == 2

@@ -15,10 +15,10 @@ import psutil
 import pytest
 
 from flexstage.apps.cli import run
-from flexstage.apps.cli.application import COMMANDS
+from flexstage.apps.cli.commands import COMMANDS
 from tests.apps.command import Command, design_in
 
-NAMES = [name for _, name, _, _ in COMMANDS]
+NAMES = [each.name for each in COMMANDS]
 FULL = Path("/dev/full")
 STREAMS = ("closed", "full", "gone")
 EVERY = [*((name, how) for name in NAMES for how in ("closed", "full")), ("check", "gone")]

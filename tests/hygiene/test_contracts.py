@@ -62,6 +62,10 @@ def planted(folder: Path, imports: dict[str, str]) -> Path:
         ("beams/leaf.py", "flexstage.readings.linear"),
         ("readings/measured/record.py", "flexstage.readings.ideal"),
         ("readings/linear/__init__.py", "flexstage.readings.lumped"),
+        ("apps/cli/sweep.py", "flexstage.apps.cli.tolerance"),
+        ("apps/cli/loop.py", "flexstage.apps.cli.commands"),
+        ("present/command/answer.py", "flexstage.apps.cli.about"),
+        ("present/command/progress.py", "flexstage.readings.solid.progress"),
     ],
 )
 def test_contracts_bite(tmp_path: Path, importer: str, imported: str) -> None:

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from flexstage.base.finding import DesignError, Finding
+from flexstage.base.progress import Step
 from flexstage.base.scale import mm
 from flexstage.cases.stock import STEEL
 from flexstage.parts.notch import Notch
@@ -20,7 +21,6 @@ from flexstage.readings.solid.estimate import Accuracy
 from flexstage.readings.solid.hinge import HingeSolid, hinge_compliance
 from flexstage.readings.solid.hinge_cache import HingeForm, HingePart, kept_hinges
 from flexstage.readings.solid.parts import Ways
-from flexstage.readings.solid.progress import Step
 from flexstage.readings.solid.remote import Limits
 from flexstage.readings.solid.roots import Roots, own_roots
 

@@ -15,6 +15,7 @@ import pytest
 
 import flexstage as fs
 from flexstage.base.finding import DesignError
+from flexstage.base.progress import Step
 from flexstage.base.scale import mm
 from flexstage.readings.linear.model import LinearModel
 from flexstage.readings.solid import parts as parts_module
@@ -22,7 +23,6 @@ from flexstage.readings.solid import store
 from flexstage.readings.solid.cache import Cache, find, folder_of, keep, key_of
 from flexstage.readings.solid.component import components
 from flexstage.readings.solid.parts import Ways, reduce_parts
-from flexstage.readings.solid.progress import Step
 from flexstage.readings.solid.reading import solid, solid_parts
 from flexstage.readings.solid.remote import Limits
 from flexstage.readings.solid.store import versions, written

@@ -17,10 +17,11 @@ import numpy as np
 import pytest
 
 from flexstage.base.finding import DesignError, Finding
+from flexstage.base.progress import Step
 from flexstage.base.scale import mm
 from flexstage.readings.solid.cad import cad
 from flexstage.readings.solid.memory import Counts, entries, freedoms, needed
-from flexstage.readings.solid.progress import Stage, Step
+from flexstage.readings.solid.progress import Stage
 from flexstage.readings.solid.reducing import Reducing, fewest_elements
 from flexstage.readings.solid.remote import Limits, work_all
 from flexstage.readings.solid.store import read

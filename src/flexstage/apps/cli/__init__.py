@@ -1,6 +1,7 @@
-"""The command line: `flexstage ...`. Translates requests; no physics. Nothing heavy is loaded before a command needs it.
+"""The command line: `flexstage ...`. Translates requests; no physics. Nothing heavy is loaded before a command is called.
 
-Commands stand by family: `design` (files), `analyses` (one command an analysis), `whole` (everything at once), `installation`.
+`commands` is the table of all commands. Their modules take what they share from `present.command`, and know neither one another nor the
+table.
 """
 
 from __future__ import annotations
@@ -9,7 +10,7 @@ import signal
 import sys
 from collections.abc import Sequence
 
-from flexstage.apps.cli.failure import ENDINGS, SIGNALLED, guarded
+from flexstage.present.command.failure import ENDINGS, SIGNALLED, guarded
 
 
 def main() -> None:
@@ -37,11 +38,11 @@ def run(arguments: Sequence[str]) -> int:
 
 def _run(arguments: list[str]) -> None:
     try:
-        from flexstage.apps.cli.application import app
+        from flexstage.apps.cli.commands import application  # where typer itself is missing, the doctor still runs
     except ModuleNotFoundError as error:
         if arguments[:1] != ["doctor"] or (error.name or "").startswith("flexstage"):
             raise
         from flexstage.apps.cli.installation import consult
 
         sys.exit(consult(mending="--mend" in arguments))
-    app(arguments, prog_name="flexstage")
+    application()(arguments, prog_name="flexstage")

@@ -8,7 +8,8 @@ from typing import Annotated
 import typer
 
 import flexstage
-from flexstage.apps.cli.speech import say
+from flexstage.apps.cli import installation
+from flexstage.present.command.terminal import say
 
 
 def doctor(*, mend: Annotated[bool, typer.Option("--mend", help="Mend what can be mended, then examine again.")] = False) -> None:
@@ -16,9 +17,7 @@ def doctor(*, mend: Annotated[bool, typer.Option("--mend", help="Mend what can b
 
     Python, packages, threads, folders, a computation with a known result. Exit code 2 if anything is bad.
     """
-    from flexstage.apps.cli.installation import consult
-
-    raise typer.Exit(consult(mending=mend))
+    raise typer.Exit(installation.consult(mending=mend))
 
 
 def version() -> None:

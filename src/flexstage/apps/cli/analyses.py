@@ -2,21 +2,38 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Annotated
 
 import typer
 
-from flexstage.apps.cli.answer import Asked, answer, elastic_model, known_point
-from flexstage.apps.cli.grouped import lost_motion_tables, mapping_tables, stiffness_tables
-from flexstage.apps.cli.noise import spectra_from
-from flexstage.apps.cli.opening import opened
-from flexstage.apps.cli.options import Changes, Design, Json, Theory
+from flexstage.analysis import lost_motion as losses
+from flexstage.analysis import response as responses
+from flexstage.analysis.deflection import Deflection, deflection
+from flexstage.analysis.lost_motion import LostMotion
+from flexstage.analysis.random_response import random_response
+from flexstage.analysis.statics import Statics, statics
+from flexstage.base.finding import refuse
+from flexstage.base.quantity import FREQUENCY
+from flexstage.base.unit import parse
+from flexstage.present.command.answer import answer
+from flexstage.present.command.design import elastic_model, known_point, open_design
+from flexstage.present.command.options import Changes, Design, Json, Theory, text_option
+from flexstage.present.command.values import spectra
+from flexstage.present.documents.results import elastic_jacobian, lost_motion_body, mapping_body, modes_body, response_body, stiffness_body
+from flexstage.present.table import Table
+from flexstage.present.tables import kinematics as motion_tables
+from flexstage.present.tables import lost_motion as loss_tables
+from flexstage.present.tables import statics as static_tables
+from flexstage.present.tables.deflection import deflection_table
+from flexstage.present.tables.modes import mode_table
+from flexstage.present.tables.random_response import random_table
+from flexstage.present.tables.response import response_table
+from flexstage.readings.ideal import ideal
+from flexstage.readings.linear.damping import damping_law
+from flexstage.readings.linear.kinematics import Kinematics
+from flexstage.studies.complete import platform_modes, read
 from flexstage.studies.reading import Reading
-
-Band = Annotated[
-    tuple[str, str] | None,
-    typer.Option("--band", metavar="LOW HIGH", help='Frequencies, e.g. --band "1 Hz" "1 kHz".', show_default=False),
-]
 
 
 def mapping(design: Design, *, reading: Theory = Reading.IDEAL, changes: Changes = None, json: Json = None) -> None:
@@ -26,17 +43,28 @@ def mapping(design: Design, *, reading: Theory = Reading.IDEAL, changes: Changes
 
     With an elastic reading, the elastic motion per stroke T too.
     """
-    mechanism = opened(design, changes, [("--json", json)])
-    from flexstage.present.documents.results import elastic_jacobian, mapping_body
-    from flexstage.readings.ideal import ideal
-    from flexstage.studies.complete import read
+    mechanism = open_design(design, changes, [("--json", json)])
 
     kinematics, model = ideal(mechanism), read(mechanism, reading)
     answer(
-        Asked("mapping", mechanism, reading, json),
+        "mapping",
+        mechanism,
         lambda: mapping_body(kinematics) | ({} if model is None else {"elastic_jacobian": elastic_jacobian(kinematics, model)}),
-        lambda: mapping_tables(kinematics),
+        lambda: _mapping_tables(kinematics),
+        reading=reading,
+        json=json,
     )
+
+
+def _mapping_tables(kinematics: Kinematics) -> Iterator[Table | None]:
+    yield motion_tables.mobility_table(kinematics)
+    if kinematics.actuated:
+        yield motion_tables.mapping_table(kinematics)
+    yield motion_tables.gauge_table(kinematics) if kinematics.gauges else None
+    yield motion_tables.motion_table(kinematics)
+    yield motion_tables.freedom_table(kinematics)
+    yield motion_tables.idle_table(kinematics)
+    yield motion_tables.redundant_table(kinematics)
 
 
 def stiffness(
@@ -52,15 +80,28 @@ def stiffness(
 
     6x6, by direction in the plane, and the centre of stiffness; strokes held.
     """
-    mechanism = opened(design, changes, [("--json", json)])
-    from flexstage.analysis.deflection import deflection
-    from flexstage.analysis.statics import statics
-    from flexstage.present.documents.results import stiffness_body
+    mechanism = open_design(design, changes, [("--json", json)])
 
     model = elastic_model(mechanism, reading)
     found = statics(model, load_point=known_point(model, load_at or at), read_point=known_point(model, at))
     sagging = deflection(mechanism, model, point=at) if reading is Reading.LUMPED else None
-    answer(Asked("stiffness", mechanism, reading, json), lambda: stiffness_body(found, sagging), lambda: stiffness_tables(found, sagging))
+    answer(
+        "stiffness",
+        mechanism,
+        lambda: stiffness_body(found, sagging),
+        lambda: _stiffness_tables(found, sagging),
+        reading=reading,
+        json=json,
+    )
+
+
+def _stiffness_tables(found: Statics, sagging: Deflection | None) -> Iterator[Table | None]:
+    yield static_tables.stiffness_table(found)
+    yield static_tables.compliance_table(found)
+    yield static_tables.principal_table(found)
+    yield static_tables.direction_table(found)
+    yield static_tables.centre_table(found)
+    yield None if sagging is None else deflection_table(sagging)
 
 
 def lost_motion(design: Design, *, reading: Theory = Reading.LUMPED, changes: Changes = None, json: Json = None) -> None:
@@ -68,13 +109,20 @@ def lost_motion(design: Design, *, reading: Theory = Reading.LUMPED, changes: Ch
 
     What elasticity takes from the ideal motion, what it stirs besides, and the gains that make up for it.
     """
-    mechanism = opened(design, changes, [("--json", json)])
-    from flexstage.analysis.lost_motion import lost_motion as compared
-    from flexstage.present.documents.results import lost_motion_body
-    from flexstage.readings.ideal import ideal
+    mechanism = open_design(design, changes, [("--json", json)])
 
-    found = compared(ideal(mechanism), elastic_model(mechanism, reading))
-    answer(Asked("lost-motion", mechanism, reading, json), lambda: lost_motion_body(found), lambda: lost_motion_tables(found))
+    found = losses.lost_motion(ideal(mechanism), elastic_model(mechanism, reading))
+    answer("lost-motion", mechanism, lambda: lost_motion_body(found), lambda: _loss_tables(found), reading=reading, json=json)
+
+
+def _loss_tables(found: LostMotion) -> Iterator[Table | None]:
+    yield loss_tables.loss_table(found)
+    yield loss_tables.budget_table(found)
+    yield loss_tables.gain_table(found)
+    yield loss_tables.crosstalk_table(found)
+    yield loss_tables.parasitic_table(found)
+    yield loss_tables.correction_table(found)
+    yield loss_tables.energy_table(found)
 
 
 def modes(design: Design, *, reading: Theory = Reading.LUMPED, changes: Changes = None, json: Json = None) -> None:
@@ -82,13 +130,10 @@ def modes(design: Design, *, reading: Theory = Reading.LUMPED, changes: Changes 
 
     Which modes are the platform's, which are local, and by what margin.
     """
-    mechanism = opened(design, changes, [("--json", json)])
-    from flexstage.present.documents.results import modes_body
-    from flexstage.present.tables.modes import mode_table
-    from flexstage.studies.complete import platform_modes
+    mechanism = open_design(design, changes, [("--json", json)])
 
     found = platform_modes(mechanism, elastic_model(mechanism, reading))
-    answer(Asked("modes", mechanism, reading, json), lambda: modes_body(found), lambda: [mode_table(found)])
+    answer("modes", mechanism, lambda: modes_body(found), lambda: [mode_table(found)], reading=reading, json=json)
 
 
 def response(
@@ -97,27 +142,19 @@ def response(
     reading: Theory = Reading.LUMPED,
     inputs: Annotated[
         list[str] | None,
-        typer.Option(
-            "--input", metavar="NAME", help="Stroke (B1), force (platform.fx), ground motion (ground); several times.", show_default=False
-        ),
+        text_option("--input", "NAME", "Stroke (B1), force (platform.fx), ground motion (ground); several times."),
     ] = None,
     outputs: Annotated[
         list[str] | None,
-        typer.Option(
-            "--output",
-            metavar="NAME",
-            help="Motion (platform, chuck.x), gauge (S1), resultant (B4/pivot.mz); several times.",
-            show_default=False,
-        ),
+        text_option("--output", "NAME", "Motion (platform, chuck.x), gauge (S1), resultant (B4/pivot.mz); several times."),
     ] = None,
-    band: Band = None,
+    band: Annotated[tuple[str, str] | None, text_option("--band", "LOW HIGH", 'Frequencies, e.g. --band "1 Hz" "1 kHz".')] = None,
     noise: Annotated[
         list[str] | None,
-        typer.Option(
+        text_option(
             "--noise",
-            metavar="INPUT=DENSITY",
-            help='White random input: its amplitude density, e.g. "ground.z=1 nm/Hz^0.5", or that of a rate, "ground.z=1e-5 m/s^2/Hz^0.5".',
-            show_default=False,
+            "INPUT=DENSITY",
+            'White random input: its amplitude density, e.g. "ground.z=1 nm/Hz^0.5", or that of a rate, "ground.z=1e-5 m/s^2/Hz^0.5".',
         ),
     ] = None,
     changes: Changes = None,
@@ -128,33 +165,26 @@ def response(
     Strokes to the platform's motion and the gauges, unless others are named. --input ground gives the transmissibility: absolute motion
     over absolute motion of the ground. With --noise, the rms values of the outputs too.
     """
-    mechanism = opened(design, changes, [("--json", json)])
-    from flexstage.analysis.random_response import random_response
-    from flexstage.analysis.response import default_frequencies
-    from flexstage.analysis.response import response as responded
-    from flexstage.present.documents.results import response_body
-    from flexstage.present.tables.random_response import random_table
-    from flexstage.present.tables.response import response_table
-    from flexstage.readings.linear.damping import damping_law
+    mechanism = open_design(design, changes, [("--json", json)])
 
     model = elastic_model(mechanism, reading)
     law = damping_law(model)
-    grid = default_frequencies(model, _hertz(band), damping=law)
+    grid = responses.default_frequencies(model, _hertz(band), damping=law)
     chosen = outputs or ["platform", *(channel.name for channel in model.outputs if "." not in channel.name)]
-    found = responded(model, chosen, inputs or model.strokes, grid, damping=law)
+    found = responses.response(model, chosen, inputs or model.strokes, grid, damping=law)
     limits = (float(grid[0]), float(grid[-1]))
-    shaken = random_response(model, chosen, spectra_from(model, noise), limits, damping=law) if noise else None
+    shaken = random_response(model, chosen, spectra(model, noise), limits, damping=law) if noise else None
     answer(
-        Asked("response", mechanism, reading, json),
+        "response",
+        mechanism,
         lambda: response_body(found, law) | ({} if shaken is None else {"random": shaken.to_json()}),
         lambda: [response_table(found), None if shaken is None else random_table(shaken)],
+        reading=reading,
+        json=json,
     )
 
 
 def _hertz(band: tuple[str, str] | None) -> tuple[float, float] | None:
-    from flexstage.base.finding import refuse
-    from flexstage.base.quantity import FREQUENCY
-    from flexstage.base.unit import parse
 
     if band is None:
         return None

@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-from flexstage.apps.cli.failure import BAD_INPUT, DONE
-from flexstage.apps.cli.speech import say
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable
-
-    from flexstage.apps.doctor import Row
+from flexstage.apps import doctor
+from flexstage.apps.doctor import Row, Verdict
+from flexstage.present.command.failure import BAD_INPUT, DONE
+from flexstage.present.command.terminal import say
 
 _FREQUENCIES = (110.910, 110.910, 135.148, 145.505, 176.690, 176.690)
 """Eq. 28 of Shin & Moon for the shipped stage [Hz]."""
@@ -20,14 +17,12 @@ _TOLERANCE = 1e-5
 
 def consult(*, mending: bool) -> int:
     """Examine the installation, print the rows, mend what can be mended if asked; the exit code says whether all is good."""
-    from flexstage.apps.doctor import Verdict, examine, mend
-
-    rows = examine(Path.cwd(), self_test)
+    rows = doctor.examine(Path.cwd(), self_test)
     _print_rows(rows)
     if mending and any(row.cure and row.verdict is Verdict.BAD for row in rows):
-        for outcome in mend(rows):
+        for outcome in doctor.mend(rows):
             say(f"{'mended' if outcome.worked else 'not mended'}: {outcome.cure}{f': {outcome.said}' if outcome.said else ''}")
-        rows = examine(Path.cwd(), self_test)
+        rows = doctor.examine(Path.cwd(), self_test)
         _print_rows(rows)
     bad = [row for row in rows if row.verdict is Verdict.BAD]
     say("The installation is sound." if not bad else f"{len(bad)} thing{'s' * (len(bad) > 1)} to mend.")
@@ -43,8 +38,8 @@ def _print_rows(rows: Iterable[Row]) -> None:
 
 def self_test() -> Row:
     """Compute the paper's frequencies of the shipped stage and compare."""
+    # Imported here: a package that is missing or broken is a row of the examination.
     from flexstage.analysis.modes import modes
-    from flexstage.apps.doctor import Row, Verdict
     from flexstage.cases.double_triangle import double_triangle
     from flexstage.readings.mapped import mapped
 

@@ -2,89 +2,122 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated, Any, TypeVar
 
-import typer
-
-from flexstage.apps.cli.answer import Asked, answer
-from flexstage.apps.cli.bar import bar
-from flexstage.apps.cli.loop_options import (
-    Amplifier,
-    Bandwidth,
-    Compensate,
-    Coordinates,
-    Delay,
-    FloorNoise,
-    GaugeNoise,
-    Hysteresis,
-    Kind,
-    Moves,
-    Rate,
-    ReadBy,
-    Resolution,
-    Said,
-    Seconds,
-    Seed,
-    Sensitivity,
-    Setup,
-    Trajectory,
+from flexstage.analysis.loop.code.controller import controller_code
+from flexstage.analysis.loop.code.text import identifier
+from flexstage.base.finding import DesignError, Finding, nearest, refuse, require
+from flexstage.base.quantity import (
+    ACCELERATION_NOISE,
+    CURRENT,
+    DISPLACEMENT,
+    FREQUENCY,
+    NOISE_DENSITY,
+    RATIO,
+    RESISTANCE,
+    TIME,
+    VELOCITY_NOISE,
 )
-from flexstage.apps.cli.opening import announce, opened
-from flexstage.apps.cli.options import Changes, Design, Json
-from flexstage.apps.cli.output import STDOUT, announced, write
+from flexstage.present.command.answer import answer
+from flexstage.present.command.design import open_design
+from flexstage.present.command.options import Changes, Design, Json, Report, text_option, word_option
+from flexstage.present.command.output import STDOUT, announce, require_writable, save, write
+from flexstage.present.command.progress import progress_bar
+from flexstage.present.command.values import Values, first_fit, motions
+from flexstage.present.documents.loop import loop_body
+from flexstage.present.fmu.unit import fmu
+from flexstage.present.loop_files import controller_files, export_findings, plant_file
+from flexstage.present.loop_report import loop_report
+from flexstage.present.table import Table
+from flexstage.present.tables import loop as tables
+from flexstage.present.tables import loop_error as errors
+from flexstage.studies.loop import setup as forms
+from flexstage.studies.loop.checks import setup_findings
+from flexstage.studies.loop.choices import Axes, Compensation, ControllerKind, Criterion
+from flexstage.studies.loop.file import example as commented_example
+from flexstage.studies.loop.file import load_setup
+from flexstage.studies.loop.runs import driven_machine
+from flexstage.studies.loop.study import LoopStudy, loop_study
+from flexstage.studies.reading import Reading
 
-if TYPE_CHECKING:
-    from flexstage.mechanism.mechanism import Mechanism
-    from flexstage.present.table import Table
-    from flexstage.studies.loop.setup import LoopSetup
-    from flexstage.studies.loop.study import LoopStudy
-
-Report = Annotated[
-    Path | None, typer.Option("--report", metavar="FILE", help="Write a self-contained HTML report with pictures.", show_default=False)
-]
-Exports = Annotated[
-    list[Path] | None,
-    typer.Option(
-        "--export",
-        metavar="FILE",
-        help="Write the loop for other programs: plant.mat, controller.c, controller.fmu; several times.",
-        show_default=False,
-    ),
-]
-Example = Annotated[
-    Path | None,
-    typer.Option("--example", metavar="LOOP.TOML", help="Write a commented set-up file to start from, and stop.", show_default=False),
-]
+_Record = TypeVar("_Record")
+_NOTHING = "none"
 
 
 def loop(  # noqa: PLR0913  a loop has that many knobs
     design: Design,
     *,
-    setup: Setup = None,
-    controller: Kind = None,
-    coordinates: Coordinates = None,
-    bandwidth: Bandwidth = None,
-    sensitivity: Sensitivity = None,
-    rate: Rate = None,
-    delay: Delay = None,
-    trajectory: Trajectory = None,
-    command: Moves = None,
-    seconds: Seconds = None,
-    compensate: Compensate = None,
-    hysteresis: Hysteresis = None,
-    floor: FloorNoise = None,
-    gauge_noise: GaugeNoise = None,
-    resolution: Resolution = None,
-    amplifier: Amplifier = None,
-    seed: Seed = None,
-    reading: ReadBy = None,
+    setup: Annotated[Path | None, text_option("--setup", "LOOP.TOML", "Set-up file; options on the line go before it.")] = None,
+    controller: Annotated[
+        ControllerKind | None,
+        word_option("--controller", ControllerKind, "What closes the loop; none: open loop. Default: pi.", show_default=False),
+    ] = None,
+    coordinates: Annotated[
+        Axes | None,
+        word_option("--coordinates", Axes, "In which coordinates single loops are closed. Default: platform.", show_default=False),
+    ] = None,
+    bandwidth: Annotated[
+        str | None, text_option("--bandwidth", "VALUE", "Bandwidth to tune to. Default: the highest that the margin allows.")
+    ] = None,
+    sensitivity: Annotated[
+        str | None, text_option("--sensitivity", "NUMBER", "Highest peak of the sensitivity S that tuning allows.")
+    ] = None,
+    rate: Annotated[
+        str | None, text_option("--rate", "VALUE", "Sampling rate. Default: 10 kHz, or 10 times the highest platform mode.")
+    ] = None,
+    delay: Annotated[str | None, text_option("--delay", "VALUE", "From sampling to the new output. Default: one sample.")] = None,
+    trajectory: Annotated[
+        str | None,
+        text_option("--trajectory", "NAME|FILE", "step, raster, spiral or sine, or a CSV file of times and poses. Default: step."),
+    ] = None,
+    command: Annotated[
+        list[str] | None,
+        text_option(
+            "--command", "AXIS=VALUE", "Size of a step or sine, e.g. x=1um; several times. Default: 1 um and 10 urad of every motion."
+        ),
+    ] = None,
+    seconds: Annotated[
+        float | None, text_option("--seconds", "NUMBER", "Length of the simulation. Default: until all has settled.")
+    ] = None,
+    compensate: Annotated[
+        list[str] | None,
+        text_option(
+            "--compensate", "NAME", f"{', '.join(each.value for each in Compensation)}, or none; several times. Default: lost-motion."
+        ),
+    ] = None,
+    hysteresis: Annotated[
+        str | None,
+        text_option("--hysteresis", "FILE|SHARE", "Hysteresis of the stacks: a model's file, or its width, e.g. 15%. Default: none."),
+    ] = None,
+    floor: Annotated[
+        list[str] | None,
+        text_option("--floor", "[AXIS=]VALUE", 'Vibration of the floor: VC-D, z=VC-C, "x=3 um/s^2/Hz^0.5"; several times. Default: none.'),
+    ] = None,
+    gauge_noise: Annotated[
+        str | None, text_option("--gauge-noise", "DENSITY", 'Noise of the gauges, e.g. "0.1 nm/Hz^0.5". Default: what the design states.')
+    ] = None,
+    resolution: Annotated[
+        str | None, text_option("--resolution", "VALUE", "Steps of the gauges; 0nm: none. Default: the design's.")
+    ] = None,
+    amplifier: Annotated[
+        list[str] | None,
+        text_option("--amplifier", "VALUE", "Bandwidth (500Hz) or output resistance (50ohm); largest current (0.2A). Default: ideal."),
+    ] = None,
+    seed: Annotated[int | None, text_option("--seed", "NUMBER", "Seed of all random numbers. Default: 0.")] = None,
+    reading: Annotated[
+        Reading | None, word_option("--reading", Reading, "Theory to read the plant by. Default: lumped.", show_default=False)
+    ] = None,
     changes: Changes = None,
     json: Json = None,
     report: Report = None,
-    export: Exports = None,
-    example: Example = None,
+    export: Annotated[
+        list[Path] | None,
+        text_option("--export", "FILE", "Write the loop for other programs: plant.mat, controller.c, controller.fmu; several times."),
+    ] = None,
+    example: Annotated[Path | None, text_option("--example", "LOOP.TOML", "Write a commented set-up file to start from, and stop.")] = None,
 ) -> None:
     """Close the control loop of a stage.
 
@@ -92,102 +125,168 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
 
     With nothing else given: a PI controller with notches, as fast as a margin of 6 dB lets it be, at 10 kHz, one sample late.
     """
-    outputs = [("--json", json), ("--report", report), ("--example", example), *_exports(export or [])]
+    exports = export or []
     if example is not None:
         _write_example(design, example)
         return
-    _require_names(export or [])
-    said = Said(
-        file=setup,
+    _require_names(exports)
+    values = Values()
+    given = values.attempt(lambda: forms.LoopSetup() if setup is None else load_setup(setup)) or forms.LoopSetup()
+    asked = _over(
+        given,
         reading=reading,
-        rate=rate,
-        delay=delay,
-        kind=controller,
-        coordinates=coordinates,
-        bandwidth=bandwidth,
-        sensitivity=sensitivity,
-        compensate=compensate,
-        hysteresis=hysteresis,
-        floor=floor,
-        gauge_noise=gauge_noise,
-        resolution=resolution,
-        amplifier=amplifier,
-        trajectory=trajectory,
-        moves=command,
+        rate=values.value("--rate", rate, FREQUENCY),
+        delay=values.value("--delay", delay, TIME),
         seconds=seconds,
         seed=seed,
+        compensate=values.attempt(lambda: _compensation(compensate)),
+        amplifier=_over(given.amplifier, **_electric(values, amplifier or ())),
+        gauges=_over(
+            given.gauges,
+            noise=values.value("--gauge-noise", gauge_noise, NOISE_DENSITY),
+            resolution=values.value("--resolution", resolution, DISPLACEMENT),
+        ),
+        floor=values.attempt(lambda: _floor(given.floor, floor or ())),
+        controller=_over(
+            given.controller,
+            kind=controller,
+            coordinates=coordinates,
+            bandwidth=values.value("--bandwidth", bandwidth, FREQUENCY),
+            sensitivity=values.value("--sensitivity", sensitivity, RATIO),
+        ),
+        hysteresis=_stacks(hysteresis),
+        trajectory=values.attempt(lambda: _trajectory(given.trajectory, trajectory, command)),
     )
-    asked = said.setup()
-    mechanism = opened(design, changes, outputs)
-    found = _studied(mechanism, asked)
-    _reported(found, report)
-    _exported(found, export or [])
-    if json is None and str(report) == STDOUT:
-        return
-    from flexstage.present.documents.loop import loop_body
-
-    answer(Asked("loop", mechanism, asked.reading, json, found.cautions), lambda: loop_body(found), lambda: _tables(found))
+    require([*values.findings, *setup_findings(asked)])
+    mechanism = open_design(design, changes, [("--json", json), ("--report", report), *_files(exports)])
+    with progress_bar() as shown:
+        found = loop_study(mechanism, asked, tell=shown.share)
+    if report is not None:
+        save(report, loop_report(found), "--report")
+    for target in exports:
+        _export(found, target)
+    if json is not None or str(report) != STDOUT:
+        cautions = found.cautions
+        answer("loop", mechanism, lambda: loop_body(found), lambda: _tables(found), reading=asked.reading, json=json, cautions=cautions)
 
 
 def _write_example(design: Path, example: Path) -> None:
-    from flexstage.apps.cli.output import output_findings
-    from flexstage.base.finding import require
-    from flexstage.studies.loop.file import example as commented
-
-    require(output_findings([("--example", example)], design))
-    write(example, commented(), "--example")
-    announced(f"Wrote {example}. Next: flexstage loop {design} --setup {example}")
+    require_writable([("--example", example)], design)
+    write(example, commented_example(), "--example")
+    announce(f"Wrote {example}. Next: flexstage loop {design} --setup {example}")
 
 
-def _studied(mechanism: Mechanism, asked: LoopSetup) -> LoopStudy:
-    from flexstage.studies.loop.study import loop_study
-
-    with bar() as shown:
-        return loop_study(mechanism, asked, tell=shown.share)
+def _over(record: _Record, **given: Any) -> _Record:
+    """The record with the values that are given, others than `None`."""
+    return replace(record, **{name: value for name, value in given.items() if value is not None})  # type: ignore[type-var]
 
 
-def _reported(found: LoopStudy, report: Path | None) -> None:
-    if report is None:
-        return
-    from flexstage.present.loop_report import loop_report
+def _electric(values: Values, texts: Sequence[str]) -> dict[str, float]:
+    """What `--amplifier` says, each by its unit."""
+    known = {"bandwidth": FREQUENCY, "resistance": RESISTANCE, "current": CURRENT}
+    found: dict[str, float] = {}
+    for text in texts:
+        if (fit := first_fit(text, known)) is None:
+            what = f'found "{text}", which is no frequency, resistance or current'
+            values.findings.append(Finding("--amplifier", what, 'Write for example "500 Hz", "50 ohm" or "0.2 A"'))
+        else:
+            found[fit[0]] = fit[1]
+    return found
 
-    write(report, loop_report(found), "--report")
-    if str(report) != STDOUT:
-        announce(report)
+
+def _stacks(said: str | None) -> forms.HystereticStacks | None:
+    """A width where the text is a ratio, else a file."""
+    if said is None:
+        return None
+    width = first_fit(said, {"width": RATIO})
+    return forms.HystereticStacks(file=said) if width is None else forms.HystereticStacks(width=width[1])
 
 
-def _exports(targets: list[Path]) -> Iterator[tuple[str, Path]]:
+def _compensation(words: Sequence[str] | None) -> tuple[Compensation, ...] | None:
+    if words is None:
+        return None
+    known = {each.value: each for each in Compensation}
+    require(
+        Finding(f"--compensate {word}", "this is nothing that is fed forward", f"It is one of {', '.join(known)}, or {_NOTHING} alone")
+        for word in words
+        if word not in known and (word != _NOTHING or len(words) > 1)
+    )
+    return tuple(known[word] for word in words if word in known)
+
+
+def _floor(given: forms.Floor, texts: Sequence[str]) -> forms.Floor | None:
+    if not texts:
+        return None
+    findings: list[Finding] = []
+    found: dict[str, forms.Shaking] = {}
+    for text in texts:
+        axis, sign, value = (part.strip() for part in text.rpartition("="))
+        try:
+            shaking = _shaking(text, value)
+            found |= {each: shaking for each in ("x", "y", "z") if not sign or each == axis}
+        except DesignError as error:
+            findings += error.findings
+        if sign and axis not in ("x", "y", "z"):
+            findings.append(Finding(f"--floor {text}", f'"{axis}" is no axis of the floor', "Write x, y or z, or no axis for all three"))
+    require(findings)
+    return _over(given, **found)
+
+
+def _shaking(text: str, value: str) -> forms.Shaking:
+    for criterion in Criterion:
+        if value == criterion.value:
+            return forms.Shaking(criterion=criterion)
+    fit = first_fit(value, {"acceleration": ACCELERATION_NOISE, "velocity": VELOCITY_NOISE, "displacement": NOISE_DENSITY})
+    if fit is None:
+        names = ", ".join(each.value for each in Criterion)
+        advice = f'Write one of {names}, or an amplitude density, for example "3 um/s^2/Hz^0.5"'
+        raise refuse(f"--floor {text}", f'"{value}" is no criterion and no amplitude density', advice)
+    return _over(forms.Shaking(), **{fit[0]: (fit[1],)})
+
+
+def _trajectory(given: forms.Commanded, word: str | None, moves: Sequence[str] | None) -> forms.Commanded | None:
+    """The trajectory of that name, or of that file, with the sizes of its motions."""
+    found = given if word is None else _named(word, given)
+    if moves is None:
+        return found if word is not None else None
+    if not isinstance(found, (forms.StepMotion, forms.SineMotion)):
+        name = found.TOLD_BY[1]
+        raise refuse("--command", f"a trajectory of kind {name} has its sizes in the set-up file", "Use it with step or sine")
+    return replace(found, by=_over(forms.Motion(), **motions(moves)))
+
+
+def _named(word: str, given: forms.Commanded) -> forms.Commanded:
+    """What the set-up says where it is of that kind already, else as the kind is usual; a file where the word is one."""
+    usual = (forms.StepMotion(), forms.RasterMotion(), forms.SpiralMotion(), forms.SineMotion())
+    kinds = {each.TOLD_BY[1]: each for each in usual}
+    if word in kinds:
+        return given if type(given) is type(kinds[word]) else kinds[word]
+    if word.lower().endswith(".csv"):
+        return forms.FileMotion(word)
+    raise refuse("--trajectory", f'"{word}" is none of {", ".join(kinds)}, and no CSV file', nearest(word, kinds))
+
+
+def _files(exports: Sequence[Path]) -> Iterator[tuple[str, Path]]:
     """Files that exports come as: source and header of what is C."""
-    for target in targets:
+    for target in exports:
         yield from (("--export", each) for each in ((target, target.with_suffix(".h")) if target.suffix == ".c" else (target,)))
 
 
-def _require_names(targets: list[Path]) -> None:
+def _require_names(exports: Sequence[Path]) -> None:
     """Refuse what no export is, before anything is computed."""
-    from flexstage.base.finding import Finding, require
-    from flexstage.present.loop_files import export_findings
-
-    require(Finding(f"--export {each.where}", each.what, each.advice) for target in targets for each in export_findings(target))
+    require(Finding(f"--export {each.where}", each.what, each.advice) for target in exports for each in export_findings(target))
 
 
-def _exported(found: LoopStudy, targets: list[Path]) -> None:
-    from flexstage.analysis.loop.code.text import identifier
-
-    for target in targets:
-        for place, content in _export(found, target).items():
-            write(place, content, "--export")
-            announce(place)
-        if target.suffix == ".fmu" and (name := identifier(target.stem)) != target.stem:
-            announced(f"Within {target} the model is called {name}: its own name would not do in C.")
+def _export(found: LoopStudy, target: Path) -> None:
+    for place, content in _contents(found, target).items():
+        write(place, content, "--export")
+        announce(f"Wrote {place}")
+    if target.suffix == ".fmu" and (name := identifier(target.stem)) != target.stem:
+        announce(f"Within {target} the model is called {name}: its own name would not do in C.")
 
 
-def _export(found: LoopStudy, target: Path) -> Mapping[Path, str | bytes]:
+def _contents(found: LoopStudy, target: Path) -> Mapping[Path, str | bytes]:
     """What is written for one option, by file."""
-    from flexstage.analysis.loop.code.controller import controller_code
-    from flexstage.present.fmu.unit import fmu
-    from flexstage.present.loop_files import controller_files, plant_file
-    from flexstage.studies.loop.runs import driven_machine
-
     if target.suffix == ".mat":
         return {target: plant_file(found.settled.plant)}
     machine = driven_machine(found.settled, found.control, found.stacks)
@@ -198,9 +297,6 @@ def _export(found: LoopStudy, target: Path) -> Mapping[Path, str | bytes]:
 
 
 def _tables(found: LoopStudy) -> Iterator[Table | None]:
-    from flexstage.present.tables import loop as tables
-    from flexstage.present.tables import loop_error as errors
-
     yield tables.loop_table(found)
     yield tables.law_table(found)
     yield tables.margin_table(found)

@@ -3,24 +3,27 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
-import typer
-
-from flexstage.apps.cli.options import Json
-from flexstage.apps.cli.study import Report, Resume, Scheduler, StudyFile, Workers
-
-if TYPE_CHECKING:
-    from flexstage.studies.tolerance.run import Toleranced
+from flexstage.base.finding import refuse
+from flexstage.present.command.answer import answer
+from flexstage.present.command.options import Json, Report, Resume, Scheduler, Study, Workers, output_option
+from flexstage.present.command.output import require_writable, save
+from flexstage.present.command.progress import progress_bar
+from flexstage.present.documents.tolerance import tolerance_body
+from flexstage.present.tables.tolerance import tolerance_tables
+from flexstage.present.tolerance_report import tolerance_report
+from flexstage.studies.reading import Reading
+from flexstage.studies.study.loaded import loaded_findings
+from flexstage.studies.study.run import Run
+from flexstage.studies.tolerance.file import load_tolerance
+from flexstage.studies.tolerance.run import tolerance as run_tolerance
 
 
 def tolerance(
-    study: StudyFile,
+    study: Study,
     *,
-    output: Annotated[
-        Path | None,
-        typer.Option("--output", "-o", metavar="RESULTS.H5", help="Results file to write: every copy.", show_default=False),
-    ] = None,
+    output: Annotated[Path | None, output_option("RESULTS.H5", "Results file to write: every copy.")] = None,
     resume: Resume = False,
     workers: Workers = None,
     scheduler: Scheduler = None,
@@ -33,36 +36,22 @@ def tolerance(
 
     Told are distributions, the yield line by line and together, what does it, what each dimension may deviate, and crosstalk.
     """
-    from flexstage.apps.cli.bar import bar
-    from flexstage.apps.cli.output import output_findings
-    from flexstage.base.finding import refuse, require
-    from flexstage.studies.study.run import Run
-    from flexstage.studies.tolerance.file import load_tolerance
-    from flexstage.studies.tolerance.run import tolerance as toleranced
-
-    require(output_findings([("--output", output), ("--json", json), ("--report", report)], study))
+    require_writable([("--output", output), ("--json", json), ("--report", report)], study)
     if resume and output is None:
         raise refuse("--resume", "no results file is named", "Name it with --output")
     asked = load_tolerance(study)
-    with bar() as shown:
-        found = toleranced(
+    with progress_bar() as shown:
+        found = run_tolerance(
             asked, output, Run(workers, resume, scheduler), lambda done, of: shown.share(f"{done} of {of} copies", done / max(of, 1))
         )
-    _told(found, report, json)
-
-
-def _told(found: Toleranced, report: Path | None, json: str | None) -> None:
-    from flexstage.apps.cli.answer import Asked, answer
-    from flexstage.apps.cli.opening import announce
-    from flexstage.apps.cli.output import write
-    from flexstage.present.documents.tolerance import tolerance_body
-    from flexstage.present.tables.tolerance import tolerance_tables
-    from flexstage.present.tolerance_report import tolerance_report
-    from flexstage.studies.reading import Reading
-    from flexstage.studies.study.loaded import loaded_findings
-
     if report is not None:
-        write(report, tolerance_report(found), "--report")
-        announce(report)
-    asked = Asked("tolerance", found.study.design, Reading.LUMPED, json, loaded_findings(found.study))
-    answer(asked, lambda: tolerance_body(found), lambda: tolerance_tables(found))
+        save(report, tolerance_report(found), "--report")
+    answer(
+        "tolerance",
+        found.study.design,
+        lambda: tolerance_body(found),
+        lambda: tolerance_tables(found),
+        reading=Reading.LUMPED,
+        json=json,
+        cautions=loaded_findings(found.study),
+    )

@@ -4,43 +4,56 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
-from flexstage.apps.cli.answer import Asked, answer
-from flexstage.apps.cli.identify import identified, writable
-from flexstage.apps.cli.options import Design, Json
-from flexstage.apps.cli.output import STDOUT, announced, write
-from flexstage.apps.cli.record import Allow, Band, Inputs, Kind, Only, Outputs, Rate, Resolution, Said, Units
-from flexstage.apps.cli.speech import warn
+from flexstage.base.finding import refuse
+from flexstage.base.quantity import RATIO
+from flexstage.base.unit import parse
+from flexstage.mechanism.store import loads
+from flexstage.mechanism.store.file import read_text
+from flexstage.present.command.answer import answer
+from flexstage.present.command.options import Design, Json, output_option, text_option
+from flexstage.present.command.output import STDOUT, require_writable, save
+from flexstage.present.command.records import (
+    Allow,
+    Band,
+    Inputs,
+    Kind,
+    Only,
+    Outputs,
+    Rate,
+    RecordTexts,
+    Resolution,
+    Units,
+    identify_records,
+    names,
+)
+from flexstage.present.command.terminal import warn
+from flexstage.present.documents.update import update_body
+from flexstage.present.tables.update import update_tables
+from flexstage.studies import update as updating
 from flexstage.studies.reading import Reading
-
-if TYPE_CHECKING:
-    from flexstage.studies.update_free import Known
+from flexstage.studies.rig.plan import highest_mode
+from flexstage.studies.standing import standing
+from flexstage.studies.update_free import DEFAULT, Known
+from flexstage.studies.update_free import free as free_numbers
+from flexstage.studies.update_text import updated_text
 
 
 def update(  # noqa: PLR0913 (its options)
     design: Design,
     *,
-    record: Annotated[
-        list[Path],
-        typer.Option("--record", metavar="RECORD", help="File of the test. May be given several times.", show_default=False),
-    ],
-    free: Annotated[
-        list[str],
-        typer.Option(
-            "--free", metavar="ADDRESSES", help='Numbers that may change, e.g. "neck.thickness, steel.density".', show_default=False
-        ),
-    ],
-    output: Annotated[Path, typer.Option("--output", "-o", metavar="STAGE.TOML", help="Design file to write.", show_default=False)],
+    record: Annotated[list[Path], text_option("--record", "RECORD", "File of the test. May be given several times.")],
+    free: Annotated[list[str], text_option("--free", "ADDRESSES", 'Numbers that may change, e.g. "neck.thickness, steel.density".')],
+    output: Annotated[Path, output_option("STAGE.TOML", "Design file to write.")],
     prior: Annotated[
         list[str] | None,
-        typer.Option(
+        text_option(
             "--prior",
-            metavar="[ADDRESS=]SHARE",
-            help='Relative standard deviation known before, of all or of one: "5 %", "neck.thickness=2 %". Default: 10 %, assumed.',
-            show_default=False,
+            "[ADDRESS=]SHARE",
+            'Relative standard deviation known before, of all or of one: "5 %", "neck.thickness=2 %". Default: 10 %, assumed.',
         ),
     ] = None,
     model_error: Annotated[
@@ -67,41 +80,24 @@ def update(  # noqa: PLR0913 (its options)
 
     Writes a new design file with the values tagged; comments stay, and the file that was read stays as it is.
     """
-    said = Said(inputs, outputs, only, units, rate, kind, allow, band, resolution)
-    writable(record, design, [("--output", output), ("--json", json)])
+    texts = RecordTexts(inputs, outputs, only, units, rate, kind, allow, band, resolution)
+    require_writable([("--output", output), ("--json", json)], design, record)
     known = _known(prior or [], model_error, gain_error, gain=gain)
-    from flexstage.mechanism.store import loads
-    from flexstage.mechanism.store.file import read_text
-    from flexstage.present.documents.update import update_body
-    from flexstage.present.tables.update import update_tables
-    from flexstage.studies.rig.plan import highest_mode
-    from flexstage.studies.standing import standing
-    from flexstage.studies.update import update as updated
-    from flexstage.studies.update_free import free as freed
-    from flexstage.studies.update_text import updated_text
-
     text = read_text(design)
     mechanism = loads(text, where=str(design))
-    names = _names(free)
-    freed(mechanism, names, known)  # refused before the records are read
+    chosen = names(free)
+    free_numbers(mechanism, chosen, known)  # refused before the records are read
     model = standing(mechanism)
-    seen = identified(said, record, model, highest=highest_mode(mechanism, model))
-    found = updated(mechanism, seen.found, names, known)
-    write(output, updated_text(text, found, ", ".join(path.name for path in record), where=str(design)), "--output")
+    seen = identify_records(record, texts, model, highest_mode(mechanism, model))
+    found = updating.update(mechanism, seen.found, chosen, known)
+    save(output, updated_text(text, found, ", ".join(path.name for path in record), where=str(design)), "--output")
     for caution in found.warnings[len(seen.found.warnings) :]:
         warn(caution)
     if str(output) != STDOUT:
-        announced(f"Wrote {output}")
-        answer(Asked("update", mechanism, Reading.LUMPED, json), lambda: update_body(found), lambda: update_tables(found))
-
-
-def _names(texts: Sequence[str]) -> tuple[str, ...]:
-    return tuple(name.strip() for text in texts for name in text.split(",") if name.strip())
+        answer("update", mechanism, lambda: update_body(found), lambda: update_tables(found), reading=Reading.LUMPED, json=json)
 
 
 def _known(priors: Sequence[str], model_error: str, gain_error: str, *, gain: bool) -> Known:
-    from flexstage.studies.update_free import DEFAULT, Known
-
     shares: dict[str, float] = {}
     for text in priors:
         name, _, share = (part.strip() for part in text.rpartition("="))
@@ -116,10 +112,6 @@ def _known(priors: Sequence[str], model_error: str, gain_error: str, *, gain: bo
 
 
 def _share(option: str, text: str) -> float:
-    from flexstage.base.finding import refuse
-    from flexstage.base.quantity import RATIO
-    from flexstage.base.unit import parse
-
     value = parse(text, RATIO, where=option)
     if not 1e-6 <= value <= 1.0:
         raise refuse(

@@ -15,8 +15,18 @@ from flexstage.analysis.workspace.stroke import StrokeLimits
 from flexstage.base.number import Array
 from flexstage.present.display import NO_VALUE, number, percent, value_with_unit
 from flexstage.present.table import Cell, Column, Content, Mark, Table, build, first_design
+from flexstage.studies.workspace import Workspace
 
 _WEAK, _POOR = 1.0, 1.5
+
+
+def strength_tables(workspace: Workspace) -> Iterator[Table | None]:
+    """All tables of what the parts bear; absent what the workspace does not tell."""
+    yield None if workspace.platform_lines is None else platform_line_table(workspace.platform_lines)
+    yield None if workspace.stack_lines is None else stack_line_table(workspace.stack_lines)
+    yield None if workspace.stress is None else stress_table(workspace.stress)
+    yield None if workspace.buckling is None else buckling_table(workspace.buckling)
+    yield None if workspace.loads is None else load_table(workspace.loads, workspace.limits.from_zero)
 
 
 def platform_line_table(lines: PlatformLine) -> Table:

@@ -6,6 +6,7 @@ import numpy as np
 
 from flexstage.base.digest import digest
 from flexstage.base.number import Array
+from flexstage.base.progress import Progress
 from flexstage.mechanism.expand import Assembly, expand
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.readings.linear.model import LinearModel
@@ -15,7 +16,6 @@ from flexstage.readings.solid.casing import casing, end_faces_apart
 from flexstage.readings.solid.component import Component, Cut
 from flexstage.readings.solid.fineness import Reduction
 from flexstage.readings.solid.parts import Ways, reduce_parts
-from flexstage.readings.solid.progress import Progress
 from flexstage.readings.solid.remote import Limits
 from flexstage.readings.solid.sound import sound_components
 

@@ -9,11 +9,11 @@ from typing import TypeAlias
 
 from flexstage.base.finding import Finding, refuse
 from flexstage.base.number import Array
+from flexstage.base.progress import Progress
 from flexstage.readings.solid.cache import Cache, find, keep, key_of
 from flexstage.readings.solid.component import Component
 from flexstage.readings.solid.fineness import Reduction
 from flexstage.readings.solid.install import require_solver
-from flexstage.readings.solid.progress import Progress
 from flexstage.readings.solid.reducing import Reducing
 from flexstage.readings.solid.remote import Limits, work_all
 from flexstage.readings.solid.store import read

@@ -1,9 +1,8 @@
-"""Progress: where a solid reading stands, told by the process that computes and gathered over all components by the one that waits."""
+"""Stages of a solid reading, told by the process that computes and gathered over all components by the one that waits."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
 from enum import Enum
 
 
@@ -34,19 +33,6 @@ Report = Callable[[Stage, float], None]
 """Told of a stage and the fraction of it that is done."""
 
 
-@dataclass(frozen=True)
-class Step:
-    """Where the whole stands: what is done now, the fraction that is done, and the seconds left as far as can be told."""
-
-    text: str
-    fraction: float
-    left: float | None
-
-
-Progress = Callable[[Step], None]
-"""Told of every step, in the process and thread that called the reading; raising there stops it and cleans up."""
-
-
 def silent(_stage: Stage, _fraction: float) -> None:
     """Report to nobody.
 
@@ -71,12 +57,3 @@ def gathered(running: Mapping[str, tuple[Stage, float]], shares: Mapping[str, fl
     0.6
     """
     return sum(shares[name] for name in finished) + sum(shares[name] * within(*where) for name, where in running.items())
-
-
-def seconds_left(fraction: float, elapsed: float) -> float | None:
-    """Time left if it goes on as it went, absent while too little is done to tell.
-
-    >>> seconds_left(0.25, 10.0), seconds_left(0.01, 10.0)
-    (30.0, None)
-    """
-    return None if fraction < 0.05 else elapsed * (1.0 - fraction) / fraction

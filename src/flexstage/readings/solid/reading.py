@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from flexstage.base.digest import digest
 from flexstage.base.finding import Finding
+from flexstage.base.progress import Progress
 from flexstage.mechanism.drawn import drawn
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
@@ -16,7 +17,6 @@ from flexstage.readings.solid.cache import Cache
 from flexstage.readings.solid.component import Component
 from flexstage.readings.solid.fineness import Reduction
 from flexstage.readings.solid.parts import Parts, Ways, reduce_parts
-from flexstage.readings.solid.progress import Progress
 from flexstage.readings.solid.remote import Limits
 from flexstage.readings.solid.sound import sound_components
 from flexstage.readings.solid.superelement import Superelement

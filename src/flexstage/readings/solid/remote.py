@@ -23,9 +23,10 @@ from typing import IO, Generic, TypeVar, cast
 from flexstage.base.child import command, cores, environment
 from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.memory import available
+from flexstage.base.progress import Progress, Step, seconds_left
 from flexstage.base.store import temporary
 from flexstage.readings.solid.memory import Counts
-from flexstage.readings.solid.progress import Progress, Stage, Step, gathered, seconds_left
+from flexstage.readings.solid.progress import Stage, gathered
 from flexstage.readings.solid.store import versions
 from flexstage.readings.solid.worker import FINDINGS, PROGRESS, RESULT, TASK, Job, Outcome, Task, findings_in
 

@@ -15,6 +15,7 @@ import meshio
 import numpy as np
 
 from flexstage.base.number import Array
+from flexstage.base.progress import Progress
 from flexstage.base.store import temporary_folder
 from flexstage.base.text import printable
 from flexstage.mechanism.mechanism import Mechanism
@@ -23,7 +24,6 @@ from flexstage.readings.solid.content import content
 from flexstage.readings.solid.fineness import Fineness
 from flexstage.readings.solid.grid import Grid, Gridding, stored_grid
 from flexstage.readings.solid.install import require_solver
-from flexstage.readings.solid.progress import Progress
 from flexstage.readings.solid.remote import Limits, work_all
 from flexstage.readings.solid.stage_pieces import Stage, require_shapes, stage_pieces
 

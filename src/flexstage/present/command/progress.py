@@ -1,4 +1,4 @@
-"""The bar of a long computation on stderr: what is done, how far, how long still. Nothing where stderr is no terminal."""
+"""The progress bar of a long computation on stderr: what is done, how far, how long still. Nothing where stderr is no terminal."""
 
 from __future__ import annotations
 
@@ -6,15 +6,16 @@ import sys
 import time
 from collections.abc import Generator
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn
+
+from flexstage.base.progress import Step, seconds_left
 from flexstage.base.text import printable
 
-if TYPE_CHECKING:
-    from flexstage.readings.solid.progress import Step
 
-
-class Bar:
+class ProgressBar:
     """A bar that follows the steps it is told of; `about` stands before each."""
 
     def __init__(self, shown: Any | None) -> None:
@@ -24,14 +25,12 @@ class Bar:
         self.about = ""
 
     def step(self, step: Step) -> None:
-        """Show a step of a reduction."""
+        """Show a step of a computation."""
         left = "" if step.left is None else f"{_clock(step.left)} left"
         self._show(f"{self.about}{step.text}", step.fraction, left)
 
     def share(self, text: str, share: float) -> None:
         """Show the share of a work that is done, and how long the rest takes at its pace."""
-        from flexstage.readings.solid.progress import Step, seconds_left
-
         self.step(Step(text, share, seconds_left(share, time.monotonic() - self._begun)))
 
     def _show(self, text: str, fraction: float, left: str) -> None:
@@ -45,15 +44,12 @@ def _clock(seconds: float) -> str:
 
 
 @contextmanager
-def bar() -> Generator[Bar]:
+def progress_bar() -> Generator[ProgressBar]:
     """A bar that is gone when the work is done."""
-    from rich.console import Console
-    from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn
-
     console = Console(file=sys.stderr)
     if not console.is_terminal:
-        yield Bar(None)
+        yield ProgressBar(None)
         return
     columns = (TextColumn("{task.description}", markup=False), BarColumn(), TaskProgressColumn(), TextColumn("{task.fields[left]}"))
     with Progress(*columns, console=console, transient=True) as shown:
-        yield Bar(shown)
+        yield ProgressBar(shown)

@@ -1,4 +1,4 @@
-"""Lines for the reader: results to stdout, all else to stderr; and what becomes of what cannot be written there, or must not."""
+"""Lines on the terminal: results to stdout, all else to stderr; and what becomes of what cannot be written there, or must not."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What becomes of failures: bad input is told finding by finding, a fault of flexstage without a traceback unless it is asked for."""
+"""Exit codes, and what is said of failures: bad input finding by finding, a fault of flexstage without a traceback."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from collections.abc import Callable, Generator
 from contextlib import contextmanager
 from pathlib import Path
 
-from flexstage.apps.cli.output import together
-from flexstage.apps.cli.speech import streams, tell, warn
 from flexstage.base.finding import DesignError, refuse
 from flexstage.base.store import sweep_temporary
+from flexstage.present.command.output import together
+from flexstage.present.command.terminal import streams, tell, warn
 
 DONE, MISSED, BAD_INPUT, INTERRUPTED, FAULT = 0, 1, 2, 2, 70
 SIGNALLED = 128

@@ -1,22 +1,36 @@
-"""Commands about design files: `new`, `check`, `schema`, `plan`, `catalogue`."""
+"""Commands that describe stages: `new`, `check`, `schema`, `plan`, `catalogue`."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from enum import Enum
+from json import dumps as as_json
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 import flexstage
-from flexstage.apps.cli.choice import choice, choices
-from flexstage.apps.cli.options import Changes, Design, Json
-from flexstage.apps.cli.output import announced
-from flexstage.apps.cli.speech import say
-
-if TYPE_CHECKING:
-    from flexstage.mechanism.mechanism import Mechanism
+from flexstage.base.finding import DesignError, Finding, require
+from flexstage.cases.registry import CASES
+from flexstage.cases.registry import case as shipped_case
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.mechanism.store import dumps, load, shipped
+from flexstage.mechanism.store import schema as design_schema
+from flexstage.present.command.answer import caveat_lines, show
+from flexstage.present.command.design import change, open_design
+from flexstage.present.command.options import Changes, Design, Json, output_option, text_option, word_option
+from flexstage.present.command.output import STDOUT, announce, require_writable, write
+from flexstage.present.command.terminal import say
+from flexstage.present.documents.envelope import FORMAT, as_text
+from flexstage.present.documents.reach import check_document
+from flexstage.present.figures.drawing import drawing, format_of
+from flexstage.present.listing import case_table, catalogue_body, catalogue_tables, parameter_table, section_named
+from flexstage.present.plan import plan_figure
+from flexstage.present.scene.stage import scene
+from flexstage.present.tables.description import composition_table
+from flexstage.studies.cautions import caveats, reading_findings
+from flexstage.studies.loop.file import setup_schema
 
 DEFAULT_CASE = "double-triangle"
 
@@ -27,11 +41,8 @@ def new(
     case: Annotated[str, typer.Option(metavar="NAME", help="Shipped case to start from; --list shows them.")] = DEFAULT_CASE,
     parameter: Annotated[
         list[str] | None,
-        typer.Option(
-            "--parameter",
-            metavar="NAME=VALUE",
-            help="State a parameter of the case otherwise, e.g. long_arm=80mm. May be given several times.",
-            show_default=False,
+        text_option(
+            "--parameter", "NAME=VALUE", "State a parameter of the case otherwise, e.g. long_arm=80mm. May be given several times."
         ),
     ] = None,
     listed: Annotated[bool, typer.Option("--list", help="List the shipped cases and stop.")] = False,
@@ -39,14 +50,6 @@ def new(
     force: Annotated[bool, typer.Option("--force", help="Overwrite the file if it exists.")] = False,
 ) -> None:
     """Write a shipped case as a commented design file."""
-    from flexstage.apps.cli.output import output_findings, write
-    from flexstage.apps.cli.show import show
-    from flexstage.base.finding import Finding, require
-    from flexstage.cases.registry import CASES
-    from flexstage.cases.registry import case as shipped_case
-    from flexstage.mechanism.store import dumps
-    from flexstage.present.listing import case_table, parameter_table
-
     if listed or parameters:
         show([case_table() if listed else parameter_table(case)])
         return
@@ -54,17 +57,15 @@ def new(
         raise typer.BadParameter("name the file to write, e.g. stage.toml", param_hint="STAGE.TOML")
     stated = _stated(parameter or ())
     mechanism = shipped_case(case, stated)
-    require(output_findings([(str(target), target)]))
+    require_writable([(str(target), target)])
     if target.exists() and not force:
         require([Finding(str(target), "the file exists already", "Choose another name, or overwrite it with --force")])
     write(target, dumps(mechanism, {"": _heading(case, CASES[case].summary, str(target), stated)}), str(target))
-    announced(f"Wrote {target} ({case}: {CASES[case].summary}). Next: flexstage analyse {target}")
+    announce(f"Wrote {target} ({case}: {CASES[case].summary}). Next: flexstage analyse {target}")
 
 
 def _stated(assignments: Sequence[str]) -> dict[str, str]:
     """Names and values of parameters."""
-    from flexstage.base.finding import Finding, require
-
     split = [each.partition("=") for each in assignments]
     advice = "Write for example --parameter long_arm=80mm"
     require(Finding(f'--parameter "{name}"', "it gives no value", advice) for name, equals, _ in split if not equals)
@@ -90,17 +91,9 @@ def check(design: Design, *, changes: Changes = None, json: Json = None) -> None
 
     Cautions and what is taken by default are told too; they stop nothing.
     """
-    from flexstage.apps.cli.opening import changed
-    from flexstage.apps.cli.output import STDOUT, output_findings, write
-    from flexstage.base.finding import DesignError, require
-    from flexstage.mechanism.store import load
-    from flexstage.present.documents.envelope import as_text
-    from flexstage.present.documents.reach import check_document
-    from flexstage.studies.cautions import reading_findings
-
-    require(output_findings([("--json", json)], design))
+    require_writable([("--json", json)], design)
     try:
-        mechanism = changed(load(design), changes or ())
+        mechanism = change(load(design), changes or ())
         require(reading_findings(mechanism))
     except DesignError as error:
         if json is not None:
@@ -113,11 +106,6 @@ def check(design: Design, *, changes: Changes = None, json: Json = None) -> None
 
 
 def _tell_sound(design: Path, mechanism: Mechanism) -> None:
-    from flexstage.apps.cli.answer import caveat_lines
-    from flexstage.apps.cli.show import show
-    from flexstage.present.tables.description import composition_table
-    from flexstage.studies.cautions import caveats
-
     show((composition_table(mechanism), *caveat_lines("check", mechanism)))
     count = len(caveats(mechanism).cautions)
     said = f", {count} caution{'' if count == 1 else 's'}" if count else ""
@@ -133,40 +121,26 @@ class File(Enum):
 
 def schema(
     *,
-    of: Annotated[
-        File, typer.Option("--of", parser=choice("--of", File), metavar=choices(File), help="Design files, or set-up files of loops.")
-    ] = File.DESIGN,
+    of: Annotated[File, word_option("--of", File, "Design files, or set-up files of loops.")] = File.DESIGN,
 ) -> None:
     """Print the JSON Schema of a kind of file, for editors."""
-    from json import dumps
-
-    from flexstage.mechanism.store import schema as design_schema
-    from flexstage.studies.loop.file import setup_schema
-
-    say(dumps(design_schema() if of is File.DESIGN else setup_schema(), indent=1, ensure_ascii=False))
+    say(as_json(design_schema() if of is File.DESIGN else setup_schema(), indent=1, ensure_ascii=False))
 
 
 def plan(
     design: Design,
     *,
-    output: Annotated[Path, typer.Option("--output", "-o", metavar="PLAN.SVG", help="SVG file to write.", show_default=False)],
+    output: Annotated[Path, output_option("PLAN.SVG", "SVG file to write.")],
     changes: Changes = None,
 ) -> None:
     """Draw the dimensioned plan.
 
     The stage from above with radii, angles, names and sizes in mm, as SVG, PDF or PNG.
     """
-    from flexstage.apps.cli.opening import opened
-    from flexstage.apps.cli.output import write
-    from flexstage.present.figures.drawing import drawing, format_of
-
     ending = format_of(str(output))
-    mechanism = opened(design, changes, [("--output", output)])
-    from flexstage.present.plan import plan_figure
-    from flexstage.present.scene.stage import scene
-
+    mechanism = open_design(design, changes, [("--output", output)])
     write(output, drawing(plan_figure(mechanism, scene(mechanism)), ending), "--output")
-    announced(f"Wrote {output}")
+    announce(f"Wrote {output}")
 
 
 def catalogue(
@@ -180,14 +154,7 @@ def catalogue(
 
     Each number has its source. In a design file, like = "NAME" starts from an entry.
     """
-    from flexstage.apps.cli.output import STDOUT, output_findings, write
-    from flexstage.apps.cli.show import show
-    from flexstage.base.finding import require
-    from flexstage.mechanism.store import shipped
-    from flexstage.present.documents.envelope import FORMAT, as_text
-    from flexstage.present.listing import catalogue_body, catalogue_tables, section_named
-
-    require(output_findings([("--json", json)]))
+    require_writable([("--json", json)])
     known = shipped() if section is None else section_named(shipped(), section)
     if json is not None:
         body = {"format": FORMAT, "kind": "catalogue", "version": flexstage.__version__, **catalogue_body(known)}

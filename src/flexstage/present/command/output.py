@@ -4,17 +4,14 @@ from __future__ import annotations
 
 import os
 import tempfile
-from collections.abc import Generator, Iterable, Iterator
+from collections.abc import Generator, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-from flexstage.apps.cli.speech import put_out, tell
-from flexstage.base.finding import Finding, refuse
-
-if TYPE_CHECKING:
-    from flexstage.base.store import Waiting
+from flexstage.base.finding import Finding, refuse, require
+from flexstage.base.store import Waiting, put_together, written
+from flexstage.present.command.terminal import put_out, tell
 
 STDOUT = "-"
 _ENDED_WELL = (None, 0, 1)
@@ -28,8 +25,6 @@ class _Pending:
         self.texts: list[str] = []
 
     def put(self) -> None:
-        from flexstage.base.store import put_together
-
         put_together(self.files)
         for text in self.texts:
             tell(text)
@@ -66,7 +61,7 @@ def together() -> Generator[None]:
         _PENDING.reset(token)
 
 
-def announced(text: str) -> None:
+def announce(text: str) -> None:
     """Say that a file was written, once it is there."""
     pending = _PENDING.get()
     if pending is None:
@@ -75,8 +70,21 @@ def announced(text: str) -> None:
         pending.texts.append(text)
 
 
-def output_findings(wanted: Iterable[tuple[str, str | Path | None]], design: Path | None = None) -> Iterator[Finding]:
-    """What keeps the outputs, pairs of an option and its path, from being written; `design` is the file that must not be overwritten."""
+def require_writable(wanted: Sequence[tuple[str, str | Path | None]], design: Path | None = None, records: Iterable[Path] = ()) -> None:
+    """Raise a `DesignError` of all that keeps the outputs, pairs of an option and its path, from being written.
+
+    They must not overwrite what is read: the `design` (or the study) and `records`.
+    """
+    read = {_whole(path) for path in records}
+    clashes = [
+        Finding(option, f"{target} is a record that is read", "Choose another file")
+        for option, target in wanted
+        if target is not None and str(target) != STDOUT and _whole(Path(target)) in read
+    ]
+    require([*_unwritable(wanted, design), *clashes])
+
+
+def _unwritable(wanted: Iterable[tuple[str, str | Path | None]], design: Path | None) -> Iterator[Finding]:
     taken: dict[Path, str] = {} if design is None else {_whole(design): "the design file"}
     spoken: str | None = None
     for option, target in wanted:
@@ -128,8 +136,6 @@ def _is_device(path: Path) -> bool:
 
 def write(target: str | Path, content: str | bytes, option: str) -> None:
     """Write to a file, which is in its place at the end of the command, or to stdout for `-`; raises where the disk refuses."""
-    from flexstage.base.store import written
-
     data = content.encode() if isinstance(content, str) else content
     if str(target) == STDOUT:
         put_out(data)
@@ -145,3 +151,10 @@ def write(target: str | Path, content: str | bytes, option: str) -> None:
         Path(target).write_bytes(data)
     except OSError as error:
         raise refuse(option, f"{target} cannot be written: {error.strerror}", "Choose another file") from None
+
+
+def save(target: str | Path, content: str | bytes, option: str) -> None:
+    """Write to a file and say so once it is there, or to stdout for `-`."""
+    write(target, content, option)
+    if str(target) != STDOUT:
+        announce(f"Wrote {target}")

@@ -1,37 +1,38 @@
-"""The commands `cad`, a stage as solids in files for other programs (STEP, VTU, GLB), and `import`, a STEP file stated as an outline."""
+"""Commands about solids in files of other programs: `cad` writes a stage (STEP, VTU, GLB), `import` states a STEP file as an outline."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
-from flexstage.apps.cli.bar import bar
-from flexstage.apps.cli.options import Changes, Design
-from flexstage.apps.cli.output import announced
-from flexstage.apps.cli.speech import warn
-
-if TYPE_CHECKING:
-    from flexstage.mechanism.mechanism import Mechanism
-    from flexstage.readings.solid.fineness import Fineness
+from flexstage.base.finding import nearest, refuse, require
+from flexstage.mechanism.drawn import drawn
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.mechanism.store import load, outline_text
+from flexstage.present.command.design import open_design
+from flexstage.present.command.options import Changes, Design, output_option, text_option
+from flexstage.present.command.output import save
+from flexstage.present.command.progress import progress_bar
+from flexstage.present.command.terminal import say, warn
+from flexstage.readings.solid.apart import step_apart
+from flexstage.readings.solid.cache import Cache
+from flexstage.readings.solid.fineness import Fineness, Reduction
+from flexstage.readings.solid.install import require_solver
+from flexstage.readings.solid.parts import Ways
+from flexstage.readings.solid.sound import stage_findings
+from flexstage.studies.complete import platform_modes
+from flexstage.studies.solid_read import read_solid, solids
 
 
 def cad(
     design: Design,
     *,
-    output: Annotated[
-        Path | None,
-        typer.Option("--output", "-o", metavar="STAGE.STEP", help="Write the named solids as a STEP assembly.", show_default=False),
-    ] = None,
-    mesh: Annotated[
-        Path | None, typer.Option("--mesh", metavar="STAGE.VTU", help="Mesh the stage and write the tetrahedra as VTU.", show_default=False)
-    ] = None,
-    gltf: Annotated[
-        Path | None,
-        typer.Option("--gltf", metavar="STAGE.GLB", help="Read the stage as solids; write its modes as animations.", show_default=False),
-    ] = None,
+    output: Annotated[Path | None, output_option("STAGE.STEP", "Write the named solids as a STEP assembly.")] = None,
+    mesh: Annotated[Path | None, text_option("--mesh", "STAGE.VTU", "Mesh the stage and write the tetrahedra as VTU.")] = None,
+    gltf: Annotated[Path | None, text_option("--gltf", "STAGE.GLB", "Read the stage as solids; write its modes as animations.")] = None,
     order: Annotated[int, typer.Option("--order", min=1, max=5, help="Order of elements and curved geometry, for --mesh and --gltf.")] = 2,
     modes: Annotated[int, typer.Option("--modes", min=0, max=100, help="How many of the lowest modes --gltf shows.")] = 12,
     changes: Changes = None,
@@ -42,13 +43,11 @@ def cad(
 
     Outlines are checked against each other first: what does not meet, overlaps or nearly coincides is told, and keeps it from being meshed.
     """
-    from flexstage.apps.cli.opening import opened
-
     if output is None and mesh is None and gltf is None:
         raise typer.BadParameter("name a file to write, e.g. -o stage.step, --mesh stage.vtu or --gltf stage.glb", param_hint="--output")
-    mechanism = opened(design, changes, [("--output", output), ("--mesh", mesh), ("--gltf", gltf)])
+    mechanism = open_design(design, changes, [("--output", output), ("--mesh", mesh), ("--gltf", gltf)])
     for path, option, content in _contents(mechanism, {"--output": output, "--mesh": mesh, "--gltf": gltf}, order, modes):
-        _write(path, content, option)
+        save(path, content, option)
 
 
 def state(
@@ -66,22 +65,16 @@ def state(
 
     Rigid readings take what is stated; the solid reading draws the file, and holds what is stated to it.
     """
-    from flexstage.apps.cli.speech import say
-    from flexstage.mechanism.store import load, outline_text
-    from flexstage.readings.solid.install import require_solver
-
     mechanism = load(design)
     chosen = _material(mechanism, material)
     require_solver()
-    from flexstage.readings.solid.imported import measured, stated
+    from flexstage.readings.solid.imported import measured, stated  # needs the solver, refused by name where it is missing
 
     solid = stated(measured(part), str(part.resolve()), chosen, float(mechanism.materials[chosen].density))
     say(outline_text(body, part.stem, solid, design.parent))
 
 
 def _material(mechanism: Mechanism, name: str | None) -> str:
-    from flexstage.base.finding import nearest, refuse
-
     known = tuple(mechanism.materials)
     if name is None and len(known) == 1:
         return known[0]
@@ -91,31 +84,17 @@ def _material(mechanism: Mechanism, name: str | None) -> str:
     return name
 
 
-def _write(path: Path, content: bytes, option: str) -> None:
-    from flexstage.apps.cli.output import STDOUT, write
-
-    write(path, content, option)
-    if str(path) != STDOUT:
-        announced(f"Wrote {path}")
-
-
 def _contents(mechanism: Mechanism, wanted: dict[str, Path | None], order: int, modes: int) -> Iterator[tuple[Path, str, bytes]]:
     """The files that are wanted, with their options, one after the other."""
-    from flexstage.mechanism.drawn import drawn
-    from flexstage.readings.solid.fineness import Fineness
-    from flexstage.readings.solid.install import require_solver
-
     require_solver()
     stage, fineness = drawn(mechanism), Fineness(order=order)
     _check_contact(stage, meshed=wanted["--mesh"] is not None or wanted["--gltf"] is not None)
     if (path := wanted["--output"]) is not None:
-        from flexstage.readings.solid.apart import step_apart
-
         yield path, "--output", step_apart(stage)
     if (path := wanted["--mesh"]) is not None:
-        from flexstage.readings.solid.vtu import stage_mesh, vtu
+        from flexstage.readings.solid.vtu import stage_mesh, vtu  # needs a package of the extra `solid`
 
-        with bar() as shown:
+        with progress_bar() as shown:
             mesh = stage_mesh(stage, fineness, progress=shown.step)
         yield path, "--mesh", vtu(mesh)
     if (path := wanted["--gltf"]) is not None:
@@ -124,10 +103,6 @@ def _contents(mechanism: Mechanism, wanted: dict[str, Path | None], order: int, 
 
 def _check_contact(stage: Mechanism, *, meshed: bool) -> None:
     """Findings keep a stage from being meshed; drawn it may be all the same, to be mended in CAD."""
-    from flexstage.base.finding import require
-    from flexstage.readings.solid.cache import Cache
-    from flexstage.readings.solid.sound import stage_findings
-
     findings = stage_findings(stage, Cache())
     if meshed:
         require(findings)
@@ -137,13 +112,9 @@ def _check_contact(stage: Mechanism, *, meshed: bool) -> None:
 
 def _moving(stage: Mechanism, fineness: Fineness, count: int) -> bytes:
     """The GLB file of a stage with its lowest modes."""
-    from flexstage.readings.solid.fineness import Reduction
-    from flexstage.readings.solid.gltf import Motion, gltf, surfaces
-    from flexstage.readings.solid.parts import Ways
-    from flexstage.studies.complete import platform_modes
-    from flexstage.studies.solid_read import read_solid, solids
+    from flexstage.readings.solid.gltf import Motion, gltf, surfaces  # needs a package of the extra `solid`
 
-    with bar() as shown:
+    with progress_bar() as shown:
         read = read_solid(stage, Reduction(fineness), solids(Ways(progress=shown.step), lambda finding: warn(str(finding))))
     found = platform_modes(stage, read.model)
     motions = [

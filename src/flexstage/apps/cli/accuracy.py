@@ -1,0 +1,146 @@
+"""Commands about what a stage reaches and how exactly: `workspace`, `drift`, `sensitivities`, `budget`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Annotated, TypeAlias
+
+import typer
+
+from flexstage.analysis import drift as drifting
+from flexstage.analysis.lost_motion import lost_motion
+from flexstage.base.quantity import TEMPERATURE
+from flexstage.base.unit import parse
+from flexstage.present.command.answer import answer, tell_missing
+from flexstage.present.command.design import open_design
+from flexstage.present.command.options import Changes, Design, Json, Theory, text_option
+from flexstage.present.command.values import motions
+from flexstage.present.documents.reach import budget_body, sensitivities_body, workspace_body
+from flexstage.present.documents.results import drift_body
+from flexstage.present.table import Table
+from flexstage.present.tables import workspace as tables
+from flexstage.present.tables.errors import drift_table, error_budget_tables, gauge_drift_table
+from flexstage.present.tables.sensitivities import frequency_sensitivity_table, loss_sensitivity_table
+from flexstage.present.tables.strength import strength_tables
+from flexstage.readings.ideal import ideal
+from flexstage.studies import budget as budgeting
+from flexstage.studies import sensitivities as derivatives
+from flexstage.studies import workspace as study
+from flexstage.studies.complete import read, required_command
+from flexstage.studies.reading import Reading
+from flexstage.studies.standing import standing
+
+Commands: TypeAlias = Annotated[
+    list[str] | None,
+    text_option(
+        "--command",
+        "AXIS=VALUE",
+        "Motion both ways that is asked of the platform, all at once, e.g. x=50um, rz=244urad. Default: the required strokes.",
+    ),
+]
+
+
+def workspace(
+    design: Design, *, reading: Theory = Reading.LUMPED, command: Commands = None, changes: Changes = None, json: Json = None
+) -> None:
+    """What the stage reaches and bears.
+
+    Strokes, forces, volts, gauges, room, error of the linear map, stress, buckling, loads.
+    """
+    mechanism = open_design(design, changes, [("--json", json)])
+
+    kinematics, model = ideal(mechanism), read(mechanism, reading)
+    lost = None if model is None or not kinematics.actuated else lost_motion(kinematics, model)
+    asked = motions(command or ()) or required_command(mechanism)
+    found = study.workspace(mechanism, kinematics, model, lost=lost, command=asked)
+    answer("workspace", mechanism, lambda: workspace_body(found), lambda: _workspace_tables(found), reading=reading, json=json)
+
+
+def _workspace_tables(workspace: study.Workspace) -> Iterator[Table | None]:
+    """The tables of motion first, then those of strength."""
+    yield tables.stroke_table(workspace)
+    yield None if workspace.corner is None else tables.corner_table(workspace.corner)
+    yield None if workspace.polytope is None else tables.extent_table(workspace.polytope)
+    yield None if workspace.map_error is None else tables.map_error_table(workspace.map_error)
+    yield None if workspace.drive is None else tables.drive_table(workspace.drive)
+    yield None if workspace.gauges is None else tables.gauge_range_table(workspace.gauges)
+    yield None if workspace.resolution is None else tables.resolution_table(workspace.resolution)
+    yield None if workspace.room is None else tables.room_table(workspace.room)
+    yield from strength_tables(workspace)
+
+
+def drift(
+    design: Design,
+    *,
+    ground: Annotated[
+        str | None,
+        text_option(
+            "--ground", "MATERIAL", "Material of the ground; none: it does not grow. Default: the design's, else that of all links on it."
+        ),
+    ] = None,
+    changes: Changes = None,
+    json: Json = None,
+) -> None:
+    """Thermal drift of platform, named points and gauges.
+
+    Per kelvin and per kelvin per metre, by the lumped reading.
+    """
+    mechanism = open_design(design, changes, [("--json", json)])
+
+    found = drifting.drift(mechanism, standing(mechanism), ground=ground)
+    answer(
+        "drift",
+        mechanism,
+        lambda: drift_body(found),
+        lambda: [drift_table(found), gauge_drift_table(found)],
+        reading=Reading.LUMPED,
+        json=json,
+    )
+
+
+def sensitivities(
+    design: Design,
+    *,
+    parameters: Annotated[
+        list[str] | None, text_option("--parameter", "ADDRESS", "Value to vary; several times. Default: every number.")
+    ] = None,
+    count: Annotated[int, typer.Option("--modes", min=1, help="Number of lowest modes.")] = 12,
+    changes: Changes = None,
+    json: Json = None,
+) -> None:
+    """Exact derivatives with respect to every number.
+
+    Of frequencies, gains and losses, by the lumped reading; of frequencies alone where the strokes do not determine the platform.
+    """
+    mechanism = open_design(design, changes, [("--json", json)])
+
+    found = derivatives.sensitivities(mechanism, tuple(parameters) if parameters else None, modes=count)
+    answer(
+        "sensitivities",
+        mechanism,
+        lambda: sensitivities_body(found),
+        lambda: [frequency_sensitivity_table(found), loss_sensitivity_table(found)],
+        reading=Reading.LUMPED,
+        json=json,
+    )
+    tell_missing(found.missing)
+
+
+def budget(
+    design: Design,
+    *,
+    command: Commands = None,
+    temperature: Annotated[str, typer.Option(metavar="VALUE", help="Uniform change of temperature.")] = "1 K",
+    at: Annotated[str, typer.Option(metavar="POINT", help="Point of the platform: platform, or a named point.")] = "platform",
+    changes: Changes = None,
+    json: Json = None,
+) -> None:
+    """Error budget in nm and nrad, one line an axis.
+
+    Lost motion, crosstalk, linear map, gauge noise, quantisation and drift, by the lumped reading.
+    """
+    mechanism = open_design(design, changes, [("--json", json)])
+
+    asked = motions(command or ()) or required_command(mechanism) or study.all_strokes(mechanism)
+    found = budgeting.budget(mechanism, asked, at=at, temperature=parse(temperature, TEMPERATURE, where="--temperature"))
+    answer("budget", mechanism, lambda: budget_body(found), lambda: error_budget_tables(found), reading=Reading.LUMPED, json=json)

@@ -1,0 +1,117 @@
+"""The command `analyse`: everything at once, with report, JSON, MATLAB file and the effect of changes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from flexstage.present.command.answer import caveat_lines, show, tell_missing
+from flexstage.present.command.design import change, open_design
+from flexstage.present.command.failure import MISSED
+from flexstage.present.command.options import Changes, Design, Json, Report, Theory, text_option
+from flexstage.present.command.output import STDOUT, save
+from flexstage.present.command.terminal import tell
+from flexstage.present.documents.envelope import Document, as_text, enveloped
+from flexstage.present.documents.whole import analysis_body, changes_body
+from flexstage.present.matlab import as_mat
+from flexstage.present.report import report as whole_report
+from flexstage.present.table import Table
+from flexstage.present.tables import errors, kinematics, lost_motion, statics, strength, workspace
+from flexstage.present.tables.change import change_table, set_table
+from flexstage.present.tables.modes import mode_table
+from flexstage.present.tables.requirements import verdict_table
+from flexstage.present.tables.units import omitted_table, unit_table
+from flexstage.studies import complete
+from flexstage.studies.complete import Analysis
+from flexstage.studies.difference import Comparison, difference, set_values
+from flexstage.studies.reading import Reading
+
+
+def analyse(
+    design: Design,
+    *,
+    reading: Theory = Reading.LUMPED,
+    report: Report = None,
+    changes: Changes = None,
+    json: Json = None,
+    mat: Annotated[Path | None, text_option("--mat", "FILE", "Write R_a, R_s, K, M, B, C, D and the state space for MATLAB.")] = None,
+    strict: Annotated[bool, typer.Option("--strict", help="Exit with code 1 if a requirement is missed.")] = False,
+) -> None:
+    """Analyse a stage: everything at once.
+
+    Requirements first, then kinematics, stiffness, lost motion, modes, response, workspace, drift, error budget.
+
+    With --set, the key figures are shown as old, new and change, in the report too.
+    """
+    analysis, compared = _worked_out(design, reading, changes or [], [("--json", json), ("--report", report), ("--mat", mat)])
+    if mat is not None:
+        save(mat, as_mat(analysis), "--mat")
+    if report is not None:
+        save(report, whole_report(analysis, compared), "--report")
+    if json is not None:
+        save(json, _json_text(analysis, compared), "--json")
+    if STDOUT not in (json, str(report), str(mat)):
+        show(_tables(analysis, compared))
+        tell_missing(analysis.missing)
+    missed = [verdict for verdict in analysis.verdicts if not verdict.passed]
+    if strict and missed:
+        tell(f"{len(missed)} of {len(analysis.verdicts)} requirements are missed.")
+        raise typer.Exit(MISSED)
+
+
+def _worked_out(
+    design: Path, reading: Reading, changes: list[str], outputs: list[tuple[str, str | Path | None]]
+) -> tuple[Analysis, Comparison | None]:
+    """The analysis of the design with its changes, and their effect if there are any."""
+    stated = open_design(design, (), outputs)
+    analysis = complete.analyse(change(stated, changes), reading)
+    if not changes:
+        return analysis, None
+    addresses = tuple(each.partition("=")[0].strip() for each in changes)
+    return analysis, Comparison(stated, addresses, difference(complete.analyse(stated, reading), analysis))
+
+
+def _json_text(analysis: Analysis, compared: Comparison | None) -> str:
+    body: Document = analysis_body(analysis)
+    if compared is not None:
+        values = set_values(compared.stated, analysis.mechanism, compared.addresses)
+        body = {"changes": {"set": changes_body(values), "figures": changes_body(compared.figures)}, **body}
+    return as_text(enveloped("analyse", analysis.mechanism, analysis.reading, body)) + "\n"
+
+
+def _tables(analysis: Analysis, compared: Comparison | None) -> Iterator[Table | str | None]:
+    yield verdict_table(analysis.verdicts)
+    yield from caveat_lines("analyse", analysis.mechanism)
+    if compared is not None:
+        yield set_table(compared.stated, analysis.mechanism, compared.addresses)
+        yield change_table(compared.figures)
+    yield from _analysis_tables(analysis)
+
+
+def _analysis_tables(analysis: Analysis) -> Iterator[Table | None]:
+    """What decides first, one or two an analysis; the commands of one analysis show more."""
+    found = analysis.kinematics
+    yield kinematics.mobility_table(found)
+    yield kinematics.mapping_table(found) if found.actuated else None
+    yield kinematics.gauge_table(found) if found.gauges else None
+    if analysis.statics is not None:
+        yield statics.stiffness_table(analysis.statics)
+        yield statics.principal_table(analysis.statics)
+    yield unit_table(analysis.units) if analysis.units else None
+    if analysis.lost_motion is not None:
+        yield lost_motion.loss_table(analysis.lost_motion)
+        yield lost_motion.budget_table(analysis.lost_motion)
+    for unit in (analysis.units or {}).values():
+        yield None if unit.omitted is None else omitted_table(unit.omitted)
+    yield None if analysis.modes is None else mode_table(analysis.modes)
+    if analysis.workspace is not None:
+        yield workspace.stroke_table(analysis.workspace)
+        yield from strength.strength_tables(analysis.workspace)
+    elif analysis.buckling is not None:
+        yield strength.buckling_table(analysis.buckling)
+    yield None if analysis.drift is None else errors.drift_table(analysis.drift)
+    if analysis.error_budget is not None:
+        yield from errors.error_budget_tables(analysis.error_budget)

@@ -1,0 +1,171 @@
+"""The commands by purpose, one line each, and the application that imports the module of a command when it is called."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from importlib import import_module
+from itertools import groupby
+from typing import Annotated, Any, NamedTuple, cast
+
+import typer
+from typer.core import TyperCommand, TyperGroup
+from typer.main import get_command
+
+
+class Command(NamedTuple):
+    """A command: its `name`, the `group` it stands in, one line of `help`, its function or `Typer` as module:name, and an `example`.
+
+    The line of help is the first line of the function's docstring, which is read when the command is called.
+    """
+
+    name: str
+    group: str
+    help: str
+    home: str
+    example: str
+
+
+_DESCRIBE, _ANALYSE, _PROVE, _TEST, _CONTROL, _IMPROVE, _INSTALLATION = (
+    "Describe a stage",
+    "Analyse it",
+    "Prove it by finite elements",
+    "Test it",
+    "Control it",
+    "Improve it",
+    "Installation",
+)
+_CLI = "flexstage.apps.cli"
+
+# fmt: off
+COMMANDS: tuple[Command, ...] = (
+    Command("new", _DESCRIBE, "Write a shipped case as a commented design file.", f"{_CLI}.describe:new",
+            "flexstage new stage.toml --case hexapod"),
+    Command("check", _DESCRIBE, "Check a design file.", f"{_CLI}.describe:check",
+            "flexstage check stage.toml"),
+    Command("schema", _DESCRIBE, "Print the JSON Schema of a kind of file, for editors.", f"{_CLI}.describe:schema",
+            "flexstage schema > flexstage.schema.json"),
+    Command("plan", _DESCRIBE, "Draw the dimensioned plan.", f"{_CLI}.describe:plan",
+            "flexstage plan stage.toml -o plan.svg"),
+    Command("catalogue", _DESCRIBE, "List the shipped materials, piezo stacks and gauges.", f"{_CLI}.describe:catalogue",
+            "flexstage catalogue stacks"),
+    Command("import", _DESCRIBE, "State a STEP file as an outline.", f"{_CLI}.exchange:state",
+            "flexstage import part.step stage.toml --material steel"),
+    Command("cad", _DESCRIBE, "Write a stage as solids.", f"{_CLI}.exchange:cad",
+            "flexstage cad stage.toml -o stage.step"),
+    Command("analyse", _ANALYSE, "Analyse a stage: everything at once.", f"{_CLI}.analyse:analyse",
+            "flexstage analyse stage.toml --report report.html --set horizontal/front.thickness=1.4mm"),
+    Command("mapping", _ANALYSE, "Mappings R_a and R_s, mobility, redundancy.", f"{_CLI}.analyses:mapping",
+            "flexstage mapping stage.toml --json -"),
+    Command("stiffness", _ANALYSE, "Compliance and stiffness of the platform.", f"{_CLI}.analyses:stiffness",
+            "flexstage stiffness stage.toml --reading mapped"),
+    Command("lost-motion", _ANALYSE, "Gain, loss and its budget by part, crosstalk, correction.", f"{_CLI}.analyses:lost_motion",
+            "flexstage lost-motion stage.toml --set vertical/pivot.thickness=0.9mm"),
+    Command("modes", _ANALYSE, "Natural frequencies, names and shapes.", f"{_CLI}.analyses:modes",
+            "flexstage modes stage.toml --reading mapped --json modes.json"),
+    Command("response", _ANALYSE, "Frequency response of outputs to inputs.", f"{_CLI}.analyses:response",
+            'flexstage response stage.toml --input ground.z --output platform.z --band "1 Hz" "1 kHz"'),
+    Command("workspace", _ANALYSE, "What the stage reaches and bears.", f"{_CLI}.accuracy:workspace",
+            "flexstage workspace stage.toml --command x=50um --command rz=244urad"),
+    Command("drift", _ANALYSE, "Thermal drift of platform, named points and gauges.", f"{_CLI}.accuracy:drift",
+            "flexstage drift stage.toml --ground none"),
+    Command("sensitivities", _ANALYSE, "Exact derivatives with respect to every number.", f"{_CLI}.accuracy:sensitivities",
+            "flexstage sensitivities stage.toml --parameter parts.neck.thickness"),
+    Command("budget", _ANALYSE, "Error budget in nm and nrad, one line an axis.", f"{_CLI}.accuracy:budget",
+            "flexstage budget stage.toml --command z=150um --temperature 0.1K"),
+    Command("solid", _PROVE, "Read a stage as elastic solids, by finite elements.", f"{_CLI}.solid:solid",
+            "flexstage solid stage.toml --what unit --report units.html"),
+    Command("verify", _PROVE, "Compare theory with finite elements: which to trust?", f"{_CLI}.solid:verify",
+            "flexstage verify stage.toml --report verified.html"),
+    Command("calibrate", _PROVE, "Give hinges their 6x6 from finite elements.", f"{_CLI}.solid:calibrate",
+            "flexstage calibrate stage.toml -o stage-calibrated.toml"),
+    Command("rig", _TEST, "Test a stage on a virtual rig; write the record.", f"{_CLI}.rig:rig",
+            "flexstage rig stage.toml --seconds 10 --noise 1um --drift 5nm -o record.uff"),
+    Command("identify", _TEST, "Find the modes in records of a test.", f"{_CLI}.identify:identify",
+            "flexstage identify record.uff --stage stage.toml --report modes.html"),
+    Command("compare", _TEST, "Theory, FEA and experiment side by side.", f"{_CLI}.identify:compare",
+            "flexstage compare stage.toml --record record.uff --report compared.html"),
+    Command("update", _TEST, "Bring a stage's numbers to agree with a test.", f"{_CLI}.update:update",
+            'flexstage update stage.toml --record record.uff --free "neck.thickness, steel.density" -o updated.toml'),
+    Command("hysteresis", _TEST, "Identify the hysteresis of a stack.", f"{_CLI}.hysteresis:hysteresis",
+            'flexstage hysteresis stack.csv --limits "0 V" "1000 V" -o stack.toml'),
+    Command("loop", _CONTROL, "Close the control loop of a stage.", f"{_CLI}.loop:loop",
+            "flexstage loop stage.toml --floor VC-D --report loop.html"),
+    Command("sweep", _IMPROVE, "Compute many designs; show what varies with what.", f"{_CLI}.sweep:sweep",
+            "flexstage sweep study.toml -o results.h5 --report sweep.html"),
+    Command("optimise", _IMPROVE, "Find the best design within ranges and limits.", f"{_CLI}.optimise:optimise",
+            "flexstage optimise study.toml -o better.toml --report optimum.html"),
+    Command("tolerance", _IMPROVE, "Scatter dimensions and materials: yield, allowances.", f"{_CLI}.tolerance:tolerance",
+            "flexstage tolerance study.toml --report tolerance.html"),
+    Command("doctor", _INSTALLATION, "Examine the installation and mend it.", f"{_CLI}.about:doctor",
+            "flexstage doctor --mend"),
+    Command("version", _INSTALLATION, "Print the version of flexstage.", f"{_CLI}.about:version",
+            "flexstage version"),
+)
+# fmt: on
+
+
+class LazyCommand(TyperCommand):
+    """Stands for a command in the help and in completion; when it is called, its module is imported and the command itself takes over."""
+
+    def __init__(self, command: Command) -> None:
+        super().__init__(command.name, help=command.help, rich_markup_mode=None)
+        self.command = command
+
+    def make_context(self, *arguments: Any, **keywords: Any) -> Any:
+        """The context of the command itself, parsed by it; a group of commands goes on from there."""
+        return self.load().make_context(*arguments, **keywords)
+
+    def load(self) -> Any:
+        """The command itself, or a group of commands."""
+        module, _, name = self.command.home.partition(":")
+        home = getattr(import_module(module), name)
+        if not isinstance(home, typer.Typer):
+            function, home = home, typer.Typer(add_completion=False, pretty_exceptions_enable=False, rich_markup_mode=None)
+            home.command(self.command.name, epilog=f"Example: {self.command.example}")(function)
+        return get_command(home)
+
+
+class GroupedCommands(TyperGroup):
+    """A group that lists its commands by purpose."""
+
+    def format_commands(self, ctx: Any, formatter: Any) -> None:  # noqa: ARG002 (the framework gives it)
+        """Write a section a purpose; all columns are alike."""
+        width = max(map(len, self.commands))
+        for group, commands in groupby(cast("Iterable[LazyCommand]", self.commands.values()), lambda each: each.command.group):
+            with formatter.section(group):
+                formatter.write_dl([(each.command.name.ljust(width), each.command.help) for each in commands])
+
+
+def application(commands: tuple[Command, ...] = COMMANDS) -> TyperGroup:
+    """The command line: a group of commands, none of which is imported before it is called."""
+    app = typer.Typer(
+        cls=GroupedCommands,
+        help="Design and proof of flexure-based ultra-precision positioning stages.",
+        epilog="Start with: flexstage new stage.toml, then flexstage analyse stage.toml --report report.html",
+        no_args_is_help=True,
+        pretty_exceptions_enable=False,
+        rich_markup_mode=None,
+        context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 120},
+    )
+    app.callback()(_options)
+    group = cast("TyperGroup", get_command(app))
+    for each in commands:
+        group.add_command(LazyCommand(each))
+    return group
+
+
+def _tell_version(*, asked: bool) -> None:
+    if asked:
+        from flexstage.apps.cli.about import version  # when called, as the module of any command
+
+        version()
+        raise typer.Exit
+
+
+def _options(
+    *,
+    version: Annotated[
+        bool, typer.Option("--version", callback=_tell_version, is_eager=True, help="Print the version of flexstage and stop.")
+    ] = False,
+) -> None:
+    pass
