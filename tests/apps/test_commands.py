@@ -8,7 +8,6 @@ import shlex
 import subprocess
 import sys
 import warnings
-from importlib import import_module
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -84,8 +83,7 @@ def test_help_names_every_command_under_its_purpose(flexstage: Command) -> None:
 
 @pytest.mark.parametrize("command", COMMANDS, ids=NAMES)
 def test_the_line_of_each_command_is_that_of_its_docstring(command: commands.Command) -> None:
-    module, _, name = command.home.partition(":")
-    docstring = inspect.getdoc(getattr(import_module(module), name))
+    docstring = inspect.getdoc(command.load())
     assert docstring is not None
     assert docstring.splitlines()[0] == command.help
 

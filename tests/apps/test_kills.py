@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from benchmarks.kills import SCENES
-from flexstage.apps.cli.application import COMMANDS
+from flexstage.apps.cli.commands import COMMANDS
 
 KILLS = Path(__file__).parents[2] / "benchmarks" / "kills.py"
 OUTPUTS = {"json", "report", "output", "mat", "export", "mesh", "gltf"}
@@ -25,5 +25,5 @@ def test_killed_commands_leave_nothing_behind(words: tuple[str, ...]) -> None:
 
 
 def test_every_command_that_writes_is_killed() -> None:
-    writing = {name for _, name, function, _ in COMMANDS if OUTPUTS & set(signature(function).parameters)}
+    writing = {each.name for each in COMMANDS if OUTPUTS & set(signature(each.load()).parameters)}
     assert {scene.words.split()[0] for scene in SCENES} == writing | {"new"}

@@ -24,6 +24,11 @@ class Command(NamedTuple):
     home: str
     example: str
 
+    def load(self) -> Any:
+        """The function or `Typer`, from its module."""
+        module, _, name = self.home.partition(":")
+        return getattr(import_module(module), name)
+
 
 _DESCRIBE, _ANALYSE, _PROVE, _TEST, _CONTROL, _IMPROVE, _INSTALLATION = (
     "Describe a stage",
@@ -105,20 +110,15 @@ COMMANDS: tuple[Command, ...] = (
 
 
 class LazyCommand(TyperCommand):
-    """Stands for a command in the help and in completion; when it is called, its module is imported and the command itself takes over."""
+    """Stands for a command in the help and in completion until it is called."""
 
     def __init__(self, command: Command) -> None:
         super().__init__(command.name, help=command.help, rich_markup_mode=None)
         self.command = command
 
-    def make_context(self, *arguments: Any, **keywords: Any) -> Any:
-        """The context of the command itself, parsed by it; a group of commands goes on from there."""
-        return self.load().make_context(*arguments, **keywords)
-
     def load(self) -> Any:
         """The command itself, or a group of commands."""
-        module, _, name = self.command.home.partition(":")
-        home = getattr(import_module(module), name)
+        home = self.command.load()
         if not isinstance(home, typer.Typer):
             function, home = home, typer.Typer(add_completion=False, pretty_exceptions_enable=False, rich_markup_mode=None)
             home.command(self.command.name, epilog=f"Example: {self.command.example}")(function)
@@ -126,7 +126,12 @@ class LazyCommand(TyperCommand):
 
 
 class GroupedCommands(TyperGroup):
-    """A group that lists its commands by purpose."""
+    """A group that lists its commands by purpose, and loads the one that is called."""
+
+    def resolve_command(self, ctx: Any, args: list[str]) -> Any:
+        """Name, command and the rest of the arguments."""
+        name, command, rest = super().resolve_command(ctx, args)
+        return name, cast("LazyCommand", command).load() if command else None, rest
 
     def format_commands(self, ctx: Any, formatter: Any) -> None:  # noqa: ARG002 (the framework gives it)
         """Write a section a purpose; all columns are alike."""

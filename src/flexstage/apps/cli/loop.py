@@ -132,31 +132,35 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
     _require_names(exports)
     values = Values()
     given = values.attempt(lambda: forms.LoopSetup() if setup is None else load_setup(setup)) or forms.LoopSetup()
-    asked = _over(
-        given,
-        reading=reading,
-        rate=values.value("--rate", rate, FREQUENCY),
-        delay=values.value("--delay", delay, TIME),
-        seconds=seconds,
-        seed=seed,
-        compensate=values.attempt(lambda: _compensation(compensate)),
-        amplifier=_over(given.amplifier, **_electric(values, amplifier or ())),
-        gauges=_over(
+    options = {
+        "reading": reading,
+        "rate": values.value("--rate", rate, FREQUENCY),
+        "delay": values.value("--delay", delay, TIME),
+        "seconds": seconds,
+        "seed": seed,
+        "compensate": values.attempt(lambda: _compensation(compensate)),
+        "amplifier": _over(given.amplifier, _electric(values, amplifier or ())),
+        "gauges": _over(
             given.gauges,
-            noise=values.value("--gauge-noise", gauge_noise, NOISE_DENSITY),
-            resolution=values.value("--resolution", resolution, DISPLACEMENT),
+            {
+                "noise": values.value("--gauge-noise", gauge_noise, NOISE_DENSITY),
+                "resolution": values.value("--resolution", resolution, DISPLACEMENT),
+            },
         ),
-        floor=values.attempt(lambda: _floor(given.floor, floor or ())),
-        controller=_over(
+        "floor": values.attempt(lambda: _floor(given.floor, floor or ())),
+        "controller": _over(
             given.controller,
-            kind=controller,
-            coordinates=coordinates,
-            bandwidth=values.value("--bandwidth", bandwidth, FREQUENCY),
-            sensitivity=values.value("--sensitivity", sensitivity, RATIO),
+            {
+                "kind": controller,
+                "coordinates": coordinates,
+                "bandwidth": values.value("--bandwidth", bandwidth, FREQUENCY),
+                "sensitivity": values.value("--sensitivity", sensitivity, RATIO),
+            },
         ),
-        hysteresis=_stacks(hysteresis),
-        trajectory=values.attempt(lambda: _trajectory(given.trajectory, trajectory, command)),
-    )
+        "hysteresis": _stacks(hysteresis),
+        "trajectory": values.attempt(lambda: _trajectory(given.trajectory, trajectory, command)),
+    }
+    asked = _over(given, options)
     require([*values.findings, *setup_findings(asked)])
     mechanism = open_design(design, changes, [("--json", json), ("--report", report), *_files(exports)])
     with progress_bar() as shown:
@@ -176,7 +180,7 @@ def _write_example(design: Path, example: Path) -> None:
     announce(f"Wrote {example}. Next: flexstage loop {design} --setup {example}")
 
 
-def _over(record: _Record, **given: Any) -> _Record:
+def _over(record: _Record, given: Mapping[str, Any]) -> _Record:
     """The record with the values that are given, others than `None`."""
     return replace(record, **{name: value for name, value in given.items() if value is not None})  # type: ignore[type-var]
 
@@ -229,7 +233,7 @@ def _floor(given: forms.Floor, texts: Sequence[str]) -> forms.Floor | None:
         if sign and axis not in ("x", "y", "z"):
             findings.append(Finding(f"--floor {text}", f'"{axis}" is no axis of the floor', "Write x, y or z, or no axis for all three"))
     require(findings)
-    return _over(given, **found)
+    return _over(given, found)
 
 
 def _shaking(text: str, value: str) -> forms.Shaking:
@@ -241,7 +245,7 @@ def _shaking(text: str, value: str) -> forms.Shaking:
         names = ", ".join(each.value for each in Criterion)
         advice = f'Write one of {names}, or an amplitude density, for example "3 um/s^2/Hz^0.5"'
         raise refuse(f"--floor {text}", f'"{value}" is no criterion and no amplitude density', advice)
-    return _over(forms.Shaking(), **{fit[0]: (fit[1],)})
+    return _over(forms.Shaking(), {fit[0]: (fit[1],)})
 
 
 def _trajectory(given: forms.Commanded, word: str | None, moves: Sequence[str] | None) -> forms.Commanded | None:
@@ -252,7 +256,7 @@ def _trajectory(given: forms.Commanded, word: str | None, moves: Sequence[str] |
     if not isinstance(found, (forms.StepMotion, forms.SineMotion)):
         name = found.TOLD_BY[1]
         raise refuse("--command", f"a trajectory of kind {name} has its sizes in the set-up file", "Use it with step or sine")
-    return replace(found, by=_over(forms.Motion(), **motions(moves)))
+    return replace(found, by=_over(forms.Motion(), motions(moves)))
 
 
 def _named(word: str, given: forms.Commanded) -> forms.Commanded:
