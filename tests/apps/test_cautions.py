@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import flexstage as fs
-from flexstage.apps.cli.application import COMMANDS
+from flexstage.apps.cli.commands import COMMANDS
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.mechanism.store import dumps
 from flexstage.parts.freedom import Freedom
@@ -182,7 +182,7 @@ def test_every_report_tells_the_cautions_of_the_document(reported: Command, tmp_
 
 
 def test_every_command_with_a_report_is_looked_at() -> None:
-    asked = {name for _, name, function, _ in COMMANDS if "report" in signature(function).parameters}
+    asked = {each.name for each in COMMANDS if "report" in signature(each.load()).parameters}
     assert {each.split()[0] for each in REPORTED} | {"analyse", "solid", "verify"} == asked, (
         "analyse: above; the solid ones: test_solid_commands"
     )
