@@ -77,8 +77,8 @@ def make_venv() -> None:
 
 
 def pip(*arguments: str) -> None:
-    """Run pip within .venv, quiet unless it fails."""
-    command = [str(PYTHON), "-m", "pip", "install", "-qq", "--disable-pip-version-check", "--no-input", *arguments]
+    """Run pip within .venv, quiet unless it fails. Python translates modules when they are first used: all of them would take long."""
+    command = [str(PYTHON), "-m", "pip", "install", "-qq", "--disable-pip-version-check", "--no-input", "--no-compile", *arguments]
     subprocess.run(command, check=True, cwd=ROOT, env=clean_environment())
 
 

@@ -29,8 +29,9 @@ def gap(one: Outline, other: Outline) -> float:
             signs = np.array(list(itertools.product((-0.5, 0.0, 0.5), repeat=3)))
             arms = box.frame.position + (signs * box.size) @ box.frame.rotation.T - disc.frame.position
             normals += list(arms - np.outer(arms @ disc.frame.rotation[:, 0], disc.frame.rotation[:, 0]))
-    units = [normal / np.linalg.norm(normal) for normal in normals if np.linalg.norm(normal) > 1e-6]
-    return max(-float(one.reach(sign * unit) + other.reach(-sign * unit)) for unit in units for sign in (1.0, -1.0))
+    units = np.array([normal / np.linalg.norm(normal) for normal in normals if np.linalg.norm(normal) > 1e-6])
+    units = np.concatenate([units, -units])
+    return -float(np.min(one.reach(units) + other.reach(-units)))
 
 
 def faces(solid: PlacedSolid) -> list[tuple[np.ndarray, np.ndarray, np.ndarray, bool]]:

@@ -27,7 +27,7 @@ def hinge(thickness, radius, width, order=4, stub=0.0):
         solid -= Cylinder(Pnt(0, side * (cut + thickness / 2), -width), Z, cut, 2 * width)
     for face in solid.faces:
         face.name = {-1: "fixed", 1: "moved"}.get(round(face.center.x / end, 6), "free")
-    mesh = ng.Mesh(OCCGeometry(solid).GenerateMesh(maxh=min(width, height) / 2))
+    mesh = ng.Mesh(OCCGeometry(solid).GenerateMesh(maxh=min(width, height) / 2, parallel_meshing=False))
     _refine(mesh, 1.2 * thickness, 0.5 * np.sqrt(thickness * radius), order)
     x, y, z = ng.x, ng.y, ng.z
     motions = [(1, 0, 0), (0, 1, 0), (0, 0, 1), (0, -z, y), (z, 0, -x), (-y, x, 0)]
@@ -91,7 +91,7 @@ def throat(thickness, radius, length=None, order=6):
             plate -= Rectangle(2 * middle, radius + 1).Face().Move((-middle, thickness / 2 if side > 0 else -thickness / 2 - radius - 1, 0))
     for edge in plate.edges:
         edge.name = {-1: "fixed", 1: "moved"}.get(round(edge.center.x / end, 6), "free")
-    mesh = ng.Mesh(OCCGeometry(plate, dim=2).GenerateMesh(maxh=min(thickness / 3, radius / 4)))
+    mesh = ng.Mesh(OCCGeometry(plate, dim=2).GenerateMesh(maxh=min(thickness / 3, radius / 4), parallel_meshing=False))
     mesh.Curve(order)
     stiffness, fields = _solve(mesh, order, [(1, 0), (-ng.y, ng.x)], 2)
     nominal = stiffness[0, 0] / thickness, 6 * stiffness[1, 1] / thickness**2

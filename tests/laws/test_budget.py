@@ -10,11 +10,12 @@ from hypothesis import given
 import flexstage as fs
 from flexstage.readings.linear.eigen import eigen
 from tests.conftest import examples
+from tests.laws.shared import ideal, lumped
 from tests.laws.strategies import actuated_platforms
 
 
 def _defect(stage: fs.Mechanism) -> tuple[float, float]:
-    result = fs.lost_motion(fs.ideal(stage), fs.lumped(stage))
+    result = fs.lost_motion(ideal(stage), lumped(stage))
     total = sum((share.values for share in result.budget.values()), np.zeros_like(result.loss.values))
     loss = result.loss.values
     return float(np.max(np.abs(total - loss))), max(1.0, float(np.linalg.norm(loss)))
@@ -57,7 +58,7 @@ def test_imposed_strokes_are_the_limit_of_stiff_stacks(stage: fs.Mechanism) -> N
 
 @given(actuated_platforms())
 def test_corrected_commands_reach_the_wanted_motion(stage: fs.Mechanism) -> None:
-    kinematics, model = fs.ideal(stage), fs.lumped(stage)
+    kinematics, model = ideal(stage), lumped(stage)
     result = fs.lost_motion(kinematics, model)
     reached = kinematics.projection @ result.gain.values @ result.correction.values
     np.testing.assert_allclose(reached, np.eye(kinematics.mobility), atol=1e-7)

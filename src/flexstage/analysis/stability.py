@@ -18,7 +18,7 @@ from flexstage.analysis.workspace.load import dead_loads
 from flexstage.analysis.workspace.stroke import StrokeLimits
 from flexstage.base.finding import DesignError, Finding
 from flexstage.base.number import Array, stack
-from flexstage.beams.compliance import law
+from flexstage.beams.compliance import locked as locked_by
 from flexstage.beams.geometric import ENDS, Geometric, geometric
 from flexstage.beams.mass import mass
 from flexstage.mechanism.drawn import drawn
@@ -283,7 +283,7 @@ def _force(force: Array) -> Array:
 def _whole(mechanism: Mechanism, sprung: dict[str, Array], loads: _Loads) -> dict[str, Array]:
     """The wrenches of the links with the forces of their locked freedoms, which no spring feels: from the equilibrium of every body."""
     assembly = expand(mechanism)
-    locked = {name: [freedom.index for freedom in law(link.part, link.material).locked] for name, link in assembly.links.items()}
+    locked = {name: [freedom.index for freedom in locked_by(link.part)] for name, link in assembly.links.items()}
     if not any(locked.values()):
         return sprung
     order = {name: slice(6 * place, 6 * place + 6) for place, name in enumerate(assembly.bodies)}

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -74,7 +75,7 @@ def law(part: Part, material: Material | None) -> Law:
     True
     """
     if isinstance(part, Joint):
-        return Law(np.zeros((6, 6)), others(part.free))
+        return Law(np.zeros((6, 6)), locked(part))
     if not isinstance(part, Restricted):
         return Law(stiffness(part, material))
     full = stiffness(part.part, material)
@@ -85,7 +86,14 @@ def law(part: Part, material: Material | None) -> Law:
         block = block - mixed @ np.linalg.solve(full[..., freed[:, None], freed], np.swapaxes(mixed, -1, -2))
     result = np.zeros_like(full)
     result[..., kept[:, None], kept] = block
-    return Law(result, others(part.elastic + part.free))
+    return Law(result, locked(part))
+
+
+def locked(part: Part) -> tuple[Freedom, ...]:
+    """The freedoms that a part locks."""
+    if isinstance(part, Joint):
+        return others(part.free)
+    return others(part.elastic + part.free) if isinstance(part, Restricted) else ()
 
 
 def beam_of(part: Notch | Neck | Leaf | Rod | Piezo, material: Material | None) -> Beam:
@@ -104,6 +112,7 @@ def beam_of(part: Notch | Neck | Leaf | Rod | Piezo, material: Material | None) 
     return leaf_beam(part, material) if isinstance(part, Leaf) else rod_beam(part, material)
 
 
+@lru_cache(maxsize=32)
 def _diagonal(part: Notch | Neck | Leaf | Rod | Piezo, material: Material | None) -> Array:
     if isinstance(part, Leaf):
         return leaf_diagonal(part, _required(part, material))

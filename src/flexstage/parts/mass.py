@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -40,7 +41,13 @@ def mass_properties(body: Body, materials: Mapping[str, Material], name: str = "
         return MassProperties(np.asarray(body.mass), centre, inertia)
     if not body.solids:
         return None
-    return united(drawn_solids(body, materials, name, identity()))
+    return _drawn_mass(body, tuple((key, materials[key]) for key in dict.fromkeys(each.material for each in body.solids.values())), name)
+
+
+@lru_cache(maxsize=32)
+def _drawn_mass(body: Body, materials: tuple[tuple[str, Material], ...], name: str) -> MassProperties:
+    """The mass of what is drawn, kept: many descriptions that differ in their links have the same bodies."""
+    return united(drawn_solids(body, dict(materials), name, identity()))
 
 
 def drawn_solids(body: Body, materials: Mapping[str, Material], name: str, frame: Frame) -> list[Drawn]:

@@ -36,7 +36,7 @@ from flexstage.readings.linear.kinematics import Kinematics
 from flexstage.readings.linear.model import LinearModel
 from flexstage.readings.lumped import lumped
 from flexstage.spatial.frame import COMPONENTS, transport
-from flexstage.studies.standing import standing
+from flexstage.studies.standing import standing, under_load
 
 
 def judge(mechanism: Mechanism) -> tuple[Verdict, ...]:
@@ -173,7 +173,7 @@ class Bench:
     @cached_property
     def stability(self) -> Stability:
         """Load factors of the dead load."""
-        return stability(self.mechanism, self.model)
+        return under_load(self.mechanism) or stability(self.mechanism, self.model)
 
     @cached_property
     def limits(self) -> StrokeLimits:

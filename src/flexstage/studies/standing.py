@@ -30,6 +30,11 @@ def standing(mechanism: Mechanism) -> LinearModel:
     return model
 
 
+def under_load(mechanism: Mechanism) -> Stability | None:
+    """Load factors of the dead load, strokes at rest; `None` of a batch."""
+    return _under_load(mechanism)[1]
+
+
 @lru_cache(maxsize=2)
 def _under_load(mechanism: Mechanism) -> tuple[LinearModel, Stability | None]:
     """The lumped model and how it stands, kept for what else one command asks of the same description."""
@@ -61,6 +66,6 @@ def load_factors(mechanism: Mechanism) -> Stability | None:
     """
     limits = stroke_limits(mechanism).from_zero
     try:
-        return stability(mechanism, lumped(mechanism), limits if 0 < len(limits.actuators) <= _CORNERS else None)
+        return stability(mechanism, _under_load(mechanism)[0], limits if 0 < len(limits.actuators) <= _CORNERS else None)
     except DesignError:
         return None

@@ -151,24 +151,27 @@ def _surrounds(outline: Outline, opening: Array) -> Array:
 
 def _depth(outline: Outline, opening: Array) -> Array:
     """Least overlap in plan over candidate directions; negative or zero: apart."""
-    overlaps = [
-        outline.reach(direction) + 0.5 * (opening[..., 0] * np.abs(direction[..., 0]) + opening[..., 1] * np.abs(direction[..., 1]))
-        for direction in _directions(outline, opening)
-    ]
-    return np.min(_joined(overlaps), axis=-1)
+    directions = _directions(outline, opening)
+    half = 0.5 * (opening[..., 0] * np.abs(directions[..., 0]) + opening[..., 1] * np.abs(directions[..., 1]))
+    return np.min(outline.reach(directions) + half, axis=0)
 
 
-def _directions(outline: Outline, opening: Array) -> Iterator[Array]:
-    """Outward normals of both shapes in plan, and directions from the opening's corners to a round outline's middle."""
+def _directions(outline: Outline, opening: Array) -> Array:
+    """Outward normals (n, ..., 3) of both shapes in plan, and directions from the opening's corners to a round outline's middle."""
     normals = [np.array([1.0, 0.0]), np.array([0.0, 1.0])]
     edges = outline.frame.rotation[..., :2, :]
     normals += [np.stack([-edges[..., 1, index], edges[..., 0, index]], axis=-1) for index in range(3)]
     if outline.is_round:
         corners = (np.array([sx, sy]) * 0.5 * opening for sx in (1.0, -1.0) for sy in (1.0, -1.0))
         normals += [outline.frame.position[..., :2] - corner for corner in corners]
-        normals += [np.array([np.cos(angle), np.sin(angle)]) for angle in np.linspace(0.0, np.pi, 180, endpoint=False)]
-    for normal in normals:
-        length = np.sqrt(np.sum(normal * normal, axis=-1, keepdims=True))
-        unit = np.where(length > _TOUCHING, normal / np.where(length > _TOUCHING, length, 1.0), np.array([1.0, 0.0]))
-        for sign in (1.0, -1.0):
-            yield np.concatenate([sign * unit, np.zeros_like(unit[..., :1])], axis=-1)
+        normals += list(_AROUND)
+    batch = np.broadcast_shapes(opening.shape[:-1], edges.shape[:-2], outline.frame.position.shape[:-1], outline.size.shape[:-1])
+    normal = np.stack([np.broadcast_to(each, (*batch, 2)) for each in normals])
+    length = np.sqrt(np.sum(normal * normal, axis=-1, keepdims=True))
+    unit = np.where(length > _TOUCHING, normal / np.where(length > _TOUCHING, length, 1.0), np.array([1.0, 0.0]))
+    flat = np.concatenate([unit, np.zeros_like(unit[..., :1])], axis=-1)
+    return np.concatenate([flat, -flat])
+
+
+_AROUND: Array = np.stack([each(np.linspace(0.0, np.pi, 180, endpoint=False)) for each in (np.cos, np.sin)], axis=-1)
+"""Directions in plan, half round."""

@@ -112,11 +112,13 @@ def _attempted(drawing: Cad, order: int, sizes: Mapping[str, Any]) -> ngsolve.Me
 def generated(shape: occ.TopoDS_Shape, sizes: Mapping[str, Any]) -> ngsolve.Mesh | str:
     """A mesh [mm] of a drawing with the sizes the mesher is given; else what went wrong.
 
+    By one thread: several make another mesh at every run, and spend most of their time waiting for one another.
+
     >>> generated(occ.Box(occ.Pnt(0, 0, 0), occ.Pnt(1, 1, 1)), {"maxh": 2.0}).ne > 0
     True
     """
     try:
-        raw = occ.OCCGeometry(shape).GenerateMesh(**sizes)
+        raw = occ.OCCGeometry(shape).GenerateMesh(**sizes, parallel_meshing=False)
     except Exception as error:  # noqa: BLE001 (netgen raises a bare NgException, and others for CAD it cannot read)
         return str(error)
     mesh = ngsolve.Mesh(raw)
