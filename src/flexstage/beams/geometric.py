@@ -72,11 +72,9 @@ def _of_beam(beam: Beam, inner: tuple[int, int, int]) -> Geometric:
     1/2 int N (theta_y^2 + theta_z^2 + r^2 theta_x'^2) - theta_x (Q . theta) - m . (theta x theta') dx, r the polar radius of the section.
     """
     position, weight, turn, bend, stiffness = _shapes(beam, inner)
-    outer = np.einsum("...s,...sia,...sjb->...ijab", weight, turn, turn)
-    mixed = np.einsum("...s,...sia,...skb->...ikab", weight, turn, bend)
-    moved = np.einsum("...s,...sia,...skb->...ikab", weight * position, turn, bend)
+    outer, mixed, moved = _summed(weight, turn, turn), _summed(weight, turn, bend), _summed(weight * position, turn, bend)
     polar = _both(np.broadcast_to(beam.section.polar / beam.section.area, beam.flexibility.shape[:-1]))
-    wagner = np.einsum("...s,...sa,...sb->...ab", weight * polar, bend[..., 0, :], bend[..., 0, :])
+    wagner = _summed(weight * polar, bend[..., :1, :], bend[..., :1, :])[..., 0, 0, :, :]
     moments = [-np.einsum("jk,...jkab->...ab", _CROSS[axis], mixed) for axis in range(3)]
     along_y, along_z = (-np.einsum("jk,...jkab->...ab", _CROSS[axis], moved) for axis in (1, 2))
     rows = np.broadcast_arrays(
@@ -86,6 +84,14 @@ def _of_beam(beam: Beam, inner: tuple[int, int, int]) -> Geometric:
         *moments,
     )
     return Geometric(_symmetric(np.stack(rows, axis=-3)), stiffness, position[..., -1])
+
+
+def _summed(weight: Array, first: Array, second: Array) -> Array:
+    """Sum over the stations of weights (..., s) times products of shapes (..., s, i, a) and (..., s, j, b): (..., i, j, a, b)."""
+    weighed = weight[..., None, None] * first
+    wide, across = (each.reshape(*each.shape[:-2], -1) for each in (weighed, second))
+    total = np.swapaxes(wide, -1, -2) @ across
+    return np.swapaxes(total.reshape(*total.shape[:-2], *first.shape[-2:], *second.shape[-2:]), -3, -2)
 
 
 def _shapes(beam: Beam, inner: tuple[int, int, int]) -> tuple[Array, Array, Array, Array, Array]:
