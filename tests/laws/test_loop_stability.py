@@ -229,15 +229,20 @@ def test_disk_margins_hold(seed, rate):
 @given(SEEDS, st.sampled_from([1000.0, None]))
 @examples(5, 200)
 def test_peaks_are_the_highest(seed, rate):
-    """No frequency of a dense grid shows more than the norm, and its own frequency shows it."""
-    closed = stable_loop(seed, rate=rate)
-    found = peaks(closed, Cut.COMMAND)
-    system = sensitivity(opened(closed, Cut.COMMAND))
-    grid = np.geomspace(1e-2, 500.0 if rate else 5000.0, 3000)
-    assert np.max(np.linalg.svd(system.transfer(grid), compute_uv=False)) <= found.sensitivity.value * (1.0 + 1e-10)
-    if np.isfinite(found.sensitivity.frequency):
-        there = np.linalg.svd(system.transfer(np.array([found.sensitivity.frequency]))[0], compute_uv=False)[0]
-        assert abs(there / found.sensitivity.value - 1.0) < 1e-9
+    """No frequency of a grid shows more than the norms of S and T, and their own shows them; a radian counts as a tenth of a metre."""
+    closed = stable_loop(seed, rate=rate, coordinates=3)
+    grid = np.geomspace(1e-2, 500.0 if rate else 5000.0, 1000)
+    for cut, size in ((Cut.POSE, np.array([1.0, 1.0, 0.1])), (Cut.COMMAND, np.ones(len(closed.plant.actuators)))):
+        found, system = peaks(closed, cut), sensitivity(opened(closed, cut))
+
+        def highest(points, turned, system=system, size=size):
+            own = size[:, None] * system.transfer(points) / size
+            return np.max(np.linalg.svd(np.eye(len(size)) - own if turned else own, compute_uv=False))
+
+        for peak, turned in ((found.sensitivity, False), (found.complementary, True)):
+            assert highest(grid, turned) <= peak.value * (1.0 + 1e-10)
+            if np.isfinite(peak.frequency):
+                assert abs(highest(np.array([peak.frequency]), turned) / peak.value - 1.0) < 1e-9
 
 
 def test_unstable_loops_have_no_margins():
