@@ -147,15 +147,18 @@ def base_side(commit: str, cache: Path) -> Side:
 
 
 def head_side(cache: Path) -> Side:
-    """The working tree; what it wrote before its source changed is removed."""
+    """The working tree as it is now, copied, so that it may be changed meanwhile; what it wrote before it was changed is removed."""
     digest = hashlib.sha256()
     for path in sorted(each for each in (ROOT / "src").rglob("*") if each.is_file() and each.suffix != ".pyc"):
         digest.update(f"{path} {path.stat().st_size}\n".encode() + path.read_bytes())
-    tree = cache / f"tree-{hashlib.sha256(str(ROOT).encode()).hexdigest()[:12]}"
-    for each in tree.glob("*"):
-        if each.name != digest.hexdigest()[:12]:
+    tree = cache / f"tree-{hashlib.sha256(str(ROOT).encode()).hexdigest()[:12]}" / digest.hexdigest()[:12]
+    for each in tree.parent.glob("*"):
+        if each != tree:
             shutil.rmtree(each)
-    return Side(ROOT, Path(sys.executable), tree / digest.hexdigest()[:12] / KERNEL)
+    with whole(tree / "source") as begun:
+        if begun is not None:
+            shutil.copytree(ROOT / "src", begun / "src", ignore=shutil.ignore_patterns("__pycache__"))
+    return Side(tree / "source", Path(sys.executable), tree / KERNEL)
 
 
 def main() -> int:
