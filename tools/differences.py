@@ -251,8 +251,11 @@ def compared_texts(old: Sequence[str], new: Sequence[str], meant: Meant) -> Iter
     if old == new:
         yield EQUAL, ""
         return
-    blocks = [each for each in difflib.SequenceMatcher(None, old, new, autojunk=False).get_opcodes() if each[0] != "equal"]
-    for _, start, stop, other, end in blocks[:5]:
+    if len(old) * len(new) < 1e7:
+        blocks = [each[1:] for each in difflib.SequenceMatcher(None, old, new, autojunk=False).get_opcodes() if each[0] != "equal"]
+    else:  # line by line: what was put in or taken out of thousands of lines takes minutes to find
+        blocks = [(at, at + 1, at, at + 1) for at in range(max(len(old), len(new))) if old[at : at + 1] != new[at : at + 1]]
+    for start, stop, other, end in blocks[:5]:
         first, second = (" / ".join(lines)[:200] for lines in (old[start:stop], new[other:end]))
         yield DIFFERENT, f'line {other + 1}: "{first}" -> "{second}"'
     if len(blocks) > 5:

@@ -11,7 +11,20 @@ import numpy as np
 import pytest
 
 from tools.compare_outputs import tasks
-from tools.differences import DIFFERENT, EQUAL, SKIPPED, WITHIN, Meant, Rule, compared, compared_folders, deviation, document, searched
+from tools.differences import (
+    DIFFERENT,
+    EQUAL,
+    SKIPPED,
+    WITHIN,
+    Meant,
+    Rule,
+    compared,
+    compared_folders,
+    compared_texts,
+    deviation,
+    document,
+    searched,
+)
 
 MODES = [{"name": "tilt", "frequency_hz": 106.0}, {"name": "tilt", "frequency_hz": 106.5}]
 RESULT = {"version": "1", "modes": MODES, "map": {"unit": "m", "values": [[1.0, 2.0]]}}
@@ -87,6 +100,14 @@ def test_files_are_compared_as_what_they_are(tmp_path: Path) -> None:
     assert seen == [("run/a.html", 'line 2: "0.98" -> "0.97"'), ("run/new.json", "only at HEAD"), ("run/old.json", "only at BASE")]
     meant = Meant({"0.98": "0.97"})
     assert EQUAL in {state for where, (state, _) in compared_folders("run", tmp_path / "old", tmp_path / "new", meant) if "html" in where}
+
+
+def test_long_texts_are_compared_line_by_line() -> None:
+    old = [str(number) for number in range(5000)]
+    assert list(compared_texts(old, ["x", *old[1:], "y"], Meant())) == [
+        (DIFFERENT, 'line 1: "0" -> "x"'),
+        (DIFFERENT, 'line 5001: "" -> "y"'),
+    ]
 
 
 def test_runs_are_spelled_in_the_words_of_each_side() -> None:
