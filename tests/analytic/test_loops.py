@@ -68,6 +68,14 @@ def test_seiler_packard_gahinet():
     assert round(np.degrees(found.phase), 1) == 25.8
 
 
+def test_a_loop_that_neither_grows_nor_decays_is_not_stable():
+    """A pole at rest that no gain moves, beside one that decays."""
+    found = verdict(_closed([0.0], [1.0, 1.0, 0.0]))
+    assert not found.stable
+    assert found.least.growth == 0.0
+    assert np.isnan(found.gain_low)
+
+
 def test_skewed_disks():
     """With skew 1 the disk margin is 1/||S||, with -1 it is 1/||T|| (the same paper): the peaks of S and T."""
     closed = _closed([25.0], [1.0, 10.0, 10.0, 10.0])

@@ -272,6 +272,15 @@ def test_discs_and_boxes_against_the_opening():
     np.testing.assert_allclose([item.depth for item in found.intrusions], [0.001, 0.0005, 0.002], rtol=1e-9)
 
 
+def test_an_oblong_opening_is_as_long_and_wide_as_it_says():
+    """110 mm along x, 70 mm along y: blocks that stand 1 mm and 2 mm into it, and two beside it."""
+    places = [(0.064, 0.0, 0.0), (0.0, 0.043, 0.0), (-0.065, 0.0, 0.0), (0.0, -0.045, 0.0)]
+    blocks = [fs.Block("steel", (0.02, 0.02, 0.01), at=place) for place in places]
+    found = room(solids(*blocks, opening=fs.Opening((0.11, 0.07))))
+    assert [item.name for item in found.intrusions] == ["platform.s0", "platform.s1"]
+    np.testing.assert_allclose([item.depth for item in found.intrusions], [0.001, 0.002], rtol=1e-9)
+
+
 def test_holes_and_bores_leave_the_opening_clear():
     """A plate with a hole and a ring with a bore around the opening are clear; one too small is not, nor what stands on its edge."""
     plate = fs.Block("steel", (0.2, 0.2, 0.01), hole=(0.11, 0.11))
@@ -294,6 +303,16 @@ def test_bounding_box_and_envelope():
     assert [finding.where for finding in found.findings] == ["envelope.y"]
     assert "84.85 mm" in found.findings[0].what
     assert "80 mm" in found.findings[0].what
+
+
+def test_the_linear_map_is_tried_at_corners_and_centres_of_faces():
+    """Of the box of two strokes: both at an end, or one at an end and the other in the middle."""
+    stage = fs.case("xy-stage")
+    limits = stroke_limits(stage).from_zero
+    tried = linear_map_error(stage, ideal(stage), limits, inside=0).strokes
+    shares = (tried - limits.low) / limits.full
+    expected = [(x, y) for x in (0.0, 0.5, 1.0) for y in (0.0, 0.5, 1.0) if (x, y) != (0.5, 0.5)]
+    np.testing.assert_allclose(sorted(map(tuple, np.round(shares, 9))), expected, atol=1e-9)
 
 
 def test_a_batch_is_the_loop():

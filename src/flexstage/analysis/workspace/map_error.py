@@ -116,7 +116,7 @@ def _faces(limits: StrokeLimits) -> Array:
 
 def _interior(limits: StrokeLimits, count: int) -> Array:
     fractions = np.stack([_radical_inverse(np.arange(1, count + 1), base) for base in _primes(len(limits.actuators))], axis=-1)
-    fractions = fractions.reshape(count, *(1,) * (limits.low.ndim - 1), -1)
+    fractions = fractions.reshape(count, *(1,) * (limits.low.ndim - 1), len(limits.actuators))
     return limits.low + fractions * limits.full
 
 
