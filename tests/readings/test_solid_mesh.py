@@ -13,14 +13,13 @@ import ngsolve
 
 from flexstage.base.finding import DesignError
 from flexstage.cases.double_triangle import double_triangle
-from flexstage.cases.parallelogram import parallelogram
 from flexstage.mechanism.mechanism import Link, Mechanism
 from flexstage.parts.body import Body
 from flexstage.readings.solid.cad import cad
 from flexstage.readings.solid.component import Component, components
 from flexstage.readings.solid.field import factored, field, rigid, stiffness
 from flexstage.readings.solid.fineness import Fineness
-from flexstage.readings.solid.mesh import Meshed, centroids, meshed
+from flexstage.readings.solid.mesh import Meshed, meshed
 from flexstage.readings.solid.straighten import jacobians, straighten
 from flexstage.spatial.frame import identity
 
@@ -68,12 +67,6 @@ def test_no_element_is_folded_and_the_volume_is_that_drawn(lever: tuple[Componen
     assert np.quantile(lowest / highest, 0.01) > 0.05
     volume = ngsolve.Integrate(ngsolve.CoefficientFunction(1.0), mesh.mesh)
     assert volume == pytest.approx(cad(component).shape.mass, rel=1e-5)
-
-
-def test_a_drawing_has_one_mesh() -> None:
-    component = components(parallelogram())[1]
-    first, second = (meshed(component, Fineness(neck=2.0, block=2.5, order=2)) for _ in range(2))
-    assert np.array_equal(centroids(first.mesh), centroids(second.mesh))
 
 
 def test_few_elements_are_straightened(lever: tuple[Component, Meshed]) -> None:

@@ -112,7 +112,7 @@ def _attempted(drawing: Cad, order: int, sizes: Mapping[str, Any]) -> ngsolve.Me
 def generated(shape: occ.TopoDS_Shape, sizes: Mapping[str, Any]) -> ngsolve.Mesh | str:
     """A mesh [mm] of a drawing with the sizes the mesher is given; else what went wrong.
 
-    By one thread: several make another mesh at every run, and spend most of their time waiting for one another.
+    By one thread: several may make another mesh from run to run, and spend most of their time waiting for one another.
 
     >>> generated(occ.Box(occ.Pnt(0, 0, 0), occ.Pnt(1, 1, 1)), {"maxh": 2.0}).ne > 0
     True
