@@ -17,6 +17,7 @@ import shlex
 import shutil
 import subprocess
 import sys
+import time
 import tomllib
 from collections import Counter, defaultdict
 from collections.abc import Generator, Iterator, Mapping
@@ -147,13 +148,13 @@ def base_side(commit: str, cache: Path) -> Side:
 
 
 def head_side(cache: Path) -> Side:
-    """The working tree as it is now, copied, so that it may be changed meanwhile; what it wrote before it was changed is removed."""
+    """The working tree as it is now, copied, so that it may be changed meanwhile; of earlier ones, outputs of the last day are kept."""
     digest = hashlib.sha256()
     for path in sorted(each for each in (ROOT / "src").rglob("*") if each.is_file() and each.suffix != ".pyc"):
         digest.update(f"{path} {path.stat().st_size}\n".encode() + path.read_bytes())
     tree = cache / f"tree-{hashlib.sha256(str(ROOT).encode()).hexdigest()[:12]}" / digest.hexdigest()[:12]
     for each in tree.parent.glob("*"):
-        if each != tree:
+        if each != tree and each.stat().st_mtime < time.time() - 86400.0:
             shutil.rmtree(each)
     with whole(tree / "source") as begun:
         if begun is not None:
