@@ -13,7 +13,7 @@ import pytest
 import flexstage as fs
 from flexstage.apps.cli.commands import COMMANDS
 from flexstage.cases.double_triangle import double_triangle
-from flexstage.mechanism.store import dumps
+from flexstage.mechanism.store import dumps, loads
 from flexstage.parts.freedom import Freedom
 from flexstage.parts.part import Restricted
 from flexstage.readings.measured.write import write
@@ -179,6 +179,26 @@ def test_every_report_tells_the_cautions_of_the_document(reported: Command, tmp_
     assert ended.code == 0, ended.err
     told = told_everywhere(ended, tmp_path / "out.json", tmp_path / "out.html")
     assert expected in told
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        ("optimise least.toml -o -", "load factor 2.01"),
+        ("sweep study.toml -o r.h5 --workers 1 --report -", "load factor goes down to 2.01"),
+        ("hysteresis stack.csv --limits 0V 1500V --report -", "67% of the actuator's range"),
+    ],
+)
+def test_a_file_on_stdout_is_there_alone(reported: Command, tmp_path: Path, words: str, told: str) -> None:
+    write(tmp_path / "stack.csv", example_record())
+    ended = reported(*words.split(), "--json", "out.json")
+    assert ended.code == 0, ended.err
+    if "optimise" in words:
+        loads(ended.out)
+    else:
+        assert (ended.out[:15], ended.out.rstrip()[-7:]) == ("<!doctype html>", "</html>")
+    assert told in ended.err
+    assert told in (tmp_path / "out.json").read_text()
 
 
 def test_every_command_with_a_report_is_looked_at() -> None:

@@ -13,7 +13,7 @@ from flexstage.base.quantity import VOLTAGE
 from flexstage.base.unit import parse
 from flexstage.present.command.answer import answer
 from flexstage.present.command.options import Json, Report, output_option, text_option
-from flexstage.present.command.output import STDOUT, require_writable, save
+from flexstage.present.command.output import require_writable, save
 from flexstage.present.command.records import Rate, RecordTexts, Units, open_records
 from flexstage.present.command.terminal import warn
 from flexstage.present.documents.hysteresis import hysteresis_body
@@ -59,9 +59,8 @@ def hysteresis(  # noqa: PLR0913 (its options)
         save(output, dumps_hysteresis(found.stack), "--output")
     if report is not None:
         save(report, hysteresis_report(found), "--report")
-    if json is None and STDOUT in (str(report), str(output)):
-        return
-    answer("hysteresis", None, lambda: hysteresis_body(found), lambda: [stack_table(found), plays_table(found)], json=json)
+    tables = [stack_table(found), plays_table(found)]
+    answer("hysteresis", None, lambda: hysteresis_body(found), lambda: tables, json=json, beside=(report, output))
 
 
 def _open(path: Path, reader: RecordTexts) -> Record:

@@ -12,7 +12,7 @@ from flexstage.mechanism.mechanism import Mechanism
 from flexstage.present.command.answer import answer
 from flexstage.present.command.design import elastic_model, open_design
 from flexstage.present.command.options import Changes, Design, Json, Report, Theory, text_option
-from flexstage.present.command.output import STDOUT, require_writable, save
+from flexstage.present.command.output import require_writable, save
 from flexstage.present.command.progress import progress_bar
 from flexstage.present.command.records import (
     Allow,
@@ -82,9 +82,7 @@ def identify(  # noqa: PLR0913 (its options)
     shapes = None if mechanism is None else _shapes(mechanism, seen)
     if report is not None:
         save(report, identify_report(seen, mechanism, shapes), "--report")
-    if json is None and str(report) == STDOUT:
-        return
-    answer("identify", mechanism, lambda: identify_body(seen, shapes), lambda: _tables(seen), json=json)
+    answer("identify", mechanism, lambda: identify_body(seen, shapes), lambda: _tables(seen), json=json, beside=(report,))
 
 
 def _tables(seen: Identification) -> Iterator[Table | None]:
@@ -130,8 +128,8 @@ def compare(  # noqa: PLR0913 (its options)
         warn(caution)
     if report is not None:
         save(report, compare_report(found, seen, mechanism, _shapes(mechanism, seen)), "--report")
-    if json is not None or str(report) != STDOUT:
-        answer("compare", mechanism, lambda: compare_body(found), lambda: compare_tables(found)[:-1], reading=reading, json=json)
+    tables = compare_tables(found)[:-1]
+    answer("compare", mechanism, lambda: compare_body(found), lambda: tables, reading=reading, json=json, beside=(report,))
 
 
 def _shapes(mechanism: Mechanism, seen: Identification) -> StageShapes:

@@ -24,7 +24,7 @@ from flexstage.base.quantity import (
 from flexstage.present.command.answer import answer
 from flexstage.present.command.design import open_design
 from flexstage.present.command.options import Changes, Design, Json, Report, text_option, word_option
-from flexstage.present.command.output import STDOUT, announce, require_writable, save, write
+from flexstage.present.command.output import announce, require_writable, save, write
 from flexstage.present.command.progress import progress_bar
 from flexstage.present.command.values import Values, first_fit, motions
 from flexstage.present.documents.loop import loop_body
@@ -169,9 +169,16 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
         save(report, loop_report(found), "--report")
     for target in exports:
         _export(found, target)
-    if json is not None or str(report) != STDOUT:
-        cautions = found.cautions
-        answer("loop", mechanism, lambda: loop_body(found), lambda: _tables(found), reading=asked.reading, json=json, cautions=cautions)
+    answer(
+        "loop",
+        mechanism,
+        lambda: loop_body(found),
+        lambda: _tables(found),
+        reading=asked.reading,
+        json=json,
+        cautions=found.cautions,
+        beside=(report,),
+    )
 
 
 def _write_example(design: Path, example: Path) -> None:

@@ -8,7 +8,7 @@ from typing import Annotated
 from flexstage.base.finding import Finding, refuse, require
 from flexstage.present.command import options
 from flexstage.present.command.answer import answer
-from flexstage.present.command.output import STDOUT, require_writable, save
+from flexstage.present.command.output import require_writable, save
 from flexstage.present.command.progress import progress_bar
 from flexstage.present.documents.optimise import front_body, optimise_body
 from flexstage.present.optimise_report import front_report, optimise_report
@@ -63,16 +63,16 @@ def _one(asked: Study, wanted: Wanted, *, study: Path, output: Path | None, repo
         save(output, optimised_text(text, asked, wanted, values_of(asked, found.final.shares), where=str(study)), "--output")
     if report is not None:
         save(report, optimise_report(found), "--report")
-    if str(output) != STDOUT:
-        answer(
-            "optimise",
-            asked.design,
-            lambda: optimise_body(found),
-            lambda: optimise_tables(found),
-            reading=Reading.LUMPED,
-            json=json,
-            cautions=cautions,
-        )
+    answer(
+        "optimise",
+        asked.design,
+        lambda: optimise_body(found),
+        lambda: optimise_tables(found),
+        reading=Reading.LUMPED,
+        json=json,
+        cautions=cautions,
+        beside=(output, report),
+    )
 
 
 def _front(asked: Study, wanted: Wanted, report: Path | None, json: str | None) -> None:
@@ -89,6 +89,7 @@ def _front(asked: Study, wanted: Wanted, report: Path | None, json: str | None) 
         reading=Reading.LUMPED,
         json=json,
         cautions=loaded_findings(asked),
+        beside=(report,),
     )
 
 

@@ -18,7 +18,7 @@ from flexstage.mechanism.store.file import read_text
 from flexstage.present.command.answer import answer, tell_missing
 from flexstage.present.command.design import open_design
 from flexstage.present.command.options import Changes, Design, Json, Report, output_option, text_option, word_option
-from flexstage.present.command.output import STDOUT, require_writable, save
+from flexstage.present.command.output import require_writable, save
 from flexstage.present.command.progress import ProgressBar, progress_bar
 from flexstage.present.command.terminal import tell, warn
 from flexstage.present.documents.solid import calibration_body, hinges_body, solid_stage_body, solid_units_body, verification_body
@@ -121,8 +121,8 @@ def solid(
         found = _STUDIES[what](mechanism, asked, shown)
     if report is not None:
         save(report, solid_report(mechanism, found.sections(), found.cautions), "--report")
-    if json is not None or str(report) != STDOUT:
-        answer("solid", mechanism, lambda: {"what": what.value, **found.body()}, found.tables, json=json, cautions=found.cautions)
+    cautions = found.cautions
+    answer("solid", mechanism, lambda: {"what": what.value, **found.body()}, found.tables, json=json, cautions=cautions, beside=(report,))
 
 
 def verify(
@@ -153,8 +153,8 @@ def verify(
         sections = iter([verification_section(found), hinge_section(found.hinges), units, stage])
         save(report, solid_report(mechanism, sections, cautions), "--report")
     tell_missing(found.missing)
-    if json is not None or str(report) != STDOUT:
-        answer("verify", mechanism, lambda: verification_body(found), lambda: _verification_tables(found), json=json, cautions=cautions)
+    body, tables = lambda: verification_body(found), lambda: _verification_tables(found)
+    answer("verify", mechanism, body, tables, json=json, cautions=cautions, beside=(report,))
 
 
 def calibrate(
@@ -177,9 +177,8 @@ def calibrate(
     with progress_bar() as shown:
         found = calibration.calibrate(text, _hinges(asked, shown), where=str(design))
     save(output, found.text, "--output")
-    if str(output) != STDOUT:
-        cautions = _inexact(found.hinges)
-        answer("calibrate", mechanism, lambda: calibration_body(found), lambda: [calibration_table(found)], json=json, cautions=cautions)
+    cautions, tables = _inexact(found.hinges), [calibration_table(found)]
+    answer("calibrate", mechanism, lambda: calibration_body(found), lambda: tables, json=json, cautions=cautions, beside=(output,))
 
 
 def _request(accuracy: str, order: int | None, memory: str | None) -> _Request:

@@ -56,6 +56,7 @@ def sweep(
         reading=Reading.LUMPED,
         json=json,
         cautions=loaded_findings(asked),
+        beside=(report,),
     )
 
 

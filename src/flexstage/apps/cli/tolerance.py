@@ -54,4 +54,5 @@ def tolerance(
         reading=Reading.LUMPED,
         json=json,
         cautions=loaded_findings(found.study),
+        beside=(report,),
     )

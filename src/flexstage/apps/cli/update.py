@@ -15,7 +15,7 @@ from flexstage.mechanism.store import loads
 from flexstage.mechanism.store.file import read_text
 from flexstage.present.command.answer import answer
 from flexstage.present.command.options import Design, Json, output_option, text_option
-from flexstage.present.command.output import STDOUT, require_writable, save
+from flexstage.present.command.output import require_writable, save
 from flexstage.present.command.records import (
     Allow,
     Band,
@@ -93,8 +93,8 @@ def update(  # noqa: PLR0913 (its options)
     save(output, updated_text(text, found, ", ".join(path.name for path in record), where=str(design)), "--output")
     for caution in found.warnings[len(seen.found.warnings) :]:
         warn(caution)
-    if str(output) != STDOUT:
-        answer("update", mechanism, lambda: update_body(found), lambda: update_tables(found), reading=Reading.LUMPED, json=json)
+    body, tables = lambda: update_body(found), lambda: update_tables(found)
+    answer("update", mechanism, body, tables, reading=Reading.LUMPED, json=json, beside=(output,))
 
 
 def _known(priors: Sequence[str], model_error: str, gain_error: str, *, gain: bool) -> Known:

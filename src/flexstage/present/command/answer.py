@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from pathlib import Path
 
 from rich.console import Console
 
@@ -11,7 +12,7 @@ from flexstage.base.finding import Finding
 from flexstage.base.text import printable
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.present.command.output import STDOUT, announce, write
-from flexstage.present.command.terminal import styled, tell
+from flexstage.present.command.terminal import styled, tell, warn
 from flexstage.present.documents.envelope import Document, as_text, enveloped
 from flexstage.present.render import to_rich
 from flexstage.present.table import Table
@@ -30,17 +31,23 @@ def answer(
     json: str | None,
     reading: Reading | None = None,
     cautions: tuple[Finding, ...] = (),
+    beside: tuple[Path | None, ...] = (),
 ) -> None:
     """Write the JSON document where one was asked for (`json`), and show the tables unless stdout is the document's.
 
     `kind` is that of the document, `mechanism` the description it is about (`None`: none, a record alone). `cautions` are the result's
-    own, told after those about the description.
+    own, told after those about the description. `beside` are the command's other outputs: where one of them goes to stdout, tables do not,
+    and cautions go to stderr.
     """
     if json is not None:
         write(json, as_text(enveloped(kind, mechanism, reading, body(), cautions)) + "\n", "--json")
         if json == STDOUT:
             return
         announce(f"Wrote {json}")
+    if STDOUT in map(str, beside):
+        for each in (*(() if mechanism is None else caveats(mechanism).cautions), *cautions):
+            warn(str(each))
+        return
     show((*caveat_lines(kind, mechanism, cautions), *tables()))
 
 
