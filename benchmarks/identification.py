@@ -26,6 +26,7 @@ from flexstage.readings.measured.identify import identify
 from flexstage.readings.measured.record import InMemory
 from tests.readings.identification_study import CASES, Case, Trial, trials, worst_bound
 from tests.readings.synthetic_records import record, truth
+from tests.readings.wrong_models import KINDS, held
 
 SEEDS = 200 if os.environ.get("FLEXSTAGE_TESTS") == "full" else 10
 
@@ -75,7 +76,20 @@ def noise_alone() -> None:
     share("records in which a mode was found", wrong)
 
 
+def wrong_models() -> None:
+    """How often 95 % intervals hold where the model does not, beside those of noise alone, and by how much they are wider."""
+    heads = "".join(f"{head:>10}" for head in ("frequency", "of noise", "damping", "of noise", "widened", "median by"))
+    print(f"\n{'95 % intervals that hold, %':28}{heads}")
+    for kind in KINDS:
+        found = held(kind, range(4 * SEEDS))
+        (frequency, damping), (least, other) = (100.0 * np.mean(each, axis=0) for each in (found.inside, found.alone))
+        shown = "".join(f"{value:10.0f}" for value in (frequency, least, damping, other, 100.0 * np.mean(found.widening > 1.0)))
+        missed = f"  not found in {found.missed}" if found.missed else ""
+        print(f"{kind.__name__:28}{shown}{np.median(found.widening):10.2f}{missed}", flush=True)
+
+
 if __name__ == "__main__":
+    wrong_models()
     for each in CASES:
         report(each)
     noise_alone()

@@ -129,7 +129,7 @@ def test_a_comparison_without_any_partner_is_drawn(seen: Identification) -> None
 def test_the_table_says_what_was_found(seen: Identification) -> None:
     rows = identified_table(seen.found).texts()[1:]
     assert [float(row[1]) for row in rows] == pytest.approx(seen.found.frequencies.tolist(), rel=1e-5)
-    assert rows[0][6] == "2"
+    assert rows[0][7] == "2"
     shapes = measured_shape_table(seen.found).texts()[1:]
     assert np.array([[float(cell) for cell in row[1:]] for row in shapes]) == pytest.approx(seen.found.real_shapes, abs=1e-3)
 

@@ -52,6 +52,7 @@ def made(built: Mechanism, seed: int = 0, noise: Noise = Noise()) -> Identified:
         frequency_deviations=noise.frequency * measured[order],
         damping_deviations=np.full(6, 1e-4),
         shape_deviations=np.full(shapes.shape, 1e-3),
+        widening=np.ones(6),
         significance=np.full(6, 100.0),
         outputs=outputs,
         inputs=inputs,

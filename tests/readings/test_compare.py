@@ -72,7 +72,7 @@ def test_the_stage_differs_as_it_was_made_to(compared: Compared) -> None:
 
 
 def test_a_difference_stands_beside_half_of_the_interval_it_is_known_to() -> None:
-    row = ComparedMode(1, "z", 103.0, fea=99.0, experiment=Measured(0, 100.0, (98.0, 103.0), 0.01, (0.009, 0.011)))
+    row = ComparedMode(1, "z", 103.0, fea=99.0, experiment=Measured(0, 100.0, (98.0, 103.0), 0.01, (0.009, 0.011), 1.0))
     assert (row.difference, row.fea_difference, row.uncertainty) == pytest.approx((0.03, -0.01, 0.025), rel=1e-12)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
 
@@ -9,12 +10,28 @@ import numpy as np
 import pytest
 
 from flexstage.base.finding import DesignError
-from flexstage.readings.measured.example import one_mode_record
+from flexstage.readings.measured.confidence import deviations
+from flexstage.readings.measured.example import one_mode_band, one_mode_record
 from flexstage.readings.measured.identify import Search, identify
+from flexstage.readings.measured.jackknife import jackknife
+from flexstage.readings.measured.likelihood import fit, noise
 from flexstage.readings.measured.record import Channel, InMemory, Record, Responses, Role, in_memory
 from tests.conftest import FULL
 from tests.readings.identification_study import CASES, Trial, compared, trial, trials
 from tests.readings.synthetic_records import WIDE, record, truth
+from tests.readings.wrong_models import (
+    Made,
+    blow_responses,
+    cubic_spring,
+    held,
+    hidden_neighbour,
+    hysteretic,
+    leakage,
+    right,
+    unrecorded_force,
+    warming,
+)
+from tests.readings.wrong_models import blow as blow_once
 
 SEEDS = 200 if FULL else 5
 
@@ -238,6 +255,39 @@ def test_intervals_of_a_linear_mode_hold_the_truth() -> None:
     ways = (each for seed in range(10) for each in blow(0.0, 1e-3, seed))
     intervals = [identify(each).frequency_intervals[0] for each in ways]
     assert sum(bool(low < TRUE < high) for low, high in intervals) >= 15
+
+
+@pytest.mark.parametrize(
+    ("kind", "least"),
+    [
+        *((hidden_neighbour, 1.5), (cubic_spring, 2.5), (warming, 3.0), (unrecorded_force, 2.0)),
+        *((leakage, 4.0), (blow_once, 8.0), (blow_responses, 4.0)),
+    ],
+)
+def test_intervals_hold_where_the_model_does_not(kind: Callable[[int], Made], least: float) -> None:
+    """They are wider than by what the fit leaves alone, which asks for less than `least` and holds too rarely."""
+    seen = held(kind, range(40 if FULL else 3))
+    assert np.nanmean(seen.inside) > (0.75 if FULL else 0.6)
+    assert seen.missed <= (2 if FULL else 0)
+    assert np.max(seen.widening) > least
+
+
+@pytest.mark.parametrize("kind", [right, hysteretic])
+def test_intervals_are_those_of_noise_where_the_model_holds(kind: Callable[[int], Made]) -> None:
+    """One in 1000 modes is doubted by chance."""
+    assert np.mean(held(kind, range(40 if FULL else 3)).widening > 1.0) <= 0.05
+
+
+def test_a_jackknife_of_noise_is_as_wide_as_noise() -> None:
+    """Of ten groups of equal weight: chi-square with 20 degrees of freedom, times t over the normal's quantile."""
+    band, start = one_mode_band()
+    band = replace(band, variance=noise(band, fit(band, start).modal))
+    found = fit(band, start)
+    cells = np.arange(len(band.cells.low))
+    ratio = jackknife(band, found.modal, cells)[0] / deviations(found).frequencies[0]
+    assert 0.5 < ratio < 2.0
+    twice = replace(band, variance=4.0 * band.variance)  # the scatter between groups is the data's own
+    assert jackknife(twice, found.modal, cells)[0] == pytest.approx(jackknife(band, found.modal, cells)[0], rel=1e-6)
 
 
 TRUE = float(np.hypot(100.0, 2.0 / (2.0 * np.pi)))

@@ -32,13 +32,17 @@ _TURNED = np.deg2rad(20.0)
 
 @dataclass(frozen=True)
 class Measured:
-    """A mode of the experiment as it is compared: its number (from 0), frequency [Hz] and damping ratio with their 95 % intervals."""
+    """A mode of the experiment as it is compared: its number (from 0), frequency [Hz] and damping ratio with their 95 % intervals.
+
+    `widening` is how many times wider these are than noise makes them.
+    """
 
     number: int
     frequency: float
     interval: tuple[float, float]
     damping: float
     damping_interval: tuple[float, float]
+    widening: float
 
 
 @dataclass(frozen=True)
@@ -327,7 +331,14 @@ def _rows(theory: Modes, experiment: Identified, pairs: dict[int, int], likeness
 
 def _measured(experiment: Identified, index: int) -> Measured:
     (low, high), (least, most) = experiment.frequency_intervals[index].tolist(), experiment.damping_intervals[index].tolist()
-    return Measured(index, float(experiment.frequencies[index]), (low, high), float(experiment.damping[index]), (least, most))
+    return Measured(
+        index,
+        float(experiment.frequencies[index]),
+        (low, high),
+        float(experiment.damping[index]),
+        (least, most),
+        float(experiment.widening[index]),
+    )
 
 
 def _further(

@@ -87,6 +87,7 @@ def mode_body(found: Identified, index: int) -> Document:
         "frequency_interval_hz": found.frequency_intervals[index],
         "damping": float(found.damping[index]),
         "damping_interval": found.damping_intervals[index],
+        "widening": float(found.widening[index]),
         "shape": _complex(found.outputs, found.shapes[:, index]),
         "participation": _complex(found.inputs, found.participation[index]),
         "complexity": float(found.complexity[index]),
@@ -170,4 +171,5 @@ def _measured(seen: Measured) -> Document:
         "frequency_interval_hz": list(seen.interval),
         "damping": seen.damping,
         "damping_interval": list(seen.damping_interval),
+        "widening": seen.widening,
     }

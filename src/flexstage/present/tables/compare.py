@@ -6,7 +6,7 @@ import numpy as np
 
 from flexstage.present.display import NO_VALUE, number, percent
 from flexstage.present.table import Cell, Column, Content, Mark, Table, build
-from flexstage.present.tables.measured import interval_texts
+from flexstage.present.tables.measured import WIDENED, interval_texts, widening_cell
 from flexstage.studies.compare import Compared, ComparedMode, Measured
 
 _TRUSTED = 0.9
@@ -19,13 +19,13 @@ def compare_table(found: Compared) -> Table:
     rows = [_line(row, with_fea=with_fea) for row in found.rows]
     heads = ["mode", "name", Column(f"theory ({found.reading.value})", "Hz")]
     heads += [Column("FEA", "Hz"), Column("FEA's error")] if with_fea else []
-    heads += [Column("experiment", "Hz"), Column("95 % interval", "Hz"), Column("theory off")]
+    heads += [Column("experiment", "Hz"), Column("95 % interval", "Hz"), Column("widened"), Column("theory off")]
     heads += [Column("FEA off")] if with_fea else []
     heads += [Column("MAC"), *([Column("MAC of FEA")] if with_fea else [])]
     heads += [Column("damping", "%")]
     notes = ["Off: relative to the experiment, which had damping; theory and FEA are undamped."]
     notes += ["MAC: modal assurance of theory and experiment at the sensors; of repeated modes, within their subspace."]
-    notes += _fea_notes(found)
+    notes += [WIDENED, *_fea_notes(found)]
     return build("Theory, FEA and experiment", heads, rows, notes=notes, provenance=found.provenance)
 
 
@@ -40,8 +40,8 @@ def _line(row: ComparedMode, *, with_fea: bool) -> list[Content]:
 
 def _experiment(seen: Measured | None) -> list[Content]:
     if seen is None:
-        return [Cell("not found", Mark.WARN), NO_VALUE]
-    return list(interval_texts(np.array([seen.frequency]), np.array([seen.interval]))[0])
+        return [Cell("not found", Mark.WARN), NO_VALUE, NO_VALUE]
+    return [*interval_texts(np.array([seen.frequency]), np.array([seen.interval]))[0], widening_cell(seen.widening)]
 
 
 def _damping(seen: Measured | None) -> list[Content]:
@@ -115,7 +115,7 @@ def further_table(found: Compared) -> Table | None:
         )
         for mode in found.further
     ]
-    heads = ["mode of the record", Column("experiment", "Hz"), Column("95 % interval", "Hz"), Column("damping", "%")]
+    heads = ["mode of the record", Column("experiment", "Hz"), Column("95 % interval", "Hz"), Column("widened"), Column("damping", "%")]
     heads += ["theory's nearest", Column("theory", "Hz"), Column("MAC")]
     note = "Modes of single units, of the ground or of what carries the stage; by the sensors alone local modes are told less surely."
     return build("Further measured modes", heads, rows, notes=[note])

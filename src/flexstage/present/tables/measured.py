@@ -16,6 +16,7 @@ from flexstage.readings.measured.record import Channel, Record, Responses
 _COMPLEX = 0.1
 _WEAK = 3.0
 _SILENT = 5e-4
+WIDENED = "Widened: how many times wider intervals are than noise makes them, because the fit leaves more than noise near the mode."
 
 
 def recorded_table(test: Sequence[Record] | Responses) -> Table:
@@ -54,7 +55,7 @@ def identified_table(found: Identified) -> Table:
     >>> from flexstage.readings.measured.example import one_mode_record
     >>> from flexstage.readings.measured.identify import identify
     >>> identified_table(identify(one_mode_record())).texts()[0]
-    ['mode', 'frequency [Hz]', '95 % interval [Hz]', 'damping [%]', '95 % interval [%]', 'complexity', 'close to', 'evidence']
+    ['mode', 'frequency [Hz]', '95 % interval [Hz]', 'damping [%]', '95 % interval [%]', 'widened', 'complexity', 'close to', 'evidence']
     """
     partners = {index: [other + 1 for other in group if other != index] for group in found.close for index in group}
     frequencies = interval_texts(found.frequencies, found.frequency_intervals)
@@ -64,6 +65,7 @@ def identified_table(found: Identified) -> Table:
             Cell(str(index + 1), Mark.STRONG),
             *frequencies[index],
             *damping[index],
+            widening_cell(float(found.widening[index])),
             Cell(number(float(complexity), 2), Mark.WARN if complexity > _COMPLEX else Mark.PLAIN),
             ", ".join(map(str, partners.get(index, []))) or NO_VALUE,
             Cell(number(float(strength), 3), Mark.WARN if strength < _WEAK else Mark.PLAIN),
@@ -73,9 +75,10 @@ def identified_table(found: Identified) -> Table:
     heads = [
         "mode",
         *(Column("frequency", "Hz"), Column("95 % interval", "Hz"), Column("damping", "%"), Column("95 % interval", "%")),
-        *(Column("complexity"), Column("close to"), Column("evidence")),
+        *(Column("widened"), Column("complexity"), Column("close to"), Column("evidence")),
     ]
     notes = [
+        WIDENED,
         "Complexity: 0 where all outputs move in phase or opposite, 1 for a travelling wave.",
         "Close: nearer than the half-widths of the peaks; of such modes the subspace is known better than each shape.",
         "Evidence: chi-square by which the data ask for the mode, over what noise would reach once in 1e9 tries.",
@@ -84,6 +87,15 @@ def identified_table(found: Identified) -> Table:
     if not rows:
         notes = [f"No mode was found between {number(found.band[0], 4)} and {number(found.band[1], 4)} Hz."]
     return build("Modes found", heads, rows, notes=notes, provenance=found.provenance)
+
+
+def widening_cell(factor: float) -> Cell:
+    """By how much a mode's intervals are wider than those of noise.
+
+    >>> widening_cell(1.0).text, widening_cell(4.71).text
+    ('1', '4.7')
+    """
+    return Cell(number(factor, 2), Mark.WARN if factor > 1.0 else Mark.PLAIN)
 
 
 def interval_texts(values: Array, intervals: Array) -> list[tuple[str, str]]:

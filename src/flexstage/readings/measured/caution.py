@@ -18,12 +18,12 @@ _MOTIONS = ("m/s", "m/s^2", "rad/s", "rad/s^2")
 
 @dataclass(frozen=True, eq=False)
 class Modes:
-    """Modes found: `poles` (k,) in Hz, which lie `close` together, the share (k,) of motion from `elsewhere`, the `misfit` near each."""
+    """Modes found: `poles` (k,) in Hz, which lie `close` together, their share (k,) of motion from `elsewhere`, `widening` of intervals."""
 
     poles: Array
     close: tuple[tuple[int, ...], ...]
     elsewhere: Array
-    misfit: Array
+    widening: Array
 
 
 def _is_motion(channel: Channel) -> bool:
@@ -36,7 +36,8 @@ def warnings(known: Evidence, modes: Modes, reach: Reach) -> tuple[str, ...]:
 
     >>> from flexstage.readings.measured.evidence import evidence
     >>> from flexstage.readings.measured.example import POLE, one_mode_record
-    >>> warnings(evidence(one_mode_record(), None), Modes(np.array([POLE]), (), np.zeros(1), np.ones(1)), Reach(1.0, 26.0))[0][:20]
+    >>> one = Modes(np.array([POLE]), (), np.zeros(1), np.ones(1))
+    >>> warnings(evidence(one_mode_record(), None), one, Reach(1.0, 26.0))[0][:20]
     'only u was driven: o'
     """
     poles, close = modes.poles, modes.close
@@ -55,12 +56,13 @@ def warnings(known: Evidence, modes: Modes, reach: Reach) -> tuple[str, ...]:
         if inputs > 1 and len(group) >= min(inputs, outputs):
             near = ", ".join(f"{abs(poles[index]):.5g}" for index in group)
             found.append(f"as many modes as inputs or outputs lie together ({near} Hz): there may be more. Add inputs and outputs.")
-    systematic = np.flatnonzero(modes.misfit > 1.0)
+    systematic = np.flatnonzero(modes.widening > 1.0)
     if len(systematic):
-        listed = ", ".join(f"{abs(poles[index]):.5g} Hz ({modes.misfit[index]:.2g} times the noise)" for index in systematic)
+        listed = ", ".join(f"{abs(poles[index]):.5g} Hz (intervals {modes.widening[index]:.2g} times wider)" for index in systematic)
+        window = " The responses do not say their window: if there was one, damping is too large." if known.unstated else ""
         found.append(
-            f"the fit leaves a systematic residual near {listed}: there intervals are widened by as much. Such a mode is not "
-            "linear, not alone, or changes during the test: smaller or longer drives, or finer lines, tell."
+            f"the fit leaves a systematic residual near {listed}: parts of the data do not give the same mode. It is not linear, not "
+            f"alone, shaken by other forces, or changes during the test: smaller or longer drives, or finer lines, tell.{window}"
         )
     moved = [channel for channel in known.responses.inputs if _is_motion(channel)]
     if moved:

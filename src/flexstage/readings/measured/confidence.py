@@ -13,7 +13,7 @@ NORMAL_95 = 1.959964
 """Half the width of a 95 % interval, in standard deviations."""
 _DOUBTFUL = 50.0
 _LINES = 3
-_NEAR, _NEAREST, _BY_CHANCE = 4.0, 2.0, 1e-3
+_NEAR, _NEAREST, _BY_CHANCE = (1.5, 4.0), 2.0, 1e-3
 """Near a mode: within so many half-widths, at least so many lines for each that its parameters take; how often chance may pass."""
 SAME = 0.1
 """Share of the power by which inputs must differ from transients to be told from them."""
@@ -43,8 +43,8 @@ def misfits(band: Band, modal: Modal) -> Array:
     """How many times larger (k,) than the noise of the band is what the fit leaves near each mode; 1 where chance would leave as much.
 
     Noise alone leaves as much near a mode as elsewhere, less what the mode's own parameters take. More than once in 1000 by chance is
-    systematic: a mode that is none of linear, viscous and alone. What is left has as much room near the pole as along any other direction
-    of the data: deviations grow in proportion.
+    systematic: a mode that is none of linear, viscous and alone. Looked at is what lies within 1.5 half-widths, where a mode that wanders,
+    or that other forces shake, leaves most, and what lies within 4.
 
     >>> from flexstage.readings.measured.example import one_mode_band
     >>> from flexstage.readings.measured.likelihood import fit, noise
@@ -64,15 +64,16 @@ def misfits(band: Band, modal: Modal) -> Array:
         away = np.abs(cells.middle - pole.imag)
         order = np.argsort(away)
         lines = np.cumsum(cells.count[order])
-        wide = int(np.searchsorted(away[order], _NEAR * -pole.real, side="right"))
-        number = min(len(order), max(wide, 1 + int(np.searchsorted(lines, _NEAREST * taken))))
-        free = lines[number - 1] - taken
         share = np.abs(modal.shapes[:, mode]) ** 2 / np.mean(band.variance, axis=1)
         share = share / np.sum(share)
-        ratio = float(share @ np.sum(left[:, order[:number]], axis=1)) / max(free, 1.0)
-        freedom = max(free, 1.0) / float(np.sum(share**2)) if outputs > 1 else max(free, 1.0)
-        if ratio > float(gamma.isf(_BY_CHANCE, freedom)) / freedom:
-            result[mode] = np.sqrt(ratio)
+        for reach in _NEAR:
+            wide = int(np.searchsorted(away[order], reach * -pole.real, side="right"))
+            number = min(len(order), max(wide, 1 + int(np.searchsorted(lines, _NEAREST * taken))))
+            free = max(lines[number - 1] - taken, 1.0)
+            ratio = float(share @ np.sum(left[:, order[:number]], axis=1)) / free
+            freedom = free / float(np.sum(share**2)) if outputs > 1 else free
+            if ratio > float(gamma.isf(_BY_CHANCE / len(_NEAR), freedom)) / freedom:
+                result[mode] = max(result[mode], np.sqrt(ratio))
     return result
 
 

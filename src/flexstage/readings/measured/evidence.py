@@ -37,7 +37,7 @@ class Evidence:
     data can show, in Hz; `inflation` the factor on variances for neighbouring lines that are not independent; `coherence` the multiple
     coherence (f, p), absent where there is none; `resolution` the distance of lines in Hz; `rounding` (p,) the variance per line, divided
     by the scales, that rounding the samples leaves; `tones` those seen in outputs, the steady ones taken out; `stored` whether an
-    analyser made the responses.
+    analyser made the responses, `unstated` whether it says nothing of its window.
     """
 
     where: str
@@ -58,6 +58,7 @@ class Evidence:
     tones: tuple[Tone, ...] = ()
     stored: bool = False
     shaped: Callable[[Cells], Array] | None = None
+    unstated: bool = False
 
     def shape(self, cells: Cells) -> Array:
         """How the noise variance goes over cells, (p, c), up to a factor: as coherence says where it was stored, else even."""
@@ -100,14 +101,14 @@ def _of_records(records: tuple[Record, ...], known: Spectra, tell: Tell | None) 
     size = _scale(inside.yy, records[0].rate)
     input_scale, output_scale = _divisor(_scale(inside.xx, records[0].rate)), _divisor(size)
 
-    def lines(number: int = 0) -> Iterable[Lines]:
+    def lines(number: int = 0, parts: int = 1) -> Iterable[Lines]:
         column = len(names)
         for index, record in enumerate(records, start=(2 + number) * len(records)):
             kept = record.select([channel.name for channel in record.channels if channel in record.outputs or channel.name in names])
             places = tuple(names.index(channel.name) for channel in kept.inputs)
-            for block in record_lines(kept, places, column, _part(tell, index, _PASSES * len(records))):
+            for block in record_lines(kept, places, column, _part(tell, index, _PASSES * len(records)), parts):
                 yield _scaled(block, input_scale, output_scale)
-            column += block_count(kept)
+            column += block_count(kept, parts)
 
     weights = 1.0 / np.sqrt(np.maximum(noise, 1e-12 * np.max(noise, axis=0) + 1e-300))
     source = records[0].source or records[0].name or "record"
@@ -194,7 +195,7 @@ def _of_responses(known: Responses) -> Evidence:
     density = np.repeat(np.median(rough, axis=(0, 2))[None, :], len(known.frequencies), axis=0)
     density = np.maximum(density, 1e-12 * output_scale**2)
 
-    def lines(_: int = 0) -> Iterable[Lines]:
+    def lines(_: int = 0, __: int = 1) -> Iterable[Lines]:
         for index in range(count):
             yield Lines(known.frequencies, np.ones((len(steps) + 1, 1), dtype=complex), known.values[:, :, index] / output_scale, (index,))
 
@@ -211,6 +212,7 @@ def _of_responses(known: Responses) -> Evidence:
         rate=2.0 * float(known.frequencies[-1]),
         band=(float(max(known.frequencies[0], _LOWEST_LINES * step)), float(known.frequencies[-1])),
         stored=True,
+        unstated=not known.window,
         inflation=1.0 if window is None else _INFLATION[window],
         averages=float(known.averages or 0),
         smear=Smear(window, 1.0 / step) if window in SMEARING else None,

@@ -11,6 +11,7 @@ from flexstage.readings.measured.bands import Extent
 from flexstage.readings.measured.cluster import Candidate, alike
 from flexstage.readings.measured.confidence import Deviations, deviations, drive_strength, freedoms, misfits, significance
 from flexstage.readings.measured.evidence import Evidence
+from flexstage.readings.measured.jackknife import jackknife, sub_bands
 from flexstage.readings.measured.likelihood import Band, Fit, Modal, background, fit, noise, scatter, shaped, silence
 from flexstage.readings.measured.lines import Cells
 from flexstage.readings.measured.unexplained import SURPRISING, excess, suggested
@@ -19,6 +20,7 @@ ONCE_IN = 1e-9
 """How often noise may pass for a mode."""
 _SURE, _EVIDENT = 1.0 / 3.0, 3.0
 _ROUNDS = 2
+_NOTICED, _DOUBTED, _SLIGHT = 2.0, 1e-4, 1.1
 _MOST_MODES = 24
 
 
@@ -42,13 +44,17 @@ class Hunt:
 
 @dataclass(frozen=True, eq=False)
 class Found:
-    """The modes of one band, with deviations, significance, and by how much what is left near each exceeds the noise (`misfit`)."""
+    """The modes of one band, with their deviations, those of noise alone, and significance.
+
+    `misfit` is by how much what is left near each exceeds the noise, `widening` the factor on its deviations for that.
+    """
 
     band: Band
     modal: Modal
     deviations: Deviations
     significance: Array
     misfit: Array
+    widening: Array
 
     def only(self, chosen: Array) -> Found:
         """Some of the modes, by their numbers."""
@@ -59,6 +65,7 @@ class Found:
             Deviations(spread.frequencies[chosen], spread.damping[chosen], spread.shapes[:, chosen]),
             self.significance[chosen],
             self.misfit[chosen],
+            self.widening[chosen],
         )
 
 
@@ -76,14 +83,9 @@ def grouped(known: Evidence, cells: Cells, candidates: tuple[Candidate, ...], hu
     >>> None if found is None else abs(found.modal.poles).round(1).tolist()
     [10.0]
     """
-    group = hunt.group
+    group, members = hunt.group, list(hunt.group.members)
     poles = np.array([candidate.pole for candidate in candidates])
-    members = list(group.members)
-    outside = np.concatenate([np.delete(poles, members), np.conj(poles)])
-    shape = known.shape(cells)
-    variance = known.variance(group.low, group.high)[:, None] * shape / np.median(shape, axis=1, keepdims=True)
-    variance = np.maximum(variance, silence(cells, known.rounding))
-    band = Band(cells, variance, background(cells, outside), known.smear, shape, known.rounding, len(known.input_scale))
+    band = _band(known, cells, candidates, group)
     if np.sum(cells.count) < 2 * cells.own.shape[2] * band.background.shape[1]:
         return None
     participation = np.array([candidates[index].participation for index in members])
@@ -95,8 +97,70 @@ def grouped(known: Evidence, cells: Cells, candidates: tuple[Candidate, ...], hu
     if not len(found.modal.poles):
         return None
     beyond = misfits(band, found.modal)
-    spread = deviations(found, known.inflation, scatter(band, found.modal)).widened(beyond)
-    return Found(band, found.modal, spread, strength / _limit(found.modal), beyond)
+    spread = deviations(found, known.inflation, scatter(band, found.modal))
+    every = Found(band, found.modal, spread, strength / _limit(found.modal), beyond, np.maximum(beyond, _hidden(band, found)))
+    return replace(every, widening=_widening(every, band, found.modal))
+
+
+def _hidden(band: Band, found: Fit) -> Array:
+    """The factor (k,) on deviations for a further mode that the data may hold, though not so surely that it is told.
+
+    Noise would pass for it once in 10,000, not once in 1e9. If it is there, the modes beside it move as it is added, and are known as
+    well as they are then: deviations are the root of the sum of both squares (as models are averaged, Burnham & Anderson 2002, ch. 4, the
+    larger one taken as right).
+    """
+    from scipy.stats import chi2
+
+    modal, score = found.modal, excess(band, found.modal)
+    place = int(np.argmax(score))
+    if score[place] < _NOTICED:
+        return np.ones(len(modal.poles))
+    enough = found.cost - 0.5 * float(chi2.isf(_DOUBTED / len(score), freedoms(modal)))
+    more = fit(band, suggested(band, modal, place), enough)
+    if more.cost > enough:
+        return np.ones(len(modal.poles))
+    same = [int(np.argmin(np.abs(more.modal.poles - pole))) for pole in modal.poles]
+    moves = np.abs(more.modal.poles[same] - modal.poles)
+    before, after = deviations(found).frequencies, deviations(more).frequencies[same]
+    factors = np.sqrt(after**2 + moves**2) / np.maximum(before, 1e-300)
+    return np.where(factors > _SLIGHT, factors, 1.0)
+
+
+def parted(known: Evidence, cells: Cells, candidates: tuple[Candidate, ...], group: Extent, found: Found) -> Found:
+    """The modes with deviations that hold for the scatter between parts of the record, too, where the fit leaves more than noise.
+
+    `cells` are those of the same band, gathered from the parts' transforms. A mode that changes with its amplitude or with time answers
+    otherwise in each.
+    """
+    modal = found.modal
+    band = _band(known, cells, candidates, group)
+    free = np.zeros((len(modal.poles), cells.width - found.band.cells.width), dtype=complex)
+    start = Modal(modal.poles, np.concatenate([modal.participation, free], axis=1), modal.shapes)
+    band = replace(band, variance=noise(band, start))
+    return replace(found, widening=_widening(found, band, fit(band, start).modal))
+
+
+def _band(known: Evidence, cells: Cells, candidates: tuple[Candidate, ...], group: Extent) -> Band:
+    poles = np.array([candidate.pole for candidate in candidates])
+    outside = np.concatenate([np.delete(poles, list(group.members)), np.conj(poles)])
+    shape = known.shape(cells)
+    variance = known.variance(group.low, group.high)[:, None] * shape / np.median(shape, axis=1, keepdims=True)
+    variance = np.maximum(variance, silence(cells, known.rounding))
+    return Band(cells, variance, background(cells, outside), known.smear, shape, known.rounding, len(known.input_scale))
+
+
+def _widening(found: Found, band: Band, modal: Modal) -> Array:
+    """The factor (k,) on deviations of noise, of modes near which the fit leaves more.
+
+    It is the largest of that excess, of the scatter between sub-bands, and of that between blocks: inputs, records, or parts of records.
+    """
+    factors = found.widening.copy()
+    noise_alone = np.maximum(found.deviations.frequencies, 1e-300)
+    for mode in np.flatnonzero(found.misfit > 1.0):
+        divisions = [sub_bands(band, modal.poles[mode]), band.cells.block]
+        scattered = [jackknife(band, modal, each)[mode] for each in divisions if np.max(each) > 0]
+        factors[mode] = max([factors[mode], *(float(each / noise_alone[mode]) for each in scattered)])
+    return factors
 
 
 def _limit(modal: Modal) -> float:

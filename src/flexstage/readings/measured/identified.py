@@ -22,10 +22,11 @@ class Identified:
 
     `frequencies` (k,) [Hz] are natural frequencies |pole|/(2 pi), `damping` (k,) ratios; `shapes` (p, k) complex, of the outputs, largest
     component 1; `participation` (k, m) complex, of the inputs: H = sum of shape participation / (j w - pole) + conjugate. `deviation` of
-    shapes is that of real and of imaginary part. `significance` (k,) is the chi-square by which the data ask for the mode, over that which
-    noise would pass once in 1e9. `close` lists modes nearer to one another than their half-widths: compare those by subspace. `noise` (p,)
-    is the outputs' noise density, in the outputs' unit squared per Hz. `warnings` say what the data cannot tell; `peaks` are
-    seen and are no modes, or not with confidence.
+    shapes is that of real and of imaginary part. `widening` (k,) is how many times larger deviations are than noise makes them, because the
+    fit leaves more than noise near the mode: 1 where it does not. `significance` (k,) is the chi-square by which the data ask for the mode,
+    over that which noise would pass once in 1e9. `close` lists modes nearer to one another than their half-widths: compare those by
+    subspace. `noise` (p,) is the outputs' noise density, in the outputs' unit squared per Hz. `warnings` say what the data cannot tell;
+    `peaks` are seen and are no modes, or not with confidence.
     """
 
     frequencies: Array
@@ -35,6 +36,7 @@ class Identified:
     frequency_deviations: Array
     damping_deviations: Array
     shape_deviations: Array
+    widening: Array
     significance: Array
     outputs: tuple[Channel, ...]
     inputs: tuple[Channel, ...]
@@ -104,6 +106,7 @@ class Identified:
             "participation_real": np.real(self.participation).tolist(),
             "participation_imaginary": np.imag(self.participation).tolist(),
             "response_unit": [list(row) for row in unit],
+            "widening": self.widening.tolist(),
             "complexity": self.complexity.tolist(),
             "close": [[index + 1 for index in group] for group in self.close],
             "significance": self.significance.tolist(),

@@ -15,7 +15,7 @@ from flexstage.readings.measured.caution import Modes, warnings
 from flexstage.readings.measured.cluster import Candidate, Stabilisation, merged, stabilisation
 from flexstage.readings.measured.driven import drives
 from flexstage.readings.measured.evidence import Evidence, chosen_segments, evidence, whole
-from flexstage.readings.measured.group import ONCE_IN, Found, Hunt, Lost, grouped
+from flexstage.readings.measured.group import ONCE_IN, Found, Hunt, Lost, grouped, parted
 from flexstage.readings.measured.identified import Identified
 from flexstage.readings.measured.likelihood import Modal
 from flexstage.readings.measured.lines import edges, gathered
@@ -28,6 +28,7 @@ from flexstage.readings.measured.spectra import Segments, Tell
 _LARGEST = 72
 _LONGEST = 40
 _FEW = 5.0
+_LEAST_PARTS, _MOST_PARTS = 3, 8
 
 
 @dataclass(frozen=True)
@@ -48,8 +49,9 @@ def identify(what: Record | Responses | Sequence[Record], search: Search = Searc
     `what` is a record, or several of the same stage (six with one actuator each are put together as one test), or responses of an analyser.
     Candidates are the stable poles of pLSCF on H1; each group of near ones is then fitted by maximum likelihood to the transform of the
     whole record, its transient included, so that there is neither window nor leakage: inputs are taken as exact, outputs' noise as of
-    slowly varying density; intervals hold for noise correlated between outputs too (Pintelon & Schoukens 2012, ch. 9 and 10), and are wider
-    where the fit leaves more near a mode than noise would, by as much. A mode is
+    slowly varying density; intervals hold for noise correlated between outputs too (Pintelon & Schoukens 2012, ch. 9 and 10). Where the fit
+    leaves more near a mode than noise would once in 1000, they are as wide as what is left or the scatter between independent parts of the
+    data asks for, sub-bands, inputs, records, stretches of time, whichever is more (`jackknife`); `widening` says by how much. A mode is
     kept if leaving it out costs more likelihood than noise would once in 1e9, thrice that where its damping is not known to a third, and if
     the recorded inputs drive it, whatever else does (an F-test at 1e-9). Tones that no input holds are taken out of the outputs before.
     What is seen and is none of the modes is listed as `peaks`.
@@ -127,8 +129,25 @@ def _fitted(
     groups = extents(poles, *band, resolution=known.resolution)
     bounds = [edges(poles, group.low, group.high) for group in groups]
     every = zip(groups, gathered(known.lines(), bounds), strict=True)
-    found = (grouped(known, cells, candidates, Hunt(group, highest_damping, lost)) for group, cells in every)
+    found = [grouped(known, cells, candidates, Hunt(group, highest_damping, lost)) for group, cells in every]
+    for parts in sorted({_parts(known, each) for each in found} - {1}):
+        chosen = [index for index, each in enumerate(found) if _parts(known, each) == parts]
+        for index, cells in zip(chosen, gathered(known.lines(1, parts), [bounds[index] for index in chosen]), strict=True):
+            each = found[index]
+            found[index] = None if each is None else parted(known, cells, candidates, groups[index], each)
     return [each for each in found if each is not None]
+
+
+def _parts(known: Evidence, found: Found | None) -> int:
+    """Into how many parts a record is cut to see whether its modes hold still: up to eight, none shorter than their slowest decay to 1/e.
+
+    1 where there is no doubt, where fewer than three would be, or where there are several records: those are parts.
+    """
+    doubted = np.zeros(0) if found is None else -2.0 * np.pi * np.real(found.modal.poles)[found.misfit > 1.0]
+    if known.stored or not len(doubted) or found is None or len(found.band.cells.columns) > 1:
+        return 1
+    parts = min(_MOST_PARTS, int(np.min(doubted) / known.resolution))
+    return parts if parts >= _LEAST_PARTS else 1
 
 
 def _driven(known: Evidence, fitted: list[Found]) -> tuple[list[Found], list[Lost], Array]:
@@ -158,10 +177,11 @@ def _result(
     band, reach, diagrams = searched
     inputs, outputs = len(known.input_scale), len(known.output_scale)
     modal = _joined([part.modal for part in found], inputs, outputs)
-    spread = [np.concatenate([getattr(part.deviations, name) for part in found] or [np.zeros(0)]) for name in ("frequencies", "damping")]
-    wide = np.concatenate([part.deviations.shapes for part in found] or [np.zeros((outputs, 0))], axis=1)
+    widened = [part.deviations.widened(part.widening) for part in found]
+    spread = [np.concatenate([getattr(part, name) for part in widened] or [np.zeros(0)]) for name in ("frequencies", "damping")]
+    wide = np.concatenate([part.shapes for part in widened] or [np.zeros((outputs, 0))], axis=1)
     strength = np.concatenate([part.significance for part in found] or [np.zeros(0)])
-    beyond = np.concatenate([part.misfit for part in found] or [np.zeros(0)])
+    widening = np.concatenate([part.widening for part in found] or [np.zeros(0)])
     order = np.argsort(np.abs(modal.poles))
     poles, (shapes, participation, wide) = modal.poles[order], _in_units(known, modal, wide, order)
     inside = (known.responses.frequencies >= band[0]) & (known.responses.frequencies <= band[1])
@@ -176,6 +196,7 @@ def _result(
         frequency_deviations=spread[0][order],
         damping_deviations=spread[1][order],
         shape_deviations=wide,
+        widening=widening[order],
         significance=strength[order],
         outputs=known.responses.outputs,
         inputs=known.responses.inputs,
@@ -185,7 +206,7 @@ def _result(
         stabilisation=diagrams,
         band=band,
         noise=np.median(known.density[inside], axis=0) * 2.0 / known.rate,
-        warnings=warnings(known, Modes(poles, close, share[order], beyond[order]), reach),
+        warnings=warnings(known, Modes(poles, close, share[order], widening[order]), reach),
         peaks=peaks(known, Left(lines, rest, poles), *doubted),
         provenance=f"identified from {known.where}: pLSCF, then maximum likelihood",
     )

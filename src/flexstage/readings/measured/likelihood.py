@@ -224,18 +224,55 @@ def scatter(band: Band, modal: Modal) -> Array:
     alone = np.arange(outputs)
     noise[alone, alone] = np.maximum(np.real(noise[alone, alone]), silence(cells, band.rounding))
     weights = (noise / band.variance[:, None, :] / band.variance[None, :, :]).reshape(outputs**2, -1)
-    near = _functions(band, modal.poles)
-    functions = np.concatenate([near, band.background], axis=1)
-    size = near.shape[1] * cells.width
-    own = _raw(band, functions).gram.reshape(outputs, functions.shape[1] * cells.width, -1)
-    full = [_with_background(own[output], _jacobian(modal, output, _pairs(modal.poles)), size) for output in range(outputs)]
-    gram = _gram(cells, weights, functions).reshape(outputs, outputs, len(own[0]), -1)
+    functions, full = _derivatives(band, modal)
+    gram = _gram(cells, weights, functions).reshape(outputs, outputs, len(full[0]), -1)
     kept = len(modal.poles) + modal.participation.size + modal.shapes.size
     total = np.zeros((full[0].shape[1],) * 2, dtype=complex)
     for first in range(outputs):
         for second in range(outputs):
             total += np.conj(full[first].T) @ gram[first, second] @ full[second]
     return total[:kept, :kept]
+
+
+def shares(band: Band, modal: Modal, groups: Array) -> tuple[Array, Array]:
+    """What each group of cells adds to gradient (g, q) and information (g, q, q), of the parameters of `Fit.information`.
+
+    `groups` (c,) are the numbers of each cell's group, from 0 on. At the fit the gradients add up to nought.
+
+    >>> from flexstage.readings.measured.example import one_mode_band
+    >>> band, start = one_mode_band()
+    >>> found = fit(band, start)
+    >>> gradient, information = shares(band, found.modal, np.arange(len(band.cells.low)) % 2)
+    >>> bool(np.allclose(np.sum(information, axis=0), found.information, rtol=1e-6, atol=1e-9 * np.max(abs(found.information))))
+    True
+    """
+    cells = band.cells
+    functions, full = _derivatives(band, modal)
+    kept = len(modal.poles) + modal.participation.size + modal.shapes.size
+    crossed = np.zeros((len(cells.low), functions.shape[1], cells.width, len(full)), dtype=complex)
+    for chosen, inside in explained(band, modal):
+        left = cells.cross[chosen] - np.einsum("canbm,ocbm->cano", cells.own[chosen], inside, optimize=True)
+        part = np.einsum("cfa,cano->cfno", np.conj(functions[chosen]), left, optimize=True)
+        crossed[chosen[:, None], :, list(cells.columns[cells.block[chosen[0]]])] = np.moveaxis(part, 2, 1)
+    crossed = (crossed / band.variance.T[:, None, None, :]).reshape(len(cells.low), -1, len(full))
+    gradient, information = [], []
+    for group in range(int(np.max(groups)) + 1):
+        chosen = groups == group
+        gram = _gram(cells.only(chosen), 1.0 / band.variance[:, chosen], functions[chosen]).reshape(len(full), len(full[0]), -1)
+        cross = np.sum(crossed[chosen], axis=0)
+        each = [(np.conj(one.T) @ column, np.conj(one.T) @ own @ one) for one, column, own in zip(full, cross.T, gram, strict=True)]
+        gradient.append(np.sum([slope for slope, _ in each], axis=0)[:kept])
+        information.append(np.sum([curved for _, curved in each], axis=0)[:kept, :kept])
+    return np.array(gradient), np.array(information)
+
+
+def _derivatives(band: Band, modal: Modal) -> tuple[Array, list[Array]]:
+    """The functions (c, f, 8) of modes and background, and by output the derivatives (f n, q) of their factors by all parameters."""
+    near = _functions(band, modal.poles)
+    functions = np.concatenate([near, band.background], axis=1)
+    size, outputs = near.shape[1] * band.cells.width, len(modal.shapes)
+    own = _raw(band, functions).gram.reshape(outputs, functions.shape[1] * band.cells.width, -1)
+    return functions, [_with_background(own[output], _jacobian(modal, output, _pairs(modal.poles)), size) for output in range(outputs)]
 
 
 def _with_background(gram: Array, jacobian: Array, size: int) -> Array:

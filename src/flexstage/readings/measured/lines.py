@@ -9,7 +9,7 @@ degree 7 to six digits; sums of products of the lines with its powers are suffic
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -67,9 +67,16 @@ class Cells:
         """Middles of the cells (c,) in Hz."""
         return 0.5 * (self.low + self.high)
 
+    def only(self, chosen: Array) -> Cells:
+        """Some of the cells."""
+        names = ("low", "high", "block", "count", "own", "cross", "power")
+        return replace(self, **{name: getattr(self, name)[chosen] for name in names})
 
-def record_lines(record: Record, inputs: tuple[int, ...], first: int, tell: Tell | None = None) -> Iterator[Lines]:
-    """Transforms of a record's blocks, as long as memory allows: Y(f_k) = N^-1/2 sum y_n exp(-2 pi j k n/N), the mean taken out.
+
+def record_lines(record: Record, inputs: tuple[int, ...], first: int, tell: Tell | None = None, least: int = 1) -> Iterator[Lines]:
+    """Transforms of a record's blocks, Y(f_k) = N^-1/2 sum y_n exp(-2 pi j k n/N), the mean taken out.
+
+    There are `least` blocks, or as many as memory asks for.
 
     Its inputs are the columns `inputs` of the drive, and the transients of its blocks the columns from `first` on.
 
@@ -80,7 +87,7 @@ def record_lines(record: Record, inputs: tuple[int, ...], first: int, tell: Tell
     ([0.0, 1.0, 2.0, 3.0, 4.0], 0.353553)
     """
     chosen = record.select([channel.name for channel in (*record.inputs, *record.outputs)])
-    parts = block_count(record)
+    parts = block_count(record, least)
     size = record.length // parts
     for part in range(parts):
         block = chosen.samples.read(part * size, (part + 1) * size)
@@ -94,14 +101,14 @@ def record_lines(record: Record, inputs: tuple[int, ...], first: int, tell: Tell
             tell((part + 1) / parts)
 
 
-def block_count(record: Record) -> int:
+def block_count(record: Record, least: int = 1) -> int:
     """How many blocks a record is transformed in.
 
     >>> from flexstage.readings.measured.record import Channel, in_memory
     >>> block_count(in_memory([Channel("y")], 8.0, np.ones((16, 1))))
     1
     """
-    return max(1, -(-record.length * len(record.channels) // _BLOCK))
+    return max(least, -(-record.length * len(record.channels) // _BLOCK))
 
 
 def edges(poles: Array, low: float, high: float) -> Array:
