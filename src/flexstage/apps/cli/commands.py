@@ -87,7 +87,7 @@ COMMANDS: tuple[Command, ...] = (
             "flexstage rig stage.toml --seconds 10 --noise 1um --drift 5nm -o record.uff"),
     Command("identify", _TEST, "Find the modes in records of a test.", f"{_CLI}.identify:identify",
             "flexstage identify record.uff --stage stage.toml --report modes.html"),
-    Command("compare", _TEST, "Theory, FEA and experiment side by side.", f"{_CLI}.identify:compare",
+    Command("compare", _TEST, "Theory, FEA and experiment side by side.", f"{_CLI}.compare:compare",
             "flexstage compare stage.toml --record record.uff --report compared.html"),
     Command("update", _TEST, "Bring a stage's numbers to agree with a test.", f"{_CLI}.update:update",
             'flexstage update stage.toml --record record.uff --free "neck.thickness, steel.density" -o updated.toml'),

@@ -12,9 +12,11 @@ from typing import Annotated, TypeAlias
 from flexstage.base.finding import DesignError, Finding, refuse, require
 from flexstage.base.quantity import FREQUENCY
 from flexstage.base.unit import parse
+from flexstage.mechanism.mechanism import Mechanism
 from flexstage.present.command.options import text_option
 from flexstage.present.command.progress import progress_bar
-from flexstage.present.command.terminal import warn
+from flexstage.present.command.terminal import tell, warn
+from flexstage.readings.ideal import ideal
 from flexstage.readings.linear.model import LinearModel
 from flexstage.readings.measured import options
 from flexstage.readings.measured.health import Needs
@@ -23,6 +25,7 @@ from flexstage.readings.measured.read import read
 from flexstage.readings.measured.record import Record, Responses
 from flexstage.readings.measured.spectra import Segments
 from flexstage.studies.identification import Identification, identification, sound
+from flexstage.studies.measured_shapes import StageShapes, stage_shapes
 
 Inputs: TypeAlias = Annotated[
     list[str] | None, text_option("--inputs", "NAMES", 'Channels that were inputs, e.g. "u*" or B1,B2. Default: told by name.')
@@ -123,6 +126,14 @@ def identify_records(paths: Sequence[Path], texts: RecordTexts, model: LinearMod
     for caution in seen.found.warnings:
         warn(caution)
     return seen
+
+
+def shapes_on(mechanism: Mechanism, seen: Identification) -> StageShapes:
+    """The measured shapes on the stage; what keeps them from being given is told."""
+    found = stage_shapes(ideal(mechanism), seen.found)
+    if found.missing:
+        tell(f"not given: shapes on the stage: {found.missing}")
+    return found
 
 
 def names(texts: Sequence[str] | None) -> tuple[str, ...]:

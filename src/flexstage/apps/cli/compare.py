@@ -1,0 +1,92 @@
+"""The command `compare`: theory, FEA and the test of a stage side by side."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.present.command.answer import answer
+from flexstage.present.command.design import elastic_model, open_design
+from flexstage.present.command.options import Changes, Design, Json, Report, Theory, text_option
+from flexstage.present.command.output import require_writable, save
+from flexstage.present.command.progress import progress_bar
+from flexstage.present.command.records import (
+    Allow,
+    Band,
+    Inputs,
+    Kind,
+    Only,
+    Outputs,
+    Rate,
+    RecordTexts,
+    Resolution,
+    Units,
+    identify_records,
+    shapes_on,
+)
+from flexstage.present.command.terminal import tell, warn
+from flexstage.present.documents.measured import compare_body
+from flexstage.present.measured_report import compare_report
+from flexstage.present.sections.measured import compare_tables
+from flexstage.readings.solid.cache import Cache
+from flexstage.readings.solid.parts import Ways
+from flexstage.studies import compare as comparison
+from flexstage.studies.complete import platform_modes
+from flexstage.studies.fea_modes import FeaModes, fea_modes, kept_fea_modes
+from flexstage.studies.reading import Reading
+from flexstage.studies.resolution import DEFAULT
+from flexstage.studies.solid_read import solids
+
+
+def compare(  # noqa: PLR0913 (its options)
+    design: Design,
+    *,
+    record: Annotated[list[Path], text_option("--record", "RECORD", "File of the test. May be given several times.")],
+    reading: Theory = Reading.LUMPED,
+    fea: Annotated[bool, typer.Option("--fea", help="Compute finite elements where the cache does not have them.")] = False,
+    inputs: Inputs = None,
+    outputs: Outputs = None,
+    only: Only = None,
+    units: Units = None,
+    rate: Rate = None,
+    kind: Kind = None,
+    allow: Allow = None,
+    band: Band = None,
+    resolution: Resolution = None,
+    changes: Changes = None,
+    json: Json = None,
+    report: Report = None,
+) -> None:
+    """Theory, FEA and experiment side by side.
+
+    Modes are paired by their shapes at the sensors, which bear the names of the stage's gauges; repeated modes as a subspace.
+
+    FEA is shown where the cache holds all of it, else with --fea.
+    """
+    texts = RecordTexts(inputs, outputs, only, units, rate, kind, allow, band, resolution)
+    require_writable([("--json", json), ("--report", report)], design, record)
+    mechanism = open_design(design, changes)
+    model = elastic_model(mechanism, reading)
+    highest = float(platform_modes(mechanism, model).platform_frequencies[-1])
+    seen = identify_records(record, texts, model, highest)
+    found = comparison.compare(mechanism, seen.found, _fea(mechanism, computing=fea), reading=reading)
+    for caution in found.warnings[len(seen.found.warnings) :]:
+        warn(caution)
+    if report is not None:
+        save(report, compare_report(found, seen, mechanism, shapes_on(mechanism, seen)), "--report")
+    tables = compare_tables(found)[:-1]
+    answer("compare", mechanism, lambda: compare_body(found), lambda: tables, reading=reading, json=json, beside=(report,))
+
+
+def _fea(mechanism: Mechanism, *, computing: bool) -> FeaModes | None:
+    """FEA from the cache, or computed if asked for; where there is none it is said how to get it."""
+    if computing:
+        with progress_bar() as shown:
+            return fea_modes(mechanism, DEFAULT, solids(Ways(Cache(), shown.step), lambda finding: warn(str(finding))))
+    found = kept_fea_modes(mechanism, Cache())
+    if found is None:
+        tell("not given: FEA: the cache does not hold this stage; --fea computes it")
+    return found
