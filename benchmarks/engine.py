@@ -30,14 +30,14 @@ from flexstage.cases.double_triangle import double_triangle
 from flexstage.mechanism.address import set_value
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import Mechanism, Unit
+from flexstage.models.batch.blocks import Blocks, blocks, dense, of_kind
+from flexstage.models.batch.engine import PORTION, Method, Plan, iterated, plan, platform_modes
+from flexstage.models.batch.kernel import kernel
+from flexstage.models.batch.numbers import numbers_of, slopes_of
+from flexstage.models.batch.solution import Stage, found_modes
+from flexstage.models.batch.subspace import Start
+from flexstage.models.lumped import lumped
 from flexstage.parts.body import Body
-from flexstage.readings.batch.blocks import Blocks, blocks, dense, of_kind
-from flexstage.readings.batch.engine import PORTION, Method, Plan, iterated, plan, platform_modes
-from flexstage.readings.batch.kernel import kernel
-from flexstage.readings.batch.numbers import numbers_of, slopes_of
-from flexstage.readings.batch.solution import Stage, found_modes
-from flexstage.readings.batch.subspace import Start
-from flexstage.readings.lumped import lumped
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 

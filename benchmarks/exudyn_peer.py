@@ -29,8 +29,8 @@ from flexstage.beams.mass import mass
 from flexstage.cases.registry import CASES
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
-from flexstage.readings.linear.eigen import eigen
-from flexstage.readings.lumped import lumped
+from flexstage.models.linear.eigen import eigen
+from flexstage.models.lumped import lumped
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 

@@ -19,8 +19,8 @@ from flexstage.analysis.lost_motion import lost_motion
 from flexstage.analysis.modes import modes
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.mechanism.contact import contact_findings
-from flexstage.readings.ideal import ideal
-from flexstage.readings.lumped import lumped
+from flexstage.models.ideal import ideal
+from flexstage.models.lumped import lumped
 
 REPEATS = 40
 TARGET = 0.050

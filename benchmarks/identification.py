@@ -22,11 +22,11 @@ from scipy.stats import binomtest
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
-from flexstage.readings.measured.identify import identify
-from flexstage.readings.measured.record import InMemory
-from tests.readings.identification_study import CASES, Case, Trial, trials, worst_bound
-from tests.readings.synthetic_records import record, truth
-from tests.readings.wrong_models import KINDS, held
+from flexstage.experiment.identification.identify import identify
+from flexstage.experiment.record import InMemory
+from tests.models.identification_study import CASES, Case, Trial, trials, worst_bound
+from tests.models.synthetic_records import record, truth
+from tests.models.wrong_models import KINDS, held
 
 SEEDS = 200 if os.environ.get("FLEXSTAGE_TESTS") == "full" else 10
 

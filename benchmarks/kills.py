@@ -36,12 +36,12 @@ from scipy.io import loadmat
 from flexstage.apps.cli import run
 from flexstage.base.scale import X, Z, mm
 from flexstage.cases.registry import case
+from flexstage.control.hysteresis.example import example_record
+from flexstage.experiment.formats.write import write
 from flexstage.mechanism.mechanism import Link, Mechanism
 from flexstage.mechanism.store import dump
 from flexstage.parts.body import Body, Inertia
 from flexstage.parts.rod import Rod
-from flexstage.readings.measured.write import write
-from flexstage.studies.hysteresis_example import example_record
 
 MARK = "FLEXSTAGE_KILLS"
 OLD = b"as it was"

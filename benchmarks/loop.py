@@ -24,10 +24,10 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
-from flexstage.analysis.loop.code.compiled import simulate_compiled
-from flexstage.analysis.loop.simulation.result import Simulated
-from flexstage.analysis.loop.simulation.run import simulate
 from flexstage.base.native import compiler
+from flexstage.control.export.code.compiled import simulate_compiled
+from flexstage.control.simulation.result import Simulated
+from flexstage.control.simulation.run import simulate
 from tests.elsewhere.independent_loop import Stepped
 from tests.elsewhere.loops import PLATFORM, RATE, full_loop, way
 from tests.elsewhere.test_loop_simulation import worst

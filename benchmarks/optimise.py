@@ -26,12 +26,12 @@ from scipy.optimize import NonlinearConstraint, differential_evolution, minimize
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
-from flexstage.studies.optimise.file import load_wanted
-from flexstage.studies.optimise.optimum import optimise
-from flexstage.studies.optimise.problem import SPARE
-from flexstage.studies.optimise.setting import Setting, setting
-from flexstage.studies.optimise.values import Point
-from flexstage.studies.study.file import loads_study
+from flexstage.studies.optimisation.file import load_wanted
+from flexstage.studies.optimisation.optimum import optimise
+from flexstage.studies.optimisation.problem import SPARE
+from flexstage.studies.optimisation.setting import Setting, setting
+from flexstage.studies.optimisation.values import Point
+from flexstage.studies.sweeps.file import loads_study
 from tests.docs.pages import blocks
 
 MOST = int(sys.argv[1]) if len(sys.argv) > 1 else 600

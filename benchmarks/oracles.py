@@ -26,7 +26,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 from tests.elsewhere.identification_peers import EXTRA, PEERS
 from tests.elsewhere.identification_scores import ERRORS, OURS, Row, medians, one_record
-from tests.readings.identification_study import CASES, Case
+from tests.models.identification_study import CASES, Case
 
 SEEDS = 20 if os.environ.get("FLEXSTAGE_TESTS") == "full" else 5
 

@@ -32,14 +32,14 @@ import numpy as np
 
 from flexstage.base.child import cores, environment
 from flexstage.base.number import Table
-from flexstage.readings.batch.engine import platform_modes
-from flexstage.studies.study.definition import Study
-from flexstage.studies.study.engine import Engine, engine_of
-from flexstage.studies.study.evaluate import piece
-from flexstage.studies.study.file import load_study
-from flexstage.studies.study.gather import gather
-from flexstage.studies.study.run import piece_size
-from flexstage.studies.study.store import computed, folder_of, read_results, write_piece
+from flexstage.models.batch.engine import platform_modes
+from flexstage.studies.sweeps.definition import Study
+from flexstage.studies.sweeps.engine import Engine, engine_of
+from flexstage.studies.sweeps.evaluate import piece
+from flexstage.studies.sweeps.file import load_study
+from flexstage.studies.sweeps.gather import gather
+from flexstage.studies.sweeps.run import piece_size
+from flexstage.studies.sweeps.store import computed, folder_of, read_results, write_piece
 
 STUDY = """
 format = "flexstage study 1"

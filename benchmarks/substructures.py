@@ -74,10 +74,10 @@ def child(how: str, folder: Path) -> None:
     """What the process of one reading does."""
     from flexstage.analysis.modes import modes
     from flexstage.cases.double_triangle import double_triangle
-    from flexstage.readings.solid.cache import Cache
-    from flexstage.readings.solid.fineness import Fineness, Reduction
-    from flexstage.readings.solid.monolithic import monolithic
-    from flexstage.readings.solid.reading import solid
+    from flexstage.solid.fea.cache import Cache
+    from flexstage.solid.fea.fineness import Fineness, Reduction
+    from flexstage.solid.fea.model import model as solid
+    from flexstage.solid.fea.monolithic import monolithic
 
     plan, start = Fineness(order=2), time.perf_counter()
     if how == "monolithic":

@@ -29,6 +29,10 @@ suppress_warnings: list[str] = []
 nitpicky = False
 
 
+FLOORS = ["apps", "studies", "control", "experiment", "solid", "show", "analysis", "models", "cases"]
+FLOORS += ["beams", "mechanism", "parts", "spatial", "base"]
+
+
 def setup(app: Sphinx) -> None:
     """Write the map of the house from the modules' first lines before pages are read."""
     app.connect("builder-inited", lambda app: Path(app.srcdir, "map.md").write_text(house_map(), encoding="utf-8"))
@@ -42,7 +46,7 @@ def house_map() -> str:
         "",
         "Every concept has one home: look here before writing something anew. Imports go down the floors only.",
     ]
-    for floor in ("apps", "present", "studies", "analysis", "readings", "cases", "beams", "mechanism", "parts", "spatial", "base"):
+    for floor in FLOORS:
         lines += ["", f"## {floor}", ""]
         for path in sorted((package / floor).rglob("*.py")):
             first = (ast.get_docstring(ast.parse(path.read_text(encoding="utf-8"))) or "").partition("\n")[0]

@@ -17,6 +17,7 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 import flexstage as fs
+from flexstage.analysis.complete import platform_modes
 from flexstage.analysis.modes import clusters
 from flexstage.beams.closed_forms import (
     paros_weisbord_rotation_simplified,
@@ -24,46 +25,46 @@ from flexstage.beams.closed_forms import (
     smith_toroid_rotation_stiffness,
 )
 from flexstage.cases.double_triangle import double_triangle
+from flexstage.control.figures.diagram import loop_diagram
+from flexstage.control.figures.frequency import Curves, open_loop_figure
+from flexstage.control.figures.noise import noise_share_figure
+from flexstage.control.figures.time import path_figure
+from flexstage.control.hysteresis.example import example_test
+from flexstage.control.hysteresis.figures import stack_figure
+from flexstage.control.sections import diagram_of, shares_of
+from flexstage.control.study.choices import Compensation, Criterion
+from flexstage.control.study.setup import Floor, Gauging, LoopSetup, RasterMotion, Shaking
+from flexstage.control.study.study import LoopStudy, loop_study
+from flexstage.experiment import Identified, NoiseDrive, RigSetup, Search, Sensing
+from flexstage.experiment.comparison_figures import compare_figure
+from flexstage.experiment.figures import stabilisation_figure
 from flexstage.mechanism.address import get, set_value
-from flexstage.present.figures.budget import loss_figure
-from flexstage.present.figures.compare import compare_figure
-from flexstage.present.figures.directional import directional_figure
-from flexstage.present.figures.export import to_png, to_svg
-from flexstage.present.figures.hysteresis import stack_figure
-from flexstage.present.figures.interactions import pairs_figure, strongest_figure
-from flexstage.present.figures.loop_diagram import loop_diagram
-from flexstage.present.figures.loop_frequency import Curves, open_loop_figure
-from flexstage.present.figures.loop_noise import noise_share_figure
-from flexstage.present.figures.loop_time import path_figure
-from flexstage.present.figures.measured import stabilisation_figure
-from flexstage.present.figures.optimise import convergence_figure
-from flexstage.present.figures.skin import skin_figure
-from flexstage.present.figures.study import effects_figure
-from flexstage.present.figures.style import FULL, INK, PAPER, SERIES, canvas, styled
-from flexstage.present.figures.tolerance import crosstalk_figure, distributions_figure
-from flexstage.present.plan import plan_figure
-from flexstage.present.scene.facet import Facet, Kind
-from flexstage.present.scene.stage import Scene, displaced, largest_motion, scene
-from flexstage.present.scene.view import Side, draw, ordered, outline, triad, view, write
-from flexstage.present.sections.loop import diagram_of, shares_of
-from flexstage.readings.solid.fineness import Fineness, Reduction
+from flexstage.show.figures.budget import loss_figure
+from flexstage.show.figures.directional import directional_figure
+from flexstage.show.figures.export import to_png, to_svg
+from flexstage.show.figures.style import FULL, INK, PAPER, SERIES, canvas, styled
+from flexstage.show.plan import plan_figure
+from flexstage.show.scene.facet import Facet, Kind
+from flexstage.show.scene.stage import Scene, displaced, largest_motion, scene
+from flexstage.show.scene.view import Side, draw, ordered, outline, triad, view, write
+from flexstage.solid.fea.fineness import Fineness, Reduction
+from flexstage.solid.read import STANDARD_SOLIDS, read_solid
+from flexstage.solid.skin_figures import skin_figure
+from flexstage.solid.surface import mode_surfaces
 from flexstage.spatial.frame import COMPONENTS
-from flexstage.studies.complete import platform_modes
-from flexstage.studies.hysteresis_example import example_test
-from flexstage.studies.loop.choices import Compensation, Criterion
-from flexstage.studies.loop.setup import Floor, Gauging, LoopSetup, RasterMotion, Shaking
-from flexstage.studies.loop.study import LoopStudy, loop_study
-from flexstage.studies.optimise.file import load_wanted
-from flexstage.studies.optimise.optimum import optimise
-from flexstage.studies.solid_read import STANDARD_SOLIDS, read_solid
-from flexstage.studies.solid_surface import mode_surfaces
-from flexstage.studies.study.definition import Study
-from flexstage.studies.study.effects import Effects
-from flexstage.studies.study.effects import effects as effects_of
-from flexstage.studies.study.file import loads_study
-from flexstage.studies.study.run import Run, sweep
-from flexstage.studies.tolerance.file import loads_tolerance
-from flexstage.studies.tolerance.run import Toleranced, tolerance
+from flexstage.studies.optimisation.figures import convergence_figure
+from flexstage.studies.optimisation.file import load_wanted
+from flexstage.studies.optimisation.optimum import optimise
+from flexstage.studies.sweeps.definition import Study
+from flexstage.studies.sweeps.effects import Effects
+from flexstage.studies.sweeps.effects import effects as effects_of
+from flexstage.studies.sweeps.figures import effects_figure
+from flexstage.studies.sweeps.file import loads_study
+from flexstage.studies.sweeps.interaction_figures import pairs_figure, strongest_figure
+from flexstage.studies.sweeps.run import Run, sweep
+from flexstage.studies.tolerances.figures import crosstalk_figure, distributions_figure
+from flexstage.studies.tolerances.file import loads_tolerance
+from flexstage.studies.tolerances.run import Toleranced, tolerance
 from tests.analytic import test_paros_weisbord, test_smith_toroid
 from tests.analytic.hinges import UNIT, circular, diagonal, error
 from tests.docs.pages import blocks
@@ -203,12 +204,12 @@ _THICKNESS = "parts.neck.thickness"
 
 
 @cache
-def _tested() -> fs.Identified:
+def _tested() -> Identified:
     """Modes from a test on the virtual rig of a stage whose horizontal necks came out 5 % too thick."""
     stage = double_triangle()
     built = set_value(stage, _THICKNESS, 1.05 * get(stage, _THICKNESS))
-    setup = fs.RigSetup(seconds=60.0, seed=1, drive=fs.NoiseDrive(stroke=0.5 * fs.um), sensing=fs.Sensing(density=5.0 * fs.nm))
-    return fs.identify(fs.rig(built, fs.lumped(built), setup), fs.Search(band=(80.0, 220.0)))
+    setup = RigSetup(seconds=60.0, seed=1, drive=NoiseDrive(stroke=0.5 * fs.um), sensing=Sensing(density=5.0 * fs.nm))
+    return fs.experiment.identify(fs.experiment.rig(built, fs.lumped(built), setup), Search(band=(80.0, 220.0)))
 
 
 def stabilisation() -> Any:
@@ -218,7 +219,7 @@ def stabilisation() -> Any:
 
 def compared() -> Any:
     """That test beside the theory of the stage as designed."""
-    return compare_figure(fs.compare(double_triangle(), _tested()))
+    return compare_figure(fs.experiment.compare(double_triangle(), _tested()))
 
 
 def solid() -> Any:

@@ -17,7 +17,7 @@ from collections.abc import Mapping
 from threadpoolctl import threadpool_info
 
 _NEEDED = {"Nehalem": {"SSE42", "X86_V2"}, "Haswell": {"AVX2", "X86_V3"}, "Zen": {"AVX2", "X86_V3"}, "SkylakeX": {"AVX512_SKX", "X86_V4"}}
-_TESTS = ("tests/laws", "tests/analytic", "tests/readings/test_identify.py", "tests/readings/test_identify_limits.py")
+_TESTS = ("tests/laws", "tests/analytic", "tests/models/test_identify.py", "tests/models/test_identify_limits.py")
 
 
 def processors() -> Mapping[str, Mapping[str, str]]:

@@ -20,7 +20,7 @@ ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT / "src"))
 sys.dont_write_bytecode = True
 
-from flexstage.apps import quadmath  # noqa: E402 (found through the line above)
+from flexstage.apps import quadmath  # noqa: E402
 from flexstage.apps.installed import packages  # noqa: E402
 
 VENV = ROOT / ".venv"

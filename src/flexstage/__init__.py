@@ -1,14 +1,18 @@
 """flexstage: design and proof of flexure-based ultra-precision positioning stages.
 
-The public surface, name by name. A name is imported from its room at first use (PEP 562), so `import flexstage` itself loads nothing;
-type checkers and editors read the same table from `__init__.pyi`.
+The public surface, name by name; what goes beyond describing a stage and analysing it stands in `solid`, `experiment`, `control` and
+`studies`. A name is imported from its home at first use (PEP 562), so `import flexstage` itself loads nothing; type checkers and editors
+read the same table from `__init__.pyi`.
 """
 
 from importlib import import_module
 
+from flexstage.base.lazy import lazily
+
 __version__ = "0.1.0"
 
-_ROOMS = {
+WINGS = ("solid", "experiment", "control", "studies")
+HOMES = {
     "base.finding": "DesignError Finding",
     "base.scale": "X Y Z m mm um nm rad mrad urad nrad deg kg N kN N_per_m N_per_um Pa MPa GPa Hz kHz V uF K",
     "base.labelled": "Matrix",
@@ -38,30 +42,16 @@ _ROOMS = {
     "mechanism.address": "addresses assign get set_value",
     "cases.registry": "case",
     "cases.double_triangle": "double_triangle",
-    "readings.ideal": "ideal",
-    "readings.lumped": "Masses lumped",
-    "readings.mapped": "mapped",
-    "readings.solid.cache": "Cache",
-    "readings.solid.fineness": "Fineness Hold Reduction",
-    "readings.solid.estimate": "Accuracy",
-    "readings.solid.hinge": "HingeSolid hinge_compliance",
-    "readings.solid.reading": "SolidReading solid solid_parts",
-    "readings.measured.record": "Channel InMemory Record Responses Role in_memory",
-    "readings.measured.options": "Allow Kind Options",
-    "readings.measured.unit": "in_si responses_in_si",
-    "readings.measured.read": "read_record",
-    "readings.measured.write": "Form write_record",
-    "readings.measured.health": "Needs examine usable",
-    "readings.measured.spectra": "Segments Spectra Window spectra",
-    "readings.measured.transfer": "h1 h2 multiple_coherence ordinary_coherence spectral_ratio",
-    "readings.measured.identify": "Search identify",
-    "readings.measured.identified": "Identified",
-    "readings.linear.kinematics": "Kinematics",
-    "readings.linear.model": "LinearModel",
-    "readings.linear.static": "static_gain",
-    "readings.finite": "FiniteMotion FinitePose forward_kinematics inverse_kinematics",
-    "readings.linear.frequency": "Response",
-    "readings.linear.state_space": "StateSpace state_space",
+    "models.ideal": "ideal",
+    "models.lumped": "Masses lumped",
+    "models.mapped": "mapped",
+    "models.linear.kinematics": "Kinematics",
+    "models.linear.model": "LinearModel",
+    "models.linear.static": "static_gain",
+    "models.finite": "FiniteMotion FinitePose forward_kinematics inverse_kinematics",
+    "models.linear.frequency": "Response",
+    "models.linear.state_space": "StateSpace state_space",
+    "analysis.solid_modes": "FeaModes",
     "analysis.statics": "Statics equivalent_stiffness statics",
     "analysis.lost_motion": "LostMotion lost_motion",
     "analysis.modes": "Modes modal_assurance modes subspace_angle",
@@ -70,97 +60,24 @@ _ROOMS = {
     "analysis.random_response": "RandomResponse Spectrum random_response",
     "analysis.drift": "Drift drift",
     "analysis.error_budget": "ErrorBudget error_budget",
-    "analysis.loop.system": "System",
-    "analysis.loop.hardware": "AmplifierSettings GaugeSettings Hardware hardware",
-    "analysis.loop.plant": "Plant plant",
-    "analysis.loop.reduced": "reduced",
-    "analysis.loop.closed": "Cut Loop loop",
-    "analysis.loop.verdict": "verdict",
-    "analysis.loop.margins": "bandwidths crosstalk margins peaks",
-    "analysis.loop.noise": "noise_budget",
-    "analysis.loop.exchange": "from_control to_control",
-    "analysis.loop.controllers.pi": "PI",
-    "analysis.loop.controllers.pid": "PID",
-    "analysis.loop.controllers.resonant": "IntegralResonant",
-    "analysis.loop.controllers.notch": "notch_of_mode",
-    "analysis.loop.controllers.loops": "actuator_loops modal_loops platform_loops",
-    "analysis.loop.controllers.decentralised": "Decentralised",
-    "analysis.loop.tuning.goal": "Goal",
-    "analysis.loop.trajectory.step": "Step",
-    "analysis.loop.trajectory.raster": "Raster",
-    "analysis.loop.trajectory.spiral": "Spiral",
-    "analysis.loop.trajectory.sine": "Sine",
-    "analysis.loop.trajectory.path": "reference",
-    "analysis.loop.simulation.machine": "machine",
-    "analysis.loop.simulation.run": "simulate",
-    "analysis.loop.simulation.result": "step_figures tracking",
-    "analysis.loop.hysteresis.prandtl_ishlinskii": "PrandtlIshlinskii",
-    "analysis.loop.hysteresis.envelope": "Envelope",
-    "analysis.loop.hysteresis.inverse": "hysteresis_inverse",
-    "analysis.loop.hysteresis.bouc_wen": "BoucWen bouc_wen",
-    "analysis.loop.hysteresis.preisach": "Preisach preisach",
-    "analysis.loop.hysteresis.creep": "Creep LogCreep exponentials",
-    "analysis.loop.hysteresis.creep_record": "identify_creep",
-    "analysis.loop.hysteresis.identify": "identify_hysteresis",
-    "analysis.loop.hysteresis.stack": "StackHysteresis dump_hysteresis load_hysteresis stack_hysteresis",
-    "studies.sensitivities": "Sensitivities sensitivities",
-    "studies.omitted": "Omitted omitted",
-    "studies.units": "UnitResult units",
-    "studies.resolution": "Resolution Resolved",
-    "studies.solid_hinge": "SolidHinge solid_hinges",
-    "studies.solid_unit": "SolidUnit solid_units",
-    "studies.solid_stage": "SolidStage solid_stage",
-    "studies.verify": "Verification verify",
-    "studies.fea_modes": "FeaModes fea_modes kept_fea_modes",
-    "studies.compare": "Compared compare",
-    "studies.update": "Told Updated update",
-    "studies.update_free": "Known",
-    "studies.update_text": "updated_text",
-    "studies.study.effects": "Effects effects",
-    "studies.study.file": "load_study",
-    "studies.study.run": "Run sweep",
-    "studies.study.store": "Results read_results",
-    "studies.optimise.wanted": "Aim Objective Wanted",
-    "studies.optimise.file": "load_wanted",
-    "studies.optimise.optimum": "optimise",
-    "studies.optimise.front": "pareto_front",
-    "studies.optimise.result": "Front Optimum",
-    "studies.measured_shapes": "StageShapes stage_shapes",
-    "studies.calibrate": "Calibration calibrate",
-    "studies.workspace": "Workspace workspace",
-    "studies.cautions": "Caveats caveats",
-    "studies.standing": "standing",
-    "studies.complete": "Analysis Reading analyse",
-    "studies.judge": "judge",
-    "studies.budget": "budget",
-    "studies.difference": "difference",
-    "studies.hysteresis": "Channels StackTest stack_test",
-    "studies.loop.choices": "Axes Axis Compensation ControllerKind Criterion Notching StackKind",
-    "studies.loop.setup": (
-        "Amplifying Controlling FileMotion Floor Gauging HystereticStacks LoopSetup Motion NotchAt RasterMotion Shaking SineMotion "
-        "SpiralMotion StepMotion"
-    ),
-    "studies.loop.file": "load_setup",
-    "studies.loop.floor": "criterion_spectrum",
-    "studies.loop.study": "LoopStudy loop_study",
-    "studies.rig.rig": "rig",
-    "studies.tolerance.file": "load_tolerance",
-    "studies.tolerance.run": "Toleranced tolerance",
-    "studies.rig.setup": "Amplifier AntiAlias NoiseDrive Recorded RigSetup Sensing Tap",
-    "present.report": "report",
-    "present.loop_report": "loop_report",
-    "present.loop_files": "write_controller write_fmu write_plant",
+    "analysis.sensitivities": "Sensitivities sensitivities",
+    "analysis.omitted": "Omitted omitted",
+    "analysis.units": "UnitResult units",
+    "analysis.workspace.workspace": "Workspace workspace",
+    "analysis.cautions": "Caveats caveats",
+    "analysis.complete": "Analysis Reading analyse",
+    "analysis.standing": "standing",
+    "analysis.judge": "judge",
+    "analysis.budget": "budget",
+    "analysis.difference": "difference",
+    "show.report": "report",
 }
-_HOME = {name: room for room, names in _ROOMS.items() for name in names.split()}
+_of_core, _names = lazily(__name__, HOMES)
 
 
 def __getattr__(name: str) -> object:
-    if name not in _HOME:
-        raise AttributeError(f"module 'flexstage' has no attribute {name!r}")
-    value = getattr(import_module(f"flexstage.{_HOME[name]}"), name)
-    globals()[name] = value
-    return value
+    return import_module(f"flexstage.{name}") if name in WINGS else _of_core(name)
 
 
 def __dir__() -> list[str]:
-    return sorted({"__version__", *_HOME})
+    return sorted({*_names(), *WINGS})

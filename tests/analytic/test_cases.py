@@ -18,13 +18,13 @@ from flexstage.cases.stock import ALUMINIUM, STEEL
 from flexstage.cases.strut import Strut
 from flexstage.cases.tip_tilt import TipTilt, tip_tilt
 from flexstage.cases.xy_stage import XYStage, xy_stage
+from flexstage.models.ideal import ideal
+from flexstage.models.linear.eigen import eigen
+from flexstage.models.linear.static import static_gain
+from flexstage.models.lumped import lumped
 from flexstage.parts.freedom import Freedom
 from flexstage.parts.given import Joint
 from flexstage.parts.leaf import Leaf
-from flexstage.readings.ideal import ideal
-from flexstage.readings.linear.eigen import eigen
-from flexstage.readings.linear.static import static_gain
-from flexstage.readings.lumped import lumped
 
 
 def test_parallelogram_moves_along_x_as_its_stack_does():

@@ -8,25 +8,25 @@ import numpy as np
 import pytest
 
 from flexstage.analysis.deflection import deflection
-from flexstage.analysis.loop.closed import loop
-from flexstage.analysis.loop.compensation import compensated, finite_error, finite_strokes, static_error, uncompensated
-from flexstage.analysis.loop.controllers.decentralised import Decentralised
-from flexstage.analysis.loop.controllers.loops import platform_loops
-from flexstage.analysis.loop.controllers.pi import PI
-from flexstage.analysis.loop.hardware import Hardware
-from flexstage.analysis.loop.plant import plant
-from flexstage.analysis.loop.system import picked
 from flexstage.analysis.lost_motion import lost_motion
 from flexstage.base.finding import DesignError
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.cases.registry import CASES, case
+from flexstage.control.closed import loop
+from flexstage.control.compensation import compensated, finite_error, finite_strokes, static_error, uncompensated
+from flexstage.control.controllers.decentralised import Decentralised
+from flexstage.control.controllers.loops import platform_loops
+from flexstage.control.controllers.pi import PI
+from flexstage.control.electronics import Hardware
+from flexstage.control.plants import plant
+from flexstage.control.system import picked
 from flexstage.mechanism.mechanism import Damping, ModalDamping
+from flexstage.models.finite import FinitePose, forward_kinematics, inverse_kinematics
+from flexstage.models.ideal import ideal
+from flexstage.models.linear.model import LinearModel
+from flexstage.models.lumped import lumped
+from flexstage.models.mapped import mapped
 from flexstage.parts.body import Payload
-from flexstage.readings.finite import FinitePose, forward_kinematics, inverse_kinematics
-from flexstage.readings.ideal import ideal
-from flexstage.readings.linear.model import LinearModel
-from flexstage.readings.lumped import lumped
-from flexstage.readings.mapped import mapped
 from flexstage.spatial.frame import COMPONENTS
 
 STAGES = sorted(set(CASES) - {"double-triangle-a", "double-triangle-refitted", "xy-stage-floating"})

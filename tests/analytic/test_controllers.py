@@ -7,27 +7,27 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from flexstage.analysis.loop.closed import loop
-from flexstage.analysis.loop.controllers.decentralised import Decentralised
-from flexstage.analysis.loop.controllers.loops import actuator_loops, modal_loops, platform_loops
-from flexstage.analysis.loop.controllers.lqg import Disturbances, Weights, lqg
-from flexstage.analysis.loop.controllers.notch import Notch, notch_of_mode
-from flexstage.analysis.loop.controllers.pi import PI
-from flexstage.analysis.loop.controllers.pid import PID
-from flexstage.analysis.loop.controllers.resonant import IntegralResonant, resonant, resonant_damping
-from flexstage.analysis.loop.controllers.seen import seen_plant
-from flexstage.analysis.loop.coordinates import coordinates
-from flexstage.analysis.loop.hardware import Hardware
-from flexstage.analysis.loop.plant import plant
-from flexstage.analysis.loop.system import System, connected, picked, renamed
 from flexstage.analysis.modes import modes
 from flexstage.base.finding import DesignError
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.cases.xy_stage import xy_stage
-from flexstage.readings.ideal import ideal
-from flexstage.readings.linear.model import Channel
-from flexstage.readings.lumped import lumped
-from flexstage.readings.mapped import mapped
+from flexstage.control.closed import loop
+from flexstage.control.controllers.decentralised import Decentralised
+from flexstage.control.controllers.loops import actuator_loops, modal_loops, platform_loops
+from flexstage.control.controllers.lqg import Disturbances, Weights, lqg
+from flexstage.control.controllers.notch import Notch, notch_of_mode
+from flexstage.control.controllers.pi import PI
+from flexstage.control.controllers.pid import PID
+from flexstage.control.controllers.resonant import IntegralResonant, resonant, resonant_damping
+from flexstage.control.controllers.seen import seen_plant
+from flexstage.control.coordinates import coordinates
+from flexstage.control.electronics import Hardware
+from flexstage.control.plants import plant
+from flexstage.control.system import System, connected, picked, renamed
+from flexstage.models.ideal import ideal
+from flexstage.models.linear.model import Channel
+from flexstage.models.lumped import lumped
+from flexstage.models.mapped import mapped
 
 FREQUENCIES = np.geomspace(0.1, 4000.0, 60)
 STEP = 1e-4

@@ -10,8 +10,8 @@ import pytest
 import flexstage as fs
 from flexstage.analysis.drift import drift
 from flexstage.mechanism.expansion import Ground, expansion, ground_of
-from flexstage.present.tables.errors import drift_table
-from flexstage.readings.lumped import lumped
+from flexstage.models.lumped import lumped
+from flexstage.show.tables.errors import drift_table
 
 X, Y, Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
 STEEL = fs.Material(young=200e9, poisson=0.3, density=7750.0, expansion=10e-6)

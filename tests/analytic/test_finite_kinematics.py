@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import flexstage as fs
-from flexstage.readings.finite import FinitePose, forward_kinematics, inverse_kinematics
-from flexstage.readings.ideal import ideal
+from flexstage.models.finite import FinitePose, forward_kinematics, inverse_kinematics
+from flexstage.models.ideal import ideal
 
 X, Y, Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
 ALUMINIUM = fs.Material(young=70e9, poisson=0.33, density=2700.0)

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from flexstage.studies.loop.choices import Criterion
-from flexstage.studies.loop.floor import criterion_spectrum, floor_spectra
-from flexstage.studies.loop.setup import Floor, Shaking
+from flexstage.control.study.choices import Criterion
+from flexstage.control.study.floor import criterion_spectrum, floor_spectra
+from flexstage.control.study.setup import Floor, Shaking
 
 TABLE = {  # Amick et al. 2005, Table 1: um/s
     "ISO workshop": 800.0,

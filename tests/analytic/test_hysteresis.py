@@ -8,20 +8,20 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from flexstage.analysis.loop.hysteresis.bouc_wen import bouc_wen
-from flexstage.analysis.loop.hysteresis.branches import branches_of
-from flexstage.analysis.loop.hysteresis.creep import Creep, LogCreep, exponentials, stacked_creep
-from flexstage.analysis.loop.hysteresis.creep_record import identify_creep
-from flexstage.analysis.loop.hysteresis.envelope import Envelope, straight
-from flexstage.analysis.loop.hysteresis.identify import identify_hysteresis
-from flexstage.analysis.loop.hysteresis.inverse import inverse
-from flexstage.analysis.loop.hysteresis.prandtl_ishlinskii import PrandtlIshlinskii
-from flexstage.analysis.loop.hysteresis.preisach import preisach
-from flexstage.analysis.loop.hysteresis.scaled import Stacks, scaled
-from flexstage.analysis.loop.hysteresis.shape import settled_loop
-from flexstage.analysis.loop.system import System
 from flexstage.base.finding import DesignError
-from flexstage.readings.linear.model import Channel
+from flexstage.control.hysteresis.bouc_wen import bouc_wen
+from flexstage.control.hysteresis.branches import branches_of
+from flexstage.control.hysteresis.creep import Creep, LogCreep, exponentials, stacked_creep
+from flexstage.control.hysteresis.creep_record import identify_creep
+from flexstage.control.hysteresis.envelope import Envelope, straight
+from flexstage.control.hysteresis.identify import identify_hysteresis
+from flexstage.control.hysteresis.inverse import inverse
+from flexstage.control.hysteresis.prandtl_ishlinskii import PrandtlIshlinskii
+from flexstage.control.hysteresis.preisach import preisach
+from flexstage.control.hysteresis.scaled import Stacks, scaled
+from flexstage.control.hysteresis.shape import settled_loop
+from flexstage.control.system import System
+from flexstage.models.linear.model import Channel
 
 RANGE = (0.0, 1000.0)
 STROKE = 150e-6
@@ -185,7 +185,7 @@ def test_exponentials_follow_the_logarithm():
 
 def test_creep_is_exact_between_samples():
     """Held inputs: equal to the closed form of the step response, and to the same system sampled by the loop's own means."""
-    from flexstage.analysis.loop.sampling import sampled
+    from flexstage.control.sampling import sampled
 
     creep = stacked_creep((Creep([1.0], [0.1, 0.05], [2.0, 0.3]), Creep([0.9], [0.2], [5.0])))
     times = 0.25 * np.arange(40)

@@ -11,12 +11,12 @@ from flexstage.analysis.modes import modes
 from flexstage.analysis.workspace.load import applied, dead_loads
 from flexstage.base.finding import DesignError
 from flexstage.mechanism.mechanism import Force, Link, Mechanism
+from flexstage.models.linear.static import displacement, static_gain
+from flexstage.models.lumped import lumped
 from flexstage.parts.body import Body, Inertia
 from flexstage.parts.freedom import Freedom
 from flexstage.parts.given import Given, Joint
 from flexstage.parts.part import Restricted
-from flexstage.readings.linear.static import displacement, static_gain
-from flexstage.readings.lumped import lumped
 from flexstage.spatial.frame import COMPONENTS, FORCES, cross_matrix
 
 TURNS = (Freedom.RX, Freedom.RY, Freedom.RZ)

@@ -8,10 +8,10 @@ S12 = 1/7; over (-1, 1)^2: S12 = 1.
 import numpy as np
 import pytest
 
-from flexstage.studies.study.effects import effects
-from flexstage.studies.study.interactions import paired_shares, second_order, single_effects
-from flexstage.studies.study.plan import Plan, Sampling, shares
-from flexstage.studies.study.store import Results
+from flexstage.studies.sweeps.effects import effects
+from flexstage.studies.sweeps.interactions import paired_shares, second_order, single_effects
+from flexstage.studies.sweeps.plan import Plan, Sampling, shares
+from flexstage.studies.sweeps.store import Results
 
 PAIRS = ([0, 0, 1], [1, 2, 2])
 SALTELLI = Plan(Sampling.SALTELLI, 3, 2048, pairs=True)

@@ -8,26 +8,26 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from flexstage.analysis.loop.closed import Cut, loop, opened
-from flexstage.analysis.loop.coordinates import Coordinates
-from flexstage.analysis.loop.curves import sensitivity
-from flexstage.analysis.loop.disk import DiskMargin, disk_margin, disk_margins
-from flexstage.analysis.loop.example import integral
-from flexstage.analysis.loop.hardware import AmplifierSettings, GaugeSettings, Hardware, hardware
-from flexstage.analysis.loop.margins import bandwidths, crosstalk, delay_margin, margins, peaks
-from flexstage.analysis.loop.plant import Plant, held, plant
-from flexstage.analysis.loop.sampling import ramped
-from flexstage.analysis.loop.system import System, picked
-from flexstage.analysis.loop.verdict import verdict
 from flexstage.base.finding import DesignError
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.cases.parallelogram import parallelogram
 from flexstage.cases.registry import CASES
-from flexstage.readings.ideal import ideal
-from flexstage.readings.linear.model import Channel
-from flexstage.readings.linear.static import static_gain
-from flexstage.readings.lumped import lumped
-from flexstage.readings.mapped import mapped
+from flexstage.control.closed import Cut, loop, opened
+from flexstage.control.coordinates import Coordinates
+from flexstage.control.curves import sensitivity
+from flexstage.control.disk import DiskMargin, disk_margin, disk_margins
+from flexstage.control.electronics import AmplifierSettings, GaugeSettings, Hardware, hardware
+from flexstage.control.example import integral
+from flexstage.control.plants import Plant, held, plant
+from flexstage.control.sampling import ramped
+from flexstage.control.stability import verdict
+from flexstage.control.stability_margins import bandwidths, crosstalk, delay_margin, margins, peaks
+from flexstage.control.system import System, picked
+from flexstage.models.ideal import ideal
+from flexstage.models.linear.model import Channel
+from flexstage.models.linear.static import static_gain
+from flexstage.models.lumped import lumped
+from flexstage.models.mapped import mapped
 
 METRE = Channel("error.x", "m"), Channel("command.B", "m")
 

@@ -8,10 +8,10 @@ from dataclasses import replace
 import pytest
 
 import flexstage as fs
+from flexstage.analysis.cautions import caveats
 from flexstage.cases.registry import CASES, case
 from flexstage.mechanism.store import loads, shipped
 from flexstage.parts.plausible import implausible
-from flexstage.studies.cautions import caveats
 
 STEEL = fs.Material(young=200e9, poisson=0.3, density=7800.0, expansion=10.8e-6, yield_stress=1e9)
 STACK = fs.Piezo(

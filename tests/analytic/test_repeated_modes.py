@@ -11,7 +11,7 @@ from flexstage.analysis.modes import modes
 from flexstage.analysis.random_response import Spectrum, random_response
 from flexstage.analysis.response import default_frequencies
 from flexstage.mechanism.mechanism import ModalDamping
-from flexstage.readings.linear.model import Channel, Contribution, LinearModel
+from flexstage.models.linear.model import Channel, Contribution, LinearModel
 from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
 
 PLATFORM = np.array([1.0, 2.0, 3.0, 4.0, 5.0, 6.0])

@@ -8,11 +8,11 @@ import pytest
 from netgen import occ
 
 from flexstage.parts.body import Block
-from flexstage.readings.solid.component import Component, Joint
-from flexstage.readings.solid.field import applied, factored, field, stiffness
-from flexstage.readings.solid.fineness import Fineness
-from flexstage.readings.solid.mesh import Meshed, meshed
-from flexstage.readings.solid.piece import Medium, Piece
+from flexstage.solid.fea.component import Component, Joint
+from flexstage.solid.fea.field import applied, factored, field, stiffness
+from flexstage.solid.fea.fineness import Fineness
+from flexstage.solid.fea.mesh import Meshed, meshed
+from flexstage.solid.fea.piece import Medium, Piece
 from flexstage.spatial.frame import Frame, identity
 
 SOFT, STIFF = Medium(young=100e9, poisson=0.15, density=1.0), Medium(young=200e9, poisson=0.3, density=1.0)

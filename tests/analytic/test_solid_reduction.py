@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 from scipy.linalg import eigh
 
-from flexstage.readings.solid.bar import bar
-from flexstage.readings.solid.fineness import WARPS, Fineness, Hold, Reduction
-from flexstage.readings.solid.mesh import meshed
-from flexstage.readings.solid.piece import Medium
-from flexstage.readings.solid.reduce import reduced_mesh
-from flexstage.readings.solid.superelement import Superelement
+from flexstage.solid.fea.bar import bar
+from flexstage.solid.fea.fineness import WARPS, Fineness, Hold, Reduction
+from flexstage.solid.fea.mesh import meshed
+from flexstage.solid.fea.piece import Medium
+from flexstage.solid.fea.reduce import reduced_mesh
+from flexstage.solid.fea.superelement import Superelement
 
 AXIAL = 100e6
 """E A / L of the bar [N/m]."""

@@ -5,18 +5,18 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from flexstage.readings.measured.bands import extents
-from flexstage.readings.measured.cluster import stabilisation
-from flexstage.readings.measured.confidence import deviations
-from flexstage.readings.measured.identify import identify
-from flexstage.readings.measured.likelihood import Fit, Modal
-from flexstage.readings.measured.lines import edges, expanded, nodes
-from flexstage.readings.measured.lscf import lscf
-from flexstage.readings.measured.record import Channel, Responses, Role, in_memory
-from flexstage.readings.measured.smear import Smear
-from flexstage.readings.measured.spectra import Segments, Window, independent_averages, spectra
-from tests.readings.identification_study import assurance, bound
-from tests.readings.synthetic_records import WIDE, Truth, record, truth
+from flexstage.experiment.cross_spectra import Segments, Window, independent_averages, spectra
+from flexstage.experiment.identification.bands import extents
+from flexstage.experiment.identification.cluster import stabilisation
+from flexstage.experiment.identification.confidence import deviations
+from flexstage.experiment.identification.identify import identify
+from flexstage.experiment.identification.likelihood import Fit, Modal
+from flexstage.experiment.identification.lines import edges, expanded, nodes
+from flexstage.experiment.identification.lscf import lscf
+from flexstage.experiment.identification.smear import Smear
+from flexstage.experiment.record import Channel, Responses, Role, in_memory
+from tests.models.identification_study import assurance, bound
+from tests.models.synthetic_records import WIDE, Truth, record, truth
 
 
 def test_white_noise_has_the_density_of_its_variance():

@@ -11,8 +11,8 @@ import flexstage as fs
 from flexstage.analysis.stability import Stability, stability
 from flexstage.analysis.workspace.stroke import StrokeLimits
 from flexstage.cases.double_triangle import double_triangle
+from flexstage.models.lumped import lumped
 from flexstage.parts.freedom import Freedom
-from flexstage.readings.lumped import lumped
 
 Z = (0.0, 0.0, 1.0)
 STEEL = fs.Material(young=200e9, poisson=0.0, density=1e-3)

@@ -8,19 +8,19 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import quad
 
-from flexstage.analysis.loop.trajectory.check import reach_findings, require_reach, speed_findings
-from flexstage.analysis.loop.trajectory.path import Trajectory, reference
-from flexstage.analysis.loop.trajectory.pieces import joined, smooth
-from flexstage.analysis.loop.trajectory.profile import Limits, profile
-from flexstage.analysis.loop.trajectory.raster import Raster, Scan
-from flexstage.analysis.loop.trajectory.sine import Sine
-from flexstage.analysis.loop.trajectory.spiral import EvenSpeed, EvenTurns, Spiral
-from flexstage.analysis.loop.trajectory.step import Step
-from flexstage.analysis.loop.trajectory.table import Table, from_file
 from flexstage.analysis.workspace.polytope import reachable
 from flexstage.analysis.workspace.stroke import StrokeLimits
 from flexstage.base.finding import DesignError
 from flexstage.base.labelled import Matrix
+from flexstage.control.trajectory.check import reach_findings, require_reach, speed_findings
+from flexstage.control.trajectory.path import Trajectory, reference
+from flexstage.control.trajectory.pieces import joined, smooth
+from flexstage.control.trajectory.profile import Limits, profile
+from flexstage.control.trajectory.raster import Raster, Scan
+from flexstage.control.trajectory.sine import Sine
+from flexstage.control.trajectory.spiral import EvenSpeed, EvenTurns, Spiral
+from flexstage.control.trajectory.step import Step
+from flexstage.control.trajectory.table import Table, from_file
 
 POSITIVE = st.floats(1e-3, 1e3)
 

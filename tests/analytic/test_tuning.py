@@ -8,27 +8,27 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from flexstage.analysis.loop.closed import Cut, loop, opened
-from flexstage.analysis.loop.controllers.loops import actuator_loops, loop_modes, modal_loops, platform_loops
-from flexstage.analysis.loop.controllers.lqg import Disturbances
-from flexstage.analysis.loop.controllers.notch import Notch
-from flexstage.analysis.loop.controllers.pi import PI
-from flexstage.analysis.loop.hardware import Hardware
-from flexstage.analysis.loop.margins import peaks
-from flexstage.analysis.loop.plant import plant
-from flexstage.analysis.loop.tuning.attempt import Task, attempt
-from flexstage.analysis.loop.tuning.goal import Goal, Kind, peak_for_margins
-from flexstage.analysis.loop.tuning.laws import Place, laws
-from flexstage.analysis.loop.tuning.tuned import tuned
-from flexstage.analysis.loop.tuning.view import resonances, view
-from flexstage.analysis.loop.verdict import verdict
 from flexstage.analysis.modes import modes
 from flexstage.base.finding import DesignError
 from flexstage.cases.parallelogram import parallelogram
 from flexstage.cases.registry import case
-from flexstage.readings.ideal import ideal
-from flexstage.readings.lumped import lumped
-from flexstage.readings.mapped import mapped
+from flexstage.control.closed import Cut, loop, opened
+from flexstage.control.controllers.loops import actuator_loops, loop_modes, modal_loops, platform_loops
+from flexstage.control.controllers.lqg import Disturbances
+from flexstage.control.controllers.notch import Notch
+from flexstage.control.controllers.pi import PI
+from flexstage.control.electronics import Hardware
+from flexstage.control.plants import plant
+from flexstage.control.stability import verdict
+from flexstage.control.stability_margins import peaks
+from flexstage.control.tuning.attempt import Task, attempt
+from flexstage.control.tuning.goal import Goal, Kind, peak_for_margins
+from flexstage.control.tuning.laws import Place, laws
+from flexstage.control.tuning.tuned import tuned
+from flexstage.control.tuning.view import resonances, view
+from flexstage.models.ideal import ideal
+from flexstage.models.lumped import lumped
+from flexstage.models.mapped import mapped
 
 
 @pytest.fixture(scope="module")

@@ -16,8 +16,8 @@ from flexstage.mechanism.expand import expand
 from flexstage.parts.body import Block, Body, Cylinder, Inertia, Solid
 from flexstage.parts.mass import MassProperties, mass_properties
 from flexstage.parts.material import Material
-from flexstage.readings.solid.draw import drawn, moved
-from flexstage.readings.solid.stage_pieces import stage_pieces
+from flexstage.solid.fea.draw import drawn, moved
+from flexstage.solid.fea.stage_pieces import stage_pieces
 
 DENSITY = 1000.0
 MATERIALS = {"steel": Material(young=200e9, poisson=0.3, density=DENSITY), "lead": Material(young=16e9, poisson=0.4, density=11340.0)}

@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 
 import flexstage as fs
+from flexstage.analysis.cautions import caveats
+from flexstage.analysis.judge import judge
 from flexstage.analysis.workspace.blocking import platform_lines, stack_lines
 from flexstage.analysis.workspace.buckling import Ends, buckling
 from flexstage.analysis.workspace.drive import drive
@@ -20,12 +22,10 @@ from flexstage.analysis.workspace.strength import hinge_stress
 from flexstage.analysis.workspace.stroke import StrokeLimits, mapping_at, single_axis, stroke_limits
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.mechanism.expand import expand
+from flexstage.models.ideal import ideal
+from flexstage.models.lumped import lumped
 from flexstage.parts.neck import Neck
 from flexstage.parts.notch import Notch
-from flexstage.readings.ideal import ideal
-from flexstage.readings.lumped import lumped
-from flexstage.studies.cautions import caveats
-from flexstage.studies.judge import judge
 
 X, Y, Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
 STEEL = fs.Material(young=200e9, poisson=0.3, density=7750.0, yield_stress=1e9)
@@ -124,7 +124,7 @@ def test_force_on_the_stage_counts_the_stroke_lost_in_the_stack():
 
 
 def _gain(model):
-    from flexstage.readings.linear.static import static_gain
+    from flexstage.models.linear.static import static_gain
 
     return static_gain(model, ("platform.x",), ("pzt",)).values[0, 0]
 

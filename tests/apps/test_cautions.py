@@ -11,14 +11,14 @@ import numpy as np
 import pytest
 
 import flexstage as fs
+from flexstage.analysis.cautions import caveats, defaults
 from flexstage.apps.cli.commands import COMMANDS
 from flexstage.cases.double_triangle import double_triangle
+from flexstage.control.hysteresis.example import example_record
+from flexstage.experiment.formats.write import write
 from flexstage.mechanism.store import dumps, loads
 from flexstage.parts.freedom import Freedom
 from flexstage.parts.part import Restricted
-from flexstage.readings.measured.write import write
-from flexstage.studies.cautions import caveats, defaults
-from flexstage.studies.hysteresis_example import example_record
 from tests.apps.command import Command, design_in, told_everywhere
 
 THICK = ("--set", "parts.foot_notch.profile.radius=0.9 mm")

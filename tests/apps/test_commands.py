@@ -22,10 +22,10 @@ from flexstage.apps.cli.installation import self_test
 from flexstage.apps.cure import MakeFolder
 from flexstage.apps.doctor import Row, Verdict
 from flexstage.cases.double_triangle import double_triangle
-from flexstage.readings.measured.write import write
-from flexstage.studies.hysteresis_example import example_record
+from flexstage.control.hysteresis.example import example_record
+from flexstage.experiment.formats.write import write
 from tests.apps.command import Command, design_in
-from tests.readings.stage_records import stage_record
+from tests.models.stage_records import stage_record
 
 PROCESS = [sys.executable, "-c", "from flexstage.apps.cli import main; main()"]
 NAMES = [each.name for each in COMMANDS]

@@ -16,9 +16,9 @@ from flexstage.base.digest import digest
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.cases.registry import CASES
 from flexstage.mechanism.store import load
-from flexstage.present.documents.envelope import FORMAT
-from flexstage.readings.ideal import ideal
-from flexstage.readings.lumped import lumped
+from flexstage.models.ideal import ideal
+from flexstage.models.lumped import lumped
+from flexstage.show.documents.envelope import FORMAT
 from tests.apps.command import Command, design_in
 from tests.hygiene.source import ROOT
 

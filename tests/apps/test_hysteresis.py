@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 from scipy.io import savemat
 
-from flexstage.analysis.loop.hysteresis.inverse import inverse
-from flexstage.analysis.loop.hysteresis.stack import load_hysteresis
-from flexstage.readings.measured.record import Channel, in_memory
-from flexstage.readings.measured.write import write
-from flexstage.studies.hysteresis_example import example_record, example_step, example_test
+from flexstage.control.hysteresis.example import example_record, example_step, example_test
+from flexstage.control.hysteresis.inverse import inverse
+from flexstage.control.hysteresis.stack import load_hysteresis
+from flexstage.experiment.formats.write import write
+from flexstage.experiment.record import Channel, in_memory
 from tests.apps.command import Command
 from tests.apps.test_documents import ENVELOPE, page_section
 

@@ -12,15 +12,15 @@ from typing import Any
 import numpy as np
 import pytest
 
+from flexstage.analysis.complete import platform_modes
 from flexstage.base.digest import digest
 from flexstage.cases.double_triangle import double_triangle
+from flexstage.experiment.formats.write import write
+from flexstage.experiment.record import Channel, InMemory, Record, Role, in_memory
 from flexstage.mechanism.store import load
-from flexstage.readings.lumped import lumped
-from flexstage.readings.measured.record import Channel, InMemory, Record, Role, in_memory
-from flexstage.readings.measured.write import write
-from flexstage.studies.complete import platform_modes
+from flexstage.models.lumped import lumped
 from tests.apps.command import Command
-from tests.readings.stage_records import stage_record
+from tests.models.stage_records import stage_record
 
 
 @pytest.fixture(scope="module")

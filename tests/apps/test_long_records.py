@@ -16,16 +16,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from flexstage.readings.measured import lines, numbers
-from flexstage.readings.measured import spectra as spectra_module
-from flexstage.readings.measured.health import examine
-from flexstage.readings.measured.lines import record_lines
-from flexstage.readings.measured.read import read
-from flexstage.readings.measured.record import Record, Samples
-from flexstage.readings.measured.spectra import Segments, spectra
-from flexstage.studies.identification import identification, sound
-from tests.readings.long_records import written
-from tests.readings.synthetic_records import Truth
+from flexstage.experiment import cross_spectra as spectra_module
+from flexstage.experiment import numbers
+from flexstage.experiment.cross_spectra import Segments, spectra
+from flexstage.experiment.formats.read import read
+from flexstage.experiment.health import examine
+from flexstage.experiment.identification import lines
+from flexstage.experiment.identification.lines import record_lines
+from flexstage.experiment.pipeline import identification, sound
+from flexstage.experiment.record import Record, Samples
+from tests.models.long_records import written
+from tests.models.synthetic_records import Truth
 
 # The high-water mark of this very program: getrusage would count that of the process it was started from as well.
 CHILD = """

@@ -16,9 +16,9 @@ import pytest
 import scipy.io
 
 from flexstage.cases.registry import CASES, case
+from flexstage.control.study.file import FORMAT, load_setup
+from flexstage.control.study.setup import LoopSetup
 from flexstage.mechanism.store import dump
-from flexstage.studies.loop.file import FORMAT, load_setup
-from flexstage.studies.loop.setup import LoopSetup
 from tests.apps.command import Command, design_in
 from tests.apps.test_documents import ENVELOPE, page_section
 

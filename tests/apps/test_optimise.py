@@ -5,9 +5,9 @@ from dataclasses import replace
 import pytest
 
 from flexstage import Inertia, Payload
+from flexstage.analysis.judge import judge
 from flexstage.cases.registry import case
 from flexstage.mechanism.store import dump, load
-from flexstage.studies.judge import judge
 
 STUDY = """
 format = "flexstage study 1"

@@ -12,11 +12,11 @@ import pytest
 import tomlkit
 from scipy.io import loadmat
 
+from flexstage.analysis import complete
 from flexstage.analysis.modes import modes
 from flexstage.mechanism.store import load
-from flexstage.readings.ideal import ideal
-from flexstage.readings.lumped import lumped
-from flexstage.studies import complete
+from flexstage.models.ideal import ideal
+from flexstage.models.lumped import lumped
 from tests.apps.command import Command, design_in
 
 BAD_TARGETS = {

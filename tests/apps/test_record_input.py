@@ -13,9 +13,9 @@ import numpy as np
 import pytest
 
 from flexstage.cases.double_triangle import double_triangle
-from flexstage.readings.measured.write import write
+from flexstage.experiment.formats.write import write
 from tests.apps.command import Command, Ended
-from tests.readings.stage_records import stage_record
+from tests.models.stage_records import stage_record
 
 UPDATE = ("update", "stage.toml", "--free", "horizontal/front.thickness", "-o", "new.toml", "--record")
 

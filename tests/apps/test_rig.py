@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 
 import flexstage as fs
-from flexstage.readings.measured.read import read
-from flexstage.readings.measured.record import Record
-from flexstage.studies.rig.samples import Simulated
+from flexstage.experiment import Amplifier, AntiAlias, NoiseDrive, Recorded, RigSetup, Sensing, Tap
+from flexstage.experiment.formats.read import read
+from flexstage.experiment.record import Record
+from flexstage.experiment.virtual_rig.samples import Simulated
 from tests.apps.command import Command
 
 SHORT = ("rig", "stage.toml", "--seconds", "2", "--reading", "mapped")
@@ -29,7 +30,7 @@ def test_a_record_is_that_of_the_rig_in_python(flexstage: Command, tmp_path: Pat
     assert f"Wrote {name}" in ended.err
     found = record(tmp_path / name)
     stage = fs.load(tmp_path / "stage.toml")
-    made = fs.rig(stage, fs.mapped(stage), fs.RigSetup(seconds=2.0, rate=1000.0, seed=7, sensing=fs.Sensing(drift=5e-9)))
+    made = fs.experiment.rig(stage, fs.mapped(stage), RigSetup(seconds=2.0, rate=1000.0, seed=7, sensing=Sensing(drift=5e-9)))
     np.testing.assert_array_equal(found.values, made.values)
     assert found.rate == 1000.0
     assert [each.name for each in found.inputs] == ["B1", "B2", "B3", "B4", "B5", "B6"]
@@ -54,17 +55,17 @@ def test_every_option_is_heard(flexstage: Command, tmp_path: Path) -> None:
     ended = flexstage(*SHORT, *words, *several, "-o", "record.h5")
     assert ended.code == 0, ended.err
     stage = fs.load(tmp_path / "stage.toml")
-    setup = fs.RigSetup(
+    setup = RigSetup(
         seconds=2.0,
         rate=2000.0,
-        drive=fs.NoiseDrive(voltage=2.0, band=(10.0, 400.0), actuators=("B1", "B5")),
-        amplifier=fs.Amplifier(resistance=1000.0, current=0.1),
-        filter=fs.AntiAlias(4, 500.0),
-        sensing=fs.Sensing(density=1e-10, resolution=1e-9),
-        tap=fs.Tap.COMMAND,
-        recorded=fs.Recorded.VOLTAGE,
+        drive=NoiseDrive(voltage=2.0, band=(10.0, 400.0), actuators=("B1", "B5")),
+        amplifier=Amplifier(resistance=1000.0, current=0.1),
+        filter=AntiAlias(4, 500.0),
+        sensing=Sensing(density=1e-10, resolution=1e-9),
+        tap=Tap.COMMAND,
+        recorded=Recorded.VOLTAGE,
     )
-    np.testing.assert_array_equal(record(tmp_path / "record.h5").values, fs.rig(stage, fs.mapped(stage), setup).values)
+    np.testing.assert_array_equal(record(tmp_path / "record.h5").values, fs.experiment.rig(stage, fs.mapped(stage), setup).values)
     assert "slowest amplifier or gauge 122.4 Hz" in " ".join(ended.out.split())
 
 

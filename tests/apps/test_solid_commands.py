@@ -18,13 +18,13 @@ import flexstage as fs
 from flexstage.base.progress import Step
 from flexstage.cases.bridge import bridge
 from flexstage.parts.freedom import Freedom
-from flexstage.present.command.progress import progress_bar
-from flexstage.readings.solid import install
-from flexstage.studies import resolution
+from flexstage.show.command.progress import progress_bar
+from flexstage.solid import resolution
+from flexstage.solid.fea import install
 from tests.apps.command import Command, command_in, told_everywhere
 from tests.apps.test_documents import ENVELOPE, page_section
-from tests.readings.small_solids import propped
-from tests.readings.solid_studies import COARSE, small, small_unit
+from tests.models.small_solids import propped
+from tests.models.solid_studies import COARSE, small, small_unit
 
 
 @pytest.fixture
@@ -162,7 +162,7 @@ def test_interruption_writes_nothing(command: Command, tmp_path: Path, monkeypat
     def interrupted(*_: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("flexstage.studies.verify.solid_stage", interrupted)
+    monkeypatch.setattr("flexstage.solid.verification.solid_stage", interrupted)
     ended = command("solid", "stage.toml", "--json", "out.json", "--report", "out.html")
     assert ended.code == 2
     assert sorted(path.name for path in tmp_path.iterdir()) == ["stage.toml"]
@@ -231,7 +231,7 @@ def test_too_little_memory_is_refused_by_name(command: Command, tmp_path: Path, 
 
 def test_memory_is_the_limit_of_all_that_is_computed(command: Command, monkeypatch: pytest.MonkeyPatch) -> None:
     asked: list[float | None] = []
-    monkeypatch.setattr("flexstage.studies.verify.verify", lambda *_: pytest.fail("computed"))
+    monkeypatch.setattr("flexstage.solid.verification.verify", lambda *_: pytest.fail("computed"))
     monkeypatch.setattr("flexstage.apps.cli.solid.solids", lambda ways, _: asked.append(ways.limits.memory))
     monkeypatch.setattr("flexstage.apps.cli.solid.hinges", lambda _accuracy, _order, ways, _notice: asked.append(ways.limits.memory))
     with pytest.raises(pytest.fail.Exception):

@@ -17,7 +17,7 @@ from flexstage.parts.body import Body
 from flexstage.parts.freedom import Freedom
 from flexstage.parts.given import Joint
 from flexstage.parts.mass import mass_properties
-from flexstage.readings.solid.imported import import_findings
+from flexstage.solid.fea.imported import import_findings
 from tests.apps.command import Command
 from tests.roundtrip.test_gltf import leaf_stage
 

@@ -11,11 +11,11 @@ import numpy as np
 import pytest
 
 from flexstage.base.finding import DesignError
-from flexstage.studies.optimise.file import load_wanted
-from flexstage.studies.study.file import load_study, loads_study
-from flexstage.studies.study.run import PIECE, Run, require_memory, sweep
-from flexstage.studies.study.store import folder_of, read_results
-from flexstage.studies.tolerance.file import loads_tolerance
+from flexstage.studies.optimisation.file import load_wanted
+from flexstage.studies.sweeps.file import load_study, loads_study
+from flexstage.studies.sweeps.run import PIECE, Run, require_memory, sweep
+from flexstage.studies.sweeps.store import folder_of, read_results
+from flexstage.studies.tolerances.file import loads_tolerance
 from tests.conftest import FULL
 
 DESIGNS = 20 * PIECE if FULL else 5 * PIECE
@@ -31,8 +31,8 @@ young = {{ of = "materials.aluminium.young", from = "-10 %", to = "10 %" }}
 """
 RUN = """
 import sys
-from flexstage.studies.study.file import load_study
-from flexstage.studies.study.run import Run, sweep
+from flexstage.studies.sweeps.file import load_study
+from flexstage.studies.sweeps.run import Run, sweep
 sweep(load_study(sys.argv[1]), sys.argv[2], Run(workers=2, resume=True), lambda done, of: print(done, flush=True))
 """
 

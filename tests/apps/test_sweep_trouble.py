@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from flexstage.base.finding import DesignError
-from flexstage.studies.study.file import loads_study
-from flexstage.studies.study.gather import needed
-from flexstage.studies.study.run import Run, sweep
-from flexstage.studies.study.store import folder_of, read_results
+from flexstage.studies.sweeps.file import loads_study
+from flexstage.studies.sweeps.gather import needed
+from flexstage.studies.sweeps.run import Run, sweep
+from flexstage.studies.sweeps.store import folder_of, read_results
 from tests.conftest import FULL
 
 STUDY = """

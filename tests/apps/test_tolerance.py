@@ -5,9 +5,9 @@ import json
 import numpy as np
 import pytest
 
-from flexstage.studies.study.evaluate import piece
-from flexstage.studies.study.store import read_results
-from flexstage.studies.tolerance.file import load_tolerance
+from flexstage.studies.sweeps.evaluate import piece
+from flexstage.studies.sweeps.store import read_results
+from flexstage.studies.tolerances.file import load_tolerance
 
 STUDY = """
 format = "flexstage study 1"

@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 
 from flexstage.cases.double_triangle import double_triangle
+from flexstage.experiment.formats.write import write
 from flexstage.mechanism.address import get, set_value, tag_of
 from flexstage.mechanism.store import load
-from flexstage.readings.measured.write import write
 from tests.apps.command import Command
 from tests.apps.test_documents import ENVELOPE, matrices, page_section
-from tests.readings.stage_records import stage_record
+from tests.models.stage_records import stage_record
 
 BUILT = set_value(double_triangle(), "parts.neck.thickness", 1.617e-3)
 FREE = ("--free", "neck.thickness, steel.density", "--prior", "steel.density=1 %")

@@ -9,10 +9,10 @@ import numpy as np
 from scipy.optimize import linear_sum_assignment
 
 import flexstage
-from flexstage.readings.measured.identify import identify
+from flexstage.experiment.identification.identify import identify
 from tests.elsewhere.identification_peers import PEERS, Modes, Way, handed_over
-from tests.readings.identification_study import Case, assurance
-from tests.readings.synthetic_records import Truth, record, truth
+from tests.models.identification_study import Case, assurance
+from tests.models.synthetic_records import Truth, record, truth
 
 NEAR, FAR = 0.01, 1e3
 OURS = ("flexstage", flexstage.__version__, Way("by itself", alone=True))

@@ -8,9 +8,9 @@ import numpy as np
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
-from flexstage.analysis.loop.hysteresis.prandtl_ishlinskii import PrandtlIshlinskii
-from flexstage.analysis.loop.plant import Plant
-from flexstage.analysis.loop.simulation.machine import Machine
+from flexstage.control.hysteresis.prandtl_ishlinskii import PrandtlIshlinskii
+from flexstage.control.plants import Plant
+from flexstage.control.simulation.machine import Machine
 
 
 def moved(model: PrandtlIshlinskii, plays: np.ndarray, volts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -6,20 +6,20 @@ from functools import cache
 
 import numpy as np
 
-from flexstage.analysis.loop.closed import Loop, loop
-from flexstage.analysis.loop.controllers.decentralised import Decentralised
-from flexstage.analysis.loop.controllers.loops import platform_loops
-from flexstage.analysis.loop.controllers.pi import PI
-from flexstage.analysis.loop.example import integral
-from flexstage.analysis.loop.hardware import AmplifierSettings, hardware
-from flexstage.analysis.loop.hysteresis.prandtl_ishlinskii import PrandtlIshlinskii
-from flexstage.analysis.loop.plant import plant
-from flexstage.analysis.loop.simulation.machine import Machine, machine
 from flexstage.analysis.workspace.drive import Drive, drive
 from flexstage.cases.double_triangle import double_triangle
+from flexstage.control.closed import Loop, loop
+from flexstage.control.controllers.decentralised import Decentralised
+from flexstage.control.controllers.loops import platform_loops
+from flexstage.control.controllers.pi import PI
+from flexstage.control.electronics import AmplifierSettings, hardware
+from flexstage.control.example import integral
+from flexstage.control.hysteresis.prandtl_ishlinskii import PrandtlIshlinskii
+from flexstage.control.plants import plant
+from flexstage.control.simulation.machine import Machine, machine
 from flexstage.mechanism.mechanism import Mechanism
-from flexstage.readings.ideal import ideal
-from flexstage.readings.lumped import lumped
+from flexstage.models.ideal import ideal
+from flexstage.models.lumped import lumped
 
 RATE = 10e3
 PLATFORM = ("platform.x", "platform.y", "platform.z", "platform.rx", "platform.ry", "platform.rz")

@@ -9,19 +9,19 @@ import control as peer
 import numpy as np
 import pytest
 
-from flexstage.analysis.loop.controllers.decentralised import Decentralised, loop_systems
-from flexstage.analysis.loop.controllers.loops import platform_loops
-from flexstage.analysis.loop.controllers.lqg import Disturbances, Weights, lqg
-from flexstage.analysis.loop.controllers.notch import Notch
-from flexstage.analysis.loop.controllers.pid import PID
-from flexstage.analysis.loop.controllers.seen import seen_plant
-from flexstage.analysis.loop.coordinates import coordinates
-from flexstage.analysis.loop.hardware import Hardware
-from flexstage.analysis.loop.plant import plant
 from flexstage.cases.parallelogram import parallelogram
 from flexstage.cases.xy_stage import xy_stage
-from flexstage.readings.ideal import ideal
-from flexstage.readings.lumped import lumped
+from flexstage.control.controllers.decentralised import Decentralised, loop_systems
+from flexstage.control.controllers.loops import platform_loops
+from flexstage.control.controllers.lqg import Disturbances, Weights, lqg
+from flexstage.control.controllers.notch import Notch
+from flexstage.control.controllers.pid import PID
+from flexstage.control.controllers.seen import seen_plant
+from flexstage.control.coordinates import coordinates
+from flexstage.control.electronics import Hardware
+from flexstage.control.plants import plant
+from flexstage.models.ideal import ideal
+from flexstage.models.lumped import lumped
 
 FREQUENCIES = np.geomspace(0.1, 4000.0, 60)
 STEP = 1e-4

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from hypothesis import given, settings
 
-from flexstage.readings.lumped import lumped
+from flexstage.models.lumped import lumped
 from tests.elsewhere.direct_stiffness import AXES, direct
 from tests.laws.strategies import mechanisms, platforms, rosettes
 

@@ -17,10 +17,10 @@ import flexstage as fs
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.cases.registry import CASES
 from flexstage.mechanism.expand import expand
+from flexstage.models.linear.static import static_gain
 from flexstage.parts.body import Inertia, Payload
 from flexstage.parts.freedom import Freedom
 from flexstage.parts.given import Joint
-from flexstage.readings.linear.static import static_gain
 from flexstage.spatial.frame import COMPONENTS
 from tests.elsewhere.exudyn_model import System, frequencies, matrices, stroked, system
 

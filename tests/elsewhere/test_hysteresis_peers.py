@@ -9,8 +9,8 @@ import pytest
 from scipy.integrate import dblquad, solve_ivp
 from scipy.optimize import brentq
 
-from flexstage.analysis.loop.hysteresis.bouc_wen import BoucWen
-from flexstage.analysis.loop.hysteresis.preisach import preisach
+from flexstage.control.hysteresis.bouc_wen import BoucWen
+from flexstage.control.hysteresis.preisach import preisach
 
 
 def swept(time):

@@ -11,14 +11,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from flexstage.readings.measured.identified import Identified
-from flexstage.readings.measured.identify import identify
-from flexstage.readings.measured.record import Responses
+from flexstage.experiment.identification.identified import Identified
+from flexstage.experiment.identification.identify import identify
+from flexstage.experiment.record import Responses
 from tests.elsewhere.identification_peers import EXTRA, PEERS, Modes, Peer, handed_over, sdypy_lscf, strid_lscf, strid_subspace
 from tests.elsewhere.identification_peers import pyoma_with_inputs as pyoma
 from tests.elsewhere.identification_scores import ERRORS, OURS, medians, one_record
-from tests.readings.identification_study import CASES, Case, assurance
-from tests.readings.synthetic_records import record, truth
+from tests.models.identification_study import CASES, Case, assurance
+from tests.models.synthetic_records import record, truth
 
 TOLERANCES = {
     strid_subspace: ((3e-6, 5e-4, 1e-8),),

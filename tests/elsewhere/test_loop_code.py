@@ -11,25 +11,25 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from flexstage.analysis.loop.code.compiled import simulate_compiled
-from flexstage.analysis.loop.code.controller import controller_code
-from flexstage.analysis.loop.code.program import FLAGS, WARNINGS, Program
-from flexstage.analysis.loop.code.whole import loop_code
-from flexstage.analysis.loop.example import integral_loop
-from flexstage.analysis.loop.hysteresis.bouc_wen import BoucWen, bouc_wen
-from flexstage.analysis.loop.hysteresis.envelope import Envelope
-from flexstage.analysis.loop.hysteresis.prandtl_ishlinskii import PrandtlIshlinskii
-from flexstage.analysis.loop.hysteresis.preisach import Preisach
-from flexstage.analysis.loop.simulation.machine import Machine, machine, unlimited
-from flexstage.analysis.loop.simulation.result import Simulated
-from flexstage.analysis.loop.simulation.run import simulate
-from flexstage.analysis.loop.system import static
 from flexstage.base.finding import DesignError
 from flexstage.base.native import compiler
 from flexstage.base.number import Table
-from flexstage.present.fmu.unit import fmu, fmu_sources
-from flexstage.present.loop_files import write_controller, write_fmu, write_plant
-from flexstage.readings.linear.model import Channel
+from flexstage.control.example import integral_loop
+from flexstage.control.export.code.compiled import simulate_compiled
+from flexstage.control.export.code.controller import controller_code
+from flexstage.control.export.code.program import FLAGS, WARNINGS, Program
+from flexstage.control.export.code.whole import loop_code
+from flexstage.control.export.files import write_controller, write_fmu, write_plant
+from flexstage.control.export.fmu.unit import fmu, fmu_sources
+from flexstage.control.hysteresis.bouc_wen import BoucWen, bouc_wen
+from flexstage.control.hysteresis.envelope import Envelope
+from flexstage.control.hysteresis.prandtl_ishlinskii import PrandtlIshlinskii
+from flexstage.control.hysteresis.preisach import Preisach
+from flexstage.control.simulation.machine import Machine, machine, unlimited
+from flexstage.control.simulation.result import Simulated
+from flexstage.control.simulation.run import simulate
+from flexstage.control.system import static
+from flexstage.models.linear.model import Channel
 from tests.elsewhere.independent_loop import Computer
 from tests.elsewhere.loops import PLATFORM, full_loop, plays, six_axes, way
 from tests.elsewhere.test_loop_simulation import worst

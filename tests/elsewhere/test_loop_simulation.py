@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 from scipy.signal import dlsim
 
-from flexstage.analysis.loop.simulation.machine import machine, unlimited
-from flexstage.analysis.loop.simulation.result import Simulated
-from flexstage.analysis.loop.simulation.run import simulate
-from flexstage.readings.linear.model import Channel
+from flexstage.control.simulation.machine import machine, unlimited
+from flexstage.control.simulation.result import Simulated
+from flexstage.control.simulation.run import simulate
+from flexstage.models.linear.model import Channel
 from tests.elsewhere.independent_loop import Stepped, integrated
 from tests.elsewhere.loops import RATE, full_loop, six_axes, way
 

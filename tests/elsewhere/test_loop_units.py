@@ -12,14 +12,14 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
-from flexstage.analysis.loop.code.controller import controller_code
-from flexstage.analysis.loop.code.whole import loop_code
-from flexstage.analysis.loop.example import integral_loop
-from flexstage.analysis.loop.simulation.machine import machine
-from flexstage.analysis.loop.simulation.run import simulate
 from flexstage.base.native import compiler
-from flexstage.present.fmu.unit import fmu
-from flexstage.present.loop_files import write_fmu
+from flexstage.control.example import integral_loop
+from flexstage.control.export.code.controller import controller_code
+from flexstage.control.export.code.whole import loop_code
+from flexstage.control.export.files import write_fmu
+from flexstage.control.export.fmu.unit import fmu
+from flexstage.control.simulation.machine import machine
+from flexstage.control.simulation.run import simulate
 from tests.elsewhere.loops import full_loop, way
 
 pytestmark = pytest.mark.skipif(compiler() is None or sys.platform != "linux", reason="no compiler of C, or no Linux")

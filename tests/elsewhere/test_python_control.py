@@ -13,23 +13,23 @@ pytest.importorskip("control", reason="python-control is not installed")
 import control
 from scipy.signal import dlsim, dlti
 
-from flexstage.analysis.loop.closed import Cut, Loop, loop, opened
-from flexstage.analysis.loop.curves import sensitivity
-from flexstage.analysis.loop.disk import disk_margin
-from flexstage.analysis.loop.example import integral
-from flexstage.analysis.loop.exchange import from_control, to_control
-from flexstage.analysis.loop.hardware import AmplifierSettings, GaugeSettings, hardware
-from flexstage.analysis.loop.margins import margins
-from flexstage.analysis.loop.norm import peak
-from flexstage.analysis.loop.plant import held, plant
-from flexstage.analysis.loop.system import System, picked
-from flexstage.analysis.loop.whites import mean_squares
 from flexstage.base.finding import DesignError
 from flexstage.cases.parallelogram import parallelogram
 from flexstage.cases.tip_tilt import tip_tilt
-from flexstage.readings.ideal import ideal
-from flexstage.readings.linear.model import Channel
-from flexstage.readings.lumped import lumped
+from flexstage.control.closed import Cut, Loop, loop, opened
+from flexstage.control.curves import sensitivity
+from flexstage.control.disk import disk_margin
+from flexstage.control.electronics import AmplifierSettings, GaugeSettings, hardware
+from flexstage.control.example import integral
+from flexstage.control.exchange import from_control, to_control
+from flexstage.control.norm import peak
+from flexstage.control.plants import held, plant
+from flexstage.control.stability_margins import margins
+from flexstage.control.system import System, picked
+from flexstage.control.whites import mean_squares
+from flexstage.models.ideal import ideal
+from flexstage.models.linear.model import Channel
+from flexstage.models.lumped import lumped
 
 CLOSE, ZERO = 1e-9, 1e-12
 

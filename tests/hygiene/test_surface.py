@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import importlib
+import pkgutil
 import subprocess
 import sys
 from pathlib import Path
@@ -18,13 +19,19 @@ SOLVER = {"ngsolve", "netgen", "pyngcore", "ngsolve_openblas", "meshio", "pygltf
 """What only the solid reading needs: neither loaded nor required by anything else."""
 
 
-def table() -> dict[str, str]:
-    return {name: f"flexstage.{room}" for name, room in flexstage._HOME.items()}
+NAMESPACES = {"": flexstage} | {f".{wing}": getattr(flexstage, wing) for wing in flexstage.WINGS}
 
 
-def stub() -> dict[str, str]:
-    tree = ast.parse((PACKAGE / "__init__.pyi").read_text())
-    imports = [node for node in tree.body if isinstance(node, ast.ImportFrom)]
+def table(package: str) -> dict[str, str]:
+    return {name: f"flexstage{package}.{home}" for home, names in NAMESPACES[package].HOMES.items() for name in names.split()}
+
+
+EVERY = [(package, name) for package in NAMESPACES for name in sorted(table(package))]
+
+
+def stub(package: str) -> dict[str, str]:
+    tree = ast.parse((PACKAGE / package.removeprefix(".") / "__init__.pyi").read_text())
+    imports = [node for node in tree.body if isinstance(node, ast.ImportFrom) and node.module != "flexstage"]
     assert all(alias.asname == alias.name for node in imports for alias in node.names), "re-export as `name as name`"
     return {alias.name: str(node.module) for node in imports for alias in node.names}
 
@@ -36,22 +43,28 @@ def loaded_by(code: str) -> set[str]:
     return set(done.stdout.splitlines()[-1].split())
 
 
-def test_table_and_stub_agree() -> None:
-    assert table() == stub()
+@pytest.mark.parametrize("package", NAMESPACES)
+def test_table_and_stub_agree(package: str) -> None:
+    assert table(package) == stub(package)
 
 
-def test_no_name_has_two_rooms() -> None:
-    names = " ".join(flexstage._ROOMS.values()).split()
+def test_no_name_has_two_homes_nor_that_of_a_module() -> None:
+    """An import of a module would put it in the place of the name."""
+    names = [name for package in NAMESPACES.values() for each in package.HOMES.values() for name in each.split()]
     assert len(names) == len(set(names))
+    for package in NAMESPACES.values():
+        modules = {each.name for each in pkgutil.iter_modules(package.__path__)}
+        assert not modules & {name for each in package.HOMES.values() for name in each.split()}
 
 
-@pytest.mark.parametrize("name", sorted(table()))
-def test_every_name_is_the_one_of_its_room(name: str) -> None:
-    assert getattr(flexstage, name) is getattr(importlib.import_module(table()[name]), name)
+@pytest.mark.parametrize(("package", "name"), EVERY)
+def test_every_name_is_the_one_of_its_home(package: str, name: str) -> None:
+    assert getattr(NAMESPACES[package], name) is getattr(importlib.import_module(table(package)[name]), name)
 
 
-def test_dir_lists_the_table() -> None:
-    assert {*table(), "__version__"} == set(dir(flexstage))
+@pytest.mark.parametrize("package", NAMESPACES)
+def test_dir_lists_the_table(package: str) -> None:
+    assert {*table(package)} <= set(dir(NAMESPACES[package]))
 
 
 def test_unknown_names_are_refused() -> None:

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from flexstage.analysis.loop.closed import Loop, loop
-from flexstage.analysis.loop.coordinates import Coordinates
-from flexstage.analysis.loop.hardware import Amplifier, Hardware, Sensor
-from flexstage.analysis.loop.plant import Plant
-from flexstage.analysis.loop.system import System
 from flexstage.base.number import Table
-from flexstage.readings.linear.model import Channel
+from flexstage.control.closed import Loop, loop
+from flexstage.control.coordinates import Coordinates
+from flexstage.control.electronics import Amplifier, Hardware, Sensor
+from flexstage.control.plants import Plant
+from flexstage.control.system import System
+from flexstage.models.linear.model import Channel
 
 RATE = 1000.0
 

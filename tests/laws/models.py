@@ -6,7 +6,7 @@ import numpy as np
 from hypothesis import strategies as st
 
 from flexstage.mechanism.mechanism import ModalDamping, RayleighDamping, StructuralDamping
-from flexstage.readings.linear.model import Channel, Contribution, LinearModel
+from flexstage.models.linear.model import Channel, Contribution, LinearModel
 from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, transport
 
 BODIES = ("platform", "arm")

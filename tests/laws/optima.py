@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from flexstage.mechanism.store import loads
-from flexstage.studies.optimise.file import load_wanted
-from flexstage.studies.study.file import loads_study
+from flexstage.studies.optimisation.file import load_wanted
+from flexstage.studies.sweeps.file import loads_study
 
 STEEL = """
 [materials.steel]

@@ -9,8 +9,8 @@ from typing import Any
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from flexstage.readings import ideal as _ideal
-from flexstage.readings import lumped as _lumped
+from flexstage.models import ideal as _ideal
+from flexstage.models import lumped as _lumped
 from tests.conftest import FULL
 
 _KEPT = 800

@@ -17,15 +17,15 @@ from flexstage.cases.registry import CASES
 from flexstage.mechanism.address import addresses, get, set_value
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Link, Mechanism
+from flexstage.models.batch.blocks import blocks, dense
+from flexstage.models.batch.choice import Choice
+from flexstage.models.batch.engine import Method, Plan, Status, iterated, plan, platform_modes
+from flexstage.models.batch.kernel import kernel
+from flexstage.models.batch.numbers import numbers_of, slopes_of
+from flexstage.models.batch.order import elimination
+from flexstage.models.batch.solution import Stage, by_iteration, wholly
 from flexstage.parts.body import Body, Inertia
 from flexstage.parts.given import Given
-from flexstage.readings.batch.blocks import blocks, dense
-from flexstage.readings.batch.choice import Choice
-from flexstage.readings.batch.engine import Method, Plan, Status, iterated, plan, platform_modes
-from flexstage.readings.batch.kernel import kernel
-from flexstage.readings.batch.numbers import numbers_of, slopes_of
-from flexstage.readings.batch.order import elimination
-from flexstage.readings.batch.solution import Stage, by_iteration, wholly
 from tests.conftest import examples
 from tests.laws.shared import lumped
 from tests.laws.strategies import actuated_platforms, mechanisms, rosettes

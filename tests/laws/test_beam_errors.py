@@ -8,8 +8,8 @@ import pytest
 from flexstage.beams.elasticity import AXES
 from flexstage.beams.validity import slot_of, validity
 from flexstage.parts.material import Material
-from flexstage.readings.solid.estimate import Accuracy
-from flexstage.readings.solid.hinge import hinge_compliance
+from flexstage.solid.fea.estimate import Accuracy
+from flexstage.solid.fea.hinge import hinge_compliance
 from tools.validation.beam_errors import COUNTS, sampled
 
 SEED = 2026

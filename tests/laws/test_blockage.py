@@ -7,11 +7,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from flexstage.analysis.cautions import cautions
 from flexstage.cases.registry import case
 from flexstage.mechanism.mechanism import Link, Mechanism
+from flexstage.models.ideal import ideal
 from flexstage.parts.freedom import ALL, Freedom
-from flexstage.readings.ideal import ideal
-from flexstage.studies.cautions import cautions
 
 STAGES = ("parallelogram", "bridge", "tip-tilt", "xy-stage", "double-triangle")
 

@@ -8,7 +8,7 @@ import numpy as np
 from hypothesis import given
 
 import flexstage as fs
-from flexstage.readings.linear.eigen import eigen
+from flexstage.models.linear.eigen import eigen
 from tests.conftest import examples
 from tests.laws.shared import ideal, lumped
 from tests.laws.strategies import actuated_platforms

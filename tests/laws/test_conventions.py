@@ -16,8 +16,8 @@ from flexstage.mechanism.address import get
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import ModalDamping, RayleighDamping, StructuralDamping
 from flexstage.mechanism.pattern import Polar
-from flexstage.readings.linear.eigen import sign_weights, solve
-from flexstage.readings.linear.static import static_gain
+from flexstage.models.linear.eigen import sign_weights, solve
+from flexstage.models.linear.static import static_gain
 from flexstage.spatial.frame import COMPONENTS, transport
 
 

@@ -8,16 +8,16 @@ import numpy as np
 import pytest
 
 import flexstage as fs
+from flexstage.analysis.budget import budget
 from flexstage.analysis.drift import drift
 from flexstage.analysis.error_budget import SOURCES, command_strokes, error_budget
 from flexstage.analysis.lost_motion import lost_motion
 from flexstage.analysis.workspace.gauging import pose_resolution
 from flexstage.cases.hexapod import hexapod
 from flexstage.cases.registry import case
-from flexstage.readings.finite import forward_kinematics
-from flexstage.readings.linear.static import static_gain
+from flexstage.models.finite import forward_kinematics
+from flexstage.models.linear.static import static_gain
 from flexstage.spatial.frame import COMPONENTS
-from flexstage.studies.budget import budget
 from tests.laws.shared import ideal, lumped
 
 NAMES = ("double-triangle", "parallelogram", "xy-stage", "bridge", "hexapod", "tip-tilt", "tip-tilt-four")

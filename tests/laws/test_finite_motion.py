@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from flexstage.cases.double_triangle import SM_REF_A, SM_REF_B, double_triangle
 from flexstage.cases.registry import CASES, case
-from flexstage.readings.finite import FinitePose, forward_kinematics, inverse_kinematics
+from flexstage.models.finite import FinitePose, forward_kinematics, inverse_kinematics
 from tests.laws.shared import ideal
 from tests.laws.strategies import actuated_platforms, moved, turns
 

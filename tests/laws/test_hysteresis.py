@@ -7,10 +7,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from flexstage.analysis.loop.hysteresis.envelope import Envelope
-from flexstage.analysis.loop.hysteresis.inverse import inverse, inverse_state
-from flexstage.analysis.loop.hysteresis.prandtl_ishlinskii import PrandtlIshlinskii, stacked
 from flexstage.base.finding import DesignError
+from flexstage.control.hysteresis.envelope import Envelope
+from flexstage.control.hysteresis.inverse import inverse, inverse_state
+from flexstage.control.hysteresis.prandtl_ishlinskii import PrandtlIshlinskii, stacked
 from tests.conftest import examples
 from tests.laws.hystereses import VOLTS, fractions, levels, models, on_grid, turns, walked
 

@@ -7,10 +7,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from flexstage.analysis.loop.hysteresis.bouc_wen import BoucWen, bouc_wen
-from flexstage.analysis.loop.hysteresis.preisach import Preisach, preisach
-from flexstage.analysis.loop.hysteresis.shape import settled_loop
 from flexstage.base.finding import DesignError
+from flexstage.control.hysteresis.bouc_wen import BoucWen, bouc_wen
+from flexstage.control.hysteresis.preisach import Preisach, preisach
+from flexstage.control.hysteresis.shape import settled_loop
 from tests.conftest import examples
 from tests.laws.hystereses import VOLTS, fractions, levels, on_grid, turns, walked
 

@@ -12,6 +12,7 @@ from scipy.linalg import eigh
 
 from flexstage.analysis.modes import modes
 from flexstage.analysis.response import response
+from flexstage.analysis.sensitivities import sensitivities
 from flexstage.base.finding import DesignError
 from flexstage.cases.double_triangle import EQUATION_18, double_triangle
 from flexstage.mechanism.address import addresses, get, set_value
@@ -19,16 +20,15 @@ from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import PLATFORM, ModalDamping, Probe
 from flexstage.mechanism.pattern import Pose
 from flexstage.mechanism.restrict import restrict
+from flexstage.models import lumped as readings
+from flexstage.models.linear.eigen import eigen
+from flexstage.models.linear.port import ports
+from flexstage.models.linear.state_space import state_space
+from flexstage.models.linear.static import static_gain
 from flexstage.parts.gauge import Positive
 from flexstage.parts.given import Given, Joint
 from flexstage.parts.part import Restricted
 from flexstage.parts.piezo import Piezo
-from flexstage.readings import lumped as readings
-from flexstage.readings.linear.eigen import eigen
-from flexstage.readings.linear.port import ports
-from flexstage.readings.linear.state_space import state_space
-from flexstage.readings.linear.static import static_gain
-from flexstage.studies.sensitivities import sensitivities
 from tests.conftest import examples
 from tests.laws.shared import ideal, lumped
 from tests.laws.strategies import actuated_platforms, moved, places, platforms, turns

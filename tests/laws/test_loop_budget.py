@@ -9,18 +9,18 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from flexstage.analysis.loop.closed import loop
-from flexstage.analysis.loop.example import integral, integral_loop
-from flexstage.analysis.loop.hardware import AmplifierSettings, GaugeSettings, Sensor, hardware
-from flexstage.analysis.loop.noise import Disturbed, noise_budget
-from flexstage.analysis.loop.plant import plant, sensing
-from flexstage.analysis.loop.system import picked
-from flexstage.analysis.loop.whites import Kind, held_noise, mean_squares, white_system
 from flexstage.analysis.random_response import Rate, Spectrum, quadrature
 from flexstage.base.finding import DesignError
 from flexstage.base.number import Table
 from flexstage.cases.parallelogram import parallelogram
 from flexstage.cases.xy_stage import xy_stage
+from flexstage.control.closed import loop
+from flexstage.control.electronics import AmplifierSettings, GaugeSettings, Sensor, hardware
+from flexstage.control.example import integral, integral_loop
+from flexstage.control.noise import Disturbed, noise_budget
+from flexstage.control.plants import plant, sensing
+from flexstage.control.system import picked
+from flexstage.control.whites import Kind, held_noise, mean_squares, white_system
 from tests.conftest import examples
 from tests.laws.loops import random_loop, stable_loop
 from tests.laws.shared import ideal, lumped

@@ -8,18 +8,18 @@ import numpy as np
 import pytest
 from scipy.signal import welch
 
-from flexstage.analysis.loop.closed import loop
-from flexstage.analysis.loop.example import integral
-from flexstage.analysis.loop.hardware import AmplifierSettings, GaugeSettings, hardware
-from flexstage.analysis.loop.noise import noise_budget
-from flexstage.analysis.loop.plant import plant
-from flexstage.analysis.loop.simulation.machine import machine
-from flexstage.analysis.loop.simulation.noise import noises, series
-from flexstage.analysis.loop.simulation.run import simulate
 from flexstage.analysis.random_response import Rate, Spectrum
 from flexstage.base.finding import DesignError
 from flexstage.base.number import Table
 from flexstage.cases.parallelogram import parallelogram
+from flexstage.control.closed import loop
+from flexstage.control.electronics import AmplifierSettings, GaugeSettings, hardware
+from flexstage.control.example import integral
+from flexstage.control.noise import noise_budget
+from flexstage.control.plants import plant
+from flexstage.control.simulation.machine import machine
+from flexstage.control.simulation.noise import noises, series
+from flexstage.control.simulation.run import simulate
 from tests.laws.shared import ideal, lumped
 
 STEP = 1e-4

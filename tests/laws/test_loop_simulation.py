@@ -9,23 +9,23 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from flexstage.analysis.loop.controllers.decentralised import Decentralised
-from flexstage.analysis.loop.controllers.loops import platform_loops
-from flexstage.analysis.loop.controllers.pi import PI
-from flexstage.analysis.loop.creeping import with_creep
-from flexstage.analysis.loop.example import integral_loop
-from flexstage.analysis.loop.hysteresis.creep import Creep
-from flexstage.analysis.loop.simulation.kernel import Compensator
-from flexstage.analysis.loop.simulation.machine import Machine, machine, unlimited
-from flexstage.analysis.loop.simulation.result import step_figures, tracking
-from flexstage.analysis.loop.simulation.run import simulate
-from flexstage.analysis.loop.system import System, static
-from flexstage.analysis.loop.trajectory.profile import Limits
-from flexstage.analysis.loop.trajectory.step import Step
 from flexstage.analysis.workspace.drive import drive
 from flexstage.base.finding import DesignError
 from flexstage.cases.parallelogram import parallelogram
-from flexstage.readings.linear.model import Channel
+from flexstage.control.controllers.decentralised import Decentralised
+from flexstage.control.controllers.loops import platform_loops
+from flexstage.control.controllers.pi import PI
+from flexstage.control.creeping import with_creep
+from flexstage.control.example import integral_loop
+from flexstage.control.hysteresis.creep import Creep
+from flexstage.control.simulation.kernel import Compensator
+from flexstage.control.simulation.machine import Machine, machine, unlimited
+from flexstage.control.simulation.result import step_figures, tracking
+from flexstage.control.simulation.run import simulate
+from flexstage.control.system import System, static
+from flexstage.control.trajectory.profile import Limits
+from flexstage.control.trajectory.step import Step
+from flexstage.models.linear.model import Channel
 from tests.conftest import examples
 from tests.elsewhere.loops import full_loop, plays, six_axes, way
 
@@ -81,7 +81,7 @@ def test_blocks_leave_no_trace(monkeypatch):
     known = full_loop(inverse=True)
     reference, disturbances = way(known, 300)
     whole = simulate(known, reference, disturbances)
-    monkeypatch.setattr("flexstage.analysis.loop.simulation.run._BLOCK", 7)
+    monkeypatch.setattr("flexstage.control.simulation.run._BLOCK", 7)
     parted = simulate(known, reference, disturbances)
     for name in ("pose", "given", "stroke", "motions", "readings"):
         assert np.max(np.abs(getattr(whole, name) - getattr(parted, name))) <= 1e-13 * np.max(np.abs(getattr(whole, name)))

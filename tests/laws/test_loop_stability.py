@@ -10,13 +10,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.linalg import expm
 
-from flexstage.analysis.loop.closed import Cut, loop, opened, opened_everywhere
-from flexstage.analysis.loop.curves import sensitivity
-from flexstage.analysis.loop.disk import disk_margins
-from flexstage.analysis.loop.margins import bandwidths, crosstalk, delay_margin, margins, peaks
-from flexstage.analysis.loop.system import picked
-from flexstage.analysis.loop.verdict import require_stable, verdict
 from flexstage.base.finding import DesignError
+from flexstage.control.closed import Cut, loop, opened, opened_everywhere
+from flexstage.control.curves import sensitivity
+from flexstage.control.disk import disk_margins
+from flexstage.control.stability import require_stable, verdict
+from flexstage.control.stability_margins import bandwidths, crosstalk, delay_margin, margins, peaks
+from flexstage.control.system import picked
 from tests.conftest import examples
 from tests.laws.loops import random_loop, stable_loop
 

@@ -7,22 +7,19 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from flexstage.analysis.loop.closed import loop
-from flexstage.analysis.loop.reduced import reduced, resonances
-from flexstage.analysis.loop.simulation.result import others
 from flexstage.analysis.workspace.drive import drive
 from flexstage.base.finding import DesignError
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.cases.parallelogram import parallelogram
-from flexstage.parts.gauge import Gauge
-from flexstage.present.display import value_with_unit
-from flexstage.present.documents.loop import loop_body
-from flexstage.present.tables.loop import step_table
-from flexstage.present.tables.loop_error import noise_table
-from flexstage.studies.loop.choices import Compensation, ControllerKind, StackKind
-from flexstage.studies.loop.runs import rest_rms
-from flexstage.studies.loop.settle import settled, usual_rate
-from flexstage.studies.loop.setup import (
+from flexstage.control.closed import loop
+from flexstage.control.document import loop_body
+from flexstage.control.error_tables import noise_table
+from flexstage.control.reduction import reduced, resonances
+from flexstage.control.simulation.result import others
+from flexstage.control.study.choices import Compensation, ControllerKind, StackKind
+from flexstage.control.study.runs import rest_rms
+from flexstage.control.study.settle import settled, usual_rate
+from flexstage.control.study.setup import (
     Amplifying,
     Controlling,
     Floor,
@@ -34,8 +31,11 @@ from flexstage.studies.loop.setup import (
     SineMotion,
     StepMotion,
 )
-from flexstage.studies.loop.stacks import stacks_of, swept
-from flexstage.studies.loop.study import LoopStudy, loop_study
+from flexstage.control.study.stacks import stacks_of, swept
+from flexstage.control.study.study import LoopStudy, loop_study
+from flexstage.control.tables import step_table
+from flexstage.parts.gauge import Gauge
+from flexstage.show.display import value_with_unit
 
 CALM = Controlling(integral=300.0)
 

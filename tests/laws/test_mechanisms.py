@@ -18,15 +18,15 @@ from flexstage.mechanism.expand import expand
 from flexstage.mechanism.incidence import deformation, layout, twist_at
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism, ModalDamping
 from flexstage.mechanism.path import replaced
+from flexstage.models.linear.eigen import eigen
+from flexstage.models.linear.model import Contribution, assembled
+from flexstage.models.linear.port import ports
+from flexstage.models.linear.static import displacement, part_deformation, static_gain
 from flexstage.parts.body import Body
 from flexstage.parts.freedom import Freedom, others
 from flexstage.parts.given import Given, Joint
 from flexstage.parts.part import Restricted, is_actuator
 from flexstage.parts.piezo import Piezo
-from flexstage.readings.linear.eigen import eigen
-from flexstage.readings.linear.model import Contribution, assembled
-from flexstage.readings.linear.port import ports
-from flexstage.readings.linear.static import displacement, part_deformation, static_gain
 from flexstage.spatial.frame import COMPONENTS, FORCES, rigid_inertia, transport, turned
 from tests.laws.shared import ideal, lumped
 from tests.laws.strategies import actuated_platforms, mechanisms, moved, platforms, rosettes, turns

@@ -16,8 +16,8 @@ from flexstage.mechanism.mechanism import Placement
 from flexstage.mechanism.pattern import Pose
 from flexstage.mechanism.store import dumps, loads
 from flexstage.mechanism.store.patch import patch
-from flexstage.readings.ideal import ideal
-from flexstage.readings.lumped import lumped
+from flexstage.models.ideal import ideal
+from flexstage.models.lumped import lumped
 from flexstage.spatial.rotation import exponential
 
 SHIFT = (1e-3, -2e-3, 0.5e-3)

@@ -8,16 +8,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from flexstage.analysis.judge import measured
 from flexstage.analysis.requirements import Sense, measure
-from flexstage.studies.judge import measured
-from flexstage.studies.optimise.front import pareto_front
-from flexstage.studies.optimise.optimum import optimise
-from flexstage.studies.optimise.pieces import Extreme
-from flexstage.studies.optimise.problem import Problem, Side
-from flexstage.studies.optimise.quadratic import quadratic
-from flexstage.studies.optimise.search import Trace, search, together
-from flexstage.studies.optimise.setting import setting
-from flexstage.studies.optimise.values import Point, Scalars, Values
+from flexstage.studies.optimisation.front import pareto_front
+from flexstage.studies.optimisation.optimum import optimise
+from flexstage.studies.optimisation.pieces import Extreme
+from flexstage.studies.optimisation.problem import Problem, Side
+from flexstage.studies.optimisation.quadratic import quadratic
+from flexstage.studies.optimisation.search import Trace, search, together
+from flexstage.studies.optimisation.setting import setting
+from flexstage.studies.optimisation.values import Point, Scalars, Values
 from tests.conftest import FULL
 from tests.laws.optima import BLADES, POST, TRIPOD, case_of, post_variables, study_of
 

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import flexstage as fs
+from flexstage.analysis.complete import platform_modes
 from flexstage.analysis.modes import modal_assurance
 from flexstage.analysis.pairing import RELIABLE, Moving, Pair, paired
 from flexstage.base.number import Array
@@ -15,8 +16,7 @@ from flexstage.cases.bridge import bridge
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.cases.hexapod import hexapod
 from flexstage.cases.parallelogram import parallelogram
-from flexstage.readings.linear.model import Channel, Contribution, LinearModel
-from flexstage.studies.complete import platform_modes
+from flexstage.models.linear.model import Channel, Contribution, LinearModel
 
 SEEN = ("platform.x", "platform.y", "platform.z", "platform.rx", "platform.ry", "platform.rz")
 UNITS = ("m", "m", "m", "rad", "rad", "rad")

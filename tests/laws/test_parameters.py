@@ -6,19 +6,19 @@ import numpy as np
 import pytest
 
 import flexstage as fs
+from flexstage.analysis.judge import measured
 from flexstage.base.finding import DesignError
 from flexstage.cases.double_triangle import SM_REF_B
 from flexstage.cases.parameters import parameters
 from flexstage.cases.registry import CASES, Variant
 from flexstage.mechanism.grammar import node_of, numbers
 from flexstage.mechanism.mechanism import Mechanism
-from flexstage.readings.batch.engine import planned, platform_modes
-from flexstage.readings.batch.numbers import drawn_family
-from flexstage.studies.judge import measured
-from flexstage.studies.study.engine import engine_of
-from flexstage.studies.study.evaluate import piece
-from flexstage.studies.study.file import loads_study
-from flexstage.studies.study.variable import varied_by
+from flexstage.models.batch.engine import planned, platform_modes
+from flexstage.models.batch.numbers import drawn_family
+from flexstage.studies.sweeps.engine import engine_of
+from flexstage.studies.sweeps.evaluate import piece
+from flexstage.studies.sweeps.file import loads_study
+from flexstage.studies.sweeps.variable import varied_by
 
 STUDY = """
 format = "flexstage study 1"

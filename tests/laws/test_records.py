@@ -10,14 +10,14 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from flexstage.readings.measured import numbers
-from flexstage.readings.measured.clock import Clock, nominal, printed_uncertainty, read_clock
-from flexstage.readings.measured.health import examine
-from flexstage.readings.measured.numbers import explained, gather
-from flexstage.readings.measured.read import read
-from flexstage.readings.measured.record import Channel, Record, Role, in_memory
-from flexstage.readings.measured.unit import in_si
-from flexstage.readings.measured.write import Form, write
+from flexstage.experiment import numbers
+from flexstage.experiment.clock import Clock, nominal, printed_uncertainty, read_clock
+from flexstage.experiment.formats.read import read
+from flexstage.experiment.formats.write import Form, write
+from flexstage.experiment.health import examine
+from flexstage.experiment.numbers import explained, gather
+from flexstage.experiment.record import Channel, Record, Role, in_memory
+from flexstage.experiment.unit import in_si
 
 NAMES = ("u1", "u2", "S1", "S2", "S3")
 
@@ -118,8 +118,8 @@ def test_numbers_do_not_depend_on_blocks(seed: int, segments: int) -> None:
 def test_memory_does_not_grow_with_the_record(form: Form, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     # Blocks are made small, so that short records have many; MAT files of version 5 cannot be read in part.
     monkeypatch.setattr(numbers, "_BLOCK", 4 * 1024)
-    monkeypatch.setattr("flexstage.readings.measured.table.read._BLOCK", 1024)
-    monkeypatch.setattr("flexstage.readings.measured.table.values._PIECE", 1 << 16)
+    monkeypatch.setattr("flexstage.experiment.formats.table.read._BLOCK", 1024)
+    monkeypatch.setattr("flexstage.experiment.formats.table.values._PIECE", 1 << 16)
     peaks: list[int] = []
     for length in (10_000, 20_000, 40_000):
         path = tmp_path / f"{length}.{'mat' if form is Form.MAT_73 else form.value.partition('-')[0]}"

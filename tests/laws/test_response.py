@@ -14,12 +14,12 @@ from flexstage.analysis.random_response import Rate, Spectrum, random_response
 from flexstage.analysis.response import default_frequencies, response, transmissibility
 from flexstage.base.finding import DesignError
 from flexstage.mechanism.mechanism import ModalDamping, RayleighDamping, StructuralDamping
-from flexstage.readings.linear.eigen import eigen
-from flexstage.readings.linear.frequency import direct
-from flexstage.readings.linear.model import Channel, Contribution, LinearModel
-from flexstage.readings.linear.port import input_names, ports
-from flexstage.readings.linear.state_space import state_space
-from flexstage.readings.linear.static import part_deformation, static_gain
+from flexstage.models.linear.eigen import eigen
+from flexstage.models.linear.frequency import direct
+from flexstage.models.linear.model import Channel, Contribution, LinearModel
+from flexstage.models.linear.port import input_names, ports
+from flexstage.models.linear.state_space import state_space
+from flexstage.models.linear.static import part_deformation, static_gain
 from flexstage.spatial.frame import COMPONENTS
 from tests.laws.models import BODIES, FORCES, laws, linear_model, models, ratios, seeds
 

@@ -11,8 +11,8 @@ import flexstage as fs
 from flexstage.cases.double_triangle import SM_REF_A, SM_REF_B, double_triangle
 from flexstage.cases.tip_tilt import tip_tilt
 from flexstage.mechanism.address import addresses, get, set_value
-from flexstage.present.tables.sensitivities import loss_sensitivity_table
-from flexstage.readings.linear.static import static_gain
+from flexstage.models.linear.static import static_gain
+from flexstage.show.tables.sensitivities import loss_sensitivity_table
 
 MODES = 6
 

@@ -14,12 +14,12 @@ from flexstage.parts.neck import Neck
 from flexstage.parts.notch import Notch
 from flexstage.parts.profile import Circular, Elliptic, Filleted, Straight
 from flexstage.parts.rod import Rod
-from flexstage.readings.solid.estimate import Accuracy, change
-from flexstage.readings.solid.field import applied, factored, field, rigid, stiffness
-from flexstage.readings.solid.hinge import hinge_compliance, hinge_mesh
-from flexstage.readings.solid.mesh import Meshed
-from flexstage.readings.solid.piece import medium
-from flexstage.readings.solid.specimen import END, START
+from flexstage.solid.fea.estimate import Accuracy, change
+from flexstage.solid.fea.field import applied, factored, field, rigid, stiffness
+from flexstage.solid.fea.hinge import hinge_compliance, hinge_mesh
+from flexstage.solid.fea.mesh import Meshed
+from flexstage.solid.fea.piece import medium
+from flexstage.solid.fea.specimen import END, START
 from flexstage.spatial.frame import identity
 
 STEEL = Material(young=200e9, poisson=0.3, density=7750.0)

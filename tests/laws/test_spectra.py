@@ -10,10 +10,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from flexstage.base.finding import DesignError
-from flexstage.readings.measured import spectra as module
-from flexstage.readings.measured.record import Channel, InMemory, Record, Role, in_memory
-from flexstage.readings.measured.spectra import Segments, Window, pooled, spectra
-from flexstage.readings.measured.transfer import (
+from flexstage.experiment import cross_spectra as module
+from flexstage.experiment.cross_spectra import Segments, Window, pooled, spectra
+from flexstage.experiment.record import Channel, InMemory, Record, Role, in_memory
+from flexstage.experiment.transfer import (
     h1,
     h2,
     multiple_coherence,

@@ -9,19 +9,19 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from flexstage.analysis.judge import measured
 from flexstage.analysis.requirements import measure
+from flexstage.analysis.sensitivities import stepped
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.mechanism.address import get, set_value
 from flexstage.mechanism.mechanism import Mechanism
-from flexstage.readings.lumped import lumped
-from flexstage.studies.judge import measured
-from flexstage.studies.sensitivities import stepped
-from flexstage.studies.study.definition import Study
-from flexstage.studies.study.evaluate import piece
-from flexstage.studies.study.file import load_study, loads_study
-from flexstage.studies.study.loaded import loaded_findings
-from flexstage.studies.study.plan import Plan, Sampling, shares
-from flexstage.studies.study.variable import varied
+from flexstage.models.lumped import lumped
+from flexstage.studies.sweeps.definition import Study
+from flexstage.studies.sweeps.evaluate import piece
+from flexstage.studies.sweeps.file import load_study, loads_study
+from flexstage.studies.sweeps.loaded import loaded_findings
+from flexstage.studies.sweeps.plan import Plan, Sampling, shares
+from flexstage.studies.sweeps.variable import varied
 
 STUDY = """
 format = "flexstage study 1"

@@ -7,17 +7,17 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from flexstage.analysis.judge import measured
 from flexstage.analysis.requirements import measure
 from flexstage.base.number import Table
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.mechanism.address import get, quantity_of
-from flexstage.readings.batch.engine import Status, platform_modes
-from flexstage.studies.judge import measured
-from flexstage.studies.study.definition import Study
-from flexstage.studies.study.engine import Engine, engine_of
-from flexstage.studies.study.evaluate import piece
-from flexstage.studies.study.plan import Plan, Sampling
-from flexstage.studies.study.variable import Variable, varied
+from flexstage.models.batch.engine import Status, platform_modes
+from flexstage.studies.sweeps.definition import Study
+from flexstage.studies.sweeps.engine import Engine, engine_of
+from flexstage.studies.sweeps.evaluate import piece
+from flexstage.studies.sweeps.plan import Plan, Sampling
+from flexstage.studies.sweeps.variable import Variable, varied
 from tests.conftest import FULL
 
 STAGE = double_triangle()

@@ -7,20 +7,20 @@ import pytest
 from scipy.special import ndtr, ndtri
 from scipy.stats import binom
 
+from flexstage.analysis.judge import bench_of
 from flexstage.base.finding import DesignError
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.mechanism.address import get, set_value
 from flexstage.mechanism.expand import copies
 from flexstage.spatial.frame import COMPONENTS
-from flexstage.studies.judge import bench_of
-from flexstage.studies.study.evaluate import piece
-from flexstage.studies.study.store import Results
-from flexstage.studies.tolerance.allowance import allowance
-from flexstage.studies.tolerance.crosstalk import command, pose_measures, poses
-from flexstage.studies.tolerance.distribution import Distribution, Shape
-from flexstage.studies.tolerance.file import loads_tolerance
-from flexstage.studies.tolerance.slopes import slopes
-from flexstage.studies.tolerance.summary import binomial, summary
+from flexstage.studies.sweeps.evaluate import piece
+from flexstage.studies.sweeps.store import Results
+from flexstage.studies.tolerances.allowance import allowance
+from flexstage.studies.tolerances.crosstalk import command, pose_measures, poses
+from flexstage.studies.tolerances.distribution import Distribution, Shape
+from flexstage.studies.tolerances.file import loads_tolerance
+from flexstage.studies.tolerances.slopes import slopes
+from flexstage.studies.tolerances.summary import binomial, summary
 
 LEAVES = 4
 GUIDE = """

@@ -8,18 +8,18 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from flexstage.analysis.loop.closed import Cut, loop, opened
-from flexstage.analysis.loop.controllers.loops import Loops, actuator_loops, loop_modes, modal_loops, platform_loops
-from flexstage.analysis.loop.controllers.lqg import Disturbances
-from flexstage.analysis.loop.hardware import Hardware
-from flexstage.analysis.loop.margins import peaks
-from flexstage.analysis.loop.plant import Plant, plant
-from flexstage.analysis.loop.tuning.attempt import Task, attempt
-from flexstage.analysis.loop.tuning.goal import Goal, Kind
-from flexstage.analysis.loop.tuning.judge import judged
-from flexstage.analysis.loop.tuning.view import view
-from flexstage.analysis.loop.verdict import verdict
 from flexstage.analysis.modes import modes
+from flexstage.control.closed import Cut, loop, opened
+from flexstage.control.controllers.loops import Loops, actuator_loops, loop_modes, modal_loops, platform_loops
+from flexstage.control.controllers.lqg import Disturbances
+from flexstage.control.electronics import Hardware
+from flexstage.control.plants import Plant, plant
+from flexstage.control.stability import verdict
+from flexstage.control.stability_margins import peaks
+from flexstage.control.tuning.attempt import Task, attempt
+from flexstage.control.tuning.goal import Goal, Kind
+from flexstage.control.tuning.judge import judged
+from flexstage.control.tuning.view import view
 from flexstage.mechanism.mechanism import PLATFORM, Probe
 from flexstage.mechanism.pattern import Pose
 from flexstage.parts.gauge import Positive

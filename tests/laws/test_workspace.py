@@ -22,8 +22,8 @@ from flexstage.beams.stress import stress
 from flexstage.cases.registry import case
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import Force
+from flexstage.models.linear.static import static_gain
 from flexstage.parts.body import Payload
-from flexstage.readings.linear.static import static_gain
 from flexstage.spatial.frame import COMPONENTS, FORCES
 from tests.laws.shared import ideal, lumped
 from tests.laws.strategies import actuated_platforms, mechanisms, moved, turns

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 import flexstage as fs
+from flexstage.analysis.omitted import Restrictions, omitted
 from flexstage.beams.compliance import compliance
 from flexstage.cases.double_triangle import EQUATION_3, SM_REF_A, SM_REF_B, TABLE_2_FEA, DoubleTriangle, double_triangle
 from flexstage.mechanism.expand import expand
-from flexstage.readings.linear.static import static_gain
-from flexstage.readings.mapped import LeverStiffness, lever_stiffness
-from flexstage.studies.omitted import Restrictions, omitted
+from flexstage.models.linear.static import static_gain
+from flexstage.models.mapped import LeverStiffness, lever_stiffness
 
 COMMANDS = np.array([0.0, 120.0, 240.0, 360.0, 480.0, 600.0])
 THEORY = np.array([0.0, 117.0, 234.0, 351.0, 468.0, 585.0])

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from flexstage.analysis.judge import judge
 from flexstage.analysis.workspace.blocking import stack_lines
 from flexstage.analysis.workspace.drive import drive
 from flexstage.analysis.workspace.gauging import gauge_inverse, gauge_range, pose_resolution
@@ -15,9 +16,8 @@ from flexstage.analysis.workspace.room import room
 from flexstage.analysis.workspace.strength import hinge_stress
 from flexstage.analysis.workspace.stroke import single_axis, stacks, stroke_limits, utilisation
 from flexstage.cases.double_triangle import SM_REF_A, SM_REF_B, double_triangle
-from flexstage.readings.ideal import ideal
-from flexstage.readings.lumped import lumped
-from flexstage.studies.judge import judge
+from flexstage.models.ideal import ideal
+from flexstage.models.lumped import lumped
 
 STATED = {"x": 50e-6, "y": 50e-6, "z": 150e-6, "rx": 733e-6, "ry": 733e-6, "rz": 244e-6}
 

@@ -8,7 +8,7 @@ import pytest
 import flexstage as fs
 from flexstage.cases.double_triangle import SM_REF_A, SM_REF_B, DoubleTriangle, double_triangle
 from flexstage.mechanism.expand import expand
-from flexstage.readings.mapped import lever_stiffness, unit_stiffness
+from flexstage.models.mapped import lever_stiffness, unit_stiffness
 
 THIRD = 1.0 / 3.0
 COSINE = np.sqrt(3.0) / 2.0

@@ -21,19 +21,19 @@ import scipy.io
 
 from flexstage.base.finding import DesignError
 from flexstage.cases.registry import CASES
+from flexstage.control.study.file import example, loads_setup
+from flexstage.experiment.formats.read import read
+from flexstage.experiment.formats.write import Form, write
+from flexstage.experiment.options import Allow, Kind, Options
+from flexstage.experiment.record import Channel, Record, Role, in_memory
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.store import dumps, loads, tidied
-from flexstage.readings.measured.options import Allow, Kind, Options
-from flexstage.readings.measured.read import read
-from flexstage.readings.measured.record import Channel, Record, Role, in_memory
-from flexstage.readings.measured.write import Form, write
-from flexstage.studies.loop.file import example, loads_setup
-from flexstage.studies.optimise.file import load_wanted
-from flexstage.studies.study.example import neck_study
-from flexstage.studies.study.file import loads_study
-from flexstage.studies.study.gather import gather
-from flexstage.studies.study.store import read_results
-from flexstage.studies.tolerance.file import loads_tolerance
+from flexstage.studies.optimisation.file import load_wanted
+from flexstage.studies.sweeps.example import neck_study
+from flexstage.studies.sweeps.file import loads_study
+from flexstage.studies.sweeps.gather import gather
+from flexstage.studies.sweeps.store import read_results
+from flexstage.studies.tolerances.file import loads_tolerance
 from tests.roundtrip.designs import TEXT
 from tests.roundtrip.mutation import altered, mutated, noise, reshaped
 from tests.roundtrip.records import awkward_record, awkward_responses

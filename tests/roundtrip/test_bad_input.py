@@ -11,8 +11,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from flexstage.analysis.loop.hysteresis.stack import load_hysteresis
 from flexstage.base.finding import DesignError
+from flexstage.control.hysteresis.stack import load_hysteresis
+from flexstage.control.study.file import load_setup
 from flexstage.mechanism.checks import check, checked
 from flexstage.mechanism.mechanism import Link, Mechanism, Placement
 from flexstage.mechanism.pattern import Facing, Polar, Pose
@@ -27,8 +28,7 @@ from flexstage.parts.part import Restricted
 from flexstage.parts.piezo import Piezo
 from flexstage.parts.profile import Circular, Filleted, Straight
 from flexstage.parts.rod import Rod
-from flexstage.studies.loop.file import load_setup
-from flexstage.studies.study.file import load_study
+from flexstage.studies.sweeps.file import load_study
 from tests.roundtrip.designs import TEXT
 
 

@@ -20,7 +20,7 @@ from flexstage.base import files
 from flexstage.base.child import environment
 from flexstage.base.files import hdf, mat, require_regular
 from flexstage.base.finding import DesignError
-from flexstage.readings.measured.read import read
+from flexstage.experiment.formats.read import read
 
 
 def without_checksums(path: Path, version: str = "earliest") -> Path:

@@ -13,10 +13,10 @@ from flexstage.mechanism.mechanism import Link, Mechanism
 from flexstage.parts.body import Block, Body
 from flexstage.parts.leaf import Leaf
 from flexstage.parts.material import Material
-from flexstage.readings.solid.fineness import Fineness, Reduction
-from flexstage.readings.solid.gltf import Motion, Surface, gltf, surfaces
-from flexstage.readings.solid.parts import Ways
-from flexstage.studies.solid_read import SolidRead, read_solid, solids
+from flexstage.solid.exchange.gltf import Motion, Surface, gltf, surfaces
+from flexstage.solid.fea.fineness import Fineness, Reduction
+from flexstage.solid.fea.parts import Ways
+from flexstage.solid.read import SolidRead, read_solid, solids
 
 KINDS = {"SCALAR": 1, "VEC3": 3}
 TYPES = {gl.FLOAT: np.float32, gl.UNSIGNED_INT: np.uint32}

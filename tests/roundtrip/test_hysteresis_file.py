@@ -9,12 +9,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from flexstage.analysis.loop.hysteresis.creep import LogCreep
-from flexstage.analysis.loop.hysteresis.envelope import Envelope, straight
-from flexstage.analysis.loop.hysteresis.inverse import inverse
-from flexstage.analysis.loop.hysteresis.prandtl_ishlinskii import PrandtlIshlinskii, proportional, stacked
-from flexstage.analysis.loop.hysteresis.stack import dump_hysteresis, dumps_hysteresis, load_hysteresis, loads_hysteresis, stack_hysteresis
 from flexstage.base.finding import DesignError
+from flexstage.control.hysteresis.creep import LogCreep
+from flexstage.control.hysteresis.envelope import Envelope, straight
+from flexstage.control.hysteresis.inverse import inverse
+from flexstage.control.hysteresis.prandtl_ishlinskii import PrandtlIshlinskii, proportional, stacked
+from flexstage.control.hysteresis.stack import dump_hysteresis, dumps_hysteresis, load_hysteresis, loads_hysteresis, stack_hysteresis
 from tests.conftest import examples
 from tests.laws.hystereses import models
 

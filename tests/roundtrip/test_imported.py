@@ -14,18 +14,18 @@ from flexstage.base.digest import digest
 from flexstage.base.finding import DesignError
 from flexstage.mechanism.mechanism import Link, Mechanism
 from flexstage.mechanism.store import dump, load, loads
+from flexstage.models.linear.eigen import eigen
+from flexstage.models.lumped import lumped
 from flexstage.parts.body import Block, Body, Imported, Inertia
 from flexstage.parts.leaf import Leaf
 from flexstage.parts.mass import mass_properties
 from flexstage.parts.material import Material
-from flexstage.readings.linear.eigen import eigen
-from flexstage.readings.lumped import lumped
-from flexstage.readings.solid.contact import contact_findings
-from flexstage.readings.solid.fineness import Fineness, Reduction
-from flexstage.readings.solid.imported import import_findings, measured, stated
-from flexstage.readings.solid.reading import solid
-from flexstage.readings.solid.stage_pieces import stage_pieces
-from flexstage.readings.solid.step import stage_parts
+from flexstage.solid.exchange.step import stage_parts
+from flexstage.solid.fea.contact import contact_findings
+from flexstage.solid.fea.fineness import Fineness, Reduction
+from flexstage.solid.fea.imported import import_findings, measured, stated
+from flexstage.solid.fea.model import model as solid
+from flexstage.solid.fea.stage_pieces import stage_pieces
 
 STEEL = Material(young=200e9, poisson=0.3, density=7750.0)
 BLOCK = Block("steel", (0.02, 0.03, 0.01), at=(0.02, 0.0, 0.0))

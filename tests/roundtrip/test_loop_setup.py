@@ -9,11 +9,11 @@ import tomllib
 import pytest
 
 from flexstage.base.finding import DesignError
+from flexstage.control.study.checks import setup_findings
+from flexstage.control.study.choices import Axes, Compensation, ControllerKind, Criterion
+from flexstage.control.study.file import FORMAT, example, load_setup, loads_setup, setup_schema
+from flexstage.control.study.setup import FileMotion, LoopSetup, NotchAt, RasterMotion, Shaking
 from flexstage.mechanism.store import schema
-from flexstage.studies.loop.checks import setup_findings
-from flexstage.studies.loop.choices import Axes, Compensation, ControllerKind, Criterion
-from flexstage.studies.loop.file import FORMAT, example, load_setup, loads_setup, setup_schema
-from flexstage.studies.loop.setup import FileMotion, LoopSetup, NotchAt, RasterMotion, Shaking
 from tests.roundtrip.test_schema import Rules
 
 _HIDDEN = re.compile(r"# (?P<line>(?:\[\w+\]|\w+ = .*))$")

@@ -11,10 +11,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from flexstage.base.finding import DesignError
-from flexstage.readings.measured.read import read
-from flexstage.readings.measured.record import Channel, InMemory, Record, Responses, in_memory
-from flexstage.readings.measured.uff import write as uff_write
-from flexstage.readings.measured.write import Form, write
+from flexstage.experiment.formats.read import read
+from flexstage.experiment.formats.uff import write as uff_write
+from flexstage.experiment.formats.write import Form, write
+from flexstage.experiment.record import Channel, InMemory, Record, Responses, in_memory
 from tests.conftest import examples
 from tests.roundtrip.records import awkward_record, awkward_responses, bits
 
@@ -139,8 +139,8 @@ def test_blocks_of_writers_meet(tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
     # Records longer than a writer's block, which is made small here.
     monkeypatch.setattr(uff_write, "_BLOCK", 8)
     for module in ("hdf", "mat"):
-        monkeypatch.setattr(f"flexstage.readings.measured.{module}.BLOCK", 8)
-    monkeypatch.setattr("flexstage.readings.measured.table.write._BLOCK", 8)
+        monkeypatch.setattr(f"flexstage.experiment.formats.{module}.BLOCK", 8)
+    monkeypatch.setattr("flexstage.experiment.formats.table.write._BLOCK", 8)
     first = in_memory([Channel("S1", "um"), Channel("S2", "um")], 3.0, np.random.default_rng(0).standard_normal((37, 2)))
     for form in Form:
         path = tmp_path / f"{form.value}{SUFFIX[form]}"

@@ -12,12 +12,12 @@ import pyuff
 import scipy.io
 
 from flexstage.base.finding import DesignError
-from flexstage.readings.measured.options import Kind, Options
-from flexstage.readings.measured.read import read
-from flexstage.readings.measured.record import Record, Responses, in_memory
-from flexstage.readings.measured.uff.values import BinaryValues, PrintedValues
-from flexstage.readings.measured.variables import SideBySide
-from flexstage.readings.measured.write import Form, write
+from flexstage.experiment.formats.read import read
+from flexstage.experiment.formats.uff.values import BinaryValues, PrintedValues
+from flexstage.experiment.formats.variables import SideBySide
+from flexstage.experiment.formats.write import Form, write
+from flexstage.experiment.options import Kind, Options
+from flexstage.experiment.record import Record, Responses, in_memory
 from tests.roundtrip.records import awkward_record, awkward_responses
 
 pytestmark = pytest.mark.filterwarnings("ignore:unclosed file:ResourceWarning")  # pyuff does not close what it writes in binary

@@ -10,6 +10,7 @@ import pytest
 import flexstage as fs
 from flexstage.analysis.deflection import deflection
 from flexstage.analysis.drift import drift
+from flexstage.analysis.judge import judge
 from flexstage.analysis.lost_motion import lost_motion
 from flexstage.analysis.modes import modes
 from flexstage.analysis.requirements import KINDS, Sense, Subject, known_keys, requirements
@@ -19,9 +20,8 @@ from flexstage.analysis.workspace.strength import hinge_stress
 from flexstage.analysis.workspace.stroke import stroke_limits
 from flexstage.cases.hexapod import Hexapod, hexapod
 from flexstage.cases.registry import CASES, case
-from flexstage.readings.ideal import ideal
-from flexstage.readings.lumped import lumped
-from flexstage.studies.judge import judge
+from flexstage.models.ideal import ideal
+from flexstage.models.lumped import lumped
 
 
 @pytest.fixture(scope="module")
@@ -208,7 +208,7 @@ def test_a_batch_is_judged_design_by_design():
 
 def test_only_what_is_asked_is_worked_out(stage, monkeypatch):
     """A line about the mass reads no stage."""
-    from flexstage.studies import judge as room
+    from flexstage.analysis import judge as room
 
     def refused(*_):
         raise AssertionError("worked out for nothing")

@@ -17,9 +17,9 @@ from flexstage.mechanism.mechanism import Mechanism
 from flexstage.parts.body import Block, Body
 from flexstage.parts.mass import mass_properties
 from flexstage.parts.material import Material
-from flexstage.readings.solid.apart import step_apart
-from flexstage.readings.solid.stage_pieces import stage_pieces
-from flexstage.readings.solid.step import stage_parts, step
+from flexstage.solid.exchange.step import stage_parts, step
+from flexstage.solid.fea.apart import step_apart
+from flexstage.solid.fea.stage_pieces import stage_pieces
 
 
 @pytest.fixture(scope="module")

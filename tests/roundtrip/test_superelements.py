@@ -11,8 +11,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from flexstage.base.number import Array
-from flexstage.readings.solid.store import read, versions, written
-from flexstage.readings.solid.superelement import Skin, Superelement
+from flexstage.solid.fea.store import read, versions, written
+from flexstage.solid.fea.superelement import Skin, Superelement
 
 KEY = "0123456789abcdef"
 

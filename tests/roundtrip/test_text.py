@@ -8,8 +8,8 @@ from xml.etree import ElementTree
 from hypothesis import given
 from hypothesis import strategies as st
 
-from flexstage.analysis.loop.code.text import comment, identifier
 from flexstage.base.text import printable
+from flexstage.control.export.code.text import comment, identifier
 
 EVERY = [chr(number) for number in range(0x110000)]
 DIRECTIONS = ("LRE", "RLE", "LRO", "RLO", "PDF", "LRI", "RLI", "FSI", "PDI")

@@ -9,7 +9,7 @@ import numpy as np
 
 import flexstage as fs
 from flexstage.cases.bridge import Bridge, bridge
-from flexstage.readings.linear.static import static_gain
+from flexstage.models.linear.static import static_gain
 from tools.validation.row import Row, Section, Tolerance, relative
 
 _SLENDER = 1e-4

@@ -24,10 +24,10 @@ from flexstage.parts.neck import Neck
 from flexstage.parts.notch import Notch
 from flexstage.parts.profile import Circular, Elliptic, Filleted, Straight
 from flexstage.parts.rod import Rod
-from flexstage.readings.solid.estimate import Accuracy
-from flexstage.readings.solid.hinge_cache import HingeForm, HingePart, kept_hinges
-from flexstage.readings.solid.parts import Ways
-from flexstage.readings.solid.roots import own_roots
+from flexstage.solid.fea.estimate import Accuracy
+from flexstage.solid.fea.hinge_cache import HingeForm, HingePart, kept_hinges
+from flexstage.solid.fea.parts import Ways
+from flexstage.solid.fea.roots import own_roots
 
 COUNTS = {
     "notch circular": 30,

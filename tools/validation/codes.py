@@ -9,7 +9,7 @@ import numpy as np
 
 import flexstage as fs
 from flexstage.mechanism.expand import expand
-from flexstage.readings.linear.static import static_gain
+from flexstage.models.linear.static import static_gain
 from flexstage.spatial.frame import COMPONENTS
 from tools.validation.row import Row, Section, relative, table
 

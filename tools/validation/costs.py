@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 import flexstage as fs
+from flexstage.analysis.omitted import Omitted, omitted
 from flexstage.cases.double_triangle import EQUATION_3, EQUATION_18
-from flexstage.readings.lumped import Masses
-from flexstage.studies.omitted import Omitted, omitted
+from flexstage.models.lumped import Masses
 from tools.validation.row import Row, Section, Tolerance, table
 from tools.validation.stages import Known, known
 

@@ -116,7 +116,7 @@ that is recorded agrees."""
 _ABSENT = """\
 * What the paper does not print: R_a and R_s, masses, radii, damping, the values of its Figs. 11 and 12.
 * Large deflections (elastica, beam constraint model), the load term and centre shift of cross-axis pivots: every elastic reading is linear.
-* 3-D finite elements of other stages than the paper's: they are compared in `tests/readings`."""
+* 3-D finite elements of other stages than the paper's: they are compared in `tests/models`."""
 
 _TREE = """\
 ```{toctree}

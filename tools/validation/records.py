@@ -8,12 +8,13 @@ import numpy as np
 
 import flexstage as fs
 from flexstage.cases.registry import case
-from tests.readings.identification_study import CASES, Case, assurance, paired, subspace_degrees
-from tests.readings.synthetic_records import record, truth
+from flexstage.experiment import NoiseDrive, RigSetup, Search, Sensing
+from tests.models.identification_study import CASES, Case, assurance, paired, subspace_degrees
+from tests.models.synthetic_records import record, truth
 from tools.validation.row import Row, Section, Tolerance, relative
 
 _SEED = 0
-_SETUP = fs.RigSetup(seconds=60.0, seed=1, drive=fs.NoiseDrive(stroke=0.5 * fs.um), sensing=fs.Sensing(density=1.0 * fs.nm))
+_SETUP = RigSetup(seconds=60.0, seed=1, drive=NoiseDrive(stroke=0.5 * fs.um), sensing=Sensing(density=1.0 * fs.nm))
 
 
 def sections() -> list[Section]:
@@ -31,7 +32,7 @@ def _made_up(study: Case) -> Section:
 
 def _rows(study: Case) -> Iterator[Row]:
     known = truth(study.frequencies, seed=1000 + _SEED)
-    found = fs.identify(record(known, _SEED, noise=study.noise, seconds=study.seconds))
+    found = fs.experiment.identify(record(known, _SEED, noise=study.noise, seconds=study.seconds))
     yield Row("modes found", "made of", "6", float(len(found.frequencies)), "1", Tolerance(0.0))
     order = paired(known, found)
     shapes = found.shapes[:, order]
@@ -49,7 +50,7 @@ def _rig() -> Section:
     stage = case("double-triangle")
     model = fs.lumped(stage)
     known = fs.modes(model, limit=1000.0)
-    found = fs.compare(stage, fs.identify(fs.rig(stage, model, _SETUP), fs.Search(band=(80.0, 220.0))))
+    found = fs.experiment.compare(stage, fs.experiment.identify(fs.experiment.rig(stage, model, _SETUP), Search(band=(80.0, 220.0))))
     rows = tuple(
         Row(f"{row.name}, frequency", "lumped reading", f"{theory:.4f}", row.experiment.frequency, "Hz", relative(5e-4))
         for row, theory in zip(found.rows, known.platform_frequencies, strict=True)

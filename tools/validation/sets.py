@@ -11,8 +11,8 @@ from flexstage.analysis.workspace.gauging import gauge_range
 from flexstage.analysis.workspace.stroke import single_axis, stroke_limits
 from flexstage.beams.stress import stress
 from flexstage.cases.double_triangle import EQUATION_3, SM_REF_A, TABLE_2_FEA, double_triangle
+from flexstage.models.lumped import Masses
 from flexstage.parts.mass import mass_properties
-from flexstage.readings.lumped import Masses
 from tools.validation.row import Row, Section, Tolerance, relative
 from tools.validation.stages import Known, gain, known, with_plate
 

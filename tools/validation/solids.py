@@ -8,13 +8,13 @@ from dataclasses import replace
 import numpy as np
 
 import flexstage as fs
+from flexstage.analysis.complete import platform_modes
 from flexstage.analysis.pairing import Moving, Pair, paired
 from flexstage.cases.registry import case
 from flexstage.mechanism.restrict import isolate
-from flexstage.readings.solid.fineness import Fineness, Reduction
-from flexstage.studies.calibrate import with_matrices
-from flexstage.studies.complete import platform_modes
-from flexstage.studies.verify import units_matched
+from flexstage.solid.calibration import with_matrices
+from flexstage.solid.fea.fineness import Fineness, Reduction
+from flexstage.solid.verification import units_matched
 from tests.paper.test_lost_motion import COMMANDS, FEA, THEORY
 from tools.validation.row import Row, Scale, Section, Tolerance, relative, table
 
@@ -25,15 +25,15 @@ _CALIBRATED = "lumped reading with calibrated hinges"
 def sections() -> list[Section]:
     """The sections of this chapter, by elements of order three."""
     stage = case("double-triangle")
-    units = fs.solid_units(stage, THIRD)
+    units = fs.solid.solid_units(stage, THIRD)
     return [_units(stage, units), _refitted(), _table_2(units["vertical"]), _stage(stage)]
 
 
-def _units(stage: fs.Mechanism, units: dict[str, fs.SolidUnit]) -> Section:
+def _units(stage: fs.Mechanism, units: dict[str, fs.solid.SolidUnit]) -> Section:
     better = units_matched(stage)
     axial, loss = _axial(stage), units["vertical"].loss
     bare = _rigid(stage)
-    rigid, alone = fs.solid_units(bare, THIRD)["vertical"], units_matched(bare)["vertical"]
+    rigid, alone = fs.solid.solid_units(bare, THIRD)["vertical"], units_matched(bare)["vertical"]
     rows = (
         Row("K_a,h", "paper 2.2, less 1 to 3 %", "10.30", 1e-6 * axial, "N/um", Tolerance(0.01, Scale.RELATIVE, -0.02)),
         Row("K_a,h", _CALIBRATED, f"{1e-6 * better['horizontal'].axial:.3f}", 1e-6 * axial, "N/um", relative(0.005)),
@@ -54,7 +54,7 @@ def _units(stage: fs.Mechanism, units: dict[str, fs.SolidUnit]) -> Section:
 
 def _axial(stage: fs.Mechanism) -> float:
     """Stiffness of a horizontal unit along its push [N/m], by elements of order four."""
-    return float(fs.statics(fs.solid(isolate(stage, "B1"), Reduction(Fineness(order=4)))).stiffness.values[0, 0])
+    return float(fs.statics(fs.solid.model(isolate(stage, "B1"), Reduction(Fineness(order=4)))).stiffness.values[0, 0])
 
 
 def _rigid(stage: fs.Mechanism) -> fs.Mechanism:
@@ -66,7 +66,7 @@ def _rigid(stage: fs.Mechanism) -> fs.Mechanism:
 
 def _refitted() -> Section:
     stage = case("double-triangle-refitted")
-    loss = fs.solid_units(stage, THIRD)["vertical"].loss
+    loss = fs.solid.solid_units(stage, THIRD)["vertical"].loss
     rows = (
         Row("K_a,h", "paper 2.2", "10.30", 1e-6 * _axial(stage), "N/um", relative(0.005)),
         Row("output for 600 um", "paper Table 2, FEA", "581.3", 600.0 * (1.0 - loss), "um", relative(0.005)),
@@ -75,7 +75,7 @@ def _refitted() -> Section:
     return Section("Units refitted to FEA", text, rows)
 
 
-def _table_2(unit: fs.SolidUnit) -> Section:
+def _table_2(unit: fs.solid.SolidUnit) -> Section:
     commands, columns = COMMANDS[1:], (THEORY[1:], FEA[1:])
     outputs = np.interp(commands, 1e6 * unit.commands, 1e6 * unit.outputs)
     rows = [
@@ -90,10 +90,10 @@ def _table_2(unit: fs.SolidUnit) -> Section:
 
 
 def _stage(stage: fs.Mechanism) -> Section:
-    model = fs.solid(stage, THIRD)
+    model = fs.solid.model(stage, THIRD)
     tensor = fs.statics(model).held.principal
     fea = platform_modes(stage, model)
-    better = with_matrices(stage, fs.solid_hinges(stage))
+    better = with_matrices(stage, fs.solid.solid_hinges(stage))
     models = [fs.lumped(each) for each in (stage, better)]
     theory, calibrated = (paired(Moving(fea, model), Moving(platform_modes(stage, each), each)) for each in models)
     rows = (

@@ -7,13 +7,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import flexstage as fs
+from flexstage.analysis.omitted import Restrictions
 from flexstage.base.number import Array
 from flexstage.beams.compliance import compliance
 from flexstage.cases.double_triangle import SM_REF_A, SM_REF_B, DoubleTriangle, double_triangle
 from flexstage.mechanism.expand import expand
-from flexstage.readings.linear.static import static_gain
-from flexstage.readings.mapped import LeverStiffness, lever_stiffness
-from flexstage.studies.omitted import Restrictions
+from flexstage.models.linear.static import static_gain
+from flexstage.models.mapped import LeverStiffness, lever_stiffness
 
 UP = (0.0, 0.0, 1.0)
 SETS: Mapping[str, DoubleTriangle] = {"A": SM_REF_A, "B": SM_REF_B}

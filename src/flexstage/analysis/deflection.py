@@ -10,8 +10,8 @@ from flexstage.analysis.workspace.load import dead_loads
 from flexstage.base.labelled import Matrix
 from flexstage.base.number import Array
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
-from flexstage.readings.linear.model import LinearModel
-from flexstage.readings.linear.static import displacement
+from flexstage.models.linear.model import LinearModel
+from flexstage.models.linear.static import displacement
 from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
 
 
@@ -36,7 +36,7 @@ def deflection(mechanism: Mechanism, model: LinearModel, *, point: str = PLATFOR
     """Deflection at a point of the platform under gravity and stated forces: q = K^-1 f, strokes held, small displacements.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> from flexstage.readings.lumped import lumped
+    >>> from flexstage.models.lumped import lumped
     >>> stage = double_triangle()
     >>> bool(deflection(stage, lumped(stage)).by_cause.at("platform.z", "own weight") < 0.0)
     True

@@ -19,10 +19,10 @@ from flexstage.mechanism.expand import Assembly, PlacedLink, expand
 from flexstage.mechanism.expansion import Expansion, Ground, expansion
 from flexstage.mechanism.incidence import deformation, layout
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
+from flexstage.models.linear.model import LinearModel
+from flexstage.models.linear.static import displacement
 from flexstage.parts.given import Joint
 from flexstage.parts.part import Restricted
-from flexstage.readings.linear.model import LinearModel
-from flexstage.readings.linear.static import displacement
 from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNITS, transport, turned
 
 FIELDS = ("uniform", "gradient.x", "gradient.y", "gradient.z")
@@ -88,7 +88,7 @@ def drift(mechanism: Mechanism, model: LinearModel, *, ground: str | None = None
     no expansion, where the ground's material is not known, and where locked freedoms cannot follow the growth.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> from flexstage.readings.lumped import lumped
+    >>> from flexstage.models.lumped import lumped
     >>> stage = double_triangle()
     >>> drifted = drift(stage, lumped(stage), ground="steel")
     >>> bool(abs(drifted.motion.at("platform.x", "uniform")) < 1e-15)

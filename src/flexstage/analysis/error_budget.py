@@ -14,7 +14,7 @@ from flexstage.base.finding import Finding, nearest, require
 from flexstage.base.labelled import Matrix
 from flexstage.base.number import Array, Number, stack
 from flexstage.mechanism.expansion import Ground
-from flexstage.readings.linear.kinematics import Kinematics
+from flexstage.models.linear.kinematics import Kinematics
 from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS, transport
 
 SOURCES = ("lost motion", "crosstalk", "linear map", "gauge noise", "quantisation", "drift")
@@ -73,7 +73,7 @@ def error_budget(evidence: Evidence, command: Mapping[str, Number], *, temperatu
     a = (R_a V^+ T)^-1 R_a xi only T a - V xi is left, counted as crosstalk. Linear map: finite less linear kinematics at the corners.
     Noise: `coverage` standard deviations. Quantisation: half a step of every gauge with the worst signs. Largest absolute values.
 
-    >>> from flexstage.studies.budget import budget
+    >>> from flexstage.analysis.budget import budget
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> found = budget(double_triangle(), {"z": 10e-6}, temperature=0.01)
     >>> round(1e9 * float(found.ideal.at("z", "quantisation")), 3)
@@ -101,7 +101,7 @@ def command_columns(kinematics: Kinematics, command: Mapping[str, Number]) -> li
     """Columns of R_a that a command names; raises `DesignError` for names the stage has not.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> from flexstage.readings.ideal import ideal
+    >>> from flexstage.models.ideal import ideal
     >>> command_columns(ideal(double_triangle()), {"z": 1e-6})
     [2]
     """
@@ -118,7 +118,7 @@ def command_strokes(kinematics: Kinematics, command: Mapping[str, Number], *, de
     """Strokes (2^c, ..., n) [m] at the corners of a box of commands over c coordinates, a = R_a xi; `depth` least batch axes between.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> from flexstage.readings.ideal import ideal
+    >>> from flexstage.models.ideal import ideal
     >>> command_strokes(ideal(double_triangle()), {"x": 1e-6, "z": 3e-6}).shape
     (4, 6)
     """

@@ -9,9 +9,9 @@ import numpy as np
 
 from flexstage.base.labelled import Matrix, ratio_units
 from flexstage.base.number import Array
-from flexstage.readings.linear.kinematics import Kinematics
-from flexstage.readings.linear.model import LinearModel
-from flexstage.readings.linear.static import displacement, part_deformation, static_gain
+from flexstage.models.linear.kinematics import Kinematics
+from flexstage.models.linear.model import LinearModel
+from flexstage.models.linear.static import displacement, part_deformation, static_gain
 from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
 
 _PLATFORM_TWIST = tuple(f"platform.{name}" for name in COMPONENTS)
@@ -70,8 +70,8 @@ def lost_motion(kinematics: Kinematics, model: LinearModel) -> LostMotion:
     Moon). Small motions. Raises `DesignError` where the strokes do not determine the platform.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> from flexstage.readings.ideal import ideal
-    >>> from flexstage.readings.lumped import lumped
+    >>> from flexstage.models.ideal import ideal
+    >>> from flexstage.models.lumped import lumped
     >>> round(float(lost_motion(ideal(double_triangle()), lumped(double_triangle())).loss.at("B4", "B4")), 3)
     0.034
     """

@@ -9,9 +9,9 @@ import numpy as np
 
 from flexstage.base.labelled import Matrix
 from flexstage.base.number import Array, descending, first_design, foremost
-from flexstage.readings.batch.choice import NEGLIGIBLE
-from flexstage.readings.linear.eigen import Eigen, eigen, sign_weights
-from flexstage.readings.linear.model import LinearModel
+from flexstage.models.batch.choice import NEGLIGIBLE
+from flexstage.models.linear.eigen import Eigen, eigen, sign_weights
+from flexstage.models.linear.model import LinearModel
 from flexstage.spatial.frame import COMPONENTS
 
 _PLATFORM = "platform"
@@ -73,7 +73,7 @@ def modes(model: LinearModel, *, limit: float = np.inf, count: int = 6, cluster:
     leave the platform at rest the coordinates that move most. Small motions.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> from flexstage.readings.mapped import mapped
+    >>> from flexstage.models.mapped import mapped
     >>> modes(mapped(double_triangle())).names[:4]
     ('tilt', 'tilt', 'z', 'yaw')
     """

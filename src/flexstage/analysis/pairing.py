@@ -10,7 +10,7 @@ from scipy.optimize import linear_sum_assignment
 
 from flexstage.analysis.modes import Modes, clusters
 from flexstage.base.number import Array, first_design
-from flexstage.readings.linear.model import LinearModel
+from flexstage.models.linear.model import LinearModel
 
 RELIABLE = 0.8
 """The modal assurance below which two modes are not the same one."""
@@ -54,7 +54,7 @@ def paired(own: Moving, other: Moving) -> dict[int, Pair]:
 
     >>> from flexstage.analysis.modes import modes
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> from flexstage.readings.lumped import lumped
+    >>> from flexstage.models.lumped import lumped
     >>> model = lumped(double_triangle())
     >>> found = Moving(modes(model), model)
     >>> pairs = paired(found, found)

@@ -13,11 +13,11 @@ from flexstage.analysis.modes import averaged, repeated
 from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array
 from flexstage.mechanism.mechanism import Damping
-from flexstage.readings.linear.damping import damping_law, modal_ratios
-from flexstage.readings.linear.eigen import eigen
-from flexstage.readings.linear.frequency import transfer
-from flexstage.readings.linear.model import Channel, LinearModel
-from flexstage.readings.linear.port import ports
+from flexstage.models.linear.damping import damping_law, modal_ratios
+from flexstage.models.linear.eigen import eigen
+from flexstage.models.linear.frequency import transfer
+from flexstage.models.linear.model import Channel, LinearModel
+from flexstage.models.linear.port import ports
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(8)
 _OFFSETS = np.array([-81.0, -27.0, -9.0, -3.0, -1.0, 0.0, 1.0, 3.0, 9.0, 27.0, 81.0])
@@ -107,7 +107,7 @@ def random_response(
     `DesignError` for unknown names, an empty band, or densities that are not positive.
 
     >>> from flexstage.cases.parallelogram import parallelogram
-    >>> from flexstage.readings.lumped import lumped
+    >>> from flexstage.models.lumped import lumped
     >>> floor = {"ground.x": Spectrum(1e-18, rate=Rate.VALUE)}  # 1 nm per root hertz
     >>> found = random_response(lumped(parallelogram()), ["platform.x"], floor, (1.0, 101.0))
     >>> round(float(found.rms[0]) * 1e9, 1)  # far below the resonance the platform follows: 1 nm (100 Hz)^(1/2)

@@ -10,11 +10,11 @@ from flexstage.analysis.modes import averaged, repeated
 from flexstage.base.finding import refuse
 from flexstage.base.number import Array, distinct, first_design
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Damping
-from flexstage.readings.linear.damping import damping_law, modal_ratios
-from flexstage.readings.linear.eigen import eigen
-from flexstage.readings.linear.frequency import Response, transfer
-from flexstage.readings.linear.model import LinearModel
-from flexstage.readings.linear.port import ports
+from flexstage.models.linear.damping import damping_law, modal_ratios
+from flexstage.models.linear.eigen import eigen
+from flexstage.models.linear.frequency import Response, transfer
+from flexstage.models.linear.model import LinearModel
+from flexstage.models.linear.port import ports
 
 _MODES_SHOWN = 12
 _ANGLES = np.linspace(-1.45, 1.45, 25)
@@ -31,7 +31,7 @@ def response(
     damping is stated. Structural damping costs one solve a frequency, the other laws one eigenvalue problem in all.
 
     >>> from flexstage.cases.parallelogram import parallelogram
-    >>> from flexstage.readings.lumped import lumped
+    >>> from flexstage.models.lumped import lumped
     >>> found = response(lumped(parallelogram()), ["S"], ["B"], np.array([0.0, 100.0]))
     >>> found.values.shape, found.units
     ((2, 1, 1), (('1',),))
@@ -51,7 +51,7 @@ def transmissibility(
     tends to the unit matrix at low frequency. Gauges and stress resultants feel relative motion only and tend to zero.
 
     >>> from flexstage.cases.parallelogram import parallelogram
-    >>> from flexstage.readings.lumped import lumped
+    >>> from flexstage.models.lumped import lumped
     >>> found = transmissibility(lumped(parallelogram()), frequencies=np.array([0.01]))
     >>> bool(np.allclose(found.values[0], np.eye(6), atol=1e-6))
     True
@@ -66,7 +66,7 @@ def default_frequencies(model: LinearModel, band: tuple[float, float] | None = N
     repeat, the mean.
 
     >>> from flexstage.cases.parallelogram import parallelogram
-    >>> from flexstage.readings.lumped import lumped
+    >>> from flexstage.models.lumped import lumped
     >>> grid = default_frequencies(lumped(parallelogram()), (10.0, 1000.0))
     >>> float(grid[0]), float(grid[-1])
     (10.0, 1000.0)

@@ -25,8 +25,8 @@ from flexstage.mechanism.drawn import drawn
 from flexstage.mechanism.expand import Assembly, PlacedLink, expand
 from flexstage.mechanism.mechanism import GROUND, Mechanism
 from flexstage.mechanism.moving_mass import carried
-from flexstage.readings.linear.model import LinearModel
-from flexstage.readings.linear.static import displacement
+from flexstage.models.linear.model import LinearModel
+from flexstage.models.linear.static import displacement
 from flexstage.spatial.frame import COMPONENTS, FORCES, seen_at, transport, turned
 
 DOUBTFUL = 20.0
@@ -98,7 +98,7 @@ def stability(mechanism: Mechanism, model: LinearModel, limits: StrokeLimits | N
     `model` is the lumped one. The worst strokes lie at a corner, as the reciprocal of the factor is convex in them.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> from flexstage.readings.lumped import lumped
+    >>> from flexstage.models.lumped import lumped
     >>> stage = double_triangle()
     >>> bool(stability(stage, lumped(stage)).dead > 100.0)
     True

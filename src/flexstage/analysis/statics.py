@@ -8,9 +8,9 @@ import numpy as np
 
 from flexstage.base.labelled import Matrix, ratio_units
 from flexstage.base.number import Array, Number, first_design
-from flexstage.readings.linear.model import LinearModel
-from flexstage.readings.linear.static import displacement
-from flexstage.readings.linear.undetermined import require_unmoved
+from flexstage.models.linear.model import LinearModel
+from flexstage.models.linear.static import displacement
+from flexstage.models.linear.undetermined import require_unmoved
 from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNITS
 
 _SINGULAR = 1e-11
@@ -61,7 +61,7 @@ def statics(model: LinearModel, *, load_point: str = "platform", read_point: str
     reading of a guide), the stiffness is infinite along the others: then it and the tensors that need it are NaN (first design decides).
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> from flexstage.readings.mapped import mapped
+    >>> from flexstage.models.mapped import mapped
     >>> (statics(mapped(double_triangle())).held.principal / 1e6).round(3).tolist()  # Eq. 2: 1.5 x 10.30 N/um
     [15.45, 15.45]
     """

@@ -32,7 +32,7 @@ def environment() -> dict[str, str]:
 def command(module: str, *arguments: str | os.PathLike[str]) -> list[str]:
     """The words that run a module of this package, whatever files lie in the folder it is run from.
 
-    >>> command("flexstage.studies.study.work", "a")[1:]
-    ['-P', '-m', 'flexstage.studies.study.work', 'a']
+    >>> command("flexstage.studies.sweeps.work", "a")[1:]
+    ['-P', '-m', 'flexstage.studies.sweeps.work', 'a']
     """
     return [sys.executable, "-P", "-m", module, *(os.fspath(each) for each in arguments)]

@@ -18,10 +18,10 @@ from flexstage.parts.body import Block, Body
 from flexstage.parts.material import Material
 from flexstage.parts.notch import Notch
 from flexstage.parts.profile import Circular
-from flexstage.readings.solid.component import Component, components
-from flexstage.readings.solid.fineness import Fineness
-from flexstage.readings.solid.mesh import Meshed, meshed
-from flexstage.readings.solid.straighten import straighten
+from flexstage.solid.fea.component import Component, components
+from flexstage.solid.fea.fineness import Fineness
+from flexstage.solid.fea.mesh import Meshed, meshed
+from flexstage.solid.fea.straighten import straighten
 
 STEEL = Material(young=196 * GPa, poisson=0.27, density=7800.0, source="made up")
 ALUMINIUM = Material(young=71.7 * GPa, poisson=0.33, density=2810.0, source="made up")

@@ -11,8 +11,8 @@ from flexstage.base.labelled import Matrix, ratio_units
 from flexstage.base.number import Array, Number, magnitude, stack
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
-from flexstage.readings.linear.model import LinearModel
-from flexstage.readings.linear.static import static_gain
+from flexstage.models.linear.model import LinearModel
+from flexstage.models.linear.static import static_gain
 from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNITS
 
 
@@ -69,7 +69,7 @@ def stack_lines(mechanism: Mechanism, model: LinearModel) -> StackLine:
     The stack's force per stroke, k k_s / (k + k_s), is read from the model; k_s follows.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> from flexstage.readings.lumped import lumped
+    >>> from flexstage.models.lumped import lumped
     >>> stage = double_triangle()
     >>> line = stack_lines(stage, lumped(stage))
     >>> bool(np.allclose(line.force / line.blocking + line.travel / line.free, 1.0))
@@ -102,8 +102,8 @@ def platform_lines(mapping: Matrix, model: LinearModel, limits: StrokeLimits) ->
     acts along j alone, the other coordinates give way: stiffness 1 / C_jj.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> from flexstage.readings.ideal import ideal
-    >>> from flexstage.readings.lumped import lumped
+    >>> from flexstage.models.ideal import ideal
+    >>> from flexstage.models.lumped import lumped
     >>> from flexstage.analysis.workspace.stroke import stroke_limits
     >>> stage = double_triangle()
     >>> line = platform_lines(ideal(stage).mapping, lumped(stage), stroke_limits(stage))

@@ -14,6 +14,7 @@ from flexstage.base.labelled import Matrix
 from flexstage.base.number import Array, Number, foremost
 from flexstage.mechanism.expand import Assembly, PlacedLink, expand
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
+from flexstage.models.linear.model import LinearModel
 from flexstage.parts.leaf import Leaf
 from flexstage.parts.neck import Neck
 from flexstage.parts.notch import Notch
@@ -21,7 +22,6 @@ from flexstage.parts.part import Part
 from flexstage.parts.piezo import Piezo
 from flexstage.parts.profile import length
 from flexstage.parts.rod import Rod
-from flexstage.readings.linear.model import LinearModel
 
 _ROUNDING = 1e-9
 
@@ -85,7 +85,7 @@ def buckling(mechanism: Mechanism, model: LinearModel, limits: StrokeLimits) -> 
     are rounding, and none.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> from flexstage.readings.lumped import lumped
+    >>> from flexstage.models.lumped import lumped
     >>> from flexstage.analysis.workspace.stroke import stroke_limits
     >>> stage = double_triangle()
     >>> bool(buckling(stage, lumped(stage), stroke_limits(stage)).least > 10.0)

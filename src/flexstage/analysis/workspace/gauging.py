@@ -12,7 +12,7 @@ from flexstage.base.labelled import Matrix
 from flexstage.base.number import Array, Number, magnitude, stack
 from flexstage.mechanism.expand import Assembly, expand
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
-from flexstage.readings.linear.kinematics import Kinematics
+from flexstage.models.linear.kinematics import Kinematics
 from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
 
 _ANGLES = 720
@@ -81,7 +81,7 @@ def gauge_inverse(kinematics: Kinematics) -> Matrix:
     Raises `DesignError` where the gauges do not see every ideal motion.
 
     >>> from flexstage.cases.double_triangle import SM_REF_A, double_triangle
-    >>> from flexstage.readings.ideal import ideal
+    >>> from flexstage.models.ideal import ideal
     >>> gauge_inverse(ideal(double_triangle(SM_REF_A))).values[2, 3:].round(6).tolist()
     [0.333333, 0.333333, 0.333333]
     """
@@ -115,7 +115,7 @@ def pose_resolution(mechanism: Mechanism, kinematics: Kinematics) -> PoseResolut
     """Pose resolution from the gauges' resolution and noise.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> from flexstage.readings.ideal import ideal
+    >>> from flexstage.models.ideal import ideal
     >>> stage = double_triangle()
     >>> (1e9 * pose_resolution(stage, ideal(stage)).worst[2]).round(6).item()
     10.0
@@ -147,7 +147,7 @@ def gauge_range(mechanism: Mechanism, kinematics: Kinematics, command: Mapping[s
     The platform's axis is the line along z through its reference point; gauges not between platform and ground have no `largest` radius.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> from flexstage.readings.ideal import ideal
+    >>> from flexstage.models.ideal import ideal
     >>> stage = double_triangle()
     >>> held = gauge_range(stage, ideal(stage), {"z": 150e-6, "rx": 733e-6, "ry": 733e-6})
     >>> (1e3 * held.largest_anywhere[3:]).round(2).tolist()
@@ -177,7 +177,7 @@ def gauge_swing(kinematics: Kinematics, command: Mapping[str, Number]) -> Array:
     """How far each gauge moves either way (..., g) [m] at the worst corner of a box of motions given by their half widths.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> from flexstage.readings.ideal import ideal
+    >>> from flexstage.models.ideal import ideal
     >>> (1e6 * gauge_swing(ideal(double_triangle()), {"z": 150e-6})).round(1).tolist()
     [0.0, 0.0, 0.0, 150.0, 150.0, 150.0]
     """

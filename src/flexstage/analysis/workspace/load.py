@@ -13,9 +13,9 @@ from flexstage.base.labelled import Matrix, ratio_units
 from flexstage.base.number import Array, Number, stack
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Force, Mechanism
-from flexstage.readings.linear.model import LinearModel
-from flexstage.readings.linear.static import displacement, static_gain
-from flexstage.readings.linear.undetermined import require_balanced, require_known
+from flexstage.models.linear.model import LinearModel
+from flexstage.models.linear.static import displacement, static_gain
+from flexstage.models.linear.undetermined import require_balanced, require_known
 from flexstage.spatial.frame import COMPONENTS, FORCES, WRENCH_UNITS, transport
 
 OWN_WEIGHT = "own weight"
@@ -110,7 +110,7 @@ def load_share(mechanism: Mechanism, model: LinearModel) -> LoadShare:
     limit, no preload) is still taken as tied: `pull` says where that is not so.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> from flexstage.readings.lumped import lumped
+    >>> from flexstage.models.lumped import lumped
     >>> stage = double_triangle()
     >>> shared = load_share(stage, lumped(stage))
     >>> round(float(shared.share.values[3:, 2].sum()), 1)  # levers 3 : 1, and lifting relieves
@@ -144,7 +144,7 @@ def dead_loads(mechanism: Mechanism, model: LinearModel) -> dict[str, Array]:
     """Generalised forces (..., n) by cause: the stage's own weight, each payload's, each stated force.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> from flexstage.readings.lumped import lumped
+    >>> from flexstage.models.lumped import lumped
     >>> list(dead_loads(double_triangle(), lumped(double_triangle())))
     ['own weight']
     """
@@ -166,7 +166,7 @@ def applied(mechanism: Mechanism, model: LinearModel, force: Force) -> Array:
     """Generalised forces (..., n) of a force on a body at a point, stage's frame; none for a force on the ground.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> from flexstage.readings.lumped import lumped
+    >>> from flexstage.models.lumped import lumped
     >>> stage = double_triangle()
     >>> applied(stage, lumped(stage), Force("platform", (0.0, 0.0, 0.105), (0.0, 0.0, -10.0))).sum().round(6).item()
     -10.0

@@ -13,8 +13,8 @@ from flexstage.base.labelled import Matrix
 from flexstage.base.number import Array, foremost
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
-from flexstage.readings.finite import design_shape, forward_kinematics
-from flexstage.readings.linear.kinematics import Kinematics
+from flexstage.models.finite import design_shape, forward_kinematics
+from flexstage.models.linear.kinematics import Kinematics
 from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
 
 _ROUNDING = 64.0 * float(np.finfo(float).eps)
@@ -51,7 +51,7 @@ def linear_map_error(mechanism: Mechanism, kinematics: Kinematics, limits: Strok
     them. Raises `DesignError` for more than 12 actuators.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> from flexstage.readings.ideal import ideal
+    >>> from flexstage.models.ideal import ideal
     >>> from flexstage.analysis.workspace.stroke import stroke_limits
     >>> stage = double_triangle()
     >>> error = linear_map_error(stage, ideal(stage), stroke_limits(stage), inside=4)
@@ -71,7 +71,7 @@ def map_error_at(mechanism: Mechanism, kinematics: Kinematics, strokes: Array) -
     """Error of x = J a at given strokes (k, ..., n) [m], batch axes between.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> from flexstage.readings.ideal import ideal
+    >>> from flexstage.models.ideal import ideal
     >>> stage = double_triangle()
     >>> bool(np.max(map_error_at(stage, ideal(stage), np.full((1, 6), 1e-9)).worst) < 1e-14)
     True

@@ -16,13 +16,13 @@ from flexstage.base.finding import Finding
 from flexstage.base.number import Array, Number
 from flexstage.mechanism.expand import PlacedLink, expand
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
+from flexstage.models.linear.kinematics import Kinematics
 from flexstage.parts.leaf import Leaf
 from flexstage.parts.neck import Neck
 from flexstage.parts.notch import Notch
 from flexstage.parts.part import Part, Restricted
 from flexstage.parts.profile import Circular, Elliptic, Straight, length
 from flexstage.parts.rod import Rod
-from flexstage.readings.linear.kinematics import Kinematics
 
 ERROR = 0.01
 """Relative error of second order that linear models may have."""
@@ -80,7 +80,7 @@ def small_motion(mechanism: Mechanism, kinematics: Kinematics) -> SmallMotion:
     """How much of the range of small motion the ideal motions take (of a batch, the first design).
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> from flexstage.readings.ideal import ideal
+    >>> from flexstage.models.ideal import ideal
     >>> stage = double_triangle()
     >>> small_motion(stage, ideal(stage)).doubt({"x": 50e-6})
     ''

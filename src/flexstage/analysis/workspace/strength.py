@@ -15,8 +15,8 @@ from flexstage.base.number import Array, foremost
 from flexstage.beams.stress import has_section, stress
 from flexstage.mechanism.expand import PlacedLink, expand
 from flexstage.mechanism.mechanism import Mechanism
+from flexstage.models.linear.model import LinearModel
 from flexstage.parts.part import Part, Restricted
-from flexstage.readings.linear.model import LinearModel
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,7 +73,7 @@ def hinge_stress(mechanism: Mechanism, model: LinearModel, limits: StrokeLimits)
     `stroke_limits(mechanism)` for one that is relaxed at its bias. Linear beam theory, section maxima added (see `beams.stress`).
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> from flexstage.readings.lumped import lumped
+    >>> from flexstage.models.lumped import lumped
     >>> from flexstage.analysis.workspace.stroke import stroke_limits
     >>> stage = double_triangle()
     >>> hinge_stress(stage, lumped(stage), stroke_limits(stage).from_zero).weakest

@@ -13,9 +13,9 @@ from flexstage.base.number import Array, Number, magnitude, stack
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.incidence import layout, twist_at
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
+from flexstage.models.linear.kinematics import Kinematics
 from flexstage.parts.part import Restricted
 from flexstage.parts.piezo import Piezo
-from flexstage.readings.linear.kinematics import Kinematics
 from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS, Frame
 
 
@@ -172,7 +172,7 @@ def mapping_at(mechanism: Mechanism, kinematics: Kinematics, point: str = PLATFO
     coordinates keep their names; refused where the point cannot follow them independently.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> from flexstage.readings.ideal import ideal
+    >>> from flexstage.models.ideal import ideal
     >>> stage = double_triangle()
     >>> round(float(mapping_at(stage, ideal(stage)).at("B4", "rx")), 6)
     0.04
@@ -189,7 +189,7 @@ def point_motion(mechanism: Mechanism, kinematics: Kinematics, point: str) -> Ar
     """Twist of a named point per ideal motion, (..., 6, f): `platform` (its reference), a point of the platform, or `body.point`.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> from flexstage.readings.ideal import ideal
+    >>> from flexstage.models.ideal import ideal
     >>> stage = double_triangle()
     >>> point_motion(stage, ideal(stage), "platform").tolist() == np.eye(6).tolist()
     True

@@ -8,8 +8,8 @@ from flexstage.analysis.workspace.load import dead_loads
 from flexstage.analysis.workspace.stroke import StrokeLimits
 from flexstage.base.number import Array
 from flexstage.mechanism.mechanism import Mechanism
-from flexstage.readings.linear.model import LinearModel
-from flexstage.readings.linear.static import displacement, static_gain
+from flexstage.models.linear.model import LinearModel
+from flexstage.models.linear.static import displacement, static_gain
 from flexstage.spatial.frame import FORCES
 
 
@@ -19,7 +19,7 @@ def corner_wrenches(mechanism: Mechanism, model: LinearModel, limits: StrokeLimi
     The wrench is linear in the strokes, so convex measures of it (stress, force) are largest at a corner. Weight and forces are included.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> from flexstage.readings.lumped import lumped
+    >>> from flexstage.models.lumped import lumped
     >>> from flexstage.analysis.workspace.stroke import stroke_limits
     >>> stage = double_triangle()
     >>> corner_wrenches(stage, lumped(stage), stroke_limits(stage), ("B1/front",)).shape
@@ -36,7 +36,7 @@ def dead_wrenches(mechanism: Mechanism, model: LinearModel, outputs: tuple[str, 
     """Values (..., p) of outputs under weight and forces, strokes held.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> from flexstage.readings.lumped import lumped
+    >>> from flexstage.models.lumped import lumped
     >>> stage = double_triangle()
     >>> bool(dead_wrenches(stage, lumped(stage), ("platform.z",)) < 0)
     True

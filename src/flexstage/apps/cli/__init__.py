@@ -10,7 +10,7 @@ import signal
 import sys
 from collections.abc import Sequence
 
-from flexstage.present.command.failure import ENDINGS, SIGNALLED, guarded
+from flexstage.show.command.failure import ENDINGS, SIGNALLED, guarded
 
 
 def main() -> None:

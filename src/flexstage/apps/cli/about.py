@@ -9,7 +9,7 @@ import typer
 
 import flexstage
 from flexstage.apps.cli import installation
-from flexstage.present.command.terminal import say
+from flexstage.show.command.terminal import say
 
 
 def doctor(*, mend: Annotated[bool, typer.Option("--mend", help="Mend what can be mended, then examine again.")] = False) -> None:

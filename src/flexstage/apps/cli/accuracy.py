@@ -7,28 +7,28 @@ from typing import Annotated, TypeAlias
 
 import typer
 
+from flexstage.analysis import budget as budgeting
 from flexstage.analysis import drift as drifting
+from flexstage.analysis import sensitivities as derivatives
+from flexstage.analysis.complete import read, required_command
 from flexstage.analysis.lost_motion import lost_motion
+from flexstage.analysis.standing import standing
+from flexstage.analysis.workspace import workspace as study
 from flexstage.base.quantity import TEMPERATURE
 from flexstage.base.unit import parse
-from flexstage.present.command.answer import answer, tell_missing
-from flexstage.present.command.design import open_design
-from flexstage.present.command.options import Changes, Design, Json, Theory, text_option
-from flexstage.present.command.values import motions
-from flexstage.present.documents.reach import budget_body, sensitivities_body, workspace_body
-from flexstage.present.documents.results import drift_body
-from flexstage.present.table import Table
-from flexstage.present.tables import workspace as tables
-from flexstage.present.tables.errors import drift_table, error_budget_tables, gauge_drift_table
-from flexstage.present.tables.sensitivities import frequency_sensitivity_table, loss_sensitivity_table
-from flexstage.present.tables.strength import strength_tables
-from flexstage.readings.ideal import ideal
-from flexstage.studies import budget as budgeting
-from flexstage.studies import sensitivities as derivatives
-from flexstage.studies import workspace as study
-from flexstage.studies.complete import read, required_command
-from flexstage.studies.reading import Reading
-from flexstage.studies.standing import standing
+from flexstage.models.ideal import ideal
+from flexstage.models.theory import Reading
+from flexstage.show.command.answer import answer, tell_missing
+from flexstage.show.command.design import open_design
+from flexstage.show.command.options import Changes, Design, Json, Theory, text_option
+from flexstage.show.command.values import motions
+from flexstage.show.documents.reach import budget_body, sensitivities_body, workspace_body
+from flexstage.show.documents.results import drift_body
+from flexstage.show.table import Table
+from flexstage.show.tables import workspace as tables
+from flexstage.show.tables.errors import drift_table, error_budget_tables, gauge_drift_table
+from flexstage.show.tables.sensitivities import frequency_sensitivity_table, loss_sensitivity_table
+from flexstage.show.tables.strength import strength_tables
 
 Commands: TypeAlias = Annotated[
     list[str] | None,

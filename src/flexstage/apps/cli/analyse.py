@@ -8,26 +8,26 @@ from typing import Annotated
 
 import typer
 
-from flexstage.present.command.answer import caveat_lines, show, tell_missing
-from flexstage.present.command.design import change, open_design
-from flexstage.present.command.failure import MISSED
-from flexstage.present.command.options import Changes, Design, Json, Report, Theory, text_option
-from flexstage.present.command.output import STDOUT, save
-from flexstage.present.command.terminal import tell
-from flexstage.present.documents.envelope import Document, as_text, enveloped
-from flexstage.present.documents.whole import analysis_body, changes_body
-from flexstage.present.matlab import as_mat
-from flexstage.present.report import report as whole_report
-from flexstage.present.table import Table
-from flexstage.present.tables import errors, kinematics, lost_motion, statics, strength, workspace
-from flexstage.present.tables.change import change_table, set_table
-from flexstage.present.tables.modes import mode_table
-from flexstage.present.tables.requirements import verdict_table
-from flexstage.present.tables.units import omitted_table, unit_table
-from flexstage.studies import complete
-from flexstage.studies.complete import Analysis
-from flexstage.studies.difference import Comparison, difference, set_values
-from flexstage.studies.reading import Reading
+from flexstage.analysis import complete
+from flexstage.analysis.complete import Analysis
+from flexstage.analysis.difference import Comparison, difference, set_values
+from flexstage.models.theory import Reading
+from flexstage.show.command.answer import caveat_lines, show, tell_missing
+from flexstage.show.command.design import change, open_design
+from flexstage.show.command.failure import MISSED
+from flexstage.show.command.options import Changes, Design, Json, Report, Theory, text_option
+from flexstage.show.command.output import STDOUT, save
+from flexstage.show.command.terminal import tell
+from flexstage.show.documents.envelope import Document, as_text, enveloped
+from flexstage.show.documents.whole import analysis_body, changes_body
+from flexstage.show.matlab import as_mat
+from flexstage.show.report import report as whole_report
+from flexstage.show.table import Table
+from flexstage.show.tables import errors, kinematics, lost_motion, statics, strength, workspace
+from flexstage.show.tables.change import change_table, set_table
+from flexstage.show.tables.modes import mode_table
+from flexstage.show.tables.requirements import verdict_table
+from flexstage.show.tables.units import omitted_table, unit_table
 
 
 def analyse(

@@ -9,6 +9,7 @@ import typer
 
 from flexstage.analysis import lost_motion as losses
 from flexstage.analysis import response as responses
+from flexstage.analysis.complete import platform_modes, read
 from flexstage.analysis.deflection import Deflection, deflection
 from flexstage.analysis.lost_motion import LostMotion
 from flexstage.analysis.random_response import random_response
@@ -16,24 +17,23 @@ from flexstage.analysis.statics import Statics, statics
 from flexstage.base.finding import refuse
 from flexstage.base.quantity import FREQUENCY
 from flexstage.base.unit import parse
-from flexstage.present.command.answer import answer
-from flexstage.present.command.design import elastic_model, known_point, open_design
-from flexstage.present.command.options import Changes, Design, Json, Theory, text_option
-from flexstage.present.command.values import spectra
-from flexstage.present.documents.results import elastic_jacobian, lost_motion_body, mapping_body, modes_body, response_body, stiffness_body
-from flexstage.present.table import Table
-from flexstage.present.tables import kinematics as motion_tables
-from flexstage.present.tables import lost_motion as loss_tables
-from flexstage.present.tables import statics as static_tables
-from flexstage.present.tables.deflection import deflection_table
-from flexstage.present.tables.modes import mode_table
-from flexstage.present.tables.random_response import random_table
-from flexstage.present.tables.response import response_table
-from flexstage.readings.ideal import ideal
-from flexstage.readings.linear.damping import damping_law
-from flexstage.readings.linear.kinematics import Kinematics
-from flexstage.studies.complete import platform_modes, read
-from flexstage.studies.reading import Reading
+from flexstage.models.ideal import ideal
+from flexstage.models.linear.damping import damping_law
+from flexstage.models.linear.kinematics import Kinematics
+from flexstage.models.theory import Reading
+from flexstage.show.command.answer import answer
+from flexstage.show.command.design import elastic_model, known_point, open_design
+from flexstage.show.command.options import Changes, Design, Json, Theory, text_option
+from flexstage.show.command.values import spectra
+from flexstage.show.documents.results import elastic_jacobian, lost_motion_body, mapping_body, modes_body, response_body, stiffness_body
+from flexstage.show.table import Table
+from flexstage.show.tables import kinematics as motion_tables
+from flexstage.show.tables import lost_motion as loss_tables
+from flexstage.show.tables import statics as static_tables
+from flexstage.show.tables.deflection import deflection_table
+from flexstage.show.tables.modes import mode_table
+from flexstage.show.tables.random_response import random_table
+from flexstage.show.tables.response import response_table
 
 
 def mapping(design: Design, *, reading: Theory = Reading.IDEAL, changes: Changes = None, json: Json = None) -> None:

@@ -7,13 +7,10 @@ from typing import Annotated
 
 import typer
 
-from flexstage.mechanism.mechanism import Mechanism
-from flexstage.present.command.answer import answer
-from flexstage.present.command.design import elastic_model, open_design
-from flexstage.present.command.options import Changes, Design, Json, Report, Theory, text_option
-from flexstage.present.command.output import require_writable, save
-from flexstage.present.command.progress import progress_bar
-from flexstage.present.command.records import (
+from flexstage.analysis.complete import platform_modes
+from flexstage.experiment import comparison
+from flexstage.experiment.document import compare_body
+from flexstage.experiment.record_options import (
     Allow,
     Band,
     Inputs,
@@ -27,18 +24,21 @@ from flexstage.present.command.records import (
     identify_records,
     shapes_on,
 )
-from flexstage.present.command.terminal import tell, warn
-from flexstage.present.documents.measured import compare_body
-from flexstage.present.measured_report import compare_report
-from flexstage.present.sections.measured import compare_tables
-from flexstage.readings.solid.cache import Cache
-from flexstage.readings.solid.parts import Ways
-from flexstage.studies import compare as comparison
-from flexstage.studies.complete import platform_modes
-from flexstage.studies.fea_modes import FeaModes, fea_modes, kept_fea_modes
-from flexstage.studies.reading import Reading
-from flexstage.studies.resolution import DEFAULT
-from flexstage.studies.solid_read import solids
+from flexstage.experiment.report import compare_report
+from flexstage.experiment.sections import compare_tables
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.models.theory import Reading
+from flexstage.show.command.answer import answer
+from flexstage.show.command.design import elastic_model, open_design
+from flexstage.show.command.options import Changes, Design, Json, Report, Theory, text_option
+from flexstage.show.command.output import require_writable, save
+from flexstage.show.command.progress import progress_bar
+from flexstage.show.command.terminal import tell, warn
+from flexstage.solid.fea.cache import Cache
+from flexstage.solid.fea.parts import Ways
+from flexstage.solid.modes import FeaModes, fea_modes, kept_fea_modes
+from flexstage.solid.read import solids
+from flexstage.solid.resolution import DEFAULT
 
 
 def compare(  # noqa: PLR0913 (its options)

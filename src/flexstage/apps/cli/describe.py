@@ -11,26 +11,26 @@ from typing import Annotated
 import typer
 
 import flexstage
+from flexstage.analysis.cautions import caveats, reading_findings
 from flexstage.base.finding import DesignError, Finding, require
 from flexstage.cases.registry import CASES
 from flexstage.cases.registry import case as shipped_case
+from flexstage.control.study.file import setup_schema
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.store import dumps, load, shipped
 from flexstage.mechanism.store import schema as design_schema
-from flexstage.present.command.answer import caveat_lines, show
-from flexstage.present.command.design import change, open_design
-from flexstage.present.command.options import Changes, Design, Json, output_option, text_option, word_option
-from flexstage.present.command.output import STDOUT, announce, require_writable, write
-from flexstage.present.command.terminal import say
-from flexstage.present.documents.envelope import FORMAT, as_text
-from flexstage.present.documents.reach import check_document
-from flexstage.present.figures.drawing import drawing, format_of
-from flexstage.present.listing import case_table, catalogue_body, catalogue_tables, parameter_table, section_named
-from flexstage.present.plan import plan_figure
-from flexstage.present.scene.stage import scene
-from flexstage.present.tables.description import composition_table
-from flexstage.studies.cautions import caveats, reading_findings
-from flexstage.studies.loop.file import setup_schema
+from flexstage.show.command.answer import caveat_lines, show
+from flexstage.show.command.design import change, open_design
+from flexstage.show.command.options import Changes, Design, Json, output_option, text_option, word_option
+from flexstage.show.command.output import STDOUT, announce, require_writable, write
+from flexstage.show.command.terminal import say
+from flexstage.show.documents.envelope import FORMAT, as_text
+from flexstage.show.documents.reach import check_document
+from flexstage.show.figures.drawing import drawing, format_of
+from flexstage.show.listing import case_table, catalogue_body, catalogue_tables, parameter_table, section_named
+from flexstage.show.plan import plan_figure
+from flexstage.show.scene.stage import scene
+from flexstage.show.tables.description import composition_table
 
 DEFAULT_CASE = "double-triangle"
 

@@ -8,23 +8,23 @@ from typing import Annotated
 
 import typer
 
+from flexstage.analysis.complete import platform_modes
 from flexstage.base.finding import nearest, refuse, require
 from flexstage.mechanism.drawn import drawn
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.store import load, outline_text
-from flexstage.present.command.design import open_design
-from flexstage.present.command.options import Changes, Design, output_option, text_option
-from flexstage.present.command.output import save
-from flexstage.present.command.progress import progress_bar
-from flexstage.present.command.terminal import say, warn
-from flexstage.readings.solid.apart import step_apart
-from flexstage.readings.solid.cache import Cache
-from flexstage.readings.solid.fineness import Fineness, Reduction
-from flexstage.readings.solid.install import require_solver
-from flexstage.readings.solid.parts import Ways
-from flexstage.readings.solid.sound import stage_findings
-from flexstage.studies.complete import platform_modes
-from flexstage.studies.solid_read import read_solid, solids
+from flexstage.show.command.design import open_design
+from flexstage.show.command.options import Changes, Design, output_option, text_option
+from flexstage.show.command.output import save
+from flexstage.show.command.progress import progress_bar
+from flexstage.show.command.terminal import say, warn
+from flexstage.solid.fea.apart import step_apart
+from flexstage.solid.fea.cache import Cache
+from flexstage.solid.fea.fineness import Fineness, Reduction
+from flexstage.solid.fea.install import require_solver
+from flexstage.solid.fea.parts import Ways
+from flexstage.solid.fea.sound import stage_findings
+from flexstage.solid.read import read_solid, solids
 
 
 def cad(
@@ -68,7 +68,7 @@ def state(
     mechanism = load(design)
     chosen = _material(mechanism, material)
     require_solver()
-    from flexstage.readings.solid.imported import measured, stated  # needs the solver, refused by name where it is missing
+    from flexstage.solid.fea.imported import measured, stated  # needs the solver, refused by name where it is missing
 
     solid = stated(measured(part), str(part.resolve()), chosen, float(mechanism.materials[chosen].density))
     say(outline_text(body, part.stem, solid, design.parent))
@@ -92,7 +92,7 @@ def _contents(mechanism: Mechanism, wanted: dict[str, Path | None], order: int, 
     if (path := wanted["--output"]) is not None:
         yield path, "--output", step_apart(stage)
     if (path := wanted["--mesh"]) is not None:
-        from flexstage.readings.solid.vtu import stage_mesh, vtu  # needs a package of the extra `solid`
+        from flexstage.solid.exchange.vtu import stage_mesh, vtu  # needs a package of the extra `solid`
 
         with progress_bar() as shown:
             mesh = stage_mesh(stage, fineness, progress=shown.step)
@@ -112,7 +112,7 @@ def _check_contact(stage: Mechanism, *, meshed: bool) -> None:
 
 def _moving(stage: Mechanism, fineness: Fineness, count: int) -> bytes:
     """The GLB file of a stage with its lowest modes."""
-    from flexstage.readings.solid.gltf import Motion, gltf, surfaces  # needs a package of the extra `solid`
+    from flexstage.solid.exchange.gltf import Motion, gltf, surfaces  # needs a package of the extra `solid`
 
     with progress_bar() as shown:
         read = read_solid(stage, Reduction(fineness), solids(Ways(progress=shown.step), lambda finding: warn(str(finding))))

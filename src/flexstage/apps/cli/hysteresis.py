@@ -7,20 +7,20 @@ from typing import Annotated
 
 import typer
 
-from flexstage.analysis.loop.hysteresis.stack import dumps_hysteresis
 from flexstage.base.finding import refuse
 from flexstage.base.quantity import VOLTAGE
 from flexstage.base.unit import parse
-from flexstage.present.command.answer import answer
-from flexstage.present.command.options import Json, Report, output_option, text_option
-from flexstage.present.command.output import require_writable, save
-from flexstage.present.command.records import Rate, RecordTexts, Units, open_records
-from flexstage.present.command.terminal import warn
-from flexstage.present.documents.hysteresis import hysteresis_body
-from flexstage.present.hysteresis_report import hysteresis_report
-from flexstage.present.tables.hysteresis import plays_table, stack_table
-from flexstage.readings.measured.record import Record
-from flexstage.studies.hysteresis import Channels, stack_test
+from flexstage.control.hysteresis.document import hysteresis_body
+from flexstage.control.hysteresis.report import hysteresis_report
+from flexstage.control.hysteresis.stack import dumps_hysteresis
+from flexstage.control.hysteresis.stack_test import Channels, stack_test
+from flexstage.control.hysteresis.tables import plays_table, stack_table
+from flexstage.experiment.record import Record
+from flexstage.experiment.record_options import Rate, RecordTexts, Units, open_records
+from flexstage.show.command.answer import answer
+from flexstage.show.command.options import Json, Report, output_option, text_option
+from flexstage.show.command.output import require_writable, save
+from flexstage.show.command.terminal import warn
 
 
 def hysteresis(  # noqa: PLR0913 (its options)

@@ -8,11 +8,9 @@ from typing import Annotated, TypeAlias
 
 import typer
 
-from flexstage.present.command.answer import answer
-from flexstage.present.command.design import elastic_model, open_design
-from flexstage.present.command.options import Json, Report, text_option
-from flexstage.present.command.output import require_writable, save
-from flexstage.present.command.records import (
+from flexstage.experiment.document import identify_body
+from flexstage.experiment.pipeline import Identification
+from flexstage.experiment.record_options import (
     Allow,
     Band,
     Inputs,
@@ -26,12 +24,14 @@ from flexstage.present.command.records import (
     identify_records,
     shapes_on,
 )
-from flexstage.present.documents.measured import identify_body
-from flexstage.present.measured_report import identify_report
-from flexstage.present.table import Table
-from flexstage.present.tables.measured import identified_table, measured_shape_table, peak_table, recorded_table
-from flexstage.studies.identification import Identification
-from flexstage.studies.reading import Reading
+from flexstage.experiment.report import identify_report
+from flexstage.experiment.tables import identified_table, measured_shape_table, peak_table, recorded_table
+from flexstage.models.theory import Reading
+from flexstage.show.command.answer import answer
+from flexstage.show.command.design import elastic_model, open_design
+from flexstage.show.command.options import Json, Report, text_option
+from flexstage.show.command.output import require_writable, save
+from flexstage.show.table import Table
 
 Records: TypeAlias = Annotated[
     list[Path],

@@ -7,8 +7,8 @@ from pathlib import Path
 
 from flexstage.apps import doctor
 from flexstage.apps.doctor import Row, Verdict
-from flexstage.present.command.failure import BAD_INPUT, DONE
-from flexstage.present.command.terminal import say
+from flexstage.show.command.failure import BAD_INPUT, DONE
+from flexstage.show.command.terminal import say
 
 _FREQUENCIES = (110.910, 110.910, 135.148, 145.505, 176.690, 176.690)
 """Eq. 28 of Shin & Moon for the shipped stage [Hz]."""
@@ -41,7 +41,7 @@ def self_test() -> Row:
     # Imported here: a package that is missing or broken is a row of the examination.
     from flexstage.analysis.modes import modes
     from flexstage.cases.double_triangle import double_triangle
-    from flexstage.readings.mapped import mapped
+    from flexstage.models.mapped import mapped
 
     found = modes(mapped(double_triangle())).frequencies
     worst = max(abs(have / want - 1.0) for have, want in zip(found, _FREQUENCIES, strict=True))

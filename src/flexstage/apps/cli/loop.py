@@ -7,8 +7,6 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any, TypeVar
 
-from flexstage.analysis.loop.code.controller import controller_code
-from flexstage.analysis.loop.code.text import identifier
 from flexstage.base.finding import DesignError, Finding, nearest, refuse, require
 from flexstage.base.quantity import (
     ACCELERATION_NOISE,
@@ -21,27 +19,29 @@ from flexstage.base.quantity import (
     TIME,
     VELOCITY_NOISE,
 )
-from flexstage.present.command.answer import answer
-from flexstage.present.command.design import open_design
-from flexstage.present.command.options import Changes, Design, Json, Report, text_option, word_option
-from flexstage.present.command.output import announce, require_writable, save, write
-from flexstage.present.command.progress import progress_bar
-from flexstage.present.command.values import Values, first_fit, motions
-from flexstage.present.documents.loop import loop_body
-from flexstage.present.fmu.unit import fmu
-from flexstage.present.loop_files import controller_files, export_findings, plant_file
-from flexstage.present.loop_report import loop_report
-from flexstage.present.table import Table
-from flexstage.present.tables import loop as tables
-from flexstage.present.tables import loop_error as errors
-from flexstage.studies.loop import setup as forms
-from flexstage.studies.loop.checks import setup_findings
-from flexstage.studies.loop.choices import Axes, Compensation, ControllerKind, Criterion
-from flexstage.studies.loop.file import example as commented_example
-from flexstage.studies.loop.file import load_setup
-from flexstage.studies.loop.runs import driven_machine
-from flexstage.studies.loop.study import LoopStudy, loop_study
-from flexstage.studies.reading import Reading
+from flexstage.control import error_tables as errors
+from flexstage.control import tables
+from flexstage.control.document import loop_body
+from flexstage.control.export.code.controller import controller_code
+from flexstage.control.export.code.text import identifier
+from flexstage.control.export.files import controller_files, export_findings, plant_file
+from flexstage.control.export.fmu.unit import fmu
+from flexstage.control.report import loop_report
+from flexstage.control.study import setup as forms
+from flexstage.control.study.checks import setup_findings
+from flexstage.control.study.choices import Axes, Compensation, ControllerKind, Criterion
+from flexstage.control.study.file import example as commented_example
+from flexstage.control.study.file import load_setup
+from flexstage.control.study.runs import driven_machine
+from flexstage.control.study.study import LoopStudy, loop_study
+from flexstage.models.theory import Reading
+from flexstage.show.command.answer import answer
+from flexstage.show.command.design import open_design
+from flexstage.show.command.options import Changes, Design, Json, Report, text_option, word_option
+from flexstage.show.command.output import announce, require_writable, save, write
+from flexstage.show.command.progress import progress_bar
+from flexstage.show.command.values import Values, first_fit, motions
+from flexstage.show.table import Table
 
 _Record = TypeVar("_Record")
 _NOTHING = "none"

@@ -6,24 +6,24 @@ from pathlib import Path
 from typing import Annotated
 
 from flexstage.base.finding import Finding, refuse, require
-from flexstage.present.command import options
-from flexstage.present.command.answer import answer
-from flexstage.present.command.output import require_writable, save
-from flexstage.present.command.progress import progress_bar
-from flexstage.present.documents.optimise import front_body, optimise_body
-from flexstage.present.optimise_report import front_report, optimise_report
-from flexstage.present.tables.optimise import contradiction_text, front_tables, optimise_tables
-from flexstage.studies.optimise.file import load_wanted
-from flexstage.studies.optimise.front import pareto_front
-from flexstage.studies.optimise.optimum import optimise as run_optimise
-from flexstage.studies.optimise.result import Front, Optimum
-from flexstage.studies.optimise.rounding import values_of
-from flexstage.studies.optimise.stage_text import design_path, design_text, optimised_text
-from flexstage.studies.optimise.wanted import Wanted
-from flexstage.studies.reading import Reading
-from flexstage.studies.study.definition import Study
-from flexstage.studies.study.file import load_study
-from flexstage.studies.study.loaded import loaded_findings, require_holding
+from flexstage.models.theory import Reading
+from flexstage.show.command import options
+from flexstage.show.command.answer import answer
+from flexstage.show.command.output import require_writable, save
+from flexstage.show.command.progress import progress_bar
+from flexstage.studies.optimisation.document import front_body, optimise_body
+from flexstage.studies.optimisation.file import load_wanted
+from flexstage.studies.optimisation.front import pareto_front
+from flexstage.studies.optimisation.optimum import optimise as run_optimise
+from flexstage.studies.optimisation.report import front_report, optimise_report
+from flexstage.studies.optimisation.result import Front, Optimum
+from flexstage.studies.optimisation.rounding import values_of
+from flexstage.studies.optimisation.stage_text import design_path, design_text, optimised_text
+from flexstage.studies.optimisation.tables import contradiction_text, front_tables, optimise_tables
+from flexstage.studies.optimisation.wanted import Wanted
+from flexstage.studies.sweeps.definition import Study
+from flexstage.studies.sweeps.file import load_study
+from flexstage.studies.sweeps.loaded import loaded_findings, require_holding
 
 
 def optimise(

@@ -9,17 +9,17 @@ import typer
 
 from flexstage.base.finding import Finding, require
 from flexstage.base.quantity import CURRENT, DISPLACEMENT, FREQUENCY, NOISE_DENSITY, RESISTANCE, VOLTAGE, Quantity
-from flexstage.present.command.answer import caveat_lines, show
-from flexstage.present.command.design import elastic_model, open_design
-from flexstage.present.command.options import Changes, Design, Theory, output_option, text_option, word_option
-from flexstage.present.command.output import announce
-from flexstage.present.command.progress import progress_bar
-from flexstage.present.command.values import Values, first_fit
-from flexstage.present.tables.rig import rig_table
-from flexstage.readings.measured.write import write
-from flexstage.studies.reading import Reading
-from flexstage.studies.rig.rig import as_record, simulated
-from flexstage.studies.rig.setup import Amplifier, AntiAlias, NoiseDrive, Recorded, RigSetup, Sensing, Tap
+from flexstage.experiment.formats.write import write
+from flexstage.experiment.virtual_rig.rig import as_record, simulated
+from flexstage.experiment.virtual_rig.setup import Amplifier, AntiAlias, NoiseDrive, Recorded, RigSetup, Sensing, Tap
+from flexstage.experiment.virtual_rig.tables import rig_table
+from flexstage.models.theory import Reading
+from flexstage.show.command.answer import caveat_lines, show
+from flexstage.show.command.design import elastic_model, open_design
+from flexstage.show.command.options import Changes, Design, Theory, output_option, text_option, word_option
+from flexstage.show.command.output import announce
+from flexstage.show.command.progress import progress_bar
+from flexstage.show.command.values import Values, first_fit
 
 
 def rig(  # noqa: PLR0913  a test has that many knobs

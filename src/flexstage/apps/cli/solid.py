@@ -9,25 +9,37 @@ from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
 
 import typer
 
+from flexstage.analysis.standing import require_standing
 from flexstage.base.finding import Finding, refuse
 from flexstage.base.quantity import RATIO, Quantity
 from flexstage.base.unit import parse
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.store import loads
 from flexstage.mechanism.store.file import read_text
-from flexstage.present.command.answer import answer, tell_missing
-from flexstage.present.command.design import open_design
-from flexstage.present.command.options import Changes, Design, Json, Report, output_option, text_option, word_option
-from flexstage.present.command.output import require_writable, save
-from flexstage.present.command.progress import ProgressBar, progress_bar
-from flexstage.present.command.terminal import tell, warn
-from flexstage.present.documents.solid import calibration_body, hinges_body, solid_stage_body, solid_units_body, verification_body
-from flexstage.present.page import Section
-from flexstage.present.sections.solid import hinge_section, stage_solid_section, unit_section, verification_section
-from flexstage.present.solid_report import solid_report
-from flexstage.present.table import Table
-from flexstage.present.tables.modes import mode_table
-from flexstage.present.tables.solid import (
+from flexstage.show.command.answer import answer, tell_missing
+from flexstage.show.command.design import open_design
+from flexstage.show.command.options import Changes, Design, Json, Report, output_option, text_option, word_option
+from flexstage.show.command.output import require_writable, save
+from flexstage.show.command.progress import ProgressBar, progress_bar
+from flexstage.show.command.terminal import tell, warn
+from flexstage.show.page import Section
+from flexstage.show.table import Table
+from flexstage.show.tables.modes import mode_table
+from flexstage.show.tables.statics import direction_table, principal_table, stiffness_table
+from flexstage.solid import calibration, verification
+from flexstage.solid.document import calibration_body, hinges_body, solid_stage_body, solid_units_body, verification_body
+from flexstage.solid.fea.cache import Cache
+from flexstage.solid.fea.fineness import Reduction
+from flexstage.solid.fea.hinge_cache import HingeForm
+from flexstage.solid.fea.install import require_solver
+from flexstage.solid.fea.parts import Parts, Ways
+from flexstage.solid.fea.remote import Limits
+from flexstage.solid.hinges import Hinges, SolidHinge, hinges, solid_hinges
+from flexstage.solid.read import Solids, solids
+from flexstage.solid.report import solid_report
+from flexstage.solid.resolution import Resolution, Resolved
+from flexstage.solid.sections import hinge_section, stage_solid_section, unit_section, verification_section
+from flexstage.solid.tables import (
     block_table,
     calibration_table,
     command_table,
@@ -38,23 +50,10 @@ from flexstage.present.tables.solid import (
     verdict_table_of,
     verification_table,
 )
-from flexstage.present.tables.statics import direction_table, principal_table, stiffness_table
-from flexstage.readings.solid.cache import Cache
-from flexstage.readings.solid.fineness import Reduction
-from flexstage.readings.solid.hinge_cache import HingeForm
-from flexstage.readings.solid.install import require_solver
-from flexstage.readings.solid.parts import Parts, Ways
-from flexstage.readings.solid.remote import Limits
-from flexstage.studies import calibrate as calibration
-from flexstage.studies import verify as verification
-from flexstage.studies.resolution import Resolution, Resolved
-from flexstage.studies.solid_hinge import Hinges, SolidHinge, hinges, solid_hinges
-from flexstage.studies.solid_read import Solids, solids
-from flexstage.studies.standing import require_standing
-from flexstage.studies.what import What
+from flexstage.solid.what import What
 
 if TYPE_CHECKING:
-    from flexstage.readings.solid.hinge import HingeSolid  # needs the solver, refused by name where it is missing
+    from flexstage.solid.fea.hinge import HingeSolid  # needs the solver, refused by name where it is missing
 
 Scope: TypeAlias = Annotated[
     What,

@@ -8,19 +8,19 @@ from pathlib import Path
 from typing import Annotated
 
 from flexstage.base.finding import refuse
-from flexstage.present.command.answer import answer
-from flexstage.present.command.options import Json, Report, Resume, Scheduler, Study, Workers, output_option
-from flexstage.present.command.output import require_writable, save
-from flexstage.present.command.progress import progress_bar
-from flexstage.present.documents.study import sweep_body
-from flexstage.present.study_report import sweep_report
-from flexstage.present.tables.study import study_tables
-from flexstage.studies.reading import Reading
-from flexstage.studies.study.effects import effects
-from flexstage.studies.study.file import load_study
-from flexstage.studies.study.loaded import loaded_findings
-from flexstage.studies.study.run import Run
-from flexstage.studies.study.run import sweep as run_sweep
+from flexstage.models.theory import Reading
+from flexstage.show.command.answer import answer
+from flexstage.show.command.options import Json, Report, Resume, Scheduler, Study, Workers, output_option
+from flexstage.show.command.output import require_writable, save
+from flexstage.show.command.progress import progress_bar
+from flexstage.studies.sweeps.document import sweep_body
+from flexstage.studies.sweeps.effects import effects
+from flexstage.studies.sweeps.file import load_study
+from flexstage.studies.sweeps.loaded import loaded_findings
+from flexstage.studies.sweeps.report import sweep_report
+from flexstage.studies.sweeps.run import Run
+from flexstage.studies.sweeps.run import sweep as run_sweep
+from flexstage.studies.sweeps.tables import study_tables
 
 
 def sweep(

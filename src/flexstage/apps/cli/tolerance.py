@@ -6,18 +6,18 @@ from pathlib import Path
 from typing import Annotated
 
 from flexstage.base.finding import refuse
-from flexstage.present.command.answer import answer
-from flexstage.present.command.options import Json, Report, Resume, Scheduler, Study, Workers, output_option
-from flexstage.present.command.output import require_writable, save
-from flexstage.present.command.progress import progress_bar
-from flexstage.present.documents.tolerance import tolerance_body
-from flexstage.present.tables.tolerance import tolerance_tables
-from flexstage.present.tolerance_report import tolerance_report
-from flexstage.studies.reading import Reading
-from flexstage.studies.study.loaded import loaded_findings
-from flexstage.studies.study.run import Run
-from flexstage.studies.tolerance.file import load_tolerance
-from flexstage.studies.tolerance.run import tolerance as run_tolerance
+from flexstage.models.theory import Reading
+from flexstage.show.command.answer import answer
+from flexstage.show.command.options import Json, Report, Resume, Scheduler, Study, Workers, output_option
+from flexstage.show.command.output import require_writable, save
+from flexstage.show.command.progress import progress_bar
+from flexstage.studies.sweeps.loaded import loaded_findings
+from flexstage.studies.sweeps.run import Run
+from flexstage.studies.tolerances.document import tolerance_body
+from flexstage.studies.tolerances.file import load_tolerance
+from flexstage.studies.tolerances.report import tolerance_report
+from flexstage.studies.tolerances.run import tolerance as run_tolerance
+from flexstage.studies.tolerances.tables import tolerance_tables
 
 
 def tolerance(

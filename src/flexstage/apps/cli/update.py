@@ -8,15 +8,11 @@ from typing import Annotated
 
 import typer
 
+from flexstage.analysis.standing import standing
 from flexstage.base.finding import refuse
 from flexstage.base.quantity import RATIO
 from flexstage.base.unit import parse
-from flexstage.mechanism.store import loads
-from flexstage.mechanism.store.file import read_text
-from flexstage.present.command.answer import answer
-from flexstage.present.command.options import Design, Json, output_option, text_option
-from flexstage.present.command.output import require_writable, save
-from flexstage.present.command.records import (
+from flexstage.experiment.record_options import (
     Allow,
     Band,
     Inputs,
@@ -30,16 +26,20 @@ from flexstage.present.command.records import (
     identify_records,
     names,
 )
-from flexstage.present.command.terminal import warn
-from flexstage.present.documents.update import update_body
-from flexstage.present.tables.update import update_tables
-from flexstage.studies import update as updating
-from flexstage.studies.reading import Reading
-from flexstage.studies.rig.plan import highest_mode
-from flexstage.studies.standing import standing
-from flexstage.studies.update_free import DEFAULT, Known
-from flexstage.studies.update_free import free as free_numbers
-from flexstage.studies.update_text import updated_text
+from flexstage.experiment.updating import update as updating
+from flexstage.experiment.updating.document import update_body
+from flexstage.experiment.updating.free import DEFAULT, Known
+from flexstage.experiment.updating.free import free as free_numbers
+from flexstage.experiment.updating.tables import update_tables
+from flexstage.experiment.updating.text import updated_text
+from flexstage.experiment.virtual_rig.plan import highest_mode
+from flexstage.mechanism.store import loads
+from flexstage.mechanism.store.file import read_text
+from flexstage.models.theory import Reading
+from flexstage.show.command.answer import answer
+from flexstage.show.command.options import Design, Json, output_option, text_option
+from flexstage.show.command.output import require_writable, save
+from flexstage.show.command.terminal import warn
 
 
 def update(  # noqa: PLR0913 (its options)

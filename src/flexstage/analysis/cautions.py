@@ -1,0 +1,352 @@
+"""Caveats: what does not keep a stage from being read, but should be known with its results: cautions, and what was taken by default."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import suppress
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+
+from flexstage.analysis.requirements import Subject, requirements
+from flexstage.analysis.standing import load_factors, standing
+from flexstage.analysis.workspace.load import load_share
+from flexstage.analysis.workspace.room import bounds, room
+from flexstage.analysis.workspace.small import small_motion
+from flexstage.analysis.workspace.strength import hinge_stress
+from flexstage.analysis.workspace.stroke import StrokeLimits, single_axis, stroke_limits
+from flexstage.base.finding import DesignError, Finding
+from flexstage.base.number import stack
+from flexstage.base.quantity import LENGTH
+from flexstage.base.unit import show
+from flexstage.beams.mass import mass
+from flexstage.beams.validity import validity
+from flexstage.mechanism.contact import contact_findings
+from flexstage.mechanism.drawn import as_drawn
+from flexstage.mechanism.expand import Assembly, expand
+from flexstage.mechanism.expansion import ground_of
+from flexstage.mechanism.mechanism import PLATFORM, Mechanism, StructuralDamping
+from flexstage.mechanism.outline import outlines
+from flexstage.models.ideal import ideal
+from flexstage.models.linear.model import LinearModel
+from flexstage.models.lumped import lumped
+from flexstage.parts.body import Body
+from flexstage.parts.given import Given, Joint
+from flexstage.parts.part import Restricted, material_of
+from flexstage.parts.piezo import Piezo
+from flexstage.parts.plausible import implausible
+
+
+@dataclass(frozen=True)
+class Default(Finding):
+    """What was taken where the description leaves it open, and the kinds of results that are the same `without` it."""
+
+    without: frozenset[str] = frozenset()
+
+
+_LEAST_FALL, _MOST_FALL = 0.16, 250.0
+_FARTHEST = 10.0
+_STILL = frozenset({"mapping", "lost-motion", "drift", "budget"})
+_LINEAR = frozenset({"mapping", "stiffness", "lost-motion", "modes", "response", "drift", "sensitivities", "solid", "verify", "calibrate"})
+_UNDAMPED = _STILL | {"stiffness", "workspace", "sensitivities", "calibrate"}
+_MEASURED = frozenset({"rig", "identify", "compare", "update"})
+
+
+@dataclass(frozen=True)
+class Caveats:
+    """Known with every result: `cautions` (something is doubtful), and `defaults` (what the description leaves open, as taken)."""
+
+    cautions: tuple[Finding, ...] = ()
+    defaults: tuple[Default, ...] = ()
+
+    def defaults_of(self, kind: str) -> tuple[Default, ...]:
+        """Those a kind of result (`modes`, `workspace`) rests on."""
+        return tuple(each for each in self.defaults if kind not in each.without)
+
+
+@lru_cache(maxsize=8)
+def caveats(mechanism: Mechanism) -> Caveats:
+    """Cautions and defaults of a description; those of the last ones are kept, as tables, document and report of one command all show them.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> caveats(double_triangle()).cautions
+    ()
+    """
+    return Caveats(cautions(mechanism), defaults(mechanism))
+
+
+def defaults(mechanism: Mechanism) -> tuple[Default, ...]:
+    """What a result may rest on that the description does not state, and the value taken: `what` was taken, and by what it is stated.
+
+    >>> defaults(Mechanism("stage"))
+    ()
+    """
+    return (*_stack_defaults(mechanism), *_left_out(mechanism), *_lossless(mechanism), *_ground_default(mechanism))
+
+
+def _stack_defaults(mechanism: Mechanism) -> Iterator[Default]:
+    for name, piezo in _shared_stacks(mechanism).items():
+        if np.all(np.asarray(piezo.mass) == 0.0):
+            advice = 'Its mass adds local modes and lowers others: mass = "0.12 kg"'
+            yield Default(f"parts.{name}", "the stack weighs nothing", advice, _STILL)
+        if piezo.bias is None and piezo.voltage_low is not None and piezo.voltage_high is not None:
+            middle = np.ravel(0.5 * (np.real(piezo.voltage_low) + np.real(piezo.voltage_high)))[0]
+            what, advice = f"the bias is the middle of the range, {middle:g} V", f'Strokes count from it: bias = "{middle:g} V"'
+            yield Default(f"parts.{name}", what, advice, _LINEAR | _MEASURED)
+
+
+def _left_out(mechanism: Mechanism) -> Iterator[Default]:
+    """The mass of restricted parts, which count as springs only."""
+    told: dict[str, float] = {}
+    for link in expand(mechanism).links.values():
+        if isinstance(link.part, Restricted) and not isinstance(link.part.part, Joint):
+            try:
+                own = np.real(mass(link.part.part, link.material))
+            except DesignError:
+                continue  # a material without density
+            told[f"parts.{link.link.part}"] = float(np.max(own[..., 0, 0] + 2.0 * own[..., 0, 6] + own[..., 6, 6]))
+    for where, size in told.items():
+        if size > 0.0:
+            advice = "Add it to the bodies that it joins, as it moves with them"
+            yield Default(where, f"a restricted part has no mass: its {size:.4g} kg are left out", advice, _STILL | {"stiffness"})
+
+
+def _lossless(mechanism: Mechanism) -> Iterator[Default]:
+    """Materials, stacks and matrices that structural damping takes as losing nothing, as they state no loss factor."""
+    if not isinstance(mechanism.damping, StructuralDamping):
+        return
+    told: dict[str, str] = {}
+    for link in expand(mechanism).links.values():
+        part = as_drawn(mechanism, link).part
+        inner = part.part if isinstance(part, Restricted) else part
+        material = material_of(inner)
+        holder = mechanism.materials[material] if material else inner
+        if not isinstance(inner, Joint) and getattr(holder, "loss_factor", None) is None:
+            where = f"materials.{material}" if material else f"parts.{link.link.part}"
+            told[where] = "State the drawn part that it stands_for" if isinstance(inner, Given) else "State it: loss_factor = 0.002"
+    for where, advice in told.items():
+        yield Default(where, "it states no loss factor: structural damping takes it as losing nothing", advice, _UNDAMPED)
+
+
+def _ground_default(mechanism: Mechanism) -> Iterator[Default]:
+    """What the ground is taken as, where a requirement asks for drift."""
+    try:
+        asked = any(line.subject is Subject.DRIFT for line in requirements(mechanism))
+        ground = ground_of(mechanism) if asked else None
+    except DesignError:
+        return  # the requirement says what is missing
+    if ground is not None and not ground.stated:
+        advice = f'Drift rests on it: ground = "{ground.material}"'
+        yield Default(
+            "ground", f"it is taken as {ground.material}: {ground.source}", advice, _LINEAR - {"drift"} | _MEASURED | {"workspace", "loop"}
+        )
+
+
+def _shared_stacks(mechanism: Mechanism) -> dict[str, Piezo]:
+    """Stacks that links use, by the name of their part."""
+    used = {link.link.part for link in expand(mechanism).links.values()}
+    inner = {name: part.part if isinstance(part, Restricted) else part for name, part in mechanism.parts.items() if name in used}
+    return {name: part for name, part in inner.items() if isinstance(part, Piezo)}
+
+
+def cautions(mechanism: Mechanism) -> tuple[Finding, ...]:
+    """What is doubtful: the loaded stage, parts beyond beam theory's range, blocked strokes, outlines that clash or leave their room.
+
+    A part that departs from the shared one is told by its link.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> cautions(double_triangle())
+    ()
+    """
+    factors = load_factors(mechanism)
+    return (
+        *(() if factors is None else (*factors.refusals, *factors.cautions)),
+        *_pulled(mechanism),
+        *implausible(_catalogued(mechanism)),
+        *_disproportions(mechanism),
+        *_overloaded(mechanism),
+        *_points(mechanism),
+        *part_cautions(mechanism),
+        *_blockages(mechanism),
+        *_large_motions(mechanism),
+        *contact_findings(mechanism),
+        *_room(mechanism),
+    )
+
+
+def _large_motions(mechanism: Mechanism) -> tuple[Finding, ...]:
+    """Single-axis strokes beyond what linear models answer for; nothing where the strokes do not determine the platform."""
+    try:
+        kinematics = ideal(mechanism)
+        single = single_axis(kinematics.mapping, stroke_limits(mechanism))
+    except DesignError:
+        return ()
+    return tuple(small_motion(mechanism, kinematics).cautions(single))
+
+
+def _catalogued(mechanism: Mechanism) -> Iterator[tuple[str, Any]]:
+    """Materials, parts, gauges, payloads, bodies and their outlines by address; parts of single copies too."""
+    for name in ("materials", "parts", "sensors", "payloads"):
+        yield from ((f"{name}.{key}", item) for key, item in getattr(mechanism, name).items())
+    for link in expand(mechanism).links.values():
+        if link.part != mechanism.parts[link.link.part]:
+            yield link.name, link.part
+    for where, body in _drawn_bodies(mechanism).items():
+        yield where, body
+        yield from ((f"{where}.solids.{name}", solid) for name, solid in body.solids.items())
+
+
+def _drawn_bodies(mechanism: Mechanism) -> dict[str, Body]:
+    """Bodies by address, those of units once."""
+    bodies = {f"bodies.{name}": body for name, body in mechanism.bodies.items()}
+    return bodies | {f"units.{unit}.bodies.{name}": body for unit, drawn in mechanism.units.items() for name, body in drawn.bodies.items()}
+
+
+def _disproportions(mechanism: Mechanism) -> Iterator[Finding]:
+    """Gravity that no place has; envelope, opening, inertias and points of another order of size than the stage."""
+    check = "Check the unit and the power of ten"
+    fall = float(np.max(np.linalg.norm(np.real(stack(mechanism.gravity)), axis=-1)))
+    if fall and not _LEAST_FALL <= fall <= _MOST_FALL:
+        yield Finding("gravity", f"{fall:.4g} m/s^2 is not plausible: the moon has 1.6, Jupiter 25; a factor of 10 more either way", check)
+    assembly = expand(mechanism)
+    yield from _far_links(assembly)
+    low, high, _ = bounds(outlines(assembly))
+    extent = float(np.max(np.linalg.norm(high - low, axis=-1)))
+    middle = 0.5 * (low + high)
+    points = {f"{body}.points.{name}": float(np.max(np.linalg.norm(at - middle, axis=-1))) for name, (body, at) in assembly.points.items()}
+    for where, size, least, most in (*_sizes(mechanism), *((name, distance, 0.0, 50.0) for name, distance in points.items())):
+        if extent and not least * extent <= size <= most * extent:
+            yield Finding(where, f"{show(size, LENGTH, digits=4)} is not plausible in a stage of {show(extent, LENGTH, digits=4)}", check)
+
+
+def _far_links(assembly: Assembly) -> Iterator[Finding]:
+    """Links farther from the platform than any stage is large."""
+    if PLATFORM not in assembly.bodies:
+        return
+    centre = assembly.bodies[PLATFORM].reference
+    for name, link in assembly.links.items():
+        distance = float(np.max(np.linalg.norm(np.real(link.frame.position - centre), axis=-1)))
+        if distance > _FARTHEST:
+            what = f"it stands {distance:.4g} m from the platform, which is not plausible: stages measure a metre"
+            yield Finding(name, f"{what}; a factor of 10 more is let pass", "Check the unit and the power of ten")
+
+
+def _sizes(mechanism: Mechanism) -> Iterator[tuple[str, float, float, float]]:
+    """Lengths by address, and their plausible range in sizes of the stage; of an inertia the radius of gyration."""
+    for axis, side in zip("xyz", mechanism.envelope or (), strict=False):
+        yield f"envelope.{axis}", float(np.max(np.real(side))), 0.0, 50.0
+    if mechanism.opening is not None:
+        yield "opening.size", float(np.min(np.real(stack(mechanism.opening.size)))), 2e-3, np.inf
+    for where, item in (_drawn_bodies(mechanism) | {f"payloads.{name}": load for name, load in mechanism.payloads.items()}).items():
+        if item.mass is not None and item.inertia is not None and np.all(np.real(item.mass) > 0.0):
+            largest = np.real(np.max(np.stack(np.broadcast_arrays(item.inertia.xx, item.inertia.yy, item.inertia.zz)), axis=0))
+            yield f"{where}.inertia", float(np.max(np.sqrt(largest / np.real(item.mass)))), 0.0, 3.0
+
+
+def _overloaded(mechanism: Mechanism) -> tuple[Finding, ...]:
+    """Hinges beyond yield and stacks beyond their maximum load under weight, payloads and forces alone."""
+    try:
+        model = lumped(mechanism)
+    except DesignError:
+        return ()
+    found: list[Finding] = []
+    for judged in (_overstressed, _overpressed):
+        with suppress(DesignError):
+            found += judged(mechanism, model)
+    return tuple(found)
+
+
+def _overstressed(mechanism: Mechanism, model: LinearModel) -> Iterator[Finding]:
+    stress = hinge_stress(mechanism, model, StrokeLimits((), np.zeros(0), np.zeros(0)))
+    safety = np.nan_to_num(np.real(stress.safety).reshape(-1, len(stress.links))[0], nan=np.inf)
+    if np.min(safety, initial=np.inf) < 1.0:
+        what = f"weight, payloads and forces alone bring it to {1.0 / float(np.min(safety)):.3g} times its yield stress"
+        yield Finding(stress.weakest, what, "Check masses and forces, or make it stronger")
+
+
+def _overpressed(mechanism: Mechanism, model: LinearModel) -> Iterator[Finding]:
+    share = load_share(mechanism, model)
+    uses = np.real(share.usage(share.compression)).reshape(-1, len(share.actuators))[0]
+    for name, use in zip(share.actuators, uses, strict=True):
+        if use > 1.0:
+            what = f"weight, payloads and forces alone press on its stack with {use:.3g} times its maximum load"
+            yield Finding(name, what, "Check masses and forces, or take a stronger stack")
+
+
+def _points(mechanism: Mechanism) -> Iterator[Finding]:
+    """Masses without extent that nobody called a point."""
+    bodies = _drawn_bodies(mechanism)
+    loads = {f"payloads.{name}": load for name, load in mechanism.payloads.items()}
+    for where, item in (bodies | loads).items():
+        if item.mass is not None and np.any(np.real(item.mass) > 0.0) and item.inertia is None and not item.point:
+            size = float(np.max(np.real(item.mass)))
+            what = f"its {size:.4g} kg count as a point, without inertia: rotations come out too fast or have no mode"
+            yield Finding(where, what, 'State inertia = { xx = "...", yy = "...", zz = "..." } or an outline, or point = true if it is one')
+
+
+def _pulled(mechanism: Mechanism) -> tuple[Finding, ...]:
+    """Stacks in tension beyond what they bear; nothing where their forces are not known."""
+    try:
+        return tuple(load_share(mechanism, lumped(mechanism)).pulled(stroke_limits(mechanism).from_zero))
+    except DesignError:
+        return ()
+
+
+def _blockages(mechanism: Mechanism) -> tuple[Finding, ...]:
+    """Strokes that cannot move, or a platform that cannot; nothing where the ideal reading is refused, which tells why."""
+    try:
+        found = ideal(mechanism)
+    except DesignError:
+        return ()
+    if found.mobility or found.actuators:
+        return found.blockages
+    what = "its links hold it in all six freedoms: no ideal motion is left"
+    return (Finding(PLATFORM, what, "Free the freedoms of links that it is to move by"),)
+
+
+def reading_findings(mechanism: Mechanism) -> tuple[Finding, ...]:
+    """What keeps a sound description from being read: actuators without a path, a mechanism that gives way, unreadable requirements.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> reading_findings(double_triangle())
+    ()
+    """
+    found: list[Finding] = []
+    for read in (requirements, ideal, standing):
+        try:
+            read(mechanism)
+        except DesignError as error:
+            found += error.findings
+    return tuple(dict.fromkeys(found))
+
+
+def part_cautions(mechanism: Mechanism) -> tuple[Finding, ...]:
+    """Parts outside the range that beam theory was compared with.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> part_cautions(double_triangle())
+    ()
+    """
+    return tuple(_validity(mechanism))
+
+
+def _validity(mechanism: Mechanism) -> Iterator[Finding]:
+    shared = mechanism.parts
+    told: set[str] = set()
+    for link in expand(mechanism).links.values():
+        departs = link.part != shared[link.link.part]
+        where = link.name if departs else f"parts.{link.link.part}"
+        if where not in told:
+            told.add(where)
+            yield from validity(link.part, where).findings
+
+
+def _room(mechanism: Mechanism) -> tuple[Finding, ...]:
+    if mechanism.envelope is None and mechanism.opening is None:
+        return ()
+    try:
+        return room(mechanism).findings
+    except DesignError as error:
+        return error.findings

@@ -1,0 +1,158 @@
+"""The complete analysis of a stage: every analysis of one reading, as one value for reports and applications."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.analysis.attempt import Attempts
+from flexstage.analysis.budget import budget
+from flexstage.analysis.deflection import Deflection, deflection
+from flexstage.analysis.drift import Drift, drift
+from flexstage.analysis.error_budget import ErrorBudget
+from flexstage.analysis.judge import judge
+from flexstage.analysis.lost_motion import LostMotion, lost_motion
+from flexstage.analysis.modes import Modes, modes
+from flexstage.analysis.requirements import Sense, Subject, Verdict, requirements
+from flexstage.analysis.response import response, transmissibility
+from flexstage.analysis.standing import require_standing, standing
+from flexstage.analysis.statics import Statics, statics
+from flexstage.analysis.units import UnitResult, units
+from flexstage.analysis.workspace.buckling import Buckling, buckling
+from flexstage.analysis.workspace.stroke import stroke_limits
+from flexstage.analysis.workspace.workspace import Workspace, workspace
+from flexstage.base.number import Table
+from flexstage.mechanism.mechanism import PLATFORM, Mechanism
+from flexstage.models.ideal import ideal
+from flexstage.models.linear.frequency import Response
+from flexstage.models.linear.kinematics import Kinematics
+from flexstage.models.linear.model import LinearModel
+from flexstage.models.mapped import mapped
+from flexstage.models.theory import Reading
+
+__all__ = ["Analysis", "Reading", "analyse", "platform_modes", "read", "required_command"]
+
+_RIGID = "the ideal reading has no elasticity"
+_UNLUMPED = "this needs the lumped reading"
+_DRIFTLESS = "the error budget needs the drift"
+
+
+@dataclass(frozen=True, eq=False)
+class Analysis:
+    """All results of one reading of a stage; `None` where a reading or a stage does not give them, and `missing` says why, by field name.
+
+    `response` is that of the platform's twist and all gauges to the strokes, `transmissibility` that of the platform to the ground.
+    `deflection` under dead load, `buckling` under it and all strokes, drift, error budget, `units` (each distinct unit alone) and the
+    `verdicts` on the requirements are those of the lumped reading; all but the verdicts are missing for the others. The error budget is
+    that of the required strokes, or of all single-axis strokes at once, and of one kelvin.
+    """
+
+    mechanism: Mechanism
+    reading: Reading
+    kinematics: Kinematics
+    model: LinearModel | None
+    statics: Statics | None
+    deflection: Deflection | None
+    buckling: Buckling | None
+    lost_motion: LostMotion | None
+    modes: Modes | None
+    response: Response | None
+    transmissibility: Response | None
+    workspace: Workspace | None
+    drift: Drift | None
+    error_budget: ErrorBudget | None
+    units: Mapping[str, UnitResult] | None
+    verdicts: tuple[Verdict, ...]
+    missing: Mapping[str, str]
+
+
+def read(mechanism: Mechanism, reading: Reading) -> LinearModel | None:
+    """The linear model of an elastic reading; `None` for the ideal one. Refused where the drawn position does not hold its dead load.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> len(read(double_triangle(), Reading.MAPPED).coordinates)
+    6
+    """
+    if reading is Reading.IDEAL:
+        return None
+    if reading is Reading.LUMPED:
+        return standing(mechanism)
+    model = mapped(mechanism)
+    require_standing(mechanism)
+    return model
+
+
+def analyse(mechanism: Mechanism, reading: Reading = Reading.LUMPED) -> Analysis:
+    """Every analysis of one reading.
+
+    What a stage cannot give (an under-actuated one has no lost motion) is `None`, its reason in `missing`. Raises `DesignError` where
+    the reading itself is refused.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> round(float(analyse(double_triangle(), Reading.MAPPED).modes.frequencies[0]), 2)
+    110.91
+    """
+    verdicts = judge(mechanism)
+    kinematics = ideal(mechanism)
+    model = read(mechanism, reading)
+    attempt = Attempts()
+    lost = attempt.given("lost_motion", model, _RIGID, lambda known: lost_motion(kinematics, known))
+    seen = (PLATFORM, *kinematics.gauges)
+    command = required_command(mechanism)
+    reach = attempt.of("workspace", lambda: workspace(mechanism, kinematics, model, lost=lost, command=command))
+    hinged = model if reading is Reading.LUMPED else None
+    drifted = attempt.given("drift", hinged, _UNLUMPED, lambda known: drift(mechanism, known))
+    return Analysis(
+        mechanism=mechanism,
+        reading=reading,
+        kinematics=kinematics,
+        model=model,
+        statics=attempt.given("statics", model, _RIGID, statics),
+        deflection=attempt.given("deflection", hinged, _UNLUMPED, lambda known: deflection(mechanism, known)),
+        buckling=attempt.given("buckling", hinged, _UNLUMPED, lambda known: _buckling(mechanism, known, reach)),
+        lost_motion=lost,
+        modes=attempt.given("modes", model, _RIGID, lambda known: platform_modes(mechanism, known)),
+        response=attempt.given("response", model, _RIGID, lambda known: response(known, seen, kinematics.actuators)),
+        transmissibility=attempt.given("transmissibility", model, _RIGID, transmissibility),
+        workspace=reach,
+        drift=drifted,
+        error_budget=attempt.given("error_budget", drifted, _DRIFTLESS, lambda known: _errors(mechanism, command, reach, known)),
+        units=attempt.given("units", hinged, _UNLUMPED, lambda _: units(mechanism)),
+        verdicts=verdicts,
+        missing=Table(attempt.missing),
+    )
+
+
+def _buckling(mechanism: Mechanism, model: LinearModel, reach: Workspace | None) -> Buckling:
+    known = None if reach is None else reach.buckling
+    return buckling(mechanism, model, stroke_limits(mechanism).from_zero) if known is None else known
+
+
+def _errors(mechanism: Mechanism, command: Mapping[str, float] | None, reach: Workspace | None, drifted: Drift) -> ErrorBudget:
+    asked = command if command is not None or reach is None else reach.command
+    return budget(mechanism, asked or {}, temperature=1.0, drifted=drifted)
+
+
+def required_command(mechanism: Mechanism) -> Mapping[str, float] | None:
+    """The strokes that are required of the platform, as a box of commands by coordinate [m, rad]; `None` where none is.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> required_command(double_triangle())["z"]
+    0.00015
+    """
+    lines = (line for line in requirements(mechanism) if line.subject is Subject.STROKE and line.sense is Sense.AT_LEAST)
+    found = {line.name: line.limit for line in lines if line.point == PLATFORM}
+    return found or None
+
+
+def platform_modes(mechanism: Mechanism, model: LinearModel) -> Modes:
+    """Modes with the description's frequency limit for the platform's modes; without one, the largest shares of all modes.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> platform_modes(double_triangle(), mapped(double_triangle())).limit
+    1000.0
+    """
+    limit = mechanism.mode_limit
+    return modes(model, limit=np.inf if limit is None else float(np.max(limit)), count=min(6, len(model.coordinates)))

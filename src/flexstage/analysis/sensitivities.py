@@ -1,0 +1,213 @@
+"""Exact sensitivities of frequencies and gains to every number of a description.
+
+Derivatives of K, M and the gains are taken by complex step through the readings' own formulas, one batch axis a parameter; eigenvalue
+derivatives are analytic, d lambda = phi^T (dK - lambda dM) phi.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from flexstage.analysis.attempt import Attempts
+from flexstage.analysis.lost_motion import lost_motion
+from flexstage.analysis.modes import clusters
+from flexstage.analysis.standing import standing
+from flexstage.base.finding import Finding, nearest, require
+from flexstage.base.labelled import Matrix
+from flexstage.base.number import Array, Table
+from flexstage.mechanism.address import addresses, get, quantity_of, set_value
+from flexstage.mechanism.grammar import NumberNode
+from flexstage.mechanism.locate import locate
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.models.ideal import ideal
+from flexstage.models.linear.eigen import Eigen, eigen
+from flexstage.models.linear.model import Contributions, LinearModel
+from flexstage.models.lumped import lumped
+
+_STEP = 1e-20
+_CHUNK = 24
+
+
+@dataclass(frozen=True, eq=False)
+class Sensitivities:
+    """Derivatives of modes and gains with respect to P parameters at one design.
+
+    `frequency` (P, k) [Hz per SI unit of the parameter]: for the modes of a cluster it is the derivative of the cluster's mean. `clusters`
+    lists the groups of modes; `one_sided` gives per cluster the eigenvalues (P, c) of Phi^T (dK - lambda dM) Phi as frequency slopes,
+    each parameter alone (not to be added up over parameters). `gain` and `loss` (P, n) are those of each actuator; without actuators
+    (n = 0) where the strokes do not determine the platform. `missing` says what is not given, and why.
+    """
+
+    parameters: tuple[str, ...]
+    units: tuple[str, ...]
+    values: Array
+    frequencies: Array
+    frequency: Array
+    clusters: tuple[tuple[int, ...], ...]
+    one_sided: tuple[Array, ...]
+    actuators: tuple[str, ...]
+    gain: Array
+    loss: Array
+    missing: Mapping[str, str]
+    provenance: str
+
+    @property
+    def relative_frequency(self) -> Matrix:
+        """Relative change of each frequency per relative change of each parameter (P, k)."""
+        values = self.frequency * self.values[:, None] / self.frequencies
+        modes = tuple(f"mode {index + 1}" for index in range(values.shape[1]))
+        return Matrix(values, self.parameters, modes, "1")
+
+    @property
+    def relative_loss(self) -> Matrix:
+        """Change of each actuator's loss per relative change of each parameter (P, n)."""
+        return Matrix(self.loss * self.values[:, None], self.parameters, self.actuators, "1")
+
+
+def sensitivities(
+    mechanism: Mechanism, parameters: tuple[str, ...] | None = None, *, modes: int = 12, cluster: float = 1e-6
+) -> Sensitivities:
+    """Derivatives of the lowest `modes` frequencies and of all gains with respect to the addressed numbers (default: every one).
+
+    Modes closer than `cluster` (relative gap) are repeated: for them only the derivative of the mean is smooth. Where the strokes do not
+    determine the platform there are no gains: `missing` says so. Raises `DesignError` for unknown addresses and for those of anything
+    but a single number that the description states.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> found = sensitivities(double_triangle(), ("materials.steel.density",), modes=6)
+    >>> bool((found.relative_frequency.values < 0.0).all())  # heavier is slower
+    True
+    """
+    names = addresses(mechanism) if parameters is None else parameters
+    require(not_numbers(mechanism, names))
+    solved = eigen(standing(mechanism))
+    solved = Eigen(solved.values[:modes], solved.shapes[:, :modes])
+    groups = clusters(solved.values, cluster)
+    attempt = Attempts()
+    actuators = attempt.of("lost_motion", lambda: ideal(mechanism).mapping.rows) or ()
+    chunks = list(steppable(mechanism, names))
+    batches = (stepped(mechanism, tuple(names[position] for position in chunk)) for chunk in chunks)
+    pieces = [_piece(batch, len(chunk), (solved, groups), gains=bool(actuators)) for batch, chunk in zip(batches, chunks, strict=True)]
+    back = np.argsort([position for chunk in chunks for position in chunk])
+    slopes = [np.concatenate([piece[0][number] for piece in pieces])[back] for number in range(len(groups))]
+    losses = np.concatenate([piece[1] for piece in pieces])[back]
+    frequencies = np.sqrt(solved.values) / (2.0 * np.pi)
+    scale = 1.0 / (8.0 * np.pi**2 * frequencies)
+    mean = np.concatenate([np.repeat(slope.mean(axis=1, keepdims=True), slope.shape[1], axis=1) for slope in slopes], axis=1)
+    return Sensitivities(
+        parameters=names,
+        units=tuple(quantity_of(mechanism, name).si for name in names),
+        values=np.array([get(mechanism, name) for name in names]),
+        frequencies=frequencies,
+        frequency=mean * scale,
+        clusters=tuple(tuple(group) for group in groups),
+        one_sided=tuple(slope * scale[group[0]] for slope, group in zip(slopes, groups, strict=True)),
+        actuators=actuators,
+        gain=-losses,
+        loss=losses,
+        missing=Table(attempt.missing),
+        provenance=lumped(mechanism).provenance,
+    )
+
+
+def not_numbers(mechanism: Mechanism, names: tuple[str, ...]) -> Iterator[Finding]:
+    """Those addresses that are not a single number the description states.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> [str(each) for each in not_numbers(double_triangle(), ("bodies.platform.mass",))]
+    ['bodies.platform.mass: the description does not state it. State it, or choose another number.']
+    """
+    for name in names:
+        place = locate(mechanism, name)
+        if not isinstance(place.node, NumberNode):
+            inner = [each for each in addresses(mechanism) if each.startswith(f"{place.address}.")]
+            yield Finding(
+                name, "this is not a single number", f"Address one of its numbers. {nearest(name, inner)}" if inner else "Address a number"
+            )
+        elif get(mechanism, name) is None:
+            yield Finding(name, "the description does not state it", "State it, or choose another number")
+
+
+def departure(mechanism: Mechanism, name: str) -> int:
+    """What an address departs from: 0 nothing, 1 a part as all copies of a unit have it, 2 that as a single copy has it.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> [departure(double_triangle(), f"{place}.thickness") for place in ("parts.neck", "horizontal/front", "B1/front")]
+    [0, 1, 2]
+    """
+    return 0 if "/" not in name else 1 if name.partition("/")[0] in mechanism.units else 2
+
+
+def steppable(mechanism: Mechanism, names: tuple[str, ...]) -> Iterator[list[int]]:
+    """Positions of parameters that can be stepped together: a departure hides the number it departs from, so each level goes alone.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> list(steppable(double_triangle(), ("parts.neck.thickness", "horizontal/front.thickness", "materials.steel.young")))
+    [[0, 2], [1]]
+    """
+    level = [departure(mechanism, name) for name in names]
+    for wanted in range(3):
+        members = [position for position, found in enumerate(level) if found == wanted]
+        for start in range(0, len(members), _CHUNK):
+            yield members[start : start + _CHUNK]
+
+
+def stepped(mechanism: Mechanism, names: tuple[str, ...]) -> Mechanism:
+    """The description with one batch axis: design k has a tiny imaginary step in parameter k.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> stepped(double_triangle(), ("parts.neck.thickness",)).parts["neck"].thickness.real.round(9).tolist()
+    [0.00154]
+    """
+    result = mechanism
+    for number, name in enumerate(names):
+        values = np.full(len(names), get(mechanism, name), dtype=complex)
+        values[number] += 1j * _STEP
+        result = set_value(result, name, values)
+    return replace(result, requirements={})
+
+
+def _piece(batch: Mechanism, count: int, modes: tuple[Eigen, list[list[int]]], *, gains: bool) -> tuple[list[Array], Array]:
+    """Per cluster the slopes of lambda (p, c), and the derivative of every actuator's loss (p, n); n = 0 without `gains`."""
+    model = lumped(batch)
+    solved, groups = modes
+    slopes = [_slopes(model, solved, group, count) for group in groups]
+    if not gains:
+        return slopes, np.zeros((count, 0))
+    loss = lost_motion(ideal(batch), model).loss.values
+    diagonal = slope(np.diagonal(loss, axis1=-2, axis2=-1))
+    return slopes, np.broadcast_to(diagonal, (count, diagonal.shape[-1]))
+
+
+def _slopes(model: LinearModel, solved: Eigen, group: list[int], count: int) -> Array:
+    shapes = solved.shapes[:, group]
+    value = solved.values[group].mean()
+    change = projected(model.stiffness, shapes) - value * projected(model.inertia, shapes)
+    return np.linalg.eigvalsh(np.broadcast_to(change, (count, len(group), len(group))))
+
+
+def projected(contributions: Contributions, shapes: Array) -> Array:
+    """Phi^T dA Phi (p, k, k) of a stepped description's matrix, given as contributions and not formed, for shapes (n, k).
+
+    >>> from flexstage.models.linear.model import Contribution
+    >>> one = np.ones((1, 1))
+    >>> projected({"a": Contribution(one, one + 3e-20j)}, 2.0 * one).round(9).tolist()
+    [[12.0]]
+    """
+    total = np.zeros((shapes.shape[1], shapes.shape[1]))
+    for item in contributions.values():
+        seen = item.operator @ shapes
+        total = total + slope(np.swapaxes(seen, -1, -2) @ item.law @ seen)
+    return total
+
+
+def slope(values: Array) -> Array:
+    """Derivatives in the values of a stepped description.
+
+    >>> slope(np.array([1.0 + 2e-20j])).round(9).tolist()
+    [2.0]
+    """
+    return np.imag(values) / _STEP

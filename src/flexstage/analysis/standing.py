@@ -1,0 +1,71 @@
+"""Models of stages that stand: elastic results are given only where the drawn position is an equilibrium that holds."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+from flexstage.analysis.stability import Stability, stability
+from flexstage.analysis.workspace.stroke import stroke_limits
+from flexstage.base.finding import DesignError, require
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.models.linear.model import LinearModel
+from flexstage.models.lumped import lumped
+
+_CORNERS = 12
+"""Strokes of more actuators have too many corners."""
+
+
+def standing(mechanism: Mechanism) -> LinearModel:
+    """The lumped model of a stage whose dead load lets the drawn position stand; of a batch nothing is looked at.
+
+    Raises `DesignError` where the load factor of weight, payloads and forces is below 1.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> len(standing(parallelogram()).coordinates)
+    18
+    """
+    model, found = _under_load(mechanism)
+    if found is not None:
+        require(found.refusals)
+    return model
+
+
+def under_load(mechanism: Mechanism) -> Stability | None:
+    """Load factors of the dead load, strokes at rest; `None` of a batch."""
+    return _under_load(mechanism)[1]
+
+
+@lru_cache(maxsize=2)
+def _under_load(mechanism: Mechanism) -> tuple[LinearModel, Stability | None]:
+    """The lumped model and how it stands, kept for what else one command asks of the same description."""
+    model = lumped(mechanism)
+    return model, stability(mechanism, model) if model.stiffness_matrix.ndim == 2 else None
+
+
+def require_standing(mechanism: Mechanism) -> None:
+    """Refuse elastic results of a stage whose drawn position does not hold; where the lumped reading has no answer, nothing is said.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> require_standing(parallelogram())
+    """
+    try:
+        found = _under_load(mechanism)[1]
+    except DesignError:
+        return
+    if found is not None:
+        require(found.refusals)
+
+
+@lru_cache(maxsize=2)
+def load_factors(mechanism: Mechanism) -> Stability | None:
+    """Load factors of the whole stage over all strokes from no voltage; `None` where it has no elastic model.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> bool(load_factors(parallelogram()).worst > 100.0)
+    True
+    """
+    limits = stroke_limits(mechanism).from_zero
+    try:
+        return stability(mechanism, _under_load(mechanism)[0], limits if 0 < len(limits.actuators) <= _CORNERS else None)
+    except DesignError:
+        return None

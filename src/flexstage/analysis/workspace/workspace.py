@@ -1,0 +1,118 @@
+"""What a stage can reach and bear, as one value: strokes, forces, volts, stress, buckling, loads, gauges, room, error of the linear map."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from flexstage.analysis.attempt import Attempts
+from flexstage.analysis.lost_motion import LostMotion
+from flexstage.analysis.workspace.blocking import PlatformLine, StackLine, platform_lines, stack_lines
+from flexstage.analysis.workspace.buckling import Buckling, buckling
+from flexstage.analysis.workspace.drive import Drive, drive
+from flexstage.analysis.workspace.gauging import GaugeRange, PoseResolution, gauge_range, pose_resolution
+from flexstage.analysis.workspace.load import LoadShare, load_share
+from flexstage.analysis.workspace.map_error import MapError, linear_map_error
+from flexstage.analysis.workspace.polytope import Polytope, reachable
+from flexstage.analysis.workspace.room import Room, room
+from flexstage.analysis.workspace.strength import HingeStress, hinge_stress
+from flexstage.analysis.workspace.stroke import SingleAxis, StrokeLimits, Utilisation, single_axis, stroke_limits, utilisation
+from flexstage.base.number import Number, Table
+from flexstage.mechanism.expand import expand
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.models.ideal import ideal
+from flexstage.models.linear.kinematics import Kinematics
+from flexstage.models.linear.model import LinearModel
+
+_RIGID = "the ideal reading has no elasticity"
+_HINGELESS = "this reading knows no single hinges: use the lumped one"
+
+
+@dataclass(frozen=True, eq=False)
+class Workspace:
+    """The workspace of one design; `None` where reading or stage do not give a result, and `missing` says why, by field name.
+
+    `single` are ideal strokes, `corrected` those with lost motion corrected by command. `corner` is what the box `command` of motions (half
+    widths by coordinate, all at once) asks of the actuators, `gauges` what it asks of the gauges. Stress, buckling and loads count from the
+    stage relaxed without voltage, over all strokes and under dead load.
+    """
+
+    command: Mapping[str, Number]
+    limits: StrokeLimits
+    single: SingleAxis
+    corrected: SingleAxis | None
+    corner: Utilisation | None
+    polytope: Polytope | None
+    drive: Drive | None
+    map_error: MapError | None
+    gauges: GaugeRange | None
+    resolution: PoseResolution | None
+    room: Room | None
+    platform_lines: PlatformLine | None
+    stack_lines: StackLine | None
+    stress: HingeStress | None
+    buckling: Buckling | None
+    loads: LoadShare | None
+    missing: Mapping[str, str]
+
+
+def workspace(
+    mechanism: Mechanism,
+    kinematics: Kinematics,
+    model: LinearModel | None,
+    *,
+    lost: LostMotion | None = None,
+    command: Mapping[str, Number] | None = None,
+) -> Workspace:
+    """Everything about the workspace that a reading gives. One design; `command` absent: all single-axis strokes at once.
+
+    Raises `DesignError` where the strokes do not determine the platform.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.models.ideal import ideal
+    >>> stage = double_triangle()
+    >>> (1e6 * workspace(stage, ideal(stage), None).single.symmetric[:3]).round(1).tolist()
+    [75.0, 86.6, 300.0]
+    """
+    attempt, limits, mapping = Attempts(), stroke_limits(mechanism), kinematics.mapping
+    single = single_axis(mapping, limits, provenance=kinematics.provenance)
+    asked = (
+        command if command is not None else {name: float(value) for name, value in zip(single.coordinates, single.symmetric, strict=True)}
+    )
+    hinged = model if model is not None and set(expand(mechanism).links) <= set(model.stiffness) else None
+    unloaded = limits.from_zero
+    return Workspace(
+        command=Table(asked),
+        limits=limits,
+        single=single,
+        corrected=attempt.given(
+            "corrected", lost, _RIGID, lambda known: single_axis(known.correction, limits, provenance=known.provenance)
+        ),
+        corner=attempt.of("corner", lambda: utilisation(mapping, limits, asked, provenance=kinematics.provenance)),
+        polytope=attempt.of("polytope", lambda: reachable(mapping, limits, provenance=kinematics.provenance)),
+        drive=attempt.of("drive", lambda: drive(mechanism)),
+        map_error=attempt.of("map_error", lambda: linear_map_error(mechanism, kinematics, limits)),
+        gauges=attempt.of("gauges", lambda: gauge_range(mechanism, kinematics, asked)),
+        resolution=attempt.of("resolution", lambda: pose_resolution(mechanism, kinematics)),
+        room=attempt.of("room", lambda: room(mechanism)),
+        platform_lines=attempt.given("platform_lines", model, _RIGID, lambda known: platform_lines(mapping, known, limits)),
+        stack_lines=attempt.given("stack_lines", hinged, _HINGELESS, lambda known: stack_lines(mechanism, known)),
+        stress=attempt.given("stress", hinged, _HINGELESS, lambda known: hinge_stress(mechanism, known, unloaded)),
+        buckling=attempt.given("buckling", hinged, _HINGELESS, lambda known: buckling(mechanism, known, unloaded)),
+        loads=attempt.given("loads", hinged, _HINGELESS, lambda known: load_share(mechanism, known)),
+        missing=Table(attempt.missing),
+    )
+
+
+def all_strokes(mechanism: Mechanism) -> Mapping[str, float]:
+    """The ideal single-axis strokes as a box of commands by coordinate [m, rad].
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> round(1e6 * all_strokes(double_triangle())["z"], 6)
+    300.0
+    """
+    return _symmetric(single_axis(ideal(mechanism).mapping, stroke_limits(mechanism)))
+
+
+def _symmetric(single: SingleAxis) -> dict[str, float]:
+    return {name: float(value) for name, value in zip(single.coordinates, single.symmetric, strict=True)}

@@ -1,0 +1,51 @@
+"""The control wing: from reference command to nanometres."""
+
+from flexstage.base.lazy import lazily
+
+HOMES = {
+    "system": "System",
+    "electronics": "AmplifierSettings GaugeSettings Hardware hardware",
+    "plants": "Plant plant",
+    "reduction": "reduced",
+    "closed": "Cut Loop loop",
+    "stability": "verdict",
+    "stability_margins": "bandwidths crosstalk margins peaks",
+    "noise": "noise_budget",
+    "exchange": "from_control to_control",
+    "controllers.pi": "PI",
+    "controllers.pid": "PID",
+    "controllers.resonant": "IntegralResonant",
+    "controllers.notch": "notch_of_mode",
+    "controllers.loops": "actuator_loops modal_loops platform_loops",
+    "controllers.decentralised": "Decentralised",
+    "tuning.goal": "Goal",
+    "trajectory.step": "Step",
+    "trajectory.raster": "Raster",
+    "trajectory.spiral": "Spiral",
+    "trajectory.sine": "Sine",
+    "trajectory.path": "reference",
+    "simulation.machine": "machine",
+    "simulation.run": "simulate",
+    "simulation.result": "step_figures tracking",
+    "hysteresis.prandtl_ishlinskii": "PrandtlIshlinskii",
+    "hysteresis.envelope": "Envelope",
+    "hysteresis.inverse": "hysteresis_inverse",
+    "hysteresis.bouc_wen": "BoucWen bouc_wen",
+    "hysteresis.preisach": "Preisach preisach",
+    "hysteresis.creep": "Creep LogCreep exponentials",
+    "hysteresis.creep_record": "identify_creep",
+    "hysteresis.identify": "identify_hysteresis",
+    "hysteresis.stack": "StackHysteresis dump_hysteresis load_hysteresis stack_hysteresis",
+    "hysteresis.stack_test": "Channels StackTest stack_test",
+    "study.choices": "Axes Axis Compensation ControllerKind Criterion Notching StackKind",
+    "study.setup": (
+        "Amplifying Controlling FileMotion Floor Gauging HystereticStacks LoopSetup Motion NotchAt RasterMotion Shaking "
+        "SineMotion SpiralMotion StepMotion"
+    ),
+    "study.file": "load_setup",
+    "study.floor": "criterion_spectrum",
+    "study.study": "LoopStudy loop_study",
+    "report": "loop_report",
+    "export.files": "write_controller write_fmu write_plant",
+}
+__getattr__, __dir__ = lazily(__name__, HOMES)

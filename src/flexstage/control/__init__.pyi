@@ -1,0 +1,169 @@
+from flexstage.control.closed import (
+    Cut as Cut,
+    Loop as Loop,
+    loop as loop,
+)
+from flexstage.control.controllers.decentralised import (
+    Decentralised as Decentralised,
+)
+from flexstage.control.controllers.loops import (
+    actuator_loops as actuator_loops,
+    modal_loops as modal_loops,
+    platform_loops as platform_loops,
+)
+from flexstage.control.controllers.notch import (
+    notch_of_mode as notch_of_mode,
+)
+from flexstage.control.controllers.pi import (
+    PI as PI,
+)
+from flexstage.control.controllers.pid import (
+    PID as PID,
+)
+from flexstage.control.controllers.resonant import (
+    IntegralResonant as IntegralResonant,
+)
+from flexstage.control.electronics import (
+    AmplifierSettings as AmplifierSettings,
+    GaugeSettings as GaugeSettings,
+    Hardware as Hardware,
+    hardware as hardware,
+)
+from flexstage.control.exchange import (
+    from_control as from_control,
+    to_control as to_control,
+)
+from flexstage.control.export.files import (
+    write_controller as write_controller,
+    write_fmu as write_fmu,
+    write_plant as write_plant,
+)
+from flexstage.control.hysteresis.bouc_wen import (
+    BoucWen as BoucWen,
+    bouc_wen as bouc_wen,
+)
+from flexstage.control.hysteresis.creep import (
+    Creep as Creep,
+    LogCreep as LogCreep,
+    exponentials as exponentials,
+)
+from flexstage.control.hysteresis.creep_record import (
+    identify_creep as identify_creep,
+)
+from flexstage.control.hysteresis.envelope import (
+    Envelope as Envelope,
+)
+from flexstage.control.hysteresis.identify import (
+    identify_hysteresis as identify_hysteresis,
+)
+from flexstage.control.hysteresis.inverse import (
+    hysteresis_inverse as hysteresis_inverse,
+)
+from flexstage.control.hysteresis.prandtl_ishlinskii import (
+    PrandtlIshlinskii as PrandtlIshlinskii,
+)
+from flexstage.control.hysteresis.preisach import (
+    Preisach as Preisach,
+    preisach as preisach,
+)
+from flexstage.control.hysteresis.stack import (
+    StackHysteresis as StackHysteresis,
+    dump_hysteresis as dump_hysteresis,
+    load_hysteresis as load_hysteresis,
+    stack_hysteresis as stack_hysteresis,
+)
+from flexstage.control.hysteresis.stack_test import (
+    Channels as Channels,
+    StackTest as StackTest,
+    stack_test as stack_test,
+)
+from flexstage.control.noise import (
+    noise_budget as noise_budget,
+)
+from flexstage.control.plants import (
+    Plant as Plant,
+    plant as plant,
+)
+from flexstage.control.reduction import (
+    reduced as reduced,
+)
+from flexstage.control.report import (
+    loop_report as loop_report,
+)
+from flexstage.control.simulation.machine import (
+    machine as machine,
+)
+from flexstage.control.simulation.result import (
+    step_figures as step_figures,
+    tracking as tracking,
+)
+from flexstage.control.simulation.run import (
+    simulate as simulate,
+)
+from flexstage.control.stability import (
+    verdict as verdict,
+)
+from flexstage.control.stability_margins import (
+    bandwidths as bandwidths,
+    crosstalk as crosstalk,
+    margins as margins,
+    peaks as peaks,
+)
+from flexstage.control.study.choices import (
+    Axes as Axes,
+    Axis as Axis,
+    Compensation as Compensation,
+    ControllerKind as ControllerKind,
+    Criterion as Criterion,
+    Notching as Notching,
+    StackKind as StackKind,
+)
+from flexstage.control.study.file import (
+    load_setup as load_setup,
+)
+from flexstage.control.study.floor import (
+    criterion_spectrum as criterion_spectrum,
+)
+from flexstage.control.study.setup import (
+    Amplifying as Amplifying,
+    Controlling as Controlling,
+    FileMotion as FileMotion,
+    Floor as Floor,
+    Gauging as Gauging,
+    HystereticStacks as HystereticStacks,
+    LoopSetup as LoopSetup,
+    Motion as Motion,
+    NotchAt as NotchAt,
+    RasterMotion as RasterMotion,
+    Shaking as Shaking,
+    SineMotion as SineMotion,
+    SpiralMotion as SpiralMotion,
+    StepMotion as StepMotion,
+)
+from flexstage.control.study.study import (
+    LoopStudy as LoopStudy,
+    loop_study as loop_study,
+)
+from flexstage.control.system import (
+    System as System,
+)
+from flexstage.control.trajectory.path import (
+    reference as reference,
+)
+from flexstage.control.trajectory.raster import (
+    Raster as Raster,
+)
+from flexstage.control.trajectory.sine import (
+    Sine as Sine,
+)
+from flexstage.control.trajectory.spiral import (
+    Spiral as Spiral,
+)
+from flexstage.control.trajectory.step import (
+    Step as Step,
+)
+from flexstage.control.tuning.goal import (
+    Goal as Goal,
+)
+
+HOMES: dict[str, str]

@@ -1,0 +1,174 @@
+"""Compensation of lost motion and dead load in open loop: static gains and strokes, and the error that is left with and without them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.analysis.lost_motion import LostMotion
+from flexstage.base.finding import refuse
+from flexstage.base.labelled import Matrix, ratio_units
+from flexstage.base.number import Array
+from flexstage.models.linear.kinematics import Kinematics
+from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
+
+
+@dataclass(frozen=True, eq=False)
+class Compensation:
+    """What a pose is commanded by: strokes a = `gains` xi + `offset`.
+
+    `gains` (n, f) are strokes by coordinate, R_a or those that correct lost motion; `offset` (n,) [m] the strokes that hold up loads.
+    `provenance` says by which reading.
+    """
+
+    gains: Matrix
+    offset: Array
+    provenance: str
+
+    def strokes(self, poses: Array) -> Array:
+        """Strokes (..., n) [m] for poses (..., f) [m, rad]."""
+        return np.asarray(poses) @ self.gains.values.T + self.offset
+
+
+def uncompensated(kinematics: Kinematics) -> Compensation:
+    """The strokes of the ideal kinematics alone, a = R_a xi (Eq. 13 of Shin & Moon).
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.models.ideal import ideal
+    >>> uncompensated(ideal(parallelogram())).strokes(np.array([2e-6])).tolist()
+    [2e-06]
+    """
+    return Compensation(kinematics.mapping, np.zeros(len(kinematics.actuators)), kinematics.provenance)
+
+
+def compensated(lost: LostMotion, kinematics: Kinematics, deflection: Array | None = None) -> Compensation:
+    """Gains that correct lost motion and, with the platform's `deflection` (6,) under loads, the strokes that take it back.
+
+    a = (R_a V^+ T)^-1 R_a (xi - V^+ C w): Eq. 11 of Shin & Moon turned round, its load term included; C w is the twist of the platform's
+    reference point with all strokes zero (`analysis.deflection`, or a statics' compliance times a wrench). What a load does outside the
+    ideal motions no stroke takes back. Linear; raises `DesignError` for a deflection that is no twist.
+
+    >>> from flexstage.analysis.lost_motion import lost_motion
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.models.ideal import ideal
+    >>> from flexstage.models.lumped import lumped
+    >>> stage = parallelogram()
+    >>> lost = lost_motion(ideal(stage), lumped(stage))
+    >>> found = compensated(lost, ideal(stage), np.array([1e-6, 0, 0, 0, 0, 0]))
+    >>> round(float(found.strokes(np.array([1e-6]))[0]), 15)  # what the load does already needs no stroke
+    0.0
+    """
+    gains = lost.correction
+    if deflection is None:
+        return Compensation(gains, np.zeros(len(gains.rows)), lost.provenance)
+    twist = np.asarray(deflection)
+    if twist.shape != (6,):
+        raise refuse("deflection", f"it has the shape {twist.shape}", "Give the platform's twist of six components, of one design")
+    return Compensation(gains, -gains.values @ (kinematics.projection @ twist), lost.provenance)
+
+
+@dataclass(frozen=True, eq=False)
+class StaticError:
+    """What is missing at rest in open loop: `error` (f, f) commanded less reached, by coordinate reached (row) and commanded (column).
+
+    Its diagonal is each axis' own error, the rest crosstalk; `parasitic` (6, f) is the motion outside the ideal ones; `offset` (6,) the
+    twist that loads leave at a command of zero. `largest` is the largest motion missing per unit of command, rotations as lengths.
+    """
+
+    error: Matrix
+    parasitic: Matrix
+    offset: Array
+    largest: float
+    provenance: str
+
+    def of(self, command: Array) -> Array:
+        """Missing coordinates (..., f) [m, rad] of commanded poses (..., f), loads aside."""
+        return np.asarray(command) @ self.error.values.T
+
+
+def static_error(given: Compensation, kinematics: Kinematics, plant: Matrix, deflection: Array | None = None) -> StaticError:
+    """The error at rest of a compensation on a plant by any reading.
+
+    E = I - V^+ T G for the plant's `plant` = T (6, n), the platform's twist per stroke (`lost_motion(...).gain`, or `static_gain` of any
+    model); with G = R_a it is R_a^+ Lambda R_a, what the lost-motion analysis predicts. `deflection` (6,) is the plant's under the loads,
+    strokes held. Raises `DesignError` for a plant of other actuators.
+
+    >>> from flexstage.analysis.lost_motion import lost_motion
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.models.ideal import ideal
+    >>> from flexstage.models.lumped import lumped
+    >>> stage = double_triangle()
+    >>> kinematics, lost = ideal(stage), lost_motion(ideal(stage), lumped(stage))
+    >>> round(static_error(uncompensated(kinematics), kinematics, lost.gain).error.at("z", "z").item(), 3)
+    0.032
+    >>> static_error(compensated(lost, kinematics), kinematics, lost.gain).largest < 1e-9
+    True
+    """
+    if plant.columns != given.gains.rows or len(plant.rows) != len(COMPONENTS):
+        what = f"it has {len(plant.rows)} motions by {', '.join(plant.columns)}, the gains are for {', '.join(given.gains.rows)}"
+        raise refuse("plant", what, "Give the platform's twist by these actuators")
+    names, length = kinematics.coordinates, kinematics.length
+    reached = plant.values @ given.gains.values
+    error = np.eye(len(names)) - kinematics.projection @ reached
+    units = tuple(TWIST_UNITS[COMPONENTS.index(name)] for name in names)
+    left = np.zeros(6) if deflection is None else np.asarray(deflection)
+    return StaticError(
+        error=Matrix(error, names, names, ratio_units(units, units)),
+        parasitic=Matrix(reached - kinematics.motion @ (np.eye(len(names)) - error), COMPONENTS, names, ratio_units(TWIST_UNITS, units)),
+        offset=left + plant.values @ given.offset,
+        largest=_largest(kinematics.motion - reached, names, length),
+        provenance=f"gains by {given.provenance}",
+    )
+
+
+def _largest(missing: Array, names: tuple[str, ...], length: float) -> float:
+    """Largest entry of motions (6, f) with rotations as lengths."""
+    rows, columns = (np.array([length if name.startswith("r") else 1.0 for name in group]) for group in (COMPONENTS, names))
+    return float(np.max(np.abs(missing * rows[:, None] / columns), initial=0.0))
+
+
+def finite_error(given: Compensation, kinematics: Kinematics, plant: Matrix, poses: Array, ideal: Array) -> Array:
+    """What is missing (..., f) where strokes are finite: commanded `poses` (..., f) less what an elastic stage reaches.
+
+    `ideal` (..., 6) are the platform's finite poses under the strokes `given.strokes(poses)` by the ideal stage (`forward_kinematics`).
+    What they have beyond the linear J a is added to the elastic T a: reached = V^+ (T a + p(a) - J a). First order in compliance and second
+    and higher in strokes; their product is left out.
+
+    >>> from flexstage.analysis.lost_motion import lost_motion
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.models.finite import forward_kinematics
+    >>> from flexstage.models.ideal import ideal
+    >>> from flexstage.models.lumped import lumped
+    >>> stage = parallelogram()
+    >>> lost, poses = lost_motion(ideal(stage), lumped(stage)), np.array([[50e-6]])
+    >>> given = compensated(lost, ideal(stage))
+    >>> moved = forward_kinematics(stage, ideal(stage), given.strokes(poses)).pose.vector
+    >>> bool(np.abs(finite_error(given, ideal(stage), lost.gain, poses, moved)).max() < 1e-12)
+    True
+    """
+    strokes = given.strokes(poses)
+    beyond = np.asarray(ideal) - strokes @ kinematics.jacobian.T
+    return np.asarray(poses) - (strokes @ plant.values.T + beyond) @ kinematics.projection.T
+
+
+def finite_strokes(given: Compensation, kinematics: Kinematics, ideal: Array) -> Array:
+    """Strokes (..., n) that compensate on top of finite ideal strokes (..., n) (`inverse_kinematics`), which follow curved paths.
+
+    a = G R_a^+ a_ideal + offset: with the gains G that correct lost motion, (R_a V^+ T)^-1 a_ideal. Raises `DesignError` where the number
+    of strokes does not fit.
+
+    >>> from flexstage.analysis.lost_motion import lost_motion
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.models.ideal import ideal
+    >>> from flexstage.models.lumped import lumped
+    >>> kinematics = ideal(double_triangle())
+    >>> given = compensated(lost_motion(kinematics, lumped(double_triangle())), kinematics)
+    >>> (1e6 * finite_strokes(given, kinematics, np.array([0, 0, 0, 50e-6, 50e-6, 50e-6]))[3:]).round(2).tolist()  # 50/(1 - 0.032)
+    [51.63, 51.63, 51.63]
+    """
+    ideal = np.asarray(ideal)
+    names = kinematics.actuators
+    if ideal.shape[-1] != len(names):
+        raise refuse("strokes", f"{ideal.shape[-1]} are given for {len(names)} actuators ({', '.join(names)})", "Give one for each")
+    return ideal @ (given.gains.values @ kinematics.inverse).T + given.offset

@@ -1,0 +1,166 @@
+"""Decentralised control: a law and notches for every loop, and the reference fed forward."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.base.finding import Finding, require
+from flexstage.base.number import Array
+from flexstage.control.controllers.law import Law
+from flexstage.control.controllers.loops import Loops
+from flexstage.control.controllers.notch import Notch
+from flexstage.control.coordinates import Coordinates
+from flexstage.control.system import System, connected, picked, renamed
+from flexstage.models.linear.model import Channel
+
+
+@dataclass(frozen=True, eq=False)
+class Decentralised:
+    """One law for each of the loops, each followed by its notches; strokes = drive times the loops' commands + `feedforward` reference.
+
+    `laws` and `notches` are as many as `loops` has names. `feedforward` (n, f) are the strokes by which the reference is fed forward: R_a,
+    or the gains that correct lost motion; absent, nothing. Raises `DesignError` where the numbers do not fit.
+    """
+
+    loops: Loops
+    laws: tuple[Law, ...]
+    notches: tuple[tuple[Notch, ...], ...] = ()
+    feedforward: Array | None = None
+
+    def __post_init__(self) -> None:
+        """Refuse numbers that do not fit."""
+        require(_findings(self))
+
+    def system(self, step: float | None = None) -> System:
+        """The controller as a system.
+
+        Inputs `error.<c>`, `pose.<c>` (only where a law wants it), `reference.<c>` (only with `feedforward`) and `applied.<actuator>`, what
+        it was given less what was commanded; outputs `command.<actuator>`. Raises `DesignError` for what cannot be sampled this slowly.
+
+        >>> from flexstage.control.controllers.pi import PI
+        >>> from flexstage.control.controllers.loops import platform_loops
+        >>> from flexstage.control.coordinates import coordinates
+        >>> from flexstage.cases.parallelogram import parallelogram
+        >>> from flexstage.models.ideal import ideal
+        >>> loops = platform_loops(coordinates(ideal(parallelogram())))
+        >>> found = Decentralised(loops, (PI(integral=200.0),), feedforward=np.eye(1)).system(1e-3)
+        >>> found.input_names, found.output_names
+        (('error.x', 'reference.x', 'applied.B'), ('command.B',))
+        """
+        from scipy.linalg import block_diag
+
+        chains = loop_systems(self, step)
+        loops, count = self.loops, len(chains)
+        A = np.asarray(block_diag(*(each.A for each in chains)))
+        size = sum(len(each.A) for each in chains)
+        entries = [_entry([each.B[:, [column]] for each in chains], size) for column in range(3)]
+        exit_ = _entry([each.C.T for each in chains], size).T
+        direct = [np.diag([each.D[0, column] for each in chains]) for column in range(3)]
+        # what was applied, seen by the loops; the loops' commands are less than the actuators' where these are redundant
+        seen = (loops.sense, loops.sense, np.linalg.pinv(loops.drive))
+        found = System(
+            A=np.reshape(A, (size, size)),
+            B=np.hstack([entry @ map_ for entry, map_ in zip(entries, seen, strict=True)]),
+            C=loops.drive @ exit_,
+            D=np.hstack([loops.drive @ matrix @ map_ for matrix, map_ in zip(direct, seen, strict=True)]),
+            inputs=(*channels("error", loops.coordinates), *channels("pose", loops.coordinates), *_strokes("applied", loops.coordinates)),
+            outputs=_strokes("command", loops.coordinates),
+            step=step,
+        )
+        poses = [f"pose.{name}" for name in loops.coordinates.names] if any(np.any(each.B[:, 1]) for each in chains) and count else []
+        return with_feedforward(_without_others(found, poses), self.feedforward, loops.coordinates)
+
+
+def loop_systems(control: Decentralised, step: float | None = None) -> tuple[System, ...]:
+    """Every loop's law and notches in a row: inputs `error`, `pose`, `applied`, output `command`, in metres.
+
+    >>> from flexstage.control.controllers.pi import PI
+    >>> from flexstage.control.controllers.loops import platform_loops
+    >>> from flexstage.control.coordinates import coordinates
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.models.ideal import ideal
+    >>> loops = platform_loops(coordinates(ideal(parallelogram())))
+    >>> found = loop_systems(Decentralised(loops, (PI(integral=200.0),), ((Notch(50.0),),)))
+    >>> round(abs(found[0].transfer(np.array([50.0]))[0, 0, 0]), 12).item()
+    0.0
+    """
+    notches = control.notches or ((),) * len(control.laws)
+    return tuple(_in_a_row(law, filters, step) for law, filters in zip(control.laws, notches, strict=True))
+
+
+def _in_a_row(law: Law, notches: tuple[Notch, ...], step: float | None) -> System:
+    found = law.system(step)
+    for each in notches:
+        found = connected([renamed(found, {"command": "raw"}), each.system(step)], {}, found.inputs, ["notched"])
+        found = renamed(found, {"notched": "command"})
+    return found
+
+
+def channels(kind: str, coordinates: Coordinates) -> tuple[Channel, ...]:
+    """Channels `kind.<c>` of all coordinates.
+
+    >>> from flexstage.control.coordinates import coordinates
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.models.ideal import ideal
+    >>> channels("error", coordinates(ideal(parallelogram())))
+    (Channel(name='error.x', unit='m'),)
+    """
+    return tuple(Channel(f"{kind}.{name}", unit) for name, unit in zip(coordinates.names, coordinates.units, strict=True))
+
+
+def _strokes(kind: str, coordinates: Coordinates) -> tuple[Channel, ...]:
+    return tuple(Channel(f"{kind}.{name}", "m") for name in coordinates.actuators)
+
+
+def with_feedforward(control: System, gains: Array | None, coordinates: Coordinates) -> System:
+    """The controller whose commands have `gains` (n, f) times the reference added; inputs `reference.<c>` before what was applied.
+
+    >>> from flexstage.control.coordinates import coordinates
+    >>> from flexstage.control.system import static
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.models.ideal import ideal
+    >>> found = static(np.zeros((1, 1)), (Channel("error.x", "m"),), (Channel("command.B", "m"),))
+    >>> with_feedforward(found, np.array([[1.03]]), coordinates(ideal(parallelogram()))).D.tolist()
+    [[0.0, 1.03]]
+    """
+    if gains is None:
+        return control
+    wanted = channels("reference", coordinates)
+    place = next((number for number, name in enumerate(control.input_names) if name.startswith("applied.")), len(control.inputs))
+    return System(
+        control.A,
+        np.insert(control.B, [place] * len(wanted), 0.0, axis=1),
+        control.C,
+        np.hstack([control.D[:, :place], np.asarray(gains), control.D[:, place:]]),
+        (*control.inputs[:place], *wanted, *control.inputs[place:]),
+        control.outputs,
+        control.step,
+    )
+
+
+def _without_others(control: System, poses: list[str]) -> System:
+    names = [name for name in control.input_names if not name.startswith("pose.") or name in poses]
+    return picked(control, names, control.output_names)
+
+
+def _entry(columns: list[Array], size: int) -> Array:
+    """Columns of the single loops, each in its own rows: (size, count)."""
+    found, row = np.zeros((size, len(columns))), 0
+    for number, column in enumerate(columns):
+        found[row : row + len(column), number] = column[:, 0]
+        row += len(column)
+    return found
+
+
+def _findings(control: Decentralised) -> Iterator[Finding]:
+    count = len(control.loops.names)
+    for kind, given in (("laws", control.laws), ("sets of notches", control.notches)):
+        if len(given) != count and (given or kind == "laws"):
+            yield Finding("controller", f"{len(given)} {kind} for {count} loops ({', '.join(control.loops.names)})", "Give one for each")
+    shape = (len(control.loops.coordinates.actuators), len(control.loops.coordinates.names))
+    if control.feedforward is not None and np.shape(control.feedforward) != shape:
+        what = f"the fed-forward gains are {np.shape(control.feedforward)}, where actuators and coordinates make them {shape}"
+        yield Finding("controller", what, "Give strokes by coordinate, as R_a")

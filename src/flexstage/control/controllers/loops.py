@@ -1,0 +1,138 @@
+"""In which coordinates single loops are closed: actuators, motions of the platform, modes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+
+import numpy as np
+
+from flexstage.analysis.modes import Modes
+from flexstage.base.finding import refuse
+from flexstage.base.number import Array, first_design
+from flexstage.control.coordinates import Coordinates
+from flexstage.spatial.frame import COMPONENTS
+
+_DEPENDENT = 1e-6
+
+
+class Structure(Enum):
+    """Coordinates of decentralised control."""
+
+    ACTUATOR = "actuator"
+    """One loop for each actuator, on its part R_a e of the error."""
+    PLATFORM = "platform"
+    """One loop for each motion of the platform, its command made strokes by R_a."""
+    MODAL = "modal"
+    """One loop for each mode of the platform."""
+
+
+@dataclass(frozen=True, eq=False)
+class Loops:
+    """k single loops: their errors are `sense` (k, f) times those of the coordinates, strokes `drive` (n, k) times their commands.
+
+    All loops are in metres: at rest a loop's pose is its command, but for lost motion.
+    """
+
+    structure: Structure
+    names: tuple[str, ...]
+    sense: Array
+    drive: Array
+    coordinates: Coordinates
+
+
+def actuator_loops(coordinates: Coordinates) -> Loops:
+    """One loop for each actuator: sense = R_a, drive = I.
+
+    Raises `DesignError` for more actuators than motions: an integrator each would be more than the gauges can hold.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.control.coordinates import coordinates
+    >>> from flexstage.models.ideal import ideal
+    >>> actuator_loops(coordinates(ideal(double_triangle()))).names
+    ('B1', 'B2', 'B3', 'B4', 'B5', 'B6')
+    """
+    actuators, motions = len(coordinates.actuators), len(coordinates.names)
+    if actuators > motions:
+        what = f"{actuators} actuators move {motions} coordinates: {actuators - motions} of their integrators would see no error"
+        raise refuse("actuator coordinates", what, "Close the loops in platform or modal coordinates")
+    return Loops(Structure.ACTUATOR, coordinates.actuators, coordinates.strokes, np.eye(actuators), coordinates)
+
+
+def platform_loops(coordinates: Coordinates, strokes: Array | None = None) -> Loops:
+    """One loop for each motion of the platform, rotations times the stage's length: sense = S, drive = R_a S^-1.
+
+    `strokes` (n, f) takes the place of R_a, for example the gains that correct lost motion.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.control.coordinates import coordinates
+    >>> from flexstage.models.ideal import ideal
+    >>> found = platform_loops(coordinates(ideal(double_triangle())))
+    >>> found.names, found.sense.diagonal().round(4).tolist()
+    (('x', 'y', 'z', 'rx', 'ry', 'rz'), [1.0, 1.0, 1.0, 0.1443, 0.1443, 0.1443])
+    """
+    drive = coordinates.strokes if strokes is None else strokes
+    return Loops(Structure.PLATFORM, coordinates.names, np.diag(coordinates.scale), drive / coordinates.scale, coordinates)
+
+
+def loop_modes(found: Modes, coordinates: Coordinates) -> tuple[int, ...]:
+    """The modes that a stage's loops hold: as many as coordinates, those that yield most under static load along them.
+
+    A mode's part of the platform's compliance is |S phi|^2 / omega^2 (rotations as lengths); modes are taken from the largest down, each
+    time by what is not motion of those taken before. Indices ascend. Raises `DesignError` where too few modes are given.
+
+    >>> from flexstage.control.coordinates import coordinates
+    >>> from flexstage.analysis.modes import modes
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.models.ideal import ideal
+    >>> from flexstage.models.lumped import lumped
+    >>> loop_modes(modes(lumped(parallelogram())), coordinates(ideal(parallelogram())))  # the first bobs up and down
+    (1,)
+    """
+    rows = [COMPONENTS.index(name) for name in coordinates.names]
+    scaled = np.real(first_design(found.platform_shapes, 2))[rows] * coordinates.scale[:, None]
+    left = scaled / first_design(found.frequencies, 1)
+    largest = float(np.max(np.linalg.norm(left, axis=0), initial=0.0))
+    chosen: list[int] = []
+    while len(chosen) < len(rows):
+        size = np.linalg.norm(left, axis=0)
+        index = int(np.argmax(size)) if size.size else -1
+        if index < 0 or size[index] <= _DEPENDENT * largest:
+            break
+        chosen.append(index)
+        direction = left[:, index] / size[index]
+        left = left - np.outer(direction, direction @ left)
+    if len(chosen) == len(rows):
+        return tuple(sorted(chosen))
+    what = f"{len(found.names)} modes show {len(chosen)} independent motions of the {len(rows)} coordinates"
+    raise refuse("modal coordinates", what, "Give more modes, or close the loops in platform coordinates")
+
+
+def modal_loops(coordinates: Coordinates, shapes: Array, strokes: Array | None = None) -> Loops:
+    """One loop for each of the platform's modes: sense = Phi^-1, drive = R_a Phi.
+
+    `shapes` (6, f) are the platform's twists in these modes, columns of `Modes.platform_shapes` (`loop_modes` picks them); their size does
+    not matter. With massless links the loops are exactly decoupled, each an oscillator of static gain 1 (Phi^T K Phi = Omega^2); what
+    units' own masses and lost motion leave, the crosstalk tells. `strokes` (n, f) takes the place of R_a. Raises `DesignError` for
+    shapes that do not span the coordinates.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.control.coordinates import coordinates
+    >>> from flexstage.models.ideal import ideal
+    >>> found = modal_loops(coordinates(ideal(parallelogram())), np.eye(6)[:, :1])
+    >>> found.names, found.sense.tolist()
+    (('mode1',), [[1.0]])
+    """
+    rows = [COMPONENTS.index(name) for name in coordinates.names]
+    scaled = np.asarray(shapes, dtype=float)[rows] * coordinates.scale[:, None]
+    if scaled.shape[1] != len(rows):
+        what = f"{scaled.shape[1]} modes are given for {len(rows)} coordinates ({', '.join(coordinates.names)})"
+        raise refuse("modal coordinates", what, "Give as many modes of the platform, for example the lowest in which it moves")
+    scaled = scaled / np.max(np.abs(scaled), axis=0)
+    values = np.linalg.svd(scaled, compute_uv=False)
+    if not values[-1] > _DEPENDENT * values[0]:
+        what = f"the platform's motions in these modes are not independent: the smallest singular value is {values[-1] / values[0]:.2g}"
+        raise refuse("modal coordinates", f"{what} of the largest", "Take other modes, or close the loops in platform coordinates")
+    drive = coordinates.strokes if strokes is None else strokes
+    names = tuple(f"mode{number + 1}" for number in range(len(rows)))
+    return Loops(Structure.MODAL, names, np.linalg.inv(scaled) * coordinates.scale, drive / coordinates.scale @ scaled, coordinates)

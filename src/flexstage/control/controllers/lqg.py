@@ -1,0 +1,242 @@
+"""Linear-quadratic control with integrators, and a Kalman filter that knows the gauges' noise."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.base.finding import Finding, refuse, require
+from flexstage.base.number import Array
+from flexstage.control.controllers.decentralised import channels, with_feedforward
+from flexstage.control.coordinates import Coordinates
+from flexstage.control.system import System
+from flexstage.models.linear.model import Channel
+
+_DIRECT = 1e-12
+
+
+@dataclass(frozen=True)
+class Weights:
+    """What the regulator minimises: the integral of w^2 |z|^2 + p |y|^2 + |u|^2, with z' = the loop's error.
+
+    y is the pose in lengths (rotations times the stage's length), u the strokes, w = 2 pi `bandwidth` [Hz], one for all
+    coordinates or one for each; p = `pose` [1]. Around a plant of gain 1 without dynamics the loop's gain passes 1 exactly at `bandwidth`
+    (u' = w e).
+    """
+
+    bandwidth: float | tuple[float, ...]
+    pose: float = 0.0
+
+
+@dataclass(frozen=True)
+class Disturbances:
+    """What the observer expects: `strokes` [m/Hz^(1/2)] white noise of every command, `gauges` the noise density of every reading."""
+
+    strokes: float
+    gauges: Mapping[str, float]
+
+
+@dataclass(frozen=True, eq=False)
+class LQG:
+    """Integral linear-quadratic control of a model: u = -K x^ + K_z z + N r.
+
+    Sampled: x^ = x- + M (y - C x-), x- = A x^ + B u, z+ = z + T e. Continuous: x^' = A x^ + B u + L (y - C x^ - D u), z' = e. `model` goes
+    from `command.<actuator>` to `pose.<c>`; `regulator` K (n, s), `integral` K_z (n, f), `observer` M or L (s, f), `feedforward` (n, f)
+    the strokes at rest for a reference, absent: nothing is fed forward. `tracking` [s] is the time in which integrators follow what was
+    applied; the observer knows it at once.
+    """
+
+    model: System
+    regulator: Array
+    integral: Array
+    observer: Array
+    coordinates: Coordinates
+    tracking: float
+    feedforward: Array | None = None
+
+    def system(self, step: float | None = None) -> System:
+        """The controller: inputs `error.<c>`, `pose.<c>`, `reference.<c>` (with `feedforward`), `applied.<actuator>`.
+
+        Raises `DesignError` for another step than the model's.
+        """
+        if step != self.model.step:
+            model, asked = (("continuous" if each is None else f"sampled every {each:g} s") for each in (self.model.step, step))
+            raise refuse("LQG", f"its model is {model}, and the controller is to be {asked}", "Design it on a model sampled alike")
+        found = _continuous(self) if step is None else _sampled(self)
+        return with_feedforward_states(found, self)
+
+
+def lqg(model: System, coordinates: Coordinates, weights: Weights, expected: Disturbances, feedforward: Array | None = None) -> LQG:
+    """The regulator of least cost and the observer of least variance for a `model` from commands to pose (`seen_plant`).
+
+    K and K_z from the algebraic Riccati equation of the model with the integrators of the error, the observer from that of the model with
+    its noises (Kwakernaak & Sivan, Linear Optimal Control Systems, 1972). One-sided densities G hold over the whole band, so that a sample
+    has the variance G^2/(2 T). Raises `DesignError` for gauges without noise and a model of which nothing can be controlled.
+
+    >>> from flexstage.control.controllers.seen import seen_plant
+    >>> from flexstage.control.example import integral_loop
+    >>> plant = integral_loop().plant
+    >>> found = lqg(seen_plant(plant), plant.coordinates, Weights(20.0), Disturbances(1e-9, {"S": 1e-12}))
+    >>> found.regulator.shape, found.integral.round(0).tolist()  # 2 pi 20
+    ((1, 8), [[125.0]])
+    """
+    require(_findings(model, coordinates, weights, expected))
+    return with_observer(model, coordinates, weights, observer_gain(model, coordinates, expected), feedforward)
+
+
+def with_observer(model: System, coordinates: Coordinates, weights: Weights, observer: Array, feedforward: Array | None = None) -> LQG:
+    """The regulator of least cost with an observer's gain that is known.
+
+    >>> from flexstage.control.controllers.seen import seen_plant
+    >>> from flexstage.control.example import integral_loop
+    >>> plant = integral_loop().plant
+    >>> with_observer(seen_plant(plant), plant.coordinates, Weights(20.0), np.zeros((8, 1))).tracking.__round__(5)  # 1/(2 pi 20)
+    0.00796
+    """
+    regulator, integral = _regulator(model, coordinates, weights)
+    tracking = 1.0 / (2.0 * np.pi * float(np.min(weights.bandwidth)))
+    return LQG(model, regulator, integral, observer, coordinates, tracking, feedforward)
+
+
+def _regulator(model: System, coordinates: Coordinates, weights: Weights) -> tuple[Array, Array]:
+    """K (n, s) and K_z (n, f)."""
+    from scipy.linalg import block_diag
+
+    states, count = len(model.A), len(model.outputs)
+    scale = np.diag(coordinates.scale)
+    sampled = model.step is not None
+    step = 1.0 if model.step is None else model.step
+    A = np.block([[model.A, np.zeros((states, count))], [-step * scale @ model.C, np.eye(count) * sampled]])
+    B = np.vstack([model.B, -step * scale @ model.D])
+    seen, rates = scale @ model.C, 2.0 * np.pi * np.broadcast_to(weights.bandwidth, (count,))
+    cross = weights.pose * np.vstack([seen.T @ scale @ model.D, np.zeros((count, len(model.inputs)))])
+    cost = np.asarray(block_diag(weights.pose * seen.T @ seen, np.diag(rates**2)))
+    effort = np.eye(len(model.inputs)) + weights.pose * (scale @ model.D).T @ (scale @ model.D)
+    solution = _riccati((A, B, cost, effort, cross), sampled=sampled)
+    if sampled:
+        gain = np.linalg.solve(effort + B.T @ solution @ B, B.T @ solution @ A + cross.T)
+    else:
+        gain = np.linalg.solve(effort, B.T @ solution + cross.T)
+    return gain[:, :states], -gain[:, states:] @ scale
+
+
+def observer_gain(model: System, coordinates: Coordinates, expected: Disturbances) -> Array:
+    """M (s, f) of the sampled filter, L of the continuous one; where D feels the strokes' noise, noises of state and output go together.
+
+    >>> from flexstage.control.controllers.seen import seen_plant
+    >>> from flexstage.control.example import integral_loop
+    >>> plant = integral_loop().plant
+    >>> observer_gain(seen_plant(plant), plant.coordinates, Disturbances(1e-9, {"S": 1e-12})).shape
+    (8, 1)
+    """
+    densities = np.array([expected.gauges[name] for name in coordinates.gauges])
+    weight = np.diag(coordinates.scale)
+    C, D = weight @ model.C, weight @ model.D
+    entry = model.B * expected.strokes
+    pose = weight @ coordinates.pose * densities
+    state, cross = entry @ entry.T, entry @ (D * expected.strokes).T
+    output = pose @ pose.T + expected.strokes**2 * D @ D.T
+    # Of the order 1e-20 m^2: made numbers of order one, which the solver's tolerances need. Only ratios of noises count, so that
+    # densities stand for the intensities G^2/2 of a continuous model and the variances G^2/(2 T) of a sampled one.
+    unit = np.trace(output) / len(output)
+    state, output, cross = state / unit, output / unit, cross / unit
+    solution = _riccati((model.A.T, C.T, state, output, cross), sampled=model.step is not None)
+    if model.step is None:
+        return np.linalg.solve(output, C @ solution + cross.T).T @ weight
+    return np.linalg.solve(output + C @ solution @ C.T, C @ solution).T @ weight
+
+
+def _riccati(parts: tuple[Array, Array, Array, Array, Array], *, sampled: bool) -> Array:
+    from scipy.linalg import solve_continuous_are, solve_discrete_are
+
+    A, B, cost, effort, cross = parts
+    try:
+        found = (solve_discrete_are if sampled else solve_continuous_are)(A, B, cost, effort, s=cross)
+    except np.linalg.LinAlgError as error:
+        what = "the Riccati equation has no stabilising solution: something that does not decay is neither moved nor seen"
+        raise refuse("LQG", what, "Keep fewer modes, or damp all of them") from error
+    return 0.5 * (found + found.T)
+
+
+def _sampled(control: LQG) -> System:
+    model, M, K, Z = control.model, control.observer, control.regulator, control.integral
+    states, count = len(model.A), len(model.outputs)
+    width = len(model.inputs)
+    step = float(model.step or 0.0)
+    correct = np.eye(states) - M @ model.C
+    output = np.hstack([-K @ correct, Z])
+    direct = np.hstack([np.zeros((width, count)), -K @ M, np.zeros((width, width))])
+    filtered = np.hstack([correct, np.zeros((states, count))])
+    entered = np.hstack([np.zeros((states, count)), M, np.zeros((states, width))])
+    applied = np.hstack([np.zeros((width, 2 * count)), np.eye(width)])
+    error = np.hstack([np.eye(count), np.zeros((count, count)), np.linalg.pinv(Z) / control.tracking])
+    A = np.vstack([model.A @ filtered + model.B @ output, np.hstack([np.zeros((count, states)), np.eye(count)])])
+    B = np.vstack([model.A @ entered + model.B @ (direct + applied), step * error])
+    return System(A, B, output, direct, *_ports(control), model.step)
+
+
+def _continuous(control: LQG) -> System:
+    model, L, K, Z = control.model, control.observer, control.regulator, control.integral
+    states, count, width = len(model.A), len(model.outputs), len(model.inputs)
+    output = np.hstack([-K, Z])
+    entry = model.B - L @ model.D
+    seen = np.hstack([model.A - L @ model.C, np.zeros((states, count))])
+    A = np.vstack([seen + entry @ output, np.zeros((count, states + count))])
+    error = np.hstack([np.eye(count), np.zeros((count, count)), np.linalg.pinv(Z) / control.tracking])
+    B = np.vstack([np.hstack([np.zeros((states, count)), L, entry]), error])
+    return System(A, B, output, np.zeros((width, 2 * count + width)), *_ports(control))
+
+
+def with_feedforward_states(control: System, given: LQG) -> System:
+    """The controller with the reference fed forward: strokes F r at rest and K x(F r) for the states they bring along.
+
+    >>> from flexstage.control.controllers.seen import seen_plant
+    >>> from flexstage.control.example import integral_loop
+    >>> plant = integral_loop().plant
+    >>> found = lqg(seen_plant(plant), plant.coordinates, Weights(20.0), Disturbances(1e-9, {"S": 1e-12}), np.eye(1))
+    >>> found.system(1e-4).input_names
+    ('error.x', 'pose.x', 'reference.x', 'applied.B')
+    """
+    if given.feedforward is None:
+        return control
+    model = given.model
+    rest = -model.A if model.step is None else np.eye(len(model.A)) - model.A
+    states = np.linalg.solve(rest, model.B)
+    gain = (np.eye(len(model.inputs)) + given.regulator @ states) @ given.feedforward
+    found = with_feedforward(control, gain, given.coordinates)
+    columns = [number for number, name in enumerate(found.input_names) if name.startswith("reference.")]
+    entry = found.B.copy()
+    # the observer knows the whole command
+    entry[: len(model.A), columns] += (model.B if model.step is not None else model.B - given.observer @ model.D) @ gain
+    return System(found.A, entry, found.C, found.D, found.inputs, found.outputs, found.step)
+
+
+def _ports(control: LQG) -> tuple[tuple[Channel, ...], tuple[Channel, ...]]:
+    coordinates = control.coordinates
+    applied = tuple(Channel(f"applied.{name}", "m") for name in coordinates.actuators)
+    commands = tuple(Channel(f"command.{name}", "m") for name in coordinates.actuators)
+    return (*channels("error", coordinates), *channels("pose", coordinates), *applied), commands
+
+
+def _findings(model: System, coordinates: Coordinates, weights: Weights, expected: Disturbances) -> Iterator[Finding]:
+    wanted = np.atleast_1d(weights.bandwidth)
+    if len(wanted) not in (1, len(coordinates.names)):
+        yield Finding("LQG", f"{len(wanted)} bandwidths for {len(coordinates.names)} coordinates", "Give one for all, or one for each")
+    if not 0.0 < np.min(wanted) <= np.max(wanted) < np.inf:
+        yield Finding("LQG", f"its bandwidth is {np.min(wanted):g} Hz", "Give a positive one")
+    elif model.step is not None and np.max(wanted) >= 0.5 / model.step:
+        what = f"its bandwidth of {np.max(wanted):g} Hz is not below half the sampling rate, {0.5 / model.step:g} Hz"
+        yield Finding("LQG", what, "Sample faster, or ask for less")
+    if not 0.0 <= weights.pose < np.inf:
+        yield Finding("LQG", f"the weight of the pose is {weights.pose:g}", "Give 0 or more")
+    if not 0.0 < expected.strokes < np.inf:
+        yield Finding("LQG", f"the strokes' noise is {expected.strokes:g} m/Hz^(1/2)", "State a positive density: what disturbs the stage")
+    for name in coordinates.gauges:
+        if not 0.0 < expected.gauges.get(name, 0.0) < np.inf:
+            what = "its noise density is not stated" if name not in expected.gauges else f"its noise density is {expected.gauges[name]:g}"
+            yield Finding(name, f"{what}: a gauge without noise would be trusted without limit", "State its noise density")
+    if model.step is not None and np.max(np.abs(model.D), initial=0.0) > _DIRECT:
+        what = f"the sampled model answers a command within the same sample (up to {np.max(np.abs(model.D)):.3g})"
+        yield Finding("LQG", what, "Give the loop a delay, or read the gauges before commanding")

@@ -1,0 +1,94 @@
+"""Notch filters, placed on a stage's modes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.base.finding import Finding, require
+from flexstage.control.sampling import bilinear
+from flexstage.control.system import System
+from flexstage.models.linear.model import Channel
+
+_WIDTH = 0.7
+_FAR = 0.1
+
+
+@dataclass(frozen=True)
+class Notch:
+    """N(s) = (s^2 + 2 d zeta w s + w^2) / (s^2 + 2 zeta w s + w^2): gain d = `depth` at w = 2 pi `frequency`, 1 far from it.
+
+    `damping` zeta is that of the poles: the gain is below 1/sqrt(2) over about 2 zeta of the frequency. A mode of ratio zeta_m is cancelled
+    by depth zeta_m / zeta, its poles replaced by those of the notch. Raises `DesignError` for numbers that cannot be.
+
+    >>> from flexstage.control.controllers.notch import Notch
+    >>> gains = Notch(frequency=110.9, depth=0.02).system().transfer(np.array([0.0, 110.9]))
+    >>> abs(gains.ravel()).round(12).tolist()
+    [1.0, 0.02]
+    """
+
+    frequency: float
+    depth: float = 0.0
+    damping: float = _WIDTH
+
+    def __post_init__(self) -> None:
+        """Refuse numbers that cannot be."""
+        where, found = f"notch at {self.frequency:g} Hz", []
+        if not 0.0 < self.frequency < np.inf:
+            found.append(Finding(where, "that is no frequency", "Give a positive one: that of a mode"))
+        if not 0.0 <= self.depth <= 1.0:
+            found.append(Finding(where, f"its depth is {self.depth:g}", "Give the gain that is left: 0 (all taken) to 1 (nothing)"))
+        if not 0.0 < self.damping < np.inf:
+            found.append(Finding(where, f"the damping of its poles is {self.damping:g}", "Give a positive ratio, for example 0.7"))
+        require(found)
+
+    def system(self, step: float | None = None) -> System:
+        """Input `raw`, output `notched`; with a step by Tustin's rule, prewarped: the gain at the notch is kept exactly.
+
+        Raises `DesignError` for a notch that is not below half the sampling rate.
+        """
+        omega = 2.0 * np.pi * self.frequency
+        change = 2.0 * (self.depth - 1.0) * self.damping * omega
+        A = np.array([[0.0, omega], [-omega, -2.0 * self.damping * omega]])
+        channels = (Channel("raw", "m"),), (Channel("notched", "m"),)
+        found = System(A, np.array([[0.0], [1.0]]), np.array([[0.0, change]]), np.eye(1), *channels)
+        if step is None:
+            return found
+        if self.frequency >= 0.5 / step:
+            what = f"half the sampling rate is {0.5 / step:g} Hz"
+            require([Finding(f"notch at {self.frequency:g} Hz", what, f"Sample above {2.0 * self.frequency:g} Hz, or leave the notch out")])
+        return bilinear(found, step, self.frequency)
+
+
+def notch_of_mode(frequency: float, ratio: float, damping: float = _WIDTH) -> Notch:
+    """The notch whose zeros cancel a mode of this `frequency` [Hz] and damping `ratio`: depth ratio / `damping`.
+
+    A mode better damped than the notch's poles needs none: its depth is then 1.
+
+    >>> notch_of_mode(110.9, 0.01).depth.__round__(4)
+    0.0143
+    """
+    return Notch(frequency, min(ratio / damping, 1.0), damping)
+
+
+def notch_findings(notches: Iterable[Notch], frequencies: Iterable[float]) -> list[Finding]:
+    """Notches that are on no mode: further than a tenth from all of `frequencies` [Hz], named with the modes on both sides.
+
+    >>> [str(each) for each in notch_findings([Notch(135.0)], [106.0, 106.0, 150.0])]
+    ['notch at 135 Hz: it is on no mode: between those at 106 Hz and 150 Hz. Place it on the one that limits the loop, or leave it out.']
+    """
+    modes = sorted(frequencies)
+    found = []
+    for each in notches:
+        if any(abs(mode / each.frequency - 1.0) <= _FAR for mode in modes):
+            continue
+        below = [mode for mode in modes if mode < each.frequency]
+        above = [mode for mode in modes if mode > each.frequency]
+        side = f"above the highest, {below[-1]:g} Hz" if below else "there are none"
+        if above:
+            side = f"between those at {below[-1]:g} Hz and {above[0]:g} Hz" if below else f"below the lowest, {above[0]:g} Hz"
+        advice = "Place it on the one that limits the loop, or leave it out"
+        found.append(Finding(f"notch at {each.frequency:g} Hz", f"it is on no mode: {side}", advice))
+    return found

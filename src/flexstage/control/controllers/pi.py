@@ -1,0 +1,61 @@
+"""Proportional and integral control."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.base.finding import Finding, require
+from flexstage.control.controllers.law import back_rate, gain_findings, law_system, slow_findings
+from flexstage.control.system import System
+
+
+@dataclass(frozen=True)
+class PI:
+    """C(s) = k_p + k_i / s from a loop's error [m] to its command [m]: `proportional` k_p [1], `integral` k_i [1/s].
+
+    Where an actuator saturates, the integrator follows what was applied within `tracking` T_t [s], x' = k_i e + (applied - commanded)/T_t
+    (back-calculation; Astrom and Haegglund, Advanced PID Control, 2006, section 3.5); absent, (1 + k_p)/k_i, the time constant of the
+    loop around a plant of gain 1, but at least one sample. Raises `DesignError` for negative gains.
+
+    >>> control = PI(proportional=0.5, integral=100.0)
+    >>> control.tracking_time, control.system().transfer(np.array([100.0 / (2.0 * np.pi)]))[0, 0, 0].round(12)  # 0.5 + 100/(100j)
+    (0.015, np.complex128(0.5-1j))
+    """
+
+    proportional: float = 0.0
+    integral: float = 0.0
+    tracking: float | None = None
+
+    def __post_init__(self) -> None:
+        """Refuse gains that cannot be."""
+        found = [*gain_findings("PI", {"proportional": self.proportional}), *gain_findings("PI", {"integral": self.integral}, "1/s")]
+        require([*found, *tracking_findings("PI", self.tracking)])
+
+    @property
+    def tracking_time(self) -> float:
+        """T_t [s]; infinite without an integral part."""
+        if self.tracking is not None:
+            return self.tracking
+        return (1.0 + self.proportional) / self.integral if self.integral else np.inf
+
+    def system(self, step: float | None = None) -> System:
+        """The law, as `Law` says; Tustin's rule with a step. Raises `DesignError` for samples slower than the tracking."""
+        require(slow_findings("PI", self.tracking, step))
+        direct = np.array([[self.proportional, 0.0, 0.0]])
+        if not self.integral:
+            return law_system((np.zeros((0, 0)), np.zeros((0, 3)), np.zeros((1, 0)), direct), step)
+        entry = np.array([[self.integral, 0.0, back_rate(self.tracking_time, step)]])
+        return law_system((np.zeros((1, 1)), entry, np.eye(1), direct), step)
+
+
+def tracking_findings(kind: str, tracking: float | None) -> list[Finding]:
+    """A tracking time that cannot be.
+
+    >>> [each.what for each in tracking_findings("PI", 0.0)]
+    ['tracking time is 0 s']
+    """
+    if tracking is None or tracking > 0.0:
+        return []
+    return [Finding(kind, f"tracking time is {tracking:g} s", "Give a positive time, or leave it out")]

@@ -1,0 +1,99 @@
+"""Integral resonant control: an integrator around a fed-through plant damps its resonance."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.base.finding import Finding, refuse, require
+from flexstage.control.controllers.law import back_rate, gain_findings, law_system, slow_findings
+from flexstage.control.system import System
+
+
+@dataclass(frozen=True)
+class IntegralResonant:
+    """u = Q(s) y + (k_t / s) e, Q(s) = k / (s + k d): the resonance is damped by positive feedback, an integrator tracks around it.
+
+    An integrator -k/s around the plant with feed-through G - d is the same as Q around the plant alone (Aphale, Fleming & Moheimani 2007;
+    Fleming, Aphale & Moheimani 2010). `gain` k [1/s], `feedthrough` d [1], positive here and subtracted, `tracking` k_t [1/s]. y is the
+    loop's pose [m], e its error, u its command. At rest Q is 1/d: stable only where d is above the plant's static gain. The integrator
+    follows what was applied within 1/k_t, or within `tracking_time` [s]. Raises `DesignError` for negative gains, and without feed-through.
+
+    >>> control = IntegralResonant(gain=1000.0, feedthrough=2.0, tracking=100.0)
+    >>> control.system().transfer(np.array([0.0001]))[0, 0, 1].real.round(6).item()  # 1/d at rest
+    0.5
+    """
+
+    gain: float
+    feedthrough: float
+    tracking: float = 0.0
+    tracking_time: float | None = None
+
+    def __post_init__(self) -> None:
+        """Refuse gains that cannot be."""
+        found = list(gain_findings("integral resonant control", {"gain": self.gain, "tracking": self.tracking}, "1/s"))
+        if not 0.0 < self.feedthrough < np.inf:
+            advice = "Give a positive one, above the plant's static gain: twice that is usual"
+            found.append(Finding("integral resonant control", f"its feed-through is {self.feedthrough:g}", advice))
+        require(found)
+
+    def system(self, step: float | None = None) -> System:
+        """The law, as `Law` says; Tustin's rule with a step. Raises `DesignError` for samples slower than its gains."""
+        pole = self.gain * self.feedthrough
+        require([*slow_findings("integral resonant control", self.tracking_time, step), *_sampling_findings(pole / (2.0 * np.pi), step)])
+        A, C = np.diag([-pole, 0.0]), np.ones((1, 2))
+        B = np.array([[0.0, self.gain, 0.0], [self.tracking, 0.0, self._back(step)]])
+        kept = [number for number, used in enumerate((self.gain, self.tracking)) if used]
+        return law_system((A[np.ix_(kept, kept)], B[kept], C[:, kept], np.zeros((1, 3))), step)
+
+    def _back(self, step: float | None) -> float:
+        if not self.tracking:
+            return 0.0
+        return back_rate(1.0 / self.tracking if self.tracking_time is None else self.tracking_time, step)
+
+
+def _sampling_findings(corner: float, step: float | None) -> list[Finding]:
+    if step is None or corner < 0.5 / step:
+        return []
+    what = f"its corner k d / (2 pi) = {corner:g} Hz is not below half the sampling rate, {0.5 / step:g} Hz"
+    return [Finding("integral resonant control", what, f"Sample above {2.0 * corner:g} Hz")]
+
+
+def resonant_damping(frequency: float, feedthrough: float, static: float = 1.0) -> float:
+    """The damping ratio that integral resonant control gives at most to an undamped mode at `frequency`: (w_p/w_z - 1)/2.
+
+    w_z = w_p sqrt(1 - g/d) are the zeros of the plant with feed-through, g = `static` its static gain (Namavar, Fleming & Aphale 2014). It
+    does not depend on the frequency but by w_p/w_z. Raises `DesignError` for a feed-through d that is not above g.
+
+    >>> round(resonant_damping(110.9, feedthrough=2.0), 4)  # (sqrt(2) - 1)/2
+    0.2071
+    """
+    zeros = _zeros(frequency, feedthrough, static)
+    return 0.5 * (frequency / zeros - 1.0)
+
+
+def resonant(frequency: float, damping: float, static: float = 1.0, tracking: float = 0.0) -> IntegralResonant:
+    """The gains that give an undamped mode at `frequency` [Hz] this `damping` ratio, the most for their feed-through.
+
+    d = g (1 + 2 zeta)^2 / ((1 + 2 zeta)^2 - 1), k d = w_p sqrt(w_p/w_z) (Namavar, Fleming & Aphale 2014); the damped pair is at sqrt(w_p
+    w_z). g = `static` is the plant's static gain, `tracking` [1/s] as for the law. Raises `DesignError` for numbers that are not positive.
+
+    >>> control = resonant(100.0, damping=0.5 * (2.0**0.5 - 1.0))
+    >>> round(control.feedthrough, 9), round(control.gain * control.feedthrough / (200.0 * np.pi), 4)  # 2, and 2^(1/4)
+    (2.0, 1.1892)
+    """
+    numbers = {"frequency": frequency, "damping": damping, "static gain": static}
+    wrong = [name for name, value in numbers.items() if not value > 0.0]
+    require(Finding("resonance", f"its {name} is {numbers[name]:g}", "Give a positive number") for name in wrong)
+    ratio = 1.0 + 2.0 * damping
+    feedthrough = static * ratio**2 / (ratio**2 - 1.0)
+    return IntegralResonant(2.0 * math.pi * frequency * math.sqrt(ratio) / feedthrough, feedthrough, tracking)
+
+
+def _zeros(frequency: float, feedthrough: float, static: float) -> float:
+    if feedthrough <= static:
+        what = f"a feed-through of {feedthrough:g} is not above the plant's static gain {static:g}"
+        raise refuse("integral resonant control", what, f"Give more than {static:g}: the positive feedback would run away")
+    return frequency * math.sqrt(1.0 - static / feedthrough)

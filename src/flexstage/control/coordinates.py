@@ -1,0 +1,96 @@
+"""Coordinates of a loop: pose from gauge readings, and strokes from a commanded pose."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.base.finding import Finding, require
+from flexstage.base.number import Array, first_design
+from flexstage.models.linear.kinematics import Kinematics
+from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
+
+_MISSING = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class Coordinates:
+    """The f coordinates a loop holds: a stage's ideal motions xi (x ... rz, or those of them it has).
+
+    `pose` (f, g) gives xi from gauge readings, (R_s V)^+: R_s^-1 of Eq. 14 of Shin & Moon for six gauges, least squares for more.
+    `strokes` (n, f) gives strokes from xi, R_a of Eq. 13; `back` (f, n) is its (least-squares) inverse. `units` are m or rad, `length` [m]
+    makes rotations comparable with translations.
+    """
+
+    names: tuple[str, ...]
+    units: tuple[str, ...]
+    actuators: tuple[str, ...]
+    gauges: tuple[str, ...]
+    pose: Array
+    strokes: Array
+    back: Array
+    length: float
+
+    @property
+    def scale(self) -> Array:
+        """Factors (f,) that make all coordinates lengths: 1, and `length` for rotations."""
+        return np.array([1.0 if unit == "m" else self.length for unit in self.units])
+
+
+def coordinates(kinematics: Kinematics) -> Coordinates:
+    """The coordinates of a stage's loop (one design).
+
+    Raises `DesignError` where the gauges do not tell the pose or the actuators cannot make it, with the directions that are missing.
+
+    >>> from flexstage.cases.double_triangle import SM_REF_A, double_triangle
+    >>> from flexstage.models.ideal import ideal
+    >>> found = coordinates(ideal(double_triangle(SM_REF_A)))
+    >>> found.names, found.pose[2, 3:].round(6).tolist()
+    (('x', 'y', 'z', 'rx', 'ry', 'rz'), [0.333333, 0.333333, 0.333333])
+    """
+    units = tuple(TWIST_UNITS[COMPONENTS.index(name)] for name in kinematics.coordinates)
+    scale = np.array([1.0 if unit == "m" else kinematics.length for unit in units])
+    strokes = np.real(first_design(kinematics.actuation, 2))
+    seen = np.real(first_design(kinematics.sensing @ kinematics.motion, 2))
+    require(
+        [
+            *_missing("actuators", strokes / scale, kinematics, ("make", "Add actuators, or lock the freedoms they cannot move")),
+            *_missing("gauges", seen / scale, kinematics, ("tell", "Add gauges, or turn them so that every motion changes a reading")),
+        ]
+    )
+    return Coordinates(
+        names=kinematics.coordinates,
+        units=units,
+        actuators=kinematics.actuators,
+        gauges=kinematics.gauges,
+        pose=np.linalg.pinv(seen / scale) / scale[:, None],
+        strokes=strokes,
+        back=np.linalg.pinv(strokes / scale) / scale[:, None],
+        length=kinematics.length,
+    )
+
+
+def _missing(kind: str, map_: Array, kinematics: Kinematics, words: tuple[str, str]) -> list[Finding]:
+    """Motions (columns, all lengths) that a map does not see, by the right null space."""
+    verb, advice = words
+    count = len(kinematics.coordinates)
+    if not count:
+        return [Finding("loop", "the platform has no ideal motion to be controlled", "Free the freedoms that its links should have")]
+    _, values, rows = np.linalg.svd(np.vstack([map_, np.zeros((count, count))]))
+    lost = rows[values[:count] <= _MISSING * max(values[0], _MISSING)]
+    if not len(lost):
+        return []
+    shown = "; ".join(_direction(row, kinematics) for row in lost)
+    number = len(kinematics.actuators if kind == "actuators" else kinematics.gauges)
+    what = f"{number} {kind} {verb} {count - len(lost)} of the platform's {count} ideal motions; missing: {shown}"
+    return [Finding(kind, what, advice)]
+
+
+def _direction(row: Array, kinematics: Kinematics) -> str:
+    """A motion in words, its largest part made 1: rotations in rad per m where both occur."""
+    size = np.array([1.0 if name[0] != "r" else 1.0 / kinematics.length for name in kinematics.coordinates])
+    row = row * size
+    largest = row[np.argmax(np.abs(row / size))]
+    parts = [(value / largest, name) for value, name in zip(row, kinematics.coordinates, strict=True) if abs(value / largest) > 1e-6]
+    return " ".join(f"{value:+.3g} {name}" if abs(value - 1.0) > 1e-9 else name for value, name in parts)

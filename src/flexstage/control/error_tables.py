@@ -1,0 +1,150 @@
+"""Tables of what a loop is there for: errors at rest without it, noise with it, hysteresis with and without inverse."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from flexstage.base.number import Array
+from flexstage.control.compensation import StaticError
+from flexstage.control.noise import NoiseBudget
+from flexstage.control.simulation.result import Simulated
+from flexstage.control.study.rest import RestErrors
+from flexstage.control.study.runs import RestRms
+from flexstage.control.study.stacks import Stacks, Sweep
+from flexstage.control.study.study import LoopStudy
+from flexstage.control.tables import motion_cell
+from flexstage.control.whites import Kind
+from flexstage.show.display import NO_VALUE, number, percent, value_with_unit
+from flexstage.show.table import Cell, Column, Mark, Table, build
+from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
+
+_SILENT = 1e-12
+_STANDS_OUT = 1e-3
+
+
+def rest_table(found: RestErrors) -> Table:
+    """Errors at rest in open loop by coordinate: its own, and its largest crosstalk, by the ideal map and by corrected gains."""
+    pairs = (("by R_a", found.bare), ("corrected", found.corrected))
+    heads = ["command", *(head for noun, _ in pairs for head in (Column(f"error {noun}"), Column("crosstalk")))]
+    rows = [
+        (Cell(name, Mark.STRONG), *_own_and_cross([each for _, each in pairs], index)) for index, name in enumerate(found.bare.error.rows)
+    ]
+    return build("Static errors without the loop", heads, rows, notes=list(_rest_notes(found)))
+
+
+def _rest_notes(found: RestErrors) -> Iterator[str]:
+    yield (
+        "Commanded less reached, per unit commanded, by strokes R_a x and by those that correct lost motion; crosstalk: the largest motion "
+        "elsewhere, and which."
+    )
+    if found.other is not None:
+        yield (
+            f"With the gains of the {found.other_reading.value} reading the largest error is {percent(found.other.largest, 3)}, by R_a "
+            f"{percent(found.bare.largest, 3)}, rotations as lengths."
+        )
+    if np.any(np.abs(found.load) > 0.0):
+        yield f"Loads, strokes held: {_twist(found.load, found.load)}; their strokes fed forward: {_twist(found.carried, found.load)}."
+
+
+def _own_and_cross(found: Sequence[StaticError], column: int) -> Iterator[Cell]:
+    for each in found:
+        values = np.asarray(each.error.values)
+        yield _share(float(values[column, column]))
+        row = int(np.argmax(np.abs(values[:, column]) * (np.arange(len(values)) != column)))
+        size = float(values[row, column]) if row != column else 0.0
+        text = f"{_sized(size, each.error.unit[row][column])} {each.error.rows[row]}"
+        yield Cell(NO_VALUE, Mark.FAINT) if abs(size) < _SILENT else Cell(text)
+
+
+def _sized(value: float, unit: str) -> str:
+    return percent(value, 3) if unit == "1" else value_with_unit(value, unit, 3)
+
+
+def _share(value: float) -> Cell:
+    return Cell("0", Mark.FAINT) if abs(value) < _SILENT else Cell(percent(value, 4))
+
+
+def _twist(values: Array, against: Array) -> str:
+    """The components of a twist that stand out against another."""
+    scale = {unit: max(abs(float(value)) for value, each in zip(against, TWIST_UNITS, strict=True) if each == unit) for unit in TWIST_UNITS}
+    parts = [
+        f"{name} {value_with_unit(float(value), unit, 3)}"
+        for name, value, unit in zip(COMPONENTS, values, TWIST_UNITS, strict=True)
+        if abs(value) > _STANDS_OUT * scale[unit]
+    ]
+    return ", ".join(parts) or "nothing"
+
+
+def noise_table(found: LoopStudy) -> Table:
+    """The rms of every coordinate at rest by kind of source, and as simulated."""
+    budget, resting = found.noise, found.resting
+    squares = np.asarray(budget.by_kind.values)
+    simulated = None if found.still is None else settled_rms(found)
+    heads = ["motion", Column("rms"), *([] if resting is None else [Column("interval"), Column("as if white")])]
+    heads += [Column(kind.value) for kind in budget.kinds]
+    heads += [Column("simulated")] if simulated is not None and resting is None else []
+    rows = []
+    for index, channel in enumerate(budget.outputs):
+        cells = [motion_cell(float(np.sqrt(value)), channel.unit) for value in squares[index]]
+        total = motion_cell(float(budget.rms[index]), channel.unit)
+        if resting is not None:
+            ends = (value_with_unit(float(each[index]), channel.unit, 3) for each in (resting.low, resting.high))
+            told = [motion_cell(float(resting.rms[index]), channel.unit), Cell(" to ".join(ends)), replace(total, mark=Mark.FAINT), *cells]
+        else:
+            told = [total, *cells, *([] if simulated is None else [motion_cell(float(simulated[index]), channel.unit)])]
+        rows.append((Cell(channel.name.removeprefix("relative."), Mark.STRONG), replace(told[0], mark=Mark.STRONG), *told[1:]))
+    return build("Noise at rest", heads, rows, notes=_noise_notes(budget, found.still, resting))
+
+
+def _noise_notes(budget: NoiseBudget, still: Simulated | None, resting: RestRms | None) -> Sequence[str]:
+    first = "Rms of the platform's true motion against the ground; squares add up."
+    if resting is not None:
+        first = (
+            f"Rms of the platform's true motion against the ground, of {resting.count} simulations of {number(resting.seconds, 3)} s "
+            "with all noise, rounding and limits, and the interval that holds it by 95 %. Squares of the sources add up to what is told "
+            "as if rounding were white, not to the rms."
+        )
+    first += f" The floor from {number(budget.band[0], 3)} to {number(budget.band[1], 4)} Hz." if Kind.FLOOR in budget.kinds else ""
+    more = []
+    if still is not None and resting is None:
+        seconds = number(float(still.times[-1]), 3)
+        more = [f"Simulated: {seconds} s of the same noise, rounding and limits included; chance parts it from the budget."]
+    return [first, *more, *(f"{each[0].upper()}{each[1:]}." for each in budget.notes)]
+
+
+def settled_rms(found: LoopStudy) -> Array:
+    """Rms (f,) of the simulated true motion at rest."""
+    if found.resting is not None:
+        return found.resting.rms
+    if found.still is None:
+        return np.zeros(0)
+    return np.sqrt(np.mean(found.still.true_error**2, axis=0))
+
+
+def hysteresis_table(stacks: Stacks, sweep: Sweep) -> Table:
+    """Stacks with hysteresis: width of their loops, error in open loop without and with the inverse."""
+    bare, inverse = sweep.error(sweep.bare), sweep.error(sweep.inverse)
+    rows = [
+        (
+            Cell(name, Mark.STRONG),
+            percent(float(stacks.width[index]), 3),
+            value_with_unit(float(np.ptp(sweep.wanted[:, index])), "m", 4),
+            percent(float(bare[index]), 3),
+            percent(float(inverse[index]), 3),
+            number(float(bare[index] / inverse[index]), 3) if inverse[index] > _SILENT else "exact",
+        )
+        for index, name in enumerate(sweep.actuators)
+    ]
+    heads = [
+        "actuator",
+        Column("loop width"),
+        Column("range swept"),
+        Column("rms error, bare"),
+        Column("with inverse"),
+        Column("better by"),
+    ]
+    note = "Stacks alone, in open loop: strokes that came less those wanted, as a share of the range swept."
+    return build("Hysteresis of the stacks", heads, rows, notes=[note])

@@ -1,0 +1,1 @@
+"""Loops for other programs: C, functional mock-up units, MATLAB."""

@@ -1,0 +1,177 @@
+"""Hysteresis models as functions of C: plays between envelopes, their inverse, and Bouc-Wen."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from flexstage.base.finding import refuse
+from flexstage.base.number import Array
+from flexstage.control.export.code.program import State
+from flexstage.control.export.code.text import indented, table
+from flexstage.control.hysteresis.bouc_wen import BoucWen
+from flexstage.control.hysteresis.envelope import IDENTITY, Envelope
+from flexstage.control.hysteresis.inverse import inverse
+from flexstage.control.hysteresis.prandtl_ishlinskii import PrandtlIshlinskii
+from flexstage.control.hysteresis.protocol import Hysteresis
+
+
+def moving(name: str, model: Hysteresis, bias: Array) -> tuple[list[str], State]:
+    """A function `double <name>(double *state, int axis, double value)` that takes one axis on, and its state, at the bias at first.
+
+    Raises `DesignError` for a model that has no form in C.
+
+    >>> lines, state = moving("stack", PrandtlIshlinskii([0.0, 2.0], [1.0, 0.5]), np.zeros(1))
+    >>> state.sizes, lines[-1]
+    ((1, 2), '}')
+    """
+    start = np.asarray(model.start(bias))
+    head = [*table(f"{name}_rest", start)]
+    if isinstance(model, PrandtlIshlinskii):
+        lines = _plays(name, model)
+    elif isinstance(model, BoucWen):
+        lines = _bouc_wen(name, model)
+    else:
+        advice = "Export a loop with a Prandtl-Ishlinskii or Bouc-Wen hysteresis, or simulate this one without a compiler"
+        raise refuse("hysteresis", f"{type(model).__name__} has no form in C", advice)
+    return [*head, *lines], State(name, start.shape, f"{name}_rest")
+
+
+def has_code(model: Hysteresis | None) -> bool:
+    """Whether a hysteresis can be written as C; none at all can.
+
+    >>> has_code(None), has_code(PrandtlIshlinskii([0.0], [1.0]))
+    (True, True)
+    """
+    return model is None or isinstance(model, PrandtlIshlinskii | BoucWen)
+
+
+def _plays(name: str, model: PrandtlIshlinskii) -> list[str]:
+    count = model.thresholds.shape[1]
+    before, after = (_envelope(f"{name}_{which}", each, model.axes) for which, each in (("before", model.before), ("after", model.after)))
+    return [
+        *table(f"{name}_thresholds", model.thresholds),
+        *table(f"{name}_weights", model.weights),
+        *before[0],
+        *after[0],
+        f"static double {name}_move(double *plays, int axis, double value)",
+        "{",
+        *indented(
+            [
+                f"const double *thresholds = {name}_thresholds[axis], *weights = {name}_weights[axis];",
+                f"const double u = {before[1].format('value')};",
+                "double sum = 0.0;",
+                "int i;",
+                f"for (i = 0; i < {count}; i++) {{",
+                *indented(_CLAMPED.format("plays[i]").splitlines()),
+                "    sum += weights[i] * plays[i];",
+                "}",
+                f"return {after[1].format('sum')};",
+            ]
+        ),
+        "}",
+    ]
+
+
+_CLAMPED = """if (u + thresholds[i] < {0}) {0} = u + thresholds[i];
+if (u - thresholds[i] > {0}) {0} = u - thresholds[i];"""
+
+
+def _envelope(name: str, envelope: Envelope, axes: int) -> tuple[list[str], str]:
+    """Tables and function of an envelope, and the expression of its value; nothing for the identity."""
+    if envelope is IDENTITY:
+        return [], "{}"
+    slopes = np.broadcast_to(envelope.slopes, (axes, envelope.slopes.shape[1]))
+    knots = np.broadcast_to(envelope.knots[:, :-1], slopes.shape)
+    changes = np.concatenate([slopes[:, :1], np.diff(slopes)], axis=1)
+    lines = [
+        *table(f"{name}_knots", knots),
+        *table(f"{name}_changes", changes),
+        *table(f"{name}_start", np.broadcast_to(envelope.values[:, 0], (axes,))),
+        f"static double {name}(int axis, double x)",
+        "{",
+        *indented(
+            [
+                f"const double *knots = {name}_knots[axis], *changes = {name}_changes[axis];",
+                "double sum = changes[0] * (x - knots[0]);",
+                "int i;",
+                f"for (i = 1; i < {slopes.shape[1]}; i++)",
+                "    if (x > knots[i]) sum += changes[i] * (x - knots[i]);",
+                f"return {name}_start[axis] + sum;",
+            ]
+        ),
+        "}",
+    ]
+    return lines, f"{name}(axis, {{}})"
+
+
+def inverting(name: str, model: PrandtlIshlinskii) -> list[str]:
+    """A function `double <name>_invert(const double *plays, int axis, double value)`: the input that makes a value from where plays stand.
+
+    The model stays where it is; z'_j = P_j z_j + sum_{i>j} p_i z_i are the plays of its inverse (see `inverse_state`).
+
+    >>> inverting("model", PrandtlIshlinskii([0.0, 2.0], [1.0, 0.5]))[-1]
+    '}'
+    """
+    turned, count = inverse(model), model.thresholds.shape[1]
+    before, after = (_envelope(f"{name}_{which}", each, model.axes) for which, each in (("enter", turned.before), ("leave", turned.after)))
+    return [
+        *table(f"{name}_inverse_thresholds", turned.thresholds),
+        *table(f"{name}_inverse_weights", turned.weights),
+        *table(f"{name}_partial", np.cumsum(model.weights, axis=1)),
+        *before[0],
+        *after[0],
+        f"static double {name}_invert(const double *plays, int axis, double value)",
+        "{",
+        *indented(
+            [
+                f"const double *thresholds = {name}_inverse_thresholds[axis], *weights = {name}_inverse_weights[axis];",
+                f"const double u = {before[1].format('value')};",
+                "double sum = 0.0, behind = 0.0, play;",
+                "int i;",
+                f"for (i = {count} - 1; i >= 0; i--) {{",
+                f"    play = {name}_partial[axis][i] * plays[i] + behind;",
+                f"    behind += {name}_weights[axis][i] * plays[i];",
+                *indented(_CLAMPED.format("play").splitlines()),
+                "    sum += weights[i] * play;",
+                "}",
+                f"return {after[1].format('sum')};",
+            ]
+        ),
+        "}",
+    ]
+
+
+def _bouc_wen(name: str, model: BoucWen) -> list[str]:
+    tables = {"gain": model.gain, "lag": model.lag, "beta": model.beta, "gamma": model.gamma, "offset": model.offset}
+    shaped = {key: np.broadcast_to(value, (model.axes,)) for key, value in tables.items()}
+    return [*(line for key, value in shaped.items() for line in table(f"{name}_{key}", value)), *_BOUC_WEN.format(name=name).splitlines()]
+
+
+_BOUC_WEN = """static double {name}_relaxed(double start, double rate, double way, double lag)
+{{
+    const double gained = rate == 0.0 ? way : -expm1(-rate * way) / rate;
+    return start * exp(-rate * way) + lag * gained;
+}}
+static double {name}_move(double *state, int axis, double value)
+{{
+    const double lag = {name}_lag[axis];
+    const double slow = {name}_beta[axis] - {name}_gamma[axis], fast = {name}_beta[axis] + {name}_gamma[axis];
+    const double sign = value < state[0] ? -1.0 : 1.0, way = fabs(value - state[0]);
+    double g = sign * state[1], rest = way, before;
+    if (way > 0.0) {{
+        if (g < 0.0) {{
+            before = slow == 0.0 ? -g / lag : log1p(-slow * g / lag) / slow;
+            if (before >= way) {{
+                g = {name}_relaxed(g, slow, way, lag);
+                rest = -1.0;
+            }} else {{
+                g = 0.0;
+                rest = way - before;
+            }}
+        }}
+        if (rest >= 0.0) g = {name}_relaxed(g, fast, rest, lag);
+        state[1] = sign * g;
+    }}
+    state[0] = value;
+    return {name}_offset[axis] + ({name}_gain[axis] * value - state[1]);
+}}"""

@@ -1,0 +1,164 @@
+"""A loop for other programs, as files: controller in C, functional mock-up unit, plant for MATLAB; there whole or not at all."""
+
+from __future__ import annotations
+
+import io
+import os
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from flexstage.base.finding import Finding, refuse, require
+from flexstage.base.store import put_together, write, written
+from flexstage.base.text import printable
+from flexstage.control.export.code.controller import controller_code
+from flexstage.control.export.code.program import Program
+from flexstage.control.export.code.text import identifier
+from flexstage.control.export.fmu.unit import fmu
+from flexstage.control.plants import Plant, held
+from flexstage.control.simulation.machine import Machine
+from flexstage.control.system import System
+from flexstage.models.linear.model import Channel
+
+ENDINGS = {".mat": "the plant for MATLAB", ".c": "the controller in C", ".fmu": "the controller as functional mock-up unit"}
+"""What a loop is exported as, by the ending of the file's name."""
+
+
+def export_findings(path: str | os.PathLike[str]) -> Iterator[Finding]:
+    """What keeps a name from being that of an export: its ending, or what its functions would be called.
+
+    >>> print(*export_findings("math.c"))
+    math.c: its header math.h would stand before a system's, or its functions could not be called "math". Call it stage_math.c.
+    """
+    place = Path(path)
+    name = identifier(place.stem)
+    if place.suffix not in ENDINGS:
+        known = ", ".join(f"{ending} ({what})" for ending, what in ENDINGS.items())
+        yield Finding(os.fspath(path), f'the ending "{place.suffix}" is no export', f"End the name in {known}")
+    elif place.suffix == ".c" and name != place.stem:
+        what = f'its header {place.stem}.h would stand before a system\'s, or its functions could not be called "{place.stem}"'
+        yield Finding(os.fspath(path), what, f"Call it {name}.c")
+
+
+def controller_files(path: str | os.PathLike[str], given: Machine, about: str = "") -> dict[Path, str]:
+    """Texts by file of the controller of a machine as C99: `controller.c` and its header beside it, named as its functions.
+
+    Raises `DesignError` for a name that does not end in `.c` or that functions cannot have.
+
+    >>> from flexstage.control.example import integral_loop
+    >>> from flexstage.control.simulation.machine import machine
+    >>> example = integral_loop()
+    >>> [each.name for each in controller_files("stage.c", machine(example.plant, example.controller))]
+    ['stage.c', 'stage.h']
+    """
+    source = _ending(path, ".c")
+    require(export_findings(path))
+    program = controller_code(given, source.stem, about)
+    return {source: program.source, source.with_suffix(".h"): program.header}
+
+
+def write_controller(path: str | os.PathLike[str], given: Machine, about: str = "") -> tuple[Path, Path]:
+    """Write the controller of a machine as C99, `controller.c` and its header beside it, both or none (see `controller_files`).
+
+    Raises `DesignError` where a file cannot be written too.
+
+    >>> import tempfile
+    >>> from flexstage.control.example import integral_loop
+    >>> from flexstage.control.simulation.machine import machine
+    >>> example = integral_loop()
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     written = write_controller(Path(folder) / "stage.c", machine(example.plant, example.controller))
+    ...     [each.name for each in written], "void stage_step(" in written[1].read_text()
+    (['stage.c', 'stage.h'], True)
+    """
+    files = controller_files(path, given, about)
+    put_together([written(place, text) for place, text in files.items()])
+    source, header = files
+    return source, header
+
+
+def write_fmu(path: str | os.PathLike[str], program: Program, *, sources_only: bool = False) -> Path:
+    """Write a program as functional mock-up unit (FMI 2.0 for Co-Simulation); see `fmu`.
+
+    Raises `DesignError` where the file cannot be written, for a name that does not end in `.fmu`, and where there is no compiler.
+
+    >>> import tempfile
+    >>> from flexstage.control.example import integral_loop
+    >>> from flexstage.control.simulation.machine import machine
+    >>> example = integral_loop()
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     known = controller_code(machine(example.plant, example.controller))
+    ...     write_fmu(Path(folder) / "stage.fmu", known, sources_only=True).name
+    'stage.fmu'
+    """
+    return write(_ending(path, ".fmu"), fmu(program, sources_only=sources_only))
+
+
+def write_plant(path: str | os.PathLike[str], given: Plant) -> Path:
+    """Write a plant as MATLAB file (see `plant_file`); raises `DesignError` where it cannot be written or does not end in `.mat`.
+
+    >>> import tempfile
+    >>> from flexstage.control.example import integral_loop
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     write_plant(Path(folder) / "plant.mat", integral_loop().plant).name
+    'plant.mat'
+    """
+    return write(_ending(path, ".mat"), plant_file(given))
+
+
+def plant_file(given: Plant) -> bytes:
+    """A plant as MATLAB file (v5): state space with names and units, continuous and between hold and sampler.
+
+    Structures `continuous` and `sampled` (where the loop has a rate) hold A, B, C, D, `step` [s] (0: continuous), inputs, outputs, their
+    units and `states`; beside them frequencies [Hz] and damping ratios of the modes, what was simplified, where it is from.
+
+    >>> import scipy.io
+    >>> from flexstage.control.example import integral_loop
+    >>> found = scipy.io.loadmat(io.BytesIO(plant_file(integral_loop().plant)), simplify_cells=True)
+    >>> found["sampled"]["step"], list(found["sampled"]["inputs"][:2]), found["continuous"]["A"].shape
+    (0.0001, ['B', 'ground.x'], (7, 7))
+    """
+    from scipy.io import savemat
+
+    content = io.BytesIO()
+    variables: dict[str, Any] = {
+        "continuous": _system(given.system, given.states),
+        "frequencies_hz": given.frequencies,
+        "damping_ratios": given.ratios,
+        "note": printable(given.note),
+        "provenance": printable(given.provenance),
+    }
+    if given.hardware.step is not None:
+        variables["sampled"] = _system(held(given), ())
+    savemat(content, variables, oned_as="column")
+    made = bytearray(content.getvalue())
+    made[:116] = b"MATLAB 5.0 MAT-file, Platform: any".ljust(116)  # scipy writes the time: the same plant is to be the same file
+    return bytes(made)
+
+
+def _system(system: System, states: tuple[str, ...]) -> dict[str, Any]:
+    named = states or tuple(f"x{number + 1}" for number in range(len(system.A)))
+    return {
+        **{name: getattr(system, name) for name in "ABCD"},
+        "step": system.step or 0.0,
+        "states": _cells(named),
+        **_channels("input", system.inputs),
+        **_channels("output", system.outputs),
+    }
+
+
+def _channels(kind: str, channels: tuple[Channel, ...]) -> dict[str, Any]:
+    return {f"{kind}s": _cells(each.name for each in channels), f"{kind}_units": _cells(each.unit for each in channels)}
+
+
+def _cells(texts: Any) -> Any:
+    return np.array([printable(each) for each in texts], dtype=object).reshape(-1, 1)
+
+
+def _ending(path: str | os.PathLike[str], suffix: str) -> Path:
+    place = Path(path)
+    if place.suffix != suffix:
+        raise refuse(os.fspath(path), f"its name does not end in {suffix}", f"Call it {identifier(place.stem)}{suffix}")
+    return place

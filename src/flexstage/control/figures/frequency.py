@@ -1,0 +1,218 @@
+"""Loops over frequency: open loops, sensitivities, poles."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from flexstage.base.number import Array
+from flexstage.show.figures.style import FULL, INK, MUTED, SERIES, Margins, canvas, panels, styled
+
+_POINTS = 260
+_TURN = 360.0
+_FLOOR, _CEILING = 1e-4, 1e3
+_LEAST = 1e-300
+
+
+@dataclass(frozen=True, eq=False)
+class Curves:
+    """Complex values (f, n) over `frequencies` (f,) [Hz], one column a name."""
+
+    frequencies: Array
+    values: Array
+    names: tuple[str, ...]
+
+
+def open_loop_figure(found: Curves, marks: Array, noun: str = "open loop L") -> Any:
+    """Open loops, each alone with the others closed: magnitude over phase, gain 1 and -180 degrees drawn in, modes marked.
+
+    >>> lines = np.geomspace(1.0, 1000.0, 50)
+    >>> len(open_loop_figure(Curves(lines, (30.0 / (1j * lines))[:, None], ("x",)), np.array([106.0])).axes)
+    2
+    """
+    with styled():
+        figure = canvas(FULL, 3.9)
+        grid = panels(figure, 2, 1, Margins(left=0.68, top=0.32, down=0.12), heights=[1.6, 1.0])
+        upper, lower = grid[0, 0], grid[1, 0]
+        for index, name in enumerate(found.names):
+            x, size = thinned(found.frequencies, np.abs(found.values[:, index]))
+            upper.loglog(x, np.maximum(size, _LEAST), color=_colour(index), linewidth=1.1, label=name, linestyle=_dash(index))
+            x, phase = thinned(found.frequencies, _phase(found.values[:, index]))
+            lower.semilogx(x, phase, color=_colour(index), linewidth=1.0, linestyle=_dash(index))
+        upper.axhline(1.0, color=INK, linewidth=0.7)
+        lower.axhline(-180.0, color=INK, linewidth=0.7)
+        _limited(upper, found)
+        _marked(upper, marks, found.frequencies)
+        upper.set_ylabel(noun)
+        upper.tick_params(labelbottom=False)
+        lower.set_ylabel("phase [°]")
+        _turns(lower)
+        _plain(lower.xaxis, upper.yaxis)
+        lower.set_xlabel("frequency [Hz]")
+        lower.set_xlim(*_span(found))
+        _legend(upper, len(found.names))
+    return figure
+
+
+def sensitivity_figure(sensitivity: Curves, complementary: Curves, highest: float | None = None) -> Any:
+    """|S| (how much of a disturbance is left) beside |T| (what the loop follows), with the wanted highest peak of S.
+
+    >>> lines = np.geomspace(1.0, 1000.0, 50)
+    >>> S = Curves(lines, (1.0 / (1.0 + 30.0 / (1j * lines)))[:, None], ("x",))
+    >>> len(sensitivity_figure(S, Curves(lines, 1.0 - S.values, ("x",))).axes)
+    2
+    """
+    with styled():
+        figure = canvas(FULL, 2.5)
+        grid = panels(figure, 1, 2, Margins(left=0.62, top=0.42, across=0.68))
+        for axes, curves, title in ((grid[0, 0], sensitivity, "sensitivity |S|"), (grid[0, 1], complementary, "following |T|")):
+            for index, name in enumerate(curves.names):
+                x, size = thinned(curves.frequencies, np.abs(curves.values[:, index]))
+                axes.loglog(x, np.maximum(size, _LEAST), color=_colour(index), linewidth=1.1, label=name, linestyle=_dash(index))
+            axes.axhline(1.0, color=INK, linewidth=0.7)
+            axes.set_xlim(*_span(curves))
+            axes.set_ylim(1e-3, 10.0)
+            _plain(axes.xaxis, axes.yaxis)
+            axes.set_xlabel("frequency [Hz]")
+            axes.set_ylabel(title)
+        if highest is not None:
+            grid[0, 0].axhline(highest, color=SERIES[3], linewidth=0.8, linestyle="--")
+            grid[0, 0].text(_span(sensitivity)[0] * 1.15, highest * 1.1, f"{highest:.3g}", color=SERIES[3], fontsize=6.5)
+        _legend(grid[0, 0], len(sensitivity.names))
+    return figure
+
+
+def pole_figure(poles: Array, step: float, alone: Array | None = None) -> Any:
+    """Poles (n,) of the closed loop: in the z plane, and as damping ratio over frequency, beside those of the stage `alone`; unstable red.
+
+    >>> len(pole_figure(np.array([0.9 + 0.1j, 0.9 - 0.1j]), 1e-4).axes)
+    2
+    """
+    with styled():
+        figure = canvas(FULL, 2.95)
+        grid = panels(figure, 1, 2, Margins(left=0.55, top=0.3, across=0.75))
+        plane, damped = grid[0, 0], grid[0, 1]
+        _circles(plane)
+        outside = np.abs(poles) >= 1.0
+        inner, outer = poles[~outside], poles[outside]
+        plane.plot(np.real(inner), np.imag(inner), "x", color=SERIES[0], markersize=3.5, markeredgewidth=0.8)
+        plane.plot(np.real(outer), np.imag(outer), "x", color=SERIES[3], markersize=5.5, markeredgewidth=1.3)
+        plane.set_aspect("equal", adjustable="box")
+        plane.set_xlim(-1.08, 1.08)
+        plane.set_ylim(-1.08, 1.08)
+        plane.set_xlabel("Re z")
+        plane.set_ylabel("Im z")
+        plane.set_title("z plane")
+        _damped(damped, poles, step, alone)
+    return figure
+
+
+def _damped(axes: Any, poles: Array, step: float, alone: Array | None) -> None:
+    """Damping ratio over frequency."""
+    if alone is not None:
+        frequencies, ratios = _damping(alone, step)
+        axes.plot(frequencies, ratios, "o", color=MUTED, markersize=3.5, markerfacecolor="none", markeredgewidth=0.6, label="stage alone")
+    frequencies, ratios = _damping(poles, step)
+    axes.plot(frequencies, ratios, "x", color=SERIES[0], markersize=4.0, markeredgewidth=0.9, label="closed loop", linestyle="none")
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    axes.set_ylim(min(0.3 * float(np.min(ratios[ratios > 0.0], initial=1.0)), 0.5), 130.0)
+    axes.set_xlabel("frequency [Hz]")
+    axes.set_ylabel("damping ratio [%]")
+    _plain(axes.xaxis, axes.yaxis)
+    axes.legend(loc="lower left", bbox_to_anchor=(-0.02, 1.0), ncols=2, borderaxespad=0.2, handletextpad=0.2)
+
+
+def thinned(x: Array, y: Array) -> tuple[Array, Array]:
+    """A curve over rising x > 0 with so few points as a picture can show: of each bin, even in log x, its ends and extremes.
+
+    >>> x, y = thinned(np.linspace(1.0, 100.0, 5000), np.zeros(5000))
+    >>> len(x) < 1100, x[0].item(), x[-1].item()
+    (True, 1.0, 100.0)
+    """
+    if len(x) <= 2 * _POINTS:
+        return x, y
+    edges = np.searchsorted(x, np.geomspace(x[0], x[-1], _POINTS + 1)[1:-1])
+    kept = {0, len(x) - 1}
+    for part in np.split(np.arange(len(x)), np.unique(edges)):
+        if len(part):
+            kept |= {int(part[0]), int(part[np.argmin(y[part])]), int(part[np.argmax(y[part])]), int(part[-1])}
+    places = np.array(sorted(kept))
+    return x[places], y[places]
+
+
+def _phase(values: Array) -> Array:
+    """Unwrapped from the lowest frequency [deg], begun between -270 and 90."""
+    angle = np.rad2deg(np.unwrap(np.angle(values)))
+    return angle - _TURN * np.ceil((angle[0] - 90.0) / _TURN)
+
+
+def _colour(index: int) -> str:
+    return SERIES[index % (len(SERIES) - 1)]
+
+
+def _dash(index: int) -> Any:
+    """Pairs of a symmetric stage lie on one another: every second one is dashed."""
+    return (0, (4.0, 2.0)) if index % 2 else "-"
+
+
+def _span(found: Curves) -> tuple[float, float]:
+    """From where the loops have fallen to a hundred to the end."""
+    sizes = np.max(np.abs(found.values), axis=1)
+    high = np.flatnonzero(sizes > _CEILING)
+    first = 0 if not len(high) or len(high) == len(sizes) else min(int(high[-1]), len(sizes) - 2)
+    return max(float(found.frequencies[first]), 1e-5 * float(found.frequencies[-1])), float(found.frequencies[-1])
+
+
+def _limited(axes: Any, found: Curves) -> None:
+    finite = np.abs(found.values)[np.isfinite(found.values)]
+    axes.set_ylim(max(_FLOOR, 0.3 * float(np.min(finite, initial=1.0))), min(_CEILING, 3.0 * float(np.max(finite, initial=1.0))))
+
+
+def _marked(axes: Any, marks: Array, frequencies: Array) -> None:
+    for mark in marks:
+        if frequencies[0] < mark < frequencies[-1]:
+            axes.axvline(float(mark), color=MUTED, linewidth=0.5, linestyle=":")
+
+
+def _turns(axes: Any) -> None:
+    low, high = axes.get_ylim()
+    low, high = max(low, -4.0 * _TURN), min(high, _TURN)
+    axes.set_ylim(low, high)
+    step = 90.0 if high - low < 600.0 else 180.0 if high - low < 1100.0 else 360.0
+    axes.set_yticks(np.arange(step * np.ceil(low / step), high + 1.0, step))
+
+
+def _plain(*axes: Any) -> None:
+    """Ticks of logarithmic axes at powers of ten, as plain numbers."""
+    from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
+
+    for axis in axes:
+        axis.set_major_locator(LogLocator(subs=(1.0,), numticks=12))
+        axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+        axis.set_minor_locator(NullLocator())
+
+
+def _legend(axes: Any, count: int) -> None:
+    if count > 1:
+        axes.legend(loc="lower left", bbox_to_anchor=(-0.02, 1.0), ncols=8, handlelength=1.6, columnspacing=1.1, borderaxespad=0.2)
+
+
+def _circles(axes: Any) -> None:
+    angle = np.linspace(0.0, np.pi, 181)
+    for sign in (1.0, -1.0):
+        axes.plot(np.cos(angle), sign * np.sin(angle), color=INK, linewidth=0.8)
+        for ratio in (0.1, 0.3, 0.6):
+            size = np.exp(-ratio / np.sqrt(1.0 - ratio**2) * angle)
+            axes.plot(size * np.cos(angle), sign * size * np.sin(angle), color=MUTED, linewidth=0.5, linestyle=":")
+
+
+def _damping(poles: Array, step: float) -> tuple[Array, Array]:
+    """Frequency [Hz] and damping ratio [%] of the poles of the upper half plane, registers at 0 left out."""
+    poles = poles[(np.abs(poles) > 1e-6) & (np.imag(poles) >= 0.0)]
+    rates = np.log(poles.astype(complex)) / step
+    size = np.abs(rates)
+    kept = size > 0.0
+    return size[kept] / (2.0 * np.pi), 100.0 * np.maximum(-rates.real[kept] / size[kept], 0.0)

@@ -1,0 +1,51 @@
+"""Hysteresis of stacks, drawn: strokes over what was wanted, with and without the inverse."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from flexstage.base.number import Array
+from flexstage.show.display import shown, typeset
+from flexstage.show.figures.style import FULL, INK, SERIES, Margins, canvas, panels, styled
+
+
+@dataclass(frozen=True, eq=False)
+class HysteresisLoop:
+    """Strokes (n,) [m] that came of those that were `wanted` (n,) [m], by a name."""
+
+    name: str
+    wanted: Array
+    came: Array
+
+
+def hysteresis_figure(found: Sequence[HysteresisLoop]) -> Any:
+    """Strokes that came over those that were wanted, and beside them the difference of both.
+
+    >>> way = 1e-6 * np.sin(np.linspace(0.0, 6.0, 50))
+    >>> len(hysteresis_figure([HysteresisLoop("without inverse", way, 0.9 * way)]).axes)
+    2
+    """
+    largest = max(float(np.max(np.abs(each.wanted), initial=0.0)) for each in found)
+    form = shown("m", largest)
+    with styled():
+        figure = canvas(FULL, 2.75)
+        grid = panels(figure, 1, 2, Margins(left=0.6, top=0.32, across=0.72))
+        errors = max(float(np.max(np.abs(each.came - each.wanted), initial=0.0)) for each in found)
+        fine = shown("m", errors)
+        span = form.factor * largest * np.array([-1.0, 1.0])
+        grid[0, 0].plot(span, span, color=INK, linewidth=0.6, linestyle=":")
+        for index, each in enumerate(found):
+            step = max(1, len(each.wanted) // 1500)
+            look = {"color": SERIES[(1, 0, 2)[index % 3]], "linewidth": 1.0, "label": each.name}
+            grid[0, 0].plot(form.factor * each.wanted[::step], form.factor * each.came[::step], **look)
+            grid[0, 1].plot(form.factor * each.wanted[::step], fine.factor * (each.came - each.wanted)[::step], **look)
+        for axes in grid[0]:
+            axes.set_xlabel(typeset(f"wanted stroke [{form.unit}]"))
+        grid[0, 0].set_ylabel(typeset(f"stroke [{form.unit}]"))
+        grid[0, 1].set_ylabel(typeset(f"stroke less wanted [{fine.unit}]"))
+        grid[0, 0].legend(loc="lower left", bbox_to_anchor=(-0.02, 1.0), ncols=3, borderaxespad=0.2)
+    return figure

@@ -1,0 +1,171 @@
+"""Creep: what a stack still does after a step, by the logarithm of time, and as a sum of exponentials that a simulation can run."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.base.finding import Finding, refuse, require
+from flexstage.base.number import Array, freeze
+from flexstage.control.system import System
+from flexstage.models.linear.model import Channel
+
+
+@dataclass(frozen=True)
+class LogCreep:
+    """w(t) = w_0 (1 + gamma log10(t/t_0)) after a step at t = 0: `rate` gamma a decade, w_0 the stroke `reference` t_0 [s] after it.
+
+    (Jung and Gweon, Rev. Sci. Instrum. 71, 2000, 3436-3440.) Valid from about t_0 on; it has no limit for short or long times.
+    """
+
+    rate: float
+    reference: float = 0.1
+
+    def __post_init__(self) -> None:
+        """Refuse a reference time that is none."""
+        if not (0.0 < self.reference < np.inf and np.isfinite(self.rate)):
+            what = f"rate {self.rate:g} a decade from {self.reference:g} s on is no creep"
+            raise refuse("creep", what, "Give a finite rate and a time above 0")
+
+    def at(self, times: Array) -> Array:
+        """w/w_0 at `times` > 0 [s].
+
+        >>> LogCreep(0.02, 0.1).at(np.array([0.1, 1.0, 10.0])).round(12).tolist()
+        [1.0, 1.02, 1.04]
+        """
+        return 1.0 + self.rate * np.log10(np.asarray(times) / self.reference)
+
+
+@dataclass(frozen=True, eq=False)
+class Creep:
+    """y = g_0 u + sum_i g_i s_i,  tau_i ds_i/dt + s_i = u: `instant` g_0 (axes,), `gains` g_i and `times` tau_i [s] (axes, m).
+
+    It stands between hysteresis and stage (Hammerstein). With u held over a sample T the states move exactly by
+    s_i <- s_i + (1 - e^{-T/tau_i}) (u - s_i), after y was taken. One axis may be given as (m,). Raises `DesignError` for times that are not
+    positive.
+    """
+
+    instant: Array
+    gains: Array
+    times: Array
+
+    def __post_init__(self) -> None:
+        """Make the arrays (axes,) and (axes, m) and read-only, and check them."""
+        object.__setattr__(self, "instant", freeze(np.atleast_1d(np.asarray(self.instant, dtype=float))))
+        for name in ("gains", "times"):
+            object.__setattr__(self, name, freeze(np.atleast_2d(np.asarray(getattr(self, name), dtype=float))))
+        require(_findings(self))
+
+    @property
+    def axes(self) -> int:
+        """Number of actuators."""
+        return len(self.instant)
+
+    def step_response(self, times: Array) -> Array:
+        """y (k, axes) at `times` (k,) >= 0 after a unit step from rest.
+
+        >>> Creep([1.0], [0.1], [2.0]).step_response(np.array([0.0, 2.0])).ravel().round(6).tolist()  # 1, and 1 + 0.1 (1 - 1/e)
+        [1.0, 1.063212]
+        """
+        risen = -np.expm1(-np.asarray(times, dtype=float)[:, None, None] / self.times)
+        return self.instant + np.sum(self.gains * risen, axis=-1)
+
+    def settled(self, value: Array) -> Array:
+        """States (axes, m) after u = `value` (axes,) for ever: what a run starts from without creeping."""
+        return np.broadcast_to(np.asarray(value, dtype=float)[:, None], self.times.shape).copy()
+
+    def run(self, values: Array, step: float, state: Array | None = None) -> Array:
+        """y (k, axes) for u `values` (k, axes) held over each `step` [s], from rest or from `state` (axes, m).
+
+        >>> Creep([1.0], [0.1], [2.0]).run(np.ones((3, 1)), 1.0).ravel().round(6).tolist()
+        [1.0, 1.039347, 1.063212]
+        """
+        states = np.zeros(self.times.shape) if state is None else np.array(state, dtype=float)
+        moved = -np.expm1(-step / self.times)
+        found = np.empty_like(values, dtype=float)
+        for value, out in zip(np.asarray(values, dtype=float), found, strict=True):
+            np.add(self.instant * value, np.vecdot(self.gains, states), out=out)
+            states += moved * (value[:, None] - states)
+        return found
+
+    def system(self, inputs: tuple[Channel, ...], outputs: tuple[Channel, ...]) -> System:
+        """The same as a linear system, states axis by axis: what a loop is made of.
+
+        >>> found = Creep([1.0], [0.1], [2.0]).system((Channel("u", "m"),), (Channel("y", "m"),))
+        >>> found.A.tolist(), found.C.tolist(), found.D.tolist()
+        ([[-0.5]], [[0.1]], [[1.0]])
+        """
+        count = self.times.shape[1]
+        column = np.repeat(np.eye(self.axes), count, axis=0)
+        rates = 1.0 / self.times.ravel()
+        return System(
+            -np.diag(rates), rates[:, None] * column, (self.gains.ravel()[:, None] * column).T, np.diag(self.instant), inputs, outputs
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class CreepFit:
+    """Exponentials for a logarithm: the `creep`, the `span` of times [s] it holds over, and its largest `error` there as a part of w_0."""
+
+    creep: Creep
+    span: tuple[float, float]
+    error: float
+
+
+def exponentials(law: LogCreep, span: tuple[float, float], *, per_decade: int = 2) -> CreepFit:
+    """The sum of exponentials nearest to a logarithmic law over a span of times [s], `per_decade` of them in each.
+
+    Times tau_i are spaced evenly in log t over the span, and half a decade beyond both ends; gains by least squares, of one sign, at times
+    spaced in the same way. Raises `DesignError` for a span that is none.
+
+    >>> fit = exponentials(LogCreep(0.02, 0.1), (0.01, 100.0))
+    >>> bool(fit.error < 1e-4), fit.creep.step_response(np.array([10.0])).round(3).tolist()
+    (True, [[1.04]])
+    """
+    low, high = span
+    if not (0.0 < low < high < np.inf and per_decade >= 1):
+        raise refuse("creep", f"{low:g} s to {high:g} s with {per_decade} terms a decade is no span", "Give 0 < low < high, a term or more")
+    decades = np.log10(high / low)
+    spread = np.logspace(np.log10(low) - 0.5, np.log10(high) + 0.5, 1 + int(np.ceil(per_decade * (decades + 1.0))))
+    times = np.geomspace(low, high, 1 + int(40 * decades + 40))
+    instant, gains = _fitted(law, times, spread)
+    creep = Creep(np.array([instant]), gains, spread)
+    fine = np.geomspace(low, high, 10 * len(times))
+    error = np.max(np.abs(creep.step_response(fine)[:, 0] - law.at(fine)))
+    return CreepFit(creep, span, float(error))
+
+
+def _fitted(law: LogCreep, times: Array, spread: Array) -> tuple[float, Array]:
+    """g_0 and g_i for given tau_i: the sign of the g_i is that of the rate."""
+    from scipy.optimize import lsq_linear
+
+    columns = np.column_stack([np.ones_like(times), -np.expm1(-times[:, None] / spread)])
+    sign = -1.0 if law.rate < 0.0 else 1.0
+    lower = np.concatenate([[-np.inf], np.zeros(len(spread))])
+    solved = lsq_linear(columns * np.concatenate([[1.0], np.full(len(spread), sign)]), law.at(times), (lower, np.inf), tol=1e-14).x
+    return float(solved[0]), sign * solved[1:]
+
+
+def stacked_creep(creeps: tuple[Creep, ...]) -> Creep:
+    """Creeps as one with all their axes; those with fewer exponentials get further ones of gain 0.
+
+    >>> stacked_creep((Creep([1.0], [0.1], [2.0]), Creep([1.0], [0.1, 0.2], [2.0, 3.0]))).gains.tolist()
+    [[0.1, 0.0], [0.1, 0.2]]
+    """
+    count = max(each.times.shape[1] for each in creeps)
+    more = [((0, 0), (0, count - each.times.shape[1])) for each in creeps]
+    return Creep(
+        np.concatenate([each.instant for each in creeps]),
+        np.concatenate([np.pad(each.gains, pad) for each, pad in zip(creeps, more, strict=True)]),
+        np.concatenate([np.pad(each.times, pad, constant_values=1.0) for each, pad in zip(creeps, more, strict=True)]),
+    )
+
+
+def _findings(creep: Creep) -> Iterator[Finding]:
+    if creep.gains.shape != creep.times.shape or len(creep.instant) != len(creep.times):
+        shapes = f"instant {creep.instant.shape}, gains {creep.gains.shape}, times {creep.times.shape}"
+        yield Finding("creep", f"its parts do not fit together: {shapes}", "Give (axes,), (axes, m) and (axes, m)")
+    elif not np.all(creep.times > 0.0) or not all(np.all(np.isfinite(each)) for each in (creep.instant, creep.gains, creep.times)):
+        yield Finding("creep", "a time is not above 0, or a number is not finite", "Mend the numbers")

@@ -1,0 +1,110 @@
+"""Creep identified from the record of a step."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.base.finding import Finding, require
+from flexstage.base.number import Array
+from flexstage.control.hysteresis.creep import LogCreep
+
+_STILL = 0.01
+_PER_DECADE = 20
+_FEWEST = 8
+_SCATTER = 0.25
+
+
+@dataclass(frozen=True)
+class IdentifiedCreep:
+    """The `law` of a stack's creep, its `stroke` [m] at the reference time, the `span` of times [s] after the step that it was fitted to.
+
+    `rms` is the error over the span, each decade counted alike, as a part of the stroke.
+    """
+
+    law: LogCreep
+    stroke: float
+    span: tuple[float, float]
+    rms: float
+
+
+def identify_creep(times: Array, volts: Array, strokes: Array, *, reference: float = 0.1) -> IdentifiedCreep:
+    """Fit w(t) = w_0 (1 + gamma log10(t/t_0)) to the stroke after a step of the volts; t_0 is `reference` [s].
+
+    `times` [s], `volts` [V] and `strokes` [m] are (k,), the stack at rest before. Least squares over means of equal parts of log t, so
+    that every decade counts alike. Raises `DesignError` where the volts make no single step, less than a decade follows from t_0 on, or
+    the stroke does not follow the logarithm.
+
+    >>> times = np.arange(0.0, 100.0, 0.05)
+    >>> after = np.maximum(times - 1.0, 0.01)
+    >>> strokes = np.where(times < 1.0, 0.0, 1e-4 * LogCreep(0.02).at(after))
+    >>> found = identify_creep(times, np.where(times < 1.0, 0.0, 500.0), strokes)
+    >>> round(found.law.rate, 6), round(found.stroke * 1e6, 3)
+    (0.02, 100.0)
+    """
+    times, volts, strokes = (np.asarray(each, dtype=float) for each in (times, volts, strokes))
+    require(_step_findings(times, volts, strokes))
+    first, last = _step(volts)
+    after, risen = times[last:] - times[last], strokes[last:] - float(np.mean(strokes[: first + 1]))
+    require(_span_findings(after, reference))
+    decades, means = _means(np.log10(np.maximum(after, 1e-300) / reference), risen)
+    columns = np.column_stack([np.ones_like(decades), decades])
+    stroke, slope = np.linalg.lstsq(columns, means, rcond=None)[0].tolist()
+    rms = float(np.sqrt(np.mean((means - columns @ np.array([stroke, slope])) ** 2)))
+    require(_law_findings((stroke, slope), rms, float(decades[-1])))
+    return IdentifiedCreep(LogCreep(slope / stroke, reference), stroke, (reference, float(after[-1])), rms / abs(stroke))
+
+
+def _step(volts: Array) -> tuple[int, int]:
+    """The last sample before the volts leave their first value, and the first at which they have their last one for good."""
+    least = _STILL * np.ptp(volts)
+    first = int(np.argmax(np.abs(volts - volts[0]) > least)) - 1
+    last = min(len(volts) - 1, len(volts) - int(np.argmax(np.abs(volts[::-1] - volts[-1]) > least)))
+    return first, last
+
+
+def _step_findings(times: Array, volts: Array, strokes: Array) -> Iterator[Finding]:
+    if not (times.shape == volts.shape == strokes.shape and times.ndim == 1 and len(times) > _FEWEST):
+        shapes = f"times {times.shape}, volts {volts.shape}, strokes {strokes.shape}"
+        yield Finding("record", f"it has {shapes}", f"Give one of each a sample, more than {_FEWEST}")
+        return
+    if not all(np.all(np.isfinite(each)) for each in (times, volts, strokes)):
+        yield Finding("record", "a sample is not finite", "Cut the record there")
+        return
+    if np.ptp(volts) == 0.0:
+        yield Finding("volts", f"they stay at {volts[0]:g} V: there is no step", "Record the stroke after a step of the volts")
+        return
+    places = _step(volts)
+    first, last = (float(times[place]) for place in places)
+    if places[1] - places[0] > 1 and last - first > _STILL * (times[-1] - times[0]):
+        what = f"they change from {first:g} s to {last:g} s, over more than {_STILL:.0%} of the record"
+        yield Finding("volts", what, "Record one quick step, and hold the volts after it")
+    if np.any(np.diff(times) <= 0.0):
+        yield Finding("times", "they do not ascend", "Give the times of the samples")
+
+
+def _span_findings(after: Array, reference: float) -> Iterator[Finding]:
+    if not reference > 0.0 or after[-1] < 10.0 * reference or np.sum(after >= reference) < _FEWEST:
+        what = f"after the step there are {after[-1]:g} s, {np.sum(after >= reference)} samples from {reference:g} s on"
+        yield Finding("record", what, f"Record for {10.0 * reference:g} s or more after the step, or state an earlier reference time")
+
+
+def _means(decades: Array, risen: Array) -> tuple[Array, Array]:
+    """Means of decades and strokes in equal parts of the decades from the reference time on."""
+    used = decades >= 0.0
+    place = np.floor(decades[used] * _PER_DECADE).astype(int)
+    counts = np.bincount(place)
+    there = counts > 0
+    along, strokes = (np.bincount(place, values[used])[there] / counts[there] for values in (decades, risen))
+    return along, strokes
+
+
+def _law_findings(line: tuple[float, float], rms: float, decades: float) -> Iterator[Finding]:
+    stroke, slope = line
+    if stroke == 0.0 or not np.isfinite(slope / stroke):
+        yield Finding("stroke", "it does not answer the step", "Check that volts and stroke belong together")
+    elif rms > _SCATTER * abs(slope) * decades and rms > 1e-4 * abs(stroke):
+        what = f"it scatters by {rms:.3g} m rms about the logarithm, along which it creeps by {slope * decades:.3g} m"
+        yield Finding("stroke", what, "Record longer, or where drift and noise are smaller")

@@ -1,0 +1,192 @@
+"""Least squares for Prandtl-Ishlinskii models: weights of plays, and slopes of the envelope before them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.base.number import Array
+from flexstage.control.hysteresis.envelope import IDENTITY, Envelope, straight
+from flexstage.control.hysteresis.prandtl_ishlinskii import PrandtlIshlinskii
+
+_ROUNDS = 40
+_SETTLED = 1e-8
+_LEAST_SLOPE = 0.05
+_LEAST_WEIGHT = 1e-3
+
+
+@dataclass(frozen=True, eq=False)
+class Form:
+    """What is not fitted: thresholds (n,) and knots (m,) of the envelope before the plays, both in V."""
+
+    thresholds: Array
+    knots: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Fit:
+    """Slopes (m-1,) of the envelope (mean 1 over the range, so that thresholds keep their meaning), weights (n,) [m/V] and offset [m]."""
+
+    form: Form
+    slopes: Array
+    weights: Array
+    offset: float
+
+    def effective(self, volts: Array) -> Array:
+        """What enters the plays (k,) [V] at volts (k,): the envelope, from the lowest knot."""
+        return self.form.knots[0] + _ramps(volts, self.form.knots) @ self.slopes
+
+    def strokes(self, plays: Array) -> Array:
+        """Strokes (k,) [m] of the plays' outputs (k, n)."""
+        return plays @ self.weights + self.offset
+
+    def model(self) -> PrandtlIshlinskii:
+        """The model with its envelope shifted to pass through 0: there the stack is at rest.
+
+        Plays commute with a shift of their input, so that the strokes stay what they are once the memory of the start is lost.
+        """
+        knots = self.form.knots
+        values = knots[0] + np.concatenate([[0.0], np.cumsum(self.slopes * np.diff(knots))])
+        before = IDENTITY if len(knots) == 2 else Envelope(knots, values - np.interp(0.0, *_carried(knots, values)))
+        shift = float(values[0] - before.at(knots[:1])[0])
+        after = straight([1.0], self.offset + shift * float(np.sum(self.weights)))
+        return PrandtlIshlinskii(self.form.thresholds, self.weights, before, after)
+
+
+def _carried(knots: Array, values: Array) -> tuple[Array, Array]:
+    """Knots and values with both end slopes carried on to beyond 0 V."""
+    first, last = (np.diff(values)[place] / np.diff(knots)[place] for place in (0, -1))
+    far = abs(knots[0]) + abs(knots[-1])
+    ends = values[0] - first * far, values[-1] + last * far
+    return np.array([knots[0] - far, *knots, knots[-1] + far]), np.array([ends[0], *values, ends[1]])
+
+
+def form_of(volts: tuple[float, float], plays: int, pieces: int, *, reach: float = 0.5) -> Form:
+    """`plays` thresholds from 0, evenly up to short of `reach` of the range, and an envelope of `pieces` even pieces.
+
+    >>> form_of((0.0, 1000.0), 4, 1).thresholds.tolist()
+    [0.0, 125.0, 250.0, 375.0]
+    """
+    span = volts[1] - volts[0]
+    return Form(reach * span * np.arange(plays) / plays, np.linspace(*volts, pieces + 1))
+
+
+def played(inputs: Array, thresholds: Array) -> Array:
+    """Outputs (k, n) of plays that start from the first of the inputs (k,).
+
+    >>> played(np.array([0.0, 3.0, 2.0]), np.array([0.0, 1.0])).tolist()
+    [[0.0, 0.0], [3.0, 2.0], [2.0, 2.0]]
+    """
+    above, found = inputs[:, None] + thresholds, inputs[:, None] - thresholds
+    ways = np.sign(np.diff(inputs))
+    ends = [*(1 + np.flatnonzero(ways[1:] != ways[:-1])), len(inputs) - 1]
+    now, start = np.full(len(thresholds), inputs[0]), 0
+    found[0] = now
+    for end in ends:  # from turn to turn: on the way up only the lower bounds move plays, on the way down only the upper ones
+        rows = slice(start + 1, end + 1)
+        found[rows] = np.maximum(found[rows], now) if ways[start] > 0.0 else np.minimum(above[rows], now)
+        now, start = found[end], end
+    return found
+
+
+def known_from(inputs: Array, thresholds: Array) -> int:
+    """The first sample at which no play depends on its start any more: the inputs have swung by twice the largest threshold.
+
+    >>> known_from(np.array([0.0, 1.0, 5.0, 3.0, 0.0]), np.array([0.0, 2.0]))
+    2
+    """
+    swing = np.maximum.accumulate(inputs) - np.minimum.accumulate(inputs)
+    return int(np.argmax(swing >= 2.0 * thresholds[-1])) if swing[-1] >= 2.0 * thresholds[-1] else len(inputs)
+
+
+def fitted(volts: Array, strokes: Array, form: Form, rows: Array, *, rounds: int = _ROUNDS) -> Fit:
+    """The weights and the envelope with the least squares over some rows of a record; weights are 0 or more, slopes positive.
+
+    Rows from before the plays are known are left out (`known_from`).
+
+    With a straight envelope this is one linear problem. Else weights for a given envelope and slopes for given weights, each linear, are
+    found in turns: while a play sticks it holds the value of the envelope where it last moved, which is linear in the
+    slopes; `rounds` at most.
+
+    >>> volts = np.concatenate([np.linspace(0, 100, 21), np.linspace(95, 0, 20), np.linspace(5, 100, 20)])
+    >>> strokes = PrandtlIshlinskii([0.0, 25.0], [1e-7, 5e-8]).run(volts)
+    >>> fitted(volts, strokes, form_of((0.0, 100.0), 2, 1), np.arange(61) > 20).weights.round(12).tolist()
+    [1e-07, 5e-08]
+    """
+    pieces = len(form.knots) - 1
+    fit = Fit(form, np.ones(pieces), np.zeros(len(form.thresholds)), 0.0)
+    for _ in range(0 if pieces == 1 else rounds):
+        plays, used = _used(fit, volts, rows)
+        before = fit.slopes
+        fit = _with_weights(fit, plays[used], strokes[used])
+        fit = _with_slopes(fit, volts, plays, (strokes, used))
+        if np.max(np.abs(fit.slopes - before)) < _SETTLED:
+            break
+    plays, used = _used(fit, volts, rows)
+    return _with_weights(fit, plays[used], strokes[used])
+
+
+def _used(fit: Fit, volts: Array, rows: Array) -> tuple[Array, Array]:
+    effective = fit.effective(volts)
+    known = np.arange(len(volts)) >= known_from(effective, fit.form.thresholds)
+    return played(effective, fit.form.thresholds), rows & known
+
+
+def _with_weights(fit: Fit, plays: Array, strokes: Array) -> Fit:
+    span = fit.form.knots[-1] - fit.form.knots[0]
+    size = float(np.ptp(strokes)) / span or 1.0
+    lower = np.concatenate([[_LEAST_WEIGHT], np.zeros(plays.shape[1] - 1), [-np.inf]])
+    solved = _bounded(np.column_stack([plays / span, np.ones(len(plays))]), strokes / (size * span), lower)
+    return Fit(fit.form, fit.slopes, size * solved[:-1], float(size * span * solved[-1]))
+
+
+def _with_slopes(fit: Fit, volts: Array, plays: Array, target: tuple[Array, Array]) -> Fit:
+    """Slopes for given weights, from the volts at which each play last moved, and the side it then moved to."""
+    strokes, rows = target
+    moved = np.sign(np.diff(plays, axis=0, prepend=plays[:1]))
+    last = np.maximum.accumulate(np.where(moved != 0.0, np.arange(len(plays))[:, None], 0), axis=0)[rows]
+    side = np.take_along_axis(moved, last, axis=0)
+    knots = fit.form.knots
+    ramps = _ramps(volts, knots)
+    columns = np.einsum("kij,i->kj", ramps[last], fit.weights)
+    known = fit.offset + knots[0] * np.sum(fit.weights) - (side * fit.form.thresholds) @ fit.weights
+    scale = float(np.sum(fit.weights)) * (knots[-1] - knots[0])
+    lower = np.concatenate([np.full(len(fit.slopes), _LEAST_SLOPE), [-np.inf]])
+    solved = _bounded(np.column_stack([columns / scale, np.ones(len(columns))]), (strokes[rows] - known) / scale, lower)
+    slopes = solved[:-1] * (knots[-1] - knots[0]) / float(solved[:-1] @ np.diff(knots))
+    return Fit(fit.form, slopes, fit.weights, fit.offset)
+
+
+def _ramps(volts: Array, knots: Array) -> Array:
+    """Ways (k, m-1) travelled on each piece from the lowest knot to the volts; the end pieces go on."""
+    floors = np.concatenate([[-np.inf], np.zeros(len(knots) - 2)])
+    tops = np.concatenate([np.diff(knots)[:-1], [np.inf]])
+    return np.clip(volts[:, None] - knots[:-1], floors, tops)
+
+
+def _bounded(matrix: Array, target: Array, lower: Array) -> Array:
+    """Least squares with lower bounds, on the triangle that the columns leave."""
+    from scipy.optimize import lsq_linear
+
+    triangle = np.asarray(np.linalg.qr(np.column_stack([matrix, target]), mode="r"))
+    return lsq_linear(triangle[:, :-1], triangle[:, -1], (lower, np.inf), method="bvls", tol=1e-14).x
+
+
+def drift_of(plays: Array, strokes: Array) -> float:
+    """Drift [m] over a record: the part of the strokes (k,) that grows evenly with time, beside what plays (k, n) of any weights make.
+
+    Zero where leaving it out makes the rms error less than a fifth larger: then it is no more than chance.
+
+    >>> plays = np.array([[0.0], [1.0], [0.0], [1.0]])
+    >>> round(drift_of(plays, np.array([0.0, 1.01, 0.02, 1.03])), 6)
+    0.03
+    """
+    time = np.linspace(-0.5, 0.5, len(strokes))
+    columns = np.column_stack([plays, np.ones(len(plays)), time])
+    scale = np.maximum(np.max(np.abs(columns), axis=0), 1e-300)
+    solved = np.linalg.lstsq(columns / scale, strokes, rcond=1e-10)[0]
+    with_time = strokes - columns / scale @ solved
+    without = strokes - columns[:, :-1] @ np.linalg.lstsq(columns[:, :-1], strokes, rcond=1e-10)[0]
+    matters = np.sum(without**2) > 1.44 * np.sum(with_time**2) + 1e-24 * np.sum(strokes**2)
+    return float(solved[-1] / scale[-1]) if matters else 0.0

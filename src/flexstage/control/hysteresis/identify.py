@@ -1,0 +1,172 @@
+"""Identification: from a record of volts and stroke to a Prandtl-Ishlinskii model that has an inverse."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+import numpy as np
+
+from flexstage.base.finding import Finding, require
+from flexstage.base.number import Array
+from flexstage.control.hysteresis.branches import MAJOR, branches_of, record_findings
+from flexstage.control.hysteresis.fit import Fit, drift_of, fitted, form_of, known_from, played
+from flexstage.control.hysteresis.identified import IdentifiedHysteresis, Trial
+from flexstage.control.hysteresis.inverse import inverse_findings
+from flexstage.control.hysteresis.shape import Range, settled_loop
+
+_PLAYS = (2, 4, 8, 16, 32)
+_PIECES = (2, 4, 8)
+_REACHES = (0.4, 0.5)
+_WORTH = 1.05
+_FARTHER = 0.8
+_SAMPLES = 2500
+_FOLDS = 3
+_ROUNDS = 6
+_DRIFT = 0.02
+_POOR = 0.1
+_LARGE = 0.02
+_COVERED = 0.9
+
+
+def identify_hysteresis(volts: Array, strokes: Array, *, limits: Range | None = None) -> IdentifiedHysteresis:
+    """Identify the hysteresis of a stack from `volts` (k,) [V] and `strokes` (k,) [m] in the order they were recorded.
+
+    Thresholds are even up to 0.4 or 0.5 of the range, the envelope before the plays has pieces of even width; weights of 0 or more and
+    slopes above 0 come from least squares (`fit.fitted`), so that an inverse exists. How many plays and pieces, and how far the
+    thresholds reach, is decided by the error on parts of the record that were kept from the fit: the smallest model within 5 % of the
+    best (far thresholds, which remember long, only where they make it a fifth smaller). Samples from before the plays are known (volts
+    swung by twice the largest threshold) serve as the past only. Rate independent: record slowly against the stage's first mode, and
+    fast against creep. `limits` are the actuator's volts, to say how much of them the record covers.
+
+    Raises `DesignError` for a record that is none of a hysteresis: see `record_findings`, and for drift and errors beyond 2 % and 10 %.
+
+    >>> from flexstage.control.hysteresis.bouc_wen import bouc_wen
+    >>> legs = [np.linspace(a, b, 60) for a, b in ((0, 1e3), (1e3, 0), (0, 1e3), (1e3, 200), (200, 800), (800, 0), (0, 600), (600, 0))]
+    >>> volts = np.concatenate(legs)
+    >>> found = identify_hysteresis(volts, bouc_wen(150e-6, (0.0, 1000.0), 0.15).run(volts))
+    >>> found.rms < 0.015, found.inner, round(found.width, 2)
+    (True, 3, 0.15)
+    """
+    volts, strokes = np.asarray(volts, dtype=float), np.asarray(strokes, dtype=float)
+    require(record_findings(volts, strokes))
+    rows = _thinned(volts)
+    search = _Search(volts[rows], strokes[rows])
+    found = _judged(search, search.best(), limits)
+    require(_result_findings(found))
+    return found
+
+
+def _thinned(volts: Array) -> Array:
+    """The samples used: so many evenly spaced ones, and all turning points."""
+    even = np.linspace(0, len(volts) - 1, min(len(volts), _SAMPLES)).astype(int)
+    turns = [place for branch in branches_of(volts, 0.01) for place in (branch.start, branch.stop)]
+    return np.unique(np.concatenate([even, np.array(turns, dtype=int)]))
+
+
+class _Search:
+    """Sizes of models tried on one record, each once."""
+
+    def __init__(self, volts: Array, strokes: Array) -> None:
+        self.volts, self.strokes = volts, strokes
+        self.range = float(np.min(volts)), float(np.max(volts))
+        self.branches = branches_of(volts)
+        self.size = float(np.ptp(strokes[self.branches[0].stop :]))
+        self.trials: list[Trial] = []
+
+    def best(self) -> Trial:
+        """Plays first, with a straight envelope; then its pieces; then plays again; then the reach."""
+        chosen = self._pick((plays, 1, _REACHES[0]) for plays in _PLAYS)
+        bent = self._pick((chosen.plays, pieces, _REACHES[0]) for pieces in (1, *_PIECES))
+        if bent.pieces > 1:
+            bent = self._pick((plays, bent.pieces, _REACHES[0]) for plays in _PLAYS)
+        near, far = (self._trial(bent.plays, bent.pieces, reach) for reach in _REACHES)
+        return far if far.error < _FARTHER * near.error - 1e-9 else near
+
+    def fit(self, trial: Trial) -> Fit:
+        """The fit of a size on the whole record."""
+        form = form_of(self.range, trial.plays, trial.pieces, reach=trial.reach)
+        return fitted(self.volts, self.strokes, form, np.full(len(self.volts), fill_value=True))
+
+    def _pick(self, sizes: Iterable[tuple[int, int, float]]) -> Trial:
+        """The first of the sizes, smallest first, that is about as good as the best."""
+        tried = [self._trial(*size) for size in sizes]
+        least = min(trial.error for trial in tried)
+        return next(trial for trial in tried if trial.error <= _WORTH * least + 1e-9)
+
+    def _trial(self, plays: int, pieces: int, reach: float) -> Trial:
+        for trial in self.trials:
+            if (trial.plays, trial.pieces, trial.reach) == (plays, pieces, reach):
+                return trial
+        form = form_of(self.range, plays, pieces, reach=reach)
+        known = np.arange(len(self.volts)) >= known_from(self.volts, form.thresholds)
+        fold = self._folds(np.flatnonzero(known))
+        squares = 0.0
+        for number in range(_FOLDS):
+            kept = fold == number
+            fit = fitted(self.volts, self.strokes, form, ~kept, rounds=_ROUNDS)
+            error = fit.strokes(played(fit.effective(self.volts), form.thresholds)) - self.strokes
+            squares += float(np.sum(error[kept] ** 2))
+        self.trials.append(Trial(plays, pieces, reach, float(np.sqrt(squares / np.sum(known))) / self.size))
+        return self.trials[-1]
+
+    def _folds(self, known: Array) -> Array:
+        """The fold of each sample, -1 where it is not known: pairs of branches in turns, or blocks where branches are few."""
+        fold = np.full(len(self.volts), -1)
+        starts = np.array([branch.start for branch in self.branches])
+        if len(starts) < 4 * _FOLDS:
+            fold[known] = np.arange(len(known)) * 4 * _FOLDS // len(known) % _FOLDS
+        else:
+            fold[known] = (np.searchsorted(starts, known, side="right") - 1) // 2 % _FOLDS
+        return fold
+
+
+def _judged(search: _Search, best: Trial, limits: Range | None) -> IdentifiedHysteresis:
+    fit = search.fit(best)
+    effective = fit.effective(search.volts)
+    plays = played(effective, fit.form.thresholds)
+    modelled = fit.strokes(plays)
+    known = known_from(effective, fit.form.thresholds)
+    error = (modelled - search.strokes)[known:] / search.size
+    model = fit.model()
+    inner = int(np.sum([branch.swing < MAJOR * np.ptp(search.volts) for branch in search.branches]))
+    rms = float(np.sqrt(np.mean(error**2)))
+    return IdentifiedHysteresis(
+        model=model,
+        range=search.range,
+        stroke=search.size,
+        rms=rms,
+        largest=float(np.max(np.abs(error))),
+        validation=best.error,
+        width=float(settled_loop(model, search.range, count=201, cycles=1).width[0]),
+        drift=drift_of(plays[known:], search.strokes[known:]) / search.size,
+        branches=len(search.branches),
+        inner=inner,
+        known_from=known,
+        trials=tuple(search.trials),
+        cautions=tuple(_cautions(search, (rms, inner), limits)),
+        volts=search.volts,
+        strokes=search.strokes,
+        modelled=modelled,
+    )
+
+
+def _cautions(search: _Search, found: tuple[float, int], limits: Range | None) -> Iterator[str]:
+    rms, inner = found
+    low, high = search.range
+    if not inner:
+        yield "The record has no inner loops: how it goes on after reversals within the range is concluded from the major loop alone"
+    if rms > _LARGE:
+        yield f"The error, {rms:.1%} rms of the stroke, is large: the record may be too fast, or the stack no rate-independent hysteresis"
+    if limits and high - low < _COVERED * (limits[1] - limits[0]):
+        part = (high - low) / (limits[1] - limits[0])
+        yield f"The record covers {low:g} V to {high:g} V, {part:.0%} of the actuator's range: beyond, the model goes on straight"
+
+
+def _result_findings(found: IdentifiedHysteresis) -> Iterator[Finding]:
+    if abs(found.drift) > _DRIFT:
+        what = f"the stroke drifts by {found.drift:.1%} of its range ({1e6 * found.drift * found.stroke:.3g} um) over the record"
+        yield Finding("stroke", what, "Let the stage settle before recording, record faster than it creeps, or subtract the drift")
+    elif found.rms > _POOR:
+        what = f"the best model misses it by {found.rms:.1%} rms of the stroke: this is no rate-independent hysteresis"
+        yield Finding("record", what, "Record slower, and check that volts and stroke belong together")
+    yield from inverse_findings(found.model)

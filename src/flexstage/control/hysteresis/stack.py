@@ -1,0 +1,189 @@
+"""The hysteresis file: what a stack's hysteresis and creep are, as TOML with units."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+import numpy as np
+
+from flexstage.base.finding import DesignError, Finding, refuse, require
+from flexstage.base.quantity import DISPLACEMENT, NOT_NEGATIVE, PIEZO_GAIN, POSITIVE, RATIO, TIME, VOLTAGE
+from flexstage.base.store import write
+from flexstage.control.hysteresis.creep import LogCreep
+from flexstage.control.hysteresis.envelope import IDENTITY, Envelope, straight
+from flexstage.control.hysteresis.prandtl_ishlinskii import PrandtlIshlinskii
+from flexstage.mechanism.grammar import node_of
+from flexstage.mechanism.store.decode import record_from
+from flexstage.mechanism.store.encode import plain
+from flexstage.mechanism.store.file import parse_toml, read_text
+from flexstage.mechanism.store.lines import placed
+from flexstage.mechanism.store.toml import text_of
+
+FORMAT = "flexstage hysteresis 1"
+
+_Volts = tuple[Annotated[float, VOLTAGE], ...]
+_Strokes = tuple[Annotated[float, DISPLACEMENT], ...]
+_COMMENTS = {
+    "": "Hysteresis of a stack: stroke = offset + sum of weight x play(threshold) of the envelope of the volts.",
+    "volts": "The range of the record.",
+    "rms": "Error on the record, as a part of the stroke.",
+}
+
+
+@dataclass(frozen=True)
+class Bend:
+    """An envelope of the volts in a file: `effective` volts at some `volts`."""
+
+    volts: _Volts
+    effective: _Volts
+
+
+@dataclass(frozen=True)
+class OuterBend:
+    """An envelope of the strokes in a file: `strokes` for what the `plays` add up to."""
+
+    plays: _Strokes
+    strokes: _Strokes
+
+
+@dataclass(frozen=True)
+class StackCreep:
+    """Creep in a file: `rate` a decade of time, counted from the stroke at the `reference` time after a step."""
+
+    rate: Annotated[float, RATIO]
+    reference: Annotated[float, TIME, POSITIVE] = 0.1
+
+
+@dataclass(frozen=True)
+class StackHysteresis:
+    """A stack's hysteresis as it stands in a file, one axis: thresholds, weights, envelopes, range of the record, its error and source.
+
+    `model` and `log_creep` are what it means; `stack_hysteresis` is the way back, to the bit.
+    """
+
+    thresholds: _Volts
+    weights: tuple[Annotated[float, PIEZO_GAIN], ...]
+    offset: Annotated[float, DISPLACEMENT] = 0.0
+    envelope: Bend | None = None
+    outer: OuterBend | None = None
+    creep: StackCreep | None = None
+    volts: _Volts = ()
+    rms: Annotated[float, RATIO, NOT_NEGATIVE] | None = None
+    source: str = ""
+
+    @property
+    def model(self) -> PrandtlIshlinskii:
+        """The model of one axis. Raises `DesignError` where it is none."""
+        before = IDENTITY if self.envelope is None else Envelope(np.array(self.envelope.volts), np.array(self.envelope.effective))
+        after = straight([1.0], self.offset)
+        if self.outer is not None:
+            require(_outer_findings(self.offset))
+            after = Envelope(np.array(self.outer.plays), np.array(self.outer.strokes))
+        return PrandtlIshlinskii(np.array(self.thresholds), np.array(self.weights), before, after)
+
+    @property
+    def log_creep(self) -> LogCreep | None:
+        """The law of creep; None where none is stated."""
+        return None if self.creep is None else LogCreep(self.creep.rate, self.creep.reference)
+
+
+def _outer_findings(offset: float) -> list[Finding]:
+    what = f"it is {offset:g} m beside an outer envelope, which has its own"
+    return [Finding("offset", what, "Leave one of them out")] if offset else []
+
+
+def stack_hysteresis(
+    model: PrandtlIshlinskii,
+    *,
+    creep: LogCreep | None = None,
+    volts: tuple[float, float] | None = None,
+    rms: float | None = None,
+    source: str = "",
+) -> StackHysteresis:
+    """A model of one axis as it stands in a file. Raises `DesignError` for more axes: a file holds one stack.
+
+    >>> stack_hysteresis(PrandtlIshlinskii([0.0, 50.0], [1e-7, 2e-8])).weights
+    (1e-07, 2e-08)
+    """
+    if model.axes != 1:
+        raise refuse("hysteresis", f"the model has {model.axes} axes, and a file holds one stack", "Write one file a stack")
+    knots, values = model.after.knots[0], model.after.values[0]
+    offset = float(values[0]) if knots.tolist() == [0.0, 1.0] else 0.0
+    simple = _same(model.after, straight([1.0], offset))
+    return StackHysteresis(
+        thresholds=tuple(model.thresholds[0].tolist()),
+        weights=tuple(model.weights[0].tolist()),
+        offset=offset if simple else 0.0,
+        envelope=None if _same(model.before, IDENTITY) else Bend(*_pair(model.before)),
+        outer=None if simple else OuterBend(*_pair(model.after)),
+        creep=None if creep is None else StackCreep(creep.rate, creep.reference),
+        volts=() if volts is None else volts,
+        rms=rms,
+        source=source,
+    )
+
+
+def _same(envelope: Envelope, other: Envelope) -> bool:
+    return np.array_equal(envelope.knots, other.knots) and np.array_equal(envelope.values, other.values)
+
+
+def _pair(envelope: Envelope) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    return tuple(envelope.knots[0].tolist()), tuple(envelope.values[0].tolist())
+
+
+def dumps_hysteresis(stack: StackHysteresis) -> str:
+    """The text of a hysteresis file.
+
+    >>> print(dumps_hysteresis(stack_hysteresis(PrandtlIshlinskii([0.0, 50.0], [1e-7, 2e-8]), creep=LogCreep(0.02))), end="")
+    # Hysteresis of a stack: stroke = offset + sum of weight x play(threshold) of the envelope of the volts.
+    format = "flexstage hysteresis 1"
+    thresholds = ["0 V", "50 V"]
+    weights = ["100 nm/V", "20 nm/V"]
+    creep = { rate = 0.02 }
+    """
+    tree = {"format": FORMAT} | plain(node_of(StackHysteresis), stack, "")
+    return text_of(tree, {key: text for key, text in _COMMENTS.items() if not key or key in tree})
+
+
+def loads_hysteresis(text: str, *, where: str = "text") -> StackHysteresis:
+    r"""What a text of a hysteresis file means; `where` names it in findings.
+
+    Raises `DesignError` with all that is wrong with it, also where the model is none.
+
+    >>> loads_hysteresis('format = "flexstage hysteresis 1"\nthresholds = ["0 V"]\nweights = ["150 nm/V"]').weights
+    (1.5e-07,)
+    """
+    raw = parse_toml(text, where)
+    try:
+        stack = record_from(StackHysteresis, raw, FORMAT)
+        _ = stack.model, stack.log_creep
+    except DesignError as error:
+        raise DesignError(placed(error.findings, text, where)) from None
+    return stack
+
+
+def dump_hysteresis(stack: StackHysteresis, path: str | os.PathLike[str]) -> Path:
+    """Write a hysteresis file and return its path. Raises `DesignError` where it cannot be written.
+
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     load_hysteresis(dump_hysteresis(stack_hysteresis(PrandtlIshlinskii([0.0], [1e-7])), f"{folder}/stack.toml")).weights
+    (1e-07,)
+    """
+    return write(path, dumps_hysteresis(stack))
+
+
+def load_hysteresis(path: str | os.PathLike[str]) -> StackHysteresis:
+    """What a hysteresis file holds. Raises `DesignError` with all that is wrong with it, each finding with file, line and key.
+
+    >>> load_hysteresis("nowhere.toml")
+    Traceback (most recent call last):
+        ...
+    flexstage.base.finding.DesignError: nowhere.toml: there is no such file. Check the path, or write one with "flexstage hysteresis -o".
+    """
+    if not Path(path).exists():
+        raise refuse(os.fspath(path), "there is no such file", 'Check the path, or write one with "flexstage hysteresis -o"')
+    return loads_hysteresis(read_text(path), where=os.fspath(path))

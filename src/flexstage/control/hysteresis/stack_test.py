@@ -1,0 +1,152 @@
+"""Tests of a stack: its hysteresis from a record, its creep from that of a step, and the volts that the inverse would give."""
+
+from __future__ import annotations
+
+from collections.abc import Generator, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from flexstage.base.finding import DesignError, Finding, nearest, refuse, require
+from flexstage.base.number import Array
+from flexstage.control.hysteresis.creep_record import IdentifiedCreep, identify_creep
+from flexstage.control.hysteresis.identified import IdentifiedHysteresis
+from flexstage.control.hysteresis.identify import identify_hysteresis
+from flexstage.control.hysteresis.inverse import inverse
+from flexstage.control.hysteresis.shape import Range
+from flexstage.control.hysteresis.stack import StackHysteresis, stack_hysteresis
+from flexstage.experiment.record import Channel, Record
+from flexstage.experiment.unit import in_si, same_dimension, unit_problem
+
+
+@dataclass(frozen=True)
+class Channels:
+    """Names of the channels of a stack's test; without a name the only channel in volts, and the only one in a length."""
+
+    volts: str | None = None
+    stroke: str | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class StackTest:
+    """What a test of a stack says: its hysteresis `found`, its `creep` where a step was recorded, and the channels used.
+
+    `undone` (k,) are the volts [V] by which the inverse makes the recorded strokes: those that were applied, if the model were exact.
+    """
+
+    found: IdentifiedHysteresis
+    undone: Array
+    channels: tuple[Channel, Channel]
+    source: str
+    creep: IdentifiedCreep | None = None
+
+    @property
+    def stack(self) -> StackHysteresis:
+        """What the test says, as it stands in a file."""
+        law = None if self.creep is None else self.creep.law
+        return stack_hysteresis(self.found.model, creep=law, volts=self.found.range, rms=self.found.rms, source=self.source)
+
+    @property
+    def kept(self) -> Array:
+        """Samples (m,) at which nothing depends on the unknown past any more: those that errors are told of."""
+        return np.arange(self.found.known_from, len(self.undone))
+
+    @property
+    def undone_rms(self) -> float:
+        """Rms difference of the volts from the inverse to those applied, as a part of the range."""
+        wrong = (self.undone - self.found.volts)[self.kept]
+        return float(np.sqrt(np.mean(wrong**2))) / (self.found.range[1] - self.found.range[0])
+
+
+def stack_test(record: Record, channels: Channels = Channels(), *, step: Record | None = None, limits: Range | None = None) -> StackTest:
+    """Identify hysteresis from a record of volts and stroke and, where there is one, creep from the record of a `step`.
+
+    Channels are converted to V and m. `limits` are the actuator's volts. Raises `DesignError` for channels that cannot be told, units that
+    are absent or of something else, and for what `identify_hysteresis` and `identify_creep` refuse.
+
+    >>> from flexstage.experiment.record import in_memory
+    >>> volts = 500.0 * (1.0 - np.cos(np.linspace(0.0, 6.0 * np.pi, 400)))
+    >>> strokes = np.where(np.gradient(volts) > 0.0, 0.15 * volts, 0.15 * volts + 4e-5 * volts * (1000.0 - volts))
+    >>> test = stack_test(in_memory([Channel("u", "V"), Channel("y", "um")], 100.0, np.column_stack([volts, strokes])))
+    >>> round(test.found.width, 2), test.found.rms < 0.02
+    (0.07, True)
+    """
+    chosen = _chosen(record, channels)
+    _, volts, strokes = _samples(record, chosen)
+    with _told_of(record):
+        found = identify_hysteresis(volts, strokes, limits=limits)
+    creep = None
+    if step is not None:
+        times, *both = _samples(step, _chosen(step, channels))
+        with _told_of(step):
+            creep = identify_creep(times, *both)
+    return StackTest(found, inverse(found.model).run(found.strokes), chosen, record.source, creep)
+
+
+@contextmanager
+def _told_of(record: Record) -> Generator[None]:
+    """Findings name the record."""
+    try:
+        yield
+    except DesignError as error:
+        where = record.source or "record"
+        raise DesignError(replace(finding, where=f"{where}: {finding.where}") for finding in error.findings) from None
+
+
+def _samples(record: Record, chosen: tuple[Channel, Channel]) -> tuple[Array, Array, Array]:
+    """Times [s], volts [V] and strokes [m] (k,)."""
+    known = in_si(record)
+    columns = [record.names.index(channel.name) for channel in chosen]
+    volts, strokes = known.samples.read(0, record.length)[:, columns].T
+    return record.start + np.arange(record.length) / record.rate, volts, strokes
+
+
+def _chosen(record: Record, channels: Channels) -> tuple[Channel, Channel]:
+    """The channels of volts and stroke."""
+    findings: list[Finding] = []
+    found = [_one(record, wanted, findings) for wanted in (_Wanted("volts", "V", channels.volts), _Wanted("stroke", "m", channels.stroke))]
+    require(findings)
+    volts, stroke = (each for each in found if each is not None)
+    if volts.name == stroke.name:
+        raise refuse(record.source or "record", f"{volts.name} is named as volts and as stroke", "Name two channels")
+    return volts, stroke
+
+
+@dataclass(frozen=True)
+class _Wanted:
+    kind: str
+    unit: str
+    name: str | None
+
+
+def _one(record: Record, wanted: _Wanted, findings: list[Finding]) -> Channel | None:
+    where = f"{record.source or 'record'}: {wanted.kind}"
+    if wanted.name is not None:
+        named = next((each for each in record.channels if each.name == wanted.name), None)
+        if named is None:
+            findings.append(Finding(where, f"there is no channel {wanted.name}", nearest(wanted.name, record.names)))
+            return None
+        findings += _unit_findings(where, named, wanted)
+        return named
+    fitting = [each for each in record.channels if unit_problem(each.unit) is None and same_dimension(each.unit, wanted.unit)]
+    if len(fitting) == 1:
+        return fitting[0]
+    said = ", ".join(f"{each.name} [{each.unit or 'no unit'}]" for each in record.channels[:12])
+    count = "none" if not fitting else f"{len(fitting)}"
+    what = f"of its channels, {said}, {count} {'is' if not fitting else 'are'} in {'volts' if wanted.unit == 'V' else 'a length'}"
+    findings.append(Finding(where, what, f'Name one with --{wanted.kind}, and state its unit, e.g. --units "NAME={_example(wanted)}"'))
+    return None
+
+
+def _unit_findings(where: str, named: Channel, wanted: _Wanted) -> Iterator[Finding]:
+    problem = unit_problem(named.unit)
+    if problem is not None:
+        yield Finding(where, f"{named.name}: {problem}", f'State it, e.g. --units "{named.name}={_example(wanted)}"')
+    elif not same_dimension(named.unit, wanted.unit):
+        what = f"{named.name} is in {named.unit}, which is not {'volts' if wanted.unit == 'V' else 'a length'}"
+        yield Finding(where, what, "Check whether the channels are exchanged, or state the unit (--units)")
+
+
+def _example(wanted: _Wanted) -> str:
+    return "V" if wanted.unit == "V" else "um"

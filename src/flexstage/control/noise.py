@@ -1,0 +1,266 @@
+"""Noise budget of a loop: mean square and rms of position by source."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from flexstage.analysis.random_response import Spectrum, quadrature, spectrum_findings
+from flexstage.base.finding import Finding, nearest, require
+from flexstage.base.labelled import Matrix
+from flexstage.base.number import Array
+from flexstage.control.closed import Loop
+from flexstage.control.curves import around, rates_of
+from flexstage.control.electronics import Amplifier, Sensor
+from flexstage.control.resolvent import resolvent
+from flexstage.control.stability import require_stable
+from flexstage.control.system import System, picked
+from flexstage.control.whites import Kind, Source, bounded_amplifiers, mean_squares, white_system
+from flexstage.mechanism.mechanism import GROUND
+from flexstage.models.linear.model import Channel
+from flexstage.spatial.frame import COMPONENTS
+
+_PER_DECADE = 6
+_HALF = 0.5
+
+
+@dataclass(frozen=True, eq=False)
+class NoiseBudget:
+    """Mean squares of outputs by source, which are uncorrelated and add up; of a sampled loop, at the samples.
+
+    `squares` (p, k) [unit^2] by `outputs` and `sources`. `density` (f, p, k) is one-sided [unit^2/Hz] over `frequencies` (f,) [Hz]: what
+    the floor does at its own frequencies, what white sources do up to half the sampling rate, aliased. `changes` (g,) is by how much each
+    of the `gauges` moves from one sample to the next, rms, in its steps, rounding left out (NaN: it rounds nothing). `notes` say how each
+    kind was taken and what was not stated.
+    """
+
+    outputs: tuple[Channel, ...]
+    sources: tuple[Source, ...]
+    squares: Array
+    frequencies: Array
+    density: Array
+    band: tuple[float, float]
+    gauges: tuple[str, ...]
+    changes: Array
+    notes: tuple[str, ...]
+
+    @property
+    def slow(self) -> tuple[str, ...]:
+        """Gauges whose rounding is no white noise, where that matters: their readings move by less than half a step a sample.
+
+        Errors of successive samples of a Gaussian series with changes of s steps correlate by about exp(-2 pi^2 s^2), 0.7 % at a half
+        (Widrow & Kollar, Quantization Noise, 2008).
+        """
+        counts = np.any(self.squares > 0.0, axis=0)
+        felt = {each.channel for each, some in zip(self.sources, counts, strict=True) if some and each.kind is Kind.ROUNDING}
+        return tuple(name for name, change in zip(self.gauges, self.changes, strict=True) if change < _HALF and name in felt)
+
+    @property
+    def rms(self) -> Array:
+        """The rms value (p,) of each output, all sources together."""
+        return np.sqrt(np.sum(self.squares, axis=1))
+
+    @property
+    def kinds(self) -> tuple[Kind, ...]:
+        """Kinds of source that are there."""
+        return tuple(kind for kind in Kind if any(source.kind is kind for source in self.sources))
+
+    @property
+    def by_kind(self) -> Matrix:
+        """Mean squares by output and kind of source."""
+        columns = [np.sum(self.squares[:, [source.kind is kind for source in self.sources]], axis=1) for kind in self.kinds]
+        values = np.stack(columns, axis=1) if columns else np.zeros((len(self.outputs), 0))
+        units = tuple((f"{channel.unit}^2",) * len(columns) for channel in self.outputs)
+        return Matrix(values, tuple(channel.name for channel in self.outputs), tuple(kind.value for kind in self.kinds), units)
+
+    def to_json(self) -> dict[str, Any]:
+        """The budget as {outputs, units, sources, mean_square, rms, band_hz, steps_per_sample, rounding_is_white, notes}."""
+        return {
+            "outputs": [channel.name for channel in self.outputs],
+            "units": [channel.unit for channel in self.outputs],
+            "sources": [{"kind": source.kind.value, "channel": source.channel} for source in self.sources],
+            "mean_square": self.squares.tolist(),
+            "rms": self.rms.tolist(),
+            "band_hz": list(self.band),
+            "steps_per_sample": {name: float(each) for name, each in zip(self.gauges, self.changes, strict=True) if not np.isnan(each)},
+            "rounding_is_white": not self.slow,
+            "notes": list(self.notes),
+        }
+
+
+def noise_budget(
+    closed: Loop, floor: Mapping[str, Spectrum], band: tuple[float, float], outputs: tuple[str, ...] | None = None
+) -> NoiseBudget:
+    """Mean squares of `outputs` (absent: the platform's six motions against the ground) by floor, gauges, converters and amplifiers.
+
+    `floor` gives one-sided densities by motion of the ground, `ground.x` ...; `band` (low, high) [Hz] is where it is counted. White sources
+    by Lyapunov's equation over all frequencies (`white_system`); the floor by Gauss's rule over the band. Between gauges and hold a
+    motion e^{j omega t} of the ground is seen as e^{j omega k T}, so that with S_y the noise response of the sampled loop and G those of
+    the stage y = [G_y(j omega) + S_y(e^{j omega T}) G_gap(j omega)] w at the samples: aliasing is exact, also above half the
+    sampling rate. Amplifier noise without lag is taken the same way over the band. Raises `DesignError` for an unstable loop, with its
+    rate of growth.
+
+    >>> from flexstage.control.example import integral_loop
+    >>> found = noise_budget(integral_loop(), {"ground.x": Spectrum(1e-18)}, (0.1, 1000.0), ("relative.x",))
+    >>> [source.kind.value for source in found.sources], bool(np.allclose(found.rms**2, found.by_kind.values.sum()))
+    (['gauge noise', 'gauge rounding', 'floor'], True)
+    """
+    require_stable(closed, "rms values")
+    require([*spectrum_findings(floor, band), *_findings(floor)] if floor else _findings(floor))
+    outputs = tuple(f"relative.{name}" for name in COMPONENTS) if outputs is None else outputs
+    gauges = closed.plant.gauges
+    seen, count = (*outputs, *(name for name in gauges if name not in outputs)), len(outputs)
+    both, sources = white_system(closed, seen)
+    white, readings = (picked(both, both.input_names, names) for names in (outputs, gauges))
+    squares, listed = _summed(mean_squares(white), sources)
+    spectra = driving(closed, floor, seen)
+    nodes, weights = quadrature(_panels(closed, floor, band))
+    every = np.abs(Disturbed(closed, tuple(spectra), seen).at(nodes)) ** 2
+    gains = every[:, :count]
+    densities = np.stack([spectrum.at(nodes) for spectrum in spectra.values()], axis=-1) if spectra else np.zeros((len(nodes), 0))
+    shares = np.einsum("f,fpm,fm->pm", weights, gains, densities)
+    driven = np.einsum("f,fgm,fm->g", weights, every[:, [seen.index(name) for name in gauges]], _differences(closed, nodes) * densities)
+    changes = _changes(closed, readings, sources, driven)
+    budget = NoiseBudget(
+        outputs=white.outputs,
+        sources=(*listed, *(_source(name) for name in spectra)),
+        squares=np.hstack([squares, shares]),
+        frequencies=nodes,
+        density=np.concatenate([_white_density(white, sources, nodes), gains * densities[:, None, :]], axis=-1),
+        band=band,
+        gauges=gauges,
+        changes=changes,
+        notes=(),
+    )
+    return replace(budget, notes=tuple(_notes(closed, outputs, budget)))
+
+
+def _differences(closed: Loop, frequencies: Array) -> Array:
+    """|e^{j omega T} - 1|^2 (f, 1): what is left of a square in the difference of successive samples."""
+    return 4.0 * np.sin(np.pi * frequencies * (closed.step or 0.0))[:, None] ** 2
+
+
+def _changes(closed: Loop, readings: System, sources: tuple[Source, ...], driven: Array) -> Array:
+    """Rms changes (g,) of readings from sample to sample, in their steps: white sources through y[k] - y[k-1], and what is `driven`."""
+    gauges = closed.plant.gauges
+    steps = np.array([closed.plant.hardware.sensors.get(name, Sensor()).resolution for name in gauges])
+    if closed.step is None:
+        return np.full(len(gauges), np.nan)
+    states, count = len(readings.A), len(gauges)
+    A = np.block([[readings.A, np.zeros((states, count))], [readings.C, np.zeros((count, count))]])
+    B, C = np.vstack([readings.B, readings.D]), np.hstack([readings.C, -np.eye(count)])
+    moving = [source.kind not in (Kind.ROUNDING, Kind.CONVERTER) for source in sources]
+    squares = np.sum(mean_squares(replace(readings, A=A, B=B, C=C))[:, moving], axis=1) + driven
+    return np.sqrt(squares) / np.where(steps > 0.0, steps, np.nan)
+
+
+def _summed(squares: Array, sources: tuple[Source, ...]) -> tuple[Array, tuple[Source, ...]]:
+    """Columns of one source added."""
+    listed = tuple(dict.fromkeys(sources))
+    columns = [np.sum(squares[..., [each == source for each in sources]], axis=-1) for source in listed]
+    return np.stack(columns, axis=-1) if columns else np.zeros((*squares.shape[:-1], 0)), listed
+
+
+def _white_density(white: System, sources: tuple[Source, ...], frequencies: Array) -> Array:
+    """One-sided densities (f, p, k) of white sources: 2 T |H|^2, or 2 |H|^2 of a continuous loop; none above half the sampling rate."""
+    size = 2.0 * np.abs(resolvent(white).at(frequencies)) ** 2
+    if white.step is not None:
+        size = np.where((frequencies <= 0.5 / white.step)[:, None, None], white.step * size, 0.0)
+    return _summed(size, sources)[0]
+
+
+def driving(closed: Loop, floor: Mapping[str, Spectrum], outputs: tuple[str, ...]) -> dict[str, Spectrum]:
+    """Spectra that are integrated over a band, by plant input: the floor's, and those of amplifiers that nothing bounds.
+
+    >>> from flexstage.control.example import integral_loop
+    >>> list(driving(integral_loop(), {"ground.x": Spectrum(1e-18)}, ("relative.x",)))
+    ['ground.x']
+    """
+    found = dict(floor)
+    bounded = bounded_amplifiers(closed, outputs)
+    for name, amplifier in closed.plant.hardware.amplifiers.items():
+        if amplifier.noise_density and name not in bounded:
+            found[name] = Spectrum(amplifier.noise_density**2)
+    return found
+
+
+def _source(name: str) -> Source:
+    return Source(Kind.FLOOR if name.startswith(f"{GROUND}.") else Kind.AMPLIFIER, name)
+
+
+@dataclass(frozen=True, eq=False)
+class Disturbed:
+    """The loop's response to what disturbs the stage between the samples: inputs of the plant, `ground.x` ... or an actuator's stroke.
+
+    At the samples y = [G_y(j omega) + S_y(e^{j omega T}) G_gap(j omega)] w.
+    """
+
+    closed: Loop
+    inputs: tuple[str, ...]
+    outputs: tuple[str, ...]
+
+    def at(self, frequencies: Array) -> Array:
+        """H, complex (f, p, m), at `frequencies` (f,) in Hz, above half the sampling rate too."""
+        given = self.closed.plant
+        if not self.inputs:
+            return np.zeros((len(frequencies), len(self.outputs), 0), complex)
+        own = [name for name in self.outputs if name in given.system.output_names]
+        rows = [self.outputs.index(name) for name in own]
+        felt = resolvent(picked(given.system, self.inputs, (*(f"gap.{name}" for name in given.gauges), *own))).at(frequencies)
+        noises = [f"noise.{name}" for name in given.gauges]
+        found = resolvent(picked(self.closed.system, noises, self.outputs)).at(frequencies) @ felt[:, : len(noises)]
+        found[:, rows] += felt[:, len(noises) :]
+        return found
+
+
+def _panels(closed: Loop, floor: Mapping[str, Spectrum], band: tuple[float, float]) -> Array:
+    """Ends of the panels [Hz]: around every resonance of stage and loop, those of a sampled loop mirrored at multiples of its rate."""
+    low, high = band
+    step = closed.step
+    near = around(rates_of(closed.system.poles, step))
+    if step is not None:
+        near = np.concatenate([np.abs(number / step + sign * near) for number in range(int(high * step) + 2) for sign in (1.0, -1.0)])
+    stage = around(rates_of(closed.plant.system.poles, None))
+    coarse = np.geomspace(low, high, 2 + int(_PER_DECADE * np.log10(high / low)))
+    knots = [np.asarray(spectrum.frequencies) for spectrum in floor.values() if spectrum.frequencies is not None]
+    ends = np.concatenate([coarse, near, stage, *knots])
+    return np.unique(np.concatenate([[low, high], ends[(ends > low) & (ends < high)]]))
+
+
+def _findings(floor: Mapping[str, Spectrum]) -> list[Finding]:
+    known = [f"{GROUND}.{name}" for name in COMPONENTS]
+    return [Finding(name, "the ground has no such motion", nearest(name, known)) for name in floor if name not in known]
+
+
+def _notes(closed: Loop, outputs: tuple[str, ...], budget: NoiseBudget) -> Iterator[str]:
+    """How each kind of source was taken, and what was not stated."""
+    given = closed.plant
+    sensors = {name: given.hardware.sensors.get(name, Sensor()) for name in given.gauges}
+    silent = [name for name, sensor in sensors.items() if sensor.noise_density is None]
+    bare = [name for name, sensor in sensors.items() if sensor.noise_density and np.isinf(sensor.bandwidth) and not sensor.filter_order]
+    if silent:
+        yield f"no noise is stated of {', '.join(silent)}: counted as none"
+    if bare and closed.step is not None:
+        end = f"half the sampling rate, {0.5 / closed.step:g} Hz"
+        yield f"{', '.join(bare)}: neither bandwidth nor filter is stated; noise is taken to end at {end}"
+    if len(bare) < len(sensors) - len(silent) and closed.step is not None:
+        yield "gauge noise is white before the gauge's lag and filter; what passes them above half the sampling rate is aliased, exactly"
+    if budget.slow:
+        half = 1e9 * 0.5 * max(sensors[name].resolution for name in budget.slow)
+        most = max(change for name, change in zip(budget.gauges, budget.changes, strict=True) if name in budget.slow)
+        yield (
+            f"rounding is counted as white noise, and is none: from sample to sample the readings of {', '.join(budget.slow)} move by "
+            f"{most:.2g} steps rms at most, where half a step is needed; it is slow and correlated, and a reading at rest may stay off "
+            f"by half a step, {half:.3g} nm, which no loop sees"
+        )
+    if closed.step is None and any(sensor.resolution for sensor in sensors.values()):
+        yield "a continuous loop rounds nothing: rounding of gauges and converters is left out"
+    quiet = [name for name in given.actuators if given.hardware.amplifiers.get(name, Amplifier()).noise_density is None]
+    if quiet:
+        yield f"no amplifier noise is stated of {', '.join(quiet)}: counted as none"
+    unbounded = list(driving(closed, {}, outputs))
+    if unbounded:
+        yield f"the amplifiers of {', '.join(unbounded)} have no lag: their noise is counted over the band only"

@@ -1,0 +1,265 @@
+"""The plant of a loop: a stage by any reading between its amplifiers' inputs and its gauges' filtered readings."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from flexstage.base.finding import Finding, nearest, refuse, require
+from flexstage.base.number import Array
+from flexstage.control.coordinates import Coordinates, coordinates
+from flexstage.control.electronics import Hardware, Sensor
+from flexstage.control.sampling import ramped, sampled
+from flexstage.control.system import System, connected, from_state_space, lag, picked, renamed, static
+from flexstage.mechanism.mechanism import GROUND, PLATFORM, Damping
+from flexstage.models.linear.damping import damping_law
+from flexstage.models.linear.eigen import eigen
+from flexstage.models.linear.kinematics import Kinematics
+from flexstage.models.linear.model import Channel, LinearModel
+from flexstage.models.linear.port import ports
+from flexstage.models.linear.state_space import state_space
+from flexstage.spatial.frame import COMPONENTS, FORCES
+
+_REPEATED = 1e-3
+
+
+@dataclass(frozen=True, eq=False)
+class Plant:
+    """A stage with amplifiers and gauges, continuous: what a hold drives and a sampler sees.
+
+    `system` has as inputs the free strokes `<actuator>` [m] that the hold gives to the amplifiers, `ground.<c>` [m, rad] and wrenches
+    `platform.fx` ... [N, N m]; as outputs `gap.<gauge>` [m] (the gauge's reading behind its lag and filter, before noise and rounding),
+    `platform.<c>` and `<point>.<c>` [m, rad] absolute, and `relative.<c>`, `relative.<point>.<c>`, the same against the moving ground.
+    `states` names its states. `frequencies` [Hz] and `ratios` are those of the modes kept, `left_out` counts the others, whose
+    compliance is a static term; `note` says what was simplified.
+    """
+
+    system: System
+    states: tuple[str, ...]
+    coordinates: Coordinates
+    hardware: Hardware
+    frequencies: Array
+    ratios: Array
+    left_out: int
+    note: str
+    provenance: str
+
+    @property
+    def actuators(self) -> tuple[str, ...]:
+        """Names of the actuators."""
+        return self.coordinates.actuators
+
+    @property
+    def gauges(self) -> tuple[str, ...]:
+        """Names of the gauges."""
+        return self.coordinates.gauges
+
+
+def plant(
+    model: LinearModel,
+    kinematics: Kinematics,
+    given: Hardware,
+    *,
+    modes: int | None = None,
+    points: tuple[str, ...] = (),
+    damping: Damping | None = None,
+) -> Plant:
+    """The plant by a reading of a stage, `kinematics` telling what its loop's coordinates are.
+
+    `modes` is how many to keep; absent, all below half the sampling rate (what samples can tell apart), and all of a continuous loop; never
+    fewer than the loop has coordinates, and never one of a pair without the other (frequencies within 0.1 %). What the others add
+    statically stays. `points` are further bodies or points whose motion is given. Raises `DesignError` for a batch of designs, for
+    gauges that do not tell the pose and actuators that cannot make it, for a design without damping.
+
+    >>> from flexstage.control.electronics import hardware
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.models.ideal import ideal
+    >>> from flexstage.models.lumped import lumped
+    >>> stage = parallelogram()
+    >>> found = plant(lumped(stage), ideal(stage), hardware(stage, rate=10e3), modes=2)
+    >>> found.system.input_names[:3], found.system.output_names[:3], found.states
+    (('B', 'ground.x', 'ground.y'), ('gap.S', 'platform.x', 'platform.y'), ('mode1', 'mode2', "mode1'", "mode2'", 'gauge.S'))
+    """
+    if model.stiffness_matrix.ndim != 2:
+        raise refuse("loop", f"the model holds a batch of {model.stiffness_matrix.shape[:-2]} designs", "Give one design")
+    loop = coordinates(kinematics)
+    require(_findings(model, loop, given, points))
+    law = damping_law(model, damping)
+    solved = eigen(model)
+    kept = _count(np.sqrt(solved.values) / (2.0 * np.pi), given, modes, len(loop.names))
+    twists = tuple(f"{place}.{name}" for place in dict.fromkeys((PLATFORM, *points)) for name in COMPONENTS)
+    grounds = tuple(f"{GROUND}.{name}" for name in COMPONENTS)
+    wrenches = tuple(f"{PLATFORM}.{name}" for name in FORCES)
+    space = state_space(model, ports(model, (*loop.gauges, *twists), (*loop.actuators, *grounds, *wrenches)), law, kept)
+    stage = _with_relative(from_state_space(space), model, twists)
+    system, states = _with_hardware(stage, space.states, loop, given)
+    return Plant(
+        system=system,
+        states=states,
+        coordinates=loop,
+        hardware=given,
+        frequencies=np.sqrt(solved.values[:kept]) / (2.0 * np.pi),
+        ratios=space.ratios,
+        left_out=len(solved.values) - kept,
+        note=space.note,
+        provenance=space.provenance,
+    )
+
+
+def held(given: Plant) -> System:
+    """The plant between hold and sampler: exact at the samples; strokes come `delay` late, wrenches are held without delay.
+
+    The ground goes straight from sample to sample (`ramped`): held, it would jump, and gauges would see the jumps.
+    A gauge is read before the output that its sample leads to arrives: without delay, and without a lag between, it still sees the last
+    one. A continuous plant is returned as it is. Inputs and outputs are those of `Plant.system`; its states come first, then the strokes
+    under way.
+
+    >>> from flexstage.control.electronics import hardware
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.models.ideal import ideal
+    >>> from flexstage.models.lumped import lumped
+    >>> stage = parallelogram()
+    >>> one = plant(lumped(stage), ideal(stage), hardware(stage, rate=10e3, delay=150e-6), modes=2)
+    >>> len(one.system.A), len(held(one).A)  # and two strokes of one actuator under way
+    (5, 7)
+    """
+    step = given.hardware.step
+    if step is None:
+        return given.system
+    actuators = given.actuators
+    ground = tuple(name for name in given.system.input_names if name.startswith(f"{GROUND}."))
+    others = tuple(name for name in given.system.input_names if name not in (*actuators, *ground))
+    outputs = given.system.output_names
+    driven = _driven(picked(given.system, actuators, outputs), step, given.hardware.delay, len(given.gauges))
+    moved, loaded = ramped(picked(given.system, ground, outputs), step), sampled(picked(given.system, others, outputs), step)
+    late = np.zeros((len(driven.A) - len(moved.A), len(ground) + len(others)))
+    return replace(
+        driven,
+        B=np.hstack([driven.B, np.vstack([np.hstack([moved.B, loaded.B]), late])]),
+        D=np.hstack([driven.D, moved.D, loaded.D]),
+        inputs=(*driven.inputs, *moved.inputs, *loaded.inputs),
+    )
+
+
+def _driven(stage: System, step: float, delay: float, gauges: int) -> System:
+    """Sampled between strokes and outputs; what a gauge (the first outputs) feels of a stroke at once is that of u[k-d-1]."""
+    direct = stage.D[:gauges]
+    found = sampled(replace(stage, D=np.vstack([np.zeros_like(direct), stage.D[gauges:]])), step, delay)
+    if not np.any(direct):
+        return found
+    width, states = len(found.inputs), len(found.A)
+    if states - len(stage.A) <= int(delay / step + 1e-9) * width:
+        found = _one_more_register(found, width if states > len(stage.A) else 0)
+    C = found.C.copy()
+    C[:gauges, -width:] += direct
+    return replace(found, C=C)
+
+
+def _one_more_register(system: System, last: int) -> System:
+    """Appends what the last `last` states, or with 0 the inputs, were one sample ago."""
+    width, states = len(system.inputs), len(system.A)
+    A = np.zeros((states + width, states + width))
+    A[:states, :states] = system.A
+    B = np.vstack([system.B, np.zeros((width, width))])
+    if last:
+        A[states:, states - last : states] = np.eye(width)
+    else:
+        B[states:] = np.eye(width)
+    return replace(system, A=A, B=B, C=np.hstack([system.C, np.zeros((len(system.C), width))]))
+
+
+def _count(frequencies: Array, given: Hardware, modes: int | None, least: int) -> int:
+    """How many modes are kept: those asked for, or those below half the sampling rate; whole pairs, and at least as many as coordinates."""
+    below = np.inf if given.rate is None else 0.5 * given.rate
+    count = min(max(int(np.sum(frequencies < below)) if modes is None else modes, least), len(frequencies))
+    while count < len(frequencies) and frequencies[count] < frequencies[count - 1] * (1.0 + _REPEATED):
+        count += 1
+    return count
+
+
+def _with_relative(stage: System, model: LinearModel, twists: tuple[str, ...]) -> System:
+    """Further outputs: the twists against the ground, whose own motion carries them along."""
+    rows = [stage.output_names.index(name) for name in twists]
+    columns = [stage.input_names.index(f"{GROUND}.{name}") for name in COMPONENTS]
+    direct = stage.D[rows].copy()
+    direct[:, columns] -= model.rigid_output[model.output_index(twists)]
+    names = tuple(f"relative.{name.removeprefix(f'{PLATFORM}.')}" for name in twists)
+    further = tuple(Channel(name, stage.outputs[row].unit) for name, row in zip(names, rows, strict=True))
+    return replace(stage, C=np.vstack([stage.C, stage.C[rows]]), D=np.vstack([stage.D, direct]), outputs=(*stage.outputs, *further))
+
+
+def _with_hardware(stage: System, states: tuple[str, ...], loop: Coordinates, given: Hardware) -> tuple[System, tuple[str, ...]]:
+    """Amplifiers before the stage, lags and filters behind its gauges; the names of all states."""
+    amplifiers, lags = _amplifiers(loop.actuators, given), _lags(loop.gauges, given)
+    filters = [_filter(name, given.sensors.get(name, Sensor())) for name in loop.gauges]
+    others = tuple(channel for channel in stage.inputs if channel.name not in loop.actuators)
+    body = renamed(stage, {name: f"stroke.{name}" for name in loop.actuators})
+    motions = tuple(name for name in stage.output_names if name not in loop.gauges)
+    inputs = (*(Channel(name, "m") for name in loop.actuators), *others)
+    outputs = (*(f"gap.{name}" for name in loop.gauges), *motions)
+    names = [*states, *_slow("amplifier", loop.actuators, amplifiers), *_slow("gauge", loop.gauges, lags)]
+    names += [f"filter.{name}.{number + 1}" for name, each in zip(loop.gauges, filters, strict=True) for number in range(len(each.A))]
+    return connected([body, amplifiers, lags, *filters], {}, inputs, outputs), tuple(names)
+
+
+def _slow(kind: str, names: tuple[str, ...], lags: System) -> list[str]:
+    """Names of those lags that have a state."""
+    return [f"{kind}.{name}" for name, gain in zip(names, np.diag(lags.D), strict=True) if gain == 0.0]
+
+
+def _amplifiers(names: tuple[str, ...], given: Hardware) -> System:
+    bandwidths = np.array([given.amplifiers[name].bandwidth if name in given.amplifiers else np.inf for name in names])
+    return lag(tuple(Channel(name, "m") for name in names), bandwidths, tuple(Channel(f"stroke.{name}", "m") for name in names))
+
+
+def _lags(names: tuple[str, ...], given: Hardware) -> System:
+    bandwidths = np.array([given.sensors[name].bandwidth if name in given.sensors else np.inf for name in names])
+    return lag(tuple(Channel(name, "m") for name in names), bandwidths, tuple(Channel(f"lagged.{name}", "m") for name in names))
+
+
+def _filter(name: str, sensor: Sensor) -> System:
+    """A Butterworth low-pass of gain 1."""
+    entry, exit_ = (Channel(f"lagged.{name}", "m"),), (Channel(f"gap.{name}", "m"),)
+    if not sensor.filter_order:
+        return static(np.eye(1), entry, exit_)
+    order, turning = sensor.filter_order, 2.0 * np.pi * sensor.filter_corner
+    angles = np.pi * (2.0 * np.arange(order) + order + 1.0) / (2.0 * order)
+    A = np.diag(np.ones(order - 1), 1)
+    A[-1] = -np.real(np.poly(np.exp(1j * angles)))[:0:-1]
+    last, first = np.eye(order)[:, -1:], np.eye(order)[:1]
+    return System(A * turning, last * turning, first, np.zeros((1, 1)), entry, exit_)
+
+
+def sensing(given: Plant) -> System:
+    """Lags and filters of the gauges alone: from noise `noise.<gauge>` [m] at the gauge to `filtered.<gauge>` [m] at the sampler.
+
+    >>> from flexstage.control.electronics import GaugeSettings, hardware
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.models.ideal import ideal
+    >>> from flexstage.models.lumped import lumped
+    >>> stage = parallelogram()
+    >>> filtered = hardware(stage, gauges=GaugeSettings(filter_order=2, filter_corner=1000.0))
+    >>> found = sensing(plant(lumped(stage), ideal(stage), filtered, modes=2))
+    >>> round(float(abs(found.transfer(np.array([1000.0]))[0, 0, 0])), 4)  # 0.7071 / (1 + (1/3)^2)^(1/2), the gauge has 3 kHz
+    0.6708
+    """
+    lags = _lags(given.gauges, given.hardware)
+    filters = [_filter(name, given.hardware.sensors.get(name, Sensor())) for name in given.gauges]
+    inputs = tuple(Channel(name, "m") for name in given.gauges)
+    whole = connected([lags, *filters], {}, inputs, [f"gap.{name}" for name in given.gauges])
+    old = {name: f"noise.{name}" for name in given.gauges} | {f"gap.{name}": f"filtered.{name}" for name in given.gauges}
+    return renamed(whole, old)
+
+
+def _findings(model: LinearModel, loop: Coordinates, given: Hardware, points: tuple[str, ...]) -> list[Finding]:
+    outputs = [channel.name for channel in model.outputs]
+    both = set(loop.actuators) & set(loop.gauges)
+    found = [Finding(name, "an actuator and a gauge have this name", "Rename one of them") for name in sorted(both)]
+    for name in points:
+        if f"{name}.x" not in outputs:
+            places = {each.rpartition(".")[0] for each in outputs if each.endswith(".rz")}
+            found.append(Finding(name, "the model has no point of this name", nearest(name, places)))
+    for kind, items, known in (("actuator", given.amplifiers, loop.actuators), ("gauge", given.sensors, loop.gauges)):
+        found += [Finding(name, f"there is no {kind} of this name", nearest(name, known)) for name in items if name not in known]
+    return found

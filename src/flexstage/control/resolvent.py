@@ -1,0 +1,63 @@
+"""Frequency responses at many points: one Schur form, then triangular solves for all points at once."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from flexstage.base.number import Array
+from flexstage.control.system import System
+
+_CHUNK = 2_000_000
+
+
+@dataclass(frozen=True, eq=False)
+class Resolvent:
+    """A system in Schur form, A = Q T Q^H: H = C Q (lambda - T)^-1 Q^H B + D costs n^2 a point, whether or not A has all eigenvectors."""
+
+    system: System
+    triangle: Array
+    entry: Array
+    exit: Array
+
+    def at(self, frequencies: Array) -> Array:
+        """H, complex (f, p, m), at `frequencies` (f,) in Hz; infinite ones give D (continuous systems only)."""
+        frequencies = np.asarray(frequencies, dtype=float)
+        finite = np.where(np.isfinite(frequencies), frequencies, 0.0)
+        turning = 2j * np.pi * finite
+        points = turning if self.system.step is None else np.exp(turning * self.system.step)
+        size = max(1, _CHUNK // max(1, self.entry.size))
+        pieces = [self._at(points[start : start + size]) for start in range(0, len(points), size)]
+        found = np.concatenate(pieces) if pieces else np.zeros((0, *self.system.D.shape), complex)
+        return np.where(np.isfinite(frequencies)[:, None, None], found, self.system.D)
+
+    def _at(self, points: Array) -> Array:
+        """Back substitution, row by row, for all points."""
+        size, width = self.entry.shape
+        solved = np.zeros((size, len(points) * width), complex)
+        shifted = points[:, None] - np.diag(self.triangle)
+        for row in range(size - 1, -1, -1):
+            above = self.triangle[row, row + 1 :] @ solved[row + 1 :]
+            solved[row] = ((self.entry[row] + above.reshape(len(points), width)) / shifted[:, row, None]).ravel()
+        found = (self.exit @ solved).reshape(len(self.exit), len(points), width)
+        return np.moveaxis(found, 0, 1) + self.system.D
+
+
+def resolvent(system: System) -> Resolvent:
+    """Prepare a system for its response at many frequencies.
+
+    >>> from flexstage.control.example import integral_loop
+    >>> system, far = integral_loop().system, np.array([1.0, 30.0, 4000.0])
+    >>> bool(np.allclose(resolvent(system).at(far), system.transfer(far)))
+    True
+    """
+    from scipy.linalg import matrix_balance, schur
+
+    balanced, (scale, _) = matrix_balance(system.A, permute=False, separate=True)
+    if not len(balanced):
+        return Resolvent(system, balanced.astype(complex), system.B.astype(complex), system.C.astype(complex))
+    found: Any = schur(balanced.astype(complex), output="complex")
+    triangle, vectors = found
+    return Resolvent(system, triangle, vectors.conj().T @ (system.B / scale[:, None]), (system.C * scale) @ vectors)

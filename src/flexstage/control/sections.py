@@ -1,0 +1,218 @@
+"""Sections of a loop: what it is, over frequency, over time, its noise."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from flexstage.control.electronics import Amplifier, Sensor
+from flexstage.control.error_tables import hysteresis_table, noise_table, rest_table
+from flexstage.control.figures.diagram import Block as Box
+from flexstage.control.figures.diagram import Diagram, loop_diagram
+from flexstage.control.figures.frequency import Curves, open_loop_figure, pole_figure, sensitivity_figure
+from flexstage.control.figures.hysteresis import HysteresisLoop, hysteresis_figure
+from flexstage.control.figures.noise import Densities, Shares, noise_share_figure, noise_spectrum_figure
+from flexstage.control.figures.time import error_figure, path_figure, step_figure
+from flexstage.control.study.choices import Compensation, ControllerKind
+from flexstage.control.study.runs import Run
+from flexstage.control.study.stacks import Sweep
+from flexstage.control.study.study import LoopStudy
+from flexstage.control.tables import law_table, loop_table, margin_table, modes_told, step_table, tracking_table
+from flexstage.show.display import number, value_with_unit
+from flexstage.show.figures.export import to_svg
+from flexstage.show.page import Block, Fact, Facts, Picture, Section, folded, section
+from flexstage.show.table import matrix_table
+
+_GOAL = 2.0
+_NOISELESS = 1e-16
+
+
+def loop_section(found: LoopStudy) -> Section | None:
+    """The loop at a glance: facts, block diagram, what it is made of."""
+    drawn = to_svg(loop_diagram(diagram_of(found)), "loop-diagram", "Block diagram of the loop")
+    caption = "The loop of Fig. 9 of Shin & Moon. Shaded: what the computer does, sample by sample."
+    blocks = [Facts(tuple(_facts(found))), Picture(drawn, caption), loop_table(found), law_table(found)]
+    return section("The loop", blocks)
+
+
+def _facts(found: LoopStudy) -> Iterator[Fact]:
+    yield Fact("stability", "stable" if found.verdict.stable else "unstable", f"slowest decay {number(-found.growth, 3)} 1/s")
+    if found.control.tuning is not None:
+        yield Fact("loop gains pass 1 at", f"{number(found.control.tuning.bandwidth, 3)} Hz", "all of them")
+    if found.peaks is not None:
+        yield Fact("peak of S", f"{number(20.0 * np.log10(found.peaks.sensitivity.value), 3)} dB", "6 dB and less is calm")
+    settled = [test.figures.settling[test.index] for test in found.runs if test.figures is not None]
+    if settled:
+        slowest = float(np.max(settled))
+        shown = f"{number(1e3 * slowest, 3)} ms" if np.isfinite(slowest) else "not"
+        yield Fact("steps settle within", shown, "to 2 %, the slowest of them")
+    for test in found.runs:
+        if test.figures is None:
+            yield _error_fact(test)
+
+
+def _error_fact(test: Run) -> Fact:
+    unit = test.tracking.unit[test.index][2]
+    value = float(test.tracking.values[test.index][2])
+    return Fact(f"{test.course.name}, {test.course.moved[0]}", value_with_unit(value, unit, 3), "rms true error")
+
+
+def diagram_of(found: LoopStudy) -> Diagram:
+    """The block diagram of a loop, in the words of its set-up."""
+    setup, plant = found.setup, found.settled.plant
+    rate = f"{number(1e-3 * found.settled.rate, 4)} kHz"
+    stage = Box("stage", f"{setup.reading.value}\n{modes_told(len(plant.frequencies))}")
+    back = (
+        Box("gauges", f"{len(plant.gauges)}"),
+        *_filters(found),
+        Box("sampler", _sampler(found, rate)),
+        Box("R_s^-1", _TO_POSE, digital=True),
+    )
+    power = tuple(plant.hardware.amplifiers.values())
+    analogue = (
+        Box("hold", f"{rate}\nafter {number(1e6 * plant.hardware.delay, 4)} us"),
+        Box("amplifier", _lag(power)),
+        Box("PZT", _stacks(found)),
+    )
+    onto = [("floor", "stage")] if found.settled.floor else []
+    closed = setup.controller.kind is not ControllerKind.NONE
+    onto += [("noise", "gauges")] if closed and any(each.noise_density for each in plant.hardware.sensors.values()) else []
+    onto += [("load", "gains")] if Compensation.LOAD in setup.compensate else []
+    return Diagram(
+        forward=(*_digital(found), *analogue, stage),
+        back=back,
+        onto=tuple(onto),
+        fed_forward=Compensation.REFERENCE in setup.compensate and closed,
+        closed=closed,
+    )
+
+
+_TO_POSE = "readings\nto pose"
+
+
+def _digital(found: LoopStudy) -> Iterator[Box]:
+    setup = found.setup
+    if setup.controller.kind is not ControllerKind.NONE:
+        bandwidth = f"\n{number(found.control.tuning.bandwidth, 3)} Hz" if found.control.tuning is not None else ""
+        notched = ", notches" if any(found.control.notches) else ""
+        kind = setup.controller.kind.value
+        yield Box(
+            "controller",
+            f"{kind.upper() if len(kind) < 4 else kind}{notched}\n{setup.controller.coordinates.value}{bandwidth}",
+            digital=True,
+        )
+    yield Box("R_a", "pose to\nstrokes", digital=True)
+    if Compensation.LOST_MOTION in setup.compensate or Compensation.LOAD in setup.compensate:
+        yield Box("gains", "lost motion", digital=True)
+    if Compensation.HYSTERESIS in setup.compensate:
+        yield Box("inverse", "of hysteresis", digital=True)
+
+
+def _filters(found: LoopStudy) -> Iterator[Box]:
+    gauges = found.setup.gauges
+    if gauges.filter_order and gauges.filter_corner is not None:
+        yield Box("filter", f"order {gauges.filter_order}\n{number(gauges.filter_corner, 4)} Hz")
+
+
+def _sampler(found: LoopStudy, rate: str) -> str:
+    steps = {each.resolution for each in found.settled.plant.hardware.sensors.values() if each.resolution}
+    return f"{rate}\nsteps {value_with_unit(max(steps), 'm', 3)}" if steps else rate
+
+
+def _lag(items: tuple[Amplifier | Sensor, ...]) -> str:
+    slowest = min((each.bandwidth for each in items), default=np.inf)
+    return "ideal" if np.isinf(slowest) else f"{number(slowest, 4)} Hz"
+
+
+def _stacks(found: LoopStudy) -> str:
+    return "hysteresis" if found.setup.hysteresis is not None else "linear"
+
+
+def frequency_section(found: LoopStudy) -> Section | None:
+    """Open loops, sensitivities, margins, poles, crosstalk; `None` in open loop."""
+    if found.curves is None:
+        return None
+    seen, plant = found.curves, found.settled.plant
+    own = np.diagonal(seen.sensitivity, axis1=1, axis2=2)
+    modes = plant.frequencies[: 2 * len(plant.coordinates.names)]
+    loops = to_svg(open_loop_figure(Curves(seen.frequencies, seen.loops, seen.names), modes), "open-loops", "Open loops over frequency")
+    goal = found.control.tuning.goal.sensitivity if found.control.tuning is not None else _GOAL
+    pair = sensitivity_figure(Curves(seen.frequencies, own, seen.names), Curves(seen.frequencies, 1.0 - own, seen.names), goal)
+    sensitivities = to_svg(pair, "sensitivities", "Sensitivity and complementary sensitivity over frequency")
+    poles = to_svg(pole_figure(found.closed.system.poles, found.settled.step, found.closed.held.poles), "poles", "Poles of the closed loop")
+    caption = "Each loop opened alone at the pose, the others closed; dotted: modes of the stage. Every second curve is dashed."
+    return section(
+        "Over frequency",
+        [
+            margin_table(found),
+            Picture(loops, caption),
+            Picture(sensitivities, "What is left of a disturbance, and what is followed; dashed: the highest peak of S that was allowed."),
+            Picture(
+                poles, "Closed-loop poles, delay and hold included, beside those of the stage alone; dotted: damping ratios 0.1, 0.3, 0.6."
+            ),
+            folded("Crosstalk at rest", matrix_table("Motion at rest per reference", found.crosstalk)),
+        ],
+    )
+
+
+def time_section(found: LoopStudy) -> Section | None:
+    """Steps and trajectories."""
+    blocks = [step_table(found.runs), tracking_table(found.runs)]
+    stepped = [(test.course.name, test.simulated) for test in found.runs if test.figures is not None]
+    pictures = []
+    if stepped:
+        drawn = to_svg(step_figure(stepped), "steps", "Steps of every motion")
+        pictures.append(Picture(drawn, "Dashed: the reference; blue: the true motion; grey: the other coordinates of the same unit."))
+    for number_, test in enumerate(test for test in found.runs if test.figures is None):
+        pictures += _followed(test, f"trajectory{number_}")
+    return section("Over time", [*blocks, *pictures])
+
+
+def _followed(test: Run, name: str) -> Iterator[Picture]:
+    if test.course.plane is not None:
+        drawn = to_svg(path_figure(test.simulated, test.course.plane), f"{name}-path", f"Path of the {test.course.name} in plan")
+        yield Picture(drawn, f"The {test.course.name} in plan, to scale; the true error is drawn magnified.")
+    drawn = to_svg(error_figure(test.simulated), f"{name}-error", f"Error along the {test.course.name} over time")
+    yield Picture(drawn, "Reference less true pose over time.")
+
+
+def error_section(found: LoopStudy) -> Section | None:
+    """Errors at rest without the loop, noise with it, hysteresis of the stacks."""
+    blocks: list[Block | None] = [rest_table(found.rest), noise_table(found), *_noise_pictures(found)]
+    if found.stacks is not None and found.sweep is not None:
+        drawn = to_svg(hysteresis_figure(_worst(found.sweep)), "hysteresis", "Hysteresis of a stack with and without its inverse")
+        name = found.sweep.actuators[_hardest(found.sweep)]
+        blocks += [hysteresis_table(found.stacks, found.sweep), Picture(drawn, f"Stack of {name} alone, driven to and fro in open loop.")]
+    return section("Errors and noise", blocks)
+
+
+def _noise_pictures(found: LoopStudy) -> Iterator[Picture]:
+    budget = found.noise
+    if not np.any(budget.rms > _NOISELESS):
+        return
+    shares = shares_of(found)
+    drawn = to_svg(noise_share_figure(shares), "noise-shares", "Shares of the noise by source")
+    yield Picture(drawn, "Whose the noise is: shares of the mean square of each motion at rest, and its rms.")
+    densities = Densities(shares.coordinates, shares.units, budget.frequencies, np.sum(budget.density, axis=2))
+    drawn = to_svg(noise_spectrum_figure(densities), "noise-spectrum", "Noise over frequency")
+    yield Picture(drawn, "Where it lies: amplitude densities of the true motion, and its rms summed up from the lowest frequency.")
+
+
+def shares_of(found: LoopStudy) -> Shares:
+    """Mean squares of the motions at rest by kind of source."""
+    budget = found.noise
+    names = tuple(channel.name.removeprefix("relative.") for channel in budget.outputs)
+    kinds = tuple(kind.value for kind in budget.kinds)
+    return Shares(names, tuple(each.unit for each in budget.outputs), kinds, np.asarray(budget.by_kind.values))
+
+
+def _hardest(sweep: Sweep) -> int:
+    return int(np.argmax(sweep.error(sweep.bare)))
+
+
+def _worst(sweep: Sweep) -> list[HysteresisLoop]:
+    """The stack that is furthest off."""
+    index = _hardest(sweep)
+    pairs = (("without inverse", sweep.bare), ("with inverse", sweep.inverse))
+    return [HysteresisLoop(name, sweep.wanted[:, index], came[:, index]) for name, came in pairs]

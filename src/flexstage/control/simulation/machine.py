@@ -1,0 +1,220 @@
+"""All that a simulation of a sampled loop computes in one sample: plant, controller, amplifiers, gauges, as numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from flexstage.analysis.workspace.drive import Drive
+from flexstage.base.finding import Finding, nearest, require
+from flexstage.base.number import Array
+from flexstage.control.hysteresis.inverse import inverse_findings
+from flexstage.control.hysteresis.prandtl_ishlinskii import PrandtlIshlinskii
+from flexstage.control.hysteresis.protocol import Hysteresis
+from flexstage.control.plants import Plant, held
+from flexstage.control.system import System, picked
+from flexstage.models.linear.model import Channel
+
+
+@dataclass(frozen=True, eq=False)
+class Amplifiers:
+    """What amplifiers do to a command, one number an actuator (m,), free strokes counted from the bias.
+
+    The command is rounded to the converter's `step` [m] (0: not), kept between `low` and `high` [m] and within `slew` [m/s] of the last
+    one; volts are `bias` + stroke / `gain` ([V], [m/V]; NaN where the stack states none).
+    """
+
+    low: Array
+    high: Array
+    slew: Array
+    step: Array
+    gain: Array
+    bias: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Machine:
+    """A sampled loop as a simulation computes it.
+
+    In each sample k: readings y = C x + D w + noise of the `plant` (outputs `gap.<gauge>`), rounded to `resolution` (g,) [m] (0: not);
+    instead of one that is no finite number or beyond `half_range` (g,) [m] (absent: unlimited) the last good one of its gauge; pose =
+    `pose` (f, g) y; error = reference - pose; the `controller` (inputs any of `error.<c>`, `reference.<c>`, `pose.<c>`,
+    `applied.<actuator>`; outputs `command.<actuator>`); volts by the inverse of `compensation`, or proportional; `amplifiers`; free
+    stroke by `hysteresis` of the volts, or proportional; then the states of both for k + 1. `applied` is what the amplifiers gave less
+    what they were asked for: nought but where they are at a limit.
+
+    `plant` is sampled; its inputs are named as `actuators`, all others are disturbances; strokes reach no gauge in the same sample.
+    """
+
+    plant: System
+    controller: System
+    coordinates: tuple[Channel, ...]
+    actuators: tuple[str, ...]
+    gauges: tuple[str, ...]
+    pose: Array
+    amplifiers: Amplifiers
+    resolution: Array
+    hysteresis: Hysteresis | None = None
+    compensation: PrandtlIshlinskii | None = None
+    half_range: Array | None = None
+
+    def __post_init__(self) -> None:
+        """Refuse what cannot be simulated."""
+        require(_findings(self))
+
+    @property
+    def step(self) -> float:
+        """Time between samples [s]."""
+        return self.plant.step or np.nan
+
+    @property
+    def reach(self) -> Array:
+        """The largest readings (g,) [m] that are taken: the gauges' range and half a step of theirs, or the largest finite number."""
+        ends = np.full(len(self.gauges), np.inf) if self.half_range is None else self.half_range
+        return np.minimum(ends + 0.5 * self.resolution, np.finfo(float).max)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the loop's coordinates."""
+        return tuple(channel.name for channel in self.coordinates)
+
+    @property
+    def disturbances(self) -> tuple[Channel, ...]:
+        """Inputs of the plant that are not strokes."""
+        return tuple(channel for channel in self.plant.inputs if channel.name not in self.actuators)
+
+    @property
+    def motions(self) -> tuple[Channel, ...]:
+        """Outputs of the plant that are not readings."""
+        return tuple(channel for channel in self.plant.outputs if channel.name not in self.readings)
+
+    @property
+    def readings(self) -> tuple[str, ...]:
+        """Names of the plant's outputs that the gauges round."""
+        return tuple(f"gap.{name}" for name in self.gauges)
+
+    @property
+    def commands(self) -> tuple[str, ...]:
+        """Names of the controller's outputs."""
+        return tuple(f"command.{name}" for name in self.actuators)
+
+
+def machine(
+    given: Plant,
+    controller: System,
+    electric: Drive | None = None,
+    *,
+    hysteresis: Hysteresis | None = None,
+    compensation: PrandtlIshlinskii | None = None,
+    motions: tuple[str, ...] | None = None,
+) -> Machine:
+    """A plant with its hardware and a controller as a simulation computes them.
+
+    `electric` (of `drive`) turns strokes into volts; hysteresis and compensation need it. `motions` are the outputs of the plant to be kept
+    (absent: all). Raises `DesignError` for a continuous loop, and for whatever `Machine` refuses.
+
+    >>> from flexstage.control.example import integral_loop
+    >>> from flexstage.control.simulation.run import simulate
+    >>> example = integral_loop()
+    >>> found = machine(example.plant, example.controller)
+    >>> found.names, found.gauges, found.step
+    (('x',), ('S',), 0.0001)
+    """
+    if given.hardware.step is None:
+        require([Finding("loop", "it is continuous, and time is simulated in samples", "State the sampling rate")])
+    loop, power = given.coordinates, [given.hardware.amplifiers.get(name) for name in given.actuators]
+    senses = [given.hardware.sensors.get(name) for name in given.gauges]
+    nothing = np.full(len(power), np.nan)
+    plant = held(given)
+    readings = tuple(f"gap.{name}" for name in given.gauges)
+    kept = plant if motions is None else picked(plant, plant.input_names, (*readings, *motions))
+    return Machine(
+        plant=kept,
+        controller=controller,
+        coordinates=tuple(Channel(name, unit) for name, unit in zip(loop.names, loop.units, strict=True)),
+        actuators=given.actuators,
+        gauges=given.gauges,
+        pose=loop.pose,
+        amplifiers=Amplifiers(
+            low=np.array([-np.inf if each is None else each.low for each in power]),
+            high=np.array([np.inf if each is None else each.high for each in power]),
+            slew=np.array([np.inf if each is None else each.slew for each in power]),
+            step=np.array([0.0 if each is None else each.step for each in power]),
+            gain=nothing if electric is None else np.asarray(electric.gain, dtype=float),
+            bias=nothing if electric is None else np.asarray(electric.bias, dtype=float),
+        ),
+        resolution=np.array([0.0 if each is None else each.resolution for each in senses]),
+        hysteresis=hysteresis,
+        compensation=compensation,
+        half_range=np.array([np.inf if each is None else each.half_range for each in senses]),
+    )
+
+
+def unlimited(given: Machine) -> Machine:
+    """The same machine without anything that is not linear: no limits and ranges, no rounding, no hysteresis and no inverse.
+
+    >>> from flexstage.control.example import integral_loop
+    >>> example = integral_loop()
+    >>> bool(np.isinf(unlimited(machine(example.plant, example.controller)).amplifiers.high[0]))
+    True
+    """
+    count = len(given.actuators)
+    free = replace(
+        given.amplifiers,
+        low=np.full(count, -np.inf),
+        high=np.full(count, np.inf),
+        slew=np.full(count, np.inf),
+        step=np.zeros(count),
+    )
+    resolution = np.zeros(len(given.gauges))
+    return replace(given, amplifiers=free, resolution=resolution, hysteresis=None, compensation=None, half_range=None)
+
+
+def _findings(given: Machine) -> Iterator[Finding]:
+    plant, controller = given.plant, given.controller
+    if plant.step is None or controller.step is None or abs(controller.step / plant.step - 1.0) > 1e-9:
+        yield Finding("loop", f"the plant's step is {plant.step} s, the controller's {controller.step} s", "Sample both alike")
+    yield from _missing("plant", plant.input_names, given.actuators)
+    yield from _missing("plant", plant.output_names, given.readings)
+    yield from _missing("controller", controller.output_names, given.commands)
+    known = [f"{kind}.{name}" for kind in ("error", "reference", "pose") for name in given.names]
+    known += [f"applied.{name}" for name in given.actuators]
+    for name in controller.input_names:
+        if name not in known:
+            yield Finding(name, "a controller has no such input", nearest(name, known))
+    yield from _direct(given)
+    yield from _electric(given)
+
+
+def _missing(kind: str, known: tuple[str, ...], wanted: tuple[str, ...]) -> Iterator[Finding]:
+    for name in wanted:
+        if name not in known:
+            yield Finding(f"{kind}: {name}", "there is no channel of this name", nearest(name, known))
+
+
+def _direct(given: Machine) -> Iterator[Finding]:
+    """What would have to be known before it is computed."""
+    plant, controller = given.plant, given.controller
+    rows = [index for index, name in enumerate(plant.output_names) if name in given.readings]
+    columns = [index for index, name in enumerate(plant.input_names) if name in given.actuators]
+    if np.any(plant.D[np.ix_(rows, columns)]):
+        yield Finding("plant", "its readings feel the stroke of their own sample", "Give the loop a delay, or the gauges a bandwidth")
+    applied = [index for index, name in enumerate(controller.input_names) if name.startswith("applied.")]
+    if np.any(controller.D[:, applied]):
+        yield Finding("controller", "its command depends on what is applied of it in the same sample", "Feed it to the states only")
+
+
+def _electric(given: Machine) -> Iterator[Finding]:
+    models = {"hysteresis": given.hysteresis, "compensation": given.compensation}
+    for name, model in models.items():
+        if model is None:
+            continue
+        if model.axes != len(given.actuators):
+            yield Finding(name, f"it has {model.axes} axes, the stage {len(given.actuators)} actuators", "Give one to each actuator")
+        for actuator, gain in zip(given.actuators, given.amplifiers.gain, strict=True):
+            if np.isnan(gain):
+                yield Finding(actuator, f"{name} takes volts, and its stack states no voltage range", 'Add for example voltage_low = "0 V"')
+    if given.compensation is not None:
+        yield from inverse_findings(given.compensation)

@@ -1,0 +1,100 @@
+"""Noise as series of numbers: what floor, gauges and amplifiers do to a simulated loop, from their spectra and a seed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from enum import IntEnum
+
+import numpy as np
+
+from flexstage.analysis.random_response import Spectrum
+from flexstage.base.finding import Finding, nearest, refuse, require
+from flexstage.base.number import Array
+from flexstage.base.stream import generator
+from flexstage.control.electronics import Amplifier, Sensor
+from flexstage.control.plants import Plant
+from flexstage.control.resolvent import resolvent
+from flexstage.control.whites import gauge_noise
+
+
+class Stream(IntEnum):
+    """What random numbers are for."""
+
+    FLOOR = 16
+    GAUGE = 17
+    AMPLIFIER = 18
+
+
+def noises(given: Plant, floor: Mapping[str, Spectrum], samples: int, seed: int = 0) -> dict[str, Array]:
+    """Series (samples,) by name, as `simulate` takes them: `ground.<c>` of the `floor`, noise of gauges and amplifiers of the hardware.
+
+    Gaussian, each its own, the same for the same seed whatever else there is. The floor goes straight from sample to sample (see `ramped`
+    for what that costs); gauge noise is that behind lag and filter, aliased exactly (`gauge_noise`); noise of amplifiers is white up to
+    half the sampling rate. Rounding is no noise here: the simulation rounds. Raises `DesignError` for a continuous loop, and for motions
+    that the ground does not have.
+
+    >>> from flexstage.control.example import integral_loop
+    >>> found = noises(integral_loop().plant, {"ground.x": Spectrum(1e-18)}, 1000, seed=3)
+    >>> list(found), round(float(np.std(found["ground.x"])) * 1e9)  # 1 nm/Hz^(1/2) over 5 kHz: 71 nm
+    (['ground.x', 'noise.S'], 70)
+    """
+    step = given.hardware.step
+    if step is None:
+        raise refuse("loop", "it is continuous, and series of numbers are samples", "State the sampling rate")
+    require(_findings(given, floor))
+    found = {}
+    inputs = given.system.input_names
+    for name, spectrum in floor.items():
+        found[name] = series(spectrum, samples, step, (seed, Stream.FLOOR, inputs.index(name)))
+    for number, name in enumerate(given.gauges):
+        density = given.hardware.sensors.get(name, Sensor()).noise_density
+        if density:
+            frequencies = np.fft.rfftfreq(_length(samples), step)
+            sampled = resolvent(gauge_noise(given, name, density)).at(frequencies)
+            aliased = 2.0 * step * np.sum(np.abs(sampled) ** 2, axis=(1, 2))
+            found[f"noise.{name}"] = shaped(aliased, samples, step, (seed, Stream.GAUGE, number))
+    for number, name in enumerate(given.actuators):
+        density = given.hardware.amplifiers.get(name, Amplifier()).noise_density
+        if density:
+            found[f"noise.{name}"] = series(Spectrum(density**2), samples, step, (seed, Stream.AMPLIFIER, number))
+    return found
+
+
+def series(spectrum: Spectrum, samples: int, step: float, key: tuple[int, ...]) -> Array:
+    """A Gaussian series (samples,) every `step` [s] with a one-sided spectral density, without mean; `key` is its seed and stream.
+
+    Frequencies run from 1/(2 samples step) to half the sampling rate: what a spectrum has outside is not in it.
+
+    >>> one = series(Spectrum(2e-18), 100_000, 0.5e-3, (1,))
+    >>> round(float(np.var(one)) / (2e-18 * 1000.0), 1)  # density times half the sampling rate
+    1.0
+    """
+    frequencies = np.fft.rfftfreq(_length(samples), step)
+    density = np.concatenate([[0.0], spectrum.at(frequencies[1:])])
+    return shaped(density, samples, step, key)
+
+
+def shaped(density: Array, samples: int, step: float, key: tuple[int, ...]) -> Array:
+    """White Gaussian numbers shaped by a one-sided density (f,) at the frequencies of a series twice as long, of which half is taken.
+
+    X(f) = W(f) (S(f) / 2 T)^(1/2), W the transform of unit white numbers: Gaussian and stationary, with exactly this density at its
+    frequencies; cutting off half of it takes away that its end meets its beginning (Shinozuka and Deodatis, Appl. Mech. Rev. 44, 1991).
+
+    >>> flat = shaped(np.full(9, 2.0), 8, 1.0, (7,))  # one-sided 2 T: unit variance, the white numbers themselves
+    >>> bool(np.allclose(flat, generator(7).standard_normal(16)[:8]))
+    True
+    """
+    length = _length(samples)
+    white = generator(*key).standard_normal(length)
+    return np.fft.irfft(np.fft.rfft(white) * np.sqrt(density / (2.0 * step)), length)[:samples]
+
+
+def _length(samples: int) -> int:
+    return 2 * samples
+
+
+def _findings(given: Plant, floor: Mapping[str, Spectrum]) -> Iterator[Finding]:
+    known = [name for name in given.system.input_names if name.startswith("ground.")]
+    for name in floor:
+        if name not in known:
+            yield Finding(name, "the ground has no such motion", nearest(name, known))

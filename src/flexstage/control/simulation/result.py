@@ -1,0 +1,211 @@
+"""What a simulation found, and its figures: settling, overshoot, tracking error."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.base.finding import nearest, refuse
+from flexstage.base.labelled import Matrix
+from flexstage.base.number import Array
+from flexstage.control.simulation.machine import Machine
+from flexstage.models.linear.model import Channel
+from flexstage.spatial.frame import COMPONENTS
+
+
+@dataclass(frozen=True, eq=False)
+class Simulated:
+    """A loop over time: all series have a row a sample, `times` (n,) [s].
+
+    `reference`, `pose` (estimated) and `error` (n, f) [m, rad] by `coordinates`; `motions` (n, p) by `channels`, the true ones; by
+    `actuators`, all as strokes [m] from the bias: `command` of the controller, `asked` of the amplifiers (behind inverse and converter),
+    `given` by them (behind their limits), `stroke` (n, m) that reaches the stage; `volts` (NaN where a stack states none); `readings`
+    (n, g) [m] by `gauges`, as they give them. `saturated` and `slewed` (m,) are the shares of samples at a limit of range, or of speed
+    alone, `held` (g,) those in which a gauge was beyond its range or lost, and the loop went on by its last good reading.
+    """
+
+    times: Array
+    coordinates: tuple[Channel, ...]
+    actuators: tuple[str, ...]
+    gauges: tuple[str, ...]
+    channels: tuple[Channel, ...]
+    reference: Array
+    pose: Array
+    error: Array
+    motions: Array
+    command: Array
+    asked: Array
+    given: Array
+    stroke: Array
+    volts: Array
+    readings: Array
+    saturated: Array
+    slewed: Array
+    held: Array
+
+    def motion(self, name: str) -> Array:
+        """The true motion (n,) of that channel (`platform.x`) [m, rad]; raises `DesignError` where it was not kept."""
+        known = [channel.name for channel in self.channels]
+        if name not in known:
+            raise refuse(name, "this motion was not kept in the simulation", f"{nearest(name, known)}; name it among the motions")
+        return self.motions[:, known.index(name)]
+
+    @property
+    def true_error(self) -> Array:
+        """Reference less the platform's true pose (n, f) [m, rad], what noise of the gauges hides from the loop included.
+
+        Against the moving ground, as gauges see it, where its motions `relative.<c>` were kept.
+        """
+        known = {channel.name for channel in self.channels}
+        names = [f"relative.{channel.name}" for channel in self.coordinates]
+        kept = [name if name in known else f"platform.{name.partition('.')[2]}" for name in names]
+        return self.reference - np.stack([self.motion(name) for name in kept], axis=-1)
+
+
+def others(found: Simulated, moved: str) -> dict[str, tuple[float, str]]:
+    """The largest motion along every axis but the one that is `moved`, and its unit: what it departs from its reference, or from rest.
+
+    All of the platform's axes that were kept count, whether the loop controls them or not, and whatever their unit.
+
+    >>> from flexstage.control.example import integral_loop
+    >>> from flexstage.control.simulation.machine import machine
+    >>> from flexstage.control.simulation.run import simulate
+    >>> example = integral_loop(gain=300.0)
+    >>> list(others(simulate(machine(example.plant, example.controller), np.full((10, 1), 1e-6)), "x"))
+    ['y', 'z', 'rx', 'ry', 'rz']
+    """
+    known = {channel.name: channel.unit for channel in found.channels}
+    largest = np.max(np.abs(found.true_error), axis=0).tolist()
+    result = {
+        channel.name: (value, channel.unit) for channel, value in zip(found.coordinates, largest, strict=True) if channel.name != moved
+    }
+    for name in COMPONENTS:
+        kept = next((each for each in (f"relative.{name}", f"platform.{name}") if each in known), None)
+        if kept is not None and name != moved and name not in result:
+            result[name] = (float(np.max(np.abs(found.motion(kept)))), known[kept])
+    return result
+
+
+@dataclass(frozen=True, eq=False)
+class Series:
+    """What an engine computes, a row a sample; names as in `Simulated`."""
+
+    pose: Array
+    motions: Array
+    command: Array
+    asked: Array
+    given: Array
+    stroke: Array
+    readings: Array
+
+
+def simulated(given: Machine, reference: Array, found: Series) -> Simulated:
+    """The result from what an engine computed.
+
+    >>> from flexstage.control.example import integral_loop
+    >>> from flexstage.control.simulation.machine import machine
+    >>> example = integral_loop()
+    >>> nothing = np.zeros((2, 1))
+    >>> known = machine(example.plant, example.controller, motions=("platform.x",))
+    >>> simulated(known, nothing, Series(*(nothing,) * 7)).times.tolist()
+    [0.0, 0.0001]
+    """
+    amplifiers = given.amplifiers
+    limited = found.given != found.asked
+    at_end = limited & ((found.given == amplifiers.low) | (found.given == amplifiers.high))
+    return Simulated(
+        times=given.step * np.arange(len(reference)),
+        coordinates=given.coordinates,
+        actuators=given.actuators,
+        gauges=given.gauges,
+        channels=given.motions,
+        reference=reference,
+        pose=found.pose,
+        error=reference - found.pose,
+        motions=found.motions,
+        command=found.command,
+        asked=found.asked,
+        given=found.given,
+        stroke=found.stroke,
+        volts=amplifiers.bias + found.given / amplifiers.gain,
+        readings=found.readings,
+        saturated=np.mean(at_end, axis=0),
+        slewed=np.mean(limited & ~at_end, axis=0),
+        held=np.mean(~(np.abs(found.readings) <= given.reach), axis=0),
+    )
+
+
+def tracking(found: Simulated, after: float = 0.0) -> Matrix:
+    """Rms and peak of the error by coordinate from a time [s] on: as the loop sees it, and against the true pose of the platform.
+
+    >>> from flexstage.control.example import integral_loop
+    >>> from flexstage.control.simulation.machine import machine
+    >>> from flexstage.control.simulation.run import simulate
+    >>> example = integral_loop(gain=300.0)
+    >>> still = tracking(simulate(machine(example.plant, example.controller), np.zeros((10, 1))))
+    >>> still.columns, still.values.tolist()
+    (('rms', 'peak', 'true rms', 'true peak'), [[0.0, 0.0, 0.0, 0.0]])
+    """
+    kept = found.times >= after
+    if not np.any(kept):
+        raise refuse("tracking", f"the simulation ends at {found.times[-1]:g} s, before {after:g} s", "Simulate for longer")
+    columns = [each for error in (found.error[kept], found.true_error[kept]) for each in (_rms(error), np.max(np.abs(error), axis=0))]
+    names = tuple(channel.name for channel in found.coordinates)
+    units = tuple((channel.unit,) * 4 for channel in found.coordinates)
+    return Matrix(np.stack(columns, axis=-1), names, ("rms", "peak", "true rms", "true peak"), units)
+
+
+def _rms(values: Array) -> Array:
+    return np.sqrt(np.mean(values**2, axis=0))
+
+
+@dataclass(frozen=True, eq=False)
+class StepFigures:
+    """Of an answer to steps, by coordinate (f,): `settling` time [s] from the step until the true error stays within `band` [m, rad].
+
+    Infinite where it does not settle. `overshoot` is the largest excess over the step as a share of it, `undershoot` that the other way
+    (both NaN where there is no step); `residual` [m, rad] the true error at the end.
+    """
+
+    coordinates: tuple[Channel, ...]
+    band: Array
+    settling: Array
+    overshoot: Array
+    undershoot: Array
+    residual: Array
+
+
+def step_figures(found: Simulated, share: float = 0.02, *, start: float = 0.0, band: Array | None = None) -> StepFigures:
+    """Settling and overshoot of a simulated step that began at `start` [s].
+
+    The band is a `share` of each coordinate's step, or stated as `band` (f,) [m, rad]; coordinates without a step use the largest step
+    of their unit. The error is that of the true pose.
+
+    >>> from flexstage.control.example import integral_loop
+    >>> from flexstage.control.simulation.machine import machine
+    >>> from flexstage.control.simulation.run import simulate
+    >>> example = integral_loop(gain=100.0)
+    >>> found = step_figures(simulate(machine(example.plant, example.controller), np.full((2000, 1), 1e-6)), 0.02)
+    >>> round(float(found.settling[0]), 3), bool(found.overshoot[0] < 1e-3)  # ln(50) / (100/s), an integrator's exponential
+    (0.039, True)
+    """
+    step = found.reference[-1]
+    units = np.array([channel.unit for channel in found.coordinates])
+    largest = np.array([np.max(np.abs(step[units == unit])) for unit in units])
+    band = share * np.where(step != 0.0, np.abs(step), largest) if band is None else np.asarray(band)
+    error = found.true_error
+    outside = np.abs(error) > band
+    last = len(error) - np.argmax(outside[::-1], axis=0)
+    times = np.append(found.times, np.inf)[np.where(np.any(outside, axis=0), last, 0)]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        beyond = np.where(step != 0.0, -error / step, np.nan)
+    moved = found.times >= start
+    return StepFigures(
+        coordinates=found.coordinates,
+        band=band,
+        settling=np.maximum(times - start, 0.0),
+        overshoot=np.maximum(np.max(beyond[moved], axis=0), 0.0),
+        undershoot=np.maximum(np.max(-1.0 - beyond[moved], axis=0), 0.0),
+        residual=error[-1],
+    )

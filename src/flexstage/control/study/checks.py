@@ -1,0 +1,147 @@
+"""What is wrong with a set-up by itself, before any stage is looked at."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import pairwise
+
+from flexstage.base.finding import Finding
+from flexstage.control.study.choices import Compensation, ControllerKind
+from flexstage.control.study.setup import (
+    Amplifying,
+    Commanded,
+    Controlling,
+    Floor,
+    Gauging,
+    HystereticStacks,
+    LoopSetup,
+    RasterMotion,
+    Shaking,
+    SpiralMotion,
+    StepMotion,
+)
+from flexstage.mechanism.checks.value import number_findings
+from flexstage.mechanism.grammar import node_of, numbers
+
+_MOST_BITS = 32
+_HIGHEST_ORDER = 20
+_MOST_LINES = 100_000
+_TUNED = ("bandwidth", "sensitivity")
+_GAINS = ("proportional", "integral", "derivative")
+
+
+def setup_findings(setup: LoopSetup) -> Iterator[Finding]:
+    """All of it: numbers out of their bounds, and numbers that contradict one another; each with its key.
+
+    >>> from flexstage.control.study.setup import Gauging
+    >>> [str(each) for each in setup_findings(LoopSetup(gauges=Gauging(filter_order=4)))]
+    ['gauges.filter_order: a filter of order 4 has no corner. Give filter_corner, or order 0.']
+    """
+    for address, value, node in numbers(node_of(LoopSetup), setup):
+        yield from number_findings(address, value, node)
+    if setup.seed < 0:
+        yield Finding("seed", f"it is {setup.seed}", "Give a whole number of 0 or more")
+    if setup.modes is not None and setup.modes < 1:
+        yield Finding("modes", f"found {setup.modes}", "Keep at least one, or leave it out")
+    yield from _amplifier(setup.amplifier)
+    yield from _gauges(setup.gauges)
+    yield from _floor(setup.floor)
+    yield from _controller(setup.controller)
+    yield from _compensation(setup)
+    yield from _hysteresis(setup.hysteresis) if setup.hysteresis is not None else ()
+    yield from _trajectory(setup.trajectory)
+
+
+def _trajectory(found: Commanded) -> Iterator[Finding]:
+    if isinstance(found, RasterMotion) and not 1 <= found.lines <= _MOST_LINES:
+        yield Finding("trajectory.lines", f"found {found.lines}", f"Give between 1 and {_MOST_LINES}")
+    pair = (found.fast, found.slow) if isinstance(found, RasterMotion) else None
+    pair = (found.first, found.second) if isinstance(found, SpiralMotion) else pair
+    if pair is not None and pair[0] is pair[1]:
+        yield Finding("trajectory", f"both its axes are {pair[0].value}", "Give two different ones")
+    limits = {} if not isinstance(found, StepMotion) else {name: getattr(found, name) for name in ("speed", "acceleration", "jerk")}
+    missing = [name for name, value in limits.items() if value is None]
+    if missing and len(missing) < len(limits):
+        yield Finding(
+            "trajectory", f"it has no {' and no '.join(missing)}", "Give speed, acceleration and jerk, or none of them for a jump"
+        )
+
+
+def _amplifier(found: Amplifying) -> Iterator[Finding]:
+    if found.bandwidth is not None and found.resistance is not None:
+        yield Finding("amplifier", "both its bandwidth and its resistance are given", "Give one of them: the other follows")
+    if found.bits is not None and not 1 <= found.bits <= _MOST_BITS:
+        yield Finding("amplifier.bits", f"found {found.bits}", f"Give between 1 and {_MOST_BITS}")
+
+
+def _gauges(found: Gauging) -> Iterator[Finding]:
+    if not 0 <= found.filter_order <= _HIGHEST_ORDER:
+        yield Finding("gauges.filter_order", f"found {found.filter_order}", f"Give an order from 0 (none) to {_HIGHEST_ORDER}")
+    elif found.filter_order and found.filter_corner is None:
+        yield Finding("gauges.filter_order", f"a filter of order {found.filter_order} has no corner", "Give filter_corner, or order 0")
+    elif found.filter_corner is not None and not found.filter_order:
+        yield Finding("gauges.filter_corner", "a corner is given, but order 0 is no filter", "Give filter_order, for example 4")
+
+
+def _floor(floor: Floor) -> Iterator[Finding]:
+    for axis in ("x", "y", "z"):
+        shaking: Shaking | None = getattr(floor, axis)
+        if shaking is not None:
+            yield from _shaking(f"floor.{axis}", shaking)
+
+
+def _shaking(where: str, found: Shaking) -> Iterator[Finding]:
+    tables = {name: getattr(found, name) for name in ("acceleration", "velocity", "displacement") if getattr(found, name)}
+    given = [*(["criterion"] if found.criterion is not None else []), *tables]
+    if len(given) != 1:
+        what = f"it is given by {' and '.join(given)}" if given else "nothing says how much it shakes"
+        yield Finding(where, what, "Give one of criterion, acceleration, velocity, displacement")
+        return
+    if found.criterion is not None:
+        if found.frequencies:
+            yield Finding(f"{where}.frequencies", "a criterion has its own frequencies", "Leave them out")
+        return
+    ((name, table),) = tables.items()
+    wanted = len(found.frequencies) or 1
+    if len(table) != wanted:
+        yield Finding(f"{where}.{name}", f"found {len(table)} densities for {wanted} frequencies", "Give as many as frequencies")
+    if found.frequencies and (len(found.frequencies) < 2 or any(low >= high for low, high in pairwise(found.frequencies))):
+        yield Finding(f"{where}.frequencies", "they do not ascend", "Give at least two, ascending")
+    if found.frequencies and 0.0 in table:
+        yield Finding(f"{where}.{name}", "a density of a table is 0", "Give positive ones: between points the table is straight in log-log")
+
+
+def _controller(found: Controlling) -> Iterator[Finding]:
+    tuned = [name for name in _TUNED if getattr(found, name) is not None]
+    gains = [name for name in _GAINS if getattr(found, name) is not None]
+    if found.kind in (ControllerKind.RESONANT, ControllerKind.LQG, ControllerKind.NONE) and gains:
+        yield Finding(
+            f"controller.{gains[0]}", f"a controller of kind {found.kind.value} does not have it", "Leave it out, or take kind pi"
+        )
+    elif tuned and gains:
+        what = f"{tuned[0]} asks for tuning, and {', '.join(gains)} is given" if len(gains) == 1 else _both(tuned, gains)
+        yield Finding("controller", what, "Give what the loop shall reach, or the numbers")
+    if found.derivative is not None and found.kind is not ControllerKind.PID:
+        yield Finding("controller.derivative", f"a controller of kind {found.kind.value} has none", "Take kind pid, or leave it out")
+    if found.kind is ControllerKind.PID and found.derivative and found.filter is None:
+        yield Finding("controller.filter", "the derivative has no filter", "Give its corner, for example ten times the bandwidth")
+    if found.kind is ControllerKind.NONE and tuned:
+        yield Finding(f"controller.{tuned[0]}", "there is no loop to be tuned", "Take another kind, or leave it out")
+
+
+def _both(tuned: list[str], gains: list[str]) -> str:
+    return f"{' and '.join(tuned)} ask for tuning, and {', '.join(gains)} are given"
+
+
+def _hysteresis(found: HystereticStacks) -> Iterator[Finding]:
+    if (found.file is None) == (found.width is None):
+        what = "both a file and a width are given" if found.file is not None else "neither a file nor a width is given"
+        yield Finding("hysteresis", what, "Give one of them")
+
+
+def _compensation(setup: LoopSetup) -> Iterator[Finding]:
+    if Compensation.HYSTERESIS in setup.compensate and setup.hysteresis is None:
+        yield Finding("compensate", "hysteresis is to be compensated, and the stacks have none", "Give [hysteresis], a file or a width")
+    for each in dict.fromkeys(setup.compensate):
+        if setup.compensate.count(each) > 1:
+            yield Finding("compensate", f"{each.value} stands {setup.compensate.count(each)} times", "Write it once")

@@ -1,0 +1,146 @@
+"""The controller of a set-up: tuned to what it shall reach, or of the stated numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+
+import numpy as np
+
+from flexstage.analysis.complete import platform_modes
+from flexstage.base.number import Array
+from flexstage.control.controllers.decentralised import Decentralised, channels
+from flexstage.control.controllers.law import Law
+from flexstage.control.controllers.loops import Loops, actuator_loops, loop_modes, modal_loops, platform_loops
+from flexstage.control.controllers.lqg import LQG, Disturbances
+from flexstage.control.controllers.notch import Notch, notch_of_mode
+from flexstage.control.controllers.pi import PI
+from flexstage.control.controllers.pid import PID
+from flexstage.control.study.choices import Axes, Compensation, ControllerKind, Notching
+from flexstage.control.study.settle import Settled
+from flexstage.control.study.setup import Controlling, NotchAt
+from flexstage.control.system import System, static
+from flexstage.control.tuning.attempt import Task
+from flexstage.control.tuning.goal import Goal, Kind, Tuning
+from flexstage.control.tuning.tuned import tuned
+from flexstage.models.linear.model import Channel
+
+_KINDS: Mapping[ControllerKind, Kind] = MappingProxyType(
+    {
+        ControllerKind.PI: Kind.PI,
+        ControllerKind.PID: Kind.PID,
+        ControllerKind.RESONANT: Kind.RESONANT,
+        ControllerKind.LQG: Kind.LQG,
+    }
+)
+_EXPECTED = 1e-9
+"""Density [m/Hz^0.5] that an observer takes strokes to be disturbed by where no amplifier's noise is stated."""
+_QUIETEST = 1e-13
+"""Least density [m/Hz^0.5] that it takes gauges to have: it would trust one without noise beyond all measure."""
+_SENSITIVITY = 2.0
+_FILTER = 1e3
+
+
+@dataclass(frozen=True, eq=False)
+class Control:
+    """A controller as a system, and where it is from: what it is made of, and how it was tuned (`None`: it was not).
+
+    `gains` (n, f) are the strokes by which poses are commanded: R_a, or those that correct lost motion.
+    """
+
+    system: System
+    made_of: Decentralised | LQG | None
+    tuning: Tuning | None
+    gains: Array
+
+    @property
+    def notches(self) -> tuple[tuple[Notch, ...], ...]:
+        """Notch filters by loop."""
+        return self.made_of.notches if isinstance(self.made_of, Decentralised) else ()
+
+    @property
+    def laws(self) -> tuple[Law, ...]:
+        """Laws by loop."""
+        return self.made_of.laws if isinstance(self.made_of, Decentralised) else ()
+
+    @property
+    def loop_names(self) -> tuple[str, ...]:
+        """Names of the single loops; none of a controller that is not made of any."""
+        return self.made_of.loops.names if isinstance(self.made_of, Decentralised) else ()
+
+
+def controlled(given: Settled, gains: Array) -> Control:
+    """The controller that a set-up asks for, `gains` (n, f) being the strokes by which poses are commanded.
+
+    Raises `DesignError` for a bandwidth that cannot be reached, with the highest that can and why; for numbers that make no controller.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.control.study.settle import settled
+    >>> from flexstage.control.study.setup import LoopSetup
+    >>> given = settled(parallelogram(), LoopSetup(controller=Controlling(integral=300.0)))
+    >>> controlled(given, given.plant.coordinates.strokes).laws
+    (PI(proportional=0.0, integral=300.0, tracking=None),)
+    """
+    asked = given.setup.controller
+    forward = gains if Compensation.REFERENCE in given.setup.compensate else None
+    if asked.kind is ControllerKind.NONE:
+        return Control(_open_loop(given, gains), None, None, gains)
+    loops = _loops(given, gains)
+    if any(value is not None for value in (asked.proportional, asked.integral, asked.derivative)):
+        notches = tuple(_notch(each, given) for each in asked.notches)
+        made_of = Decentralised(loops, (_law(asked),) * len(loops.names), (notches,) * len(loops.names) if notches else (), forward)
+        return Control(made_of.system(given.step), made_of, None, gains)
+    task = Task(
+        kind=_KINDS[asked.kind],
+        goal=Goal(asked.bandwidth, asked.sensitivity if asked.sensitivity is not None else _SENSITIVITY),
+        notches=tuple(_notch(each, given) for each in asked.notches),
+        automatic=asked.notching is Notching.AUTOMATIC,
+        expected=_expected(given) if asked.kind is ControllerKind.LQG else None,
+        feedforward=forward,
+    )
+    found = tuned(given.plant, loops, task)
+    return Control(found.controller.system(given.step), found.controller, found, gains)
+
+
+def _open_loop(given: Settled, gains: Array) -> System:
+    """Strokes for the reference, whatever the gauges say."""
+    loop = given.plant.coordinates
+    return static(gains, channels("reference", loop), tuple(Channel(f"command.{name}", "m") for name in loop.actuators), given.step)
+
+
+def _loops(given: Settled, gains: Array) -> Loops:
+    loop = given.plant.coordinates
+    if given.setup.controller.coordinates is Axes.ACTUATOR:
+        return actuator_loops(loop)
+    if given.setup.controller.coordinates is Axes.PLATFORM:
+        return platform_loops(loop, gains)
+    found = platform_modes(given.mechanism, given.model)
+    return modal_loops(loop, np.asarray(found.platform_shapes)[:, list(loop_modes(found, loop))], gains)
+
+
+def _law(asked: Controlling) -> PI | PID:
+    proportional, integral = asked.proportional or 0.0, asked.integral or 0.0
+    if asked.kind is ControllerKind.PI:
+        return PI(proportional, integral)
+    return PID(proportional, integral, asked.derivative or 0.0, asked.filter or _FILTER)
+
+
+def _notch(stated: NotchAt, given: Settled) -> Notch:
+    """As stated; without a depth it cancels the mode next to it."""
+    if stated.depth is not None:
+        return Notch(stated.frequency, stated.depth) if stated.damping is None else Notch(stated.frequency, stated.depth, stated.damping)
+    nearest = int(np.argmin(np.abs(given.plant.frequencies - stated.frequency)))
+    ratio = float(given.plant.ratios[nearest])
+    return notch_of_mode(stated.frequency, ratio) if stated.damping is None else notch_of_mode(stated.frequency, ratio, stated.damping)
+
+
+def _expected(given: Settled) -> Disturbances:
+    """Noise of the gauges as stated, with that of their steps, spread evenly up to half the rate; that of the strokes as stated."""
+    hardware = given.plant.hardware
+    gauges = {
+        name: max(float(np.hypot(each.noise_density or 0.0, each.resolution * np.sqrt(given.step / 6.0))), _QUIETEST)
+        for name, each in hardware.sensors.items()
+    }
+    strokes = [each.noise_density for each in hardware.amplifiers.values() if each.noise_density]
+    return Disturbances(max(strokes, default=_EXPECTED), gauges)

@@ -1,0 +1,167 @@
+"""What is commanded: the trajectories a set-up asks for, as a stage's coordinates let them be."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from flexstage.analysis.workspace.polytope import reachable
+from flexstage.analysis.workspace.stroke import StrokeLimits
+from flexstage.base.finding import Finding, nearest, refuse, require
+from flexstage.base.labelled import Matrix
+from flexstage.base.number import Array
+from flexstage.control.coordinates import Coordinates
+from flexstage.control.study.setup import Commanded, FileMotion, Motion, RasterMotion, SineMotion, SpiralMotion, StepMotion
+from flexstage.control.trajectory.check import reach_findings, speed_findings
+from flexstage.control.trajectory.path import Trajectory, reference
+from flexstage.control.trajectory.profile import Limits
+from flexstage.control.trajectory.raster import Raster
+from flexstage.control.trajectory.sine import Sine
+from flexstage.control.trajectory.spiral import EvenSpeed, Spiral
+from flexstage.control.trajectory.step import Step
+from flexstage.control.trajectory.table import from_file
+from flexstage.spatial.frame import COMPONENTS
+
+_LENGTH, _ANGLE = 1e-6, 10e-6
+_FADED = 0.5
+"""Periods in which a sine grows."""
+_RAMP = 0.1
+_MOST_SAMPLES = 5_000_000
+
+
+@dataclass(frozen=True, eq=False)
+class Course:
+    """A trajectory by name, as `long` [s] as it is looked at; `moved` are the coordinates it is about, `plane` two to be shown in plan."""
+
+    name: str
+    trajectory: Trajectory
+    moved: tuple[str, ...]
+    long: float
+    plane: tuple[str, str] | None = None
+
+    @property
+    def is_step(self) -> bool:
+        """Whether it is a step, of which settling is asked."""
+        return isinstance(self.trajectory, Step)
+
+
+def courses(commanded: Commanded, coordinates: Coordinates) -> tuple[Course, ...]:
+    """The trajectories of a set-up for a loop of these coordinates: of a step, one for every motion.
+
+    Raises `DesignError` for motions that the loop does not have, and for numbers that make no trajectory.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.control.coordinates import coordinates
+    >>> from flexstage.models.ideal import ideal
+    >>> found = courses(StepMotion(), coordinates(ideal(parallelogram())))
+    >>> [(each.name, each.trajectory.at(np.array([1.0])).tolist()) for each in found]
+    [('x', [[1e-06]])]
+    """
+    found = tuple(_courses(commanded, coordinates))
+    require(
+        Finding(f"trajectory {each.name}", f"the stage has no motion {name}", nearest(name, coordinates.names))
+        for each in found
+        for name in each.trajectory.coordinates
+        if name not in coordinates.names
+    )
+    return found
+
+
+def _courses(commanded: Commanded, coordinates: Coordinates) -> Iterator[Course]:
+    if isinstance(commanded, StepMotion):
+        for name, size in (_stated(commanded.by) or _usual(coordinates.names)).items():
+            step = Step({name: size}, limits=_limits(commanded))
+            yield Course(name, step, (name,), step.duration)
+    elif isinstance(commanded, RasterMotion):
+        pair = (commanded.fast.value, commanded.slow.value)
+        sizes = (commanded.length, commanded.pitch, commanded.lines, commanded.speed, commanded.acceleration)
+        raster = Raster(*sizes, coordinates=pair)
+        yield Course("raster", raster, pair, raster.duration, pair)
+    elif isinstance(commanded, SpiralMotion):
+        pair = (commanded.first.value, commanded.second.value)
+        way = np.pi * commanded.radius**2 / commanded.pitch
+        ramp = min(_RAMP, 0.2 * way / commanded.speed)
+        spiral = Spiral(commanded.radius, commanded.pitch, EvenSpeed(commanded.speed), ramp, coordinates=pair)
+        yield Course("spiral", spiral, pair, spiral.duration, pair)
+    elif isinstance(commanded, SineMotion):
+        sizes = _stated(commanded.by) or dict([next(iter(_usual(coordinates.names).items()))])
+        sine = Sine(sizes, commanded.frequency, fade=_FADED / commanded.frequency)
+        yield Course("sine", sine, tuple(sizes), commanded.periods / commanded.frequency)
+    else:
+        yield _tabled(commanded)
+
+
+def _tabled(commanded: FileMotion) -> Course:
+    if not Path(commanded.file).is_file():
+        raise refuse(commanded.file, "there is no such file", "Check the path: a CSV table of times and poses")
+    table = from_file(commanded.file)
+    return Course("file", table, table.coordinates, table.duration, _plane(table.coordinates))
+
+
+def _plane(names: tuple[str, ...]) -> tuple[str, str] | None:
+    lengths = [name for name in names if not name.startswith("r")]
+    return (lengths[0], lengths[1]) if len(lengths) > 1 else None
+
+
+def _stated(by: Motion) -> dict[str, float]:
+    return {name: getattr(by, name) for name in COMPONENTS if getattr(by, name) is not None}
+
+
+def _usual(names: tuple[str, ...]) -> dict[str, float]:
+    return {name: _ANGLE if name.startswith("r") else _LENGTH for name in names}
+
+
+def _limits(commanded: StepMotion) -> Limits | None:
+    if commanded.speed is None or commanded.acceleration is None or commanded.jerk is None:
+        return None
+    return Limits(commanded.speed, commanded.acceleration, commanded.jerk)
+
+
+def sampled_course(course: Course, coordinates: Coordinates, step: float, seconds: float) -> tuple[Array, Array]:
+    """Times (n,) [s] and poses (n, f) [m, rad] of a course, sampled every `step` for so many `seconds`.
+
+    Raises `DesignError` where that is too short or too long to be simulated.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.control.coordinates import coordinates
+    >>> from flexstage.models.ideal import ideal
+    >>> loop = coordinates(ideal(parallelogram()))
+    >>> times, poses = sampled_course(courses(StepMotion(), loop)[0], loop, 1e-3, 0.1)
+    >>> len(times), poses.shape
+    (100, (100, 1))
+    """
+    count = round(seconds / step)
+    if not 2 <= count <= _MOST_SAMPLES:
+        what = f"{seconds:g} s at {1.0 / step:g} Hz are {float(count):.7g} samples"
+        require([Finding("seconds", what, f"Simulate between 2 and {_MOST_SAMPLES} samples")])
+    times = step * np.arange(count)
+    return times, reference(course.trajectory, coordinates.names, times)
+
+
+def course_findings(course: Course, poses: Array, times: Array, gains: Matrix, limits: StrokeLimits) -> list[Finding]:
+    """What of a course the strokes do not reach; `gains` (strokes by coordinate) are those that the poses are commanded by.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.control.coordinates import coordinates
+    >>> from flexstage.analysis.workspace.stroke import stroke_limits
+    >>> from flexstage.models.ideal import ideal
+    >>> stage = parallelogram()
+    >>> loop = coordinates(ideal(stage))
+    >>> far = courses(StepMotion(by=Motion(x=1e-3)), loop)[0]
+    >>> found = course_findings(far, np.array([[1e-3]]), np.zeros(1), ideal(stage).mapping, stroke_limits(stage))
+    >>> found[0].where, "leaves what the strokes reach" in found[0].what
+    ('trajectory x', True)
+    """
+    found = reach_findings(poses, times, reachable(gains, limits))
+    return [Finding(f"trajectory {course.name}", each.what, each.advice) for each in found]
+
+
+def course_cautions(course: Course, poses: Array, times: Array, gains: Matrix, slew: Array) -> list[Finding]:
+    """Where a course that is no jump asks amplifiers for more speed than they have: they then run at their limit."""
+    if course.is_step or not np.any(np.isfinite(slew)):
+        return []
+    found = speed_findings(poses, times, gains, slew)
+    return [Finding(f"trajectory {course.name}: {each.where}", each.what, each.advice) for each in found]

@@ -1,0 +1,70 @@
+"""Errors at rest in open loop: by the ideal map alone, with gains that correct lost motion, by gains of another reading."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.analysis.complete import read
+from flexstage.analysis.deflection import deflection
+from flexstage.analysis.lost_motion import LostMotion, lost_motion
+from flexstage.base.finding import DesignError
+from flexstage.base.number import Array, first_design
+from flexstage.control.compensation import StaticError, compensated, static_error, uncompensated
+from flexstage.control.study.settle import Settled
+from flexstage.models.theory import Reading
+
+
+@dataclass(frozen=True, eq=False)
+class RestErrors:
+    """Errors at rest of the stage by its reading: commanded by R_a (`bare`), and by the gains of the same reading (`corrected`).
+
+    `other` is what gains of the `other_reading` leave on it (`None` where that reading does not have the stage). `load` (6,) is the twist
+    of the platform under all its loads, strokes held, `carried` (6,) what of it no stroke takes back, `strokes` (n,) [m] those that take
+    back the rest.
+    """
+
+    bare: StaticError
+    corrected: StaticError
+    other: StaticError | None
+    other_reading: Reading
+    load: Array
+    carried: Array
+    strokes: Array
+
+
+def rest_errors(given: Settled, lost: LostMotion) -> RestErrors:
+    """Errors at rest of a settled set-up.
+
+    >>> from flexstage.analysis.lost_motion import lost_motion
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.control.study.settle import settled
+    >>> from flexstage.control.study.setup import LoopSetup
+    >>> given = settled(double_triangle(), LoopSetup())
+    >>> found = rest_errors(given, lost_motion(given.kinematics, given.model))
+    >>> round(found.bare.error.at("z", "z").item(), 3), found.corrected.largest < 1e-9
+    (0.032, True)
+    """
+    kinematics = given.kinematics
+    load = np.real(first_design(deflection(given.mechanism, given.model).total, 1))
+    carrying = compensated(lost, kinematics, load)
+    other, reading = _other(given)
+    return RestErrors(
+        bare=static_error(uncompensated(kinematics), kinematics, lost.gain, load),
+        corrected=static_error(compensated(lost, kinematics), kinematics, lost.gain, load),
+        other=None if other is None else static_error(compensated(other, kinematics), kinematics, lost.gain, load),
+        other_reading=reading,
+        load=load,
+        carried=static_error(carrying, kinematics, lost.gain, load).offset,
+        strokes=carrying.offset,
+    )
+
+
+def _other(given: Settled) -> tuple[LostMotion | None, Reading]:
+    reading = Reading.MAPPED if given.setup.reading is Reading.LUMPED else Reading.LUMPED
+    try:
+        model = read(given.mechanism, reading)
+        return (None if model is None else lost_motion(given.kinematics, model)), reading
+    except DesignError:
+        return None, reading

@@ -1,0 +1,213 @@
+"""Simulations of a loop: every course of its set-up."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, fields, replace
+
+import numpy as np
+
+from flexstage.analysis.workspace.drive import Drive, drive
+from flexstage.analysis.workspace.stroke import StrokeLimits, stroke_limits
+from flexstage.analysis.workspace.stroke import stacks as piezo_stacks
+from flexstage.base.finding import Finding, require
+from flexstage.base.labelled import Matrix
+from flexstage.base.number import Array
+from flexstage.control.closed import Loop
+from flexstage.control.creeping import with_creep
+from flexstage.control.simulation.machine import Machine, machine
+from flexstage.control.simulation.noise import noises
+from flexstage.control.simulation.result import Simulated, StepFigures, step_figures, tracking
+from flexstage.control.simulation.run import simulate
+from flexstage.control.study.choices import Compensation
+from flexstage.control.study.control import Control
+from flexstage.control.study.course import Course, course_cautions, course_findings, courses, sampled_course
+from flexstage.control.study.settle import Settled
+from flexstage.control.study.stacks import Stacks
+
+_TIME_CONSTANTS = 8.0
+_SHORTEST, _LONGEST = 0.02, 2.0
+_RINGING, _GONE = 0.1, 1e-6
+_BAND = 0.02
+_STILL, _FEWEST, _MOST = 5.0, 5_000, 50_000
+_REPEATED = 6
+
+
+@dataclass(frozen=True, eq=False)
+class Run:
+    """A course and what came of it: `figures` of a step, `tracking` errors (rms and peak, as seen by the gauges and true)."""
+
+    course: Course
+    simulated: Simulated
+    figures: StepFigures | None
+    tracking: Matrix
+    cautions: tuple[Finding, ...] = ()
+
+    @property
+    def index(self) -> int:
+        """Place of the first coordinate that the course is about."""
+        return [channel.name for channel in self.simulated.coordinates].index(self.course.moved[0])
+
+
+def runs(given: Settled, control: Control, closed: Loop, stacks: Stacks | None = None, offset: Array | None = None) -> tuple[Run, ...]:
+    """Simulate every course of a set-up.
+
+    Steps are simulated without noise, all else with it; gauges are read in their steps, amplifiers keep to their limits, and the stacks
+    have the hysteresis of `stacks`, inverted where the set-up says so. A loop is simulated until it has settled (see `rest_time`), or
+    for the seconds that the set-up says. `offset` (n,) [m] are strokes that loads have taken up already. Raises `DesignError` with all
+    findings: motions that the stage does not have, courses beyond the strokes.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.control.closed import loop
+    >>> from flexstage.control.study.control import controlled
+    >>> from flexstage.control.study.settle import settled
+    >>> from flexstage.control.study.setup import Controlling, LoopSetup
+    >>> given = settled(parallelogram(), LoopSetup(controller=Controlling(integral=300.0)))
+    >>> control = controlled(given, given.plant.coordinates.strokes)
+    >>> found = runs(given, control, loop(given.plant, control.system))
+    >>> found[0].course.name, bool(found[0].figures.settling[0] < 0.03)
+    ('x', True)
+    """
+    loop = given.plant.coordinates
+    asked = courses(given.setup.trajectory, loop)
+    rest = rest_time(closed, ringing=Compensation.REFERENCE in given.setup.compensate)
+    sampled = [sampled_course(each, loop, given.step, given.setup.seconds or _long(each, rest)) for each in asked]
+    gains = Matrix(control.gains, loop.actuators, loop.names, given.kinematics.mapping.unit)
+    known = stroke_limits(given.mechanism)
+    taken = np.zeros(len(known.actuators)) if offset is None else offset
+    limits = StrokeLimits(known.actuators, known.low - taken, known.high - taken)
+    require(
+        finding
+        for course, (times, poses) in zip(asked, sampled, strict=True)
+        for finding in course_findings(course, poses, times, gains, limits)
+    )
+    computed = driven_machine(given, control, stacks)
+    slew = computed.amplifiers.slew
+    return tuple(
+        _run(given, course, computed, tuple(course_cautions(course, poses, times, gains, slew)), poses=poses, rest=rest)
+        for course, (times, poses) in zip(asked, sampled, strict=True)
+    )
+
+
+def driven_machine(given: Settled, control: Control, stacks: Stacks | None = None) -> Machine:
+    """The loop as it is simulated: hardware with its limits and steps, and hysteretic `stacks` that may creep."""
+    if stacks is None:
+        return machine(given.plant, control.system, _electric(given))
+    inverted = stacks.model if Compensation.HYSTERESIS in given.setup.compensate else None
+    plant = given.plant if stacks.creep is None else with_creep(given.plant, stacks.creep)
+    return machine(plant, control.system, stacks.electric, hysteresis=stacks.plant, compensation=inverted)
+
+
+def _electric(given: Settled) -> Drive | None:
+    """Voltages of the stacks, where all state them."""
+    piezos = dict(piezo_stacks(given.mechanism))
+    stated = all(each.voltage_low is not None and each.voltage_high is not None for each in piezos.values())
+    return drive(given.mechanism) if stated and tuple(piezos) == given.plant.actuators else None
+
+
+def at_rest(given: Settled, control: Control, closed: Loop) -> Simulated | None:
+    """The loop holding still in all its noise, from when it has got used to it; `None` where there is no noise but rounding."""
+    hardware = given.plant.hardware
+    noisy = given.floor or any(each.noise_density for each in (*hardware.sensors.values(), *hardware.amplifiers.values()))
+    if not noisy:
+        return None
+    rest = rest_time(closed)
+    count = int(np.clip((_STILL * rest) / given.step, _FEWEST, _MOST))
+    return _shaken(given, driven_machine(given, control), np.zeros((count, len(given.plant.coordinates.names))), rest)
+
+
+@dataclass(frozen=True, eq=False)
+class RestRms:
+    """Rms (f,) of the true motion at rest of the loop's coordinates, by simulations that share nothing but the loop.
+
+    `low` and `high` (f,) hold it by 95 %, from how much `count` simulations of `seconds` each differ.
+    """
+
+    rms: Array
+    low: Array
+    high: Array
+    count: int
+    seconds: float
+
+
+def rest_rms(given: Settled, control: Control, closed: Loop) -> RestRms:
+    """The rms at rest of several simulations, each from its own random numbers, for noise that no budget adds up.
+
+    Each holds another place within the gauges' steps: on the middle of a step a loop rests, near its edge it wanders to and fro.
+    """
+    from scipy.special import stdtrit
+
+    rest = rest_time(closed)
+    count = int(np.clip((_STILL * rest) / given.step, _FEWEST, _MOST)) // 3
+    computed, to_pose = driven_machine(given, control), given.plant.coordinates.pose
+    squares: list[Array] = []
+    for seed in range(given.setup.seed, given.setup.seed + _REPEATED):
+        within = np.random.default_rng([seed, _REPEATED]).uniform(-0.5, 0.5, to_pose.shape[1]) * computed.resolution
+        held = to_pose @ within
+        found = _shaken(replace(given, setup=replace(given.setup, seed=seed)), computed, np.tile(held, (count, 1)), rest, held)
+        squares.append(np.mean(found.true_error**2, axis=0))
+    mean = np.mean(squares, axis=0)
+    reach = stdtrit(_REPEATED - 1, 0.975) * np.std(squares, axis=0, ddof=1) / np.sqrt(_REPEATED)
+    low, high = np.sqrt(np.maximum(mean - reach, 0.0)), np.sqrt(mean + reach)
+    return RestRms(np.sqrt(mean), low, high, _REPEATED, count * given.step)
+
+
+def _long(course: Course, rest: float) -> float:
+    """A course, and a rest: of a step to see it settle, of a trajectory a fifth at most."""
+    return course.long + (rest if course.is_step else min(rest, 0.2 * course.long))
+
+
+def rest_time(closed: Loop, *, ringing: bool = False) -> float:
+    """How long [s] the loop is given to settle: eight times the time constant of its slowest pole, at most 2 s.
+
+    Poles that ring count only where they are set `ringing`, by commands that pass the controller by.
+
+    >>> from flexstage.control.example import integral_loop
+    >>> rest_time(integral_loop(gain=300.0))
+    0.05
+    """
+    poles = closed.system.poles
+    rates = np.log(poles[np.abs(poles) > _GONE].astype(complex)) * closed.plant.hardware.rate
+    calm = -rates.real[-rates.real > _RINGING * np.abs(rates)]
+    slowest = float(np.min(calm)) if len(calm) and not ringing else -closed.system.growth
+    wanted = float(np.clip(_TIME_CONSTANTS / slowest, _SHORTEST, _LONGEST))
+    power = 10.0 ** np.floor(np.log10(wanted))
+    return float(next(step * power for step in (1.0, 2.0, 5.0, 10.0) if step * power >= wanted * (1.0 - 1e-9)))
+
+
+def _shaken(given: Settled, computed: Machine, poses: Array, rest: float, held: Array | float = 0.0) -> Simulated:
+    """A simulation in noise, begun early enough that the loop has got used to it, and to the pose it is `held` at before.
+
+    The floor begins to shake gently, not at once.
+    """
+    lead = int(rest / given.step)
+    noise = noises(given.plant, given.floor, lead + len(poses), given.setup.seed)
+    if not noise and not np.any(held):
+        return simulate(computed, poses)
+    before = np.zeros((lead, poses.shape[1])) + held
+    share = np.clip(np.arange(lead + len(poses)) / max(lead, 1), 0.0, 1.0)
+    gentle = share**3 * (10.0 - 15.0 * share + 6.0 * share**2)
+    series = {name: values * gentle if name.startswith("ground.") else values for name, values in noise.items()}
+    return _after(simulate(computed, np.concatenate([before, poses]), series), lead)
+
+
+def _after(found: Simulated, lead: int) -> Simulated:
+    """A simulation from a sample on, its clock begun anew; shares of limits are those of the whole."""
+    names = [field.name for field in fields(Simulated) if np.shape(getattr(found, field.name))[:1] == found.times.shape]
+    kept = {name: getattr(found, name)[lead:] for name in names}
+    return replace(found, **(kept | {"times": found.times[lead:] - found.times[lead]}))
+
+
+def _run(given: Settled, course: Course, computed: Machine, cautions: tuple[Finding, ...], *, poses: Array, rest: float) -> Run:
+    found = simulate(computed, poses) if course.is_step else _shaken(given, computed, poses, rest)
+    figures = step_figures(found, _BAND) if course.is_step else None
+    return Run(course, found, figures, tracking(found), (*cautions, *_lost(course, found, computed)))
+
+
+def _lost(course: Course, found: Simulated, computed: Machine) -> Iterator[Finding]:
+    """Gauges that went beyond their range."""
+    for name, share, reach in zip(found.gauges, found.held, computed.reach, strict=True):
+        if share > 0.0:
+            what = f"{name} measures {1e6 * reach:.4g} um both ways and is beyond it in {100.0 * share:.3g} % of the samples"
+            advice = "The loop goes on by its last good reading: command less, or take a gauge of a longer range"
+            yield Finding(f"trajectory {course.name}", what, advice)

@@ -1,0 +1,143 @@
+"""A set-up with everything settled by the stage: rate, delay, hardware, plant, floor."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.analysis.complete import platform_modes, read
+from flexstage.analysis.random_response import Spectrum
+from flexstage.base.finding import Finding, refuse, require
+from flexstage.base.number import Table
+from flexstage.control.electronics import AmplifierSettings, GaugeSettings, Hardware, hardware
+from flexstage.control.plants import Plant, plant
+from flexstage.control.reduction import reduced
+from flexstage.control.study.checks import setup_findings
+from flexstage.control.study.floor import floor_spectra
+from flexstage.control.study.setup import LoopSetup
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.models.ideal import ideal
+from flexstage.models.linear.kinematics import Kinematics
+from flexstage.models.linear.model import LinearModel
+
+_USUAL = 10e3
+_OVER_HIGHEST = 10.0
+_LEAST_OVER_HIGHEST = 4.0
+_MOST_LATE = 50
+_FELT = 0.01
+"""Resonances below this share of a static stroke are left out: what they do to the open loop is below it at any frequency."""
+
+
+@dataclass(frozen=True, eq=False)
+class Settled:
+    """What a set-up means for a stage: its kinematics, its model by the set-up's reading, the plant, the floor's spectra by input.
+
+    `plant` has the modes that its loop feels, or as many as the set-up says; `whole` all below half the sampling rate.
+    `highest` [Hz] is that of the platform's modes, of as many as the loop has coordinates.
+    """
+
+    mechanism: Mechanism
+    setup: LoopSetup
+    kinematics: Kinematics
+    model: LinearModel
+    plant: Plant
+    whole: Plant
+    floor: Mapping[str, Spectrum]
+    highest: float
+
+    @property
+    def rate(self) -> float:
+        """Sampling rate [Hz]."""
+        return self.plant.hardware.rate or np.inf
+
+    @property
+    def step(self) -> float:
+        """Time between samples [s]."""
+        return 1.0 / self.rate
+
+
+def settled(mechanism: Mechanism, setup: LoopSetup) -> Settled:
+    """Settle a set-up for a stage.
+
+    Raises `DesignError` with all findings: of the set-up itself, gauges that do not tell the pose, actuators that cannot make it, stacks
+    that do not state what amplifiers need, sampling too slow for the platform's modes, a reading without stiffness.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> found = settled(double_triangle(), LoopSetup())
+    >>> found.rate, found.plant.coordinates.names, round(found.highest, 1)
+    (10000.0, ('x', 'y', 'z', 'rx', 'ry', 'rz'), 173.1)
+    """
+    require(setup_findings(setup))
+    kinematics, model = ideal(mechanism), read(mechanism, setup.reading)
+    if model is None:
+        raise refuse("reading", "rigid bodies have no stiffness and no modes", "Take lumped or mapped")
+    highest = highest_moved(mechanism, model, len(kinematics.coordinates))
+    rate = setup.rate if setup.rate is not None else usual_rate(highest)
+    delay = setup.delay if setup.delay is not None else 1.0 / rate
+    require([*_rate_findings(rate, highest), *_delay_findings(delay * rate)])
+    given = _hardware(mechanism, setup, rate, delay)
+    whole = plant(model, kinematics, given)
+    found = reduced(whole, _FELT) if setup.modes is None else plant(model, kinematics, given, modes=setup.modes)
+    return Settled(mechanism, setup, kinematics, model, found, whole, Table(floor_spectra(setup.floor)), highest)
+
+
+def highest_moved(mechanism: Mechanism, model: LinearModel, count: int) -> float:
+    """The highest [Hz] of the `count` lowest platform modes: those that move as the stage is meant to.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.models.lumped import lumped
+    >>> round(highest_moved(parallelogram(), lumped(parallelogram()), 1), 1)
+    875.4
+    """
+    return float(np.sort(platform_modes(mechanism, model).platform_frequencies)[:count][-1])
+
+
+def usual_rate(highest: float) -> float:
+    """The sampling rate [Hz] where none is stated: 10 kHz, or ten times the highest platform mode, rounded up to 1, 2 or 5 times a power.
+
+    >>> usual_rate(173.0), usual_rate(2853.9)
+    (10000.0, 50000.0)
+    """
+    wanted = max(_USUAL, _OVER_HIGHEST * highest)
+    power = 10.0 ** np.floor(np.log10(wanted))
+    return float(next(step * power for step in (1.0, 2.0, 5.0, 10.0) if step * power >= wanted * (1.0 - 1e-9)))
+
+
+def _rate_findings(rate: float, highest: float) -> Iterator[Finding]:
+    if rate < _LEAST_OVER_HIGHEST * highest:
+        what = f"sampling at {rate:g} Hz is {rate / highest:.3g} times the highest platform mode, {highest:.4g} Hz"
+        yield Finding(
+            "rate", what, f"Sample at {_LEAST_OVER_HIGHEST * highest:.4g} Hz at least, better at {_OVER_HIGHEST * highest:.0f} Hz"
+        )
+
+
+def _delay_findings(samples: float) -> Iterator[Finding]:
+    if samples > _MOST_LATE:
+        what = f"it is {samples:.4g} samples long: every stroke under way would be a state of its own"
+        yield Finding("delay", what, f"Give {_MOST_LATE} samples at most, or sample more slowly")
+
+
+def _hardware(mechanism: Mechanism, setup: LoopSetup, rate: float, delay: float) -> Hardware:
+    power, gauges = setup.amplifier, setup.gauges
+    return hardware(
+        mechanism,
+        rate=rate,
+        delay=delay,
+        amplifiers=AmplifierSettings(
+            bandwidth=power.bandwidth,
+            resistance=power.resistance,
+            current=power.current,
+            slew=power.slew,
+            noise_density=power.noise,
+            bits=power.bits,
+        ),
+        gauges=GaugeSettings(
+            bandwidth=gauges.bandwidth,
+            noise_density=gauges.noise,
+            resolution=gauges.resolution,
+            filter_order=gauges.filter_order,
+            filter_corner=gauges.filter_corner,
+        ),
+    )

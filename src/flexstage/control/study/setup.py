@@ -1,0 +1,243 @@
+"""How a loop is set up: clock, amplifier, gauges, floor, controller, compensation, trajectory. The form of a set-up file.
+
+Every field carries its quantity: that alone makes the file's reader and its schema.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Annotated, ClassVar, TypeAlias
+
+from flexstage.base.quantity import (
+    ACCELERATION,
+    ACCELERATION_NOISE,
+    ANGLE,
+    CURRENT,
+    DISPLACEMENT,
+    FREQUENCY,
+    JERK,
+    NOISE_DENSITY,
+    NOT_NEGATIVE,
+    POSITIVE,
+    RATE,
+    RATIO,
+    RESISTANCE,
+    SLEW,
+    SPEED,
+    TIME,
+    VELOCITY_NOISE,
+    VOLTAGE_NOISE,
+    Bound,
+)
+from flexstage.control.study.choices import Axes, Axis, Compensation, ControllerKind, Criterion, Notching, StackKind
+from flexstage.models.theory import Reading
+
+_PEAK = Bound(low=1.0, open_low=True)
+_SHARE = Bound(low=0.0, high=0.5, open_low=True)
+_CREEP = Bound(low=-0.2, high=0.2)
+
+
+@dataclass(frozen=True)
+class Motion:
+    """Amounts by motion of the platform; absent: none."""
+
+    x: Annotated[float, DISPLACEMENT] | None = None
+    y: Annotated[float, DISPLACEMENT] | None = None
+    z: Annotated[float, DISPLACEMENT] | None = None
+    rx: Annotated[float, ANGLE] | None = None
+    ry: Annotated[float, ANGLE] | None = None
+    rz: Annotated[float, ANGLE] | None = None
+
+
+@dataclass(frozen=True)
+class Amplifying:
+    """Amplifiers and their converter: first order on the stack's capacitance; absent all of this they are ideal.
+
+    `bandwidth` as stated, or that of the output `resistance`, 1/(2 pi R C). `current` is the largest they give and `slew` their fastest
+    change of voltage: they limit the rate of strokes. `noise` is white at their output, `bits` those of the converter over the full
+    voltage. Voltages are turned into free strokes by each stack's range.
+    """
+
+    bandwidth: Annotated[float, FREQUENCY, POSITIVE] | None = None
+    resistance: Annotated[float, RESISTANCE, POSITIVE] | None = None
+    current: Annotated[float, CURRENT, POSITIVE] | None = None
+    slew: Annotated[float, SLEW, POSITIVE] | None = None
+    noise: Annotated[float, VOLTAGE_NOISE, NOT_NEGATIVE] | None = None
+    bits: int | None = None
+
+
+@dataclass(frozen=True)
+class Gauging:
+    """Gauges: white `noise`, steps of `resolution`, `bandwidth`; absent: what each gauge of the design states.
+
+    `filter_order` and `filter_corner` are those of an analogue low-pass (Butterworth) before sampling (order 0: none).
+    """
+
+    noise: Annotated[float, NOISE_DENSITY, NOT_NEGATIVE] | None = None
+    resolution: Annotated[float, DISPLACEMENT, NOT_NEGATIVE] | None = None
+    bandwidth: Annotated[float, FREQUENCY, POSITIVE] | None = None
+    filter_order: int = 0
+    filter_corner: Annotated[float, FREQUENCY, POSITIVE] | None = None
+
+
+@dataclass(frozen=True)
+class Shaking:
+    """The floor along one axis: a `criterion` by name, or an amplitude density of `acceleration`, `velocity` or `displacement`.
+
+    One density alone is white; with `frequencies`, as many as there are densities, straight between them in log-log and none outside.
+    """
+
+    criterion: Criterion | None = None
+    frequencies: tuple[Annotated[float, FREQUENCY, POSITIVE], ...] = ()
+    acceleration: tuple[Annotated[float, ACCELERATION_NOISE, NOT_NEGATIVE], ...] = ()
+    velocity: tuple[Annotated[float, VELOCITY_NOISE, NOT_NEGATIVE], ...] = ()
+    displacement: tuple[Annotated[float, NOISE_DENSITY, NOT_NEGATIVE], ...] = ()
+
+
+@dataclass(frozen=True)
+class Floor:
+    """The floor's vibration by axis; absent: it stands still."""
+
+    x: Shaking | None = None
+    y: Shaking | None = None
+    z: Shaking | None = None
+
+
+@dataclass(frozen=True)
+class NotchAt:
+    """A notch filter: at which `frequency`, how `deep` (gain there), how wide (`damping` of its poles)."""
+
+    frequency: Annotated[float, FREQUENCY, POSITIVE]
+    depth: Annotated[float, RATIO, NOT_NEGATIVE] | None = None
+    damping: Annotated[float, RATIO, POSITIVE] | None = None
+
+
+@dataclass(frozen=True)
+class Controlling:
+    """The controller: its `kind`, in which coordinates, and either what it shall reach or its numbers.
+
+    What it shall reach: `bandwidth` (where the open loop's gain passes 1; absent: the highest that `sensitivity` allows) and
+    `sensitivity`, the highest peak of S. Its numbers: `proportional` (strokes or motion per error), `integral` rate, `derivative` time and
+    its `filter` corner. `notches` besides those placed by themselves.
+    """
+
+    kind: ControllerKind = ControllerKind.PI
+    coordinates: Axes = Axes.PLATFORM
+    bandwidth: Annotated[float, FREQUENCY, POSITIVE] | None = None
+    sensitivity: Annotated[float, RATIO, _PEAK] | None = None
+    proportional: Annotated[float, RATIO] | None = None
+    integral: Annotated[float, RATE, NOT_NEGATIVE] | None = None
+    derivative: Annotated[float, TIME, NOT_NEGATIVE] | None = None
+    filter: Annotated[float, FREQUENCY, POSITIVE] | None = None
+    notching: Notching = Notching.AUTOMATIC
+    notches: tuple[NotchAt, ...] = ()
+
+
+@dataclass(frozen=True)
+class HystereticStacks:
+    """The stacks' hysteresis: a model in a `file`, as `flexstage hysteresis` writes it, or only the `width` of the loop per stroke.
+
+    The model is scaled to each stack's stroke and voltage. It is what the inverse inverts; the stacks themselves behave as `plant` says:
+    by the same model, or as Bouc-Wen stacks of the same width, which no such inverse can follow to the end (absent: the model of a
+    file, Bouc-Wen where only the width is known). `creep`: by how much of its stroke a stack goes on in each decade of time, from 0.1 s
+    on (absent: as the file says).
+    """
+
+    file: str | None = None
+    width: Annotated[float, RATIO, _SHARE] | None = None
+    plant: StackKind | None = None
+    creep: Annotated[float, RATIO, _CREEP] | None = None
+
+
+@dataclass(frozen=True)
+class StepMotion:
+    """A step of every stated motion, each by itself; without any: 1 um and 10 urad, of all motions that the stage has.
+
+    With `speed`, `acceleration` and `jerk`, all three, it is a move within them: along the way, in m; of a move that only turns, a metre
+    stands for a radian.
+    """
+
+    TOLD_BY: ClassVar[tuple[str, str]] = ("kind", "step")
+
+    by: Motion = field(default_factory=Motion)
+    speed: Annotated[float, SPEED, POSITIVE] | None = None
+    acceleration: Annotated[float, ACCELERATION, POSITIVE] | None = None
+    jerk: Annotated[float, JERK, POSITIVE] | None = None
+
+
+@dataclass(frozen=True)
+class RasterMotion:
+    """`lines` of a `length`, `pitch` apart, to and fro at an even `speed`, turned around with `acceleration`; along `fast` and `slow`."""
+
+    TOLD_BY: ClassVar[tuple[str, str]] = ("kind", "raster")
+
+    length: Annotated[float, DISPLACEMENT, POSITIVE] = 10e-6
+    pitch: Annotated[float, DISPLACEMENT, POSITIVE] = 1e-6
+    lines: int = 6
+    speed: Annotated[float, SPEED, POSITIVE] = 0.1e-3
+    acceleration: Annotated[float, ACCELERATION, POSITIVE] = 5e-3
+    fast: Axis = Axis.X
+    slow: Axis = Axis.Y
+
+
+@dataclass(frozen=True)
+class SpiralMotion:
+    """A spiral from the middle to `radius`, its turns `pitch` apart, at an even `speed`; in the plane of `first` and `second`."""
+
+    TOLD_BY: ClassVar[tuple[str, str]] = ("kind", "spiral")
+
+    radius: Annotated[float, DISPLACEMENT, POSITIVE] = 5e-6
+    pitch: Annotated[float, DISPLACEMENT, POSITIVE] = 1e-6
+    speed: Annotated[float, SPEED, POSITIVE] = 0.1e-3
+    first: Axis = Axis.X
+    second: Axis = Axis.Y
+
+
+@dataclass(frozen=True)
+class SineMotion:
+    """A sine of every stated motion at `frequency`, all at once, for so many `periods`; without any motion: 1 um in the first one."""
+
+    TOLD_BY: ClassVar[tuple[str, str]] = ("kind", "sine")
+
+    frequency: Annotated[float, FREQUENCY, POSITIVE] = 5.0
+    periods: Annotated[float, RATIO, POSITIVE] = 3.0
+    by: Motion = field(default_factory=Motion)
+
+
+@dataclass(frozen=True)
+class FileMotion:
+    """A table of times and poses in a `file` (CSV): a first column `time [s]`, and motions with units, as `x [um]`, `rz [urad]`."""
+
+    TOLD_BY: ClassVar[tuple[str, str]] = ("kind", "file")
+
+    file: str
+
+
+Commanded: TypeAlias = StepMotion | RasterMotion | SpiralMotion | SineMotion | FileMotion
+
+
+@dataclass(frozen=True)
+class LoopSetup:
+    """A loop: by which `reading` the stage is the plant, sampled at `rate`, its outputs `delay` late, and all that belongs to it.
+
+    Without a rate it is 10 kHz, or for faster stages ten times the highest platform mode; without a delay it is one sample. `modes` is
+    how many are kept, lowest first (absent: those that the loop feels), the others' compliance stays. The simulation lasts `seconds`
+    (absent: as long as the trajectory, and until the loop has settled), its random numbers are those of `seed`.
+
+    >>> LoopSetup().controller.kind.value
+    'pi'
+    """
+
+    reading: Reading = Reading.LUMPED
+    rate: Annotated[float, FREQUENCY, POSITIVE] | None = None
+    delay: Annotated[float, TIME, NOT_NEGATIVE] | None = None
+    modes: int | None = None
+    seconds: Annotated[float, TIME, POSITIVE] | None = None
+    seed: int = 0
+    compensate: tuple[Compensation, ...] = (Compensation.LOST_MOTION,)
+    amplifier: Amplifying = field(default_factory=Amplifying)
+    gauges: Gauging = field(default_factory=Gauging)
+    floor: Floor = field(default_factory=Floor)
+    controller: Controlling = field(default_factory=Controlling)
+    hysteresis: HystereticStacks | None = None
+    trajectory: Commanded = field(default_factory=StepMotion)

@@ -1,0 +1,158 @@
+"""Hysteretic stacks of a stage: how they behave, and the model whose inverse is fed forward."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cache
+from itertools import pairwise
+
+import numpy as np
+
+from flexstage.analysis.workspace.drive import Drive, drive
+from flexstage.base.number import Array
+from flexstage.control.hysteresis.bouc_wen import BoucWen, bouc_wen
+from flexstage.control.hysteresis.creep import Creep, LogCreep, exponentials
+from flexstage.control.hysteresis.identify import identify_hysteresis
+from flexstage.control.hysteresis.inverse import hysteresis_inverse, inverse_state
+from flexstage.control.hysteresis.prandtl_ishlinskii import PrandtlIshlinskii
+from flexstage.control.hysteresis.protocol import Hysteresis
+from flexstage.control.hysteresis.scaled import Stacks as Ranges
+from flexstage.control.hysteresis.scaled import scaled
+from flexstage.control.hysteresis.shape import Range, settled_loop
+from flexstage.control.hysteresis.stack import load_hysteresis
+from flexstage.control.study.choices import StackKind
+from flexstage.control.study.setup import HystereticStacks
+from flexstage.mechanism.mechanism import Mechanism
+
+_LEGS = ((0.0, 1.0), (1.0, 0.0), (0.0, 1.0), (1.0, 0.2), (0.2, 0.8), (0.8, 0.0), (0.0, 0.6), (0.6, 0.0))
+_LEG = 60
+_STROKE, _VOLTS = 150e-6, (0.0, 1000.0)
+"""A stack that stands for all where only the width is known; its model is stretched to the others."""
+_SWEPT = 0.6
+_CREEPS = (0.01, 100.0)
+"""Times [s] over which creep is followed: before, it counts to the stroke; a simulation lasts no longer."""
+_TURNS = (1.0, -1.0, 0.7, -0.7, 0.4, -0.4, 0.0)
+
+
+@dataclass(frozen=True, eq=False)
+class Stacks:
+    """The actuators' stacks: `plant` is how they behave, `model` what is known of them and inverted, both from volts to strokes [m].
+
+    `electric` is their voltage, `width` (n,) that of the plant's loops as a share of the stroke; `creep` follows the hysteresis (`None`:
+    there is none).
+    """
+
+    electric: Drive
+    plant: Hysteresis
+    model: PrandtlIshlinskii
+    width: Array
+    creep: Creep | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Sweep:
+    """Strokes (k, n) [m] that came where `wanted` ones were asked for, over and over again less far: `bare` and with the `inverse`."""
+
+    actuators: tuple[str, ...]
+    wanted: Array
+    bare: Array
+    inverse: Array
+
+    def error(self, came: Array) -> Array:
+        """Rms (n,) of what came less what was wanted, as a share of the range swept."""
+        return np.sqrt(np.mean((came - self.wanted) ** 2, axis=0)) / np.ptp(self.wanted, axis=0)
+
+
+def stacks_of(mechanism: Mechanism, given: HystereticStacks) -> Stacks:
+    """The stacks of a stage with the hysteresis of a set-up, scaled to each one's stroke and volts.
+
+    A file's model is stretched so that its loop over each stack's range of voltage has its full stroke. Of a width alone the plant is a
+    Bouc-Wen stack, and the model is identified from a record of it. Raises `DesignError` for files that are none, and for stacks that
+    state no range of voltage.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> found = stacks_of(double_triangle(), HystereticStacks(width=0.15))
+    >>> found.model.axes, found.width.round(3).tolist()[:2]
+    (6, [0.15, 0.15])
+    """
+    electric = drive(mechanism)
+    low, high = (np.asarray(each, dtype=float) for each in (electric.low, electric.high))
+    ranges = list(zip(low.tolist(), high.tolist(), strict=True))
+    strokes = np.asarray(electric.gain, dtype=float) * (high - low)
+    known, ends, law = _known(given)
+    model = scaled(known, ends or ranges[0], Ranges(low, high, strokes))
+    width = settled_widths(model, ranges)
+    kind = given.plant or (StackKind.BOUC_WEN if given.file is None else StackKind.MODEL)
+    plant = model if kind is StackKind.MODEL else _bouc_wen(strokes, ranges, width if given.width is None else given.width)
+    return Stacks(electric, plant, model, settled_widths(plant, ranges), _creep(law, len(strokes)))
+
+
+def _known(given: HystereticStacks) -> tuple[PrandtlIshlinskii, Range | None, LogCreep | None]:
+    """A model of one stack, the volts it is of (`None`: not stated, as many as the stage's first), and its creep."""
+    stated = LogCreep(given.creep) if given.creep else None
+    if given.file is not None:
+        stack = load_hysteresis(given.file)
+        law = stack.log_creep if given.creep is None else stated
+        return stack.model, (stack.volts[0], stack.volts[-1]) if stack.volts else None, law
+    return _of_width(given.width or 0.0), _VOLTS, stated
+
+
+def _creep(law: LogCreep | None, axes: int) -> Creep | None:
+    """The same law for all stacks, as exponentials over four decades."""
+    if law is None:
+        return None
+    one = exponentials(law, _CREEPS).creep
+    return Creep(np.repeat(one.instant, axes), np.repeat(one.gains, axes, axis=0), np.repeat(one.times, axes, axis=0))
+
+
+@cache
+def _of_width(width: float) -> PrandtlIshlinskii:
+    """The model identified from a record of a Bouc-Wen stack: pure, and it takes a second."""
+    volts = _VOLTS[1] * np.concatenate([np.linspace(*leg, _LEG) for leg in _LEGS])
+    return identify_hysteresis(volts, bouc_wen(_STROKE, _VOLTS, width).run(volts)).model
+
+
+def _bouc_wen(strokes: Array, ranges: Sequence[Range], width: Array | float) -> BoucWen:
+    """Bouc-Wen stacks side by side."""
+    widths = np.broadcast_to(width, len(strokes)).tolist()
+    single = [bouc_wen(float(stroke), volts, share) for stroke, volts, share in zip(strokes, ranges, widths, strict=True)]
+    return BoucWen(*(np.concatenate([getattr(each, name) for each in single]) for name in ("gain", "lag", "beta", "gamma")))
+
+
+def settled_widths(model: Hysteresis, ranges: Sequence[Range]) -> Array:
+    """Widths (n,) of each stack's settled loop over its own volts.
+
+    >>> from flexstage.control.hysteresis.bouc_wen import bouc_wen
+    >>> settled_widths(bouc_wen(150e-6, (0.0, 1000.0), 0.1), [(0.0, 1000.0)]).round(3).tolist()
+    [0.1]
+    """
+    loops = {volts: settled_loop(model, volts).width for volts in dict.fromkeys(ranges)}
+    return np.array([loops[volts][axis] for axis, volts in enumerate(ranges)])
+
+
+def swept(given: Stacks) -> Sweep:
+    """The stacks driven to and fro in open loop by wanted strokes, 60 % of the range and less and less, from the bias.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> found = swept(stacks_of(double_triangle(), HystereticStacks(width=0.15)))
+    >>> bool(np.all(found.error(found.inverse) < 0.2 * found.error(found.bare)))
+    True
+    """
+    electric, model, plant = given.electric, given.model, given.plant
+    bias, gain = np.asarray(electric.bias, dtype=float), np.asarray(electric.gain, dtype=float)
+    reach = _SWEPT * gain * np.minimum(electric.high - bias, bias - electric.low)
+    turns = np.concatenate([np.linspace(a, b, _LEG * 3, endpoint=False) for a, b in pairwise((0.0, *_TURNS))])
+    wanted = turns[:, None] * reach
+    start = model.start(bias)
+    at_rest = model.step(start, bias)[1]
+    back = hysteresis_inverse(model)
+    volts = back.run(wanted + at_rest, inverse_state(model, start))
+    came = [_driven(plant, each, bias) for each in (bias + wanted / gain, volts)]
+    return Sweep(electric.actuators, wanted, came[0], came[1])
+
+
+def _driven(plant: Hysteresis, volts: Array, bias: Array) -> Array:
+    """Strokes from those at the bias."""
+    start = plant.start(bias)
+    return plant.run(volts, start) - plant.step(start, bias)[1]

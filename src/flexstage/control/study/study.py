@@ -1,0 +1,179 @@
+"""The loop of a stage: controller, stability, margins, static errors, noise, simulations, from one set-up."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import TypeVar
+
+import numpy as np
+
+from flexstage.analysis.lost_motion import LostMotion, lost_motion
+from flexstage.base.finding import Finding, refuse
+from flexstage.base.labelled import Matrix
+from flexstage.base.number import Array, Table, first_design
+from flexstage.control.closed import Cut, Loop, loop
+from flexstage.control.curves import Curves, curves
+from flexstage.control.disk import DiskMargin, disk_margins
+from flexstage.control.noise import NoiseBudget, noise_budget
+from flexstage.control.simulation.result import Simulated
+from flexstage.control.stability import Verdict, require_stable, verdict
+from flexstage.control.stability_margins import Bandwidths, Margins, Peaks, bandwidths, crosstalk, margins, peaks
+from flexstage.control.study.choices import Compensation, ControllerKind
+from flexstage.control.study.control import Control, controlled
+from flexstage.control.study.rest import RestErrors, rest_errors
+from flexstage.control.study.runs import RestRms, Run, at_rest, rest_rms, runs
+from flexstage.control.study.settle import Settled, settled
+from flexstage.control.study.setup import LoopSetup
+from flexstage.control.study.stacks import Stacks, Sweep, stacks_of, swept
+from flexstage.experiment.pipeline import Told
+from flexstage.mechanism.mechanism import Mechanism
+
+_Found = TypeVar("_Found")
+_LOWEST = 0.1
+_NO_LOOP = "the stage is commanded in open loop"
+
+
+@dataclass(frozen=True, eq=False)
+class LoopStudy:
+    """A loop and everything that follows from it.
+
+    `closed` is the loop with the modes it feels, `growth` [1/s] that of the slowest motion with all modes below half the rate.
+    `margins`, `peaks`, `disk` (of all loops at once), `bandwidths`, `curves` are at the pose; missing, as `missing` says, of a stage in
+    open loop. `rest` are the errors at rest of the stage without its loop. `noise` is the budget at rest, `still` (where there is any
+    noise) a simulation of it, `resting` what several find where rounding is no white noise, so that the budget does not hold. `stacks` are
+    those with hysteresis, if the set-up states any, and `sweep` what they do in open loop. `runs` are the simulations. `cautions` are
+    what one should know of all this.
+    """
+
+    settled: Settled
+    lost: LostMotion
+    control: Control
+    closed: Loop
+    verdict: Verdict
+    growth: float
+    margins: Margins | None
+    peaks: Peaks | None
+    bandwidths: Bandwidths | None
+    curves: Curves | None
+    crosstalk: Matrix
+    disk: DiskMargin | None
+    rest: RestErrors
+    noise: NoiseBudget
+    still: Simulated | None
+    resting: RestRms | None
+    stacks: Stacks | None
+    sweep: Sweep | None
+    runs: tuple[Run, ...]
+    cautions: tuple[Finding, ...]
+    missing: Mapping[str, str]
+
+    @property
+    def setup(self) -> LoopSetup:
+        """The set-up that was asked for."""
+        return self.settled.setup
+
+
+def loop_study(mechanism: Mechanism, setup: LoopSetup | None = None, *, tell: Told | None = None) -> LoopStudy:
+    """Close the loop of a stage as a set-up says; with everything left out it says what is usual.
+
+    Raises `DesignError` with all findings: see `settled`, `controlled` and `runs`; for a loop that is unstable, with what makes it so.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> found = loop_study(parallelogram())
+    >>> found.verdict.stable, found.runs[0].course.name
+    (True, 'x')
+    """
+    said = _Steps(tell)
+    given = said.of(0.0, "reading the stage", lambda: settled(mechanism, setup or LoopSetup()))
+    lost = lost_motion(given.kinematics, given.model)
+    control = said.of(0.05, "tuning", lambda: controlled(given, _gains(given, lost)))
+    closed = loop(given.plant, control.system)
+    require_stable(closed, "margins, noise and simulations")
+    found, growth = verdict(closed), _whole_growth(given, control)
+    rest = rest_errors(given, lost)
+    carried = rest.strokes if Compensation.LOAD in given.setup.compensate else None
+    stacks = None if given.setup.hysteresis is None else stacks_of(mechanism, given.setup.hysteresis)
+    is_closed = setup is None or setup.controller.kind is not ControllerKind.NONE
+    tested = said.of(0.6, "simulating", lambda: runs(given, control, closed, stacks, carried))
+    noise = said.of(0.9, "noise", lambda: noise_budget(closed, given.floor, (_LOWEST, 0.5 * given.rate), _relative(given)))
+    still = at_rest(given, control, closed)
+    resting = rest_rms(given, control, closed) if noise.slow else None
+    return LoopStudy(
+        settled=given,
+        lost=lost,
+        control=control,
+        closed=closed,
+        verdict=found,
+        growth=growth,
+        margins=said.of(0.8, "margins", lambda: margins(closed, Cut.POSE)) if is_closed else None,
+        peaks=peaks(closed, Cut.POSE) if is_closed else None,
+        bandwidths=bandwidths(closed) if is_closed else None,
+        curves=curves(closed, Cut.POSE) if is_closed else None,
+        crosstalk=crosstalk(closed),
+        disk=disk_margins(closed, Cut.POSE) if is_closed else None,
+        rest=rest,
+        noise=noise,
+        still=still,
+        resting=resting,
+        stacks=stacks,
+        sweep=None if stacks is None else swept(stacks),
+        runs=tested,
+        cautions=(*_cautions(given), *_slow_rounding(noise), *(each for run in tested for each in run.cautions)),
+        missing=Table({} if is_closed else dict.fromkeys(("margins", "peaks", "disk", "bandwidths", "curves"), _NO_LOOP)),
+    )
+
+
+def _relative(given: Settled) -> tuple[str, ...]:
+    """Outputs: the platform against the ground, by coordinate."""
+    return tuple(f"relative.{name}" for name in given.plant.coordinates.names)
+
+
+class _Steps:
+    """Tells how far a study is."""
+
+    def __init__(self, tell: Told | None) -> None:
+        self._tell = tell
+
+    def of(self, share: float, text: str, action: Callable[[], _Found]) -> _Found:
+        """What an action gives, after telling of it."""
+        if self._tell is not None:
+            self._tell(text, share)
+        return action()
+
+
+def _gains(given: Settled, lost: LostMotion) -> Array:
+    """Strokes (n, f) by which poses are commanded."""
+    if Compensation.LOST_MOTION in given.setup.compensate:
+        return np.real(first_design(np.asarray(lost.correction.values), 2))
+    return given.plant.coordinates.strokes
+
+
+def _whole_growth(given: Settled, control: Control) -> float:
+    """Growth with all modes; raises `DesignError` where one that was left out makes the loop unstable."""
+    whole = loop(given.whole, control.system)
+    if whole.system.growth >= 0.0:
+        what = verdict(whole).sentence
+        raise refuse("modes", f"with all modes below half the sampling rate {what}", "Keep more of them (modes), or lower the bandwidth")
+    return float(whole.system.growth)
+
+
+def _slow_rounding(noise: NoiseBudget) -> Iterator[Finding]:
+    """Rounding that is no white noise."""
+    if noise.slow:
+        what = f"readings of {', '.join(noise.slow)} move by less than half a step a sample: rounding is slow, no white noise"
+        advice = "Take the simulated rms, with its interval; a finer step, or noise of half a step, would make it white"
+        yield Finding("gauges", what, advice)
+
+
+def _cautions(given: Settled) -> list[Finding]:
+    """What a design does not state, and is taken as ideal."""
+    found = []
+    silent = [name for name, each in given.plant.hardware.sensors.items() if each.noise_density is None]
+    if silent:
+        what = f"noise is not stated of {', '.join(silent)}; only their steps count"
+        found.append(Finding("gauges", what, "State noise_density in the design, or gauges.noise in the set-up"))
+    if given.setup.hysteresis is not None:
+        what = "margins, noise and poles are those of stacks without it, and without creep"
+        found.append(Finding("hysteresis", what, "See the simulations for what it does"))
+    return found

@@ -1,0 +1,247 @@
+"""Tables of a loop: what it is, whether it is stable, how far from the edge, how it steps and follows."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from flexstage.control.controllers.law import Law
+from flexstage.control.controllers.notch import Notch
+from flexstage.control.controllers.pi import PI
+from flexstage.control.controllers.pid import PID
+from flexstage.control.controllers.resonant import IntegralResonant
+from flexstage.control.disk import DiskMargin
+from flexstage.control.simulation.result import Simulated, StepFigures, others
+from flexstage.control.study.choices import ControllerKind
+from flexstage.control.study.runs import Run
+from flexstage.control.study.study import LoopStudy
+from flexstage.show.display import NO_VALUE, number, percent, value_with_unit
+from flexstage.show.table import Cell, Column, Content, Mark, Table, build
+
+_SMALL, _NOTHING = 1e-12, 1e-16
+_BANDWIDTH_NOTE = "Follows to: the true motion is 3 dB below its reference. Rejects to: |S| passes 1, disturbances above it are made worse."
+_MARGIN_NOTE = (
+    "Margins of one loop at a time, cut at the pose, the others closed. Disk margin alpha: gain and phase together may change by "
+    "(1 + d/2)/(1 - d/2), |d| < alpha; 2 is the most there is."
+)
+
+
+def loop_table(found: LoopStudy) -> Table:
+    """What the loop is, and whether it is stable."""
+    plant, hardware = found.settled.plant, found.settled.plant.hardware
+    delay = f"{number(1e6 * hardware.delay, 4)} us"
+    modes = f"{modes_told(len(plant.frequencies))} up to {number(float(plant.frequencies[-1]), 4)} Hz, {plant.left_out} as a static term"
+    rows = [
+        ("stability", Cell("stable" if found.verdict.stable else "unstable", Mark.PASS if found.verdict.stable else Mark.FAIL)),
+        ("controller", _controller(found)),
+        ("coordinates", ", ".join(plant.coordinates.names)),
+        ("clock", f"{number(found.settled.rate, 5)} Hz, outputs {delay} after the samples, held"),
+        ("plant", f"{found.setup.reading.value}, {modes}"),
+        ("fed forward", ", ".join(each.value for each in found.setup.compensate) or "nothing"),
+    ]
+    if found.peaks is not None:
+        seen = found.peaks
+        peak = f"S {number(seen.sensitivity.value, 4)} at {number(seen.sensitivity.frequency, 4)} Hz"
+        rows.append(("highest peaks", f"{peak}, T {number(seen.complementary.value, 4)} at {number(seen.complementary.frequency, 4)} Hz"))
+    notes = [f"{found.verdict.sentence[0].upper()}{found.verdict.sentence[1:]}.", f"{plant.note[0].upper()}{plant.note[1:]}."]
+    if found.peaks is not None:
+        notes.append("S: what the loop leaves of a disturbance, above 1 it adds to it. T: what it follows of a reference.")
+    if found.control.tuning is not None:
+        notes.insert(0, f"Tuned: {found.control.tuning.reason}.")
+    return build("Loop", ["what", "value"], [(Cell(name, Mark.STRONG), value) for name, value in rows], notes=notes)
+
+
+def modes_told(count: int) -> str:
+    """How many modes.
+
+    >>> modes_told(1), modes_told(18)
+    ('1 mode', '18 modes')
+    """
+    return f"{count} mode" if count == 1 else f"{count} modes"
+
+
+def _controller(found: LoopStudy) -> str:
+    asked = found.setup.controller
+    if asked.kind is ControllerKind.NONE:
+        return "none: open loop"
+    where = f"{asked.kind.value.upper() if len(asked.kind.value) < 4 else asked.kind.value} in {asked.coordinates.value} coordinates"
+    frequencies = sorted({round(each.frequency, 1) for group in found.control.notches for each in group})
+    return f"{where}, notches at {', '.join(f'{each:g}' for each in frequencies)} Hz" if frequencies else where
+
+
+def law_table(found: LoopStudy) -> Table | None:
+    """The controller's numbers, loop by loop; `None` of one that is not made of single loops."""
+    control = found.control
+    if not control.laws:
+        return None
+    notches = control.notches or ((),) * len(control.laws)
+    heads = sorted({name for law in control.laws for name in _numbers(law)}, key=_HEADS.index)
+    rows = [
+        (Cell(name, Mark.STRONG), *(_numbers(law).get(head, "") for head in heads), _notches(group))
+        for name, law, group in zip(control.loop_names, control.laws, notches, strict=True)
+    ]
+    columns = ["loop", *(Column(head, _UNITS.get(head, "")) for head in heads), "notches"]
+    note = "From the loop's error to its command, both in metres: rotations times the stage's length."
+    return build("Controller", columns, rows, notes=[note])
+
+
+_HEADS = ("proportional", "integral", "derivative", "filter", "gain", "feed-through", "tracking")
+_UNITS = {"integral": "1/s", "derivative": "ms", "filter": "Hz", "gain": "1/s", "tracking": "1/s"}
+
+
+def _numbers(law: Law) -> dict[str, str]:
+    if isinstance(law, PI):
+        return {"proportional": number(law.proportional), "integral": number(law.integral)}
+    if isinstance(law, PID):
+        first = {"proportional": number(law.proportional), "integral": number(law.integral)}
+        return first | {"derivative": number(1e3 * law.derivative), "filter": number(law.filter)}
+    if isinstance(law, IntegralResonant):
+        return {"gain": number(law.gain), "feed-through": number(law.feedthrough), "tracking": number(law.tracking)}
+    return {}
+
+
+def _notches(group: Sequence[Notch]) -> str:
+    return ", ".join(f"{number(each.frequency, 5)} Hz to {number(each.depth, 3)}" for each in group)
+
+
+def margin_table(found: LoopStudy) -> Table | None:
+    """Bandwidth and margins by coordinate; `None` in open loop."""
+    if found.margins is None or found.bandwidths is None:
+        return None
+    rows = [
+        (
+            Cell(each.channel, Mark.STRONG),
+            number(float(found.bandwidths.tracking[index]), 4),
+            number(float(found.bandwidths.rejection[index]), 4),
+            _range(each.gain_low.value, each.gain_high.value),
+            number(float(np.rad2deg(each.phase.value)), 4),
+            number(1e3 * each.delay.value, 4),
+            _alpha(each.disk.value),
+        )
+        for index, each in enumerate(found.margins.channels)
+    ]
+    heads = [
+        "motion",
+        Column("follows to", "Hz"),
+        Column("rejects to", "Hz"),
+        Column("gain may be", "times"),
+        Column("phase margin", "deg"),
+        Column("delay margin", "ms"),
+        Column("disk margin"),
+    ]
+    return build("Bandwidth and margins", heads, rows, notes=[_BANDWIDTH_NOTE, _MARGIN_NOTE, *_together(found.disk)])
+
+
+def _together(found: DiskMargin | None) -> Iterator[str]:
+    if found is not None:
+        span = f"{number(found.gain_low, 3)} to {number(found.gain_high, 3)}"
+        turn = number(float(np.rad2deg(found.phase)), 3)
+        yield f"All loops at once: disk margin {number(found.guaranteed, 3)}, that is every gain by {span}, or every phase by {turn} deg."
+
+
+def _range(low: float, high: float) -> str:
+    lower = "0" if low == 0.0 else number(low, 3)
+    return f"{lower} to {'any' if np.isinf(high) else number(high, 3)}"
+
+
+def _alpha(value: float) -> Cell:
+    return Cell(number(value, 3), Mark.PLAIN if value > 0.5 else Mark.WARN)
+
+
+def step_table(tests: Sequence[Run]) -> Table | None:
+    """Answers to steps; `None` where none was simulated.
+
+    >>> step_table([]) is None
+    True
+    """
+    stepped = [(test, test.figures) for test in tests if test.figures is not None]
+    if not stepped:
+        return None
+    heads = [
+        "step of",
+        Column("by"),
+        Column("settled in", "ms"),
+        Column("overshoot"),
+        Column("error at the end"),
+        Column("others move"),
+        "limits",
+    ]
+    note = (
+        "Settled: the true error stays within 2 % of the step. Others: the largest motion in metres and the largest in radians along all "
+        "other axes of the platform, at any time, and along which."
+    )
+    return build("Steps", heads, [tuple(_step(test, figures)) for test, figures in stepped], notes=[note])
+
+
+def _step(test: Run, figures: StepFigures) -> Iterator[Content]:
+    seen, index = test.simulated, test.index
+    unit = seen.coordinates[index].unit
+    size = float(seen.reference[-1, index])
+    yield Cell(test.course.name, Mark.STRONG)
+    yield value_with_unit(size, unit, 4)
+    settling = float(figures.settling[index])
+    yield Cell("not", Mark.FAIL) if np.isinf(settling) else number(1e3 * settling, 4)
+    yield percent(float(figures.overshoot[index]), 3)
+    yield _length(float(figures.residual[index]), size, unit)
+    yield _others(seen, seen.coordinates[index].name)
+    yield limits_text(test)
+
+
+def _others(seen: Simulated, moved: str) -> Cell:
+    """The largest motion of each unit, and its axis; what is far below an atom is rounding."""
+    known = others(seen, moved)
+    largest = {unit: max((value, name) for name, (value, each) in known.items() if each == unit) for _, unit in known.values()}
+    told = [f"{value_with_unit(value, unit, 3)} {name}" for unit, (value, name) in largest.items() if value > _NOTHING]
+    if not told:
+        return Cell("0" if known else NO_VALUE, Mark.FAINT)
+    return Cell(", ".join(told))
+
+
+def _length(value: float, size: float, unit: str) -> Cell:
+    return Cell("0", Mark.FAINT) if abs(value) < _SMALL * abs(size) else Cell(value_with_unit(value, unit, 3))
+
+
+def limits_text(test: Run) -> str:
+    """Which actuators ran into their limits, and which gauges out of their range, for which share of the time."""
+    seen = test.simulated
+    words = [
+        f"{name} {noun} {percent(float(share), 3)}"
+        for noun, names, shares in (
+            ("saturated", seen.actuators, seen.saturated),
+            ("slewing", seen.actuators, seen.slewed),
+            ("out of range", seen.gauges, seen.held),
+        )
+        for name, share in zip(names, shares, strict=True)
+        if share > 0.0
+    ]
+    return ", ".join(words)
+
+
+def motion_cell(value: float, unit: str) -> Cell:
+    """A motion or its rms value with its unit; what is far below an atom is rounding, and told as 0.
+
+    >>> motion_cell(3.3e-9, "m").text, motion_cell(5e-24, "m").text
+    ('3.3 nm', '0')
+    """
+    return Cell("0", Mark.FAINT) if abs(value) < _NOTHING else Cell(value_with_unit(value, unit, 3))
+
+
+def tracking_table(tests: Sequence[Run]) -> Table | None:
+    """Errors along trajectories that are no steps, by coordinate; `None` where none was simulated.
+
+    >>> tracking_table([]) is None
+    True
+    """
+    followed = [test for test in tests if test.figures is None]
+    if not followed:
+        return None
+    rows: list[tuple[Content, ...]] = []
+    for test in followed:
+        for name, values, units in zip(test.tracking.rows, test.tracking.values, test.tracking.unit, strict=True):
+            numbers = [motion_cell(float(value), unit) for value, unit in zip(values, units, strict=True)]
+            rows.append((Cell(test.course.name, Mark.STRONG), name, *numbers))
+    heads = ["trajectory", "motion", *(Column(head) for head in ("rms seen", "peak seen", "true rms", "true peak"))]
+    limits = [f"{test.course.name}: {limits_text(test)}." for test in followed if limits_text(test)]
+    note = "Reference less pose: as the gauges tell it, and against the platform's true pose."
+    return build("Tracking", heads, rows, notes=[note, *limits])

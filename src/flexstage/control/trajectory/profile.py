@@ -1,0 +1,66 @@
+"""Moves from rest to rest in the least time that speed, acceleration and jerk allow."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.base.finding import Finding, require
+from flexstage.control.trajectory.pieces import Pieces, joined
+
+
+@dataclass(frozen=True)
+class Limits:
+    """Limits of a move along its path: `speed` [m/s], `acceleration` [m/s^2], `jerk` [m/s^3]; in rad for moves that only turn."""
+
+    speed: float
+    acceleration: float
+    jerk: float
+
+
+def profile(distance: float, limits: Limits) -> Pieces:
+    """The move over a `distance` [m, rad] in the least time within `limits`: jerk +j, 0, -j, then even speed, then -j, 0, +j.
+
+    Times of one jerk t_j, of even acceleration t_a and of even speed t_v follow one after the other (Biagiotti and Melchiorri, Trajectory
+    Planning for Automatic Machines and Robots, 2008, section 3.4): t_j = min(a/j, (v/j)^(1/2), (d/2j)^(1/3)). Raises `DesignError` for
+    limits that are not positive and finite.
+
+    >>> move = profile(1.0, Limits(speed=1e9, acceleration=1e9, jerk=32.0))  # jerk alone counts: 4 (d/2j)^(1/3)
+    >>> move.duration, move.at(np.array([0.5, 1.0])).ravel().tolist(), move.largest(2).tolist()
+    (1.0, [0.5, 1.0], [8.0])
+    """
+    require(_findings(limits))
+    jerk = limits.jerk
+    short = min(limits.acceleration / jerk, (limits.speed / jerk) ** 0.5, (0.5 * distance / jerk) ** (1.0 / 3.0))
+    top = jerk * short
+    if top == 0.0:
+        return Pieces(np.array([0.0, 0.0]), np.zeros((1, 6, 1)))
+    for_distance = 0.5 * (np.sqrt(short**2 + 4.0 * distance / top) - 3.0 * short)
+    even = max(0.0, min(limits.speed / top - short, for_distance))
+    speed = top * (short + even)
+    steady = max(0.0, distance / speed - (2.0 * short + even))
+    times = np.array([short, even, short, steady, short, even, short])
+    return _integrated(times, jerk * np.array([1.0, 0.0, -1.0, 0.0, -1.0, 0.0, 1.0]), distance)
+
+
+def _integrated(times: np.ndarray, jerks: np.ndarray, distance: float) -> Pieces:
+    """Cubic pieces from jerks; the last value is set to the distance, which rounding misses by some 1e-16 of it."""
+    position = speed = acceleration = 0.0
+    parts = []
+    for time, jerk in zip(times, jerks, strict=True):
+        parts.append((float(time), np.array([position, speed, acceleration / 2.0, jerk / 6.0, 0.0, 0.0])[:, None]))
+        position += time * (speed + time * (acceleration / 2.0 + time * jerk / 6.0))
+        speed += time * (acceleration + time * jerk / 2.0)
+        acceleration += time * jerk
+    scaled = [(time, coefficients * (distance / position)) for time, coefficients in parts]
+    return joined(scaled)
+
+
+def _findings(limits: Limits) -> list[Finding]:
+    named = {"speed": limits.speed, "acceleration": limits.acceleration, "jerk": limits.jerk}
+    return [
+        Finding(f"limits: {name}", f"it is {value:g}", "Give a positive number")
+        for name, value in named.items()
+        if not 0.0 < value < np.inf
+    ]

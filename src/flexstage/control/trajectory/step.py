@@ -1,0 +1,69 @@
+"""A step, at once or within limits of speed, acceleration and jerk."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.base.number import Array
+from flexstage.control.trajectory.path import Peaks
+from flexstage.control.trajectory.pieces import Pieces
+from flexstage.control.trajectory.profile import Limits, profile
+from flexstage.mechanism.mechanism import PLATFORM
+
+
+@dataclass(frozen=True, eq=False)
+class Step:
+    """A move `to` a pose (by coordinate [m, rad]) at `start` [s]: at once, or within `limits` along the straight path.
+
+    The path's length is that of the translation, or the angle of a move that only turns; what else moves keeps pace with it.
+
+    >>> step = Step({"x": 3e-6, "y": 4e-6}, limits=Limits(speed=1e-3, acceleration=1.0, jerk=32.0))
+    >>> step.at(np.array([0.0, 1.0])).round(15).tolist(), step.coordinates
+    ([[0.0, 0.0], [3e-06, 4e-06]], ('x', 'y'))
+    """
+
+    to: Mapping[str, float]
+    start: float = 0.0
+    limits: Limits | None = None
+    point: str = PLATFORM
+
+    @property
+    def coordinates(self) -> tuple[str, ...]:
+        """Names of the coordinates that move."""
+        return tuple(self.to)
+
+    @property
+    def duration(self) -> float:
+        """When the move ends [s]."""
+        return self.start + (0.0 if self.limits is None else self._course(self.limits).duration)
+
+    def at(self, times: Array) -> Array:
+        """Poses (n, c) at `times` (n,) [s]."""
+        passed = np.asarray(times, dtype=float) - self.start
+        share = 1.0 * (passed >= 0.0)[:, None] if self.limits is None else self._course(self.limits).at(passed) / self._length
+        return share * self._target
+
+    def peaks(self) -> Peaks:
+        """Largest speeds and accelerations; infinite for a step at once."""
+        if self.limits is None:
+            jump = np.where(self._target != 0.0, np.inf, 0.0)
+            return Peaks(jump, jump)
+        course, share = self._course(self.limits), np.abs(self._target) / self._length
+        return Peaks(course.largest(1) * share, course.largest(2) * share)
+
+    def _course(self, limits: Limits) -> Pieces:
+        return profile(self._length, limits)
+
+    @property
+    def _target(self) -> Array:
+        return np.array(list(self.to.values()), dtype=float)
+
+    @property
+    def _length(self) -> float:
+        """Length of the translation, else the angle; 1 where nothing moves, so that shares of it are numbers."""
+        moved = np.sqrt(sum(value**2 for name, value in self.to.items() if not name.startswith("r")))
+        turned = np.sqrt(sum(value**2 for name, value in self.to.items() if name.startswith("r")))
+        return float(moved or turned or 1.0)

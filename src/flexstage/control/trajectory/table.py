@@ -1,0 +1,130 @@
+"""Trajectories from tables and records: poses at stated times."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from flexstage.base.finding import Finding, refuse, require
+from flexstage.base.number import Array
+from flexstage.control.trajectory.path import Peaks
+from flexstage.experiment.formats.table.layout import layout_of
+from flexstage.experiment.formats.table.values import TableSamples, indexed
+from flexstage.experiment.record import Channel, Record
+from flexstage.experiment.unit import in_si, plain_unit
+from flexstage.mechanism.mechanism import PLATFORM
+from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
+
+
+@dataclass(frozen=True, eq=False)
+class Table:
+    """Poses `values` (n, c) [m, rad] at rising `times` (n,) [s], straight lines between; at rest at the first before, at the last after.
+
+    `source` says where it is from. Raises `DesignError` for times that do not rise, values that are not finite and shapes that do not fit.
+
+    >>> way = Table(np.array([0.0, 1.0, 3.0]), np.array([[0.0], [2e-6], [0.0]]), ("x",))
+    >>> way.at(np.array([0.5, 2.0, 5.0])).ravel().tolist(), way.peaks().speed.tolist()
+    ([1e-06, 1e-06, 0.0], [2e-06])
+    """
+
+    times: Array
+    values: Array
+    coordinates: tuple[str, ...]
+    point: str = PLATFORM
+    source: str = "trajectory"
+
+    def __post_init__(self) -> None:
+        """Refuse tables that are no trajectory."""
+        require(_findings(self))
+
+    @property
+    def duration(self) -> float:
+        """The last time [s]."""
+        return float(self.times[-1])
+
+    def at(self, times: Array) -> Array:
+        """Poses (n, c) at `times` (n,) [s]."""
+        return np.stack([np.interp(times, self.times, column) for column in self.values.T], axis=-1)
+
+    def peaks(self) -> Peaks:
+        """Largest speeds; accelerations are infinite where the slope changes."""
+        slopes = np.diff(self.values, axis=0) / np.diff(self.times)[:, None]
+        moving = np.any(self.values != self.values[0], axis=0)
+        return Peaks(np.max(np.abs(slopes), axis=0), np.where(moving, np.inf, 0.0))
+
+
+def _findings(table: Table) -> list[Finding]:
+    fits = table.values.shape == (len(table.times), len(table.coordinates)) and len(table.times) > 1
+    if not fits:
+        what = f"{table.values.shape} values for {len(table.times)} times and {len(table.coordinates)} coordinates"
+        return [Finding(table.source, what, "Give a row a time, at least two, and a column a coordinate")]
+    found = []
+    for row in np.flatnonzero(~(np.diff(table.times) > 0.0))[:1]:
+        what = f"time {table.times[row + 1]:g} s of row {row + 2} does not come after {table.times[row]:g} s"
+        found.append(Finding(table.source, what, "Sort the rows, and give each its own time"))
+    for row, column in np.argwhere(~np.isfinite(table.values))[:1]:
+        found.append(Finding(f"{table.source}: {table.coordinates[column]}", f"row {row + 1} is no number", "Mend the row"))
+    return found
+
+
+def from_record(record: Record, point: str = PLATFORM) -> Table:
+    """The channels of a record that are named as coordinates, in their stated units, as a trajectory from the record's first time on.
+
+    Raises `DesignError` where there is none, and for units that are not those of a length or an angle.
+
+    >>> from flexstage.experiment.record import in_memory
+    >>> asked = from_record(in_memory([Channel("x", "um"), Channel("u1", "V")], 2.0, np.array([[0.0, 1.0], [3.0, 1.0]])))
+    >>> asked.coordinates, asked.at(np.array([0.25])).tolist()
+    (('x',), [[1.5e-06]])
+    """
+    where = record.source or record.name or "record"
+    named = tuple(name for name in record.names if name in COMPONENTS)
+    if not named:
+        raise refuse(where, f"no column is a coordinate: {', '.join(record.names)}", f"Name columns {', '.join(COMPONENTS)}")
+    chosen = in_si(record.select(named))
+    _require_units(where, record.select(named), chosen)
+    return Table(chosen.start + np.arange(chosen.length) / chosen.rate, chosen.values, named, point, where)
+
+
+def _require_units(where: str, stated: Record, chosen: Record) -> None:
+    wanted: dict[str, str] = dict(zip(COMPONENTS, TWIST_UNITS, strict=True))
+    require(
+        Finding(f"{where}: {after.name}", f'its unit is "{before.unit}"', f'Give it in a unit of {wanted[after.name]}, as "x [um]"')
+        for before, after in zip(stated.channels, chosen.channels, strict=True)
+        if after.unit != wanted[after.name]
+    )
+
+
+def from_file(path: str | os.PathLike[str], point: str = PLATFORM) -> Table:
+    r"""A CSV table of times and coordinates with units, `time [s], x [um], rz [urad]`; its times may lie unevenly.
+
+    Raises `DesignError` where the file cannot be read, has no column of times or none of coordinates.
+
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     _ = (Path(folder) / "a.csv").write_text("time [ms], x [um]\n0, 0\n100, 2\n400, 0\n")
+    ...     way = from_file(Path(folder) / "a.csv")
+    >>> way.times.tolist(), way.values.ravel().tolist()
+    ([0.0, 0.1, 0.4], [0.0, 2e-06, 0.0])
+    """
+    place = Path(path)
+    layout = layout_of(place)
+    lines = indexed(place, layout.start)
+    samples = TableSamples(place, layout, lines, tuple(range(len(layout.names))), lines.count)
+    channels = tuple(Channel(name, plain_unit(unit)) for name, unit in zip(layout.names, layout.units, strict=True))
+    if channels[0].name.lower() not in ("time", "t"):
+        raise refuse(str(place), f'its first column is "{channels[0].name}"', 'Begin with times, as "time [s], x [um]"')
+    whole = Record(channels, 1.0, samples, source=str(place))
+    poses = from_record(whole, point)
+    return Table(_seconds(whole), poses.values, poses.coordinates, point, str(place))
+
+
+def _seconds(record: Record) -> Array:
+    times = in_si(record.select(record.names[:1]))
+    unit = times.channels[0].unit
+    if unit != "s":
+        raise refuse(f"{record.source}: {record.names[0]}", f'its unit is "{unit}"', 'Give a unit of time, as "time [s]"')
+    return times.values[:, 0]

@@ -1,0 +1,241 @@
+"""One attempt at a bandwidth: laws and notches chosen loop by loop, then judged together."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from typing import TypeAlias
+
+import numpy as np
+
+from flexstage.base.finding import DesignError
+from flexstage.base.number import Array
+from flexstage.control.controllers.decentralised import Decentralised
+from flexstage.control.controllers.law import Law
+from flexstage.control.controllers.lqg import LQG, Disturbances, Weights, observer_gain, with_observer
+from flexstage.control.controllers.notch import Notch, notch_of_mode
+from flexstage.control.resolvent import resolvent
+from flexstage.control.tuning.goal import Goal, Judgement, Kind
+from flexstage.control.tuning.judge import first_passed, judged, open_gains
+from flexstage.control.tuning.laws import Place, laws
+from flexstage.control.tuning.view import View, resonances
+
+_HIGH = 0.3
+_AGREES = 0.005
+_TRUST = (1.0, 30.0, 1000.0)
+_ROUNDS = 8
+_AROUND = 4.0
+_EQUAL = 1e-9
+_WRONG = 1e6
+_WIDTHS = (0.4, 0.6, 0.9, 1.4)
+_Sets: TypeAlias = tuple[tuple[Notch, ...], ...]
+_Options: TypeAlias = tuple[_Sets, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Task:
+    """What is to be tuned: kind and goal; `notches` in every loop, and whether more are placed on modes; the rest of the controller.
+
+    `expected` is what an observer expects, `feedforward` (n, f) the strokes by which the reference is fed forward.
+    """
+
+    kind: Kind
+    goal: Goal
+    notches: tuple[Notch, ...] = ()
+    automatic: bool = True
+    expected: Disturbances | None = None
+    feedforward: Array | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Attempt:
+    """A controller, how it came out, and its notches by loop."""
+
+    controller: Decentralised | LQG
+    judgement: Judgement
+    notches: tuple[tuple[Notch, ...], ...]
+
+    def reaches(self, frequency: float, goal: Goal) -> bool:
+        """Whether it is stable, no peak too high, and every loop passes 1 within 1 % of the frequency."""
+        found = self.judgement
+        passed = all(abs(each / frequency - 1.0) < 0.01 for each in found.bandwidths)
+        return found.stable and found.peak <= goal.sensitivity and passed
+
+
+def attempt(seen: View, task: Task, frequency: float, calm: float = 0.0) -> Attempt | None:
+    """The best that the kind can do where every loop's gain passes 1 at a frequency [Hz]; None where it has no law for it.
+
+    First with the stated notches only, then with more on the modes that stand out of a loop with a gain above 0.3, as wide as does best.
+    A loop's best law is the one with the lowest peak of S; of those with peaks up to `calm` the one with the highest gain at rest.
+
+    >>> from flexstage.control.controllers.loops import platform_loops
+    >>> from flexstage.control.example import integral_loop
+    >>> from flexstage.control.tuning.view import view
+    >>> plant = integral_loop().plant
+    >>> found = attempt(view(plant, platform_loops(plant.coordinates), 0.0), Task(Kind.PI, Goal()), 20.0)
+    >>> round(found.judgement.bandwidths[0], 1), found.notches
+    (20.0, ((),))
+    """
+    if task.kind is Kind.LQG:
+        return _observed(seen, task, frequency)
+    stated: _Options = ((task.notches,),) * len(seen.loops.names)
+    first = _decentralised(seen, task, (frequency, calm), stated)
+    if first is None or not task.automatic or task.kind is Kind.RESONANT or first.reaches(frequency, task.goal):
+        return first
+    best = first
+    for options in _choices(_placed(seen, first, frequency)):
+        found = _decentralised(seen, task, (frequency, calm), options)
+        if found is not None and found.judgement.score < best.judgement.score:
+            best = found
+        if best.reaches(frequency, task.goal):
+            break
+    return best
+
+
+def _choices(options: _Options) -> Iterator[_Options]:
+    """Each loop's own choice of widths first; then one width for all, which couples some stages less."""
+    if options:
+        yield options
+        for number in range(max(map(len, options))):
+            yield tuple(sets[min(number, len(sets) - 1) :][:1] for sets in options)
+
+
+def _decentralised(seen: View, task: Task, wanted: tuple[float, float], options: _Options) -> Attempt | None:
+    at = seen.at(wanted[0])
+    found: list[_Chosen] = []
+    for loop, sets in enumerate(options):
+        alike = _alike(seen, options, loop)
+        one = found[alike] if alike < loop else _chosen(seen, task.kind, (loop, *wanted, complex(at[loop])), sets)
+        if one is None:
+            return None
+        found.append(one)
+    notches = tuple(each.notches for each in found)
+    controller = Decentralised(seen.loops, tuple(each.law for each in found), notches if any(notches) else (), task.feedforward)
+    gains = (seen.responses @ seen.loops.drive) * np.stack([each.response for each in found], axis=-1)[:, None, :]
+    return Attempt(controller, judged(seen, controller.system(seen.step), gains), notches)
+
+
+def _alike(seen: View, options: _Options, loop: int) -> int:
+    """The first loop that is the same as this one: a symmetric stage has several."""
+    own = seen.own[:, :, loop]
+    size = np.max(np.abs(own))
+    for other in range(loop):
+        if options[other] == options[loop] and np.max(np.abs(seen.own[:, :, other] - own)) < _EQUAL * size:
+            return other
+    return loop
+
+
+@dataclass(frozen=True, eq=False)
+class _Chosen:
+    """A loop's law and notches, and their response (f,) from error to command."""
+
+    law: Law
+    notches: tuple[Notch, ...]
+    response: Array
+
+
+def _chosen(seen: View, kind: Kind, at: tuple[int, float, float, complex], options: _Sets) -> _Chosen | None:
+    """Law and notches whose loop by itself is stable, passes 1 where it shall, and has the lowest peak of S, wherever the modes may lie.
+
+    Peaks up to `calm` count as equal; the highest gain at the lowest frequency, so the strongest integrator, is then the best.
+    """
+    loop, frequency, calm, gain = at
+    static = float(seen.static[loop] @ seen.loops.drive[:, loop])
+    first = next((each.frequency for each in resonances(seen, loop)), None)
+    best, lowest = None, (np.inf, 0.0)
+    for notches in options:
+        filters = [notch.system(seen.step) for notch in notches]
+        filtered = _product([resonant.at(seen.frequencies) for resonant in map(resolvent, filters)])
+        notched = gain * complex(_product([each.transfer(np.array([frequency])) for each in filters])[0])
+        for law in laws(kind, Place(frequency, notched, static, first), seen.step):
+            response = _sampled(law, seen)
+            if response is None:
+                continue
+            whole = response * filtered
+            slack = -float(np.abs(whole[0])) if calm else 0.0
+            score = (max(calm, _score(seen.frequencies, whole * seen.own[:1, :, loop], frequency)), slack)
+            if score < lowest and len(seen.offsets) > 1:
+                score = (max(score[0], _score(seen.frequencies, whole * seen.own[:, :, loop], frequency)), slack)
+            if score < lowest:
+                best, lowest = _Chosen(law, notches, whole), score
+    return best
+
+
+def _product(responses: list[Array]) -> Array:
+    return np.prod([each[:, 0, 0] for each in responses], axis=0) if responses else np.ones(1)
+
+
+def _sampled(law: Law, seen: View) -> Array | None:
+    """Response from error to command, the pose being what the error leaves; None for a law too fast for the samples."""
+    try:
+        response = resolvent(law.system(seen.step)).at(seen.frequencies)
+    except DesignError:
+        return None
+    return response[:, 0, 0] - response[:, 0, 1]
+
+
+def _score(frequencies: Array, gains: Array, frequency: float) -> float:
+    """Peak of S of a single loop (v, f), far above any for one that encircles -1 or passes 1 elsewhere first."""
+    if abs(first_passed(frequencies, np.abs(gains[0])) / frequency - 1.0) > _AGREES:
+        return 2.0 * _WRONG
+    returned = 1.0 + gains
+    turned = np.unwrap(np.angle(returned), axis=-1)[:, -1]
+    return _WRONG * bool(np.any(np.abs(turned) > 1.0)) + float(1.0 / np.min(np.abs(returned)))
+
+
+def _placed(seen: View, found: Attempt, frequency: float) -> _Options:
+    """By loop, sets of notches of several widths on the modes above the crossing that stand out of it; none where no mode does."""
+    gains = np.abs(open_gains(seen, found.controller.system(seen.step))[0])
+    result = []
+    for loop, given in enumerate(found.notches):
+        own = gains[:, loop, loop]
+        added = [
+            each
+            for each in resonances(seen, loop)
+            if each.frequency > frequency and np.interp(each.frequency, seen.frequencies, own) > _HIGH
+        ]
+        widths = _WIDTHS if added else ()
+        result.append(tuple((*given, *(notch_of_mode(each.frequency, each.ratio, width) for each in added)) for width in widths))
+    return tuple(sets or (given,) for sets, given in zip(result, found.notches, strict=True)) if any(result) else ()
+
+
+def _observed(seen: View, task: Task, frequency: float) -> Attempt | None:
+    """Weights by coordinate, changed until every loop passes 1 at the frequency; an observer that trusts its model less and less."""
+    best, wanted = None, np.full(len(seen.loops.names), frequency)
+    for trust in _TRUST:
+        found, wanted = _balanced(seen, _designer(seen, task, trust), (frequency, wanted))
+        if found is None:
+            continue
+        tried = Attempt(found, judged(seen, found.system(seen.step)), ((),) * len(wanted))
+        if best is None or tried.judgement.score < best.judgement.score or tried.reaches(frequency, task.goal):
+            best = tried
+        if best.reaches(frequency, task.goal):
+            break
+    return best
+
+
+def _designer(seen: View, task: Task, trust: float) -> Callable[[Array], LQG]:
+    expected = task.expected or Disturbances(1e-9, {})
+    looser = Disturbances(expected.strokes * trust, expected.gauges)
+    model, coordinates = seen.systems[0], seen.loops.coordinates
+    observer = observer_gain(model, coordinates, looser)
+    return lambda wanted: with_observer(model, coordinates, Weights(tuple(map(float, wanted))), observer, task.feedforward)
+
+
+def _balanced(seen: View, design: Callable[[Array], LQG], at: tuple[float, Array]) -> tuple[LQG | None, Array]:
+    """The design whose loops all pass 1 at the frequency, or the nearest to it that a few rounds give; and its weights' bandwidths."""
+    frequency, wanted = at
+    found = None
+    low = np.flatnonzero(seen.frequencies < _AROUND * frequency)[::2]
+    near = replace(seen, frequencies=seen.frequencies[low], responses=seen.responses[:1, low])
+    for _ in range(_ROUNDS):
+        if not np.all(np.isfinite(wanted)) or (seen.step is not None and np.max(wanted) >= 0.5 / seen.step):
+            return None, np.full(len(wanted), frequency)
+        found = design(wanted)
+        gains = np.abs(open_gains(near, found.system(seen.step))[0])
+        passed = np.array([first_passed(near.frequencies, gains[:, loop, loop]) for loop in range(len(wanted))])
+        ratio = np.clip(passed / frequency, 1.0 / _AROUND, _AROUND)
+        if np.all(np.abs(ratio - 1.0) < _AGREES):
+            break
+        wanted = wanted / ratio
+    return found, wanted

@@ -1,0 +1,109 @@
+"""What a loop shall reach, and what tuning found."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from enum import Enum
+
+import numpy as np
+
+from flexstage.base.finding import Finding
+from flexstage.control.controllers.decentralised import Decentralised
+from flexstage.control.controllers.lqg import LQG
+from flexstage.control.controllers.notch import Notch
+
+
+class Kind(Enum):
+    """Kinds of controllers that can be tuned."""
+
+    PI = "PI"
+    PID = "PID"
+    RESONANT = "integral resonant control"
+    LQG = "LQG"
+
+
+@dataclass(frozen=True)
+class Goal:
+    """What is wanted: `bandwidth` [Hz], where every loop's gain first passes 1; absent: the highest that the rest allows.
+
+    `sensitivity` is the highest peak of S allowed (poses as lengths; 2 = 6 dB leaves gain margins of 2 and phase margins of 29 deg,
+    `peak_for_margins`), and `spread` how much all modes may lie above or below the model's, relative: stability and peak hold there too.
+    """
+
+    bandwidth: float | None = None
+    sensitivity: float = 2.0
+    spread: float = 0.02
+
+
+def goal_findings(goal: Goal, step: float | None) -> Iterator[Finding]:
+    """What is wrong with a goal for a loop sampled every `step` [s].
+
+    >>> [str(each) for each in goal_findings(Goal(6000.0), 1e-4)]
+    ['bandwidth: 6000 Hz is not below half the sampling rate, 5000 Hz. Sample above 60000 Hz, or ask for less.']
+    """
+    if goal.bandwidth is not None and not 0.0 < goal.bandwidth < np.inf:
+        yield Finding("bandwidth", f"it is {goal.bandwidth:g} Hz", "Give a positive frequency")
+    elif goal.bandwidth is not None and step is not None and goal.bandwidth >= 0.5 / step:
+        what = f"{goal.bandwidth:g} Hz is not below half the sampling rate, {0.5 / step:g} Hz"
+        yield Finding("bandwidth", what, f"Sample above {10.0 * goal.bandwidth:g} Hz, or ask for less")
+    if not 1.0 < goal.sensitivity < np.inf:
+        advice = "Give more, for example 2 (6 dB): no loop with a delay stays at 1"
+        yield Finding("sensitivity", f"the highest peak of S allowed is {goal.sensitivity:g}, and it has to be above 1", advice)
+    if not 0.0 <= goal.spread < 0.5:
+        yield Finding("spread", f"modes are to be off by up to {goal.spread:g}", "Give a ratio from 0 to 0.5, for example 0.02")
+
+
+def peak_for_margins(gain: float = 1.0, phase: float = 0.0) -> float:
+    """The peak of S that guarantees a gain margin [1] and a phase margin [rad]: min(g/(g - 1), 1/(2 sin(phase/2))).
+
+    Skogestad & Postlethwaite, Multivariable Feedback Control, 2005, eq. 2.47. For a `Goal.sensitivity`.
+
+    >>> peak_for_margins(gain=2.0), round(peak_for_margins(phase=np.pi / 3.0), 6)
+    (2.0, 1.0)
+    """
+    by_gain = gain / (gain - 1.0) if gain > 1.0 else np.inf
+    by_phase = 0.5 / np.sin(0.5 * phase) if phase > 0.0 else np.inf
+    return float(min(by_gain, by_phase))
+
+
+@dataclass(frozen=True)
+class Judgement:
+    """A loop as it came out: `bandwidths` [Hz] by loop, the `peak` of S and where [Hz], `growth` [1/s] of its slowest free motion.
+
+    All are the worst over the modes' spread, the bandwidths those of the model itself. `offset` tells where the peak or, in an unstable
+    loop, the growth was found: modes by this much above the model's.
+    """
+
+    bandwidths: tuple[float, ...]
+    peak: float
+    frequency: float
+    growth: float
+    offset: float
+
+    @property
+    def stable(self) -> bool:
+        """Whether all free motions decay."""
+        return self.growth < 0.0
+
+    @property
+    def score(self) -> float:
+        """The smaller the better: the peak of S; above 1e9 for unstable loops."""
+        return self.peak if self.stable else 1e9 * (1.0 + self.growth)
+
+
+@dataclass(frozen=True, eq=False)
+class Tuning:
+    """A tuned controller: its `kind`, the `goal`, how the loop came out, and the `notches` of each loop; `reason` says it in words."""
+
+    kind: Kind
+    goal: Goal
+    controller: Decentralised | LQG
+    judgement: Judgement
+    notches: tuple[tuple[Notch, ...], ...]
+    reason: str
+
+    @property
+    def bandwidth(self) -> float:
+        """Bandwidth of the slowest loop [Hz]."""
+        return min(self.judgement.bandwidths)

@@ -1,0 +1,101 @@
+"""How a loop comes out: the whole loop, all axes, sampled, with its modes where they may lie."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from flexstage.base.number import Array
+from flexstage.control.resolvent import resolvent
+from flexstage.control.system import System, connected
+from flexstage.control.tuning.goal import Judgement
+from flexstage.control.tuning.view import View
+from flexstage.models.linear.model import Channel
+
+
+def judged(seen: View, control: System, gains: Array | None = None) -> Judgement:
+    """Stability by eigenvalues, the peak of S over all frequencies of the view, and each loop's bandwidth.
+
+    `gains` are the `open_gains` where they are known already.
+
+    >>> from flexstage.control.controllers.loops import platform_loops
+    >>> from flexstage.control.example import integral_loop
+    >>> from flexstage.control.tuning.view import view
+    >>> closed = integral_loop(gain=100.0)
+    >>> found = judged(view(closed.plant, platform_loops(closed.plant.coordinates), 0.02), closed.controller)
+    >>> found.stable, round(found.bandwidths[0], 1)  # near 100/(2 pi)
+    (True, 15.7)
+    """
+    gains = open_gains(seen, control) if gains is None else gains
+    poses = seen.loops.coordinates.scale[:, None] * np.linalg.inv(seen.loops.sense)
+    peaks = [_peak(each, poses) for each in gains]
+    growths = [closed_growth(system, control) for system in seen.systems]
+    worst = int(np.argmax(growths)) if max(growths) >= 0.0 else int(np.argmax([np.max(each) for each in peaks]))
+    place = int(np.argmax(peaks[worst]))
+    count = len(seen.loops.names)
+    return Judgement(
+        bandwidths=tuple(first_passed(seen.frequencies, np.abs(gains[0, :, loop, loop])) for loop in range(count)),
+        peak=float(np.max(peaks)),
+        frequency=float(seen.frequencies[place]),
+        growth=float(max(growths)),
+        offset=seen.offsets[worst],
+    )
+
+
+def open_gains(seen: View, control: System) -> Array:
+    """Open loops L (v, f, k, k) in the loops' coordinates, S = (I + L)^-1.
+
+    >>> from flexstage.control.controllers.loops import platform_loops
+    >>> from flexstage.control.example import integral_loop
+    >>> from flexstage.control.tuning.view import view
+    >>> closed = integral_loop(gain=100.0)
+    >>> open_gains(view(closed.plant, platform_loops(closed.plant.coordinates), 0.0), closed.controller).shape[2:]
+    (1, 1)
+    """
+    names = seen.loops.coordinates.names
+    selector = np.zeros((len(control.inputs), len(names)))
+    for kind, sign in (("error", 1.0), ("pose", -1.0)):
+        for number, name in enumerate(names):
+            if f"{kind}.{name}" in control.input_names:
+                selector[control.input_names.index(f"{kind}.{name}"), number] = sign
+    entry = selector @ np.linalg.inv(seen.loops.sense)
+    inputs = tuple(Channel(name, "m") for name in seen.loops.names)
+    total = replace(control, B=control.B @ entry, D=control.D @ entry, inputs=inputs)
+    return seen.responses @ resolvent(total).at(seen.frequencies)
+
+
+def closed_growth(plant: System, control: System) -> float:
+    """Growth [1/s] of the slowest free motion of a plant (commands to pose) under a controller.
+
+    >>> from flexstage.control.controllers.seen import seen_plant
+    >>> from flexstage.control.example import integral_loop
+    >>> closed = integral_loop()
+    >>> abs(closed_growth(seen_plant(closed.plant), closed.controller) / closed.system.growth - 1.0) < 1e-6
+    True
+    """
+    links = {name: {} for name in control.input_names if name.startswith(("reference.", "applied."))}
+    links |= {name: {name.replace("error.", "pose."): -1.0} for name in control.input_names if name.startswith("error.")}
+    return connected([plant, control], links, (), plant.output_names).growth
+
+
+def _peak(gains: Array, poses: Array) -> Array:
+    """Largest singular values (f,) of S, poses as lengths."""
+    sensitivity = poses @ np.linalg.inv(np.eye(gains.shape[-1]) + gains) @ np.linalg.inv(poses)
+    product = np.conj(np.swapaxes(sensitivity, -1, -2)) @ sensitivity
+    return np.sqrt(np.linalg.eigvalsh(product)[:, -1])
+
+
+def first_passed(frequencies: Array, gains: Array) -> float:
+    """Where a gain first falls through 1, straight in the logarithms; 0 where it starts below, infinite where it never falls.
+
+    >>> round(first_passed(np.array([1.0, 10.0, 100.0]), np.array([10.0, 1.25, 0.1])), 2)
+    12.26
+    """
+    below = np.flatnonzero(gains < 1.0)
+    if not len(below):
+        return np.inf
+    if not below[0]:
+        return 0.0
+    ends = slice(int(below[0]) - 1, int(below[0]) + 1)
+    return float(np.exp(np.interp(0.0, -np.log(gains[ends]), np.log(frequencies[ends]))))

@@ -1,0 +1,79 @@
+"""Laws whose loop's gain passes 1 at a given frequency: one family for each kind, from slow and calm to fast and bold."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.control.controllers.law import Law
+from flexstage.control.controllers.pi import PI
+from flexstage.control.controllers.pid import PID
+from flexstage.control.controllers.resonant import resonant
+from flexstage.control.tuning.goal import Kind
+
+_PI_ANGLES = np.radians(np.arange(0.0, 81.0, 16.0))
+_PID_ANGLES = np.radians(np.arange(20.0, 161.0, 20.0))
+_DAMPINGS = (0.02, 0.04, 0.07, 0.12, 0.2, 0.35)
+_FILTER = 10.0
+_BELOW = 0.4
+
+
+@dataclass(frozen=True)
+class Place:
+    """Where a law shall pass: the loop's complex `gain` at `frequency` [Hz] with notches; its `static` gain, first `resonance` [Hz]."""
+
+    frequency: float
+    gain: complex
+    static: float
+    resonance: float | None
+
+
+def laws(kind: Kind, place: Place, step: float | None) -> list[Law]:
+    """Laws C with |C g| = 1 at the place, sampled as they will be.
+
+    PI: k_p = sin(a)/|g|, k_i = w cos(a)/|g| for angles a. PID: these without a derivative, and two equal zeros at w/tan(a/2), filtered at
+    ten times the frequency or at most 0.4 of the sampling rate. Integral resonant control: dampings of the first resonance, and the
+    tracking gain that is left. None where the kind has no such law.
+
+    >>> [found.integral for found in laws(Kind.PI, Place(1.0 / (2.0 * np.pi), -0.5j, 1.0, None), None)][:1]
+    [2.0]
+    """
+    turning = 2.0 * np.pi * place.frequency if step is None else 2.0 / step * np.tan(np.pi * place.frequency * step)
+    size = 1.0 / abs(place.gain)
+    if kind is Kind.PI:
+        return list(_pis(size, turning))
+    if kind is Kind.PID:
+        corner = _FILTER * place.frequency if step is None else min(_FILTER * place.frequency, _BELOW / step)
+        without = [PID(each.proportional, each.integral, 0.0, corner) for each in _pis(size, turning)]
+        return [*without, *(_pid(place, turning, float(angle), corner) for angle in _PID_ANGLES)]
+    return _resonant(place, turning, step)
+
+
+def _pis(size: float, turning: float) -> list[PI]:
+    return [PI(size * float(np.sin(angle)), size * turning * float(np.cos(angle))) for angle in _PI_ANGLES]
+
+
+def _pid(place: Place, turning: float, angle: float, corner: float) -> PID:
+    inverse = float(np.tan(0.5 * angle)) / turning
+    unit = PID(2.0 * inverse, 1.0, inverse**2, corner)
+    s = 1j * turning
+    gain = 1.0 / abs(place.gain * (unit.proportional + 1.0 / s + unit.derivative * s / (1.0 + s / (2.0 * np.pi * corner))))
+    return PID(unit.proportional * gain, gain, unit.derivative * gain, corner)
+
+
+def _resonant(place: Place, turning: float, step: float | None) -> list[Law]:
+    """The tracking gain k solves |k/(j w) - Q| = 1/|g|."""
+    found: list[Law] = []
+    if place.resonance is None or not place.static > 0.0:
+        return found
+    for damping in _DAMPINGS:
+        damped = resonant(place.resonance, damping, place.static)
+        if step is not None and damped.gain * damped.feedthrough >= np.pi / step:
+            continue
+        feedback = damped.gain / (1j * turning + damped.gain * damped.feedthrough)
+        rest = 1.0 / abs(place.gain) ** 2 - feedback.real**2
+        if rest > 0.0 and np.sqrt(rest) > feedback.imag:
+            tracking = turning * float(np.sqrt(rest) - feedback.imag)
+            found.append(resonant(place.resonance, damping, place.static, tracking))
+    return found

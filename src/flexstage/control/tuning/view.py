@@ -1,0 +1,128 @@
+"""The plant as tuning sees it: between the loops' commands and poses, at many frequencies, with its modes where they may lie."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from flexstage.base.number import Array
+from flexstage.control.controllers.loops import Loops
+from flexstage.control.controllers.seen import seen_plant
+from flexstage.control.plants import Plant
+from flexstage.control.resolvent import resolvent
+from flexstage.control.system import System
+
+_PLAIN = 400
+_AROUND = 21
+_SAME = 0.01
+_REPEATED = 0.1
+_STANDS_OUT = 2.0
+
+
+@dataclass(frozen=True, eq=False)
+class View:
+    """Plants from commands to pose: as modelled (first), and with all modes by the `offsets` off.
+
+    `responses` (v, f, k, n) are those of the loops' poses to strokes, sense P, at `frequencies` (f,) [Hz]; `static` (k, n) at rest. `modes`
+    [Hz] and `ratios` are those of the plant's modes.
+    """
+
+    plant: Plant
+    loops: Loops
+    systems: tuple[System, ...]
+    offsets: tuple[float, ...]
+    frequencies: Array
+    responses: Array
+    static: Array
+    modes: Array
+    ratios: Array
+
+    @property
+    def step(self) -> float | None:
+        """Time between samples [s]; None for a continuous loop."""
+        return self.systems[0].step
+
+    def at(self, frequency: float) -> Array:
+        """The loops' own responses (k,) at one frequency [Hz]."""
+        return np.diag(self.loops.sense @ self.systems[0].transfer(np.array([frequency]))[0] @ self.loops.drive)
+
+    @cached_property
+    def own(self) -> Array:
+        """The loops' own responses (v, f, k)."""
+        return np.einsum("vfkn,nk->vfk", self.responses, self.loops.drive)
+
+
+def view(plant: Plant, loops: Loops, spread: float) -> View:
+    """The plant by its loops.
+
+    A plant whose modes all lie by s above is the same with time running faster: that of samples (1 + s) T apart, called T.
+
+    >>> from flexstage.control.controllers.loops import platform_loops
+    >>> from flexstage.control.example import integral_loop
+    >>> plant = integral_loop().plant
+    >>> found = view(plant, platform_loops(plant.coordinates), 0.02)
+    >>> found.offsets, found.responses.shape[0], found.static.round(2).tolist()
+    ((0.0, -0.02, 0.02), 3, [[0.99]])
+    """
+    offsets = (0.0, -spread, spread) if spread else (0.0,)
+    systems = tuple(_stretched(plant, offset) for offset in offsets)
+    frequencies = _frequencies(plant, offsets)
+    responses = np.stack([loops.sense @ resolvent(system).at(frequencies) for system in systems])
+    static = np.real(loops.sense @ systems[0].transfer(np.zeros(1))[0])
+    return View(plant, loops, systems, offsets, frequencies, responses, static, plant.frequencies, plant.ratios)
+
+
+def _stretched(plant: Plant, offset: float) -> System:
+    """The plant with all its modes by a relative offset higher; lags and delays go with them."""
+    given = plant.hardware
+    if given.rate is None:
+        found = seen_plant(plant)
+        return replace(found, A=found.A * (1.0 + offset), B=found.B * (1.0 + offset))
+    slower = replace(given, rate=given.rate / (1.0 + offset), delay=given.delay * (1.0 + offset))
+    return replace(seen_plant(replace(plant, hardware=slower)), step=given.step)
+
+
+def _frequencies(plant: Plant, offsets: tuple[float, ...]) -> Array:
+    """Evenly in the logarithm, and densely around every mode wherever it may lie."""
+    highest = 20.0 * plant.frequencies[-1] if plant.hardware.rate is None else 0.5 * plant.hardware.rate
+    plain = np.geomspace(1e-3 * plant.frequencies[0], highest, _PLAIN)
+    around = np.tan(np.linspace(-1.5, 1.5, _AROUND))
+    single = np.append(True, np.diff(plant.frequencies) > _REPEATED * plant.ratios[1:] * plant.frequencies[1:])
+    places = [
+        mode * (1.0 + offset) * (1.0 + ratio * around)
+        for offset in offsets
+        for mode, ratio in zip(plant.frequencies[single], plant.ratios[single], strict=True)
+    ]
+    every = np.unique(np.concatenate([plain, *places]))
+    return every[(every > 0.0) & (every < highest)]
+
+
+@dataclass(frozen=True)
+class Resonance:
+    """A mode that stands out in a loop: its `frequency` [Hz], damping `ratio`, and the loop's `gain` there."""
+
+    frequency: float
+    ratio: float
+    gain: float
+
+
+def resonances(seen: View, loop: int) -> tuple[Resonance, ...]:
+    """Modes that stand out in a loop, ascending; those closer than 1 % count as one.
+
+    >>> from flexstage.control.controllers.loops import platform_loops
+    >>> from flexstage.control.example import integral_loop
+    >>> plant = integral_loop().plant
+    >>> [round(each.gain) for each in resonances(view(plant, platform_loops(plant.coordinates), 0.0), 0)]  # near 1/(2 zeta), zeta = 1 %
+    [41]
+    """
+    gains = np.abs(seen.own[0, :, loop])
+    found: list[Resonance] = []
+    for frequency, ratio in zip(seen.modes, seen.ratios, strict=True):
+        if seen.step is not None and frequency >= 0.5 / seen.step:
+            continue
+        own, *sides = np.interp(frequency * (1.0 + np.array([0.0, -8.0, 8.0]) * ratio), seen.frequencies, gains)
+        if own > _STANDS_OUT * max(sides) and not (found and frequency < found[-1].frequency * (1.0 + _SAME)):
+            found.append(Resonance(float(frequency), float(ratio), float(own)))
+    return tuple(found)

@@ -1,0 +1,206 @@
+"""White sources of a loop as columns of one linear system: gauges, converters, amplifiers; and mean squares by Lyapunov's equation."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from enum import Enum
+
+import numpy as np
+
+from flexstage.base.number import Array
+from flexstage.control.closed import Loop
+from flexstage.control.electronics import Amplifier, Sensor
+from flexstage.control.plants import Plant, sensing
+from flexstage.control.system import System, connected, picked
+from flexstage.models.linear.model import Channel
+
+
+class Kind(Enum):
+    """What disturbs a loop."""
+
+    FLOOR = "floor"
+    GAUGE = "gauge noise"
+    ROUNDING = "gauge rounding"
+    AMPLIFIER = "amplifier noise"
+    CONVERTER = "converter rounding"
+
+
+@dataclass(frozen=True)
+class Source:
+    """A source of noise: its kind, and the gauge, actuator or motion of the ground where it enters."""
+
+    kind: Kind
+    channel: str
+
+
+def mean_squares(system: System) -> Array:
+    """Mean squares (p, m) of each output from each input, unit white and alone.
+
+    Sampled: variances 1, e^2 = b^T X b + d^2 with X = A^T X A + c^T c. Continuous: two-sided densities 1, A^T X + X A + c^T c = 0; infinite
+    where d is not zero. The system must be stable.
+
+    >>> metre = (Channel("u", "m"),), (Channel("y", "m"),)
+    >>> lag = System(-np.eye(1), np.eye(1), np.eye(1), np.zeros((1, 1)), *metre)
+    >>> mean_squares(lag).tolist()  # 1/(2 pi) times the integral of 1/(1 + omega^2)
+    [[0.5]]
+    """
+    from scipy.linalg import matrix_balance, solve_continuous_lyapunov, solve_discrete_lyapunov
+
+    A, (scale, _) = matrix_balance(system.A, permute=False, separate=True)
+    B, C = system.B / scale[:, None], system.C * scale
+    found = system.D**2 if system.step is not None else np.where(system.D == 0.0, 0.0, np.inf)
+    for row, output in enumerate(C):
+        weight = np.outer(output, output)
+        gramian = solve_continuous_lyapunov(A.T, -weight) if system.step is None else solve_discrete_lyapunov(A.T, weight, "bilinear")
+        found[row] += np.sum(B * (np.real(gramian) @ B), axis=0)
+    return found
+
+
+def held_noise(A: Array, B: Array, step: float) -> Array:
+    """A factor L (n, k) of the covariance L L^T = int_0^T e^{As} B B^T e^{A^T s} ds that white noise (density 1) leaves after a step.
+
+    Taylor's series over a small part of the step, then doubling, Q(2t) = Q(t) + e^{At} Q(t) e^{A^T t}: no growing exponential occurs.
+
+    >>> factor = held_noise(-np.eye(1), np.eye(1), 0.5)
+    >>> round(float(factor[0, 0] ** 2), 12), round(float(0.5 * (1.0 - np.exp(-1.0))), 12)
+    (0.316060279414, 0.316060279414)
+    """
+    from scipy.linalg import expm, matrix_balance
+
+    balanced, (scale, _) = matrix_balance(A, permute=False, separate=True)
+    driven = B / scale[:, None]
+    doublings = max(0, int(np.ceil(np.log2(max(2.0 * np.linalg.norm(balanced, 2) * step, 1.0)))))
+    part = step / 2**doublings
+    term = driven @ driven.T * part
+    total = term
+    for order in range(2, 24):
+        term = (balanced @ term + term @ balanced.T) * (part / order)
+        total = total + term
+    moved = expm(balanced * part)
+    for _ in range(doublings):
+        total, moved = total + moved @ total @ moved.T, moved @ moved
+    size = np.sqrt(np.maximum(np.diag(total), 1e-300))
+    values, vectors = np.linalg.eigh(total / size / size[:, None])
+    return scale[:, None] * size[:, None] * vectors * np.sqrt(np.maximum(values, 0.0))
+
+
+def white_system(closed: Loop, outputs: tuple[str, ...]) -> tuple[System, tuple[Source, ...]]:
+    """The closed loop driven by unit white inputs, and whose each input is.
+
+    Sampled: gauge noise is white before lag and filter and comes to the samples as these leave it, aliased exactly; without either, it is
+    taken to end at half the sampling rate. Rounding is white with step^2/12. Amplifier noise drives the stage between the samples too,
+    and is left out here where no amplifier lag bounds it. Continuous: no rounding; what is not bounded is left out.
+
+    >>> from flexstage.control.example import integral_loop
+    >>> system, sources = white_system(integral_loop(), ("relative.x",))
+    >>> [source.kind.value for source in sources], system.output_names
+    (['gauge noise', 'gauge rounding'], ('relative.x',))
+    """
+    return _continuous(closed, outputs) if closed.step is None else _sampled(closed, outputs)
+
+
+def _sampled(closed: Loop, outputs: tuple[str, ...]) -> tuple[System, tuple[Source, ...]]:
+    given, systems, links, inputs, sources = closed.plant, [], {}, [], []
+    for name in given.gauges:
+        sensor, terms = given.hardware.sensors.get(name, Sensor()), {}
+        if sensor.noise_density:
+            systems.append(gauge_noise(given, name, sensor.noise_density))
+            inputs += systems[-1].inputs
+            sources += [Source(Kind.GAUGE, name)] * len(systems[-1].inputs)
+            terms[f"coloured.{name}"] = 1.0
+        if sensor.resolution:
+            inputs.append(Channel(f"rounding.{name}", "1"))
+            sources.append(Source(Kind.ROUNDING, name))
+            terms[f"rounding.{name}"] = sensor.resolution / np.sqrt(12.0)
+        links[f"noise.{name}"] = terms
+    for name in given.actuators:
+        size = given.hardware.amplifiers.get(name, Amplifier()).step
+        links[f"noise.{name}"] = {f"converted.{name}": size / np.sqrt(12.0)} if size else {}
+        inputs += [Channel(f"converted.{name}", "1")] if size else []
+        sources += [Source(Kind.CONVERTER, name)] if size else []
+    whole = connected([picked(closed.system, tuple(links), outputs), *systems], links, tuple(inputs), outputs)
+    return _with_amplifiers(whole, closed, outputs, tuple(sources))
+
+
+def gauge_noise(given: Plant, gauge: str, density: float) -> System:
+    """The samples of a gauge's white noise of a `density` [m/Hz^(1/2)] behind its lag and filter, from unit white inputs (sampled loops).
+
+    >>> from flexstage.control.example import integral_loop
+    >>> found = gauge_noise(integral_loop().plant, "S", 1e-12)
+    >>> bool(found.step), round(float(mean_squares(found).sum() / (1e-24 * 0.5 * np.pi * 3000.0)), 6)  # density^2 pi/2 f of a lag f
+    (True, 1.0)
+    """
+    filters = picked(sensing(given), [f"noise.{gauge}"], [f"filtered.{gauge}"])
+    return _coloured(filters, gauge, density, given.hardware.step or 0.0)
+
+
+def _coloured(filters: System, name: str, density: float, step: float) -> System:
+    """The samples of white noise behind lag and filter: x[k+1] = e^{AT} x[k] + L w[k], unit w."""
+    from scipy.linalg import expm
+
+    outputs = (Channel(f"coloured.{name}", "m"),)
+    used = _reached(filters)
+    if not len(used.A):
+        return System(used.A, used.B, used.C, used.D * density / np.sqrt(2.0 * step), (Channel(f"white.{name}", "1"),), outputs, step)
+    factor = held_noise(used.A, used.B * density / np.sqrt(2.0), step)
+    inputs = tuple(Channel(f"white.{name}.{number + 1}", "1") for number in range(factor.shape[1]))
+    return System(expm(used.A * step), factor, used.C, np.zeros((1, len(inputs))), inputs, outputs, step)
+
+
+def _reached(filters: System) -> System:
+    """One gauge's lag and filter without the states of the others, which nothing drives."""
+    own, reached = np.any(filters.B != 0.0, axis=1), np.zeros(0, bool)
+    while not np.array_equal(own, reached):
+        reached = own
+        own = own | np.any(filters.A[:, own] != 0.0, axis=1)
+    return replace(filters, A=filters.A[np.ix_(own, own)], B=filters.B[own], C=filters.C[:, own])
+
+
+def _with_amplifiers(
+    whole: System, closed: Loop, outputs: tuple[str, ...], sources: tuple[Source, ...]
+) -> tuple[System, tuple[Source, ...]]:
+    """Noise of the amplifiers as what it leaves in the plant's states, the first of all, after each step."""
+    given, step = closed.plant, closed.step
+    for name in bounded_amplifiers(closed, outputs):
+        density = given.hardware.amplifiers[name].noise_density or 0.0
+        column = picked(given.system, [name], given.system.output_names[:1]).B
+        factor = held_noise(given.system.A, column * density / np.sqrt(2.0), step or 0.0)
+        entry = np.vstack([factor, np.zeros((len(whole.A) - len(factor), factor.shape[1]))])
+        inputs = tuple(Channel(f"amplified.{name}.{number + 1}", "1") for number in range(factor.shape[1]))
+        direct = np.zeros((len(whole.outputs), len(inputs)))
+        whole = replace(whole, B=np.hstack([whole.B, entry]), D=np.hstack([whole.D, direct]), inputs=(*whole.inputs, *inputs))
+        sources = (*sources, *[Source(Kind.AMPLIFIER, name)] * len(inputs))
+    return whole, sources
+
+
+def bounded_amplifiers(closed: Loop, outputs: tuple[str, ...]) -> tuple[str, ...]:
+    """Actuators with amplifier noise that neither gauge nor output feels at once: a lag bounds it, its mean square is finite.
+
+    >>> from flexstage.control.example import integral_loop
+    >>> bounded_amplifiers(integral_loop(), ("relative.x",))  # no noise is stated
+    ()
+    """
+    given = closed.plant
+    felt = [*(f"gap.{name}" for name in given.gauges), *(name for name in outputs if name in given.system.output_names)]
+    noisy = [name for name in given.actuators if name in given.hardware.amplifiers and given.hardware.amplifiers[name].noise_density]
+    return tuple(name for name in noisy if not np.any(picked(given.system, [name], felt).D))
+
+
+def _continuous(closed: Loop, outputs: tuple[str, ...]) -> tuple[System, tuple[Source, ...]]:
+    given = closed.plant
+    densities = {Kind.GAUGE: {name: given.hardware.sensors.get(name, Sensor()).noise_density for name in given.gauges}}
+    densities[Kind.AMPLIFIER] = {name: given.hardware.amplifiers.get(name, Amplifier()).noise_density for name in given.actuators}
+    parts = {Source(kind, name): value / np.sqrt(2.0) for kind, each in densities.items() for name, value in each.items() if value}
+    links = {f"noise.{name}": {} for name in (*given.gauges, *given.actuators)}
+    links |= {f"noise.{name}": {f"filtered.{name}": 1.0} for name in given.gauges}
+    entry = {f"noise.{name}": f"white.{name}" for name in (*given.gauges, *given.actuators)}
+    before = replace(sensing(given), inputs=tuple(Channel(f"before.{name}", "m") for name in given.gauges))
+    links |= {f"before.{name}": {} for name in given.gauges}
+    for source, size in parts.items():
+        place = f"before.{source.channel}" if source.kind is Kind.GAUGE else f"noise.{source.channel}"
+        links[place] = {entry[f"noise.{source.channel}"]: size}
+    inputs = tuple(Channel(f"white.{source.channel}", "1") for source in parts)
+    noises = [f"noise.{name}" for name in (*given.gauges, *given.actuators)]
+    whole = connected([picked(closed.system, noises, outputs), before], links, inputs, outputs)
+    kept = [channel.name for column, channel in enumerate(inputs) if not np.any(whole.D[:, column])]
+    return picked(whole, kept, outputs), tuple(source for source in parts if f"white.{source.channel}" in kept)

@@ -1,0 +1,416 @@
+"""Theory, FEA and experiment side by side (the paper's Fig. 12): modes paired by shape at the sensors, repeated ones as a subspace."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from flexstage.analysis.complete import platform_modes, read
+from flexstage.analysis.modes import Modes, clusters
+from flexstage.analysis.pairing import RELIABLE, Moving, Pair, gyration, paired
+from flexstage.analysis.solid_modes import FeaModes
+from flexstage.base.finding import Finding, nearest, require
+from flexstage.base.number import Array, first_design
+from flexstage.experiment.channels import Residues, gain_doubts, output_scales, shape_doubts, sized
+from flexstage.experiment.identification.identified import Identified
+from flexstage.experiment.shapes_on_stage import si_factor, si_shapes
+from flexstage.experiment.updating.gains import is_length, metres
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.models.linear.model import LinearModel
+from flexstage.models.theory import Reading
+
+_REPEATED = 0.01
+_FAR, _FARTHEST = 0.3, np.log(1.6)
+_SILENT = 1e-6
+_PAIRED = 0.5
+_TRUSTED = 0.9
+_ROUNDS = 5
+_TURNED = np.deg2rad(20.0)
+
+
+@dataclass(frozen=True)
+class Measured:
+    """A mode of the experiment as it is compared: its number (from 0), frequency [Hz] and damping ratio with their 95 % intervals.
+
+    `widening` is how many times wider these are than noise makes them.
+    """
+
+    number: int
+    frequency: float
+    interval: tuple[float, float]
+    damping: float
+    damping_interval: tuple[float, float]
+    widening: float
+
+
+@dataclass(frozen=True)
+class ComparedMode:
+    """One platform mode by theory, by FEA and in the experiment, frequencies in Hz.
+
+    `number` counts the platform's modes from 1. `assurance` is the modal assurance of theory and experiment at the sensors, of repeated
+    modes the share of the measured shape within theory's subspace; `fea_assurance` that of theory and FEA by all motions both give:
+    below 0.8 `fea` is absent.
+    """
+
+    number: int
+    name: str
+    theory: float
+    fea: float | None = None
+    fea_error: float | None = None
+    fea_assurance: float | None = None
+    experiment: Measured | None = None
+    assurance: float | None = None
+
+    @property
+    def difference(self) -> float | None:
+        """Theory over experiment less one."""
+        return None if self.experiment is None else self.theory / self.experiment.frequency - 1.0
+
+    @property
+    def fea_difference(self) -> float | None:
+        """FEA over experiment less one."""
+        return None if self.experiment is None or self.fea is None else self.fea / self.experiment.frequency - 1.0
+
+    @property
+    def uncertainty(self) -> float | None:
+        """Half of the experiment's 95 % interval, relative."""
+        if self.experiment is None:
+            return None
+        low, high = self.experiment.interval
+        return 0.5 * (high - low) / self.experiment.frequency
+
+
+@dataclass(frozen=True)
+class RepeatedModes:
+    """Modes that theory has together (numbers from 1), and the largest angle [rad] between their subspace and the one measured.
+
+    `angle` is absent where the experiment shows fewer of them than there are.
+    """
+
+    numbers: tuple[int, ...]
+    seen: int
+    angle: float | None
+
+
+@dataclass(frozen=True)
+class FurtherMode:
+    """A measured mode that is none of the platform's, with the local mode of theory [Hz] it is paired with, where there is one."""
+
+    experiment: Measured
+    name: str | None = None
+    theory: float | None = None
+    assurance: float | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Compared:
+    """Theory, FEA and experiment mode by mode.
+
+    `further` are measured modes without a partner among the platform's; `sensors` the outputs shapes are compared at;
+    `warnings` say what the experiment cannot tell and which pairings not to rely on; those of `misnamed` which channels look
+    exchanged, inverted or scaled.
+    """
+
+    rows: tuple[ComparedMode, ...]
+    repeated: tuple[RepeatedModes, ...]
+    further: tuple[FurtherMode, ...]
+    sensors: tuple[str, ...]
+    reading: Reading
+    experiment: Identified
+    fea: FeaModes | None
+    warnings: tuple[str, ...]
+    provenance: str
+    misnamed: tuple[str, ...] = ()
+
+
+def compare(mechanism: Mechanism, experiment: Identified, fea: FeaModes | None = None, *, reading: Reading = Reading.LUMPED) -> Compared:
+    """Compare the platform's modes by theory, by FEA where given, and as identified in a test.
+
+    Shapes are compared at the record's outputs that are outputs of the stage too, by modal assurance (Allemang & Brown 1982), measured
+    shapes by their real part. Each mode gets the measured mode most like it, all pairs chosen together; modes that theory has
+    within 1 % are one subspace, in which every basis is as good. A distance in frequency counts little, so that shapes that the
+    sensors cannot tell apart go to the nearer mode; modes that are more than 1.6 times apart are no pair, nor such with an assurance
+    below 0.5. Measured modes may also be theory's local ones. Raises `DesignError` where no output has a name of the stage's.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.experiment.example import one_mode_record
+    >>> from flexstage.experiment.identification.identify import identify
+    >>> compare(double_triangle(), identify(one_mode_record()))
+    Traceback (most recent call last):
+        ...
+    flexstage.base.finding.DesignError: y: the stage has no output of this name, ...
+    """
+    model = read(mechanism, reading)
+    require([] if model is not None else [Finding("reading", "rigid bodies have no modes", "Compare with lumped or mapped")])
+    assert model is not None  # noqa: S101  refused above
+    theory = platform_modes(mechanism, model)
+    sensors = shared_sensors(model, experiment)
+    candidates = _candidates(theory, experiment)
+    seen = _weighted(si_shapes(experiment, sensors), model, sensors)
+    own = _sensed(model, theory, candidates, sensors)
+    groups = _groups(theory, candidates)
+    frequencies = first_design(theory.frequencies, 1)[list(candidates)]
+    pairs, likeness = _pairs(frequencies, experiment, groups, (own, seen))
+
+    def score(shapes: Array) -> float:
+        found, alike = _pairs(frequencies, experiment, groups, (own, shapes))
+        return sum(float(alike[place, index]) for place, index in found.items()) / max(1, shapes.shape[1])
+
+    misnamed = shape_doubts(sensors, seen, score, _scales(frequencies, experiment, groups, (own, seen)))
+    misnamed = misnamed or gain_doubts(_residues(mechanism, (model, theory), experiment, sensors, _matched(groups, candidates, pairs)))
+    rows = _rows(theory, experiment, pairs, likeness)
+    rows = rows if fea is None else _with_fea(rows, theory, fea, model)
+    repeated = tuple(_repeated(group, pairs, own, seen) for group in groups if len(group) > 1 and group[-1] < len(rows))
+    return Compared(
+        rows=rows,
+        repeated=repeated,
+        further=tuple(_further(theory, candidates, experiment, (pairs, likeness))),
+        sensors=sensors,
+        reading=reading,
+        experiment=experiment,
+        fea=fea,
+        warnings=(*experiment.warnings, *(f"{each}." for each in misnamed), *_cautions(rows, repeated, sensors)),
+        misnamed=misnamed,
+        provenance=f"{theory.provenance}; {experiment.provenance}",
+    )
+
+
+def shared_sensors(model: LinearModel, experiment: Identified) -> tuple[str, ...]:
+    """The record's outputs that are outputs of the model too; raises `DesignError` where there is none."""
+    known = {channel.name for channel in model.outputs}
+    found = tuple(channel.name for channel in experiment.outputs if channel.name in known)
+    gauges = [name for name in known if "." not in name]
+    require(
+        Finding(channel.name, "the stage has no output of this name, nor of any other of the record", nearest(channel.name, gauges))
+        for channel in experiment.outputs
+        if not found
+    )
+    return found
+
+
+def _candidates(theory: Modes, experiment: Identified) -> tuple[int, ...]:
+    """Theory's modes that a measured one may be: the platform's first, then all others as far up as was measured."""
+    frequencies = first_design(theory.frequencies, 1)
+    highest = float(np.exp(_FARTHEST)) * max(experiment.frequencies, default=0.0)
+    others = (index for index in range(len(frequencies)) if index not in theory.platform and frequencies[index] < highest)
+    return (*theory.platform, *others)
+
+
+def _groups(theory: Modes, candidates: tuple[int, ...]) -> list[list[int]]:
+    """Candidates that are one subspace, the platform's and others apart, by their place."""
+    frequencies, count = first_design(theory.frequencies, 1)[list(candidates)], len(theory.platform)
+    others = clusters(frequencies[count:], _REPEATED)
+    return [*clusters(frequencies[:count], _REPEATED), *([count + index for index in group] for group in others)]
+
+
+def _sensed(model: LinearModel, theory: Modes, candidates: tuple[int, ...], sensors: Sequence[str]) -> Array:
+    """Theory's modes at the sensors (p, n), of unit length; zero where the sensors do not feel a mode."""
+    shapes = first_design(theory.shapes, 2)[:, list(candidates)]
+    seen = first_design(model.output, 2)[list(model.output_index(tuple(sensors)))] @ shapes
+    size = np.linalg.norm(seen, axis=0)
+    return np.where(size > _SILENT * np.max(size), _weighted(seen, model, sensors), 0.0)
+
+
+def _weighted(shapes: Array, model: LinearModel, sensors: Sequence[str]) -> Array:
+    """Shapes of unit length; angles weighted so that the platform's radius of gyration makes lengths of them."""
+    units = {channel.name: channel.unit for channel in model.outputs}
+    weight = np.array([gyration(model) if units[name] == "rad" else 1.0 for name in sensors])
+    scaled = weight[:, None] * shapes
+    return scaled / np.maximum(np.linalg.norm(scaled, axis=0), 1e-300)
+
+
+def _pairs(frequencies: Array, experiment: Identified, groups: list[list[int]], both: tuple[Array, Array]) -> tuple[dict[int, int], Array]:
+    """The measured mode of each of theory's, and how alike all are (n, k): the share of a measured shape within the mode's subspace."""
+    from scipy.optimize import linear_sum_assignment
+
+    own, seen = both
+    likeness = np.zeros((own.shape[1], seen.shape[1]))
+    for group in groups:
+        basis = _basis(own[:, group])
+        likeness[group] = np.sum((basis.T @ seen) ** 2, axis=0)
+    if not likeness.size:
+        return {}, likeness
+    apart = np.abs(np.log(experiment.frequencies[None, :] / frequencies[:, None]))
+    fitting = (likeness >= _PAIRED) & (apart <= _FARTHEST)
+    first, second = linear_sum_assignment(np.where(fitting, _FAR * apart - likeness, 0.0))
+    found = {i: j for i, j in zip(first.tolist(), second.tolist(), strict=True) if fitting[i, j]}
+    return _in_order(found, groups), likeness
+
+
+def _scales(frequencies: Array, experiment: Identified, groups: list[list[int]], both: tuple[Array, Array]) -> Array:
+    """How much larger every output is measured than theory has it, modes paired by frequency alone: scaled shapes tell no pairs."""
+    from scipy.optimize import linear_sum_assignment
+
+    own, seen = both
+    apart = np.abs(np.log(experiment.frequencies[None, :] / frequencies[:, None]))
+    first, second = linear_sum_assignment(np.minimum(apart, _FARTHEST))
+    found = {i: j for i, j in zip(first.tolist(), second.tolist(), strict=True) if apart[i, j] <= _FARTHEST}
+    whole = [group for group in groups if all(index in found for index in group)]
+    theory = _sizes(own, whole)
+    scales = np.ones(len(own))
+    for _ in range(_ROUNDS):  # repeated modes count by their sizes, which scaled channels distort
+        divided = seen / scales[:, None]
+        measured = _sizes(
+            divided / np.maximum(np.linalg.norm(divided, axis=0), 1e-300), [[found[index] for index in group] for group in whole]
+        )
+        scales = scales * output_scales(theory, measured)
+    return scales
+
+
+def _sizes(shapes: Array, groups: list[list[int]]) -> Array:
+    """How large every group of modes is at every output (p, groups)."""
+    sizes = [np.linalg.norm(shapes[:, group], axis=1) for group in groups]
+    return np.stack(sizes, axis=1) if sizes else np.zeros((len(shapes), 0))
+
+
+def _in_order(found: dict[int, int], groups: list[list[int]]) -> dict[int, int]:
+    """Within a subspace the lower measured frequency goes to the lower mode."""
+    ordered: dict[int, int] = {}
+    for group in groups:
+        members = sorted(found[index] for index in group if index in found)
+        ordered |= dict(zip(group, members, strict=False))
+    return ordered
+
+
+def _matched(groups: list[list[int]], candidates: tuple[int, ...], pairs: dict[int, int]) -> list[tuple[list[int], list[int]]]:
+    """Theory's modes of every group all of whose modes were found, and the measured ones."""
+    whole = (group for group in groups if all(index in pairs for index in group))
+    return [([candidates[index] for index in group], [pairs[index] for index in group]) for group in whole]
+
+
+def _residues(
+    mechanism: Mechanism,
+    known: tuple[LinearModel, Modes],
+    experiment: Identified,
+    sensors: Sequence[str],
+    matched: list[tuple[list[int], list[int]]],
+) -> Residues:
+    """Modal gains of theory and test between shared sensors and shared inputs: repeated modes together, whatever their basis."""
+    model, theory = known
+    names = {channel.name for channel in model.inputs}
+    columns = [index for index, channel in enumerate(experiment.inputs) if channel.name in names]
+    inputs = tuple(experiment.inputs[index].name for index in columns)
+    shape = (-1, len(sensors), len(inputs))
+    if not matched or not inputs:
+        return Residues(tuple(sensors), inputs, *np.zeros((2, 0, *shape[1:])), *np.zeros((2, len(inputs)), dtype=bool))
+    sizes = np.array([metres(mechanism, experiment.inputs[index]) for index in columns])
+    shapes, drive = first_design(theory.shapes, 2), first_design(model.input_matrix, 2)[:, list(model.input_index(inputs))]
+    sense = first_design(model.output, 2)[list(model.output_index(tuple(sensors)))]
+    rows = [[channel.name for channel in experiment.outputs].index(name) for name in sensors]
+    seen = np.array([si_factor(experiment.outputs[row]) for row in rows])[:, None] * experiment.shapes[rows]
+    felt = (
+        4.0 * np.pi * experiment.frequencies[:, None] * 1j * experiment.participation[:, columns] / np.where(np.isfinite(sizes), sizes, 1.0)
+    )
+    own = [(sense @ shapes[:, modes]) @ (shapes[:, modes].T @ drive) for modes, _ in matched]
+    found = [np.real(seen[:, modes] @ felt[modes]) for _, modes in matched]
+    strokes = [is_length(experiment.inputs[index].unit) for index in columns]
+    return sized(Residues(tuple(sensors), inputs, np.reshape(own, shape), np.reshape(found, shape), np.isfinite(sizes), np.array(strokes)))
+
+
+def _basis(shapes: Array) -> Array:
+    """An orthonormal basis of what shapes span; shapes that the sensors see alike count once."""
+    left, size, _ = np.linalg.svd(shapes, full_matrices=False)
+    return left[:, size > max(1e-3 * float(size[0]), 1e-300)]
+
+
+def _rows(theory: Modes, experiment: Identified, pairs: dict[int, int], likeness: Array) -> tuple[ComparedMode, ...]:
+    frequencies = first_design(theory.platform_frequencies, 1)
+    return tuple(
+        ComparedMode(
+            number=number + 1,
+            name=theory.names[index],
+            theory=float(frequencies[number]),
+            experiment=_measured(experiment, pairs[number]) if number in pairs else None,
+            assurance=float(likeness[number, pairs[number]]) if number in pairs else None,
+        )
+        for number, index in enumerate(theory.platform)
+    )
+
+
+def _measured(experiment: Identified, index: int) -> Measured:
+    (low, high), (least, most) = experiment.frequency_intervals[index].tolist(), experiment.damping_intervals[index].tolist()
+    return Measured(
+        index,
+        float(experiment.frequencies[index]),
+        (low, high),
+        float(experiment.damping[index]),
+        (least, most),
+        float(experiment.widening[index]),
+    )
+
+
+def _further(
+    theory: Modes, candidates: tuple[int, ...], experiment: Identified, found: tuple[dict[int, int], Array]
+) -> Iterator[FurtherMode]:
+    pairs, likeness = found
+    partners = {measured: place for place, measured in pairs.items()}
+    for index in range(len(experiment.frequencies)):
+        place = partners.get(index)
+        if place is None:
+            yield FurtherMode(_measured(experiment, index))
+        elif place >= len(theory.platform):
+            mode = candidates[place]
+            frequency = float(first_design(theory.frequencies, 1)[mode])
+            yield FurtherMode(_measured(experiment, index), theory.names[mode], frequency, float(likeness[place, index]))
+
+
+def _with_fea(rows: tuple[ComparedMode, ...], theory: Modes, fea: FeaModes, model: LinearModel) -> tuple[ComparedMode, ...]:
+    pairs = paired(Moving(theory, model), Moving(fea.modes, fea.model))
+    return tuple(
+        row
+        if (pair := pairs.get(theory.platform[row.number - 1])) is None
+        else replace(row, fea=pair.frequency, fea_error=_error(fea, pair), fea_assurance=pair.assurance)
+        if pair.reliable
+        else replace(row, fea_assurance=pair.assurance)
+        for row in rows
+    )
+
+
+def _error(fea: FeaModes, pair: Pair) -> float | None:
+    return fea.errors[fea.modes.platform.index(pair.index)] if fea.errors and pair.index in fea.modes.platform else None
+
+
+def _repeated(group: list[int], pairs: dict[int, int], own: Array, seen: Array) -> RepeatedModes:
+    members = [pairs[index] for index in group if index in pairs]
+    numbers = tuple(index + 1 for index in group)
+    if len(members) < len(group):
+        return RepeatedModes(numbers, len(members), None)
+    first, second = _basis(own[:, group]), _basis(seen[:, members])
+    if first.shape != second.shape:
+        return RepeatedModes(numbers, len(members), None)
+    cosines = np.linalg.svd(first.T @ second, compute_uv=False)
+    return RepeatedModes(numbers, len(members), float(np.arccos(np.clip(cosines[-1], 0.0, 1.0))))
+
+
+def _cautions(rows: tuple[ComparedMode, ...], repeated: tuple[RepeatedModes, ...], sensors: tuple[str, ...]) -> list[str]:
+    found: list[str] = []
+    if len(sensors) < len(rows):
+        found.append(
+            f"shapes are compared at {len(sensors)} sensors ({', '.join(sensors)}): fewer than modes, so that modes may look alike."
+        )
+    doubtful = [row for row in rows if row.assurance is not None and row.assurance < _TRUSTED]
+    found += [
+        f"mode {row.number} ({row.name}): modal assurance {row.assurance:.2f}: the pairing is not to be relied on." for row in doubtful
+    ]
+    found += [
+        f"mode {row.number} ({row.name}): FEA has no mode like it: the best shares {row.fea_assurance:.2f} of its motion, "
+        f"{RELIABLE} is needed."
+        for row in rows
+        if row.fea is None and row.fea_assurance is not None
+    ]
+    for group in repeated:
+        names = " and ".join(str(number) for number in group.numbers)
+        if 0 < group.seen < len(group.numbers):
+            found.append(
+                f"modes {names} are repeated; the experiment shows {group.seen} of {len(group.numbers)}: drive other actuators too."
+            )
+    for group in repeated:
+        if group.angle is not None and group.angle > _TURNED:
+            names, angle = " and ".join(map(str, group.numbers)), f"{np.rad2deg(group.angle):.0f}"
+            found.append(f"modes {names} are repeated; what was measured of them lies up to {angle} degrees off their subspace.")
+    lost = [row for row in rows if row.experiment is None]
+    if lost:
+        found.append(f"not found in the experiment: {', '.join(f'{row.number} ({row.name}, {row.theory:.4g} Hz)' for row in lost)}.")
+    return found

@@ -1,0 +1,71 @@
+"""Theory, FEA and experiment in one picture (the paper's Fig. 12)."""
+
+from __future__ import annotations
+
+from typing import Any, TypeAlias
+
+import numpy as np
+
+from flexstage.experiment.comparison import Compared, ComparedMode
+from flexstage.show.figures.style import FULL, INK, MUTED, SERIES, Margins, canvas, panels, styled
+
+_Series: TypeAlias = tuple[str, str, list[float | None]]
+_THEORY, _FEA, _EXPERIMENT = SERIES[0], SERIES[2], SERIES[1]
+
+
+def compare_figure(found: Compared) -> Any:
+    """Frequencies of the platform's modes by theory, FEA and experiment as bars, and below how far the former are off, as a Figure.
+
+    Whiskers are the experiment's 95 % intervals, in the lower panel as bands about zero.
+    """
+    series: list[_Series] = [("theory", _THEORY, [row.theory for row in found.rows])]
+    if found.fea is not None:
+        series.append(("FEA", _FEA, [row.fea for row in found.rows]))
+    series.append(("experiment", _EXPERIMENT, [None if row.experiment is None else row.experiment.frequency for row in found.rows]))
+    with styled():
+        figure = canvas(FULL, 3.9)
+        grid = panels(figure, 2, 1, Margins(left=0.7, top=0.45, bottom=0.55, down=0.18), heights=[1.7, 1.0])
+        _bars(grid[0, 0], series, found.rows)
+        _differences(grid[1, 0], found)
+        names = [f"{row.number}\n{row.name}" for row in found.rows]
+        grid[1, 0].set_xticks(range(len(names)), names)
+        grid[0, 0].tick_params(labelbottom=False)
+        grid[1, 0].set_xlabel("mode of the platform")
+        for axes in grid.ravel():
+            axes.grid(visible=False, axis="x")
+    return figure
+
+
+def _bars(axes: Any, series: list[_Series], rows: tuple[ComparedMode, ...]) -> None:
+    width = 0.78 / len(series)
+    for number, (name, colour, values) in enumerate(series):
+        places = np.arange(len(values)) + width * (number - 0.5 * (len(series) - 1))
+        known = [index for index, value in enumerate(values) if value is not None]
+        heights = [value for value in values if value is not None]
+        axes.bar(places[known], heights, 0.92 * width, color=colour, label=name)
+        for index, height in zip(known, heights, strict=True):
+            axes.text(places[index], height, f"{height:.1f}", ha="center", va="bottom", fontsize=5.5, color=INK)
+        if name == "experiment":
+            seen = [row.experiment.interval for row in rows if row.experiment is not None]
+            whiskers = np.abs(np.array(seen).reshape(-1, 2).T - np.array(heights))
+            axes.errorbar(places[known], heights, yerr=whiskers, fmt="none", ecolor=INK, elinewidth=0.8, capsize=1.5)
+    axes.set_ylabel("frequency [Hz]")
+    axes.margins(y=0.12)
+    axes.legend(loc="lower left", bbox_to_anchor=(-0.02, 1.0), ncols=3, handlelength=1.2, borderaxespad=0.2)
+
+
+def _differences(axes: Any, found: Compared) -> None:
+    """Points at the differences, bands at the experiment's interval, repeated modes joined below."""
+    axes.axhline(0.0, color=MUTED, linewidth=0.6)
+    seen = [index for index, row in enumerate(found.rows) if row.experiment is not None]
+    width = [100.0 * (found.rows[index].uncertainty or 0.0) for index in seen]
+    axes.bar(seen, [2.0 * each for each in width], 0.7, bottom=[-each for each in width], color=_EXPERIMENT, alpha=0.35)
+    for name, colour, marker in (("difference", _THEORY, "o"), ("fea_difference", _FEA, "s")):
+        points = [(index, 100.0 * value) for index in seen if (value := getattr(found.rows[index], name)) is not None]
+        if points:
+            axes.plot(*zip(*points, strict=True), marker, color=colour, markersize=4.0, linestyle="none")
+    largest = max((abs(line) for each in axes.lines for line in np.ravel(each.get_ydata()).astype(float)), default=0.0)
+    reach = 1.25 * max(largest, *width, 0.05) if width else 1.0
+    axes.set_ylim(-reach, reach)
+    axes.set_xlim(-0.6, len(found.rows) - 0.4)
+    axes.set_ylabel("difference [%]")

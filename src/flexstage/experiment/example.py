@@ -1,0 +1,43 @@
+"""A stage of one mode, small enough to be identified in an example."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from flexstage.base.number import Array
+from flexstage.experiment.identification.likelihood import Band, Modal, background
+from flexstage.experiment.identification.lines import edges, gathered, record_lines
+from flexstage.experiment.record import Channel, Record, Role, in_memory
+
+POLE = 10.0 * (-0.02 + 1j * np.sqrt(1.0 - 0.02**2))
+"""Its pole in Hz: a natural frequency of 10 Hz, damped by 2 %."""
+
+
+def one_mode_record(*, seconds: float = 64.0, noise: float = 0.05) -> Record:
+    """A record of white noise in and the stage's motion out, with noise as a share of its rms; always the same numbers.
+
+    >>> one_mode_record().duration
+    64.0
+    """
+    random = np.random.default_rng(0)
+    size, rate = round(64.0 * seconds), 64.0
+    drive = np.fft.rfft(random.standard_normal(size + 2048))
+    lines = np.fft.rfftfreq(size + 2048, 1.0 / rate)
+    natural = abs(POLE)
+    moved = np.fft.irfft(drive * natural**2 / (natural**2 - lines**2 + 0.04j * natural * lines))[1024:-1024]
+    values = np.stack([np.fft.irfft(drive)[1024:-1024], moved + noise * np.std(moved) * random.standard_normal(size)], axis=1)
+    return in_memory([Channel("u", "V", Role.INPUT), Channel("y", "um", Role.OUTPUT)], rate, values)
+
+
+def one_mode_band(second: Array | None = None) -> tuple[Band, Modal]:
+    """The band around that mode, and where a fit may begin: poles in Hz near the true one, and at `second` if given.
+
+    >>> one_mode_band()[0].cells.width
+    2
+    """
+    poles = np.concatenate([[1.01 * POLE], np.zeros(0) if second is None else second])
+    made = one_mode_record()
+    cells = gathered(record_lines(made, (0,), 1), [edges(poles, 6.0, 14.0)])[0]
+    variance = np.full((1, len(cells.low)), 0.05**2 * float(np.var(made.values[:, 1])))
+    start = Modal(poles, np.ones((len(poles), 2), dtype=complex), np.full((1, len(poles)), -5.0j))
+    return Band(cells, variance, background(cells, np.conj(poles[:1]))), start

@@ -1,0 +1,1 @@
+"""Files of tests, read and written: CSV, UFF, HDF5, MAT."""

@@ -1,0 +1,207 @@
+"""The layout of a CSV file: how columns are divided, what the header says, where numbers begin.
+
+A header is `time [s], u1 [V], S1 [um]`, with brackets or parentheses, or names on one line and units on the next; it may be a comment.
+Columns are divided by semicolons, tabs, commas or blanks; decimal commas are understood where columns are divided otherwise.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import re
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from flexstage.base.files import require_regular
+from flexstage.base.finding import Finding, refuse, require
+from flexstage.experiment.options import numbered
+from flexstage.experiment.unit import plain_unit, unit_problem
+
+_HEAD = 1 << 18
+_LOOKED_AT = 6
+NUMBER = re.compile(r"[-+]?(\d+([.,]\d*)?|[.,]\d+)([eEdD][-+]?\d+)?", re.ASCII)
+"""A number as files print it."""
+MISSING = frozenset({"", "nan", "-nan", "na", "n/a", "#n/a", "null", "none", "-", "--", "inf", "-inf", "+inf"})
+"""Fields that stand for a number that is missing, in small letters."""
+_COMMENT = re.compile(r"\s*(#|%|//|\*)+\s?")
+_WITH_UNIT = re.compile(r"(?P<name>.*?)\s*[\[(](?P<unit>[^\[\]]*)[\])]")
+_WORD = re.compile(r"[^\s\[(]+(?:\s*[\[(][^\])]*[\])])?")
+_RATE = re.compile(
+    r"(?:\w*rate|sampl\w*[ _]*freq\w*|fs)\s*(?:\[\w+\]|\(\w+\))?\s*[:=;,\s]\s*(\d+(?:[.,]\d+)?(?:[eE][-+]?\d+)?)\s*(k?Hz)?", re.IGNORECASE
+)
+_EXAMPLE = 'Write a header such as "time [s], u1 [V], S1 [um]" as its first line'
+
+
+@dataclass(frozen=True)
+class Layout:
+    """Names and units of the columns, how they are divided (None: by blanks), the decimal sign, where numbers begin (byte and line).
+
+    `comments` are the lines before them, without their signs; `rate` in Hz is what one of them says.
+    """
+
+    names: tuple[str, ...]
+    units: tuple[str, ...]
+    delimiter: str | None
+    decimal: str
+    start: int
+    line: int
+    encoding: str
+    comments: tuple[str, ...]
+    rate: float | None
+
+    def fields(self, line: str) -> list[str]:
+        """The fields of a line, blanks around them left out.
+
+        >>> Layout(("a", "b"), ("", ""), ",", ".", 0, 1, "utf-8", (), None).fields("1.0, 2.0")
+        ['1.0', '2.0']
+        """
+        return _fields(line, self.delimiter)
+
+    def fits(self, line: str) -> bool:
+        """Whether a line has as many fields as there are columns; it may end with what divides them.
+
+        >>> two = Layout(("a", "b"), ("", ""), ",", ".", 0, 1, "utf-8", (), None)
+        >>> two.fits("1,2"), two.fits("1,2,"), two.fits("1,2,3"), two.fits("1")
+        (True, True, False, False)
+        """
+        expected = len(self.names)
+        if self.delimiter is None or '"' in line:
+            fields = self.fields(line)
+            return len(fields) == expected or (len(fields) == expected + 1 and not fields[-1])
+        count = line.count(self.delimiter) + 1
+        return count == expected or (count == expected + 1 and line.rstrip("\r ").endswith(self.delimiter))
+
+
+def layout_of(path: Path) -> Layout:
+    r"""The layout of a CSV file; raises `DesignError` where it is no text, has no numbers or no header.
+
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = Path(folder) / "a.csv"
+    ...     _ = path.write_text("time [s]; u1 [V]\n0; 0,5\n0,1; 0,25\n")
+    ...     found = layout_of(path)
+    >>> found.names, found.units, found.delimiter, found.decimal, found.line
+    (('time', 'u1'), ('s', 'V'), ';', ',', 2)
+    """
+    require_regular(path)
+    with path.open("rb") as stream:
+        raw = stream.read(_HEAD)
+    lines, encoding = _lines(raw, path)
+    for number, line in enumerate(lines):
+        form = _form(lines[number : number + _LOOKED_AT]) if _may_be_numbers(line) else None
+        if form is not None:
+            delimiter, decimal, columns = form
+            require(_lost(path, lines[:number], form))
+            head = [_COMMENT.sub("", each) for each in lines[:number]]
+            names, units = _header(head, delimiter, columns, path)
+            start = sum(len(each.encode(encoding)) for each in lines[:number]) + (3 if raw.startswith(b"\xef\xbb\xbf") else 0)
+            return Layout(names, units, delimiter, decimal, start, number + 1, encoding, tuple(each.strip() for each in head), _rate(head))
+    raise refuse(str(path), f"no line of numbers was found in its first {len(lines)} lines", _EXAMPLE)
+
+
+def _lost(path: Path, above: list[str], form: tuple[str | None, str, int]) -> Iterator[Finding]:
+    """The line that parts rows of numbers above from those below: it would make a header of them all."""
+    rows = [number for number, line in enumerate(above) if _is_row(line)]
+    if rows:
+        columns = form[2]
+        broken = (at for at in range(rows[0], len(above)) if at not in rows or len(_fields(above[at], form[0])) != columns)
+        at = next(broken, rows[-1])
+        line, count = above[at].strip()[:60], len(_fields(above[at], form[0]))
+        wrong = "it holds what is no number here" if count == columns else f"it has {count} fields where {columns} are expected"
+        what = f'{wrong}, numbers before and after it: "{line}"'
+        yield Finding(f"{path}: line {at + 1}", what, f'Mend it; if line {rows[0] + 1} is no row of numbers, begin that with "#"')
+
+
+def _is_row(line: str) -> bool:
+    """Whether a line is two numbers or more and nothing else, however divided."""
+    if not _may_be_numbers(line):
+        return False
+    divided = (_fields(line, delimiter) for delimiter in (";", "\t", ",", None))
+    return any(len(fields) > 1 and all(NUMBER.fullmatch(field) for field in fields) for fields in divided)
+
+
+def _lines(raw: bytes, path: Path) -> tuple[list[str], str]:
+    """The first lines with their ends, and the encoding; a last line that is cut is left out if there are others."""
+    if raw.startswith((b"\xff\xfe", b"\xfe\xff")):
+        raise refuse(str(path), "it is UTF-16 text", "Save it as UTF-8")
+    if b"\x00" in raw:
+        raise refuse(str(path), "it is neither text nor a known form of record", "Export UFF, MAT, HDF5 or CSV")
+    raw = raw.removeprefix(b"\xef\xbb\xbf")
+    if b"\r" in raw and b"\n" not in raw:
+        raise refuse(str(path), "its lines end in carriage returns alone", "Save it with line feeds")
+    lines = io.BytesIO(raw).readlines()
+    whole = lines[:-1] if len(lines) > 1 and len(raw) > _HEAD - 8 else lines
+    try:
+        return [line.decode("utf-8") for line in whole], "utf-8"
+    except UnicodeDecodeError:
+        return [line.decode("latin-1") for line in whole], "latin-1"
+
+
+def _may_be_numbers(line: str) -> bool:
+    return line.strip()[:1] in tuple('+-.,0123456789"') and not _COMMENT.match(line)
+
+
+def _form(lines: list[str]) -> tuple[str | None, str, int] | None:
+    """Delimiter, decimal sign and number of columns of lines of numbers; None if they are none. The last line may be cut."""
+    sure = [line for line in lines[: max(1, len(lines) - 1)] if line.strip()]
+    for delimiter in (";", "\t", ",", None):
+        if delimiter is not None and delimiter not in lines[0]:
+            continue
+        split = [_fields(line, delimiter) for line in sure]
+        filled = [field for fields in split for field in fields if field.lower() not in MISSING]
+        if len({len(fields) for fields in split}) != 1 or not filled or not all(NUMBER.fullmatch(field) for field in filled):
+            continue
+        commas = any("," in field for field in filled)
+        if not (commas and any("." in field for field in filled)):
+            trailing = delimiter is not None and all(not fields[-1] for fields in split)  # lines end with the delimiter
+            return delimiter, "," if commas else ".", len(split[0]) - trailing
+    return None
+
+
+def _fields(line: str, delimiter: str | None) -> list[str]:
+    if delimiter is None:
+        return line.split()
+    try:
+        return [field.strip() for field in next(csv.reader([line.strip("\r\n")], delimiter=delimiter, skipinitialspace=True), [])]
+    except csv.Error:  # carriage returns within the line, fields beyond measure
+        return [line]
+
+
+def _header(head: list[str], delimiter: str | None, columns: int, path: Path) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Names and units from the nearest line above the numbers that has as many fields; a line of units alone belongs to the one above."""
+    found = list(_candidates(head, delimiter, columns))
+    if not found:
+        counts = (
+            f"its {columns} columns have no header"
+            if not head
+            else f"none of the {len(head)} lines above its {columns} columns names them all"
+        )
+        raise refuse(str(path), counts, _EXAMPLE)
+    if len(found) > 1 and all(unit_problem(plain_unit(text)) is None or not plain_unit(text) for text in found[0]):
+        return numbered(_split(text)[0] for text in found[1]), tuple(plain_unit(text) for text in found[0])
+    pairs = [_split(text) for text in found[0]]
+    return numbered(name for name, _ in pairs), tuple(unit for _, unit in pairs)
+
+
+def _candidates(head: list[str], delimiter: str | None, columns: int) -> Iterator[list[str]]:
+    for line in reversed(head):
+        for each in dict.fromkeys((delimiter, ",", ";", "\t", None)):
+            fields = [found[0] for found in _WORD.finditer(line)] if each is None else _fields(line, each)
+            fields = fields[:-1] if len(fields) == columns + 1 and not fields[-1] else fields
+            if len(fields) == columns and any(re.search(r"[^\W\d]", field) for field in fields):
+                yield fields
+                break
+
+
+def _split(text: str) -> tuple[str, str]:
+    found = _WITH_UNIT.fullmatch(text.strip())
+    return (found["name"], plain_unit(found["unit"])) if found else (text.strip(), "")
+
+
+def _rate(head: Iterable[str]) -> float | None:
+    found = next((match for match in map(_RATE.search, head) if match), None)
+    if found is None:
+        return None
+    value = float(found[1].replace(",", ".")) * (1000.0 if (found[2] or "").lower() == "khz" else 1.0)
+    return value if 0.0 < value < float("inf") else None

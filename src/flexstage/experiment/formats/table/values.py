@@ -1,0 +1,117 @@
+"""Numbers of a CSV file, read in any range: an index of lines says where to begin."""
+
+from __future__ import annotations
+
+import io
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from flexstage.base.finding import refuse
+from flexstage.base.number import Array
+from flexstage.experiment.formats.table.layout import MISSING, NUMBER, Layout
+
+STRIDE = 4096
+_PIECE = 1 << 22
+_LISTED = 60
+
+
+@dataclass(frozen=True, eq=False)
+class Lines:
+    """Where a file's lines of numbers lie: offsets of every `STRIDE`th, their count, where the last ends."""
+
+    offsets: Array
+    count: int
+    end: int
+
+
+def indexed(path: Path, start: int) -> Lines:
+    r"""The lines of a file from a byte on; blank ones at its end do not count.
+
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     _ = (Path(folder) / "a.csv").write_text("1\n2\n3\n\n")
+    ...     found = indexed(Path(folder) / "a.csv", 0)
+    >>> found.count, found.end, found.offsets.tolist()
+    (3, 5, [0])
+    """
+    end = _end(path, start)
+    offsets, count, position = [start] if end > start else [], 0, start
+    with path.open("rb") as stream:
+        stream.seek(start)
+        while position < end and (piece := stream.read(min(_PIECE, end - position))):
+            breaks = np.flatnonzero(np.frombuffer(piece, np.uint8) == ord("\n"))
+            numbers = np.arange(count + 1, count + 1 + len(breaks))
+            offsets += (position + breaks[numbers % STRIDE == 0] + 1).tolist()
+            count, position = count + len(breaks), position + len(piece)
+    return Lines(np.array(offsets, dtype=np.int64), count + (end > start), end)
+
+
+def _end(path: Path, start: int) -> int:
+    """Where the last line that is not blank ends."""
+    with path.open("rb") as stream:
+        end = stream.seek(0, 2)
+        while end > start:
+            begin = max(start, end - STRIDE)
+            stream.seek(begin)
+            kept = len(stream.read(end - begin).rstrip())
+            if kept:
+                return begin + kept
+            end = begin
+    return start
+
+
+@dataclass(frozen=True, eq=False)
+class TableSamples:
+    """Columns of a CSV file as samples (n, columns); a missing field is not a number."""
+
+    path: Path
+    layout: Layout
+    lines: Lines
+    columns: tuple[int, ...]
+    length: int
+
+    def read(self, start: int, stop: int) -> Array:
+        """Samples `start` to `stop`, the latter excluded."""
+        stop = min(stop, self.length)
+        if stop <= start:
+            return np.zeros((0, len(self.columns)))
+        first = start // STRIDE
+        last = min(-(-stop // STRIDE), len(self.lines.offsets))
+        begin = int(self.lines.offsets[first])
+        end = int(self.lines.offsets[last]) if last < len(self.lines.offsets) else self.lines.end
+        with self.path.open("rb") as stream:
+            stream.seek(begin)
+            raw = stream.read(end - begin)
+        texts = raw.decode(self.layout.encoding, "replace").split("\n")[start - first * STRIDE : stop - first * STRIDE]
+        return self._numbers(texts, start)
+
+    def _numbers(self, texts: list[str], start: int) -> Array:
+        plain = [text.replace(",", ".") for text in texts] if self.layout.decimal == "," else texts
+        source = io.StringIO("\n".join(plain), newline="\n")
+        try:
+            found = np.loadtxt(source, comments=None, delimiter=self.layout.delimiter, usecols=self.columns, ndmin=2, quotechar='"')
+        except ValueError:
+            found = np.zeros((0, 0))
+        if found.shape == (len(texts), len(self.columns)) and all(map(self.layout.fits, texts)):
+            return found
+        return np.array([self._line(text, start + number) for number, text in enumerate(texts)]).reshape(-1, len(self.columns))
+
+    def _line(self, text: str, number: int) -> list[float]:
+        """One line, field by field; raises `DesignError` that names it where it cannot be read."""
+        fields, expected = self.layout.fields(text), len(self.layout.names)
+        where = f"{self.path}: line {self.layout.line + number}"
+        fields = fields[:-1] if len(fields) == expected + 1 and not fields[-1] else fields
+        if len(fields) != expected:
+            what = f'it has {len(fields)} of {expected} fields: "{text.strip()[:_LISTED]}"'
+            raise refuse(where, what, "Mend the line, or take it away")
+        return [self._field(fields[column], f"{where}, {self.layout.names[column]}") for column in self.columns]
+
+    def _field(self, text: str, where: str) -> float:
+        plain = text.replace(",", ".") if self.layout.decimal == "," else text
+        if NUMBER.fullmatch(plain) and "," not in plain:
+            return float(plain.lower().replace("d", "e"))
+        if plain.lower() in MISSING:
+            return float("nan")
+        raise refuse(where, f'"{text[:_LISTED]}" is not a number', 'Write "nan" where a sample is missing')

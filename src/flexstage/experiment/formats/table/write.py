@@ -1,0 +1,104 @@
+"""CSV files written: a record with its times, or responses as real and imaginary parts."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import os
+from collections.abc import Iterable
+from typing import IO
+
+import numpy as np
+
+from flexstage.base.finding import Finding, require
+from flexstage.base.number import Array
+from flexstage.base.store import atomic_write
+from flexstage.experiment.formats.table.read import SAYING
+from flexstage.experiment.formats.variables import TIMES, plain_name
+from flexstage.experiment.record import Channel, Record, Responses
+
+_BLOCK = 16_384
+
+
+def write_table(path: str | os.PathLike[str], what: Record | Responses) -> None:
+    """Write a CSV file: a header that names channels and units, under comments that say rate, roles and name.
+
+    Numbers are written with as many digits as bring them back to the bit. Raises `DesignError` for names that are no single line or mean
+    time, and where the file cannot be written.
+
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> from flexstage.experiment.record import in_memory
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     write_table(Path(folder) / "a.csv", in_memory([Channel("S1", "um")], 4.0, np.array([[0.1], [0.2]])))
+    ...     (Path(folder) / "a.csv").read_text().splitlines()[-3:]
+    ['time [s],S1 [um]', '0.0,0.1', '0.25,0.2']
+    """
+    channels = what.channels if isinstance(what, Record) else (*what.outputs, *what.inputs)
+    require(_unwritable(os.fspath(path), channels))
+    with atomic_write(path) as place, place.open("w", encoding="utf-8", newline="") as stream:
+        if isinstance(what, Record):
+            _write_record(stream, what)
+        else:
+            _write_responses(stream, what)
+
+
+def _unwritable(where: str, channels: Iterable[Channel]) -> Iterable[Finding]:
+    for channel in channels:
+        if not channel.name.isprintable() or channel.name != channel.name.strip() or TIMES.fullmatch(plain_name(channel.name)):
+            yield Finding(f"{where}: {channel.name}", "its name cannot head a column of a CSV file", "Rename the channel")
+
+
+def _write_record(stream: IO[str], record: Record) -> None:
+    stream.write(f"# flexstage record; rate {float(record.rate)!r} Hz; start {float(record.start)!r} s; samples {record.length}\n")
+    if record.name:
+        stream.write(f"# {SAYING['name']}{_one_line(record.name)}\n")
+    stream.write(f"# {SAYING['roles']}{', '.join(channel.role.value for channel in record.channels)}\n")
+    stream.write(_row(["time [s]", *(_heading(channel.name, channel.unit) for channel in record.channels)]))
+    for start in range(0, record.length, _BLOCK):
+        block = record.samples.read(start, min(start + _BLOCK, record.length))
+        times = record.start + np.arange(start, start + len(block)) / record.rate
+        _write_numbers(stream, np.column_stack([times, block]))
+
+
+def _write_responses(stream: IO[str], responses: Responses) -> None:
+    counts = f"outputs {len(responses.outputs)}; inputs {len(responses.inputs)}; averages {responses.averages or 0}"
+    stream.write(f"# flexstage responses; {counts}\n")
+    for kind, text in (("name", responses.name), ("window", responses.window)):
+        if text:
+            stream.write(f"# {SAYING[kind]}{_one_line(text)}\n")
+    for kind, channels in (("outputs", responses.outputs), ("inputs", responses.inputs)):
+        stream.write(f"# {SAYING[kind]}{json.dumps([[channel.name, channel.unit] for channel in channels], ensure_ascii=False)}\n")
+    parts = [np.real(responses.values), np.imag(responses.values), *([] if responses.coherence is None else [responses.coherence])]
+    endings = ("re", "im", "coherence")[: len(parts)]
+    pairs = [
+        (output, input_, unit)
+        for output, units in zip(responses.outputs, responses.units, strict=True)
+        for input_, unit in zip(responses.inputs, units, strict=True)
+    ]
+    headings = [
+        _heading(f"{output.name}/{input_.name} {ending}", unit if ending != "coherence" else "1")
+        for output, input_, unit in pairs
+        for ending in endings
+    ]
+    stream.write(_row(["frequency [Hz]", *headings]))
+    _write_numbers(stream, np.column_stack([responses.frequencies, np.stack(parts, axis=-1).reshape(len(responses.frequencies), -1)]))
+
+
+def _one_line(text: str) -> str:
+    return " ".join(text.split())
+
+
+def _heading(name: str, unit: str) -> str:
+    return f"{name} [{unit or '-'}]"
+
+
+def _row(fields: Iterable[str]) -> str:
+    text = io.StringIO()
+    csv.writer(text, lineterminator="\n").writerow(list(fields))
+    return text.getvalue()
+
+
+def _write_numbers(stream: IO[str], numbers: Array) -> None:
+    stream.writelines(",".join(map(repr, line)) + "\n" for line in numbers.tolist())

@@ -1,0 +1,309 @@
+"""Universal files read: time histories as one record, frequency response functions as responses."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections import Counter
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from flexstage.base.finding import DesignError, Finding, require
+from flexstage.base.number import Array
+from flexstage.experiment.clock import Clock, Told, longest_stretch, settled
+from flexstage.experiment.formats.uff.function import COHERENCE, KINDS
+from flexstage.experiment.formats.uff.scan import DataSet, scan
+from flexstage.experiment.formats.variables import SideBySide, complex_of
+from flexstage.experiment.options import Allow, Kind, Options, assigned, matches, numbered, wanted
+from flexstage.experiment.record import Channel, Record, Responses, Role, Samples
+
+_FLOAT = r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?"
+OWN = re.compile(rf"flexstage (?P<role>input|output|unknown); rate (?P<rate>{_FLOAT}) Hz; start (?P<start>{_FLOAT}) s")
+"""The fifth line of text of functions written here: what the head's few digits cannot hold; it counts if it rounds to those."""
+OWN_RESPONSE = re.compile(rf"flexstage response; first (?P<first>{_FLOAT}) Hz; step (?P<step>{_FLOAT}) Hz; averages (?P<averages>\d+)")
+COUNTED = re.compile(r"(?P<text>.*?)(?:; )?function (?P<number>\d+) of (?P<count>\d+)")
+"""The fourth line of text of functions written here: how many there are, which the format does not say."""
+_BLOCK = 262_144
+
+
+@dataclass(frozen=True, eq=False)
+class Column:
+    """One column of other samples."""
+
+    samples: Samples
+    number: int
+
+    @property
+    def length(self) -> int:
+        """Number of samples."""
+        return self.samples.length
+
+    def read(self, start: int, stop: int) -> Array:
+        """Samples `start` to `stop`, the latter excluded, (n, 1)."""
+        return self.samples.read(start, stop)[:, [self.number]]
+
+
+def read_uff(path: Path, options: Options) -> tuple[Record | None, Responses | None]:
+    """What a universal file holds: its time histories, its frequency responses, or both; `options.kind` keeps one of them from being read.
+
+    Raises `DesignError` with all that keeps it from being read: functions that break off (used as far as they go where `Allow.TRUNCATED`),
+    of different lengths or rates, of other kinds.
+    """
+    found, findings = scan(path)
+    truncated = [Finding(_where(path, each), each.problem, _ADVICE) for each in found if each.problem is not None]
+    require([*findings, *([*truncated, *_missing(path, found)] if Allow.TRUNCATED not in options.allow else ())])
+    histories = [each for each in found if each.function.is_time]
+    responses = [each for each in found if each.function.is_response]
+    if not histories and not responses:
+        raise DesignError([_nothing(path, found)])
+    record = _record(path, histories, options) if histories and options.kind is not Kind.RESPONSES else None
+    coherences = [each for each in found if each.function.kind == COHERENCE]
+    return record, _responses(path, responses, coherences, options) if responses and options.kind is not Kind.RECORD else None
+
+
+_ADVICE = 'Export the file anew, or allow "truncated" to use what there is'
+
+
+def _missing(path: Path, found: list[DataSet]) -> Iterable[Finding]:
+    """What files written here say of how many functions there were: one cut between two functions is like a whole one otherwise."""
+    told = [COUNTED.fullmatch(each.function.texts[3]) for each in found if each.function.texts[4].startswith("flexstage ")]
+    stated = max((int(each["count"]) for each in told if each), default=0)
+    if len(found) < stated:
+        yield Finding(str(path), f"it breaks off: {len(found)} of the {stated} functions that were written are there", _ADVICE)
+
+
+def _where(path: Path, found: DataSet) -> str:
+    return f"{path}: {_name(found)} (line {found.line})"
+
+
+def _nothing(path: Path, found: list[DataSet]) -> Finding:
+    if not found:
+        return Finding(str(path), "it has no function at nodal degrees of freedom (data set 58)", "Export time histories or responses")
+    counts = Counter(KINDS.get(each.function.kind, f"function of type {each.function.kind}") for each in found)
+    listed = ", ".join(f"{count} x {kind}" for kind, count in counts.items())
+    what = f"it holds neither time histories nor frequency response functions but {listed}"
+    return Finding(str(path), what, "Modes need the phase between channels: export the time histories, or frequency response functions")
+
+
+def _name(found: DataSet) -> str:
+    function = found.function
+    return function.texts[0] if function.texts[4].startswith("flexstage ") and function.texts[0] else function.output_name
+
+
+def _record(path: Path, histories: list[DataSet], options: Options) -> Record:
+    names = _history_names(histories)
+    pairs = zip(names, histories, strict=True)
+    whole = assigned((Channel(name, each.function.ordinate.unit, _role(each)) for name, each in pairs), options, str(path))
+    kept = set(wanted(names, options))
+    chosen = [(name, each) for name, each in zip(names, histories, strict=True) if name in kept]
+    clock = _common_clock(path, chosen, options)
+    samples = SideBySide(tuple(each.values if each.function.is_even else Column(each.values, 1) for _, each in chosen))
+    channels = tuple(channel for channel in whole if channel.name in kept)
+    record = Record(channels, clock.rate, samples, clock.start, name=_title(chosen[0][1]), source=str(path))
+    return longest_stretch(record, clock)
+
+
+def _history_names(histories: list[DataSet]) -> tuple[str, ...]:
+    """Names of the entities where those tell channels apart, else with nodes and directions."""
+    entities = [each.function.response[0] for each in histories]
+    if all(entities) and len(set(entities)) == len(entities) and not any(OWN.match(each.function.texts[4]) for each in histories):
+        return tuple(entities)
+    return numbered(_name(each) for each in histories)
+
+
+def _title(found: DataSet) -> str:
+    texts = found.function.texts
+    return texts[1] if OWN.match(texts[4]) else texts[0]
+
+
+def _role(found: DataSet) -> Role:
+    own = OWN.match(found.function.texts[4])
+    return Role(own["role"]) if own else found.function.role
+
+
+def _common_clock(path: Path, chosen: list[tuple[str, DataSet]], options: Options) -> Clock:
+    """The clock all channels share. Raises `DesignError` where lengths, rates or starts differ."""
+    require(_lengths(path, chosen) if Allow.TRUNCATED not in options.allow else ())
+    clocks = {name: _clock(path, name, each, options) for name, each in (chosen if not options.rate else chosen[:1])}
+    first = next(iter(clocks.values()))
+    require(_differing(path, clocks))
+    return replace(first, rate=options.rate or first.rate)
+
+
+def _lengths(path: Path, chosen: list[tuple[str, DataSet]]) -> Iterable[Finding]:
+    lengths = Counter(each.values.length for _, each in chosen)
+    usual = max(lengths, key=lambda length: (lengths[length], length))
+    advice = "Export all channels over the same time, or name those that are meant (only)"
+    for name, each in chosen:
+        if each.values.length != usual:
+            yield Finding(f"{path}: {name}", f"it has {each.values.length} samples, others have {usual}", advice)
+
+
+def _differing(path: Path, clocks: dict[str, Clock]) -> Iterable[Finding]:
+    known, first = next(iter(clocks.items()))
+    for name, clock in clocks.items():
+        if abs(clock.rate / first.rate - 1.0) > 1e-6 or abs(clock.start - first.start) * first.rate > 0.01:
+            what = f"it has {clock.rate:g} Hz from {clock.start:g} s, {known} {first.rate:g} Hz from {first.start:g} s"
+            yield Finding(f"{path}: {name}", what, "Name channels of one sampling (only)")
+
+
+def _clock(path: Path, name: str, found: DataSet, options: Options) -> Clock:
+    function = found.function
+    if function.is_even:
+        own = OWN.match(function.texts[4])
+        whole = ((0, found.values.length),)
+        if own and refines(own["start"], function.first) and refines(own["rate"], function.step, inverse=True):
+            return Clock(float(own["rate"]), float(own["start"]), whole)
+        return Clock(function.rate, function.first, whole)
+    if options.rate:
+        return Clock(options.rate, 0.0, ((0, found.values.length),))
+    values, length = found.values, found.values.length
+    blocks = (values.read(start, min(start + _BLOCK, length))[:, 0] for start in range(0, length, _BLOCK))
+    told = Told(allow_gaps=Allow.GAPS in options.allow)
+    return settled(blocks, lambda number: float(values.read(number, number + 1)[0, 0]), told, f"{path}: {name}")
+
+
+def refines(text: str, field: float, *, inverse: bool = False) -> bool:
+    """Whether a number in a text, or its inverse, is the one that a field of six digits was printed from.
+
+    >>> refines("2048.0", 4.88281e-04, inverse=True), refines("100.0", 0.02, inverse=True), refines("0", 0.02, inverse=True)
+    (True, False, False)
+    """
+    number = float(text)
+    if inverse:
+        number = 1.0 / number if number else math.inf
+    return float(f"{number:.5e}") == field
+
+
+def _responses(path: Path, found: list[DataSet], coherences: list[DataSet], options: Options) -> Responses:
+    table = _table(path, found, options)
+    outputs, inputs = _complete(path, table, options)
+    frequencies = _frequencies(path, list(table.values()))
+    values = np.stack([np.stack([_complex(table[output, input_]) for input_ in inputs], axis=-1) for output in outputs], axis=-2)
+    first = table[outputs[0], inputs[0]].function
+    own = OWN_RESPONSE.match(first.texts[4])
+    rows, columns = _sides(path, table, (outputs, inputs), options)
+    return Responses(
+        frequencies,
+        rows,
+        columns,
+        values,
+        _coherence(path, coherences, table, (outputs, inputs), options),
+        window=_text(first.texts[3]) if own else "",
+        averages=int(own["averages"]) or None if own else None,
+        name=first.texts[2] if own else first.texts[0],
+        source=str(path),
+    )
+
+
+def _text(line: str) -> str:
+    """A line of text without the count of functions."""
+    told = COUNTED.fullmatch(line)
+    return told["text"] if told else line
+
+
+def _complete(path: Path, table: dict[tuple[str, str], DataSet], options: Options) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Names of outputs and inputs between which every response is there."""
+    outputs, inputs = (tuple(dict.fromkeys(pair[side] for pair in table)) for side in (0, 1))
+    missing = {output: [input_ for input_ in inputs if (output, input_) not in table] for output in outputs}
+    if Allow.INCOMPLETE not in options.allow:
+        advice = 'Measure them, name channels that are complete (inputs, outputs), or allow "incomplete" to leave this output out'
+        require(
+            Finding(f"{path}: {output}", f"its responses to {', '.join(lack)} are missing", advice)
+            for output, lack in missing.items()
+            if lack
+        )
+    complete = tuple(output for output, lack in missing.items() if not lack)
+    if not complete:
+        raise DesignError([Finding(str(path), "no output has responses to all inputs", "Name the inputs that are meant (inputs)")])
+    return complete, inputs
+
+
+def _pair(found: DataSet) -> tuple[str, str]:
+    function = found.function
+    if OWN_RESPONSE.match(function.texts[4]):
+        return function.texts[0], function.texts[1]
+    return function.output_name, function.input_name
+
+
+def _table(path: Path, found: list[DataSet], options: Options) -> dict[tuple[str, str], DataSet]:
+    """Responses by names of output and input; those that the user names. Raises `DesignError` where two have the same names."""
+    table: dict[tuple[str, str], DataSet] = {}
+    findings: list[Finding] = []
+    for each in found:
+        output, input_ = pair = _pair(each)
+        if (options.outputs and not matches(output, options.outputs)) or (options.inputs and not matches(input_, options.inputs)):
+            continue
+        if pair in table:
+            what = f"the response of {output} to {input_} stands there already (line {table[pair].line})"
+            findings.append(Finding(f"{path}: line {each.line}", what, "Export each response once, with nodes and directions"))
+        table[pair] = each
+    if not table:
+        names = ", ".join(f"{output} to {input_}" for output, input_ in dict.fromkeys(map(_pair, found)))
+        findings.append(Finding(str(path), f"no response is between the channels asked for; there are those of {names}", "Check the names"))
+    require(findings)
+    return table
+
+
+def _sides(
+    path: Path, table: dict[tuple[str, str], DataSet], names: tuple[tuple[str, ...], tuple[str, ...]], options: Options
+) -> tuple[tuple[Channel, ...], tuple[Channel, ...]]:
+    """Outputs and inputs with units. Where only the ratio has one, it stays with the output and the input is without dimension."""
+    outputs, inputs = names
+    rows = [Channel(name, table[name, inputs[0]].function.ordinate.unit, Role.OUTPUT) for name in outputs]
+    below = [table[outputs[0], name].function.denominator.unit for name in inputs]
+    ratio = not any(below) and any("/" in row.unit for row in rows)
+    columns = [Channel(name, "1" if ratio else unit, Role.INPUT) for name, unit in zip(inputs, below, strict=True)]
+    whole = assigned((*rows, *columns), Options(units=options.units), str(path))
+    return whole[: len(rows)], whole[len(rows) :]
+
+
+def _complex(found: DataSet) -> Array:
+    columns = found.values.read(0, found.values.length)[:, -2 if found.function.is_complex else -1 :]
+    return complex_of(columns[:, 0], columns[:, 1]) if found.function.is_complex else columns[:, 0].astype(complex)
+
+
+def _frequencies(path: Path, found: list[DataSet]) -> Array:
+    """The frequencies all responses share."""
+    axes = [_axis(each) for each in found]
+    differ = [
+        each
+        for each, axis in zip(found, axes, strict=True)
+        if len(axis) != len(axes[0]) or not np.allclose(axis, axes[0], rtol=1e-6, atol=0.0)
+    ]
+    advice = "Export all responses over the same frequencies, or name those that are meant (inputs, outputs)"
+    require(Finding(_where(path, each), f"its frequencies differ from those of {_name(found[0])}", advice) for each in differ)
+    return axes[0]
+
+
+def _axis(found: DataSet) -> Array:
+    function, numbers = found.function, np.arange(found.values.length)
+    own = OWN_RESPONSE.match(function.texts[4])
+    if own and function.is_even and refines(own["first"], function.first) and refines(own["step"], function.step):
+        return float(own["first"]) + float(own["step"]) * numbers
+    if function.is_even:
+        return function.first + numbers / function.rate
+    return found.values.read(0, found.values.length)[:, 0]
+
+
+def _coherence(
+    path: Path,
+    found: list[DataSet],
+    table: dict[tuple[str, str], DataSet],
+    names: tuple[tuple[str, ...], tuple[str, ...]],
+    options: Options,
+) -> Array | None:
+    """The coherence of every response; `None` where not all have theirs. Raises `DesignError` where only the last lacks it."""
+    outputs, inputs = names
+    size = table[outputs[0], inputs[0]].values.length
+    stored = {_pair(each): each for each in found if each.values.length == size}
+    lack = [(output, input_) for output in outputs for input_ in inputs if (output, input_) not in stored]
+    if lack and lack == list(table)[-1:] and len(table) > 1 and Allow.INCOMPLETE not in options.allow:
+        what = f"all responses have their coherence but the last, of {lack[0][0]} to {lack[0][1]}: the file may break off there"
+        raise DesignError([Finding(str(path), what, 'Export the file anew, or allow "incomplete" to do without coherence')])
+    if lack:
+        return None
+    return np.stack([np.stack([np.real(_complex(stored[output, input_])) for input_ in inputs], axis=-1) for output in outputs], axis=-2)

@@ -1,0 +1,212 @@
+"""The functions of a universal file and where their values lie, found without reading the values."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import pairwise
+from pathlib import Path
+from typing import BinaryIO
+
+import numpy as np
+
+from flexstage.base.finding import Finding
+from flexstage.base.number import Array
+from flexstage.experiment.formats.uff.function import HEAD_LINES, Function, parsed
+from flexstage.experiment.formats.uff.values import BinaryValues, Layout, PrintedValues
+from flexstage.experiment.record import InMemory, Samples
+
+_END = re.compile(rb"[ ]*\r?\n?[ ]{4}-1[ ]*(\r?\n|$)")
+_SLACK = 96
+
+
+@dataclass(frozen=True, eq=False)
+class DataSet:
+    """One function of a file: its head, its values as samples of one to three columns, the number of its line, what of it is missing."""
+
+    function: Function
+    values: Samples
+    line: int
+    problem: str | None = None
+
+
+def scan(path: Path) -> tuple[list[DataSet], list[Finding]]:
+    r"""The functions of a file in order, and findings about those that cannot be read; other data sets are passed over.
+
+    Values of fixed columns are left in the file; others are read at once. A function that breaks off keeps what there is of it, and says
+    how much is missing.
+
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = Path(folder) / "empty.uff"
+    ...     _ = path.write_text("    -1\n   151\nmodel\n    -1\n")
+    ...     scan(path)
+    ([], [])
+    """
+    found: list[DataSet] = []
+    findings: list[Finding] = []
+    with path.open("rb") as stream:
+        for line, start in _starts(stream):
+            try:
+                found.append(_read(path, stream, line, start))
+            except ValueError as error:
+                where = f"{path}: function {len(found) + len(findings) + 1} (line {line})"
+                findings.append(Finding(where, str(error), "Export the file anew"))
+                _skip(stream)
+    return found, findings
+
+
+def decoded(raw: bytes) -> str:
+    r"""Text of a head: UTF-8, else Latin-1, which instruments write.
+
+    >>> decoded("m/s²".encode()), decoded(b"m/s\xb2")
+    ('m/s²', 'm/s²')
+    """
+    try:
+        return raw.decode("utf-8")
+    except UnicodeDecodeError:
+        return raw.decode("latin-1")
+
+
+def _starts(stream: BinaryIO) -> Iterator[tuple[int, bytes]]:
+    """Number of the line of every function's first record and the line that opens it; the stream stands behind it."""
+    line = 0
+    while raw := stream.readline():
+        line += 1
+        if raw.strip() != b"-1":
+            continue
+        opening = stream.readline()
+        line += 1
+        if opening[:6].strip() == b"58":
+            yield line, opening
+        elif opening.strip() == b"-1":
+            stream.seek(-len(opening), 1)
+        else:
+            _skip(stream)
+
+
+def _skip(stream: BinaryIO) -> None:
+    while raw := stream.readline():
+        if raw.strip() == b"-1":
+            return
+
+
+def _read(path: Path, stream: BinaryIO, line: int, opening: bytes) -> DataSet:
+    begin = stream.tell()
+    lines = [stream.readline() for _ in range(HEAD_LINES)]
+    if not all(raw.endswith(b"\n") for raw in lines):
+        raise ValueError("the file ends within its head")
+    try:
+        function = parsed([decoded(raw).rstrip("\r\n") for raw in lines])
+    except ValueError:
+        stream.seek(begin)
+        raise
+    if opening[6:7].lower() == b"b":
+        return _binary(path, stream, line, (function, opening))
+    return _printed(path, stream, line, function)
+
+
+def _binary(path: Path, stream: BinaryIO, line: int, head: tuple[Function, bytes]) -> DataSet:
+    function, opening = head
+    words = opening[7:].split()
+    if len(words) < 2:
+        raise ValueError("the line that opens its values is cut short")
+    order, form = (int(word) for word in words[:2])
+    if form != 2:
+        raise ValueError(f"its numbers are of form {form} (1: VAX, 3: IBM), only 2, IEEE, is read")
+    start = stream.tell()
+    layouts = [
+        Layout.of(function, short_axis=short) for short in ((False, True) if not function.is_even and function.is_double else (False,))
+    ]
+    layout = next((each for each in layouts if _closes(stream, start + each.size * function.count)), None)
+    if layout is not None:
+        stream.seek(start + layout.size * function.count)
+        _skip(stream)
+        return DataSet(function, BinaryValues(path, start, function.count, layout, big=order == 2), line)
+    return _broken_off(path, stream, line, function, (start, layouts[0], order == 2))
+
+
+def _closes(stream: BinaryIO, position: int) -> bool:
+    """Whether the mark that ends a data set stands there, or the file ends exactly there."""
+    stream.seek(0, 2)
+    if position > stream.tell():
+        return False
+    stream.seek(position)
+    rest = stream.read(_SLACK)
+    return not rest.strip() or _END.match(rest) is not None
+
+
+def _broken_off(path: Path, stream: BinaryIO, line: int, function: Function, data: tuple[int, Layout, bool]) -> DataSet:
+    """A function whose end is not where its head says: what there is of it."""
+    start, layout, big = data
+    end = _next_mark(stream, start)
+    count = max(0, min(function.count, (end - start) // layout.size))
+    stream.seek(end)
+    needed = f"{function.count * layout.size} bytes for {function.count} values"
+    problem = f"{end - start} bytes of values where its head announces {needed}"
+    if count == function.count:
+        raise ValueError(f"it has {problem}; the file was changed as text")
+    _skip(stream)
+    return DataSet(function, BinaryValues(path, start, count, layout, big=big), line, f"it breaks off: it has {problem}")
+
+
+def _next_mark(stream: BinaryIO, start: int) -> int:
+    """Where the next mark stands behind a position; the file's end if there is none."""
+    stream.seek(start)
+    position, tail = start, b""
+    while block := stream.read(1 << 20):
+        found = re.search(rb"[ ]{4}-1[ ]*\r?\n|[ ]{4}-1$", tail + block)
+        if found:
+            return position - len(tail) + found.start()
+        position += len(block)
+        tail = (tail + block)[-_SLACK:]
+    return position
+
+
+def _printed(path: Path, stream: BinaryIO, line: int, function: Function) -> DataSet:
+    start, layout = stream.tell(), Layout.of(function)
+    first = stream.readline()
+    length = max(len(first), sum(layout.widths) + 1)  # the only line may be short
+    values = PrintedValues(path, start, function.count, layout, length)
+    if first and values.fits(first) and _closes(stream, values.end):
+        stream.seek(values.end)
+        _skip(stream)
+        return DataSet(function, values, line)
+    stream.seek(start)
+    numbers, problem = _words(stream, layout, function)
+    return DataSet(function, InMemory(numbers), line, problem)
+
+
+def _words(stream: BinaryIO, layout: Layout, function: Function) -> tuple[Array, str | None]:
+    """Values of any spacing, up to the mark; the last incomplete ones are left out."""
+    chunks: list[Array] = []
+    while (raw := stream.readline()) and raw.strip() != b"-1":
+        chunks.append(_numbers(raw if raw.endswith(b"\n") else _without_last(raw), layout))
+    numbers = np.concatenate(chunks) if chunks else np.zeros(0)
+    count = min(function.count, len(numbers) // layout.columns)
+    if np.any(numbers[function.count * layout.columns :]):  # zeros may fill the last line
+        raise ValueError(f"it has {len(numbers) // layout.columns} values where its head announces {function.count}")
+    problem = f"it breaks off: it has {count} values where its head announces {function.count}" if count < function.count else None
+    return numbers[: count * layout.columns].reshape(count, layout.columns), problem
+
+
+def _without_last(raw: bytes) -> bytes:
+    """A line without its last word: the file breaks off there, perhaps within a number."""
+    return re.sub(rb"\S+\s*$", b"", raw)
+
+
+def _numbers(raw: bytes, layout: Layout) -> Array:
+    """The numbers of a line: its words, or its columns where words touch."""
+    text = raw.decode("latin-1").rstrip()
+    words = text.split()
+    if any(re.search(r"\d[-+]\d", word) for word in words):
+        words = [text[begin:end].strip() for begin, end in pairwise(np.cumsum([0, *layout.widths])) if text[begin:end].strip()]
+    return np.array([_number(word) for word in words])
+
+
+def _number(word: str) -> float:
+    try:
+        return float(word.lower().replace("d", "e"))
+    except ValueError:
+        raise ValueError(f'a value cannot be read: "{word[:40]}"') from None

@@ -1,0 +1,1 @@
+"""Modes from records, found without a hand."""

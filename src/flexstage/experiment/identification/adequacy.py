@@ -1,0 +1,142 @@
+"""Whether the evidence suffices: its lines beside the width of resonances, what was searched beside what was asked."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.base.finding import Finding
+from flexstage.base.number import Array
+from flexstage.experiment.identification.evidence import Evidence
+
+_BEYOND_CHANCE = 1.5
+_FEWEST = 8
+
+
+@dataclass(frozen=True)
+class Reach:
+    """What was searched for modes, from `low` to `high` in Hz (nought where nothing could be), and what the user `asked` for."""
+
+    low: float
+    high: float
+    asked: tuple[float, float] | None = None
+
+
+def width(pole: complex) -> float:
+    """Half-power bandwidth 2 zeta f of a resonance, in Hz, from its pole in Hz.
+
+    >>> width(-1.0 + 100.0j)
+    2.0
+    """
+    return -2.0 * pole.real
+
+
+def line_distance(known: Evidence) -> float:
+    """Distance in Hz of the lines that candidates are taken from.
+
+    >>> from flexstage.experiment.identification.evidence import evidence
+    >>> from flexstage.experiment.example import one_mode_record
+    >>> round(line_distance(evidence(one_mode_record(), None)), 3)
+    0.374
+    """
+    return float(known.responses.frequencies[1] - known.responses.frequencies[0])
+
+
+def few_lines(known: Evidence, band: tuple[float, float], count: int) -> list[Finding]:
+    """A finding where a band has fewer than eight lines: no polynomial of order 2 can be fitted to them, not even with one input.
+
+    >>> from flexstage.experiment.identification.evidence import evidence
+    >>> from flexstage.experiment.example import one_mode_record
+    >>> print(few_lines(evidence(one_mode_record(), None), (10.0, 10.5), 1)[0])
+    record: from 10 to 10.5 Hz there is 1 of the lines 0.374 Hz apart; it takes 8. Ask for a wider band, or record longer.
+    """
+    if count >= _FEWEST:
+        return []
+    are = "is 1" if count == 1 else f"are {count}"
+    what = f"from {band[0]:.4g} to {band[1]:.4g} Hz there {are} of the lines {line_distance(known):.3g} Hz apart; it takes {_FEWEST}"
+    return [Finding(known.where, what, "Ask for a wider band, or record longer")]
+
+
+def too_coarse(known: Evidence, poles: Array) -> str | None:
+    """A caution where lines lie further apart than the narrowest of the modes found, at `poles` in Hz, is wide.
+
+    Candidates are poles of responses at those lines: what lies within one line of another mode may pass for it. With lines as close as the
+    half-power bandwidth B = 2 zeta f a record of n averages lasts about n / B.
+
+    >>> from flexstage.experiment.identification.evidence import evidence
+    >>> from flexstage.experiment.example import one_mode_record
+    >>> short, long = (evidence(one_mode_record(seconds=seconds), None) for seconds in (16.0, 64.0))
+    >>> too_coarse(short, np.array([-0.2 + 10.0j]))[:88]
+    'lines are 1.49 Hz apart, the mode at 10 Hz is 0.4 Hz wide: further modes next to those f'
+    >>> too_coarse(long, np.array([-0.2 + 10.0j])) is None
+    True
+    """
+    widths = [width(pole) for pole in poles]
+    apart = line_distance(known)
+    if not widths or apart <= min(widths):
+        return None
+    narrowest = int(np.argmin(widths))
+    return (
+        f"lines are {apart:.3g} Hz apart, the mode at {abs(poles[narrowest]):.4g} Hz is {widths[narrowest]:.3g} Hz wide: further modes "
+        f"next to those found may be missing. {_longer(known, widths[narrowest])}"
+    )
+
+
+def not_searched(known: Evidence, reach: Reach) -> str | None:
+    """A caution where a part of the band that the user asked for could not be searched.
+
+    >>> from flexstage.experiment.identification.evidence import evidence
+    >>> from flexstage.experiment.example import one_mode_record
+    >>> not_searched(evidence(one_mode_record(), None), Reach(2.0, 26.88, (0.5, 20.0)))
+    'modes from 0.5 to 20 Hz are asked for; from 2 to 20 Hz they could be looked for. Record longer.'
+    """
+    if reach.asked is None or (reach.low <= 1.001 * reach.asked[0] and reach.high >= 0.999 * reach.asked[1]):
+        return None
+    low, high = max(reach.low, reach.asked[0]), min(reach.high, reach.asked[1])
+    could = f"from {low:.4g} to {high:.4g} Hz they could be looked for" if low < high else "nowhere could they be looked for"
+    needed = [word for word, missing in (("longer", reach.low > reach.asked[0]), ("faster", known.band[1] < reach.asked[1])) if missing]
+    return f"modes from {reach.asked[0]:g} to {reach.asked[1]:g} Hz are asked for; {could}. Record {' and '.join(needed) or 'longer'}."
+
+
+def nothing_found(known: Evidence, reach: Reach) -> str:
+    """What it means that no mode was found: noise alone, no resonance, or too short a record to tell.
+
+    >>> from flexstage.experiment.identification.evidence import evidence
+    >>> from flexstage.experiment.example import one_mode_record
+    >>> nothing_found(evidence(one_mode_record(), None), Reach(1.0, 26.0))[:54]
+    'no mode can be told, though inputs explain 85.5% of th'
+    """
+    middle = float(np.sqrt(reach.low * reach.high))
+    apart = line_distance(known)
+    seen = (
+        f"What is narrower than the {apart:.3g} Hz between lines may be there all the same: at {middle:.3g} Hz what is damped below "
+        f"{apart / (2.0 * middle):.2g}. {_longer(known, None)}"
+        if middle > 0.0
+        else f"There are too few lines to look for any. {_longer(known, None)}"
+    )
+    if known.coherence is None:
+        return f"no mode stands out of the noise. {seen}"
+    inside = (known.responses.frequencies >= known.band[0]) & (known.responses.frequencies <= known.band[1])
+    mean = float(np.mean(known.coherence[inside]))
+    chance = known.responses.values.shape[2] / max(known.averages, 1.0)
+    told = f"inputs explain {mean:.1%} of the outputs' power on the mean"
+    if mean > _BEYOND_CHANCE * chance:
+        return f"no mode can be told, though {told} ({chance:.1%} would be chance). {seen}"
+    return f"no mode stands out of the noise: {told}, and would explain {chance:.1%} of noise that has nothing to do with them. {seen}"
+
+
+def _longer(known: Evidence, wanted: float | None) -> str:
+    """Advice: how long a record of the same averages gives lines `wanted` Hz apart."""
+    if known.coherence is None:
+        return "Measure with finer lines." if wanted is None else f"Measure with lines {wanted:.2g} Hz apart."
+    lasts = 1.0 / known.resolution
+    if wanted is None:
+        return f"It lasts {lasts:.3g} s: record longer."
+    return f"The record lasts {lasts:.3g} s: it takes {_up(lasts * line_distance(known) / wanted):.3g} s at least."
+
+
+def _up(value: float) -> float:
+    """Rounded up to two digits."""
+    unit = 10.0 ** (np.floor(np.log10(value)) - 1.0)
+    return float(np.ceil(value / unit) * unit)

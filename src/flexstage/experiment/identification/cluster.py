@@ -1,0 +1,156 @@
+"""Stabilisation: which poles recur as the order rises, and the candidates for modes that follow without a hand."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.base.number import Array
+from flexstage.experiment.identification.lscf import Poles
+
+_NEAR = 0.02
+_ALIKE = 0.5
+_COINCIDENT = 0.3
+_SHARE = 0.4
+_STABLE_FREQUENCY, _STABLE_DAMPING, _STABLE_PARTICIPATION = 0.002, 0.05, 0.98
+
+
+@dataclass(frozen=True, eq=False)
+class Candidate:
+    """A pole that recurs: its value in Hz (rad/s over 2 pi), its participation (m,) and in how many orders it was found."""
+
+    pole: complex
+    participation: Array
+    orders: int
+
+
+@dataclass(frozen=True, eq=False)
+class Stabilisation:
+    """The stabilisation diagram: of every pole its order, frequency in Hz, damping ratio and how far it agrees with the order below.
+
+    `stable` counts: 0 a new pole, 1 its frequency is stable (0.2 %), 2 its damping too (5 %), 3 its participation too (MAC of 0.98).
+    """
+
+    orders: Array
+    frequencies: Array
+    damping: Array
+    stable: Array
+
+
+@dataclass
+class _Track:
+    poles: list[complex]
+    participations: list[Array]
+    orders: list[int]
+    stable: list[int]
+
+
+def stabilisation(found: tuple[Poles, ...], highest_damping: float) -> tuple[Stabilisation, tuple[Candidate, ...]]:
+    """The diagram of poles of rising order, and the candidates: poles that recur in two fifths of the orders or more.
+
+    A pole continues the nearest track of the orders below, nearest by distance in the complex plane and by participation; each track takes
+    one pole an order, so that close pairs remain two tracks. The participations of a repeated pair are any two of their plane, others in
+    every order: candidates are taken from one order as far as they are all in it.
+
+    >>> one = [Poles(order, np.array([-0.1 + 10j]), np.ones((1, 1))) for order in range(1, 6)]
+    >>> diagram, candidates = stabilisation(tuple(one), 0.1)
+    >>> diagram.stable.tolist(), candidates[0].orders
+    ([0, 3, 3, 3, 3], 5)
+    """
+    tracks: list[_Track] = []
+    for poles in found:
+        values = poles.values / (2.0 * np.pi)
+        chosen = np.flatnonzero(poles.damping < highest_damping)
+        _continued(tracks, values[chosen], poles.participation[chosen], poles.order)
+    rows = [row for track in tracks for row in zip(track.orders, track.poles, track.stable, strict=True)]
+    rows.sort(key=lambda row: (row[0], row[1].imag))
+    values = np.array([row[1] for row in rows], dtype=complex)
+    diagram = Stabilisation(
+        orders=np.array([row[0] for row in rows], dtype=int),
+        frequencies=np.abs(values),
+        damping=-np.real(values) / np.maximum(np.abs(values), 1e-300),
+        stable=np.array([row[2] for row in rows], dtype=int),
+    )
+    needed = max(2, round(_SHARE * len(found)))
+    lasting = [track for track in tracks if len(track.orders) >= needed]
+    common = max((poles.order for poles in found), key=lambda order: (sum(order in track.orders for track in lasting), order))
+    return diagram, tuple(_candidate(track, common) for track in lasting)
+
+
+def merged(sweeps: Iterable[tuple[Candidate, ...]]) -> tuple[Candidate, ...]:
+    """Candidates of overlapping bands without doubles, by rising frequency; of doubles the one found in more orders stays.
+
+    Candidates of one band are never doubles of one another: a pole of each order belongs to one of them only.
+
+    >>> twice = [(Candidate(-1 + 100j, np.array([1.0]), 3),), (Candidate(-1.1 + 100.1j, np.array([1.0]), 5),)]
+    >>> [candidate.orders for candidate in merged(twice)]
+    [5]
+    """
+    kept: list[tuple[int, Candidate]] = []
+    numbered = [(number, candidate) for number, sweep in enumerate(sweeps) for candidate in sweep]
+    for number, candidate in sorted(numbered, key=lambda each: -each[1].orders):
+        if not any(sweep != number and _double(candidate, other) for sweep, other in kept):
+            kept.append((number, candidate))
+    return tuple(sorted((candidate for _, candidate in kept), key=lambda each: each.pole.imag))
+
+
+def alike(first: Array, second: Array) -> float:
+    """|a^H b|^2 / (a^H a b^H b) of two complex vectors.
+
+    >>> alike(np.array([1.0, 1.0j]), np.array([2.0, 2.0j]))
+    1.0
+    """
+    own = float(np.vdot(first, first).real * np.vdot(second, second).real)
+    return float(abs(np.vdot(first, second)) ** 2 / own) if own > 0.0 else 0.0
+
+
+def _double(first: Candidate, second: Candidate) -> bool:
+    width = max(-first.pole.real, -second.pole.real)
+    return abs(first.pole - second.pole) < width and alike(first.participation, second.participation) > 0.8
+
+
+def _continued(tracks: list[_Track], values: Array, participations: Array, order: int) -> None:
+    pairs: list[tuple[float, int, int]] = []
+    for number, track in enumerate(tracks):
+        for index, value in enumerate(values):
+            away = abs(value - track.poles[-1]) / abs(value)
+            similar = alike(participations[index], track.participations[-1])
+            coincident = abs(value - track.poles[-1]) < -_COINCIDENT * value.real
+            if away < _NEAR and (similar > _ALIKE or coincident):
+                pairs.append((away / _NEAR + 1.0 - similar, number, index))
+    taken: set[int] = set()
+    grown: set[int] = set()
+    for _, number, index in sorted(pairs):
+        if index in taken or number in grown:
+            continue
+        _grow(tracks[number], values[index], participations[index], order)
+        taken.add(index)
+        grown.add(number)
+    tracks += [_Track([value], [participations[index]], [order], [0]) for index, value in enumerate(values) if index not in taken]
+
+
+def _grow(track: _Track, value: complex, participation: Array, order: int) -> None:
+    before = track.poles[-1]
+    checks = (
+        abs(abs(value) / abs(before) - 1.0) < _STABLE_FREQUENCY,
+        abs(value.real / before.real - 1.0) < _STABLE_DAMPING,
+        alike(participation, track.participations[-1]) > _STABLE_PARTICIPATION,
+    )
+    track.stable.append(next((level for level, good in enumerate(checks) if not good), 3))
+    track.poles.append(complex(value))
+    track.participations.append(participation)
+    track.orders.append(order)
+
+
+def _candidate(track: _Track, common: int) -> Candidate:
+    """The member of the common order; without one, that nearest to the median of the upper half of the orders."""
+    if common in track.orders:
+        index = track.orders.index(common)
+    else:
+        first = len(track.poles) // 2
+        values = np.array(track.poles[first:])
+        middle = np.median(np.real(values)) + 1j * np.median(np.imag(values))
+        index = first + int(np.argmin(np.abs(values - middle)))
+    return Candidate(track.poles[index], track.participations[index], len(track.orders))

@@ -1,0 +1,217 @@
+"""What the data say of an estimate: standard deviations from Fisher's information, and whether a mode is there at all."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.base.number import Array
+from flexstage.experiment.identification.likelihood import Band, Fit, Modal, fit, residual_power
+
+NORMAL_95 = 1.959964
+"""Half the width of a 95 % interval, in standard deviations."""
+_DOUBTFUL = 50.0
+_LINES = 3
+_NEAR, _NEAREST, _BY_CHANCE = (1.5, 4.0), 2.0, 1e-3
+"""Near a mode: within so many half-widths, at least so many lines for each that its parameters take; how often chance may pass."""
+SAME = 0.1
+"""Share of the power by which inputs must differ from transients to be told from them."""
+
+
+@dataclass(frozen=True, eq=False)
+class Deviations:
+    """Standard deviations of modes: `frequencies` (k,) in Hz, `damping` (k,) of the ratios.
+
+    `shapes` (p, k) are those of each part, real and imaginary, of shapes whose largest component is 1.
+    """
+
+    frequencies: Array
+    damping: Array
+    shapes: Array
+
+    def widened(self, factors: Array) -> Deviations:
+        """All deviations of each mode times its factor.
+
+        >>> Deviations(np.ones(1), np.ones(1), np.ones((2, 1))).widened(np.array([3.0])).shapes.tolist()
+        [[3.0], [3.0]]
+        """
+        return Deviations(self.frequencies * factors, self.damping * factors, self.shapes * factors)
+
+
+def misfits(band: Band, modal: Modal) -> Array:
+    """How many times larger (k,) than the noise of the band is what the fit leaves near each mode; 1 where chance would leave as much.
+
+    Noise alone leaves as much near a mode as elsewhere, less what the mode's own parameters take. More than once in 1000 by chance is
+    systematic: a mode that is none of linear, viscous and alone. Looked at is what lies within 1.5 half-widths, where a mode that wanders,
+    or that other forces shake, leaves most, and what lies within 4.
+
+    >>> from flexstage.experiment.example import one_mode_band
+    >>> from flexstage.experiment.identification.likelihood import fit, noise
+    >>> from dataclasses import replace
+    >>> band, start = one_mode_band()
+    >>> found = fit(band, start).modal
+    >>> misfits(replace(band, variance=noise(band, found)), found).tolist()
+    [1.0]
+    """
+    from scipy.stats import gamma
+
+    cells = band.cells
+    left = np.real(np.einsum("ooc->oc", residual_power(band, modal))) / band.variance
+    outputs, taken = len(left), 1.0 + (1.0 + cells.width) / len(left)
+    result = np.ones(len(modal.poles))
+    for mode, pole in enumerate(modal.poles):
+        away = np.abs(cells.middle - pole.imag)
+        order = np.argsort(away)
+        lines = np.cumsum(cells.count[order])
+        share = np.abs(modal.shapes[:, mode]) ** 2 / np.mean(band.variance, axis=1)
+        share = share / np.sum(share)
+        for reach in _NEAR:
+            wide = int(np.searchsorted(away[order], reach * -pole.real, side="right"))
+            number = min(len(order), max(wide, 1 + int(np.searchsorted(lines, _NEAREST * taken))))
+            free = max(lines[number - 1] - taken, 1.0)
+            ratio = float(share @ np.sum(left[:, order[:number]], axis=1)) / free
+            freedom = free / float(np.sum(share**2)) if outputs > 1 else free
+            if ratio > float(gamma.isf(_BY_CHANCE / len(_NEAR), freedom)) / freedom:
+                result[mode] = max(result[mode], np.sqrt(ratio))
+    return result
+
+
+def deviations(found: Fit, inflation: float = 1.0, scatter: Array | None = None) -> Deviations:
+    """Standard deviations of a fit by the Cramer-Rao bound, the inverse of Fisher's information; variances times `inflation`.
+
+    With the gradient's covariance `scatter`, S, they are those of I^-1 S I^-1: right for noise correlated between outputs too (White 1982).
+
+    Parameters are complex and analytic: the covariance of real and of imaginary parts is half the inverse. The scale shared between a shape
+    and its participation is not determined and is taken out by holding the largest participation.
+
+    >>> from flexstage.experiment.example import one_mode_band
+    >>> from flexstage.experiment.identification.likelihood import fit
+    >>> spread = deviations(fit(*one_mode_band()))
+    >>> bool(spread.frequencies[0] < 0.005), bool(spread.damping[0] < 0.0005)
+    (True, True)
+    """
+    covariance = inflation * _covariance(found, scatter)
+    modal = found.modal
+    count, outputs = len(modal.poles), len(modal.shapes)
+    size = np.abs(modal.poles)
+    ratio = -np.real(modal.poles) / size
+    variance = 0.5 * np.maximum(np.real(np.diagonal(covariance)[:count]), 0.0)
+    first = count + count * modal.participation.shape[1]
+    shapes = np.empty((outputs, count))
+    for mode in range(count):
+        places = first + np.arange(outputs) * count + mode
+        shapes[:, mode] = _shape_deviation(modal.shapes[:, mode], covariance[np.ix_(places, places)])
+    return Deviations(np.sqrt(variance), np.sqrt(variance * (1.0 - ratio**2)) / size, shapes)
+
+
+def significance(band: Band, found: Fit, limit: float) -> Array:
+    """How strongly (k,) the data ask for each mode, as chi-square with `freedoms` degrees where that mode is not in the stage.
+
+    Wald's statistic, 2 phi^H C^-1 phi of the mode's shape; where it is below fifty times `limit`, twice the fall of the log-likelihood when
+    the mode is left out and the others are fitted anew (Wilks 1938).
+
+    >>> from flexstage.experiment.example import one_mode_band
+    >>> band, start = one_mode_band()
+    >>> bool(significance(band, fit(band, start), 50.0)[0] > 1000.0)
+    True
+    """
+    covariance = _covariance(found)
+    modal = found.modal
+    count, outputs = len(modal.poles), len(modal.shapes)
+    first = count + count * modal.participation.shape[1]
+    strength = np.empty(count)
+    for mode in range(count):
+        places = first + np.arange(outputs) * count + mode
+        strength[mode] = _wald(modal.shapes[:, mode], covariance[np.ix_(places, places)])
+        if strength[mode] < _DOUBTFUL * limit:
+            strength[mode] = 2.0 * (fit(band, modal.without(mode), found.cost + _DOUBTFUL * limit).cost - found.cost)
+    return strength
+
+
+def drive_strength(band: Band, found: Fit, once_in: float) -> Array:
+    """How strongly (k,) the data ask for each mode to be driven at all, over what noise would reach once in `once_in`.
+
+    Wald's statistic of its participation in the inputs, held the largest component of its shape, and the transients' participation; where
+    the inputs are near the mode what transients are, a blow at a record's begin, the transients count as inputs. Modes that only together
+    explain anything fall through: each is free to take the other's part.
+
+    >>> from flexstage.experiment.example import one_mode_band
+    >>> from flexstage.experiment.identification.likelihood import fit
+    >>> band, start = one_mode_band()
+    >>> bool(drive_strength(band, fit(band, start), 1e-9)[0] > 100.0)
+    True
+    """
+    from scipy.stats import chi2
+
+    modal = found.modal
+    count, total = modal.participation.shape
+    inputs = total if band.inputs is None else band.inputs
+    largest = count * (1 + total) + np.argmax(np.abs(modal.shapes), axis=0) * count + np.arange(count)
+    strength = np.empty(count)
+    driving = [total if _blow(band, pole, inputs) else inputs for pole in modal.poles]
+    for mode in range(count):
+        transients = (count + np.arange(count)[:, None] * total + np.arange(driving[mode], total)).ravel()
+        covariance = _inverse(found.information, np.append(largest, transients))
+        places = count + mode * total + np.arange(driving[mode])
+        wald = _wald(modal.participation[mode, : driving[mode]], covariance[np.ix_(places, places)])
+        strength[mode] = wald / float(chi2.isf(once_in, 2 * driving[mode]))
+    return strength
+
+
+def _blow(band: Band, pole: complex, inputs: int) -> bool:
+    """Whether the inputs near a pole are the same as transients, to a tenth of their power."""
+    cells = band.cells
+    if inputs == cells.width:
+        return False
+    order = np.argsort(np.abs(cells.middle - pole.imag))
+    near = order[: 1 + int(np.searchsorted(np.cumsum(cells.count[order]), _LINES * cells.width))]
+    gram = np.zeros((cells.width, cells.width), dtype=complex)
+    for cell in near:
+        columns = list(cells.columns[cells.block[cell]])
+        gram[np.ix_(columns, columns)] += cells.own[cell, 0, :, 0, :]
+    mixed = gram[:inputs, inputs:]
+    alike = np.conj(mixed.T) @ np.linalg.pinv(gram[:inputs, :inputs], rcond=1e-10, hermitian=True) @ mixed
+    return bool(np.real(np.trace(alike)) > (1.0 - SAME) * np.real(np.trace(gram[inputs:, inputs:])))
+
+
+def freedoms(modal: Modal) -> int:
+    """Real parameters a mode adds: pole, shape and participation but for a common factor.
+
+    >>> freedoms(Modal(np.zeros(1), np.zeros((1, 6)), np.zeros((6, 1))))
+    24
+    """
+    return 2 * (len(modal.shapes) + modal.participation.shape[1])
+
+
+def _covariance(found: Fit, scatter: Array | None = None) -> Array:
+    """Inverse of the information with each mode's largest participation held; rows and columns held are nought."""
+    count, total = found.modal.participation.shape
+    largest = np.argmax(np.abs(found.modal.participation), axis=1)
+    return _inverse(found.information, count + np.arange(count) * total + largest, scatter)
+
+
+def _wald(values: Array, covariance: Array) -> float:
+    scale = np.sqrt(np.maximum(np.real(np.diagonal(covariance)), 1e-300))
+    inverse = np.linalg.pinv(covariance / np.outer(scale, scale), rcond=1e-10, hermitian=True)
+    return float(2.0 * np.real(np.vdot(values / scale, inverse @ (values / scale))))
+
+
+def _inverse(information: Array, held: Array, scatter: Array | None = None) -> Array:
+    free = np.setdiff1d(np.arange(len(information)), held)
+    inner = information[np.ix_(free, free)]
+    scale = 1.0 / np.sqrt(np.maximum(np.real(np.diagonal(inner)), 1e-300))
+    inverse = np.linalg.pinv(inner * np.outer(scale, scale), rcond=1e-13, hermitian=True) * np.outer(scale, scale)
+    if scatter is not None:
+        inverse = inverse @ scatter[np.ix_(free, free)] @ inverse
+    covariance = np.zeros_like(information)
+    covariance[np.ix_(free, free)] = inverse
+    return covariance
+
+
+def _shape_deviation(shape: Array, covariance: Array) -> Array:
+    """Deviations of shape / (its largest component), by the first-order rule."""
+    largest = int(np.argmax(np.abs(shape)))
+    turn = np.eye(len(shape), dtype=complex) / shape[largest]
+    turn[:, largest] -= shape / shape[largest] ** 2
+    return np.sqrt(np.maximum(0.5 * np.real(np.diagonal(turn @ covariance @ np.conj(turn.T))), 0.0))

@@ -1,0 +1,282 @@
+"""The evidence for modes, whatever it comes from: responses to take candidates from, and lines to fit modes to."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from flexstage.base.finding import Finding, require
+from flexstage.base.number import Array
+from flexstage.experiment.cross_spectra import Segments, Spectra, Tell, Window, pooled, spectra
+from flexstage.experiment.identification.lines import Cells, Lines, block_count, record_lines
+from flexstage.experiment.identification.smear import SMEARING, Smear
+from flexstage.experiment.identification.tones import Tone, quieted
+from flexstage.experiment.record import Channel, Record, Responses, not_rising
+from flexstage.experiment.transfer import h1, multiple_coherence, noise_density
+
+_SEGMENTS = 24.0
+_PER_INPUT = 3.0
+_LONGEST = 32_768
+_HIGHEST = 0.42
+_LOWEST_LINES = 3
+_RUNNING = 10
+_PASSES = 4  # for tones, for spectra, for the fit of modes, and to see what drives them
+_ROUNDING = 1e-13
+"""Relative error of sums of some thousand double numbers."""
+
+
+@dataclass(frozen=True, eq=False)
+class Evidence:
+    """Responses for candidates and lines for the fit.
+
+    `responses` are in the channels' own units, with weights (f, p) of outputs; `lines()` gives the lines of all blocks, their inputs and
+    outputs divided by `input_scale` (m,) and `output_scale` (p,); `density` (f, p) is the noise per line, not divided. `band` is what the
+    data can show, in Hz; `inflation` the factor on variances for neighbouring lines that are not independent; `coherence` the multiple
+    coherence (f, p), absent where there is none; `resolution` the distance of lines in Hz; `rounding` (p,) the variance per line, divided
+    by the scales, that rounding the samples leaves; `tones` those seen in outputs, the steady ones taken out; `stored` whether an
+    analyser made the responses, `unstated` whether it says nothing of its window.
+    """
+
+    where: str
+    responses: Responses
+    weights: Array
+    lines: Callable[..., Iterable[Lines]]
+    input_scale: Array
+    output_scale: Array
+    density: Array
+    rate: float
+    band: tuple[float, float]
+    inflation: float = 1.0
+    coherence: Array | None = None
+    averages: float = 0.0
+    smear: Smear | None = None
+    rounding: Array | float = 0.0
+    resolution: float = 0.0
+    tones: tuple[Tone, ...] = ()
+    stored: bool = False
+    shaped: Callable[[Cells], Array] | None = None
+    unstated: bool = False
+
+    def shape(self, cells: Cells) -> Array:
+        """How the noise variance goes over cells, (p, c), up to a factor: as coherence says where it was stored, else even."""
+        return np.ones((len(self.output_scale), len(cells.low))) if self.shaped is None else self.shaped(cells)
+
+    def variance(self, low: float, high: float) -> Array:
+        """A first guess of the noise variance (p,) per line of the outputs, divided by their scales: the median over the band."""
+        inside = (self.responses.frequencies >= low) & (self.responses.frequencies <= high)
+        chosen = self.density[inside] if np.any(inside) else self.density
+        floor = 1e-10 * np.max(self.density, axis=0)
+        return np.maximum(np.median(chosen, axis=0), floor) / self.output_scale**2
+
+
+def evidence(what: Record | Responses | Sequence[Record], segments: Segments | None, tell: Tell | None = None) -> Evidence:
+    """The evidence in a record, in several records of one stage, or in an analyser's responses.
+
+    >>> from flexstage.experiment.example import one_mode_record
+    >>> round(evidence(one_mode_record(), None).band[1], 2)
+    26.88
+    """
+    if isinstance(what, Responses):
+        return _of_responses(what)
+    records = (what,) if isinstance(what, Record) else tuple(what)
+    require(_findings(records))
+    quiet = (quieted(record, _part(tell, index, _PASSES * len(records))) for index, record in enumerate(records))
+    records, tones = zip(*quiet, strict=True)
+    chosen = segments if segments is not None else chosen_segments(records)
+    told = (_part(tell, len(records) + index, _PASSES * len(records)) for index in range(len(records)))
+    together = pooled([_driven(spectra(record, chosen, each)) for record, each in zip(records, told, strict=True)])
+    return replace(_of_records(records, together, tell), tones=tuple(itertools.chain(*tones)))
+
+
+def _of_records(records: tuple[Record, ...], known: Spectra, tell: Tell | None) -> Evidence:
+    first = known.frequencies[1] * _LOWEST_LINES
+    band = (float(first), float(_HIGHEST * records[0].rate))
+    inside = known.band(*band)
+    responses = h1(known)
+    noise = noise_density(known)
+    names = [channel.name for channel in known.inputs]
+    size = _scale(inside.yy, records[0].rate)
+    input_scale, output_scale = _divisor(_scale(inside.xx, records[0].rate)), _divisor(size)
+
+    def lines(number: int = 0, parts: int = 1) -> Iterable[Lines]:
+        column = len(names)
+        for index, record in enumerate(records, start=(2 + number) * len(records)):
+            kept = record.select([channel.name for channel in record.channels if channel in record.outputs or channel.name in names])
+            places = tuple(names.index(channel.name) for channel in kept.inputs)
+            for block in record_lines(kept, places, column, _part(tell, index, _PASSES * len(records)), parts):
+                yield _scaled(block, input_scale, output_scale)
+            column += block_count(kept, parts)
+
+    weights = 1.0 / np.sqrt(np.maximum(noise, 1e-12 * np.max(noise, axis=0) + 1e-300))
+    source = records[0].source or records[0].name or "record"
+    return Evidence(
+        where=source,
+        responses=replace(responses, source=source),
+        weights=weights,
+        lines=lines,
+        input_scale=input_scale,
+        output_scale=output_scale,
+        density=noise * records[0].rate / 2.0,
+        rate=records[0].rate,
+        band=band,
+        coherence=multiple_coherence(known),
+        averages=known.independent,
+        rounding=_rounding(known.outputs, size),
+        resolution=max(1.0 / record.duration for record in records),
+    )
+
+
+def _scale(density: Array, rate: float) -> Array:
+    """Root mean square per line, nought where there is nothing."""
+    return np.sqrt(np.mean(np.real(np.diagonal(density, axis1=1, axis2=2)), axis=0) * rate / 2.0)
+
+
+def _divisor(scale: Array) -> Array:
+    return np.where(scale > 0.0, scale, 1.0)
+
+
+def _rounding(outputs: tuple[Channel, ...], scale: Array) -> Array:
+    """Rounding is relative to what was added up: to the largest of the channels of one unit, whatever this one shows of it.
+
+    An output that shows nothing at all says nothing either: its steps are unknown, and any variance will do.
+    """
+    largest = np.array([max(value for other, value in zip(outputs, scale, strict=True) if other.unit == each.unit) for each in outputs])
+    return np.where(scale > 0.0, (_ROUNDING * largest / _divisor(scale)) ** 2, 1.0)
+
+
+def _scaled(lines: Lines, input_scale: Array, output_scale: Array) -> Lines:
+    factors = [input_scale[column] if column < len(input_scale) else 1.0 for column in lines.columns]
+    return replace(lines, drive=lines.drive / np.array(factors), outputs=lines.outputs / output_scale)
+
+
+def chosen_segments(records: Sequence[Record], wanted: float = _SEGMENTS) -> Segments:
+    """Long segments resolve sharp resonances, many average noise: as many as `wanted`, and three for each input.
+
+    >>> from flexstage.experiment.example import one_mode_record
+    >>> chosen_segments([one_mode_record(seconds=48.0)]).seconds
+    2.0
+    """
+    inputs = len({channel.name for record in records for channel in record.inputs})
+    shortest = min(record.duration for record in records)
+    needed = max(wanted, _PER_INPUT * inputs) / len(records)
+    seconds = min(shortest / max(4.0, needed), _LONGEST / records[0].rate)
+    return Segments(max(seconds, min(shortest, 16.0 / records[0].rate)))
+
+
+def whole(records: Sequence[Record]) -> Segments:
+    """One segment without a window, as long as the shortest record: what a blow or a burst asks for.
+
+    >>> from flexstage.experiment.example import one_mode_record
+    >>> whole([one_mode_record(seconds=48.0)]).seconds
+    48.0
+    """
+    shortest = min(record.duration for record in records)
+    return Segments(min(shortest, _LONGEST / records[0].rate), 0.0, Window.BOXCAR)
+
+
+def _driven(known: Spectra) -> Spectra:
+    """Without inputs that were at rest all the time."""
+    power = np.sum(np.real(np.diagonal(known.xx, axis1=1, axis2=2)), axis=0)
+    kept = np.flatnonzero(power > 0.0)
+    inputs = tuple(known.inputs[index] for index in kept)
+    return replace(known, inputs=inputs, xx=known.xx[:, kept[:, None], kept], yx=known.yx[:, :, kept])
+
+
+def _of_responses(known: Responses) -> Evidence:
+    steps = np.diff(known.frequencies)
+    require(_response_findings(known, steps))
+    size = np.sqrt(np.mean(np.abs(known.values) ** 2, axis=(0, 2)))
+    output_scale = _divisor(size)
+    count = known.values.shape[2]
+    rough = np.abs(np.diff(known.values, 2, axis=0)) ** 2 / 6.0
+    density = np.repeat(np.median(rough, axis=(0, 2))[None, :], len(known.frequencies), axis=0)
+    density = np.maximum(density, 1e-12 * output_scale**2)
+
+    def lines(_: int = 0, __: int = 1) -> Iterable[Lines]:
+        for index in range(count):
+            yield Lines(known.frequencies, np.ones((len(steps) + 1, 1), dtype=complex), known.values[:, :, index] / output_scale, (index,))
+
+    step = float(np.mean(steps))
+    window = next((each for each in Window if known.window.lower().startswith(each.value)), None)
+    return Evidence(
+        where=known.source or known.name or "responses",
+        responses=known,
+        weights=1.0 / np.sqrt(density),
+        lines=lines,
+        input_scale=np.ones(count),
+        output_scale=output_scale,
+        density=density,
+        rate=2.0 * float(known.frequencies[-1]),
+        band=(float(max(known.frequencies[0], _LOWEST_LINES * step)), float(known.frequencies[-1])),
+        stored=True,
+        unstated=not known.window,
+        inflation=1.0 if window is None else _INFLATION[window],
+        averages=float(known.averages or 0),
+        smear=Smear(window, 1.0 / step) if window in SMEARING else None,
+        rounding=_rounding(known.outputs, size),
+        resolution=step,
+        shaped=None if known.coherence is None else lambda cells: _coherent_shape(known, cells),
+    )
+
+
+def _coherent_shape(known: Responses, cells: Cells) -> Array:
+    """|H|^2 (1 - g^2) / g^2, to which an estimate's variance is proportional (Bendat & Piersol, ch. 9), at the cells' middles.
+
+    The running median over 21 lines: a single line that stands out is no noise.
+    """
+    share = np.clip(known.coherence if known.coherence is not None else np.ones(1), 1e-3, 1.0 - 1e-6)
+    power = np.abs(known.values) ** 2 * (1.0 - share) / share
+    reach = min(_RUNNING, len(power) - 1)
+    padded = np.pad(power, ((reach, reach), (0, 0), (0, 0)), mode="reflect")
+    power = np.median(np.lib.stride_tricks.sliding_window_view(padded, 2 * reach + 1, axis=0), axis=-1)
+    column = np.array([columns[0] for columns in cells.columns])[cells.block]
+    line = np.clip(np.searchsorted(known.frequencies, cells.middle), 0, len(known.frequencies) - 1)
+    return np.maximum(power[line, :, column].T, 1e-12 * np.max(power, axis=(0, 2))[:, None])
+
+
+_INFLATION = {Window.BOXCAR: 1.0, Window.HANN: 1.94, Window.HAMMING: 1.74, Window.BLACKMAN: 2.66}
+"""Sum over lines of the squared correlation of a window's lines: 1 + 2 (4/9 + 1/36) = 1.94 for Hann's."""
+
+
+def _response_findings(known: Responses, steps: Array) -> list[Finding]:
+    where = known.source or known.name or "responses"
+    if len(steps) < 15:
+        return [Finding(where, f"there are {len(steps) + 1} lines", "Give responses at 16 frequencies or more")]
+    if not np.all(np.isfinite(known.values)):
+        return [Finding(where, f"{int(np.sum(~np.isfinite(known.values)))} values are not numbers", "Leave those channels or lines out")]
+    if (falling := not_rising(known.frequencies)) is not None:
+        return [Finding(where, falling, "Export each frequency once, from the lowest to the highest")]
+    if np.max(np.abs(steps - np.mean(steps))) > 1e-3 * np.mean(steps):
+        what = f"its lines lie unevenly, {np.min(steps):.6g} to {np.max(steps):.6g} Hz apart, as those of stepped or swept sines do"
+        advice = "Such responses are not identified yet: measure at even spacing, or with random inputs; interpolation bends modes"
+        return [Finding(where, what, advice)]
+    return []
+
+
+def _findings(records: tuple[Record, ...]) -> list[Finding]:
+    if not records:
+        return [Finding("records", "there is none", "Give a record")]
+    first = records[0]
+    found: list[Finding] = []
+    for record in records:
+        where = record.source or record.name or "record"
+        if not record.inputs:
+            found.append(Finding(where, "no channel is an input", "Say which channels are inputs"))
+        if not record.outputs:
+            found.append(Finding(where, "no channel is an output", "Say which channels are outputs"))
+        if record.rate != first.rate:
+            found.append(Finding(where, f"it is sampled at {record.rate:g} Hz, the first at {first.rate:g} Hz", "Sample all alike"))
+        names, wanted = ({channel.name for channel in each.outputs} for each in (record, first))
+        if names != wanted:
+            what = f"its outputs are {', '.join(sorted(names))}, those of the first {', '.join(sorted(wanted))}"
+            found.append(Finding(where, what, "Name outputs alike in all records"))
+    return found
+
+
+def _part(tell: Tell | None, index: int, count: int) -> Tell | None:
+    if tell is None:
+        return None
+    return lambda share: tell((index + share) / count)

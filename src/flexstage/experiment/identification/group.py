@@ -1,0 +1,230 @@
+"""The modes of one group of candidates: fitted together, freed of what is not significant, added to where the data hold more."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from flexstage.base.number import Array
+from flexstage.experiment.identification.bands import Extent
+from flexstage.experiment.identification.cluster import Candidate, alike
+from flexstage.experiment.identification.confidence import Deviations, deviations, drive_strength, freedoms, misfits, significance
+from flexstage.experiment.identification.evidence import Evidence
+from flexstage.experiment.identification.jackknife import jackknife, sub_bands
+from flexstage.experiment.identification.likelihood import Band, Fit, Modal, background, fit, noise, scatter, shaped, silence
+from flexstage.experiment.identification.lines import Cells
+from flexstage.experiment.identification.unexplained import SURPRISING, excess, suggested
+
+ONCE_IN = 1e-9
+"""How often noise may pass for a mode."""
+_SURE, _EVIDENT = 1.0 / 3.0, 3.0
+_ROUNDS = 2
+_NOTICED, _DOUBTED, _SLIGHT = 2.0, 1e-4, 1.1
+_MOST_MODES = 24
+
+
+@dataclass(frozen=True, eq=False)
+class Lost:
+    """A resonance left out again: its `pole` in Hz, `shape` (p,), and how likely (`chance`) noise would be as strong."""
+
+    pole: complex
+    shape: Array
+    chance: float
+
+
+@dataclass(frozen=True, eq=False)
+class Hunt:
+    """What is looked for: modes in `group`, damped no more than `highest_damping`; what is left out again is added to `lost`."""
+
+    group: Extent
+    highest_damping: float
+    lost: list[Lost]
+
+
+@dataclass(frozen=True, eq=False)
+class Found:
+    """The modes of one band, with their deviations, those of noise alone, and significance.
+
+    `misfit` is by how much what is left near each exceeds the noise, `widening` the factor on its deviations for that.
+    """
+
+    band: Band
+    modal: Modal
+    deviations: Deviations
+    significance: Array
+    misfit: Array
+    widening: Array
+
+    def only(self, chosen: Array) -> Found:
+        """Some of the modes, by their numbers."""
+        modal, spread = self.modal, self.deviations
+        return Found(
+            self.band,
+            Modal(modal.poles[chosen], modal.participation[chosen], modal.shapes[:, chosen]),
+            Deviations(spread.frequencies[chosen], spread.damping[chosen], spread.shapes[:, chosen]),
+            self.significance[chosen],
+            self.misfit[chosen],
+            self.widening[chosen],
+        )
+
+
+def grouped(known: Evidence, cells: Cells, candidates: tuple[Candidate, ...], hunt: Hunt) -> Found | None:
+    """The modes of one group of candidates: fitted, freed of what is not significant, fitted anew with the noise that is left.
+
+    `cells` are those of the group's band; candidates beside the group stand for what lies outside. `None` where no mode is left.
+
+    >>> from flexstage.experiment.identification.evidence import evidence
+    >>> from flexstage.experiment.example import POLE, one_mode_record
+    >>> from flexstage.experiment.identification.lines import edges, gathered
+    >>> known, pole = evidence(one_mode_record(), None), 1.01 * POLE
+    >>> [cells] = gathered(known.lines(), [edges(np.array([pole]), 6.0, 14.0)])
+    >>> found = grouped(known, cells, (Candidate(pole, np.ones(1), 3),), Hunt(Extent(6.0, 14.0, (0,)), 0.1, []))
+    >>> None if found is None else abs(found.modal.poles).round(1).tolist()
+    [10.0]
+    """
+    group, members = hunt.group, list(hunt.group.members)
+    poles = np.array([candidate.pole for candidate in candidates])
+    band = _band(known, cells, candidates, group)
+    if np.sum(cells.count) < 2 * cells.own.shape[2] * band.background.shape[1]:
+        return None
+    participation = np.array([candidates[index].participation for index in members])
+    found, strength = _pruned(band, fit(band, shaped(band, poles[members], participation)), hunt)
+    for _ in range(_ROUNDS):
+        band = replace(band, variance=noise(band, found.modal))
+        found, strength = _pruned(band, fit(band, found.modal), hunt)
+        band, found, strength = _extended(band, (found, strength), hunt)
+    if not len(found.modal.poles):
+        return None
+    beyond = misfits(band, found.modal)
+    spread = deviations(found, known.inflation, scatter(band, found.modal))
+    every = Found(band, found.modal, spread, strength / _limit(found.modal), beyond, np.maximum(beyond, _hidden(band, found)))
+    return replace(every, widening=_widening(every, band, found.modal))
+
+
+def _hidden(band: Band, found: Fit) -> Array:
+    """The factor (k,) on deviations for a further mode that the data may hold, though not so surely that it is told.
+
+    Noise would pass for it once in 10,000, not once in 1e9. If it is there, the modes beside it move as it is added, and are known as
+    well as they are then: deviations are the root of the sum of both squares (as models are averaged, Burnham & Anderson 2002, ch. 4, the
+    larger one taken as right).
+    """
+    from scipy.stats import chi2
+
+    modal, score = found.modal, excess(band, found.modal)
+    place = int(np.argmax(score))
+    if score[place] < _NOTICED:
+        return np.ones(len(modal.poles))
+    enough = found.cost - 0.5 * float(chi2.isf(_DOUBTED / len(score), freedoms(modal)))
+    more = fit(band, suggested(band, modal, place), enough)
+    if more.cost > enough:
+        return np.ones(len(modal.poles))
+    same = [int(np.argmin(np.abs(more.modal.poles - pole))) for pole in modal.poles]
+    moves = np.abs(more.modal.poles[same] - modal.poles)
+    before, after = deviations(found).frequencies, deviations(more).frequencies[same]
+    factors = np.sqrt(after**2 + moves**2) / np.maximum(before, 1e-300)
+    return np.where(factors > _SLIGHT, factors, 1.0)
+
+
+def parted(known: Evidence, cells: Cells, candidates: tuple[Candidate, ...], group: Extent, found: Found) -> Found:
+    """The modes with deviations that hold for the scatter between parts of the record, too, where the fit leaves more than noise.
+
+    `cells` are those of the same band, gathered from the parts' transforms. A mode that changes with its amplitude or with time answers
+    otherwise in each.
+    """
+    modal = found.modal
+    band = _band(known, cells, candidates, group)
+    free = np.zeros((len(modal.poles), cells.width - found.band.cells.width), dtype=complex)
+    start = Modal(modal.poles, np.concatenate([modal.participation, free], axis=1), modal.shapes)
+    band = replace(band, variance=noise(band, start))
+    return replace(found, widening=_widening(found, band, fit(band, start).modal))
+
+
+def _band(known: Evidence, cells: Cells, candidates: tuple[Candidate, ...], group: Extent) -> Band:
+    poles = np.array([candidate.pole for candidate in candidates])
+    outside = np.concatenate([np.delete(poles, list(group.members)), np.conj(poles)])
+    shape = known.shape(cells)
+    variance = known.variance(group.low, group.high)[:, None] * shape / np.median(shape, axis=1, keepdims=True)
+    variance = np.maximum(variance, silence(cells, known.rounding))
+    return Band(cells, variance, background(cells, outside), known.smear, shape, known.rounding, len(known.input_scale))
+
+
+def _widening(found: Found, band: Band, modal: Modal) -> Array:
+    """The factor (k,) on deviations of noise, of modes near which the fit leaves more.
+
+    It is the largest of that excess, of the scatter between sub-bands, and of that between blocks: inputs, records, or parts of records.
+    """
+    factors = found.widening.copy()
+    noise_alone = np.maximum(found.deviations.frequencies, 1e-300)
+    for mode in np.flatnonzero(found.misfit > 1.0):
+        divisions = [sub_bands(band, modal.poles[mode]), band.cells.block]
+        scattered = [jackknife(band, modal, each)[mode] for each in divisions if np.max(each) > 0]
+        factors[mode] = max([factors[mode], *(float(each / noise_alone[mode]) for each in scattered)])
+    return factors
+
+
+def _limit(modal: Modal) -> float:
+    from scipy.stats import chi2
+
+    return float(chi2.isf(ONCE_IN, freedoms(modal)))
+
+
+def _chance(modal: Modal, strength: float) -> float:
+    from scipy.stats import chi2
+
+    return float(chi2.sf(strength, freedoms(modal)))
+
+
+def _pruned(band: Band, found: Fit, hunt: Hunt) -> tuple[Fit, Array]:
+    """Leave out, one at a time and the least significant first, what is no mode; and the significance of the modes left."""
+    while len(found.modal.poles):
+        worst, strength = _worst(band, found, hunt)
+        if worst is None:
+            return found, strength
+        hunt.lost.append(Lost(complex(found.modal.poles[worst]), found.modal.shapes[:, worst], _chance(found.modal, strength[worst])))
+        found = fit(band, found.modal.without(worst))
+    return found, np.zeros(0)
+
+
+def _extended(band: Band, known: tuple[Fit, Array], hunt: Hunt) -> tuple[Band, Fit, Array]:
+    """Add modes, one at a time, where the data hold more than those found explain, as long as that is significant."""
+    found, strength = known
+    while len(found.modal.poles) < _MOST_MODES:
+        score = excess(band, found.modal)
+        place = int(np.argmax(score))
+        if score[place] < SURPRISING:
+            break
+        more, grown = _pruned(band, fit(band, suggested(band, found.modal, place)), hunt)
+        if len(more.modal.poles) <= len(found.modal.poles) or more.cost > found.cost:
+            break
+        found, strength = more, grown
+        band = replace(band, variance=noise(band, found.modal))
+    return band, found, strength
+
+
+def _worst(band: Band, found: Fit, hunt: Hunt) -> tuple[int | None, Array]:
+    """The mode that is least one, if there is such, and how significant each is."""
+    poles, limit = found.modal.poles, _limit(found.modal)
+    ratio = -np.real(poles) / np.abs(poles)
+    spread = deviations(found)
+    outside = (ratio > hunt.highest_damping) | (np.imag(poles) < hunt.group.low) | (np.imag(poles) > hunt.group.high)
+    if np.any(outside):
+        return int(np.argmax(np.where(outside, spread.damping / ratio, -1.0))), np.zeros(len(poles))
+    strength = np.where(_doubles(found.modal), 0.0, significance(band, found, limit))
+    strength = np.minimum(strength, limit * drive_strength(band, found, ONCE_IN))
+    wanted = np.where(spread.damping > _SURE * ratio, _EVIDENT * limit, limit)
+    least = int(np.argmin(strength / wanted))
+    return (least if strength[least] < wanted[least] else None), strength
+
+
+def _doubles(modal: Modal) -> Array:
+    """Modes that repeat another one: same pole within a tenth of its half-width, same shape and participation; the weaker of both."""
+    size = np.linalg.norm(modal.shapes, axis=0) * np.linalg.norm(modal.participation, axis=1)
+    found = np.zeros(len(size), dtype=bool)
+    for first in range(len(size)):
+        for second in range(first):
+            near = abs(modal.poles[first] - modal.poles[second]) < -0.1 * modal.poles[first].real
+            same = alike(modal.shapes[:, first], modal.shapes[:, second]) > 0.98
+            if near and same and alike(modal.participation[first], modal.participation[second]) > 0.98:
+                found[first if size[first] < size[second] else second] = True
+    return found

@@ -1,0 +1,247 @@
+"""Modes from records, found without a hand: candidates by pLSCF, then maximum likelihood on the records' transforms."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from flexstage.base.finding import Finding, require
+from flexstage.base.number import Array
+from flexstage.experiment.cross_spectra import Segments, Tell
+from flexstage.experiment.identification.adequacy import Reach, few_lines
+from flexstage.experiment.identification.bands import extents, sweeps
+from flexstage.experiment.identification.caution import Modes, warnings
+from flexstage.experiment.identification.cluster import Candidate, Stabilisation, merged, stabilisation
+from flexstage.experiment.identification.driven import drives
+from flexstage.experiment.identification.evidence import Evidence, chosen_segments, evidence, whole
+from flexstage.experiment.identification.group import ONCE_IN, Found, Hunt, Lost, grouped, parted
+from flexstage.experiment.identification.identified import Identified
+from flexstage.experiment.identification.likelihood import Modal
+from flexstage.experiment.identification.lines import edges, gathered
+from flexstage.experiment.identification.lscf import lscf
+from flexstage.experiment.identification.peaks import Left, peaks
+from flexstage.experiment.identification.residues import modal_sum, remainder
+from flexstage.experiment.record import Record, Responses
+
+_LARGEST = 72
+_LONGEST = 40
+_FEW = 5.0
+_LEAST_PARTS, _MOST_PARTS = 3, 8
+
+
+@dataclass(frozen=True)
+class Search:
+    """What is searched for: modes with frequencies in `band` (Hz; absent: all the record can show), damped no more than `highest_damping`.
+
+    `segments` are those of the spectra that candidates are taken from (absent: chosen by the record's length).
+    """
+
+    band: tuple[float, float] | None = None
+    highest_damping: float = 0.1
+    segments: Segments | None = None
+
+
+def identify(what: Record | Responses | Sequence[Record], search: Search = Search(), tell: Tell | None = None) -> Identified:
+    """Natural frequencies, damping, shapes and participations, with 95 % intervals, and whether they are there at all.
+
+    `what` is a record, or several of the same stage (six with one actuator each are put together as one test), or responses of an analyser.
+    Candidates are the stable poles of pLSCF on H1; each group of near ones is then fitted by maximum likelihood to the transform of the
+    whole record, its transient included, so that there is neither window nor leakage: inputs are taken as exact, outputs' noise as of
+    slowly varying density; intervals hold for noise correlated between outputs too (Pintelon & Schoukens 2012, ch. 9 and 10). Where the fit
+    leaves more near a mode than noise would once in 1000, they are as wide as what is left or the scatter between independent parts of the
+    data asks for, sub-bands, inputs, records, stretches of time, whichever is more (`jackknife`); `widening` says by how much. A mode is
+    kept if leaving it out costs more likelihood than noise would once in 1e9, thrice that where its damping is not known to a third, and if
+    the recorded inputs drive it, whatever else does (an F-test at 1e-9). Tones that no input holds are taken out of the outputs before.
+    What is seen and is none of the modes is listed as `peaks`.
+    Linear, time-invariant stages. Raises `DesignError` for inputs that are not independent, no outputs, records that do not fit together or
+    are too short.
+
+    >>> from flexstage.experiment.example import one_mode_record
+    >>> found = identify(one_mode_record())
+    >>> found.frequencies.round(1).tolist(), found.damping.round(3).tolist()
+    ([10.0], [0.02])
+    """
+    found = _identified(what, search, tell)
+    if len(found.frequencies) or search.segments is not None or isinstance(what, Responses):
+        return found
+    # Resonances sharper than the segments resolve leave no stable pole, and a blow falls into the first of them alone: look once more.
+    records = [what] if isinstance(what, Record) else list(what)
+    longer = chosen_segments(records, _FEW) if len(found.inputs) > 1 else whole(records)
+    again = _identified(what, replace(search, segments=longer), tell)
+    return again if len(again.frequencies) else found
+
+
+def _identified(what: Record | Responses | Sequence[Record], search: Search, tell: Tell | None) -> Identified:
+    known = evidence(what, search.segments, tell)
+    band = _band(known, search)
+    diagrams, candidates, reach = _candidates(known, band, search)
+    lost: list[Lost] = []
+    found, refused, share = _driven(known, _fitted(known, candidates, band, search.highest_damping, lost))
+    return _result(known, (band, reach, diagrams), found, share, (refused, lost))
+
+
+def _band(known: Evidence, search: Search) -> tuple[float, float]:
+    low, high = known.band
+    if search.band is None:
+        return low, high
+    asked = search.band
+    if asked[0] < asked[1] and asked[0] < high and asked[1] > low:
+        chosen = max(low, asked[0]), min(high, asked[1])
+        lines = known.responses.frequencies
+        require(few_lines(known, chosen, int(np.sum((lines >= chosen[0]) & (lines <= chosen[1])))))
+        return chosen
+    what = f"modes between {asked[0]:g} and {asked[1]:g} Hz are asked for; the data reach from {low:.4g} to {high:.4g} Hz"
+    require([Finding(known.where, what, "Ask for a band within, or record faster or longer")])
+    return low, high
+
+
+def _candidates(
+    known: Evidence, band: tuple[float, float], search: Search
+) -> tuple[tuple[Stabilisation, ...], tuple[Candidate, ...], Reach]:
+    """Candidates, and the band that was searched: where lines are few, no polynomial can be fitted to them."""
+    low, high = 0.0, 0.0
+    diagrams: list[Stabilisation] = []
+    candidates: list[tuple[Candidate, ...]] = []
+    inputs = known.responses.values.shape[2]
+    for sweep in sweeps(*band):
+        inside = (known.responses.frequencies >= sweep.low) & (known.responses.frequencies <= sweep.high)
+        highest = min(_LONGEST, max(3, _LARGEST // inputs), int(np.sum(inside)) // (2 + 2 * inputs))
+        if highest < 2:
+            continue
+        low, high = low or sweep.first, sweep.last
+        lowest = max(1, highest // 4)
+        orders = range(lowest, highest + 1, max(1, (highest - lowest) // 10))
+        values, weights = known.responses.values[inside], known.weights[inside]
+        diagram, found = stabilisation(lscf(known.responses.frequencies[inside], values, weights, orders), search.highest_damping)
+        diagrams.append(diagram)
+        candidates.append(tuple(each for each in found if sweep.first + each.pole.real <= each.pole.imag <= sweep.last - each.pole.real))
+    return tuple(diagrams), merged(candidates), Reach(low, high, search.band)
+
+
+def _fitted(
+    known: Evidence, candidates: tuple[Candidate, ...], band: tuple[float, float], highest_damping: float, lost: list[Lost]
+) -> list[Found]:
+    if not candidates:
+        return []
+    poles = np.array([candidate.pole for candidate in candidates])
+    groups = extents(poles, *band, resolution=known.resolution)
+    bounds = [edges(poles, group.low, group.high) for group in groups]
+    every = zip(groups, gathered(known.lines(), bounds), strict=True)
+    found = [grouped(known, cells, candidates, Hunt(group, highest_damping, lost)) for group, cells in every]
+    for parts in sorted({_parts(known, each) for each in found} - {1}):
+        chosen = [index for index, each in enumerate(found) if _parts(known, each) == parts]
+        for index, cells in zip(chosen, gathered(known.lines(1, parts), [bounds[index] for index in chosen]), strict=True):
+            each = found[index]
+            found[index] = None if each is None else parted(known, cells, candidates, groups[index], each)
+    return [each for each in found if each is not None]
+
+
+def _parts(known: Evidence, found: Found | None) -> int:
+    """Into how many parts a record is cut to see whether its modes hold still: up to eight, none shorter than their slowest decay to 1/e.
+
+    1 where there is no doubt, where fewer than three would be, or where there are several records: those are parts.
+    """
+    doubted = np.zeros(0) if found is None else -2.0 * np.pi * np.real(found.modal.poles)[found.misfit > 1.0]
+    if known.stored or not len(doubted) or found is None or len(found.band.cells.columns) > 1:
+        return 1
+    parts = min(_MOST_PARTS, int(np.min(doubted) / known.resolution))
+    return parts if parts >= _LEAST_PARTS else 1
+
+
+def _driven(known: Evidence, fitted: list[Found]) -> tuple[list[Found], list[Lost], Array]:
+    """Modes that recorded inputs drive, resonances that they do not, and the share of each mode's motion that is not theirs.
+
+    What is refused stays in the fit: it takes the motion that is not the other modes'. Responses say nothing of what else shook the stage.
+    """
+    if not fitted or all(each.band.inputs == each.band.cells.width for each in fitted):
+        return fitted, [], np.zeros(sum(len(each.modal.poles) for each in fitted))
+    every = drives([(each.band, each.modal) for each in fitted], known.lines(1))
+    refused = [
+        Lost(complex(each.modal.poles[mode]), each.modal.shapes[:, mode], float(drive.chance[mode]))
+        for each, drive in zip(fitted, every, strict=True)
+        for mode in np.flatnonzero(drive.chance > ONCE_IN)
+    ]
+    kept = [each.only(np.flatnonzero(drive.chance <= ONCE_IN)) for each, drive in zip(fitted, every, strict=True)]
+    return kept, refused, np.concatenate([drive.elsewhere[drive.chance <= ONCE_IN] for drive in every])
+
+
+def _result(
+    known: Evidence,
+    searched: tuple[tuple[float, float], Reach, tuple[Stabilisation, ...]],
+    found: list[Found],
+    share: Array,
+    doubted: tuple[list[Lost], list[Lost]],
+) -> Identified:
+    band, reach, diagrams = searched
+    inputs, outputs = len(known.input_scale), len(known.output_scale)
+    modal = _joined([part.modal for part in found], inputs, outputs)
+    widened = [part.deviations.widened(part.widening) for part in found]
+    spread = [np.concatenate([getattr(part, name) for part in widened] or [np.zeros(0)]) for name in ("frequencies", "damping")]
+    wide = np.concatenate([part.shapes for part in widened] or [np.zeros((outputs, 0))], axis=1)
+    strength = np.concatenate([part.significance for part in found] or [np.zeros(0)])
+    widening = np.concatenate([part.widening for part in found] or [np.zeros(0)])
+    order = np.argsort(np.abs(modal.poles))
+    poles, (shapes, participation, wide) = modal.poles[order], _in_units(known, modal, wide, order)
+    inside = (known.responses.frequencies >= band[0]) & (known.responses.frequencies <= band[1])
+    lines = known.responses.frequencies[inside]
+    rest = known.responses.values[inside] - modal_sum(lines, 2.0 * np.pi * poles, shapes, participation)
+    close = _close(poles)
+    return Identified(
+        frequencies=np.abs(poles),
+        damping=-np.real(poles) / np.abs(poles),
+        shapes=shapes,
+        participation=participation,
+        frequency_deviations=spread[0][order],
+        damping_deviations=spread[1][order],
+        shape_deviations=wide,
+        widening=widening[order],
+        significance=strength[order],
+        outputs=known.responses.outputs,
+        inputs=known.responses.inputs,
+        close=close,
+        residuals=remainder(lines, rest, known.weights[inside]),
+        responses=known.responses,
+        stabilisation=diagrams,
+        band=band,
+        noise=np.median(known.density[inside], axis=0) * 2.0 / known.rate,
+        warnings=warnings(known, Modes(poles, close, share[order], widening[order]), reach),
+        peaks=peaks(known, Left(lines, rest, poles), *doubted),
+        provenance=f"identified from {known.where}: pLSCF, then maximum likelihood",
+    )
+
+
+def _joined(parts: list[Modal], inputs: int, outputs: int) -> Modal:
+    return Modal(
+        np.concatenate([part.poles for part in parts] or [np.zeros(0, dtype=complex)]),
+        np.concatenate([part.participation[:, :inputs] for part in parts] or [np.zeros((0, inputs), dtype=complex)]),
+        np.concatenate([part.shapes for part in parts] or [np.zeros((outputs, 0), dtype=complex)], axis=1),
+    )
+
+
+def _in_units(known: Evidence, modal: Modal, wide: Array, order: Array) -> tuple[Array, Array, Array]:
+    """Shapes (largest component 1), participations in rad/s and units of the channels, deviations of the shapes."""
+    shapes = modal.shapes * known.output_scale[:, None]
+    if not shapes.shape[1]:
+        return shapes, modal.participation / known.input_scale, wide
+    scaled = np.argmax(np.abs(modal.shapes), axis=0)
+    every = np.arange(shapes.shape[1])
+    relative = shapes / shapes[scaled, every]
+    wide = wide * (known.output_scale[:, None] / known.output_scale[scaled])
+    largest = np.argmax(np.abs(relative), axis=0)
+    turn = relative[largest, every]
+    participation = 2.0 * np.pi * modal.participation / known.input_scale * (shapes[scaled, every] * turn)[:, None]
+    return (relative / turn)[:, order], participation[order], (wide / np.abs(turn))[:, order]
+
+
+def _close(poles: Array) -> tuple[tuple[int, ...], ...]:
+    """Modes nearer to the next than the mean of their half-widths, in groups."""
+    groups: list[list[int]] = []
+    for index in range(len(poles)):
+        before = groups[-1][-1] if groups else None
+        if before is not None and abs(poles[index].imag - poles[before].imag) < -0.5 * (poles[index] + poles[before]).real:
+            groups[-1].append(index)
+        else:
+            groups.append([index])
+    return tuple(tuple(group) for group in groups if len(group) > 1)

@@ -1,0 +1,491 @@
+"""Maximum-likelihood modes of one band: poles, participations and shapes at once, from the cells of records."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.base.number import Array
+from flexstage.experiment.identification.lines import Cells, expanded, nodes
+from flexstage.experiment.identification.smear import Smear
+
+_CHUNK = 4_000_000
+_FREE, _SMALL = 1e-9, 1e-4
+_MIXING = 0.25
+_STEPS = 60
+_CONVERGED = 1e-3
+_NOISE_LINES = 100
+_DIGITS = 1e-6
+
+
+@dataclass(frozen=True, eq=False)
+class Modal:
+    """Modes of a band: H = sum of shape participation / (j f - pole), beside what lies outside.
+
+    `poles` (k,) in Hz (rad/s over 2 pi), `participation` (k, m+b) of the inputs and of the blocks' transients, `shapes` (p, k).
+    """
+
+    poles: Array
+    participation: Array
+    shapes: Array
+
+    def without(self, index: int) -> Modal:
+        """The modes but one."""
+        kept = [each for each in range(len(self.poles)) if each != index]
+        return Modal(self.poles[kept], self.participation[kept], self.shapes[:, kept])
+
+
+@dataclass(frozen=True, eq=False)
+class Band:
+    """Data of one band: its cells, and the noise variance of every output per line in every cell (p, c).
+
+    `background` (c, b, 8) are the functions that stand for what lies outside, as Legendre coefficients in every cell. `smear` says how
+    windows have smeared the lines, if they have; `shape` (p, c) how the noise variance is known to go with frequency; `rounding` (p,) the
+    variance per line that rounding leaves; `inputs` how many of the drive's columns are inputs (absent: all), transients follow.
+    """
+
+    cells: Cells
+    variance: Array
+    background: Array
+    smear: Smear | None = None
+    shape: Array | float = 1.0
+    rounding: Array | float = 0.0
+    inputs: int | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Fit:
+    """Modes fitted to a band, twice the negative log-likelihood halved (`cost`: chi-square per complex number) and Fisher information.
+
+    `information` is complex and of the parameters (poles; participation row by row; shapes output by output).
+    """
+
+    modal: Modal
+    cost: float
+    information: Array
+    converged: bool
+
+
+@dataclass(frozen=True, eq=False)
+class _Sums:
+    """Per output: Gram matrix (p, f, n, f, n) of functions times inputs, products with data (p, f, n), data's own power (p,)."""
+
+    gram: Array
+    cross: Array
+    power: Array
+
+
+def fit(band: Band, start: Modal, enough: float = np.inf) -> Fit:
+    """The modes that maximise the likelihood, by Levenberg-Marquardt from `start`.
+
+    The residual is analytic in all parameters, so that complex least squares apply: noise is circular and independent between lines and
+    outputs. It stops early once the cost is above `enough` and promises to stay there.
+
+    >>> from flexstage.experiment.example import one_mode_band
+    >>> found = fit(*one_mode_band())
+    >>> found.converged, round(float(abs(found.modal.poles[0])), 1)
+    (True, 10.0)
+    """
+    modal, damping = start, 1e-3
+    sums = _sums(band, modal.poles)
+    cost = _cost(sums, modal)
+    if not len(modal.poles):
+        return Fit(modal, cost, np.zeros((0, 0)), converged=True)
+    information, gradient = _normal(sums, modal)
+    for _ in range(_STEPS):
+        promised = _step(information, gradient, _FREE)[1]
+        if promised < _CONVERGED or cost - promised > enough:
+            return _fitted(modal, cost, information, converged=promised < _CONVERGED)
+        trial = _moved(modal, _step(information, gradient, damping)[0])
+        trial_sums = _sums(band, trial.poles) if np.all(np.real(trial.poles) < 0.0) else None
+        fall = -np.inf if trial_sums is None else cost - _cost(trial_sums, trial)
+        if trial_sums is not None and fall >= 0.0:
+            modal, sums, cost = trial, trial_sums, cost - fall
+            information, gradient = _normal(sums, modal)
+            if fall < 0.1 * _CONVERGED and damping < _SMALL:
+                return _fitted(modal, cost, information, converged=True)
+            damping = max(damping * 0.1, _FREE)
+        elif damping > 1e8:
+            break
+        else:
+            damping *= 10.0
+    return _fitted(modal, cost, information, converged=False)
+
+
+def _fitted(modal: Modal, cost: float, information: Array, *, converged: bool) -> Fit:
+    own = len(modal.poles) + modal.participation.size + modal.shapes.size
+    return Fit(modal, cost, information[:own, :own], converged)
+
+
+def _step(information: Array, gradient: Array, damping: float) -> tuple[Array, float]:
+    """A damped Newton step and the fall of the cost it promises."""
+    scale = np.real(np.diagonal(information))
+    scale = np.maximum(scale, 1e-12 * np.max(scale))
+    step = np.linalg.solve(information + damping * np.diag(scale), gradient)
+    return step, float(np.real(np.vdot(step, gradient)))
+
+
+def shaped(band: Band, poles: Array, participation: Array) -> Modal:
+    """Shapes by linear least squares for given poles and participations of the inputs; transients begin at nought.
+
+    >>> from flexstage.experiment.example import POLE, one_mode_band
+    >>> round(abs(shaped(one_mode_band()[0], np.array([POLE]), np.ones((1, 1))).shapes[0, 0]))
+    5
+    """
+    full = np.zeros((len(poles), band.cells.width), dtype=complex)
+    full[:, : participation.shape[1]] = participation
+    sums = _sums(band, poles)
+    count = len(poles)
+    shapes = np.empty((len(sums.power), count), dtype=complex)
+    for output in range(len(sums.power)):
+        gram = np.einsum("rm,rmsn,sn->rs", np.conj(full), sums.gram[output][:count, :, :count], full)
+        cross = np.einsum("rm,rm->r", np.conj(full), sums.cross[output][:count])
+        shapes[output] = np.linalg.lstsq(gram, cross, rcond=1e-12)[0]
+    return Modal(poles, full, shapes)
+
+
+def residual_power(band: Band, modal: Modal) -> Array:
+    """Powers and cross powers (p, p, c) of what modes and background leave in every cell, the first output's conjugate.
+
+    >>> from flexstage.experiment.example import one_mode_band
+    >>> band, start = one_mode_band()
+    >>> bool(np.sum(residual_power(band, fit(band, start).modal).real) < 0.1 * np.sum(band.cells.own_power))
+    True
+    """
+    cells = band.cells
+    left = np.moveaxis(cells.power.copy(), 0, 2)
+    for chosen, inside in explained(band, modal):
+        crossed = np.einsum("ocan,canp->opc", np.conj(inside), cells.cross[chosen], optimize=True)
+        half = np.einsum("canbm,pcbm->canp", cells.own[chosen], inside, optimize=True)
+        own = np.einsum("ocan,canp->opc", np.conj(inside), half, optimize=True)
+        left[:, :, chosen] += own - crossed - np.conj(np.swapaxes(crossed, 0, 1))
+    return left
+
+
+def explained(band: Band, modal: Modal) -> Iterator[tuple[Array, Array]]:
+    """Block by block, the numbers of its cells and the factors (p, c, 8, n) of Z in them that modes and background amount to.
+
+    >>> from flexstage.experiment.example import one_mode_band
+    >>> [len(chosen) for chosen, _ in explained(*one_mode_band())] == [len(one_mode_band()[0].cells.low)]
+    True
+    """
+    every = np.concatenate([resonances(band, modal.poles), band.background], axis=1)
+    values = _coefficients(band, modal)
+    for block, columns in enumerate(band.cells.columns):
+        chosen = np.flatnonzero(band.cells.block == block)
+        yield chosen, np.einsum("cfa,ofn->ocan", every[chosen], values[:, :, list(columns)], optimize=True)
+
+
+def noise(band: Band, modal: Modal) -> Array:
+    """Noise variance per line of every output in every cell (p, c), from what modes and background leave: means over 100 lines or more.
+
+    >>> from flexstage.experiment.example import one_mode_band
+    >>> band, start = one_mode_band()
+    >>> bool(0.8 < noise(band, fit(band, start).modal)[0, 0] / band.variance[0, 0] < 1.2)
+    True
+    """
+    cells = band.cells
+    power = np.real(np.einsum("ooc->oc", residual_power(band, modal))) / band.shape
+    found = _pooled(power, cells) / _free(band, modal)
+    return np.maximum(found * band.shape, silence(cells, band.rounding))
+
+
+def silence(cells: Cells, rounding: Array | float) -> Array:
+    """The least noise variance (p, c) per line that is believed, however still the record.
+
+    Cells hold responses to six digits. That error e is the same at all N lines: it does not average out, and with a variance of N e^2
+    times the power it cannot pass for a mode, and intervals are not narrower than it. `rounding` (p,) is the variance that rounding the
+    samples leaves where an output shows nothing else.
+
+    >>> from flexstage.experiment.example import one_mode_band
+    >>> cells = one_mode_band()[0].cells
+    >>> bool(silence(cells, 7.0).min() == 7.0), bool(np.all(silence(cells, 0.0) < 1e-8 * np.max(cells.own_power / cells.count[:, None])))
+    (True, True)
+    """
+    return np.maximum(_DIGITS**2 * np.sum(cells.count) * cells.own_power.T / cells.count, np.reshape(rounding, (-1, 1)))
+
+
+def scatter(band: Band, modal: Modal) -> Array:
+    """Covariance of the gradient, noise of outputs correlated as what is left shows: with it, deviations hold for noise of that kind too.
+
+    The middle of the sandwich estimator (White 1982); for noise independent between outputs it tends to the information. Where less is left
+    than `silence`, that counts. Of the parameters of `Fit.information`.
+
+    >>> from flexstage.experiment.example import one_mode_band
+    >>> found = fit(*one_mode_band())
+    >>> bool(0.7 < abs(scatter(one_mode_band()[0], found.modal)[0, 0] / found.information[0, 0]) < 1.3)
+    True
+    """
+    cells, outputs = band.cells, len(modal.shapes)
+    left = np.conj(residual_power(band, modal))
+    noise = _pooled(left.reshape(-1, left.shape[2]), cells).reshape(left.shape) / _free(band, modal)
+    alone = np.arange(outputs)
+    noise[alone, alone] = np.maximum(np.real(noise[alone, alone]), silence(cells, band.rounding))
+    weights = (noise / band.variance[:, None, :] / band.variance[None, :, :]).reshape(outputs**2, -1)
+    functions, full = _derivatives(band, modal)
+    gram = _gram(cells, weights, functions).reshape(outputs, outputs, len(full[0]), -1)
+    kept = len(modal.poles) + modal.participation.size + modal.shapes.size
+    total = np.zeros((full[0].shape[1],) * 2, dtype=complex)
+    for first in range(outputs):
+        for second in range(outputs):
+            total += np.conj(full[first].T) @ gram[first, second] @ full[second]
+    return total[:kept, :kept]
+
+
+def shares(band: Band, modal: Modal, groups: Array) -> tuple[Array, Array]:
+    """What each group of cells adds to gradient (g, q) and information (g, q, q), of the parameters of `Fit.information`.
+
+    `groups` (c,) are the numbers of each cell's group, from 0 on. At the fit the gradients add up to nought.
+
+    >>> from flexstage.experiment.example import one_mode_band
+    >>> band, start = one_mode_band()
+    >>> found = fit(band, start)
+    >>> gradient, information = shares(band, found.modal, np.arange(len(band.cells.low)) % 2)
+    >>> bool(np.allclose(np.sum(information, axis=0), found.information, rtol=1e-6, atol=1e-9 * np.max(abs(found.information))))
+    True
+    """
+    cells = band.cells
+    functions, full = _derivatives(band, modal)
+    kept = len(modal.poles) + modal.participation.size + modal.shapes.size
+    crossed = np.zeros((len(cells.low), functions.shape[1], cells.width, len(full)), dtype=complex)
+    for chosen, inside in explained(band, modal):
+        left = cells.cross[chosen] - np.einsum("canbm,ocbm->cano", cells.own[chosen], inside, optimize=True)
+        part = np.einsum("cfa,cano->cfno", np.conj(functions[chosen]), left, optimize=True)
+        crossed[chosen[:, None], :, list(cells.columns[cells.block[chosen[0]]])] = np.moveaxis(part, 2, 1)
+    crossed = (crossed / band.variance.T[:, None, None, :]).reshape(len(cells.low), -1, len(full))
+    gradient, information = [], []
+    for group in range(int(np.max(groups)) + 1):
+        chosen = groups == group
+        gram = _gram(cells.only(chosen), 1.0 / band.variance[:, chosen], functions[chosen]).reshape(len(full), len(full[0]), -1)
+        cross = np.sum(crossed[chosen], axis=0)
+        each = [(np.conj(one.T) @ column, np.conj(one.T) @ own @ one) for one, column, own in zip(full, cross.T, gram, strict=True)]
+        gradient.append(np.sum([slope for slope, _ in each], axis=0)[:kept])
+        information.append(np.sum([curved for _, curved in each], axis=0)[:kept, :kept])
+    return np.array(gradient), np.array(information)
+
+
+def _derivatives(band: Band, modal: Modal) -> tuple[Array, list[Array]]:
+    """The functions (c, f, 8) of modes and background, and by output the derivatives (f n, q) of their factors by all parameters."""
+    near = _functions(band, modal.poles)
+    functions = np.concatenate([near, band.background], axis=1)
+    size, outputs = near.shape[1] * band.cells.width, len(modal.shapes)
+    own = _raw(band, functions).gram.reshape(outputs, functions.shape[1] * band.cells.width, -1)
+    return functions, [_with_background(own[output], _jacobian(modal, output, _pairs(modal.poles)), size) for output in range(outputs)]
+
+
+def _with_background(gram: Array, jacobian: Array, size: int) -> Array:
+    """Derivatives of all factors: those of the background follow the modes'."""
+    scale = 1.0 / np.sqrt(np.real(np.diagonal(gram)[size:]))
+    inner = gram[size:, size:] * np.outer(scale, scale) + 1e-13 * np.eye(len(scale))
+    rest = -np.linalg.solve(inner, (gram[size:, :size] @ jacobian) * scale[:, None]) * scale[:, None]
+    return np.concatenate([jacobian, rest])
+
+
+def _free(band: Band, modal: Modal) -> float:
+    """Share of the lines that the fit has not used up."""
+    used = band.background.shape[1] * band.cells.width + len(modal.poles) * (1.0 + band.cells.width / len(modal.shapes))
+    return max(0.1, 1.0 - used / float(np.sum(band.cells.count)))
+
+
+def _pooled(power: Array, cells: Cells) -> Array:
+    """Means per line of powers (q, c), over neighbouring cells of 100 lines or more together."""
+    found = np.empty_like(power)
+    for block in range(len(cells.columns)):
+        chosen = np.flatnonzero(cells.block == block)
+        lines = np.cumsum(cells.count[chosen])
+        parts = max(1, int(lines[-1]) // _NOISE_LINES)
+        place = np.minimum((lines - 1) * parts // int(lines[-1]), parts - 1)
+        for part in np.unique(place):
+            members = chosen[place == part]
+            found[:, members] = (np.sum(power[:, members], axis=1) / np.sum(cells.count[members]))[:, None]
+    return found
+
+
+def background(cells: Cells, outside: Array, degree: int = 3) -> Array:
+    """An orthonormal basis (c, b, 8) of polynomials up to `degree` and of the tails 1/(j f - p) of the poles `outside` (Hz).
+
+    Directions that add less to it than the 1e-6 to which cells hold numbers are left out.
+
+    >>> from flexstage.experiment.example import one_mode_band
+    >>> background(one_mode_band()[0].cells, np.zeros(0), 1).shape[1:]
+    (2, 8)
+    """
+    points = nodes(cells.low, cells.high)
+    x = (2.0 * points - np.min(cells.low) - np.max(cells.high)) / (np.max(cells.high) - np.min(cells.low))
+    tails = 1.0 / (1j * points[:, :, None] - outside)
+    every = np.concatenate([np.polynomial.legendre.legvander(x, degree), tails], axis=2)
+    weight = np.sqrt(np.repeat(cells.count / points.shape[1], points.shape[1]))
+    rows = every.reshape(-1, every.shape[2])
+    rows = rows / np.linalg.norm(rows * weight[:, None], axis=0)
+    left, values, _ = np.linalg.svd(rows * weight[:, None], full_matrices=False)
+    kept = left[:, values > _DIGITS * values[0]] / weight[:, None]
+    return expanded(np.moveaxis(kept.reshape(*points.shape, -1), 2, 1))
+
+
+def resonances(band: Band, poles: Array) -> Array:
+    """1/(j f - p) in every cell, as Legendre coefficients (c, k, 8).
+
+    >>> from flexstage.experiment.example import one_mode_band
+    >>> band, start = one_mode_band()
+    >>> resonances(band, start.poles).shape == (len(band.cells.low), 1, 8)
+    True
+    """
+    return _functions(band, poles)[:, : len(poles)]
+
+
+def _functions(band: Band, poles: Array) -> Array:
+    """Legendre coefficients (c, f, 8) in every cell of 1/(j f - p), of its derivatives by p, and of products of near poles' functions."""
+    points, pairs = nodes(band.cells.low, band.cells.high), _pairs(poles)
+    if band.smear is not None:
+        middles = np.array([0.5 * (poles[first] + poles[second]) for first, second in pairs], dtype=complex)
+        both = band.smear.functions(points, np.concatenate([poles, middles]))
+        every = [both[0][:, :, : len(poles)], both[1][:, :, : len(poles)], both[1][:, :, len(poles) :]]
+        return expanded(np.moveaxis(np.concatenate(every, axis=2), 2, 1))
+    away = 1.0 / (1j * points[:, None, :] - poles[:, None])
+    products = [away[:, first] * away[:, second] for first, second in pairs]
+    return expanded(np.concatenate([away, away**2, *(each[:, None] for each in products)], axis=1))
+
+
+def _pairs(poles: Array) -> list[tuple[int, int]]:
+    """Poles nearer to one another than half a half-width: their shapes mix, and are turned within their plane by parameters of its own."""
+    return [
+        (first, second)
+        for second in range(len(poles))
+        for first in range(second)
+        if abs(poles[first] - poles[second]) < -_MIXING * (poles[first] + poles[second]).real
+    ]
+
+
+def _raw(band: Band, functions: Array) -> _Sums:
+    """Sums before elimination, over the functions (c, f, 8), inputs and transients of all blocks."""
+    cells, weights = band.cells, 1.0 / band.variance
+    cross = np.zeros((len(weights), functions.shape[1], cells.width), dtype=complex)
+    for block, columns in enumerate(cells.columns):
+        chosen = np.flatnonzero(cells.block == block)
+        weighted = cells.cross[chosen] * weights[:, chosen].T[:, None, None, :]
+        cross[:, :, list(columns)] += np.einsum("cfa,cano->ofn", np.conj(functions[chosen]), weighted, optimize=True)
+    return _Sums(_gram(cells, weights, functions), cross, np.sum(weights * cells.own_power.T, axis=1))
+
+
+def _gram(cells: Cells, weights: Array, functions: Array) -> Array:
+    """Gram matrices (w, f, n, f, n) of functions times inputs, summed over cells with weights (w, c)."""
+    rows, count, total = len(weights), functions.shape[1], cells.width
+    gram = np.zeros((rows, count, total, total, count), dtype=complex)
+    for block, columns in enumerate(cells.columns):
+        together = max(1, _CHUNK // (count * len(columns)) ** 2)
+        every = np.flatnonzero(cells.block == block)
+        part = np.zeros((rows, (count * len(columns)) ** 2), dtype=complex)
+        for start in range(0, len(every), together):
+            chosen = every[start : start + together]
+            part += weights[:, chosen] @ _products(functions[chosen], cells.own[chosen])
+        part = part.reshape(rows, count, len(columns), len(columns), count)
+        if list(columns) == list(range(total)) and len(cells.columns) == 1:
+            gram = part
+        else:
+            gram[np.ix_(range(rows), range(count), columns, columns, range(count))] += part
+    return gram.swapaxes(3, 4)
+
+
+def _products(functions: Array, own: Array) -> Array:
+    """Gram matrices (c, f n n f) of functions times inputs in every cell: functions first and last, inputs between."""
+    count, size, inputs = len(own), own.shape[1], own.shape[2]
+    half = np.conj(functions) @ own.reshape(count, size, -1)
+    half = half.reshape(count, -1, inputs, size, inputs).swapaxes(3, 4).reshape(count, -1, size)
+    return (half @ functions.swapaxes(1, 2)).reshape(count, -1)
+
+
+def _sums(band: Band, poles: Array) -> _Sums:
+    near = _functions(band, poles)
+    raw = _raw(band, np.concatenate([near, band.background], axis=1))
+    kept = near.shape[1]
+    outputs, count, total = raw.cross.shape
+    size = kept * total
+    gram = raw.gram.reshape(outputs, count * total, count * total)
+    cross = raw.cross.reshape(outputs, -1)
+    gone = np.swapaxes(np.conj(gram[:, :size, size:]), 1, 2)
+    scale = 1.0 / np.sqrt(np.real(np.diagonal(gram[:, size:, size:], axis1=1, axis2=2)))
+    inner = gram[:, size:, size:] * scale[:, :, None] * scale[:, None, :] + 1e-13 * np.eye(gone.shape[1])
+    right = np.concatenate([gone, cross[:, size:, None]], axis=2) * scale[:, :, None]
+    solved = np.linalg.solve(inner, right)
+    corrected = np.conj(np.swapaxes(right, 1, 2)) @ solved
+    left = gram[:, :size, :size] - corrected[:, :-1, :-1]
+    return _Sums(
+        left.reshape(outputs, kept, total, kept, total),
+        (cross[:, :size] - corrected[:, :-1, -1]).reshape(outputs, kept, total),
+        raw.power - corrected[:, -1, -1].real,
+    )
+
+
+def _coefficients(band: Band, modal: Modal) -> Array:
+    """Factors (p, f, n) of the modes' functions and, best for them, of the polynomials."""
+    count = len(modal.poles)
+    functions = np.concatenate([resonances(band, modal.poles), band.background], axis=1)
+    raw = _raw(band, functions)
+    outputs, every, total = raw.cross.shape
+    size = count * total
+    gram, cross = raw.gram.reshape(outputs, every * total, every * total), raw.cross.reshape(outputs, -1)
+    modes = (modal.shapes[:, :, None] * modal.participation[None]).reshape(outputs, size)
+    right = cross[:, size:] - np.einsum("oij,oj->oi", gram[:, size:, :size], modes)
+    inner = gram[:, size:, size:]
+    scale = 1.0 / np.sqrt(np.real(np.diagonal(inner, axis1=1, axis2=2)))
+    scaled = inner * scale[:, :, None] * scale[:, None, :] + 1e-13 * np.eye(inner.shape[1])
+    rest = np.linalg.solve(scaled, (right * scale)[:, :, None])[:, :, 0] * scale
+    return np.concatenate([modes, rest], axis=1).reshape(outputs, every, total)
+
+
+def _cost(sums: _Sums, modal: Modal) -> float:
+    count = len(modal.poles)
+    values = modal.shapes[:, :, None] * modal.participation[None]
+    inside = np.einsum("orm,ormsn,osn->", np.conj(values), sums.gram[:, :count, :, :count], values, optimize=True)
+    crossed = np.einsum("orm,orm->", np.conj(values), sums.cross[:, :count])
+    return float(np.sum(sums.power) - 2.0 * crossed.real + inside.real)
+
+
+def _jacobian(modal: Modal, output: int, pairs: list[tuple[int, int]]) -> Array:
+    """Derivatives (f n, parameters) of one output's factors by poles, participations, that output's shapes, and mixing of near poles."""
+    count, total = modal.participation.shape
+    outputs = len(modal.shapes)
+    base = count + count * total + outputs * count
+    result = np.zeros((2 * count + len(pairs), total, base + 2 * len(pairs)), dtype=complex)
+    modes, entries = np.arange(count), np.arange(total)
+    shape = modal.shapes[output]
+    result[count + modes, :, modes] = shape[:, None] * modal.participation
+    place = count + modes[:, None] * total + entries
+    result[modes[:, None], entries, place] = shape[:, None]
+    result[modes, :, count + count * total + output * count + modes] = modal.participation
+    for number, (first, second) in enumerate(pairs):
+        result[2 * count + number, :, base + 2 * number] = shape[first] * modal.participation[second]
+        result[2 * count + number, :, base + 2 * number + 1] = shape[second] * modal.participation[first]
+    return result.reshape(-1, result.shape[2])
+
+
+def _normal(sums: _Sums, modal: Modal) -> tuple[Array, Array]:
+    """Fisher information and gradient, mixing included."""
+    count, total = modal.participation.shape
+    information, gradient = 0.0, 0.0
+    pairs = _pairs(modal.poles)
+    for output in range(len(modal.shapes)):
+        jacobian = _jacobian(modal, output, pairs)
+        gram = sums.gram[output].reshape(len(jacobian), -1)
+        values = (modal.shapes[output][:, None] * modal.participation).ravel()
+        gradient = gradient + np.conj(jacobian.T) @ (sums.cross[output].ravel() - gram[:, : count * total] @ values)
+        information = information + np.conj(jacobian.T) @ gram @ jacobian
+    return np.asarray(information), np.asarray(gradient)
+
+
+def _moved(modal: Modal, step: Array) -> Modal:
+    """The modes after a step; where near poles are mixed, H = C (j f - A)^-1 B is brought back to modes by the eigenvectors of A."""
+    count, total = modal.participation.shape
+    outputs = len(modal.shapes)
+    poles, participation, shapes, mixing = np.split(step, np.cumsum([count, count * total, outputs * count]))
+    matrix = np.diag(modal.poles + poles)
+    for (first, second), (one, other) in zip(_pairs(modal.poles), mixing.reshape(-1, 2), strict=True):
+        matrix[first, second] += one
+        matrix[second, first] += other
+    rows, columns = modal.participation + participation.reshape(count, total), modal.shapes + shapes.reshape(outputs, count)
+    if not len(mixing):
+        return Modal(np.diagonal(matrix), rows, columns)
+    values, vectors = np.linalg.eig(matrix)
+    return Modal(values, np.linalg.solve(vectors, rows), columns @ vectors)

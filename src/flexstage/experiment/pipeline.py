@@ -1,0 +1,151 @@
+"""Identification of a test from the files' contents to modes: what is usable, spectra of it, modes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import TypeAlias
+
+import numpy as np
+
+from flexstage.base.finding import DesignError, Finding, joined, require
+from flexstage.base.number import Array
+from flexstage.experiment.cross_spectra import Spectra, pooled, spectra
+from flexstage.experiment.health import Needs, responses_findings, usable
+from flexstage.experiment.identification.evidence import chosen_segments
+from flexstage.experiment.identification.identified import Identified
+from flexstage.experiment.identification.identify import Search, identify
+from flexstage.experiment.options import Allow
+from flexstage.experiment.record import Record, Responses, watched
+from flexstage.experiment.transfer import h2, multiple_coherence, spectral_ratio
+
+Told: TypeAlias = Callable[[str, float], None]
+"""Told what is done now, and the share of all that is done."""
+
+Measurement: TypeAlias = tuple[Record, ...] | Responses
+"""What was measured: records of one stage that belong together, or an analyser's responses."""
+
+_LOOKED, _SPECTRA = 0.1, 0.3
+_DEFAULT = Search()
+
+
+@dataclass(frozen=True, eq=False)
+class Identification:
+    """A test, the modes found in it, and what its spectra say.
+
+    `multiple` (f, p) is the multiple coherence; `second` and `ratio` are H2 and the paper's T_ij = G_ij/G_ii (Eq. 29), absent where the
+    spectra do not give them. All are absent for an analyser's responses. H1 and the ordinary coherence are in `found.responses`.
+    """
+
+    test: Measurement
+    found: Identified
+    spectra: Spectra | None = None
+    multiple: Array | None = None
+    second: Responses | None = None
+    ratio: Responses | None = None
+
+
+def sound(
+    contents: Sequence[Record | Responses], allow: frozenset[Allow] = frozenset(), needs: Needs | None = None, told: Told | None = None
+) -> Measurement:
+    """What of the files' contents can be used together; raises `DesignError` with every fault that is not allowed.
+
+    Several records are taken for tests of one stage; responses stand alone.
+
+    >>> from flexstage.experiment.example import one_mode_record
+    >>> [each.duration for each in sound([one_mode_record()])]
+    [64.0]
+    """
+    wanted = needs if needs is not None else Needs()
+    records = [each for each in contents if isinstance(each, Record)]
+    responses = [each for each in contents if isinstance(each, Responses)]
+    if responses:
+        require(_alone(contents))
+        return _sound_responses(responses[0], allow, wanted)
+    findings: list[Finding] = []
+    kept: list[Record] = []
+    for index, record in enumerate(records):
+        try:
+            kept.append(_sound_record(record, allow, wanted, _part(told, index, len(records))))
+        except DesignError as error:
+            findings += error.findings
+    require(joined(findings))
+    return tuple(kept)
+
+
+def identification(test: Measurement, search: Search = _DEFAULT, told: Told | None = None) -> Identification:
+    """The modes of a test, and the spectra they were found in. Raises `DesignError` as `identify` does.
+
+    >>> from flexstage.experiment.example import one_mode_record
+    >>> seen = identification((one_mode_record(),))
+    >>> round(float(seen.found.frequencies[0]), 1), seen.multiple.shape[1]
+    (10.0, 1)
+    """
+    if isinstance(test, Responses):
+        return Identification(test, identify(test, search, _named(told, "finding modes", 0.0, 1.0)))
+    segments = search.segments if search.segments is not None else chosen_segments(test)
+    share = (_SPECTRA - _LOOKED) / len(test)
+    parts = [
+        spectra(record, segments, _named(told, "spectra", _LOOKED + index * share, _LOOKED + (index + 1) * share))
+        for index, record in enumerate(test)
+    ]
+    found = identify(list(test), search, _named(told, "finding modes", _SPECTRA, 1.0))
+    names = {channel.name for channel in found.inputs}
+    known = pooled([_only(part, names) for part in parts])
+    second = h2(known) if len(known.outputs) >= len(known.inputs) else None
+    return Identification(test, found, known, multiple_coherence(known), second, spectral_ratio(known))
+
+
+def _only(part: Spectra, names: set[str]) -> Spectra:
+    """Without inputs that were at rest."""
+    kept = np.array([index for index, channel in enumerate(part.inputs) if channel.name in names], dtype=int)
+    power = np.real(np.sum(np.diagonal(part.xx, axis1=1, axis2=2), axis=0))
+    driven = kept[power[kept] > 0.0]
+    inputs = tuple(part.inputs[index] for index in driven)
+    return replace(part, inputs=inputs, xx=part.xx[:, driven[:, None], driven], yx=part.yx[:, :, driven])
+
+
+def _sound_record(record: Record, allow: frozenset[Allow], needs: Needs, told: Told | None) -> Record:
+    """The usable part of the record itself, not of the one that tells how far it was read."""
+    tell = _named(told, "looking at the record", 0.0, _LOOKED)
+    seen = record if tell is None else watched(record, lambda stop: tell(stop / max(1, record.length)))
+    kept = usable(seen, allow, needs)
+    first = round((kept.start - record.start) * record.rate)
+    whole = kept.length == record.length
+    chosen = record if kept.names == record.names else record.select(kept.names)
+    return chosen if whole else chosen.part(first, first + kept.length)
+
+
+def _sound_responses(responses: Responses, allow: frozenset[Allow], needs: Needs) -> Responses:
+    faults = responses_findings(responses, needs)
+    require(fault.finding for fault in faults if fault.kind not in allow)
+    dropped = {fault.channel for fault in faults if fault.kind is Allow.NAMES}
+    if responses.coherence is not None:
+        responses = replace(responses, coherence=np.clip(np.nan_to_num(responses.coherence), 0.0, 1.0))
+    if not dropped:
+        return responses
+    rows = [index for index, channel in enumerate(responses.outputs) if channel.name not in dropped]
+    columns = [index for index, channel in enumerate(responses.inputs) if channel.name not in dropped]
+    chosen = np.ix_(range(len(responses.frequencies)), rows, columns)
+    return replace(
+        responses,
+        outputs=tuple(responses.outputs[index] for index in rows),
+        inputs=tuple(responses.inputs[index] for index in columns),
+        values=responses.values[chosen],
+        coherence=None if responses.coherence is None else responses.coherence[chosen],
+    )
+
+
+def _alone(contents: Sequence[Record | Responses]) -> list[Finding]:
+    if len(contents) == 1:
+        return []
+    kinds = ", ".join(f"{each.source or each.name or 'one'}: {'record' if isinstance(each, Record) else 'responses'}" for each in contents)
+    return [Finding("records", f"responses cannot be put together with others ({kinds})", "Give several records, or responses alone")]
+
+
+def _named(told: Told | None, text: str, start: float, stop: float) -> Callable[[float], None] | None:
+    return None if told is None else lambda share: told(text, start + share * (stop - start))
+
+
+def _part(told: Told | None, index: int, count: int) -> Told | None:
+    return None if told is None else lambda text, share: told(text, (index * _LOOKED + share) / count)

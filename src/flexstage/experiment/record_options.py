@@ -1,0 +1,171 @@
+"""Options of commands that read records of tests, and the records opened and identified as they say."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from enum import Enum
+from pathlib import Path
+from typing import Annotated, TypeAlias
+
+from flexstage.base.finding import DesignError, Finding, refuse, require
+from flexstage.base.quantity import FREQUENCY
+from flexstage.base.unit import parse
+from flexstage.experiment import options
+from flexstage.experiment.cross_spectra import Segments
+from flexstage.experiment.formats.read import read
+from flexstage.experiment.health import Needs
+from flexstage.experiment.identification.identify import Search
+from flexstage.experiment.pipeline import Identification, identification, sound
+from flexstage.experiment.record import Record, Responses
+from flexstage.experiment.shapes_on_stage import StageShapes, stage_shapes
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.models.ideal import ideal
+from flexstage.models.linear.model import LinearModel
+from flexstage.show.command.options import text_option
+from flexstage.show.command.progress import progress_bar
+from flexstage.show.command.terminal import tell, warn
+
+Inputs: TypeAlias = Annotated[
+    list[str] | None, text_option("--inputs", "NAMES", 'Channels that were inputs, e.g. "u*" or B1,B2. Default: told by name.')
+]
+Outputs: TypeAlias = Annotated[list[str] | None, text_option("--outputs", "NAMES", 'Channels that were outputs, e.g. "S?".')]
+Only: TypeAlias = Annotated[list[str] | None, text_option("--only", "NAMES", "The channels that count at all.")]
+Units: TypeAlias = Annotated[
+    list[str] | None, text_option("--units", "NAMES=UNIT", 'Units of channels, e.g. "S*=um". May be given several times.')
+]
+Rate: TypeAlias = Annotated[
+    str | None, text_option("--rate", "FREQUENCY", 'Sampling rate, if the file has none or a wrong one: "2048 Hz".')
+]
+Kind: TypeAlias = Annotated[str | None, text_option("--kind", "<record|responses>", "Which is meant of a file that holds both.")]
+Allow: TypeAlias = Annotated[
+    list[str] | None,
+    text_option(
+        "--allow",
+        "FAULT",
+        "What may be used although it is bad: truncated, gaps, dead, clipped, units, dependent, short, slow, names, incomplete.",
+    ),
+]
+Band: TypeAlias = Annotated[
+    tuple[str, str] | None, text_option("--band", "LOW HIGH", 'Where modes are looked for, e.g. --band "50 Hz" "400 Hz".')
+]
+Resolution: TypeAlias = Annotated[
+    str | None, text_option("--resolution", "FREQUENCY", 'Resolution of the spectra, e.g. "0.5 Hz". Default: by length.')
+]
+
+
+@dataclass(frozen=True)
+class RecordTexts:
+    """What the user says about records, as texts of the command line."""
+
+    inputs: list[str] | None = None
+    outputs: list[str] | None = None
+    only: list[str] | None = None
+    units: list[str] | None = None
+    rate: str | None = None
+    kind: str | None = None
+    allow: list[str] | None = None
+    band: tuple[str, str] | None = None
+    resolution: str | None = None
+
+    def options(self) -> options.Options:
+        """The options of the reader; raises `DesignError` with all that is wrong with them."""
+        findings: list[Finding] = []
+        units = _units(self.units, findings)
+        allowed = [_word("--allow", word, options.Allow, findings) for word in names(self.allow)]
+        kind = None if self.kind is None else _word("--kind", self.kind, options.Kind, findings)
+        require(findings)
+        return options.Options(
+            inputs=names(self.inputs),
+            outputs=names(self.outputs),
+            only=names(self.only),
+            rate=None if self.rate is None else _hertz("--rate", self.rate),
+            units=units,
+            kind=None if kind is None else options.Kind(kind),
+            allow=frozenset(options.Allow(word) for word in allowed if word is not None),
+        )
+
+    def search(self) -> Search:
+        """What is searched for."""
+        band = None if self.band is None else (_hertz("--band", self.band[0]), _hertz("--band", self.band[1]))
+        if self.band is not None and band is not None and band[0] >= band[1]:
+            raise refuse("--band", f"{self.band[0]} to {self.band[1]} is no band", "Give a low frequency and a higher one")
+        lines = self._resolution()
+        return Search(band=band, segments=None if lines is None else Segments(1.0 / lines))
+
+    def needs(self, model: LinearModel | None, highest: float | None = None) -> Needs:
+        """What is asked of records: outputs of the stage where there is one, a rate for the highest mode or the band, the resolution."""
+        top = _hertz("--band", self.band[1]) if self.band is not None else highest
+        outputs = None if model is None else tuple((channel.name, channel.unit) for channel in model.outputs)
+        return Needs(resolution=self._resolution(), highest=top, outputs=outputs)
+
+    def _resolution(self) -> float | None:
+        return None if self.resolution is None else _hertz("--resolution", self.resolution)
+
+
+def open_records(paths: Sequence[Path], reader: options.Options) -> list[Record | Responses]:
+    """What the files hold; raises `DesignError` with all that keeps any of them from being read."""
+    found: list[Record | Responses] = []
+    findings = list(_twice(paths))
+    for path in dict.fromkeys(paths):
+        try:
+            found.append(read(path, reader))
+        except DesignError as error:
+            findings += error.findings
+    require(findings)
+    return found
+
+
+def identify_records(paths: Sequence[Path], texts: RecordTexts, model: LinearModel | None, highest: float | None = None) -> Identification:
+    """The modes of the records, each caution told; with the model of the stage and its `highest` mode [Hz] where they are known."""
+    reader, search, needs = texts.options(), texts.search(), texts.needs(model, highest)
+    with progress_bar() as shown:
+        test = sound(open_records(paths, reader), reader.allow, needs, shown.share)
+        seen = identification(test, search, shown.share)
+    for caution in seen.found.warnings:
+        warn(caution)
+    return seen
+
+
+def shapes_on(mechanism: Mechanism, seen: Identification) -> StageShapes:
+    """The measured shapes on the stage; what keeps them from being given is told."""
+    found = stage_shapes(ideal(mechanism), seen.found)
+    if found.missing:
+        tell(f"not given: shapes on the stage: {found.missing}")
+    return found
+
+
+def names(texts: Sequence[str] | None) -> tuple[str, ...]:
+    """Names that stand in texts, with commas between."""
+    return tuple(name.strip() for text in texts or () for name in text.split(",") if name.strip())
+
+
+def _twice(paths: Sequence[Path]) -> Iterator[Finding]:
+    counts = Counter(path.resolve() for path in paths)
+    for path in {path.resolve(): path for path in paths}.values():
+        if (count := counts[path.resolve()]) > 1:
+            yield Finding(str(path), f"it is given {count} times", "Give every record once: it would count as so many tests")
+
+
+def _units(texts: Sequence[str] | None, findings: list[Finding]) -> tuple[tuple[str, str], ...]:
+    pairs = [tuple(part.strip() for part in text.rpartition("=")[::2]) for text in texts or ()]
+    for text, (name, unit) in zip(texts or (), pairs, strict=True):
+        if not name or not unit:
+            findings.append(Finding(f"--units {text}", "this names no channel and unit", 'Write for example --units "S*=um"'))
+    return tuple((name, unit) for texts_of, unit in pairs for name in names([texts_of]))
+
+
+def _word(option: str, word: str, kind: type[Enum], findings: list[Finding]) -> str | None:
+    known = [str(each.value) for each in kind]
+    if word in known:
+        return word
+    findings.append(Finding(f"{option} {word}", f'"{word}" is none of {", ".join(known)}', "Write one of these words"))
+    return None
+
+
+def _hertz(option: str, text: str) -> float:
+    value = parse(text, FREQUENCY, where=option)
+    if value < 0.0 or (value == 0.0 and option != "--band"):
+        raise refuse(option, f"{text} is no frequency to use", 'Give one above zero, e.g. "2 kHz"')
+    return value

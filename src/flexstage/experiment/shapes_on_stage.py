@@ -1,0 +1,116 @@
+"""Measured shapes on the stage: what outputs named as the stage's gauges and motions tell of the motion of its bodies."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.base.dimension import dimension_of
+from flexstage.base.number import Array, first_design
+from flexstage.experiment.identification.identified import Identified
+from flexstage.experiment.record import Channel
+from flexstage.experiment.unit import unit_problem
+from flexstage.mechanism.mechanism import PLATFORM
+from flexstage.models.linear.kinematics import Kinematics
+from flexstage.spatial.frame import COMPONENTS
+
+_RANK = 1e-6
+
+
+@dataclass(frozen=True, eq=False)
+class StageShapes:
+    """Measured shapes as motions of the stage.
+
+    `twists` holds by body the twists (6, k) [m, rad] of all modes; `used` names the outputs they follow from; `explained` (k,) is the
+    share of each measured shape that a motion of the ideal stage explains: 1 where there are no more outputs than freedoms. `missing` says
+    why there are no twists.
+    """
+
+    twists: Mapping[str, Array]
+    used: tuple[str, ...]
+    explained: Array
+    missing: str = ""
+
+
+def stage_shapes(kinematics: Kinematics, found: Identified) -> StageShapes:
+    """The motions of the ideal stage that fit the measured shapes best: x = V (R V)^+ s, rows of R those of R_s or of a body's twist.
+
+    By least squares, rotations weighted with `length`. It is what R_s^-1 of the paper (Eq. 14) does for six gauges. Bodies move as
+    hinges free about their intended axes let them.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.models.ideal import ideal
+    >>> from flexstage.experiment.example import one_mode_record
+    >>> from flexstage.experiment.identification.identify import identify
+    >>> stage_shapes(ideal(double_triangle()), identify(one_mode_record())).missing
+    'no output of the record (y) has the name of a gauge or of a motion of the stage'
+    """
+    rows = {channel.name: row for channel in found.outputs if (row := _row(kinematics, channel.name)) is not None}
+    if not rows:
+        names = ", ".join(channel.name for channel in found.outputs[:8])
+        return _none(f"no output of the record ({names}) has the name of a gauge or of a motion of the stage")
+    chosen = [index for index, channel in enumerate(found.outputs) if channel.name in rows]
+    weight = np.array([kinematics.length if _turns(name) else 1.0 for name in rows])
+    scale = np.array([1.0 / kinematics.length if name.startswith("r") else 1.0 for name in kinematics.coordinates])
+    seen = weight[:, None] * np.stack(list(rows.values())) * scale
+    rank = int(np.linalg.matrix_rank(seen, tol=_RANK * float(np.linalg.norm(seen, 2))))
+    if rank < kinematics.mobility:
+        return _none(f"{', '.join(rows)} see {rank} of the {kinematics.mobility} motions of the platform")
+    measured = weight[:, None] * si_shapes(found)[chosen]
+    motion = np.linalg.lstsq(seen, measured, rcond=None)[0]
+    rest = np.sum((measured - seen @ motion) ** 2, axis=0) / np.maximum(np.sum(measured**2, axis=0), 1e-300)
+    twists = _twists(kinematics, scale[:, None] * motion)
+    return StageShapes(twists, tuple(rows), 1.0 - rest)
+
+
+def si_shapes(found: Identified, names: Sequence[str] | None = None) -> Array:
+    """Real shapes (p, k) of the outputs, or of those named, each in its unit's coherent SI form: shapes of um and mm side by side.
+
+    >>> from flexstage.experiment.example import one_mode_record
+    >>> from flexstage.experiment.identification.identify import identify
+    >>> si_shapes(identify(one_mode_record())).tolist()
+    [[1e-06]]
+    """
+    shapes = np.array([si_factor(channel) for channel in found.outputs])[:, None] * found.real_shapes
+    if names is None:
+        return shapes
+    known = [channel.name for channel in found.outputs]
+    return shapes[[known.index(name) for name in names]]
+
+
+def si_factor(channel: Channel) -> float:
+    """The size of a channel's unit in SI; 1 where it is not known.
+
+    >>> si_factor(Channel("S1", "um")), si_factor(Channel("S1"))
+    (1e-06, 1.0)
+    """
+    return float(dimension_of(channel.unit).size) if unit_problem(channel.unit) is None else 1.0
+
+
+def _row(kinematics: Kinematics, name: str) -> Array | None:
+    """How an output follows the platform's coordinates (f,); absent for names that are none of the stage's."""
+    if name in kinematics.gauges:
+        return first_design(kinematics.sensing, 2)[kinematics.gauges.index(name)] @ first_design(kinematics.motion, 2)
+    owner, _, component = name.rpartition(".")
+    if owner == PLATFORM and component in COMPONENTS:
+        return first_design(kinematics.motion, 2)[COMPONENTS.index(component)]
+    if name in kinematics.body_coordinates:
+        return first_design(kinematics.bodies, 2)[kinematics.body_coordinates.index(name)]
+    return None
+
+
+def _turns(name: str) -> bool:
+    return name.rpartition(".")[2] in COMPONENTS[3:]
+
+
+def _twists(kinematics: Kinematics, motion: Array) -> dict[str, Array]:
+    moved = first_design(kinematics.bodies, 2) @ motion
+    names = dict.fromkeys(name.rpartition(".")[0] for name in kinematics.body_coordinates)
+    rows = {name: [kinematics.body_coordinates.index(f"{name}.{component}") for component in COMPONENTS] for name in names}
+    return {name: moved[index] for name, index in rows.items()} | {PLATFORM: first_design(kinematics.motion, 2) @ motion}
+
+
+def _none(reason: str) -> StageShapes:
+    return StageShapes({}, (), np.zeros(0), reason)

@@ -1,0 +1,1 @@
+"""Model updating: the numbers that make theory agree with a test."""

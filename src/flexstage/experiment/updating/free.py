@@ -1,0 +1,139 @@
+"""The numbers of a description that a test may change, and what is known of them before it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from flexstage.analysis.sensitivities import departure, not_numbers
+from flexstage.base.finding import DesignError, Finding, nearest, require
+from flexstage.base.number import Array, Table
+from flexstage.mechanism.address import get, quantity_of, set_value
+from flexstage.mechanism.grammar import NumberNode
+from flexstage.mechanism.locate import canonical, locate
+from flexstage.mechanism.mechanism import Mechanism
+
+
+@dataclass(frozen=True)
+class Known:
+    """What is known before the test, each as a relative standard deviation: all of it assumed unless it is stated.
+
+    `prior` of every free number, `priors` those of single ones by address; `model_error` of theory's frequencies, whatever its numbers;
+    `gain_error` that of static gains (of theory, and of the scale of gauges and drives), `None` where gains are not compared.
+    """
+
+    prior: float = 0.1
+    priors: Mapping[str, float] = field(default_factory=lambda: Table({}))
+    model_error: float = 1e-3
+    gain_error: float | None = None
+
+
+DEFAULT = Known()
+
+
+@dataclass(frozen=True, eq=False)
+class Free:
+    """Free numbers by full address: units, values (P,) before, and prior standard deviations (P,) of their logarithms.
+
+    `mechanism` is the description with the departures made that these addresses mean.
+    """
+
+    mechanism: Mechanism
+    names: tuple[str, ...]
+    units: tuple[str, ...]
+    values: Array
+    deviations: Array
+
+    def moved(self, logarithms: Array) -> Mechanism:
+        """The description with each number multiplied by the exponential of its entry (P,)."""
+        result = self.mechanism
+        for name, value in zip(self.names, self.values * np.exp(logarithms), strict=True):
+            result = set_value(result, name, float(value))
+        return result
+
+
+def free(mechanism: Mechanism, names: Sequence[str], known: Known = DEFAULT) -> Free:
+    """The numbers at these addresses, freed. Raises `DesignError` with every address that is unknown, ambiguous, no number, or nought.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> free(double_triangle(), ["lever_notch.thickness"]).names
+    ('parts.lever_notch.thickness',)
+    """
+    require([*_error_findings(known), *_address_findings(mechanism, names, tuple(known.priors))])
+    full = tuple(locate(mechanism, name).address for name in names)
+    own = {canonical(mechanism, name): share for name, share in known.priors.items()}
+    require(Finding(f"prior of {name}", "it is not among the free numbers", nearest(name, full)) for name in own if name not in full)
+    ordered = sorted(full, key=lambda name: departure(mechanism, name))
+    started = mechanism
+    for name in ordered:
+        started = set_value(started, name, get(mechanism, name))
+    return Free(
+        mechanism=replace(started, requirements={}),
+        names=tuple(ordered),
+        units=tuple(quantity_of(mechanism, name).si for name in ordered),
+        values=np.array([float(np.real(get(mechanism, name))) for name in ordered]),
+        deviations=np.array([own.get(name, known.prior) for name in ordered]),
+    )
+
+
+def _error_findings(known: Known) -> list[Finding]:
+    stated = {"prior": known.prior, "model error": known.model_error} | {f"prior of {name}": share for name, share in known.priors.items()}
+    stated |= {} if known.gain_error is None else {"gain error": known.gain_error}
+    advice = 'Give a relative standard deviation between 0.0001 % and 100 %, e.g. "5 %"'
+    return [Finding(where, f"{share:g} is none", advice) for where, share in stated.items() if not 1e-6 <= share <= 1.0]
+
+
+def _address_findings(mechanism: Mechanism, names: Sequence[str], priors: Sequence[str]) -> list[Finding]:
+    if not names:
+        return [Finding("free", "no number is free", "Name at least one, e.g. parts.neck.thickness")]
+    findings: list[Finding] = []
+    lost: set[str] = set()
+    for name in (*names, *priors):
+        try:
+            locate(mechanism, name)
+        except DesignError as error:
+            findings += [_of_link(mechanism, finding) for finding in error.findings]
+            lost.add(name)
+    return [*findings, *_number_findings(mechanism, [name for name in names if name not in lost])]
+
+
+def _of_link(mechanism: Mechanism, finding: Finding) -> Finding:
+    """Which links are meant where an address begins with the name of one."""
+    link, _, rest = finding.where.strip().partition(".")
+    units = [unit for unit, drawn in mechanism.units.items() if link in drawn.links]
+    if not units or not rest:
+        return finding
+    what = f'"{link}" is a link of {len(units)} units' if len(units) > 1 else f'"{link}" is a link of a unit'
+    return replace(finding, what=what, advice=f"Write {' or '.join(f'{unit}/{link}.{rest}' for unit in units)}")
+
+
+def _number_findings(mechanism: Mechanism, names: Sequence[str]) -> list[Finding]:
+    findings = [_advised(mechanism, finding) for finding in not_numbers(mechanism, tuple(names))]
+    places = [locate(mechanism, name).address for name in names]
+    findings += [Finding(name, "it is named twice", "Name it once") for name in dict.fromkeys(places) if places.count(name) > 1]
+    for name in names:
+        if isinstance(locate(mechanism, name).node, NumberNode) and get(mechanism, name) is not None:
+            findings += _value_findings(name, get(mechanism, name))
+    return findings
+
+
+def _advised(mechanism: Mechanism, finding: Finding) -> Finding:
+    """What to free where the mass of a drawn body is meant."""
+    body = canonical(mechanism, finding.where).split(".")
+    if body[-1] != "mass" or body[:1] != ["bodies"] or not mechanism.bodies[body[1]].solids:
+        return finding
+    solids = f"bodies.{body[1]}.solids"
+    shape = next(iter(mechanism.bodies[body[1]].solids))
+    advice = f"Free a size or a density, e.g. {solids}.{shape}.size.z, or state the mass instead of the solids"
+    return replace(finding, what="the body's mass follows from its solids", advice=advice)
+
+
+def _value_findings(name: str, value: object) -> list[Finding]:
+    number = np.asarray(value)
+    if number.ndim:
+        return [Finding(name, f"it holds {number.size} values", "Update one design at a time")]
+    if number == 0.0:
+        return [Finding(name, "it is 0, of which no share can be uncertain", "Free another number, or state a value that is not 0")]
+    return []

@@ -1,0 +1,166 @@
+"""What a test and theory are compared by: frequencies of paired modes, of repeated ones their mean, and static gains."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.analysis.complete import platform_modes
+from flexstage.analysis.sensitivities import projected, slope, steppable, stepped
+from flexstage.base.finding import refuse
+from flexstage.base.number import Array
+from flexstage.experiment.comparison import Compared
+from flexstage.experiment.identification.identified import Identified
+from flexstage.experiment.updating.gains import Gains
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.models.linear.eigen import Eigen, eigen
+from flexstage.models.linear.model import LinearModel
+from flexstage.models.linear.static import static_gain
+from flexstage.models.lumped import lumped
+
+
+@dataclass(frozen=True)
+class ModeRow:
+    """Modes of theory that belong together (`modes`, by rising frequency of the whole model, from 0), and what was measured of them.
+
+    `frequency` [Hz] is sqrt(mean of f^2) over the `measured` modes, the square root of the mean eigenvalue: symmetric in repeated
+    modes, hence smooth in every parameter; `deviation` its relative standard deviation.
+    """
+
+    name: str
+    modes: tuple[int, ...]
+    measured: tuple[int, ...]
+    frequency: float
+    deviation: float
+
+
+@dataclass(frozen=True, eq=False)
+class Design:
+    """One design on the way: its lumped model, its modes, and which of them each row has."""
+
+    mechanism: Mechanism
+    model: LinearModel
+    solved: Eigen
+    modes: tuple[tuple[int, ...], ...]
+
+    @property
+    def frequencies(self) -> Array:
+        """Of every row: sqrt(mean f^2) [Hz]."""
+        means = [np.mean(self.solved.values[list(modes)]) for modes in self.modes]
+        return np.sqrt(np.array(means)) / (2.0 * np.pi)
+
+
+def mode_rows(mechanism: Mechanism, compared: Compared, experiment: Identified) -> tuple[ModeRow, ...]:
+    """The rows that a comparison gives: one for each platform mode that was found, one for all of a group of repeated modes."""
+    places = platform_modes(mechanism, lumped(mechanism)).platform
+    repeated = [group.numbers for group in compared.repeated]
+    groups = [*repeated, *((row.number,) for row in compared.rows if not any(row.number in group for group in repeated))]
+    found: list[ModeRow] = []
+    for numbers in sorted(groups):
+        rows = [compared.rows[number - 1] for number in numbers]
+        measured = tuple(row.experiment.number for row in rows if row.experiment is not None)
+        if measured:
+            names = dict.fromkeys(row.name for row in rows)
+            label = f"mode {', '.join(str(number) for number in numbers)} ({', '.join(names)})"
+            modes = tuple(places[number - 1] for number in numbers)
+            found.append(ModeRow(label, modes, measured, *_mean(experiment, measured)))
+    return tuple(found)
+
+
+def _mean(experiment: Identified, measured: tuple[int, ...]) -> tuple[float, float]:
+    chosen = list(measured)
+    frequencies, deviations = experiment.frequencies[chosen], experiment.frequency_deviations[chosen]
+    total = float(np.sum(frequencies**2))
+    return float(np.sqrt(total / len(chosen))), float(np.sqrt(np.sum((frequencies * deviations) ** 2))) / total
+
+
+def begun(mechanism: Mechanism, rows: tuple[ModeRow, ...]) -> Design:
+    """The design that the rows were paired with.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> begun(double_triangle(), (ModeRow("z", (2,), (0,), 126.0, 1e-4),)).frequencies.round(1).tolist()
+    [126.2]
+    """
+    model = lumped(mechanism)
+    return Design(mechanism, model, eigen(model), tuple(row.modes for row in rows))
+
+
+def followed(before: Design, mechanism: Mechanism) -> Design:
+    """The design at other values, each row with the modes that lie in the subspace of its modes before.
+
+    Shapes are compared with M of the design before, all rows at once, so that crossing modes stay with their rows.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> here = begun(double_triangle(), (ModeRow("z", (2,), (0,), 126.0, 1e-4),))
+    >>> followed(here, double_triangle()).modes
+    ((2,),)
+    """
+    from scipy.optimize import linear_sum_assignment
+
+    model = lumped(mechanism)
+    solved = eigen(model)
+    if len(solved.shapes) != len(before.solved.shapes):
+        what = f"its numbers moved so far that the model has {len(solved.shapes)} coordinates where it had {len(before.solved.shapes)}"
+        raise refuse("update", what, "Check units and names of the record's channels (flexstage compare), or state narrower priors")
+    weighted = before.model.inertia_matrix @ before.solved.shapes
+    likeness = []
+    for modes in before.modes:
+        inside = np.sum((weighted[:, list(modes)].T @ solved.shapes) ** 2, axis=0)
+        likeness += [np.nan_to_num(inside)] * len(modes)
+    _, columns = linear_sum_assignment(-np.array(likeness))
+    ends = np.cumsum([len(modes) for modes in before.modes])[:-1]
+    groups = tuple(tuple(sorted(group.tolist())) for group in np.split(columns, ends))
+    return Design(mechanism, model, solved, groups)
+
+
+def frequency_slopes(design: Design, names: tuple[str, ...]) -> Array:
+    """d ln f / d p (rows, P) of every row at the design, exact: sum of phi^T (dK - lambda dM) phi over 2 sum of lambda.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> here = begun(double_triangle(), (ModeRow("z", (2,), (0,), 126.0, 1e-4),))
+    >>> (frequency_slopes(here, ("materials.steel.density",)) * 7750.0).round(4).tolist()
+    [[-0.4923]]
+    """
+    used = [mode for modes in design.modes for mode in modes]
+    shapes, values = design.solved.shapes[:, used], design.solved.values[used]
+    ends = np.cumsum([0, *(len(modes) for modes in design.modes)])[:-1]
+    result = np.zeros((len(design.modes), len(names)))
+    for chunk, model in _stepped(design, names):
+        change = projected(model.stiffness, shapes) - values * projected(model.inertia, shapes)
+        moved = np.broadcast_to(np.diagonal(change, axis1=-2, axis2=-1), (len(chunk), len(used)))
+        result[:, chunk] = (np.add.reduceat(moved, ends, axis=1) / (2.0 * np.add.reduceat(values, ends))).T
+    return result
+
+
+def gains_of(design: Design, gains: Gains) -> Array:
+    """Theory's static gains (p, m) of the measured ones."""
+    return static_gain(design.model, gains.outputs, gains.inputs).values
+
+
+def gain_slopes(design: Design, names: tuple[str, ...], gains: Gains) -> Array:
+    """Derivatives (p, m, P) of theory's static gains."""
+    result = np.zeros((*gains.values.shape, len(names)))
+    for chunk, model in _stepped(design, names):
+        moved = slope(static_gain(model, gains.outputs, gains.inputs).values)
+        result[..., chunk] = np.moveaxis(np.broadcast_to(moved, (len(chunk), *gains.values.shape)), 0, -1)
+    return result
+
+
+def _stepped(design: Design, names: tuple[str, ...]) -> list[tuple[list[int], LinearModel]]:
+    chunks = steppable(design.mechanism, names)
+    return [(chunk, lumped(stepped(design.mechanism, tuple(names[index] for index in chunk)))) for chunk in chunks]
+
+
+def paired_alike(rows: tuple[ModeRow, ...], design: Design, again: tuple[ModeRow, ...]) -> bool:
+    """Whether a comparison made `again` at a design gives measured modes to the same modes of theory as the rows followed to there.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from dataclasses import replace
+    >>> row = ModeRow("z", (2,), (0,), 126.0, 1e-4)
+    >>> here = begun(double_triangle(), (row,))
+    >>> paired_alike((row,), here, (row,)), paired_alike((row,), here, (replace(row, modes=(3,)),))
+    (True, False)
+    """
+    followed_to = {(row.measured, modes) for row, modes in zip(rows, design.modes, strict=True)}
+    return followed_to == {(row.measured, tuple(sorted(row.modes))) for row in again}

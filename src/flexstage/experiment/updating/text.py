@@ -1,0 +1,24 @@
+"""The design file of an updated stage: the text given, with the new values and where they are from; comments stay."""
+
+from __future__ import annotations
+
+from flexstage.experiment.updating.update import Told, Updated
+from flexstage.mechanism.store import patch
+from flexstage.mechanism.store.retag import retagged
+
+_DIGITS = 7
+
+
+def updated_text(text: str, found: Updated, record: str, *, where: str = "text") -> str:
+    """The text of the stage's design file with the values after the update, each tagged `derived update RECORD` with its deviation.
+
+    Raises `DesignError` where the file's layout does not allow it.
+    """
+    values = {name: float(f"{value:.{_DIGITS}g}") for name, value in zip(found.parameters, found.after.tolist(), strict=True)}
+    tags = {name: _tag(found, index, record) for index, name in enumerate(found.parameters)}
+    return retagged(patch(text, values, where=where), tags, where=where)
+
+
+def _tag(found: Updated, index: int, record: str) -> str:
+    known = {Told.NOT: f"not identifiable from {found.data}", Told.WITHHELD: "theory and test contradict each other"}
+    return f"derived update {record}, {known.get(found.told[index], f'+- {100.0 * found.deviations[index]:.2g} %')}"

@@ -1,0 +1,344 @@
+"""Model updating: the numbers that make theory agree with a test, how well it tells them, and a design file that states them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from enum import Enum
+
+import numpy as np
+
+from flexstage.base.finding import Finding, refuse, require
+from flexstage.base.labelled import Matrix
+from flexstage.base.number import Array
+from flexstage.experiment.comparison import Compared, compare, shared_sensors
+from flexstage.experiment.identification.confidence import NORMAL_95
+from flexstage.experiment.identification.identified import Identified
+from flexstage.experiment.updating.fit import Fitted, Problem, fitted
+from flexstage.experiment.updating.free import DEFAULT, Free, Known, free
+from flexstage.experiment.updating.gains import Gains, measured_gains
+from flexstage.experiment.updating.rows import (
+    Design,
+    ModeRow,
+    begun,
+    followed,
+    frequency_slopes,
+    gain_slopes,
+    gains_of,
+    mode_rows,
+    paired_alike,
+)
+from flexstage.mechanism.address import get
+from flexstage.mechanism.mechanism import Mechanism
+
+_TOLD, _HARDLY = 0.1, 0.2
+_NO_EFFECT = 1e-6
+_ROUNDS = 5
+_ALONE = 0.9
+_IMPROBABLE = 0.01
+_FAR = 3.0
+_CONTRADICTING = 10.0
+
+
+class Told(Enum):
+    """How well a test tells a number: by the share of its prior variance that is left."""
+
+    WELL = "identified"
+    """At most 10 %."""
+    WEAKLY = "weakly identified"
+    """At most 20 %."""
+    NOT = "not identifiable"
+    """More: the value is the prior's as much as the test's."""
+    WITHHELD = "withheld"
+    """Theory and test are so far apart that the test tells nothing of single numbers."""
+
+
+@dataclass(frozen=True)
+class Residual:
+    """One datum [Hz, or m/m for gains]: measured, by theory before and after, and the relative standard deviation it was weighted with.
+
+    That of a gain is relative to the largest gain of its actuator, `scale`.
+    """
+
+    name: str
+    unit: str
+    measured: float
+    deviation: float
+    before: float
+    after: float
+    scale: float
+
+    @property
+    def misfit_before(self) -> float:
+        """Measured less theory before, in standard deviations."""
+        return (self.measured - self.before) / (self.scale * self.deviation)
+
+    @property
+    def misfit(self) -> float:
+        """Measured less theory after, in standard deviations."""
+        return (self.measured - self.after) / (self.scale * self.deviation)
+
+
+@dataclass(frozen=True, eq=False)
+class Updated:
+    """Numbers before and after a test, SI, with the standard deviations of their logarithms (relative ones, where small).
+
+    `parameters` (P) are full addresses; `prior` (P,) and `covariance` (P, P) are of logarithms. `singular` (P,) and the columns of
+    `directions` (P, P) are combinations of parameters, in prior standard deviations, by how well the data tell them: 1/(1 + s^2) of the
+    prior variance is left. `chi_square` counts data and priors at the result, over `freedoms` data; `chi_square_before` the data alone.
+    `mechanism` is the description after. `warnings` say what not to rely on.
+    """
+
+    parameters: tuple[str, ...]
+    units: tuple[str, ...]
+    before: Array
+    after: Array
+    prior: Array
+    covariance: Array
+    singular: Array
+    directions: Array
+    residuals: tuple[Residual, ...]
+    chi_square_before: float
+    chi_square: float
+    steps: int
+    known: Known
+    mechanism: Mechanism
+    compared: Compared
+    warnings: tuple[str, ...]
+    provenance: str
+
+    @property
+    def deviations(self) -> Array:
+        """Posterior standard deviations (P,) of the logarithms."""
+        return np.sqrt(np.diag(self.covariance))
+
+    @property
+    def intervals(self) -> Array:
+        """95 % intervals (P, 2) of the values, SI."""
+        ends = np.exp(NORMAL_95 * np.stack([-self.deviations, self.deviations], axis=-1)) * self.after[:, None]
+        return np.sort(ends, axis=-1)
+
+    @property
+    def changes(self) -> Array:
+        """Values after over values before less one (P,)."""
+        return self.after / self.before - 1.0
+
+    @property
+    def correlations(self) -> Matrix:
+        """Posterior correlations (P, P)."""
+        values = self.covariance / np.outer(self.deviations, self.deviations)
+        return Matrix(values, self.parameters, self.parameters, "1")
+
+    @property
+    def left(self) -> Array:
+        """Share (P,) of each prior variance that is left."""
+        return np.diag(self.covariance) / self.prior**2
+
+    @property
+    def told(self) -> tuple[Told, ...]:
+        """How well the test tells each number; withheld where data miss theory by more than three deviations on average."""
+        known = (Told.WELL if share <= _TOLD else Told.WEAKLY if share <= _HARDLY else Told.NOT for share in self.left)
+        return tuple(Told.WITHHELD if self.withheld and told is not Told.NOT else told for told in known)
+
+    @property
+    def withheld(self) -> bool:
+        """Whether theory and test contradict each other beyond what any of the numbers may be."""
+        return self.chi_square > _CONTRADICTING * max(1, self.freedoms)
+
+    @property
+    def data(self) -> str:
+        """What was compared: `frequencies`, or `frequencies and static gains`."""
+        return "frequencies" if self.known.gain_error is None else "frequencies and static gains"
+
+    @property
+    def verdicts(self) -> tuple[str, ...]:
+        """How well the test tells each number, in words: `not identifiable from frequencies` is a correct answer."""
+        return tuple(self._verdict(index, told) for index, told in enumerate(self.told))
+
+    @property
+    def freedoms(self) -> int:
+        """Number of data."""
+        return len(self.residuals)
+
+    @property
+    def probability(self) -> float:
+        """Probability that chi-square is this large or larger, if deviations, priors and theory hold."""
+        from scipy.special import chdtrc
+
+        return float(chdtrc(self.freedoms, self.chi_square))
+
+    def _verdict(self, index: int, told: Told) -> str:
+        if told is Told.WITHHELD:
+            return f"withheld: chi-square {self.chi_square:.2g} with {self.freedoms} data"
+        if told is not Told.NOT:
+            return told.value
+        row = np.where(np.arange(len(self.parameters)) == index, 0.0, self.correlations.values[index])
+        other = int(np.argmax(np.abs(row)))
+        rest = f"; only together with {self.parameters[other]}" if abs(row[other]) > _ALONE else ""
+        return f"{told.value} from {self.data}{rest}"
+
+
+def update(mechanism: Mechanism, experiment: Identified, names: Sequence[str], known: Known = DEFAULT) -> Updated:
+    """The values of the numbers at `names` that make the lumped reading agree best with a test, given what is known before.
+
+    Bayesian least squares in the logarithms x = ln(p/p0) (Tarantola 2005, ch. 3; Friswell & Mottershead 1995, ch. 8): minimise
+    sum ((d - g(x))/sigma)^2 + sum (x/sigma_p)^2 by Gauss-Newton, derivatives exact by complex step; posterior covariance
+    (J^T W J + S^-1)^-1 at the result. Data are ln f of the modes paired as `compare` pairs them, repeated ones by their mean eigenvalue,
+    with the identified deviations and the model error; with a `gain_error` also the static gains. Intervals hold where frequencies
+    change about linearly over them.
+
+    Raises `DesignError` for unknown, ambiguous and nought numbers, those without effect, fewer data than numbers, a record without the
+    stage's gauges, and where no end is found.
+    """
+    freed = free(mechanism, names, known)
+    model = begun(freed.mechanism, ()).model
+    gains = None
+    if known.gain_error is not None:
+        gains = measured_gains(mechanism, model, experiment, shared_sensors(model, experiment))
+    compared = compare(freed.mechanism, experiment)
+    rows = mode_rows(freed.mechanism, compared, experiment)
+    require(_few(experiment, rows, freed, gains))
+    here, first, steps = np.zeros(len(freed.names)), None, 0
+    for _ in range(_ROUNDS):
+        data = _Data(freed, known, rows, gains)
+        found = fitted(data.problem, here, begun(freed.moved(here * freed.deviations), rows))
+        steps += found.steps
+        if first is None:
+            first = found
+            require(_without_effect(found.slopes, freed, gains))
+        compared = compare(found.state.mechanism, experiment)
+        again = mode_rows(found.state.mechanism, compared, experiment)
+        if paired_alike(rows, found.state, again):
+            return _updated(data, found, compared, steps)
+        rows, here = again, found.parameters
+        require(_few(experiment, rows, freed, gains))
+    what = f"the pairing of modes by shape still changes after {_ROUNDS} rounds"
+    raise refuse("update", what, "State narrower priors, or begin with a design nearer to the test (flexstage compare shows the pairs)")
+
+
+@dataclass(frozen=True, eq=False)
+class _Data:
+    """The data with their weights, and the problem they make of free numbers; `gains` is absent where they are not compared."""
+
+    freed: Free
+    known: Known
+    rows: tuple[ModeRow, ...]
+    gains: Gains | None
+
+    @property
+    def frequency_error(self) -> Array:
+        """Relative standard deviations (rows,) of frequencies: of the test and of theory."""
+        return np.hypot(np.array([row.deviation for row in self.rows]), self.known.model_error)
+
+    @property
+    def problem(self) -> Problem[Design]:
+        freed = self.freed
+        return Problem(
+            state=lambda place, before: followed(before, freed.moved(place * freed.deviations)), residuals=self.misfit, slopes=self.slopes
+        )
+
+    def misfit(self, design: Design) -> Array:
+        measured = np.array([row.frequency for row in self.rows])
+        parts = [np.log(measured / design.frequencies) / self.frequency_error]
+        if self.gains is not None:
+            parts.append(((self.gains.values - gains_of(design, self.gains)) / self._gain_errors(self.gains)).ravel())
+        return np.concatenate(parts)
+
+    def slopes(self, design: Design) -> Array:
+        """Of theory, weighted, by prior standard deviations (n, P)."""
+        names = self.freed.names
+        values = self.freed.deviations * np.array([get(design.mechanism, name) for name in names])
+        parts = [frequency_slopes(design, names) * values / self.frequency_error[:, None]]
+        if self.gains is not None:
+            weighted = gain_slopes(design, names, self.gains) * values / self._gain_errors(self.gains)[..., None]
+            parts.append(weighted.reshape(-1, len(names)))
+        return np.concatenate(parts)
+
+    def residuals(self, before: Design, after: Design) -> Iterator[Residual]:
+        both = zip(self.rows, self.frequency_error, before.frequencies, after.frequencies, strict=True)
+        for row, error, first, last in both:
+            yield Residual(row.name, "Hz", row.frequency, float(error), float(first), float(last), row.frequency)
+        if self.gains is None:
+            return
+        first, last = gains_of(before, self.gains), gains_of(after, self.gains)
+        scale = self.gains.scale
+        errors = self._gain_errors(self.gains) / scale
+        for (row, column), value in np.ndenumerate(self.gains.values):
+            name = f"gain {self.gains.outputs[row]}/{self.gains.inputs[column]}"
+            numbers = (float(value), float(errors[row, column]), float(first[row, column]), float(last[row, column]))
+            yield Residual(name, "m/m", *numbers, float(scale[column]))
+
+    def _gain_errors(self, gains: Gains) -> Array:
+        return gains.errors(self.known.gain_error or 0.0)
+
+
+def _updated(data: _Data, found: Fitted[Design], compared: Compared, steps: int) -> Updated:
+    freed = data.freed
+    count = len(freed.names)
+    _, singular, directions = np.linalg.svd(np.concatenate([found.slopes, np.zeros((count, count))]), full_matrices=False)
+    whitened = (directions.T / (1.0 + singular**2)) @ directions
+    before = followed(found.state, freed.mechanism)
+    residuals = tuple(data.residuals(before, found.state))
+    start = data.misfit(before)
+    return Updated(
+        parameters=freed.names,
+        units=freed.units,
+        before=freed.values,
+        after=freed.values * np.exp(found.parameters * freed.deviations),
+        prior=freed.deviations,
+        covariance=whitened * np.outer(freed.deviations, freed.deviations),
+        singular=singular,
+        directions=directions.T,
+        residuals=residuals,
+        chi_square_before=float(start @ start),
+        chi_square=found.cost,
+        steps=steps,
+        known=data.known,
+        mechanism=found.state.mechanism,
+        compared=compared,
+        warnings=(*compared.warnings, *_cautions(data, found, compared)),
+        provenance=compared.provenance,
+    )
+
+
+def _cautions(data: _Data, found: Fitted[Design], compared: Compared) -> Iterator[str]:
+    """What not to rely on, besides what the comparison says."""
+    from scipy.special import chdtrc
+
+    freed, errors = data.freed, data.known
+    if chdtrc(len(found.residuals), found.cost) < _IMPROBABLE:
+        yield (
+            f"chi-square is {found.cost:.3g} with {len(found.residuals)} data: theory and test differ by more than the stated "
+            f"errors, and the intervals are too narrow: state a larger model error than {100.0 * errors.model_error:.2g} %, or free "
+            "what else may be off."
+        )
+    for name, moved, prior in zip(freed.names, found.parameters, freed.deviations, strict=True):
+        if abs(moved) > _FAR:
+            yield f"{name} moved by {abs(moved):.2g} of its prior standard deviations of {100.0 * prior:.2g} %: something else may be off."
+    for group in compared.repeated:
+        if 0 < group.seen < len(group.numbers):
+            yield f"the repeated modes {' and '.join(map(str, group.numbers))} are compared by the {group.seen} of them seen."
+
+
+def _few(experiment: Identified, rows: tuple[ModeRow, ...], freed: Free, gains: Gains | None) -> list[Finding]:
+    where = experiment.responses.source or "record"
+    count = len(rows) + (0 if gains is None else gains.values.size)
+    if not rows:
+        what = f"none of the {len(experiment.frequencies)} modes found in it is like a mode of the platform"
+        return [Finding(where, what, "Check names and signs of gauges and the band (flexstage compare shows both sides)")]
+    if count >= len(freed.names):
+        return []
+    seen = ", ".join(row.name for row in rows)
+    what = f"it gives {count} data ({seen}; repeated modes count once) for {len(freed.names)} free numbers"
+    return [Finding(where, what, "Free fewer numbers, or compare static gains too" if gains is None else "Free fewer numbers")]
+
+
+def _without_effect(slopes: Array, freed: Free, gains: Gains | None) -> list[Finding]:
+    """Numbers whose prior deviation moves no datum by a millionth of the datum's deviation."""
+    strength = np.max(np.abs(slopes), axis=0)
+    data = "frequencies compared" if gains is None else "frequencies and gains compared"
+    return [
+        Finding(name, f"it has no effect on the {data}", "Take it out of the free numbers: the test tells nothing of it")
+        for name, size in zip(freed.names, strength, strict=True)
+        if size < _NO_EFFECT
+    ]

@@ -1,0 +1,183 @@
+"""The chain of a virtual test in the frequency domain: from white numbers to recorded inputs and gauge readings.
+
+Everything of the chain is linear and time-invariant up to the steps of the gauges, and the drive has no power above its band: the
+continuous response is, exactly, the convolution of the drive's samples with the chain's impulse response. It is taken block by block by
+transforms, with the continuous frequency response of the stage and no discretisation of it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.base.finding import Finding, require
+from flexstage.base.number import Array
+from flexstage.experiment.virtual_rig.plan import TAPER, Plan
+from flexstage.experiment.virtual_rig.setup import Tap
+from flexstage.mechanism.mechanism import Damping, ModalDamping, StructuralDamping
+from flexstage.models.linear.damping import modal_ratios
+from flexstage.models.linear.eigen import eigen
+from flexstage.models.linear.frequency import superposed
+from flexstage.models.linear.model import LinearModel
+from flexstage.models.linear.port import Ports, ports
+
+_FORGOTTEN = 30.0
+"""Time constants after which an impulse is forgotten: e^-30 is 1e-13."""
+_SPREAD = 15.0
+_STEEPNESS = 4.0
+_FINER = 2
+_SHORTEST, _LONGEST = 16_384, 2**23
+_LINES = 4096
+
+
+@dataclass(frozen=True, eq=False)
+class Chain:
+    """Transfers over the lines of a transform of three blocks of `size` samples at `finer` times the sampling rate.
+
+    From white numbers of unit variance: `strokes` (l, m) to the free strokes, `inputs` (l, m) to the recorded inputs [m], `outputs`
+    (l, p, m) to the gauges [m], over the lines up to the end of the drive's band; `gauge` (f, p), over all lines, from white numbers to the
+    gauges' noise [m]. `note` says how damping is taken.
+    """
+
+    size: int
+    finer: int
+    frequencies: Array
+    strokes: Array
+    inputs: Array
+    outputs: Array
+    gauge: Array
+    note: str
+
+    @property
+    def input_rms(self) -> Array:
+        """Expected rms (m,) of the recorded inputs [m]."""
+        return np.sqrt(self._power(np.abs(self.inputs) ** 2))
+
+    @property
+    def output_rms(self) -> Array:
+        """Expected rms (p,) of the gauge readings [m]: motion and noise."""
+        return np.sqrt(self._power(np.sum(np.abs(self.outputs) ** 2, axis=-1)) + self._power(np.abs(self.gauge) ** 2))
+
+    @property
+    def stroke_rate_rms(self) -> Array:
+        """Expected rms (m,) of the free strokes' rate [m/s]."""
+        omega = 2.0 * np.pi * self.frequencies[: len(self.strokes), None]
+        return np.sqrt(self._power(np.abs(omega * self.strokes) ** 2))
+
+    def _power(self, squares: Array) -> Array:
+        """Mean square from squared transfers on lines from zero up: those of negative frequency are as many again."""
+        return (2.0 * np.sum(squares, axis=0) - squares[0]) / (3 * self.size)
+
+
+def chain(model: LinearModel, plan: Plan, damping: Damping) -> Chain:
+    """The chain of a plan. Raises `DesignError` where the stage rings for longer than can be held.
+
+    Structural damping has no form in time: each mode takes its equivalent ratio, and the note says so.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.models.mapped import mapped
+    >>> from flexstage.experiment.virtual_rig.plan import planned
+    >>> from flexstage.experiment.virtual_rig.setup import RigSetup
+    >>> stage = double_triangle()
+    >>> model = mapped(stage)
+    >>> found = chain(model, planned(stage, model, RigSetup(seconds=1.0)), model.damping)
+    >>> (1e6 * found.input_rms).round(3).tolist()  # 1.5 and 2 um, what the filter leaves of them
+    [1.418, 1.418, 1.418, 1.89, 1.89, 1.89]
+    """
+    finer = max(_FINER, int(np.ceil(2.0 * (1.0 + TAPER) * plan.band[1] / plan.rate)))
+    rate = finer * plan.rate
+    size = _block(_memory(model, plan, damping), rate)
+    lines = np.arange(3 * size // 2 + 1) * (rate / (3 * size))
+    shape = _flat(lines, plan.band)
+    used = lines[: int(np.flatnonzero(shape)[-1]) + 1]
+    unit = shape[: len(used)] / np.sqrt((2.0 * np.sum(shape**2) - shape[0] ** 2) / (3 * size))
+    filtered = butterworth(used, plan.setup.filter.order, plan.corner)
+    commands = unit[:, None] * plan.rms
+    strokes = commands / (1.0 + 1j * used[:, None] / plan.bandwidths)
+    seen = filtered[:, None] / (1.0 + 1j * used[:, None] / plan.lags)
+    motion = _plant(model, ports(model, plan.gauges, plan.actuators), used, damping) * strokes[:, None, :]
+    white = butterworth(lines, plan.setup.filter.order, plan.corner)[:, None] / (1.0 + 1j * lines[:, None] / plan.lags)
+    return Chain(
+        size=size,
+        finer=finer,
+        frequencies=lines,
+        strokes=strokes,
+        inputs=commands.astype(complex) if plan.setup.tap is Tap.COMMAND else filtered[:, None] * strokes,
+        outputs=seen[:, :, None] * motion,
+        gauge=white * (plan.densities * np.sqrt(0.5 * rate)),
+        note=_note(damping),
+    )
+
+
+def butterworth(frequencies: Array, order: int, corner: float) -> Array:
+    """Transfer (f,) of an analogue Butterworth low-pass: product of 1/(s - p_k), p_k = e^{j pi (2k + n + 1)/(2n)}, s = j f/corner.
+
+    >>> abs(butterworth(np.array([0.0, 100.0]), 6, 100.0)).round(4).tolist(), butterworth(np.array([5.0]), 0, 1.0).tolist()
+    ([1.0, 0.7071], [(1+0j)])
+    """
+    poles = np.exp(0.5j * np.pi * (2.0 * np.arange(order) + order + 1.0) / max(order, 1))
+    result = np.ones(len(frequencies), dtype=complex)
+    for pole in poles:
+        result = result / (1j * frequencies / corner - pole)
+    return result
+
+
+def density_shape(frequencies: Array, band: tuple[float, float]) -> Array:
+    """Shape (f,) of the drive's power density: 1 within the band, falling to nought from `low` to `low`/2 and `high` to 1.25 `high`.
+
+    >>> density_shape(np.array([4.0, 10.0, 100.0, 112.5, 130.0]), (10.0, 100.0)).round(6).tolist()
+    [0.0, 1.0, 1.0, 0.25, 0.0]
+    """
+    return _flat(frequencies, band) ** 2
+
+
+def _flat(frequencies: Array, band: tuple[float, float]) -> Array:
+    """Edges by the error function: their impulse response fades as a Gaussian, so that blocks need little of their neighbours."""
+    from scipy.special import erfc
+
+    low, high = band
+    upper = (frequencies - high) / (TAPER * high)
+    shape = np.where(upper <= 0.0, 1.0, np.where(upper >= 1.0, 0.0, 0.5 * erfc(_STEEPNESS * (2.0 * upper - 1.0))))
+    if low > 0.0:
+        lower = (low - frequencies) / (0.5 * low)
+        shape = shape * np.where(lower <= 0.0, 1.0, np.where(lower >= 1.0, 0.0, 0.5 * erfc(_STEEPNESS * (2.0 * lower - 1.0))))
+    return shape
+
+
+def _memory(model: LinearModel, plan: Plan, damping: Damping) -> float:
+    """Seconds after which the chain has forgotten an impulse."""
+    solved = eigen(model)
+    omega, ratios = np.sqrt(solved.values), modal_ratios(model, solved, damping)
+    over = np.sqrt(np.maximum(ratios**2 - 1.0, 0.0))
+    decays = omega * (ratios - over)
+    slowest = int(np.argmin(decays))
+    if decays[slowest] <= 0.0:
+        what = f"the mode at {omega[slowest] / (2.0 * np.pi):.4g} Hz has no damping: it would ring for ever"
+        require([Finding("damping", what, "State damping, for example a modal ratio of 0.01")])
+    lags = sum(_FORGOTTEN / (2.0 * np.pi * float(np.min(each, initial=np.inf))) for each in (plan.bandwidths, plan.lags))
+    order = plan.setup.filter.order
+    filtering = _FORGOTTEN / (2.0 * np.pi * plan.corner * np.sin(0.5 * np.pi / order)) if order else 0.0
+    edges = _SPREAD / (TAPER * plan.band[1]) + (_SPREAD / (0.5 * plan.band[0]) if plan.band[0] else 0.0)
+    return _FORGOTTEN / float(decays[slowest]) + lags + filtering + edges
+
+
+def _block(memory: float, rate: float) -> int:
+    """Size of blocks, a power of two: longer than the chain remembers, and than the edges of the drive's band spread both ways."""
+    size = max(_SHORTEST, 2 ** int(np.ceil(np.log2(memory * rate))))
+    if size > _LONGEST:
+        what = f"the test rings for {memory:.4g} s, {memory * rate:.3g} samples; {_LONGEST:.3g} can be held"
+        require([Finding("damping", what, "Give more damping, a lower rate, or a band that begins at 0 or higher up")])
+    return size
+
+
+def _plant(model: LinearModel, chosen: Ports, lines: Array, damping: Damping) -> Array:
+    """H (l, p, m) of the stage, a few thousand lines at a time."""
+    pieces = [superposed(model, chosen, lines[start : start + _LINES], damping) for start in range(0, len(lines), _LINES)]
+    return np.concatenate(pieces)
+
+
+def _note(damping: Damping) -> str:
+    if isinstance(damping, StructuralDamping):
+        return "structural damping as equivalent modal ratios"
+    return f"modal damping {float(np.real(damping.ratio)):g}" if isinstance(damping, ModalDamping) else "Rayleigh damping"

@@ -1,0 +1,165 @@
+"""What keeps a virtual test from being run: before it is planned, and once its rms values are known."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from flexstage.base.finding import Finding, nearest
+from flexstage.experiment.virtual_rig.chain import Chain
+from flexstage.experiment.virtual_rig.plan import Plan, driven, highest_mode
+from flexstage.experiment.virtual_rig.setup import Recorded, RigSetup
+from flexstage.mechanism.expand import expand
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.models.linear.model import LinearModel
+
+_PEAK = 6.0
+"""Peaks of Gaussian noise over its rms: passed twice in 1e9 samples."""
+_FEWEST = 16
+_MOST = 2**40
+
+
+def setup_findings(mechanism: Mechanism, model: LinearModel, setup: RigSetup) -> Iterator[Finding]:
+    """What is wrong with the numbers and names of a set-up, all of it.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.models.mapped import mapped
+    >>> stage = double_triangle()
+    >>> [str(each) for each in setup_findings(stage, mapped(stage), RigSetup(seconds=0.0))]
+    ['seconds: the test is to last 0 s. Give a positive time.']
+    """
+    if model.stiffness_matrix.ndim > 2:
+        yield Finding("stage", "it is a batch of designs", "Test one design at a time")
+        return
+    yield from _clock_findings(mechanism, model, setup)
+    yield from _channel_findings(mechanism, model, setup)
+    yield from _drive_findings(setup)
+    yield from _electric_findings(setup)
+    sensing = setup.sensing
+    for where, value in (("gauge noise", sensing.density), ("resolution", sensing.resolution), ("drift", sensing.drift)):
+        if value is not None and not 0.0 <= value < np.inf:
+            yield Finding(where, f"it is {value:g} m", "Give a number of 0 or more")
+
+
+def _clock_findings(mechanism: Mechanism, model: LinearModel, setup: RigSetup) -> Iterator[Finding]:
+    if not 0.0 < setup.seconds < np.inf:
+        yield Finding("seconds", f"the test is to last {setup.seconds:g} s", "Give a positive time")
+    if setup.seed < 0:
+        yield Finding("seed", f"it is {setup.seed}", "Give a whole number of 0 or more")
+    if setup.rate is None:
+        return
+    highest = highest_mode(mechanism, model)
+    if not 0.0 < setup.rate < np.inf:
+        yield Finding("rate", f"the sampling rate is {setup.rate:g} Hz", "Give a positive rate")
+    elif setup.rate < 2.0 * highest:
+        what = f"the sampling rate of {setup.rate:g} Hz is below twice the highest platform mode, {highest:.4g} Hz"
+        yield Finding("rate", what, f"Sample at {2.0 * highest:.4g} Hz at least, better at {10.0 * highest:.0f} Hz")
+    elif setup.seconds > 0.0 and not _FEWEST <= setup.seconds * setup.rate < _MOST:
+        what = f"{setup.seconds:g} s at {setup.rate:g} Hz are {setup.seconds * setup.rate:.3g} samples"
+        yield Finding("seconds", what, f"Record between {_FEWEST} and {_MOST:.2g} samples")
+
+
+def _channel_findings(mechanism: Mechanism, model: LinearModel, setup: RigSetup) -> Iterator[Finding]:
+    known = driven(mechanism, model)
+    asked = setup.drive.actuators
+    if not known:
+        yield Finding("actuators", "the stage has no piezo stack to be driven", "Add one")
+    elif asked is not None and not asked:
+        yield Finding("actuators", "none is to be driven", f"Name at least one: {', '.join(known)}")
+    for name in dict.fromkeys(asked or ()):
+        if name not in known:
+            yield Finding(f"actuator {name}", "the stage has no actuator of this name", nearest(name, known))
+        elif asked is not None and asked.count(name) > 1:
+            yield Finding(f"actuator {name}", f"it is named {asked.count(name)} times", "Name it once")
+    if not expand(mechanism).gauges:
+        yield Finding("gauges", "the stage has no gauge: nothing would be recorded", "State gauges in the design")
+
+
+def _drive_findings(setup: RigSetup) -> Iterator[Finding]:
+    drive = setup.drive
+    if drive.stroke is not None and drive.voltage is not None:
+        yield Finding("drive", "its rms is given as a stroke and as a voltage", "Give one of them")
+    for value, unit in ((drive.stroke, "m"), (drive.voltage, "V")):
+        if value is not None and not 0.0 < value < np.inf:
+            yield Finding("drive", f"its rms is {value:g} {unit}", "Give a positive one")
+    if drive.band is not None and not 0.0 <= drive.band[0] < drive.band[1] < np.inf:
+        yield Finding("band", f"{drive.band[0]:g} Hz to {drive.band[1]:g} Hz is no band", "Give 0 <= low < high in Hz")
+
+
+def _electric_findings(setup: RigSetup) -> Iterator[Finding]:
+    amplifier, anti_alias = setup.amplifier, setup.filter
+    if amplifier.bandwidth is not None and amplifier.resistance is not None:
+        yield Finding("amplifier", "both its bandwidth and its resistance are given", "Give one of them: the other follows")
+    for value, what in ((amplifier.bandwidth, "bandwidth"), (amplifier.resistance, "resistance"), (amplifier.current, "current")):
+        if value is not None and not 0.0 < value < np.inf:
+            yield Finding("amplifier", f"its {what} is {value:g}", "Give a positive one")
+    if not 0 <= anti_alias.order <= 20:
+        yield Finding("filter", f"its order is {anti_alias.order}", "Give an order from 0 (none) to 20")
+    if anti_alias.corner is not None and not 0.0 < anti_alias.corner < np.inf:
+        yield Finding("filter", f"its corner is {anti_alias.corner:g} Hz", "Give a positive frequency")
+
+
+def plan_findings(plan: Plan) -> Iterator[Finding]:
+    """What the plan asks of stacks that do not state it, and of a clock settled by the stage.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.models.mapped import mapped
+    >>> from flexstage.experiment.virtual_rig.plan import planned
+    >>> stage = double_triangle()
+    >>> list(plan_findings(planned(stage, mapped(stage), RigSetup(seconds=1.0, recorded=Recorded.VOLTAGE))))
+    []
+    """
+    setup = plan.setup
+    for name, volts, capacitance in zip(plan.actuators, plan.volts, plan.capacitances, strict=True):
+        if np.isnan(volts) and (
+            setup.drive.voltage is not None or setup.recorded is Recorded.VOLTAGE or setup.amplifier.current is not None
+        ):
+            yield Finding(name, "its stack states no range of voltage", "State voltage_low and voltage_high, or use strokes")
+        if np.isnan(capacitance) and (setup.amplifier.resistance is not None or setup.amplifier.current is not None):
+            yield Finding(name, "its stack states no capacitance", "State it, or give the amplifier's bandwidth in Hz")
+    if not _FEWEST <= plan.length < _MOST:
+        what = f"{setup.seconds:g} s at {plan.rate:g} Hz are {plan.length:.3g} samples"
+        yield Finding("seconds", what, f"Record between {_FEWEST} and {_MOST:.2g} samples")
+
+
+def range_findings(plan: Plan, chain: Chain) -> Iterator[Finding]:
+    """Peaks of six rms that pass the strokes, the amplifiers' current or the gauges' range, or that no gauge sees for its steps.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.models.mapped import mapped
+    >>> from flexstage.experiment.virtual_rig.chain import chain
+    >>> from flexstage.experiment.virtual_rig.plan import planned
+    >>> from flexstage.experiment.virtual_rig.setup import NoiseDrive
+    >>> stage = double_triangle()
+    >>> model = mapped(stage)
+    >>> plan = planned(stage, model, RigSetup(seconds=1.0, drive=NoiseDrive(stroke=20e-6, actuators=("B1",))))
+    >>> print(next(range_findings(plan, chain(model, plan, model.damping))))
+    B1: peaks of 6 x 20 um rms pass the stroke of -75 um to 75 um. Drive with 12.5 um rms at most.
+    """
+    for name, rms, low, high in zip(plan.actuators, plan.rms, plan.low, plan.high, strict=True):
+        if _PEAK * rms > min(-low, high):
+            what = f"peaks of 6 x {1e6 * rms:.4g} um rms pass the stroke of {1e6 * low:.4g} um to {1e6 * high:.4g} um"
+            yield Finding(name, what, f"Drive with {1e6 * min(-low, high) / _PEAK:.4g} um rms at most")
+    currents = plan.capacitances * plan.volts * chain.stroke_rate_rms
+    limit = plan.setup.amplifier.current
+    for name, rms in zip(plan.actuators, currents, strict=True):
+        if limit is not None and _PEAK * rms > limit:
+            what = f"peaks of 6 x {rms:.4g} A rms pass the amplifier's {limit:.4g} A"
+            yield Finding(name, what, "Drive less, in a narrower band, or with a stronger amplifier")
+    yield from _gauge_findings(plan, chain)
+
+
+def _gauge_findings(plan: Plan, chain: Chain) -> Iterator[Finding]:
+    walked = plan.setup.sensing.drift * np.sqrt(plan.length / plan.rate / 60.0)
+    for name, rms, span in zip(plan.gauges, np.hypot(chain.output_rms, walked), plan.ranges, strict=True):
+        if _PEAK * rms > 0.5 * span:
+            what = f"peaks of 6 x {1e6 * rms:.4g} um rms pass half its range of {1e6 * span:.4g} um"
+            yield Finding(name, what, "Drive less, let it drift less, or take a gauge of larger range")
+    seen = np.hypot(chain.output_rms, walked)
+    if np.all(_PEAK * seen < 0.5 * plan.steps):
+        best = int(np.argmin(plan.steps / np.maximum(seen, 1e-300)))
+        what = (
+            f"peaks of 6 x {1e6 * seen[best]:.4g} um rms stay within half a step of {1e6 * plan.steps[best]:.4g} um, and so at the others"
+        )
+        yield Finding(plan.gauges[best], what, "Drive more, or take gauges of finer resolution: all readings would stand still")

@@ -1,0 +1,153 @@
+"""The parts of a virtual test looked up and settled: who is driven how far, what each gauge adds, which rate and band."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.analysis.complete import platform_modes
+from flexstage.analysis.workspace.stroke import stacks, stroke_limits
+from flexstage.base.number import Array, Number
+from flexstage.experiment.virtual_rig.setup import RigSetup
+from flexstage.mechanism.expand import expand
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.models.linear.model import LinearModel
+from flexstage.parts.gauge import Gauge
+from flexstage.parts.piezo import Piezo
+
+_DEFAULT_SHARE = 0.01
+_RATE_OVER_HIGHEST = 10.0
+_BAND_SHARE = 0.4
+TAPER = 0.25
+"""The drive's density falls to nought over this share of the upper end of its band."""
+
+
+@dataclass(frozen=True, eq=False)
+class Plan:
+    """A set-up with everything settled, by driven actuator (m,) and by gauge (p,), SI.
+
+    `rms` of the commanded free stroke, `low` and `high` end of the stroke; `bandwidths` of amplifiers (infinite: ideal), `lags` those of
+    gauges; `volts` per metre of free stroke (NaN where the stack states no voltage); `highest` platform mode [Hz].
+    """
+
+    setup: RigSetup
+    actuators: tuple[str, ...]
+    gauges: tuple[str, ...]
+    rate: float
+    band: tuple[float, float]
+    corner: float
+    highest: float
+    rms: Array
+    low: Array
+    high: Array
+    volts: Array
+    capacitances: Array
+    bandwidths: Array
+    densities: Array
+    steps: Array
+    lags: Array
+    ranges: Array
+
+    @property
+    def length(self) -> int:
+        """Number of samples of each channel."""
+        return round(self.setup.seconds * self.rate)
+
+
+def planned(mechanism: Mechanism, model: LinearModel, setup: RigSetup) -> Plan:
+    """Settle a set-up whose numbers and names were checked.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.models.mapped import mapped
+    >>> stage = double_triangle()
+    >>> plan = planned(stage, mapped(stage), RigSetup(seconds=1.0))
+    >>> plan.rate, (1e6 * plan.rms).round(6).tolist(), (1e9 * plan.steps[:2]).round(6).tolist()
+    (2048.0, [1.5, 1.5, 1.5, 2.0, 2.0, 2.0], [10.0, 10.0])
+    """
+    names = setup.drive.actuators if setup.drive.actuators is not None else driven(mechanism, model)
+    limits = stroke_limits(mechanism)
+    places = [limits.actuators.index(name) for name in names]
+    piezos = [stacks(mechanism)[name] for name in names]
+    gauges = {name: placed.gauge for name, placed in expand(mechanism).gauges.items()}
+    highest = highest_mode(mechanism, model)
+    rate = setup.rate if setup.rate is not None else 2.0 ** np.ceil(np.log2(_RATE_OVER_HIGHEST * highest))
+    volts = np.array([volts_per_metre(piezo) for piezo in piezos])
+    capacitances = np.array([np.nan if piezo.capacitance is None else float(np.real(piezo.capacitance)) for piezo in piezos])
+    return Plan(
+        setup=setup,
+        actuators=tuple(names),
+        gauges=tuple(gauges),
+        rate=float(rate),
+        band=setup.drive.band if setup.drive.band is not None else (0.0, _BAND_SHARE * float(rate)),
+        corner=setup.filter.corner if setup.filter.corner is not None else _BAND_SHARE * float(rate),
+        highest=highest,
+        rms=_commanded(setup, piezos, volts),
+        low=np.real(limits.low[places]),
+        high=np.real(limits.high[places]),
+        volts=volts,
+        capacitances=capacitances,
+        bandwidths=_bandwidths(setup, capacitances),
+        densities=_of_gauges(setup.sensing.density, [gauge.noise_density for gauge in gauges.values()], 0.0),
+        steps=_of_gauges(setup.sensing.resolution, [gauge.resolution for gauge in gauges.values()], 0.0),
+        lags=_of_gauges(None, [gauge.bandwidth for gauge in gauges.values()], np.inf),
+        ranges=_ranges(list(gauges.values())),
+    )
+
+
+def driven(mechanism: Mechanism, model: LinearModel) -> tuple[str, ...]:
+    """Actuators that can be driven: strokes of the model that are piezo stacks.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.models.lumped import lumped
+    >>> driven(parallelogram(), lumped(parallelogram()))
+    ('B',)
+    """
+    known = stacks(mechanism)
+    return tuple(name for name in model.strokes if name in known)
+
+
+def highest_mode(mechanism: Mechanism, model: LinearModel) -> float:
+    """Frequency of the highest platform mode [Hz].
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.models.mapped import mapped
+    >>> round(highest_mode(double_triangle(), mapped(double_triangle())), 1)
+    176.7
+    """
+    return float(np.max(platform_modes(mechanism, model).platform_frequencies))
+
+
+def volts_per_metre(piezo: Piezo) -> float:
+    """Voltage per free stroke [V/m]: the range of voltage over the full stroke; NaN where no range is stated.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> round(volts_per_metre(stacks(double_triangle())["B4"]))
+    5000000
+    """
+    if piezo.voltage_low is None or piezo.voltage_high is None:
+        return float("nan")
+    return float(np.real((piezo.voltage_high - piezo.voltage_low) / piezo.stroke))
+
+
+def _commanded(setup: RigSetup, piezos: list[Piezo], volts: Array) -> Array:
+    if setup.drive.stroke is not None:
+        return np.full(len(piezos), setup.drive.stroke)
+    if setup.drive.voltage is not None:
+        return setup.drive.voltage / volts
+    return np.array([_DEFAULT_SHARE * float(np.real(piezo.stroke)) for piezo in piezos])
+
+
+def _bandwidths(setup: RigSetup, capacitances: Array) -> Array:
+    amplifier = setup.amplifier
+    if amplifier.resistance is not None:
+        return 1.0 / (2.0 * np.pi * amplifier.resistance * capacitances)
+    return np.full(len(capacitances), np.inf if amplifier.bandwidth is None else amplifier.bandwidth)
+
+
+def _of_gauges(asked: float | None, stated: list[Number | None], otherwise: float) -> Array:
+    return np.array([asked if asked is not None else otherwise if value is None else float(np.real(value)) for value in stated])
+
+
+def _ranges(gauges: list[Gauge]) -> Array:
+    return np.array([float(np.real(gauge.range)) for gauge in gauges])

@@ -1,0 +1,83 @@
+"""The virtual test rig: any elastic reading of a stage as the plant, and a record of it as a test would give."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from flexstage.base.finding import require
+from flexstage.experiment.cross_spectra import Tell
+from flexstage.experiment.record import Channel, Record, Role
+from flexstage.experiment.virtual_rig.chain import chain
+from flexstage.experiment.virtual_rig.checks import plan_findings, range_findings, setup_findings
+from flexstage.experiment.virtual_rig.plan import Plan, planned
+from flexstage.experiment.virtual_rig.samples import Simulated
+from flexstage.experiment.virtual_rig.setup import Recorded, RigSetup
+from flexstage.mechanism.mechanism import Damping, Mechanism
+from flexstage.models.linear.damping import damping_law
+from flexstage.models.linear.model import LinearModel
+
+_MICROMETRE = 1e6
+
+
+def rig(mechanism: Mechanism, model: LinearModel, setup: RigSetup, *, damping: Damping | None = None, tell: Tell | None = None) -> Record:
+    """The record of a virtual test: strokes or voltages in, gauges out, by name and with units.
+
+    `model` is any elastic reading of the mechanism (lumped, mapped, solid); `damping` instead of the model's own. Each driven actuator has
+    band-limited Gaussian noise, through the amplifier 1/(1 + j f/f_a); gauges read the stage's motion through their own lag, with noise,
+    through the anti-alias filter, with drift, in steps. The test has run for long when the record begins. Strokes are free strokes around
+    the bias. The stage is taken as linear; its continuous response to the noise is exact, structural damping taken as equivalent modal
+    ratios (the record's name says so). Samples are computed where they are read, in blocks, `tell` told the share that is done; the same
+    set-up gives the same samples.
+
+    Raises `DesignError` with all findings: no time, no rate or one below twice the highest platform mode, unknown actuators, no gauges,
+    peaks beyond strokes, currents or gauge ranges.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.models.mapped import mapped
+    >>> from flexstage.experiment.virtual_rig.setup import RigSetup
+    >>> stage = double_triangle()
+    >>> record = rig(stage, mapped(stage), RigSetup(seconds=4.0, rate=1024.0))
+    >>> record.length, [f"{each.name} {each.unit}" for each in record.channels][:2], [each.name for each in record.outputs][:2]
+    (4096, ['B1 um', 'B2 um'], ['S1', 'S2'])
+    """
+    return as_record(simulated(mechanism, model, setup, damping=damping, tell=tell))
+
+
+def simulated(
+    mechanism: Mechanism, model: LinearModel, setup: RigSetup, *, damping: Damping | None = None, tell: Tell | None = None
+) -> Simulated:
+    """The test behind a record of `rig`: its plan, its chain with the rms values to expect, and its samples. Raises as `rig` does.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.models.mapped import mapped
+    >>> stage = double_triangle()
+    >>> simulated(stage, mapped(stage), RigSetup(seconds=1.0)).plan.band
+    (0.0, 819.2)
+    """
+    require(setup_findings(mechanism, model, setup))
+    law = damping_law(model, damping)
+    plan = planned(mechanism, model, setup)
+    require(plan_findings(plan))
+    found = chain(model, plan, law)
+    require(range_findings(plan, found))
+    scale = plan.volts if setup.recorded is Recorded.VOLTAGE else np.full(len(plan.actuators), _MICROMETRE)
+    source = f"seed {setup.seed}; {found.note}; {mechanism.name or 'stage'}; {model.provenance}"  # forms cut names: what matters first
+    return Simulated(plan, found, scale, _MICROMETRE, source, tell)
+
+
+def as_record(test: Simulated) -> Record:
+    """The record of a simulated test.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.models.mapped import mapped
+    >>> stage = double_triangle()
+    >>> as_record(simulated(stage, mapped(stage), RigSetup(seconds=1.0))).name.partition("; ")[0]
+    'rig: seed 0'
+    """
+    return Record(_channels(test.plan), test.plan.rate, test, name=f"rig: {test.source}", source="virtual test rig")
+
+
+def _channels(plan: Plan) -> tuple[Channel, ...]:
+    unit = "V" if plan.setup.recorded is Recorded.VOLTAGE else "um"
+    inputs = (Channel(name, unit, Role.INPUT) for name in plan.actuators)
+    return (*inputs, *(Channel(name, "um", Role.OUTPUT) for name in plan.gauges))

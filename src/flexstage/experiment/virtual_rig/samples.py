@@ -1,0 +1,114 @@
+"""Samples of a virtual test, computed where they are read."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from flexstage.base.number import Array
+from flexstage.experiment.cross_spectra import Tell
+from flexstage.experiment.virtual_rig.chain import Chain
+from flexstage.experiment.virtual_rig.noise import Stream, walk, white
+from flexstage.experiment.virtual_rig.plan import Plan
+
+_HELD = 2**24
+
+
+@dataclass(frozen=True, eq=False)
+class Simulated:
+    """Samples (n, inputs + outputs) in the record's units, computed in blocks; every block by itself, so that any can be read.
+
+    `input_scale` (m,) and `output_scale` lead from metres to the record's units. Short records are kept once computed, of long ones the
+    last block. `tell`, if given, is told the share of the record computed, after each block.
+    """
+
+    plan: Plan
+    chain: Chain
+    input_scale: Array
+    output_scale: float
+    source: str = ""
+    tell: Tell | None = None
+    _kept: dict[int, Array] = field(default_factory=dict[int, Array], repr=False)
+
+    @property
+    def length(self) -> int:
+        """Number of samples of each channel."""
+        return self.plan.length
+
+    @property
+    def block(self) -> int:
+        """Samples a block."""
+        return self.chain.size // self.chain.finer
+
+    def read(self, start: int, stop: int) -> Array:
+        """Samples `start` to `stop`, the latter excluded.
+
+        >>> from flexstage.cases.double_triangle import double_triangle
+        >>> from flexstage.models.mapped import mapped
+        >>> from flexstage.experiment.virtual_rig.rig import rig
+        >>> from flexstage.experiment.virtual_rig.setup import RigSetup
+        >>> stage = double_triangle()
+        >>> samples = rig(stage, mapped(stage), RigSetup(seconds=1.0)).samples
+        >>> samples.read(10, 12).shape, bool(np.all(samples.read(10, 12) == samples.read(0, 12)[10:]))
+        ((2, 12), True)
+        """
+        start, stop, _ = slice(start, stop).indices(self.length)
+        size = self.block
+        numbers = range(start // size, -(-stop // size)) if stop > start else range(0)
+        pieces = [self._at(number)[max(0, start - number * size) : stop - number * size] for number in numbers]
+        return np.concatenate(pieces) if pieces else np.zeros((0, len(self.plan.actuators) + len(self.plan.gauges)))
+
+    def _at(self, number: int) -> Array:
+        if number not in self._kept:
+            found = self._computed(number)
+            if self.length * found.shape[1] > _HELD:
+                self._kept.clear()
+            self._kept[number] = found
+            if self.tell is not None:
+                self.tell(min(1.0, (number + 1) * self.block / self.length))
+        return self._kept[number]
+
+    def _computed(self, number: int) -> Array:
+        inputs, moved = self._driven(number)
+        read = self._stepped(moved + self._gauge_noise(number) + self._drift(number))
+        return np.concatenate([inputs * self.input_scale, read], axis=1)
+
+    def _driven(self, number: int) -> tuple[Array, Array]:
+        used = len(self.chain.inputs)
+        count = len(self.plan.actuators)
+        drive = np.stack([np.fft.rfft(self._white(Stream.DRIVE, channel, number))[:used] for channel in range(count)], axis=1)
+        moved = (self.chain.outputs @ drive[:, :, None])[:, :, 0]
+        return self._middle(self.chain.inputs * drive), self._middle(moved)
+
+    def _gauge_noise(self, number: int) -> Array | float:
+        if not np.any(self.plan.densities):
+            return 0.0
+        columns = range(len(self.plan.gauges))
+        spectra = [np.fft.rfft(self._white(Stream.GAUGE, column, number)) * self.chain.gauge[:, column] for column in columns]
+        return self._middle(np.stack(spectra, axis=1))
+
+    def _drift(self, number: int) -> Array | float:
+        """The random walk of every gauge: a step has the variance of a minute's over the samples of a minute."""
+        if not self.plan.setup.sensing.drift:
+            return 0.0
+        step = self.plan.setup.sensing.drift / np.sqrt(60.0 * self.plan.rate)
+        seed, columns = self.plan.setup.seed, range(len(self.plan.gauges))
+        return step * np.stack([walk(seed, column, number, self.block) for column in columns], axis=1)
+
+    def _stepped(self, read: Array) -> Array:
+        """Readings rounded to the gauges' steps, in the record's unit."""
+        scaled = read * self.output_scale
+        steps = self.plan.steps * self.output_scale
+        coarse = np.where(steps > 0.0, steps, 1.0)
+        return np.where(steps > 0.0, np.round(scaled / coarse) * coarse, scaled)
+
+    def _white(self, stream: Stream, channel: int, number: int) -> Array:
+        """White numbers of a block with its two neighbours."""
+        seed, size = self.plan.setup.seed, self.chain.size
+        return np.concatenate([white(seed, (stream, channel), each, size) for each in (number - 1, number, number + 1)])
+
+    def _middle(self, spectra: Array) -> Array:
+        """The middle block of what transforms over three blocks stand for, at the sampling rate."""
+        size = self.chain.size
+        return np.fft.irfft(spectra, 3 * size, axis=0)[size : 2 * size : self.chain.finer]

@@ -1,0 +1,178 @@
+"""A stage's tables and numbers as the kernel in C takes them, and its answer."""
+
+from __future__ import annotations
+
+import ctypes
+import itertools
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from flexstage.base.number import Array
+from flexstage.models.batch.blocks import Scheme
+from flexstage.models.batch.features import GROUNDED, Feature
+from flexstage.models.batch.numbers import Change
+from flexstage.models.batch.solution import LEAST_PIVOT, Solution, Stage
+from flexstage.models.batch.subspace import MARGIN, SHARES, TOGETHER, Start
+
+MODES = 12
+"""Platform modes that the kernel finds at most."""
+
+_KINDS = ("stiffness", "mass", "turn", "first", "second", "inertia")
+_DESIGNS = ("designs", "numbers_stride", "slopes_stride", "stride")
+_SIZES = (*_DESIGNS, "bodies", "links", "edges", "updates", "numbers", "m", "count", "degree", "rounds", "variables", "slots", "entries")
+_TABLES = ("link", "range", "later", "heavy", "product", "update", "inertia", "start", "slot", "reach", "about", "entry", "zero")
+_ARRAYS = ("block", "numbers_", "changes")
+_SETTINGS = ("edge", "value", "angle", "limit", "cluster", "together", "shares", "margin", "pivot")
+_RESULTS = ("values", "share", "good", "slopes")
+
+
+class _Task(ctypes.Structure):
+    """`Task` of kernel.c."""
+
+    _fields_ = (
+        *((name, ctypes.c_int64) for name in _SIZES),
+        *((name, ctypes.c_void_p) for name in (*_TABLES, *_ARRAYS)),
+        *((name, ctypes.c_double) for name in _SETTINGS),
+        *((name, ctypes.c_void_p) for name in _RESULTS),
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class Tables:
+    """What the kernel is told of a topology and of its derivatives (the `changes`), by name: arrays of whole numbers."""
+
+    scheme: Scheme
+    changes: tuple[Change, ...]
+
+    @cached_property
+    def arrays(self) -> Mapping[str, Array]:
+        """Every table but that of zeros, which depends on the numbers."""
+        return _tables(self.scheme) | _slots(self.scheme, self.changes)
+
+
+def by_kernel(library: ctypes.CDLL, stage: Stage, start: Start, tables: Tables) -> Solution:
+    """Many designs by iteration from `start`, in C; the same as `by_iteration`.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.models.batch.engine import plan
+    >>> from flexstage.models.batch.kernel import kernel
+    >>> from flexstage.models.batch.numbers import numbers_of
+    >>> stage = plan(double_triangle(), ())
+    >>> numbers = numbers_of(stage.family, np.zeros((1, 0)))
+    >>> library = kernel()
+    >>> tables = Tables(stage.scheme, ())
+    >>> library is None or by_kernel(library, Stage(stage.scheme, numbers), stage.start, tables).good.tolist() == [True]
+    True
+    """
+    count, modes = stage.numbers.shape[1], start.choice.count
+    number = _rows(stage.numbers)
+    change = np.zeros((0, count)) if stage.slopes is None else _rows(stage.slopes.values)
+    held = {**tables.arrays, "zero": _zero(stage), "block": np.ascontiguousarray(start.block), "numbers_": number, "changes": change}
+    stride = count + -count % library.flexstage_width()
+    results = {
+        "values": np.empty((modes, stride)),
+        "share": np.empty((modes, stride)),
+        "good": np.zeros(stride, dtype=np.int64),
+        "slopes": np.empty((stage.variables, modes, modes, stride)),
+    }
+    task = _task(stage, start, tables, (count, number.strides[0] // 8, change.strides[0] // 8, stride))
+    for name, item in (held | results).items():
+        setattr(task, name, item.ctypes.data)
+    if library.flexstage_modes(ctypes.byref(task)):
+        results["good"][:] = 0
+    values, share, slopes = (np.moveaxis(results[name][..., :count], -1, 0) for name in ("values", "share", "slopes"))
+    return Solution(values, share, results["good"][:count] != 0, slopes)
+
+
+def _rows(array: Array) -> Array:
+    """The array with its rows' designs side by side; rows may be farther apart than they are long."""
+    return array if array.strides[1] == array.itemsize else np.ascontiguousarray(array)
+
+
+def _task(stage: Stage, start: Start, tables: Tables, designs: tuple[int, ...]) -> _Task:
+    graph = stage.scheme.graph
+    sizes: Mapping[str, int] = {
+        **dict(zip(_DESIGNS, designs, strict=True)),
+        "bodies": len(graph.order),
+        "links": len(stage.scheme.topology.links),
+        "edges": len(graph.edges),
+        "updates": sum(map(len, graph.updates)),
+        "numbers": stage.numbers.shape[0],
+        "m": start.block.shape[-1],
+        "count": start.choice.count,
+        "degree": start.degree,
+        "rounds": start.rounds,
+        "variables": stage.variables,
+        "slots": len(tables.arrays["slot"]),
+        "entries": len(tables.arrays["entry"]),
+    }
+    settings = (start.edge, start.value, start.angle, start.choice.limit, start.choice.cluster, TOGETHER, SHARES, MARGIN, LEAST_PIVOT)
+    task: Any = _Task()
+    for name, value in (*sizes.items(), *zip(_SETTINGS, settings, strict=True)):
+        setattr(task, name, value)
+    return task
+
+
+def _tables(scheme: Scheme) -> dict[str, Array]:
+    graph, topology = scheme.graph, scheme.topology
+    place = {**scheme.position, GROUNDED: -1}
+    edge = {pair: number for number, pair in enumerate(graph.edges)}
+    link = [
+        (part, place[one], place[two], edge.get((min(place[one], place[two]), max(place[one], place[two])), -1))
+        for part, one, two in topology.links
+    ]
+    firsts = [first for first, _ in graph.edges]
+    bodies = len(graph.order)
+    update = [item for level in graph.updates for item in level]
+    starts = {place.kind: place.start for place in reversed(topology.features)}
+    inertia = starts["inertia"]
+    return {
+        "link": np.array(link, dtype=np.int64),
+        "range": np.searchsorted(firsts, np.arange(bodies + 1)).astype(np.int64),
+        "later": np.array([later for _, later in graph.edges], dtype=np.int64),
+        "heavy": np.isin(np.arange(len(graph.edges)), [item[3] for item in link]).astype(np.int64),
+        "product": np.searchsorted([firsts[item[0]] for item in update], np.arange(bodies + 1)).astype(np.int64),
+        "update": np.array(update, dtype=np.int64).reshape(-1, 3),
+        "inertia": np.array([inertia + 36 * body for body in graph.order], dtype=np.int64),
+        "start": np.array([starts[kind] for kind in _KINDS[:5]], dtype=np.int64),
+    }
+
+
+def _zero(stage: Stage) -> Array:
+    """Which 3x3 blocks of laws and masses are zero in every design."""
+    parts = stage.scheme.topology.parts
+    filled = (stage.numbers[: 180 * parts] != 0.0).any(axis=1)
+    stiffness = filled[: 36 * parts].reshape(parts, 2, 3, 2, 3).any(axis=(2, 4))
+    mass = filled[36 * parts :].reshape(parts, 4, 3, 4, 3).any(axis=(2, 4))
+    both = np.concatenate([stiffness.reshape(parts, -1), mass.reshape(parts, -1)], axis=1)
+    return (~both).astype(np.int64)
+
+
+def _slots(scheme: Scheme, changes: tuple[Change, ...]) -> dict[str, Array]:
+    """Slots, the single numbers that derivatives are about, the slots that each link has a share in, and entries (variable, slot)."""
+    slots: dict[tuple[int, int, int, int], int] = {}
+    entries: list[tuple[int, int]] = []
+    for change in changes:
+        kind, owner = _KINDS.index(change.place.kind), _owner(scheme, change.place)
+        columns = change.place.shape[-1] if len(change.place.shape) == 2 else 1
+        keys = [(kind, owner, row // columns, row % columns) for row in change.rows.tolist()]
+        entries += [(change.variable, slots.setdefault(key, len(slots))) for key in keys]
+    of: dict[tuple[bool, int], list[int]] = {}
+    for (kind, owner, _, _), number in slots.items():
+        if kind < 5:
+            of.setdefault((kind < 2, owner), []).append(number)
+    lists = [of.get((True, link[0]), []) + of.get((False, index), []) for index, link in enumerate(scheme.topology.links)]
+    return {
+        "slot": np.array(list(slots), dtype=np.int64).reshape(-1, 4),
+        "entry": np.array(entries, dtype=np.int64).reshape(-1, 2),
+        "reach": np.array([0, *itertools.accumulate(map(len, lists))], dtype=np.int64),
+        "about": np.array([number for each in lists for number in each], dtype=np.int64),
+    }
+
+
+def _owner(scheme: Scheme, place: Feature) -> int:
+    return scheme.position[place.owner] if place.kind == "inertia" else place.owner

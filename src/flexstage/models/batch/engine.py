@@ -1,0 +1,282 @@
+"""Platform frequencies of many designs at once, and their derivatives by every number that varies.
+
+Numbers of designs -> features (`numbers`) -> blocks of bodies (`blocks`) -> iteration from the modes of the family's own design
+(`subspace`, or the same in C: `kernel`) -> derivatives (`slopes`). What iteration does not prove is solved again whole (`dense`). Every
+design is computed by itself: results do not depend on the others beside it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, fields, replace
+from enum import Enum, IntEnum
+from functools import cached_property
+
+import numpy as np
+
+from flexstage.base.number import Array
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.models.batch.blocks import Scheme, scheme
+from flexstage.models.batch.choice import Choice, chosen
+from flexstage.models.batch.compiled import MODES, Tables, by_kernel
+from flexstage.models.batch.dense import Whole
+from flexstage.models.batch.kernel import kernel
+from flexstage.models.batch.locked import locked_solution
+from flexstage.models.batch.numbers import Family, family, numbers_of, slopes_of
+from flexstage.models.batch.solution import Solution, Stage, by_iteration, every_mode, kept, wholly
+from flexstage.models.batch.subspace import Start
+from flexstage.models.batch.surface import Surface, surface
+from flexstage.models.lumped import lumped
+
+_CHUNK, PORTION = 1024, 128
+"""Designs described at once, and those iterated at once in numpy: as many as the processor's cache holds."""
+
+_MOST = 16
+"""Vectors of a block at most."""
+
+_DEGREE, _GROWTH = 7, 1e10
+"""Degree of a polynomial at most; how much more the lowest mode may grow than those outside, lest the highest of the block drown in it."""
+
+_VALUE, _ANGLE = 1e-6, 1e-6
+"""Relative bound of eigenvalues; bound of the angles of vectors, where derivatives are asked for."""
+
+
+class Status(IntEnum):
+    """How a design ended."""
+
+    ITERATED = 0
+    """By iteration, proved."""
+    WHOLE = 1
+    """By dense matrices."""
+    SINGULAR = 2
+    """Some motion has no stiffness, or a negative one: no frequencies."""
+    NOT_FINITE = 3
+    """Some number of it is not finite: no frequencies."""
+    FEW = 4
+    """It has fewer platform modes below the limit than asked for: no frequencies."""
+    CUT = 5
+    """By dense matrices, and the last of the wanted modes is one of a cluster that has more: some of them are left out."""
+
+
+class Method(Enum):
+    """What iterates: the kernel in C where there is one, else numpy; or numpy in any case. Both give the same."""
+
+    FASTEST = "fastest"
+    NUMPY = "numpy"
+
+
+@dataclass(frozen=True, eq=False)
+class Plan:
+    """What is found once for a family of designs.
+
+    Topology, order of elimination and the block to begin with (none: all are solved whole); a `wider` one for designs where that is not
+    enough, as modes cross; the `surface` of their features over stated ranges.
+    """
+
+    family: Family
+    scheme: Scheme
+    choice: Choice
+    start: Start | None
+    wider: Start | None = None
+    surface: Surface | None = None
+
+    @cached_property
+    def tables(self) -> Mapping[bool, Tables]:
+        """What the kernel is told of the topology, without and with derivatives."""
+        return {False: Tables(self.scheme, ()), True: Tables(self.scheme, self.family.changes)}
+
+
+@dataclass(frozen=True, eq=False)
+class PlatformModes:
+    """Platform modes of b designs; NaN where there are none.
+
+    `frequencies` (b, k) [Hz] ascending, `share` (b, k), `status` (b,) of `Status`. `slopes` (b, P, k, k) [Hz per SI unit] are the symmetric
+    matrices Phi^T (dK - lambda dM) Phi / (8 pi^2 f) of each cluster, zero between clusters: their eigenvalues are one-sided derivatives.
+    `gradient` (b, P, k) is their trace over their size: the derivative of a cluster's mean, for each of its modes. Both have P = 0 unless
+    they were asked for.
+    """
+
+    frequencies: Array
+    share: Array
+    status: Array
+    slopes: Array
+    gradient: Array
+
+
+def plan(mechanism: Mechanism, addresses: tuple[str, ...], choice: Choice | None = None, ranges: tuple[Array, Array] | None = None) -> Plan:
+    """Plan a family of designs around a mechanism, with other numbers at the addresses.
+
+    With `ranges`, (low, high) of (P,), features are fitted over them once (seconds), where polynomials meet them to 1e-10: then numbers of
+    designs within cost less than solving. Others are described one by one, as they all are without ranges.
+
+    Raises `DesignError` for addresses that are none, and for a mechanism whose own stiffness is singular.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> found = plan(double_triangle(), ("parts.neck.thickness",))
+    >>> found.scheme.topology.size
+    114
+    """
+    return planned(family(mechanism, addresses), choice, ranges)
+
+
+def planned(family_: Family, choice: Choice | None = None, ranges: tuple[Array, Array] | None = None) -> Plan:
+    """Plan a family of designs, however it is drawn: see `plan`.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> planned(family(double_triangle(), ("parts.neck.thickness",))).scheme.topology.size
+    114
+    """
+    scheme_ = scheme(family_.topology)
+    choice = choice or Choice()
+    if family_.topology.locked:
+        lumped(family_.mechanism)  # says which bodies can move freely
+        return Plan(family_, scheme_, choice, None)
+    modes = every_mode(scheme_, numbers_of(family_, family_.nominal[None]))
+    if not len(modes.values):
+        lumped(family_.mechanism)  # says which bodies can move freely
+        return Plan(family_, scheme_, choice, None)
+    fitted = None if ranges is None else surface(family_, *(np.asarray(side, dtype=float) for side in ranges))
+    return Plan(family_, scheme_, choice, *_starts(scheme_, modes, choice), fitted)
+
+
+def _starts(scheme_: Scheme, modes: Whole, choice: Choice) -> tuple[Start | None, Start | None]:
+    """The modes to begin with, as many as make the fewest operations, and the most there is room for; none if that is not less than all."""
+    picked = chosen(modes.values[None], modes.share[None], choice)
+    values = modes.values
+    if not picked.mask.any():
+        return None, None
+    needed = int(np.flatnonzero(picked.mask[0])[-1]) + 1
+    counts = np.arange(needed + 2, min(_MOST + 1, len(values) // 2))
+    if not len(counts):
+        return None, None
+    few = counts[:7]
+    cost = few * (1.0 + few / 30.0) / np.arccosh(2.0 * values[few] / values[needed - 1] - 1.0)
+    most = counts[-3:][np.argmax(values[counts[-3:]] / values[counts[-3:] - 1])]
+    first, wider = (_start(scheme_, modes, choice, int(count)) for count in (few[np.argmin(cost)], most))
+    return first, wider if most > first.block.shape[-1] else None
+
+
+def _start(scheme_: Scheme, modes: Whole, choice: Choice, count: int) -> Start:
+    values = modes.values
+    order = np.argsort(scheme_.coordinates)
+    block = np.ascontiguousarray(modes.shapes[order, :count]).reshape(-1, 6, count)
+    edge = float(values[count] / values[count - 1])
+    spread = 4.0 * values[count] / values[0] - 2.0  # twice the argument of the polynomial at the lowest mode: its powers are the growth
+    return Start(block, choice, edge, degree=max(1, min(_DEGREE, int(np.log(_GROWTH) / np.log(spread)))), value=_VALUE)
+
+
+def platform_modes(plan_: Plan, values: Array, *, slopes: bool = False, method: Method = Method.FASTEST) -> PlatformModes:
+    """The platform's modes of designs given by the numbers (b, P) at the plan's addresses, and with `slopes` their derivatives by these.
+
+    Frequencies agree with those of `readings.lumped` solved whole within 1e-6 (relative), proved design by design; no design stops another.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> found = platform_modes(plan(double_triangle(), ("parts.neck.thickness",)), np.array([[1.54e-3], [1.60e-3], [np.nan]]))
+    >>> found.frequencies[:2, 5].round(2).tolist(), [Status(number).name for number in found.status]
+    ([173.09, 174.3], ['ITERATED', 'ITERATED', 'NOT_FINITE'])
+    """
+    values = np.asarray(values, dtype=float)
+    starts = range(0, max(len(values), 1), _CHUNK)
+    pieces = [_piece(plan_, values[start : start + _CHUNK], slopes=slopes, method=method) for start in starts]
+    columns = [[getattr(piece, field.name) for piece in pieces] for field in fields(PlatformModes)]
+    return PlatformModes(*(np.concatenate(column) for column in columns))
+
+
+def _piece(plan_: Plan, values: Array, *, slopes: bool, method: Method) -> PlatformModes:
+    """The designs of one chunk."""
+    finite: Array = np.asarray(np.isfinite(values).all(axis=1))
+    safe = np.where(finite[:, None], values, plan_.family.nominal)
+    result = _nothing(plan_, len(values), slopes=slopes)
+    with np.errstate(all="ignore"):  # designs far from any sense: told by their status
+        if plan_.family.topology.locked:
+            result.status[~finite] = Status.NOT_FINITE
+            for design in np.flatnonzero(finite):
+                _write(plan_, result, np.array([design]), locked_solution(plan_.family, safe[design], plan_.choice, slopes=slopes))
+            return result
+        stage = _stage(plan_, safe, slopes=slopes)
+        finite = finite & np.isfinite(stage.numbers).all(axis=0)
+        result.status[~finite] = Status.NOT_FINITE
+        left = finite
+        if plan_.start is not None:
+            found = iterated(plan_, _tame(stage, finite), method)
+            good = finite & found.good
+            _write(plan_, result, np.flatnonzero(good), found.take(good))
+            result.status[good] = Status.ITERATED
+            left = finite & ~good
+        rest = np.flatnonzero(left)
+        for design, solution in zip(rest, wholly(stage.take(rest), plan_.choice), strict=True):
+            _write(plan_, result, np.array([design]), solution)
+    return result
+
+
+def iterated(plan_: Plan, stage: Stage, method: Method = Method.FASTEST) -> Solution:
+    """The designs of a stage by iteration: from features to eigenvalues and their derivatives.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> found = plan(double_triangle(), ())
+    >>> iterated(found, Stage(found.scheme, numbers_of(found.family, np.zeros((1, 0))))).good.tolist()
+    [True]
+    """
+    if plan_.start is None:
+        raise ValueError("this plan has no block to begin with: its designs are solved whole")
+    found = _from(plan_, stage, plan_.start, method)
+    left = np.flatnonzero(~found.good)
+    if plan_.wider is not None and len(left):
+        more = _from(plan_, stage.take(left), plan_.wider, method)
+        for field in fields(Solution):
+            getattr(found, field.name)[left] = getattr(more, field.name)
+    return found
+
+
+def _from(plan_: Plan, stage: Stage, start: Start, method: Method) -> Solution:
+    start = replace(start, degree=min(2, start.degree)) if stage.slopes is None else replace(start, angle=_ANGLE)
+    library = kernel() if method is Method.FASTEST and plan_.choice.count <= MODES else None
+    if library is not None:
+        return by_kernel(library, stage, start, plan_.tables[stage.slopes is not None])
+    size = stage.numbers.shape[1]
+    portions = [by_iteration(stage.take(slice(first, first + PORTION)), start) for first in range(0, size, PORTION)]
+    return Solution(*(np.concatenate([getattr(portion, field.name) for portion in portions]) for field in fields(Solution)))
+
+
+def _nothing(plan_: Plan, size: int, *, slopes: bool) -> PlatformModes:
+    count, variables = plan_.choice.count, len(plan_.family.addresses) if slopes else 0
+    shape = (size, variables, count, count)
+    return PlatformModes(
+        np.full((size, count), np.nan),
+        np.full((size, count), np.nan),
+        np.full(size, int(Status.SINGULAR)),
+        np.full(shape, np.nan),
+        np.full(shape[:3], np.nan),
+    )
+
+
+def _stage(plan_: Plan, values: Array, *, slopes: bool) -> Stage:
+    if plan_.surface is None:
+        numbers, derivatives = numbers_of(plan_.family, values), slopes_of(plan_.family, values) if slopes else None
+    else:
+        numbers, derivatives = plan_.surface.numbers(values), plan_.surface.slopes(values) if slopes else None
+        outside = np.flatnonzero(~plan_.surface.holds(values))
+        if len(outside):
+            numbers[:, outside] = numbers_of(plan_.family, values[outside])
+            if derivatives is not None:
+                derivatives.values[:, outside] = slopes_of(plan_.family, values[outside]).values
+    return Stage(plan_.scheme, numbers, values.shape[1] if slopes else 0, derivatives)
+
+
+def _tame(stage: Stage, finite: Array) -> Stage:
+    """Designs that are not finite are replaced by one that is, so that the others can be iterated beside them."""
+    if finite.all() or not finite.any():
+        return stage
+    return stage.take(np.where(finite, np.arange(len(finite)), np.argmax(finite)))
+
+
+def _write(plan_: Plan, result: PlatformModes, designs: Array, found: Solution) -> None:
+    if found.values.shape[1] < plan_.choice.count:
+        result.status[designs] = Status.FEW if found.good.all() else Status.SINGULAR
+        return
+    result.status[designs] = Status.WHOLE if found.values.shape[1] == plan_.choice.count else Status.CUT
+    found, gradient = kept(found, plan_.choice)
+    frequencies = np.sqrt(found.values) / (2.0 * np.pi)
+    scale = (1.0 / (8.0 * np.pi**2 * frequencies))[:, None]
+    result.frequencies[designs], result.share[designs] = frequencies, found.share
+    result.slopes[designs], result.gradient[designs] = found.slopes * scale[..., None], gradient * scale

@@ -1,0 +1,254 @@
+"""From the numbers that vary between designs to features, and their exact derivatives.
+
+A derivative is a complex step through the readings' own formulas. Two variables that no feature shares are stepped together: a feature that
+comes out complex knows whose step that is, as the type of an array says what it was made of.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from flexstage.base.number import Array
+from flexstage.mechanism.address import get, set_value
+from flexstage.mechanism.expand import expand
+from flexstage.mechanism.locate import locate
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.mechanism.path import replaced
+from flexstage.models.batch.features import Feature, Topology, features, packed, spaced, topology
+
+_STEP = 1e-20
+
+Key = tuple[str, int]
+"""A feature by kind and owner."""
+
+Draw = Callable[[tuple[Array, ...]], Mechanism]
+"""What makes a description of numbers (...), real or complex, one array each."""
+
+
+@dataclass(frozen=True, eq=False)
+class Change:
+    """A feature that a variable changes, and which `rows` of its numbers; of symmetric matrices the upper half stands for both."""
+
+    variable: int
+    place: Feature
+    rows: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Family:
+    """Designs that differ in P numbers, around a `mechanism`; `nominal` (P,) are its own.
+
+    The numbers are those at `addresses`, or what `draw` makes descriptions of; then addresses are their names. `touched` says which
+    features each number is in, `changes` which of their numbers; `together` which are stepped in one pass.
+    """
+
+    mechanism: Mechanism
+    addresses: tuple[str, ...]
+    nominal: Array
+    topology: Topology
+    touched: tuple[frozenset[Key], ...]
+    together: tuple[tuple[int, ...], ...]
+    draw: Draw | None = None
+
+    @cached_property
+    def widest(self) -> tuple[Change, ...]:
+        """Every change there can be, by variable."""
+        places = self.topology.features
+        return tuple(
+            Change(number, place, _upper(place))
+            for number, keys in enumerate(self.touched)
+            for place in places
+            if (place.kind, place.owner) in keys
+        )
+
+    @cached_property
+    def changes(self) -> tuple[Change, ...]:
+        """Every change that is not zero at three designs near the nominal one: the others are zero by the form of the formulas."""
+        shift = np.where(self.nominal != 0.0, 0.01 * self.nominal, 1e-4) * np.cos(np.arange(len(self.nominal)) + 1.0)
+        values = self.nominal + np.array([[0.0], [1.0], [-0.7]]) * shift
+        found: list[Change] = []
+        start = 0
+        slopes = _slopes(self, values, self.widest)
+        for change in self.widest:
+            own = slopes[start : start + len(change.rows)]
+            start += len(change.rows)
+            rows = change.rows[(own != 0.0).any(axis=1)]
+            if len(rows):
+                found.append(replace(change, rows=rows))
+        return tuple(found)
+
+
+def _upper(place: Feature) -> Array:
+    rows = np.arange(int(np.prod(place.shape)))
+    if place.kind in {"turn", "first", "second"}:
+        return rows
+    return rows[rows // place.shape[-1] <= rows % place.shape[-1]]
+
+
+def family(mechanism: Mechanism, addresses: tuple[str, ...]) -> Family:
+    """The family of a design and the addresses of the numbers that vary; raises `DesignError` for addresses there are none of.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> found = family(double_triangle(), ("parts.neck.thickness", "parts.foot_notch.thickness", "materials.steel.young"))
+    >>> found.together  # the thicknesses of two parts in one pass, the modulus, which is in both, in another
+    ((0, 1), (2,))
+    """
+    nominal = np.array([get(mechanism, address) for address in addresses])
+    plain = _without_requirements(mechanism)
+    for address, value in zip(addresses, nominal, strict=True):
+        plain = set_value(plain, address, float(value))
+    touched = tuple(_touched(plain, address, value) for address, value in zip(addresses, nominal, strict=True))
+    return Family(plain, addresses, nominal, topology(expand(plain)), touched, tuple(_together(touched)))
+
+
+def drawn_family(draw: Draw, names: tuple[str, ...], nominal: Array) -> Family:
+    """The family of the descriptions that `draw` makes of numbers with these names, around those of the `nominal` ones (P,).
+
+    All of one topology. Derivatives pass through it: it must take complex numbers, and make nothing complex that does not depend on them.
+
+    >>> from flexstage.cases.registry import Variant
+    >>> hexapod = Variant("hexapod")
+    >>> found = drawn_family(lambda values: hexapod.drawn({"slope": values[0]}), ("slope",), np.array([0.8]))
+    >>> numbers_of(found, np.array([[0.8], [0.9]])).shape[1]
+    2
+    """
+    own = tuple(np.asarray(float(value)) for value in nominal)
+    touched = tuple(_complex(draw((*own[:number], _stepped(own[number]), *own[number + 1 :]))) for number in range(len(own)))
+    plain = _without_requirements(draw(own))
+    return Family(plain, names, np.asarray(nominal, float), topology(expand(plain)), touched, tuple(_together(touched)), draw)
+
+
+def _stepped(value: Array) -> Array:
+    return value + 1j * (abs(value) * _STEP or _STEP)
+
+
+def _complex(mechanism: Mechanism) -> frozenset[Key]:
+    """Features that come out complex."""
+    return frozenset(key for key, array in features(mechanism).items() if np.iscomplexobj(array))
+
+
+def _without_requirements(mechanism: Mechanism) -> Mechanism:
+    return replace(mechanism, requirements={})
+
+
+def _touched(mechanism: Mechanism, address: str, value: float) -> frozenset[Key]:
+    return _complex(set_value(mechanism, address, complex(value, abs(value) * _STEP or _STEP)))
+
+
+def _together(touched: tuple[frozenset[Key], ...]) -> Iterator[tuple[int, ...]]:
+    left = list(range(len(touched)))
+    while left:
+        seen: set[Key] = set()
+        group: list[int] = []
+        for number in left:
+            if not touched[number] & seen:
+                seen |= touched[number]
+                group.append(number)
+        yield tuple(group)
+        left = [number for number in left if number not in group]
+
+
+def described(family_: Family, values: Array) -> Mechanism:
+    """The description of many designs, from their numbers (b, P).
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> found = family(double_triangle(), ("parts.neck.thickness",))
+    >>> described(found, np.array([[1e-3], [2e-3]])).parts["neck"].thickness.tolist()
+    [0.001, 0.002]
+    """
+    columns = tuple(values.T)
+    return family_.draw(columns) if family_.draw is not None else _set(family_, family_.mechanism, dict(enumerate(columns)))
+
+
+def _set(family_: Family, mechanism: Mechanism, values: Mapping[int, Array]) -> Mechanism:
+    for number, value in values.items():
+        address = family_.addresses[number]
+        place = locate(mechanism, address)
+        plain = not place.owners and "compliance" not in place.path
+        mechanism = replaced(mechanism, place.path, value) if plain else set_value(mechanism, address, value)
+    return mechanism
+
+
+def numbers_of(family_: Family, values: Array) -> Array:
+    """The features' numbers (features, b) of designs given by (b, P).
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> found = family(double_triangle(), ("parts.neck.thickness",))
+    >>> numbers_of(found, np.array([[1e-3], [2e-3]])).shape[1]
+    2
+    """
+    return packed(features(described(family_, values)), family_.topology.features, len(values))
+
+
+@dataclass(frozen=True, eq=False)
+class Slopes:
+    """Derivatives (rows of all changes, b) of features by variables."""
+
+    changes: tuple[Change, ...]
+    values: Array
+
+    def take(self, designs: Array | slice) -> Slopes:
+        """Those of some designs."""
+        return Slopes(self.changes, self.values[:, designs])
+
+
+def slopes_of(family_: Family, values: Array) -> Slopes:
+    """Derivatives of the features by every number that varies.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> found = family(double_triangle(), ("materials.steel.young",))
+    >>> value = np.array([[200e9]])
+    >>> slopes = slopes_of(found, value)  # stiffness is proportional to the modulus
+    >>> bool(np.allclose(slopes.values[:6] * 200e9, numbers_of(found, value)[:36:7]))
+    True
+    """
+    return Slopes(family_.changes, _slopes(family_, values, family_.changes))
+
+
+def _slopes(family_: Family, values: Array, changes: tuple[Change, ...]) -> Array:
+    mechanism = described(family_, values)
+    result = spaced(sum(len(change.rows) for change in changes), len(values))
+    places: dict[int, list[tuple[int, Change]]] = {}
+    start = 0
+    for change in changes:
+        places.setdefault(change.variable, []).append((start, change))
+        start += len(change.rows)
+    for group in family_.together:
+        wanted = {(change.place.kind, change.place.owner) for number in group for _, change in places.get(number, [])}
+        if not wanted:
+            continue
+        arrays = features(stepped(family_, mechanism, values, group), lambda kind, owner, wanted=wanted: (kind, owner) in wanted)
+        for number in group:
+            for at, change in places.get(number, []):
+                array = arrays[change.place.kind, change.place.owner]
+                flat = array.reshape(*array.shape[: array.ndim - len(change.place.shape)], -1)[..., change.rows]
+                result[at : at + len(change.rows)] = (np.imag(flat) / width(family_, number)).reshape(-1, len(change.rows)).T
+    return result
+
+
+def stepped(family_: Family, mechanism: Mechanism, values: Array, group: tuple[int, ...]) -> Mechanism:
+    """The description of the same designs with a complex step in every number of a group.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> found, value = family(double_triangle(), ("parts.neck.thickness",)), np.array([[1e-3]])
+    >>> stepped(found, found.mechanism, value, (0,)).parts["neck"].thickness
+    array([0.001+1.54e-23j])
+    """
+    steps = {number: values[:, number] + 1j * width(family_, number) for number in group}
+    if family_.draw is not None:
+        return family_.draw(tuple({**dict(enumerate(values.T)), **steps}.values()))
+    return _set(family_, mechanism, steps)
+
+
+def width(family_: Family, number: int) -> float:
+    """Width of the complex step of a number: small beside its nominal value.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> width(family(double_triangle(), ("materials.steel.young",)), 0) < 1e-8
+    True
+    """
+    return float(abs(family_.nominal[number])) * _STEP or _STEP

@@ -1,0 +1,180 @@
+"""Modes of the platform as each method finds them, in one form."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.base.number import Array
+from flexstage.models.batch.blocks import Blocks, Scheme, blocks, dense, of_kind
+from flexstage.models.batch.choice import Choice, chosen, groups, means
+from flexstage.models.batch.dense import Whole, whole
+from flexstage.models.batch.factor import factor
+from flexstage.models.batch.numbers import Slopes
+from flexstage.models.batch.slopes import motion, slope
+from flexstage.models.batch.subspace import Found, Problem, Start, iterate
+
+LEAST_PIVOT = 1e-9
+"""Least pivot of K over its own diagonal entry: below it another method decides whether K is singular."""
+
+
+@dataclass(frozen=True, eq=False)
+class Stage:
+    """Numbers (features, b) of designs, and how they change with each of `variables` numbers (none: no derivatives)."""
+
+    scheme: Scheme
+    numbers: Array
+    variables: int = 0
+    slopes: Slopes | None = None
+
+    def take(self, designs: Array | slice) -> Stage:
+        """Those of some designs."""
+        return Stage(self.scheme, self.numbers[:, designs], self.variables, None if self.slopes is None else self.slopes.take(designs))
+
+
+@dataclass(frozen=True, eq=False)
+class Solution:
+    """Eigenvalues `values` (b, k) of the platform's modes, ascending, and its `share` (b, k); `good` (b,) where they are proved.
+
+    `slopes` (b, P, k, k): Phi^T (dK - lambda dM) Phi within clusters, zero between them.
+    """
+
+    values: Array
+    share: Array
+    good: Array
+    slopes: Array
+
+    def take(self, designs: Array | slice) -> Solution:
+        """Those of some designs."""
+        return Solution(self.values[designs], self.share[designs], self.good[designs], self.slopes[designs])
+
+
+def by_iteration(stage: Stage, start: Start) -> Solution:
+    """Many designs by iteration from `start`, in numpy.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.models.batch.engine import plan
+    >>> from flexstage.models.batch.numbers import numbers_of
+    >>> stage = plan(double_triangle(), ())
+    >>> numbers = numbers_of(stage.family, np.zeros((1, 0)))
+    >>> by_iteration(Stage(stage.scheme, numbers), stage.start).good.tolist()
+    [True]
+    """
+    matrices = blocks(stage.scheme, stage.numbers)
+    found = found_modes(stage.scheme, matrices, of_kind(stage.scheme, stage.numbers, "inertia")[:, 0], start)
+    good = found.proved
+    picked = np.argsort(~found.mask, axis=1, kind="stable")[:, : start.choice.count]
+    values, share = (np.take_along_axis(item, picked, axis=1) for item in (found.ritz.values, found.ritz.share))
+    if stage.slopes is None:
+        return Solution(values, share, good, np.zeros((len(values), 0, values.shape[1], values.shape[1])))
+    shapes = np.take_along_axis(found.ritz.shapes, picked[:, None, None, :], axis=-1)
+    return Solution(values, share, good, _slopes(stage, shapes, values, start.choice.cluster))
+
+
+def found_modes(scheme: Scheme, matrices: tuple[Blocks, Blocks], platform: Array, start: Start) -> Found:
+    """Iterate with K and M given as blocks, and the platform's own inertia (b, 6, 6).
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.models.batch.engine import plan
+    >>> from flexstage.models.batch.numbers import numbers_of
+    >>> stage = plan(double_triangle(), ())
+    >>> numbers = numbers_of(stage.family, np.zeros((1, 0)))
+    >>> matrices = blocks(stage.scheme, numbers)
+    >>> found_modes(stage.scheme, matrices, of_kind(stage.scheme, numbers, "inertia")[:, 0], stage.start).proved.tolist()
+    [True]
+    """
+    stiffness, inertia = matrices
+    parts = factor(scheme.graph, stiffness)
+    diagonal = np.diagonal(stiffness.own, axis1=-2, axis2=-1).reshape(parts.pivots.shape)
+    firm = (parts.pivots > LEAST_PIVOT * diagonal).all(axis=1)
+    found = iterate(Problem(scheme.graph, parts, inertia, platform), stiffness, start)
+    return Found(found.ritz, found.mask, found.proved & firm)
+
+
+def _slopes(stage: Stage, shapes: Array, values: Array, gap: float) -> Array:
+    group = groups(values, gap)
+    result = np.zeros((len(values), stage.variables, values.shape[1], values.shape[1]))
+    if stage.slopes is None:
+        return result
+    seen = motion(stage.scheme, stage.numbers, shapes, means(values, group))
+    start = 0
+    for change in stage.slopes.changes:
+        stop = start + len(change.rows)
+        result[:, change.variable] += slope(stage.scheme, seen, change, stage.slopes.values[start:stop])
+        start = stop
+    return np.where((group[:, :, None] == group[:, None, :])[:, None], result, 0.0)
+
+
+def wholly(stage: Stage, choice: Choice) -> list[Solution]:
+    """Designs by dense matrices, one solution each; with clusters whole there may be more modes than asked for. None at all: K is singular.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.models.batch.engine import plan
+    >>> from flexstage.models.batch.numbers import numbers_of
+    >>> stage = plan(double_triangle(), ())
+    >>> numbers = numbers_of(stage.family, np.zeros((1, 0)))
+    >>> (wholly(Stage(stage.scheme, numbers), Choice())[0].values[0, :2] ** 0.5 / (2 * np.pi)).round(1).tolist()
+    [106.0, 106.0]
+    """
+    order = np.argsort(stage.scheme.coordinates)
+    modes = [every_mode(stage.scheme, stage.numbers[:, [design]]) for design in range(stage.numbers.shape[1])]
+    picked = [picked_modes(each, choice) for each in modes]
+    result: dict[int, Solution] = {}
+    for count in {len(each) for each in picked}:
+        designs = [design for design, each in enumerate(picked) if len(each) == count]
+        values, share = (np.stack([getattr(modes[at], name)[picked[at]] for at in designs]) for name in ("values", "share"))
+        shapes = np.stack([modes[at].shapes[order][:, picked[at]] for at in designs])
+        shapes = shapes.reshape(len(designs), len(stage.scheme.graph.order), 6, count)
+        slopes = _slopes(stage.take(np.array(designs)), shapes, values, choice.cluster)
+        good = np.array([bool(len(modes[at].values)) for at in designs])
+        found = Solution(values, share, good, slopes)
+        result |= {at: found.take(np.array([place])) for place, at in enumerate(designs)}
+    return [result[design] for design in range(len(modes))]
+
+
+def every_mode(scheme: Scheme, numbers: Array) -> Whole:
+    """Every mode of one design (features, 1), in the topology's coordinates.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.models.batch.engine import plan
+    >>> from flexstage.models.batch.numbers import numbers_of
+    >>> stage = plan(double_triangle(), ())
+    >>> len(every_mode(stage.scheme, numbers_of(stage.family, np.zeros((1, 0)))).values)
+    114
+    """
+    stiffness, inertia = blocks(scheme, numbers)
+    platform = np.zeros((scheme.topology.size,) * 2)
+    platform[:6, :6] = of_kind(scheme, numbers, "inertia")[0, 0]
+    return whole(dense(scheme, stiffness)[0], dense(scheme, inertia)[0], platform)
+
+
+def picked_modes(modes: Whole, choice: Choice) -> Array:
+    """Which modes of one design are the platform's.
+
+    >>> picked_modes(Whole(np.array([1.0, 2.0]), np.eye(2), np.array([0.1, 0.9])), Choice(count=1)).tolist()
+    [1]
+    """
+    if not len(modes.values):
+        return np.zeros(0, dtype=int)
+    return np.flatnonzero(chosen(modes.values[None], modes.share[None], choice).mask[0])
+
+
+def kept(solution: Solution, choice: Choice) -> tuple[Solution, Array]:
+    """As many modes as asked for, and the derivatives (b, P, k) of their clusters' means; the cluster of least share is cut if need be.
+
+    >>> both = Solution(np.array([[1.0, 4.0, 4.0]]), np.array([[0.9, 0.5, 0.5]]), np.array([True]), np.diag([1.0, 2.0, 4.0])[None, None])
+    >>> left, mean = kept(both, Choice(count=2))
+    >>> left.values.tolist(), mean.tolist()
+    ([[1.0, 4.0]], [[[1.0, 3.0]]])
+    """
+    group = groups(solution.values, choice.cluster)
+    diagonal = np.diagonal(solution.slopes, axis1=-2, axis2=-1)
+    mean = np.swapaxes(means(np.swapaxes(diagonal, 1, 2), group), 1, 2)
+    if solution.values.shape[1] <= choice.count:
+        return solution, mean
+    whole_share = means(solution.share, groups(np.sqrt(solution.values), choice.cluster))
+    best = np.sort(np.argsort(-whole_share, axis=1, kind="stable")[:, : choice.count], axis=1)
+    values, share = (np.take_along_axis(item, best, axis=1) for item in (solution.values, solution.share))
+    slopes = np.take_along_axis(np.take_along_axis(solution.slopes, best[:, None, None, :], 3), best[:, None, :, None], 2)
+    return Solution(values, share, solution.good, slopes), np.take_along_axis(mean, best[:, None, :], axis=2)

@@ -1,0 +1,379 @@
+"""Finite motion of the ideal reading: inverse (pose to strokes) and forward (strokes to pose) kinematics on SE(3).
+
+Unknowns are the poses of all bodies. Every link's locked components of the relative pose vanish, an actuator's axial translation equals its
+stroke. Closed loops and any topology; idle freedoms follow steps of least norm, redundant constraints are met by least squares.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from flexstage.base.finding import refuse
+from flexstage.base.number import Array
+from flexstage.mechanism.expand import Assembly, PlacedLink, expand
+from flexstage.mechanism.incidence import layout
+from flexstage.mechanism.mechanism import GROUND, Mechanism
+from flexstage.models.linear.kinematics import Kinematics
+from flexstage.parts.freedom import ALL
+from flexstage.parts.leaf import Leaf
+from flexstage.parts.part import Part, Restricted
+from flexstage.parts.rod import Rod
+from flexstage.spatial.frame import COMPONENTS, cross_matrix
+from flexstage.spatial.rotation import exponential, logarithm, logarithm_rate
+
+_STEPS = 60
+_SETTLED = 1e-14
+_STALLED = 1e-9
+_CONSISTENT = 1e-10
+_SLOW = 0.1
+_RANK = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class FinitePose:
+    """A pose after finite motion: `displacement` (..., 3) [m] of the reference point and `rotation_vector` (..., 3) [rad], stage axes.
+
+    Both are measured from the drawn position, so a small pose is a twist.
+    """
+
+    displacement: Array
+    rotation_vector: Array
+
+    @property
+    def vector(self) -> Array:
+        """The six components (x, y, z, rx, ry, rz), comparable with a small twist."""
+        return np.concatenate(np.broadcast_arrays(self.displacement, self.rotation_vector), axis=-1)
+
+
+@dataclass(frozen=True, eq=False)
+class FiniteMotion:
+    """A solved finite motion.
+
+    `strokes` (..., n) [m] by `actuators`; `pose` of the platform at its reference point; `bodies` the poses of all bodies at theirs, of
+    idle bodies those of least turn (which does not say what a gauge on them reads: `Kinematics.sensing` does, or refuses);
+    `residual` (...) the largest constraint error left [m, rotations times `length`]; `iterations` the steps taken.
+    """
+
+    actuators: tuple[str, ...]
+    strokes: Array
+    pose: FinitePose
+    bodies: Mapping[str, FinitePose]
+    residual: Array
+    iterations: int
+    length: float
+    provenance: str
+
+    @property
+    def consistent(self) -> Array:
+        """Whether redundant constraints agree at this finite motion; where not, the links are strained by about `residual`."""
+        return self.residual <= _CONSISTENT * self.length
+
+
+@dataclass(frozen=True, eq=False)
+class _Links:
+    """All links as arrays: body indices (the ground last), arms from the bodies' references to the joint, frames, locked components."""
+
+    bodies: tuple[str, ...]
+    first: list[int]
+    second: list[int]
+    first_arm: Array
+    second_arm: Array
+    axes: Array
+    locked: list[int]
+    drives: list[int]
+    beams: list[int]
+    spans: Array
+    round: Array
+    posed: tuple[int, ...]
+    length: float
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        return np.broadcast_shapes(self.first_arm.shape[:-2], self.second_arm.shape[:-2], self.axes.shape[:-3], self.spans.shape[:-1])
+
+    @property
+    def row_weights(self) -> Array:
+        weights = np.tile(_weights(self.length), len(self.first))[self.locked]
+        return np.concatenate([weights, _weights(self.length)[list(self.posed)]])
+
+
+@dataclass(frozen=True, eq=False)
+class _State:
+    """Displacements (..., N + 1, 3) and rotations (..., N + 1, 3, 3) of the bodies, the ground last; strokes; wanted pose components."""
+
+    shift: Array
+    turn: Array
+    strokes: Array
+    wanted: Array
+
+
+@dataclass(frozen=True, eq=False)
+class _Relative:
+    """Relative pose at every link: offset in stage axes, axes of the first body's joint, translation and rotation in those axes."""
+
+    offset: Array
+    axes: Array
+    translation: Array
+    rotation: Array
+    vector: Array
+
+
+def forward_kinematics(mechanism: Mechanism, kinematics: Kinematics, strokes: Array) -> FiniteMotion:
+    """Pose of the platform for strokes (..., n) [m] in the order of `kinematics.actuators`, from the drawn position.
+
+    Newton's method on the poses of all bodies. Leaves and rods shorten with their deflection w and slope t as in the beam constraint model,
+    0.6 w^2/L - 0.1 w t + L t^2/15 (Awtar, Slocum & Sevincer 2007); the pivots of other links stay. Raises `DesignError` where strokes do
+    not determine the platform or no convergence is reached.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.models.ideal import ideal
+    >>> stage = double_triangle()
+    >>> lifted = forward_kinematics(stage, ideal(stage), np.array([0, 0, 0, 50e-6, 50e-6, 50e-6]))
+    >>> round(1e6 * float(lifted.pose.displacement[2]), 1)
+    150.0
+    """
+    strokes = np.asarray(strokes)
+    return _solved(mechanism, kinematics, strokes, None)
+
+
+def inverse_kinematics(mechanism: Mechanism, kinematics: Kinematics, pose: FinitePose) -> FiniteMotion:
+    """Strokes that bring the platform's reference point to `pose`, of which the components named in `kinematics.coordinates` count.
+
+    Method, links and errors as for `forward_kinematics`.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.models.ideal import ideal
+    >>> stage = double_triangle()
+    >>> lifted = FinitePose(np.array([0.0, 0.0, 150e-6]), np.zeros(3))
+    >>> (1e6 * inverse_kinematics(stage, ideal(stage), lifted).strokes[3:]).round(1).tolist()
+    [50.0, 50.0, 50.0]
+    """
+    wanted = pose.vector[..., [COMPONENTS.index(name) for name in kinematics.coordinates]]
+    strokes = np.zeros((*wanted.shape[:-1], len(kinematics.actuators)))
+    return _solved(mechanism, kinematics, strokes, wanted)
+
+
+def design_shape(mechanism: Mechanism, kinematics: Kinematics) -> tuple[int, ...]:
+    """Batch shape of the designs as finite motion sees them: leading axes of strokes and poses broadcast against it.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.models.ideal import ideal
+    >>> design_shape(double_triangle(), ideal(double_triangle()))
+    ()
+    """
+    return _links(mechanism, kinematics, posed=False).shape
+
+
+def _solved(mechanism: Mechanism, kinematics: Kinematics, strokes: Array, wanted: Array | None) -> FiniteMotion:
+    _ = kinematics.mapping  # refuses under-actuated stages
+    links = _links(mechanism, kinematics, posed=wanted is not None)
+    state, iterations = _newton(links, _drawn(links, strokes, wanted))
+    names = (*links.bodies, GROUND)
+    poses = {name: FinitePose(state.shift[..., index, :], logarithm(state.turn[..., index, :, :])) for index, name in enumerate(names)}
+    return FiniteMotion(
+        actuators=kinematics.actuators,
+        strokes=state.strokes,
+        pose=poses[links.bodies[0]],
+        bodies={name: poses[name] for name in links.bodies},
+        residual=np.max(np.abs(_residual(links, state, _relative(links, state))), axis=-1),
+        iterations=iterations,
+        length=links.length,
+        provenance=f"finite motion of the {kinematics.provenance}",
+    )
+
+
+def _newton(links: _Links, state: _State) -> tuple[_State, int]:
+    """Newton steps; the pseudo-inverse of the drawn position serves as long as it converges fast."""
+    relative = _relative(links, state)
+    slope = _first_slope(links, state)
+    before = np.inf
+    for iteration in range(1, _STEPS + 1):
+        step = -_times(slope, _residual(links, state, relative))
+        state = _moved(links, state, step)
+        relative = _relative(links, state)
+        size = float(np.max(np.abs(step) * _step_weights(links, state), initial=0.0))
+        if size < _SETTLED * links.length or 0.5 * before < size < _STALLED * links.length:
+            return state, iteration
+        if not np.isfinite(size) or size > 1e3 * links.length:
+            break
+        if size > _SLOW * before:
+            slope = _pseudo_inverse(links, state, relative)
+        before = size
+    raise refuse(
+        "finite motion",
+        f"no convergence: the last step was {before:.3g} m on a stage of {links.length:.3g} m",
+        "The stage cannot be closed there; ask for smaller strokes or poses",
+    )
+
+
+def _links(mechanism: Mechanism, kinematics: Kinematics, *, posed: bool) -> _Links:
+    assembly = expand(mechanism)
+    bodies = layout(assembly).bodies
+    index = {name: number for number, name in enumerate((*bodies, GROUND))}
+    placed = tuple(assembly.links.values())
+    beams = [number for number, link in enumerate(placed) if isinstance(_inner(link.part), (Leaf, Rod))]
+    return _Links(
+        bodies=bodies,
+        first=[index[link.joins[0]] for link in placed],
+        second=[index[link.joins[1]] for link in placed],
+        first_arm=_together([_arm(assembly, link, link.joins[0]) for link in placed], 1),
+        second_arm=_together([_arm(assembly, link, link.joins[1]) for link in placed], 1),
+        axes=_together([link.frame.rotation for link in placed], 2),
+        locked=_locked(placed, kinematics),
+        drives=[6 * list(assembly.links).index(name) for name in assembly.actuators.values()],
+        beams=beams,
+        spans=_together([np.asarray(getattr(_inner(placed[number].part), "length", 0.0)) for number in beams], 0),
+        round=np.array([isinstance(_inner(placed[number].part), Rod) for number in beams], dtype=float),
+        posed=tuple(COMPONENTS.index(name) for name in kinematics.coordinates) if posed else (),
+        length=kinematics.length,
+    )
+
+
+def _locked(placed: tuple[PlacedLink, ...], kinematics: Kinematics) -> list[int]:
+    return [
+        6 * number + freedom.index for number, link in enumerate(placed) for freedom in ALL if freedom not in kinematics.free[link.name]
+    ]
+
+
+def _inner(part: Part) -> Part:
+    return part.part if isinstance(part, Restricted) else part
+
+
+def _arm(assembly: Assembly, link: PlacedLink, body: str) -> Array:
+    return link.frame.position - (np.zeros(3) if body == GROUND else assembly.bodies[body].reference)
+
+
+def _together(arrays: list[Array], depth: int) -> Array:
+    """Arrays of single links along a link axis that stands before their last `depth` axes."""
+    if not arrays:
+        return np.zeros(0)
+    batch = np.broadcast_shapes(*(array.shape[: array.ndim - depth] for array in arrays))
+    return np.stack([np.broadcast_to(array, batch + array.shape[array.ndim - depth :]) for array in arrays], axis=-1 - depth)
+
+
+def _drawn(links: _Links, strokes: Array, wanted: Array | None) -> _State:
+    lead = np.broadcast_shapes(strokes.shape[:-1], links.shape)
+    kind = np.result_type(strokes, float if wanted is None else wanted, links.first_arm, links.axes)
+    count = len(links.bodies) + 1
+    return _State(
+        shift=np.zeros((*lead, count, 3), dtype=kind),
+        turn=np.broadcast_to(np.eye(3, dtype=kind), (*lead, count, 3, 3)),
+        strokes=np.broadcast_to(strokes.astype(kind), (*lead, strokes.shape[-1])),
+        wanted=np.zeros((*lead, 0)) if wanted is None else np.broadcast_to(wanted, (*lead, wanted.shape[-1])),
+    )
+
+
+def _relative(links: _Links, state: _State) -> _Relative:
+    first, second = state.turn[..., links.first, :, :], state.turn[..., links.second, :, :]
+    carried = ((second - np.eye(3)) @ links.second_arm[..., None] - (first - np.eye(3)) @ links.first_arm[..., None])[..., 0]
+    offset = state.shift[..., links.second, :] - state.shift[..., links.first, :] + carried
+    axes = first @ links.axes
+    back = np.swapaxes(axes, -1, -2)
+    rotation = back @ (second @ links.axes)
+    return _Relative(offset, axes, (back @ offset[..., None])[..., 0], rotation, logarithm(rotation))
+
+
+def _residual(links: _Links, state: _State, relative: _Relative) -> Array:
+    """Weighted constraint errors (..., m): locked components less strokes and shortenings, then pose components less the wanted ones."""
+    values = np.concatenate([relative.translation, relative.vector], axis=-1)
+    flat = values.reshape(*values.shape[:-2], -1)
+    flat[..., links.drives] -= state.strokes
+    if links.beams:
+        flat[..., [6 * number for number in links.beams]] += _shortening(links, relative)
+    errors = flat[..., links.locked]
+    if links.posed:
+        pose = np.concatenate([state.shift[..., 0, :], logarithm(state.turn[..., 0, :, :])], axis=-1)
+        errors = np.concatenate([errors, pose[..., list(links.posed)] - state.wanted], axis=-1)
+    return errors * links.row_weights
+
+
+def _shortening(links: _Links, relative: _Relative) -> Array:
+    """How much nearer the ends of leaves and rods come as they deflect, seen at their centres."""
+    half = 0.5 * links.spans
+    turn, vector = relative.rotation[..., links.beams, :, :], relative.vector[..., links.beams, :]
+    end = relative.translation[..., links.beams, :] + half[..., None] * turn[..., :, 0]
+    bent = _bent(end[..., 1], vector[..., 2], links.spans) + links.round * _bent(end[..., 2], -vector[..., 1], links.spans)
+    return bent + half * (turn[..., 0, 0] - 1.0)
+
+
+def _bent(deflection: Array, slope: Array, span: Array) -> Array:
+    return 0.6 * deflection**2 / span - 0.1 * deflection * slope + span * slope**2 / 15.0
+
+
+def _first_slope(links: _Links, state: _State) -> Array:
+    """The pseudo-inverse at the drawn position, one for all points."""
+    drawn = _drawn(links, np.zeros(state.strokes.shape[-1]), np.zeros(state.wanted.shape[-1]))
+    return _pseudo_inverse(links, drawn, _relative(links, drawn))
+
+
+def _times(matrix: Array, vectors: Array) -> Array:
+    """Matrix times vectors (..., m): one product for all where the matrix is one."""
+    return vectors @ matrix.T if matrix.ndim == 2 else (matrix @ vectors[..., None])[..., 0]
+
+
+def _pseudo_inverse(links: _Links, state: _State, relative: _Relative) -> Array:
+    """Least-norm, least-squares inverse of the weighted constraint slopes, rotations weighted with the length scale."""
+    slopes = np.real(_slopes(links, state, relative))
+    scale = 1.0 / _step_weights(links, state)
+    return scale[:, None] * np.linalg.pinv(links.row_weights[:, None] * slopes * scale, rcond=_RANK)
+
+
+def _slopes(links: _Links, state: _State, relative: _Relative) -> Array:
+    """Derivative (..., m, 6 N [+ n]) of the errors with respect to the bodies' twists at their references and, for a pose, the strokes."""
+    count, bodies = len(links.first), len(links.bodies)
+    lead = relative.offset.shape[:-2]
+    blocks = np.zeros((*lead, count, 6, bodies + 1, 6), dtype=relative.offset.dtype)
+    first, second = _end_slopes(links, state, relative)
+    blocks[..., range(count), :, links.first, :] += np.moveaxis(first, -3, 0)
+    blocks[..., range(count), :, links.second, :] += np.moveaxis(second, -3, 0)
+    slopes = blocks[..., :bodies, :].reshape(*lead, 6 * count, 6 * bodies)[..., links.locked, :]
+    if not links.posed:
+        return slopes
+    driven = np.zeros((*lead, len(links.locked), len(links.drives)))
+    driven[..., [links.locked.index(drive) for drive in links.drives], range(len(links.drives))] = -1.0
+    pose = np.zeros((*lead, 6, 6 * bodies + len(links.drives)), dtype=slopes.dtype)
+    pose[..., :3, :3] = np.eye(3)
+    pose[..., 3:, 3:6] = logarithm_rate(logarithm(state.turn[..., 0, :, :]))
+    return np.concatenate([np.concatenate([slopes, driven], axis=-1), pose[..., list(links.posed), :]], axis=-2)
+
+
+def _end_slopes(links: _Links, state: _State, relative: _Relative) -> tuple[Array, Array]:
+    """Derivatives (..., L, 6, 6) of the relative poses with respect to the twist of the first and of the second body."""
+    back = np.swapaxes(relative.axes, -1, -2)
+    arms = [
+        cross_matrix((state.turn[..., ends, :, :] @ arm[..., None])[..., 0])
+        for ends, arm in ((links.first, links.first_arm), (links.second, links.second_arm))
+    ]
+    rate = logarithm_rate(relative.vector) @ back
+    first = _block(-back, back @ (arms[0] + cross_matrix(relative.offset)), -rate)
+    return first, _block(back, -back @ arms[1], rate)
+
+
+def _block(shift: Array, lever: Array, turn: Array) -> Array:
+    lead = np.broadcast_shapes(shift.shape[:-2], lever.shape[:-2], turn.shape[:-2])
+    result = np.zeros((*lead, 6, 6), dtype=np.result_type(shift, lever, turn))
+    result[..., :3, :3], result[..., :3, 3:], result[..., 3:, 3:] = shift, lever, turn
+    return result
+
+
+def _moved(links: _Links, state: _State, step: Array) -> _State:
+    bodies = len(links.bodies)
+    twist = step[..., : 6 * bodies].reshape(*step.shape[:-1], bodies, 6)
+    shift, turn = state.shift.copy(), state.turn.copy()
+    shift[..., :bodies, :] += twist[..., :3]
+    turn[..., :bodies, :, :] = exponential(twist[..., 3:]) @ turn[..., :bodies, :, :]
+    strokes = state.strokes + step[..., 6 * bodies :] if links.posed else state.strokes
+    return replace(state, shift=shift, turn=turn, strokes=strokes)
+
+
+def _weights(length: float) -> Array:
+    return np.array([1.0, 1.0, 1.0, length, length, length])
+
+
+def _step_weights(links: _Links, state: _State) -> Array:
+    """Weights (k,) that make the unknowns lengths."""
+    strokes = np.ones(state.strokes.shape[-1] if links.posed else 0)
+    return np.concatenate([np.tile(_weights(links.length), len(links.bodies)), strokes])

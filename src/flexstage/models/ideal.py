@@ -1,0 +1,289 @@
+"""Ideal reading: rigid bodies, hinges free about their intended freedoms and locked in all others.
+
+Unknowns are the twists of all bodies and the strokes; every link's locked deformations vanish. From the motions that are left follow
+R_a = da/dx and R_s = ds/dx (Eqs. 13 and 14 of Shin & Moon), the platform's mobility, idle freedoms and redundant constraints.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from flexstage.base.digest import digest
+from flexstage.base.finding import DesignError, Finding, refuse, require
+from flexstage.base.number import Array, first_design
+from flexstage.beams.compliance import law
+from flexstage.mechanism.expand import Assembly, PlacedLink, expand
+from flexstage.mechanism.incidence import Layout, deformation, layout, require_room, twist_at
+from flexstage.mechanism.mechanism import PLATFORM, Mechanism
+from flexstage.models.linear.blockage import Blockage, blockage
+from flexstage.models.linear.elimination import Elimination, echelon, eliminate, null_space, pivoted
+from flexstage.models.linear.kinematics import Idle, Kinematics, Redundant
+from flexstage.parts.freedom import ALL, Freedom
+from flexstage.spatial.frame import COMPONENTS
+
+_NEGLIGIBLE = 1e-7
+_ENERGYLESS = 1e-12
+_MATRICES = 10.0
+"""Dense matrices alive at once: 9 to 12 on chains of 200 and 300 rods, measured."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Graph:
+    """The stage as constraints: `strain` of all links (..., 6 L, N), constraint rows (..., m, N + n) and their names."""
+
+    assembly: Assembly
+    order: Layout
+    strain: Array
+    constraints: Array
+    names: tuple[str, ...]
+    scale: Array
+    length: float
+
+
+def free_freedoms(link: PlacedLink) -> tuple[Freedom, ...]:
+    """The freedoms taken as free at a link: its own statement, else the part's intended ones.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> [freedom.value for freedom in free_freedoms(expand(double_triangle()).links["B4/pivot"])]
+    ['rz']
+    """
+    return link.link.free if link.link.free is not None else link.part.intended
+
+
+def ideal(mechanism: Mechanism) -> Kinematics:
+    """Read a stage as ideal kinematics.
+
+    Small motions about the drawn position. Raises `DesignError` where a stroke moves nothing but itself (an actuator without a path to the
+    platform). Under-actuated stages are read, but their `mapping` is refused.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> ideal(double_triangle()).mapping.values[0].round(3).tolist()
+    [1.0, 0.0, 0.0, 0.0, -0.025, 0.085]
+    """
+    graph = _graph(mechanism)
+    solution = eliminate(graph.constraints, graph.scale, keep=tuple(range(6)))
+    freedoms = [index for index in solution.independent if index < 6]
+    columns = [solution.independent.index(index) for index in freedoms]
+    rest = [index for index in range(len(solution.independent)) if index not in columns]
+    size = graph.order.size
+    idle = np.real(first_design(solution.basis, 2))[:, rest]
+    _require_paths(graph, idle[size:])
+    motion = _without_idle(graph, solution, columns, rest)
+    bodies, strokes = motion[..., :size, :], motion[..., size:, :]
+    found = Kinematics(
+        actuators=tuple(graph.assembly.actuators),
+        coordinates=tuple(COMPONENTS[index] for index in freedoms),
+        gauges=tuple(graph.assembly.gauges),
+        actuation=strokes,
+        sensing=_sensing(graph, _sensed(graph, (solution, columns, rest), bodies)),
+        motion=bodies[..., :6, :],
+        body_coordinates=graph.order.coordinates,
+        bodies=bodies,
+        strains=dict(zip(graph.assembly.links, _by_link(graph.strain @ bodies), strict=True)),
+        free={name: free_freedoms(link) for name, link in graph.assembly.links.items()},
+        idle=_idle(graph, idle[:size]),
+        redundant=_redundant(graph),
+        length=graph.length,
+        provenance=f"ideal reading of {digest(mechanism, physics=True)[:16]}",
+    )
+    return replace(found, blocked=_blocked(graph, found.immobile)) if found.immobile else found
+
+
+def _blocked(graph: _Graph, immobile: tuple[str, ...]) -> dict[str, Blockage]:
+    """What blocks each immobile stroke, by the links' addresses in the description."""
+    rows = _comparable(graph)
+    links = {name: link.drawn.removeprefix("links.") for name, link in graph.assembly.links.items()}
+    ends = [name.rpartition(".") for name in graph.names]
+    names = tuple(f"{links[link]}.{freedom}" for link, _, freedom in ends)
+    meant = {f"{links[name]}.{freedom.value}" for name, link in graph.assembly.links.items() for freedom in link.part.intended}
+    actuators = list(graph.assembly.actuators)
+    return {name: blockage(rows, graph.order.size + actuators.index(name), names, frozenset(meant)) for name in immobile}
+
+
+def _comparable(graph: _Graph) -> Array:
+    """The constraints of the first design, all rows of one size."""
+    first = np.real(first_design(graph.constraints, 2)) * graph.scale
+    norms = np.linalg.norm(first, axis=1)
+    return first / np.where(norms > 0.0, norms, 1.0)[:, None]
+
+
+def _graph(mechanism: Mechanism) -> _Graph:
+    assembly = expand(mechanism)
+    require_room(assembly, _MATRICES)
+    order = layout(assembly)
+    operators = [deformation(assembly, order, link) for link in assembly.links.values()]
+    if not operators:
+        raise refuse("links", "there are none", "Join bodies by links, for example the platform and the ground")
+    batch = np.broadcast_shapes(*{operator.shape[:-2] for operator in operators})
+    strain = np.concatenate([np.broadcast_to(operator, (*batch, *operator.shape[-2:])) for operator in operators], axis=-2)
+    length = _length(assembly)
+    scale = np.concatenate([np.tile(_weights(1.0 / length), len(order.bodies)), np.ones(len(assembly.actuators))])
+    constraints, names = _constraints(assembly, strain)
+    return _Graph(assembly, order, strain, constraints, names, scale, length)
+
+
+def _constraints(assembly: Assembly, strain: Array) -> tuple[Array, tuple[str, ...]]:
+    """Constraint rows and their names: locked deformations vanish; an actuator's axial one equals its stroke."""
+    drives = {f"{link}.{Freedom.X.value}": number for number, link in enumerate(assembly.actuators.values())}
+    locked: dict[str, int] = {}
+    for place, (name, link) in enumerate(assembly.links.items()):
+        free = free_freedoms(link)
+        locked |= {f"{name}.{freedom.value}": 6 * place + index for index, freedom in enumerate(ALL) if freedom not in free}
+    strokes = np.zeros((len(locked), len(drives)))
+    for row, name in enumerate(locked):
+        if name in drives:
+            strokes[row, drives[name]] = -1.0
+    rows = strain[..., list(locked.values()), :]
+    return np.concatenate([rows, np.broadcast_to(strokes, (*rows.shape[:-1], len(drives)))], axis=-1), tuple(locked)
+
+
+def _by_link(strains: Array) -> Array:
+    """Strains (..., 6 L, k) with the links leading, (L, ..., 6, k); twists of bodies alike."""
+    return np.moveaxis(strains.reshape(*strains.shape[:-2], strains.shape[-2] // 6, 6, strains.shape[-1]), -3, 0)
+
+
+def _weights(rotation: float) -> Array:
+    return np.array([1.0, 1.0, 1.0, *[rotation] * 3])
+
+
+def _length(assembly: Assembly) -> float:
+    """Length scale of the stage: rms distance of its links from the platform's reference, on the first design."""
+    centre = assembly.bodies[PLATFORM].reference
+    arms = [np.real(link.frame.position - centre).reshape(-1, 3)[0] for link in assembly.links.values()]
+    return float(np.sqrt(np.mean([arm @ arm for arm in arms]))) or 1.0
+
+
+def _require_paths(graph: _Graph, idle_strokes: Array) -> None:
+    """Strokes that can change while the platform stands still drive nothing."""
+    moving = np.max(np.abs(idle_strokes), axis=1, initial=0.0) > _NEGLIGIBLE
+    require(
+        Finding(
+            link,
+            f"actuator {name} can move while the platform stands still: its stroke has no path to the platform",
+            "Join its unit to the platform, or lock the freedom that lets it slip",
+        )
+        for (name, link), slips in zip(graph.assembly.actuators.items(), moving, strict=True)
+        if slips
+    )
+
+
+def _without_idle(graph: _Graph, solution: Elimination, columns: list[int], rest: list[int]) -> Array:
+    """Motions per platform coordinate, idle motions set so that the links' deformations are least (rotations times the length scale)."""
+    wanted, idle = solution.basis[..., columns], solution.basis[..., rest]
+    if not rest:
+        return wanted
+    size = graph.order.size
+    weighted = np.tile(_weights(graph.length), len(graph.assembly.links))[:, None] * graph.strain
+    before, spun = (weighted @ motion[..., :size, :] for motion in (wanted, idle))
+    transposed = np.swapaxes(spun, -1, -2)
+    return wanted - idle @ np.linalg.solve(transposed @ spun, transposed @ before)
+
+
+def _sensed(graph: _Graph, eliminated: tuple[Elimination, list[int], list[int]], bodies: Array) -> Array:
+    """The bodies' motions (..., N, f) as gauges see them: idle motions that one sees store the least energy in the links they strain."""
+    solution, columns, rest = eliminated
+    size = graph.order.size
+    wanted, idle = solution.basis[..., :size, columns], solution.basis[..., :size, rest]
+    still = np.real(first_design(idle, 2))
+    rows = {name: np.real(first_design(_reading(graph, name), 2)) for name in graph.assembly.gauges}
+    watching = [name for name, row in rows.items() if _sees(row, still)]
+    if not watching:
+        return bodies
+    energy, mixed = np.zeros((len(rest), len(rest))), np.zeros((len(rest), len(columns)))
+    for place, stiffness in _stiffnesses(graph, still, watching):
+        strain = graph.strain[..., place, :]
+        force = np.swapaxes(stiffness @ (strain @ idle), -1, -2)
+        energy, mixed = energy + force @ (strain @ idle), mixed + force @ (strain @ wanted)
+    held, loose = _held(np.real(first_design(energy, 2)))
+    require(_undetermined(graph, [name for name in watching if _sees(rows[name], still @ loose)], still @ loose))
+    return wanted - idle[..., held] @ np.linalg.solve(energy[..., held, :][..., held], mixed[..., held, :])
+
+
+def _sees(row: Array, motions: Array) -> bool:
+    """Whether a gauge's row (1, N) feels one of the motions (N, k) more than by rounding."""
+    return bool(np.any(np.abs(row @ motions) > _NEGLIGIBLE * (np.abs(row) @ np.abs(motions))))
+
+
+def _stiffnesses(graph: _Graph, idle: Array, watching: list[str]) -> Iterator[tuple[slice, Array]]:
+    """Rows in the strain and stiffness of every link that idle motions deform."""
+    strained = np.max(np.abs(_by_link(np.real(first_design(graph.strain, 2)) @ idle)), axis=(1, 2)) > _NEGLIGIBLE
+    for number, (name, link) in enumerate(graph.assembly.links.items()):
+        if strained[number]:
+            try:
+                yield slice(6 * number, 6 * number + 6), law(link.part, link.material).stiffness
+            except DesignError as error:
+                reason = "; ".join(finding.what for finding in error.findings)
+                what = f"it sees an idle motion, and how stiff {name} is against it is not known: {reason}"
+                raise refuse(", ".join(watching), what, "State it, or move the gauge to the platform") from error
+
+
+def _held(energy: Array) -> tuple[list[int], Array]:
+    """Idle motions that store energy, as many as tell the rest, and combinations (k, l) that store none."""
+    diagonal = np.diag(energy)
+    top = np.max(diagonal, initial=0.0)
+    root = np.sqrt(np.where(diagonal > _ENERGYLESS * top, diagonal, top or 1.0))
+    scaled = energy / root / root[:, None]
+    values, vectors = np.linalg.eigh(scaled)
+    loose = values < _ENERGYLESS
+    order = pivoted(scaled)[2][: int(np.sum(~loose))]
+    return sorted(int(index) for index in order), (vectors / root[:, None])[:, loose]
+
+
+def _undetermined(graph: _Graph, gauges: list[str], motions: Array) -> Iterator[Finding]:
+    """Gauges that see an idle motion which no link resists."""
+    moving = np.max(np.abs(_by_link(motions)), axis=(1, 2), initial=0.0) > _NEGLIGIBLE * np.max(np.abs(motions), initial=0.0)
+    bodies = ", ".join(itertools.compress(graph.order.bodies, moving))
+    for name in gauges:
+        yield Finding(
+            name,
+            f"it sees an idle motion that no link resists ({bodies}): its reading does not follow from the platform's motion",
+            "Move the gauge to the platform, give a link of these bodies stiffness in that freedom, or lock it",
+        )
+
+
+def _reading(graph: _Graph, name: str) -> Array:
+    """What a gauge reads (..., 1, N) of the bodies' motions."""
+    gauge = graph.assembly.gauges[name]
+    ends = [twist_at(graph.assembly, graph.order, body, gauge.frame)[..., :1, :] for body in (gauge.body, gauge.base)]
+    return gauge.sign * (ends[0] - ends[1])
+
+
+def _sensing(graph: _Graph, bodies: Array) -> Array:
+    """Gauge readings per platform twist; gauges on other bodies see the ideal motions only."""
+    motion = bodies[..., :6, :]
+    rows = [_gauge_row(graph, name, bodies, motion) for name in graph.assembly.gauges]
+    if not rows:
+        return np.zeros((0, 6))
+    return np.concatenate(np.broadcast_arrays(*rows), axis=-2)
+
+
+def _gauge_row(graph: _Graph, name: str, bodies: Array, motion: Array) -> Array:
+    gauge, row = graph.assembly.gauges[name], _reading(graph, name)
+    if {gauge.body, gauge.base} <= {PLATFORM, "ground"}:
+        return row[..., :6]
+    weighted = np.swapaxes(motion, -1, -2) * _weights(graph.length) ** 2
+    return row @ bodies @ np.linalg.solve(weighted @ motion, weighted)
+
+
+def _idle(graph: _Graph, motions: Array) -> tuple[Idle, ...]:
+    scale = graph.scale[: graph.order.size, None]
+    vectors = echelon((motions / scale).T).T * scale
+    strains = np.real(first_design(graph.strain, 2)) @ vectors
+    threshold = _NEGLIGIBLE * np.max(np.abs(vectors), axis=0, initial=0.0)
+    moving, deforming = (np.max(np.abs(_by_link(parts)), axis=1) > threshold for parts in (vectors, strains))
+    return tuple(
+        Idle(tuple(itertools.compress(graph.order.bodies, moved)), tuple(itertools.compress(graph.assembly.links, strained)))
+        for moved, strained in zip(moving.T, deforming.T, strict=True)
+    )
+
+
+def _redundant(graph: _Graph) -> tuple[Redundant, ...]:
+    """Self-stress states of the locked freedoms: left null vectors of the constraints."""
+    states = echelon(null_space(_comparable(graph).T).T)
+    return tuple(
+        Redundant(tuple(name for name, force in zip(graph.names, state, strict=True) if abs(force) > _NEGLIGIBLE)) for state in states
+    )

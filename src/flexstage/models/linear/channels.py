@@ -1,0 +1,145 @@
+"""Inputs and outputs of a stage, by name and in order, as every elastic reading gives them: so their answers can be compared by name.
+
+Inputs: strokes; wrenches on the platform and the named points. Outputs: twists of the platform, the points and all other bodies; readings
+of the gauges; stress resultants of every link, at its centre in its frame.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.base.number import Array
+from flexstage.mechanism.expand import Assembly
+from flexstage.mechanism.mechanism import PLATFORM
+from flexstage.models.linear.model import Channel
+from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNITS, Frame
+
+
+@dataclass(frozen=True, eq=False)
+class Place:
+    """Where a twist is read or a wrench acts: a point (..., 3) [m] of a body, in the stage's axes."""
+
+    body: str
+    point: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Motions:
+    """How a reading's coordinates move the bodies: the twist (..., 6, n) of each at its reference point, and of one `at` a frame."""
+
+    bodies: Mapping[str, Array]
+    at: Callable[[str, Frame], Array]
+
+
+def loaded_places(assembly: Assembly) -> dict[str, Place]:
+    """Where wrenches act: the platform's reference point and the named points.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.mechanism.expand import expand
+    >>> list(loaded_places(expand(parallelogram())))
+    ['platform', 'corner']
+    """
+    points = {name: Place(body, point) for name, (body, point) in assembly.points.items()}
+    return {PLATFORM: Place(PLATFORM, assembly.bodies[PLATFORM].reference), **points}
+
+
+def seen_places(assembly: Assembly) -> dict[str, Place]:
+    """Where twists are read: where wrenches act, and the reference points of all other bodies.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.mechanism.expand import expand
+    >>> list(seen_places(expand(parallelogram())))
+    ['platform', 'corner', 'B/base', 'B/tip']
+    """
+    others = {name: Place(name, body.reference) for name, body in assembly.bodies.items() if name != PLATFORM}
+    return loaded_places(assembly) | others
+
+
+def input_channels(assembly: Assembly) -> tuple[Channel, ...]:
+    """Strokes by actuator, then wrenches by place.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.mechanism.expand import expand
+    >>> [channel.name for channel in input_channels(expand(parallelogram()))][:3]
+    ['B', 'platform.fx', 'platform.fy']
+    """
+    return (*(Channel(name, "m") for name in assembly.actuators), *_components(loaded_places(assembly), FORCES, WRENCH_UNITS))
+
+
+def output_channels(assembly: Assembly) -> tuple[Channel, ...]:
+    """Twists by place, gauges, stress resultants by link.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.mechanism.expand import expand
+    >>> found = output_channels(expand(parallelogram()))
+    >>> found[0].name, found[-1].name, len(found) == 6 * (4 + 5) + 1  # places, links, a gauge
+    ('platform.x', 'B/front.mz', True)
+    """
+    return (
+        *_components(seen_places(assembly), COMPONENTS, TWIST_UNITS),
+        *(Channel(name, "m") for name in assembly.gauges),
+        *_components(assembly.links, FORCES, WRENCH_UNITS),
+    )
+
+
+def _components(owners: Iterable[str], names: tuple[str, ...], units: tuple[str, ...]) -> list[Channel]:
+    return [Channel(f"{owner}.{name}", unit) for owner in owners for name, unit in zip(names, units, strict=True)]
+
+
+def absolute(assembly: Assembly) -> Array:
+    """Which outputs (p,) change when everything moves with the ground: the twists do, gauges and links do not feel it.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.mechanism.expand import expand
+    >>> int(absolute(expand(parallelogram())).sum())  # six of each of four places
+    24
+    """
+    return np.arange(len(output_channels(assembly))) < len(COMPONENTS) * len(seen_places(assembly))
+
+
+def place_twists(places: Mapping[str, Place], motions: Motions) -> list[Array]:
+    """The twist (..., 6, n) at every place, in the stage's axes.
+
+    >>> still = Motions({"platform": np.zeros((6, 2))}, lambda body, frame: np.ones((6, 2)))
+    >>> places = {"platform": Place("platform", np.zeros(3)), "corner": Place("platform", np.ones(3))}
+    >>> [float(twist.sum()) for twist in place_twists(places, still)]
+    [0.0, 12.0]
+    """
+    return [
+        motions.bodies[name] if name == place.body else motions.at(place.body, Frame(np.eye(3), place.point))
+        for name, place in places.items()
+    ]
+
+
+def gauge_rows(assembly: Assembly, motions: Motions) -> list[Array]:
+    """The reading (..., 1, n) of every gauge: the body's motion against the base's along the gauge's axis, with its sign.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.mechanism.expand import expand
+    >>> alone = Motions({}, lambda body, frame: np.full((6, 1), float(body == "platform")))
+    >>> [row.tolist() for row in gauge_rows(expand(parallelogram()), alone)]
+    [[[1.0]]]
+    """
+    return [
+        gauge.sign * (motions.at(gauge.body, gauge.frame)[..., :1, :] - motions.at(gauge.base, gauge.frame)[..., :1, :])
+        for gauge in assembly.gauges.values()
+    ]
+
+
+def imposed_strokes(assembly: Assembly, deformations: Mapping[str, Array]) -> dict[str, Array]:
+    """What every input imposes on each driven link (r, m): its stroke the deformation (r,) stated by link, all others nothing.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.mechanism.expand import expand
+    >>> imposed_strokes(expand(parallelogram()), {"B/pzt": np.array([1.0, 0.0])})["B/pzt"][:, :2].tolist()
+    [[1.0, 0.0], [0.0, 0.0]]
+    """
+    inputs = len(input_channels(assembly))
+    result: dict[str, Array] = {}
+    for number, link in enumerate(assembly.actuators.values()):
+        result[link] = np.zeros((len(deformations[link]), inputs))
+        result[link][:, number] = deformations[link]
+    return result

@@ -1,0 +1,98 @@
+"""Undamped eigenvalue solves of a linear model."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.base.number import Array
+from flexstage.models.linear.model import LinearModel
+
+_MASSLESS = 1e-13
+
+
+@dataclass(frozen=True, eq=False)
+class Eigen:
+    """Eigenvalues lambda = omega^2 (..., k) ascending and mass-normalised shapes (..., n, k) of K phi = lambda M phi."""
+
+    values: Array
+    shapes: Array
+
+
+def eigen(model: LinearModel) -> Eigen:
+    """Eigenvalues and shapes of the undamped model (Eq. 28 of Shin & Moon); modes without inertia are left out.
+
+    Solved as K^-1 M with K = L L^T, so M may be singular. Sign rule: the largest component, rotations weighted with 0.1 m, is positive. A
+    design whose K is not positive definite gives NaN. The number of modes is that of the first design.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.models.mapped import mapped
+    >>> (eigen(mapped(double_triangle())).values[:3] ** 0.5 / (2 * np.pi)).round(2).tolist()
+    [110.91, 110.91, 135.15]
+    """
+    return solve(model.stiffness_matrix, model.inertia_matrix, sign_weights(model.coordinates))
+
+
+def solve(stiffness: Array, inertia: Array, weights: Array) -> Eigen:
+    """Eigenvalues and shapes of K phi = lambda M phi; `weights` (n,) compare coordinates for the sign rule.
+
+    >>> solve(np.diag([4.0, 9.0]), np.eye(2), np.ones(2)).values.tolist()
+    [4.0, 9.0]
+    """
+    batch = np.broadcast_shapes(stiffness.shape[:-2], inertia.shape[:-2])
+    stiffness = np.broadcast_to(stiffness, (*batch, *stiffness.shape[-2:]))
+    lower = cholesky(stiffness)
+    half = np.linalg.solve(lower, np.broadcast_to(inertia, stiffness.shape))
+    full = np.linalg.solve(lower, np.swapaxes(half, -1, -2))
+    inverse_values, vectors = np.linalg.eigh(_clean(0.5 * (full + np.swapaxes(full, -1, -2))))
+    inverse_values, vectors = inverse_values[..., ::-1], vectors[..., ::-1]
+    first = inverse_values.reshape(-1, inverse_values.shape[-1])[0]
+    count = int(np.sum(first > _MASSLESS * np.max(first, initial=0.0)))
+    inverse_values, vectors = inverse_values[..., :count], vectors[..., :count]
+    shapes = np.linalg.solve(np.swapaxes(lower, -1, -2), vectors) / np.sqrt(inverse_values)[..., None, :]
+    failed = np.isnan(lower[..., 0, 0])
+    values = np.where(failed[..., None], np.nan, 1.0 / inverse_values)
+    return Eigen(values, np.where(failed[..., None, None], np.nan, _signed(shapes, weights)))
+
+
+def cholesky(matrix: Array) -> Array:
+    """Lower factor of each matrix of a batch, NaN where a matrix is not positive definite.
+
+    >>> cholesky(np.array([[[4.0]], [[-1.0]]])).ravel().tolist()
+    [2.0, nan]
+    """
+    try:
+        return np.linalg.cholesky(matrix)
+    except np.linalg.LinAlgError:
+        flat = matrix.reshape(-1, *matrix.shape[-2:])
+        return np.stack([_cholesky_one(item) for item in flat]).reshape(matrix.shape)
+
+
+def _cholesky_one(matrix: Array) -> Array:
+    try:
+        return np.linalg.cholesky(matrix)
+    except np.linalg.LinAlgError:
+        return np.full(matrix.shape, np.nan)
+
+
+def _clean(matrix: Array) -> Array:
+    """Failed designs become the unit matrix so that the batch can be decomposed."""
+    failed = np.isnan(matrix).any(axis=(-2, -1), keepdims=True)
+    return np.where(failed, np.eye(matrix.shape[-1]), matrix)
+
+
+def _signed(shapes: Array, weights: Array) -> Array:
+    weighted = shapes * weights[:, None]
+    largest = np.argmax(np.round(np.abs(weighted) / np.max(np.abs(weighted), axis=-2, keepdims=True), 6), axis=-2)
+    picked = np.take_along_axis(shapes, largest[..., None, :], axis=-2)
+    return shapes * np.where(picked < 0.0, -1.0, 1.0)
+
+
+def sign_weights(coordinates: tuple[str, ...]) -> Array:
+    """What makes lengths of coordinates (n,) to be compared: 0.1 m for rotations.
+
+    >>> sign_weights(("arm.x", "arm.rz")).tolist()
+    [1.0, 0.1]
+    """
+    return np.array([0.1 if name.rpartition(".")[2].startswith("r") else 1.0 for name in coordinates])

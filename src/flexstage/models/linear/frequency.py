@@ -1,0 +1,198 @@
+"""Frequency response of a linear model between named inputs and outputs."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from flexstage.base.labelled import Matrix, ratio_units
+from flexstage.base.memory import require_memory
+from flexstage.base.number import Array
+from flexstage.mechanism.mechanism import Damping, RayleighDamping, StructuralDamping
+from flexstage.models.linear.damping import modal_ratios, structural_stiffness
+from flexstage.models.linear.eigen import Eigen, eigen
+from flexstage.models.linear.model import Channel, LinearModel
+from flexstage.models.linear.port import Ports
+
+_CHUNK = 4_000_000
+
+
+@dataclass(frozen=True, eq=False)
+class Response:
+    """A frequency response: complex `values` (..., f, p, m), H_ij = output i over input j, for e^{+j omega t}.
+
+    `frequencies` (f,) in Hz; `outputs` and `inputs` carry names and units; an entry's unit is output unit / input unit. Batch axes lead.
+    """
+
+    frequencies: Array
+    outputs: tuple[Channel, ...]
+    inputs: tuple[Channel, ...]
+    values: Array
+    provenance: str
+
+    def at(self, output: str, input: str) -> Array:  # noqa: A002 the field's word
+        """One entry over frequency, complex (..., f).
+
+        >>> one = Response(np.array([1.0]), (Channel("x", "m"),), (Channel("fx", "N"),), np.array([[[2j]]]), "")
+        >>> one.at("x", "fx").tolist()
+        [2j]
+        """
+        row = [channel.name for channel in self.outputs].index(output)
+        column = [channel.name for channel in self.inputs].index(input)
+        return self.values[..., row, column]
+
+    @property
+    def units(self) -> tuple[tuple[str, ...], ...]:
+        """Unit of every entry, outputs x inputs."""
+        return ratio_units(tuple(channel.unit for channel in self.outputs), tuple(channel.unit for channel in self.inputs))
+
+    def matrix(self, index: int) -> Matrix:
+        """The labelled complex matrix (..., p, m) at the frequency of that index."""
+        rows, columns = tuple(channel.name for channel in self.outputs), tuple(channel.name for channel in self.inputs)
+        return Matrix(self.values[..., index, :, :], rows, columns, self.units)
+
+    def to_json(self) -> dict[str, Any]:
+        """The response as {frequency_hz, rows, columns, unit, real, imaginary}; `real` and `imaginary` are (..., f, p, m)."""
+        return {
+            "frequency_hz": self.frequencies.tolist(),
+            "rows": [channel.name for channel in self.outputs],
+            "columns": [channel.name for channel in self.inputs],
+            "unit": [list(row) for row in self.units],
+            "real": np.real(self.values).tolist(),
+            "imaginary": np.imag(self.values).tolist(),
+        }
+
+    def to_xarray(self) -> Any:
+        """The response as an xarray DataArray with dimensions (batch..., frequency, output, input)."""
+        import xarray
+
+        batch = [f"batch_{number}" for number in range(self.values.ndim - 3)]
+        axes = {"output": [channel.name for channel in self.outputs], "input": [channel.name for channel in self.inputs]}
+        return xarray.DataArray(self.values, dims=[*batch, "frequency", "output", "input"], coords={"frequency": self.frequencies, **axes})
+
+
+def transfer(model: LinearModel, chosen: Ports, frequencies: Array, damping: Damping) -> Array:
+    """H (..., f, p, m) at `frequencies` (f,) in Hz: y/u with M z'' + D z' + K z = B u - M_b u'', y = C z + D_f u.
+
+    Modal and Rayleigh damping by exact superposition of all modes, H = C Phi d(omega)^-1 Phi^T (B + omega^2 M_b) + R B + D_f;
+    the remainder R = C K^-1 - C Phi Lambda^-1 Phi^T makes the freedoms without inertia exact. Structural damping by direct
+    solves of K* - omega^2 M, where a stroke u exerts K_p (1 + j eta_p) u and a link's force is lost alike. A frequency of zero gives the
+    static gain.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.models.linear.port import ports
+    >>> from flexstage.models.linear.static import static_gain
+    >>> from flexstage.models.lumped import lumped
+    >>> model = lumped(parallelogram())
+    >>> still = transfer(model, ports(model, ["platform.x"], ["B"]), np.array([0.0]), model.damping)
+    >>> bool(np.allclose(still[0], static_gain(model, ("platform.x",), ("B",)).values))
+    True
+    """
+    frequencies = np.asarray(frequencies, dtype=float)
+    lines, outputs, inputs = max(1, len(frequencies)), len(chosen.outputs), len(chosen.inputs)
+    each = 16.0 * math.prod(model.stiffness_matrix.shape[:-2]) * (outputs * (2 * len(model.coordinates) + 3 * inputs) + 1)
+    require_memory(
+        "response",
+        f"{lines:,} lines of {outputs:,} outputs and {inputs:,} inputs",
+        each * lines,
+        lambda there: f"Ask for {int(there / each):,} lines at most, or for fewer outputs and inputs",
+    )
+    if isinstance(damping, StructuralDamping):
+        lossy = replace(chosen, force=chosen.force + 1j * chosen.lost)
+        found = direct(structural_stiffness(model), model.inertia_matrix, lossy, frequencies)
+        return found * (1.0 + 1j * np.asarray(chosen.loss))[..., None, :, None]
+    return superposed(model, chosen, frequencies, damping)
+
+
+def direct(stiffness: Array, inertia: Array, chosen: Ports, frequencies: Array) -> Array:
+    """H (..., f, p, m) by solving (K - omega^2 M) z = (B + omega^2 M_b) u at each frequency; K may be complex.
+
+    >>> one, none = np.ones((1, 1)), np.zeros((1, 1))
+    >>> force = Ports((Channel("fx", "N"),), (Channel("x", "m"),), one, none, one, none)
+    >>> direct(4.0 * one, one, force, np.array([0.0])).tolist()
+    [[[0.25]]]
+    """
+    omega = 2.0 * np.pi * frequencies
+    size = max(1, int(_CHUNK / max(1, stiffness.size)))
+    pieces = [_direct(stiffness, inertia, chosen, omega[start : start + size]) for start in range(0, len(omega), size)]
+    return np.concatenate(pieces, axis=-3)
+
+
+def _direct(stiffness: Array, inertia: Array, chosen: Ports, omega: Array) -> Array:
+    square = (omega**2)[:, None, None]
+    dynamic = stiffness[..., None, :, :] - square * inertia[..., None, :, :]
+    load = chosen.force[..., None, :, :] + square * chosen.inertial[..., None, :, :]
+    batch = np.broadcast_shapes(dynamic.shape[:-2], load.shape[:-2])
+    motion = np.linalg.solve(np.broadcast_to(dynamic, (*batch, *dynamic.shape[-2:])), np.broadcast_to(load, (*batch, *load.shape[-2:])))
+    return chosen.output[..., None, :, :] @ motion + chosen.feedthrough[..., None, :, :]
+
+
+def superposed(model: LinearModel, chosen: Ports, frequencies: Array, damping: Damping) -> Array:
+    """H (..., f, p, m) by superposition of modes: as `transfer`, but structural damping by each mode's equivalent ratio, as in time.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.mechanism.mechanism import StructuralDamping
+    >>> from flexstage.models.linear.port import ports
+    >>> from flexstage.models.lumped import lumped
+    >>> model = lumped(parallelogram())
+    >>> far, chosen = np.array([1.0]), ports(model, ["platform.x"], ["B"])
+    >>> ways = [function(model, chosen, far, StructuralDamping()) for function in (superposed, transfer)]
+    >>> bool(np.allclose(*ways, rtol=0.05)), bool(np.allclose(*ways, rtol=1e-6))
+    (True, False)
+    """
+    solved = eigen(model)
+    omega = 2.0 * np.pi * frequencies
+    square = (omega**2)[:, None, None]
+    seen = (chosen.output @ solved.shapes)[..., None, :, :]
+    gains = 1.0 / _denominators(model, solved, omega, damping)
+    force, inertial = modal_forces(solved, chosen)
+    response = (seen * gains[..., None, :]) @ (force[..., None, :, :] + square * inertial[..., None, :, :])
+    fast = 1.0 / (1.0 + 1j * omega * _stiffness_factor(damping))[..., None, None]
+    remainder = residual(model, solved, chosen)[..., None, :, :]
+    return response + fast * remainder + chosen.feedthrough[..., None, :, :]
+
+
+def modal_forces(solved: Eigen, chosen: Ports) -> tuple[Array, Array]:
+    """Phi^T B and Phi^T M_b (..., k, m): modal forces per input and per input acceleration (to be taken with the opposite sign).
+
+    >>> one = np.ones((1, 1))
+    >>> force = Ports((Channel("fx", "N"),), (Channel("x", "m"),), 3.0 * one, 0.0 * one, one, 0.0 * one)
+    >>> modal_forces(Eigen(np.array([4.0]), one), force)[0].tolist()
+    [[3.0]]
+    """
+    transposed = np.swapaxes(solved.shapes, -1, -2)
+    return transposed @ chosen.force, transposed @ chosen.inertial
+
+
+def residual(model: LinearModel, solved: Eigen, chosen: Ports) -> Array:
+    """C (K^-1 - Phi Lambda^-1 Phi^T) B (..., p, m): what modes left out, or freedoms without inertia, add statically.
+
+    Motions of the ground add nothing: M_b lies in the range of M, which the modes span.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.models.linear.port import ports
+    >>> from flexstage.models.lumped import lumped
+    >>> model = lumped(parallelogram())
+    >>> bool(np.abs(residual(model, eigen(model), ports(model, ["platform.x"], ["B"]))) < 1e-9)  # every freedom has inertia
+    True
+    """
+    stiffness = model.stiffness_matrix
+    batch = np.broadcast_shapes(stiffness.shape[:-2], chosen.force.shape[:-2])
+    motion = np.linalg.solve(stiffness, np.broadcast_to(chosen.force, (*batch, *chosen.force.shape[-2:])))
+    modal = np.swapaxes(solved.shapes, -1, -2) @ chosen.force / solved.values[..., :, None]
+    return chosen.output @ (motion - solved.shapes @ modal)
+
+
+def _denominators(model: LinearModel, solved: Eigen, omega: Array, damping: Damping) -> Array:
+    """omega_r^2 - omega^2 + 2 j zeta_r omega_r omega, (..., f, k)."""
+    natural = np.sqrt(solved.values)
+    rate = 2.0 * modal_ratios(model, solved, damping) * natural
+    return solved.values[..., None, :] - (omega**2)[:, None] + 1j * omega[:, None] * rate[..., None, :]
+
+
+def _stiffness_factor(damping: Damping) -> Array:
+    factor = damping.stiffness_factor if isinstance(damping, RayleighDamping) else 0.0
+    return np.asarray(factor)[..., None]

@@ -1,0 +1,148 @@
+"""Kinematics: what an ideal reading ends in."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from flexstage.base.finding import Finding, joined, refuse
+from flexstage.base.labelled import Matrix, ratio_units
+from flexstage.base.number import Array
+from flexstage.models.linear.blockage import Blockage
+from flexstage.parts.freedom import Freedom
+from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
+
+
+@dataclass(frozen=True)
+class Idle:
+    """A freedom that neither stroke nor platform feels (a strut spinning about itself): the `bodies` that move, the `links` that deform."""
+
+    bodies: tuple[str, ...]
+    links: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Redundant:
+    """A redundant constraint: the locked freedoms (`B1/left.y`) of which one is superfluous."""
+
+    constraints: tuple[str, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Kinematics:
+    """Ideal kinematics of a stage with n strokes, g gauges and f ideal motions of its platform.
+
+    The platform's twist is x = V xi at its reference point; xi are the platform coordinates named `coordinates` (all six for f = 6).
+    `actuation` is da/dxi (..., n, f), `sensing` ds/dx (..., g, 6), `motion` V (..., 6, f), `bodies` the motion of all body coordinates per
+    xi (..., N, f), `strains` each link's deformation per xi (..., 6, f) in its frame (only intended freedoms and strokes non-zero).
+    `free` says which freedoms were taken as free at each link. `length` is the scale that makes rotations comparable with translations.
+    `blocked` says of each immobile actuator which locked freedoms hold its stroke.
+    """
+
+    actuators: tuple[str, ...]
+    coordinates: tuple[str, ...]
+    gauges: tuple[str, ...]
+    actuation: Array
+    sensing: Array
+    motion: Array
+    body_coordinates: tuple[str, ...]
+    bodies: Array
+    strains: Mapping[str, Array]
+    free: Mapping[str, tuple[Freedom, ...]]
+    idle: tuple[Idle, ...]
+    redundant: tuple[Redundant, ...]
+    length: float
+    provenance: str
+    blocked: Mapping[str, Blockage] = field(default_factory=dict)
+
+    @property
+    def mobility(self) -> int:
+        """Number of ideal motions of the platform when the strokes are free."""
+        return len(self.coordinates)
+
+    @property
+    def actuated(self) -> bool:
+        """Whether the strokes determine the platform: R_a has full column rank (on the first design)."""
+        actuation = np.real(self.actuation[(0,) * (self.actuation.ndim - 2)])
+        scaled = actuation * _scales(self.coordinates, 1.0 / self.length)
+        return self.mobility > 0 and bool(np.linalg.matrix_rank(scaled, tol=1e-9) == self.mobility)
+
+    @property
+    def immobile(self) -> tuple[str, ...]:
+        """Actuators whose stroke no ideal motion of the platform changes: rigid links hold them (on the first design)."""
+        actuation = np.real(self.actuation[(0,) * (self.actuation.ndim - 2)])
+        size = np.max(np.abs(actuation * _scales(self.coordinates, 1.0 / self.length)), axis=-1, initial=0.0)
+        return tuple(name for name, largest in zip(self.actuators, size, strict=True) if largest < 1e-9)
+
+    @property
+    def mapping(self) -> Matrix:
+        """R_a = da/dxi (Eq. 13 of Shin & Moon; da/dx for six freedoms). Raises `DesignError` where the stage is under-actuated."""
+        self._require_actuated()
+        units = tuple(TWIST_UNITS[COMPONENTS.index(name)] for name in self.coordinates)
+        return Matrix(self.actuation, self.actuators, self.coordinates, ratio_units(("m",) * len(self.actuators), units))
+
+    @property
+    def gauge_mapping(self) -> Matrix:
+        """R_s = ds/dx (Eq. 14 of Shin & Moon)."""
+        return Matrix(self.sensing, self.gauges, COMPONENTS, ratio_units(("m",) * len(self.gauges), TWIST_UNITS))
+
+    @property
+    def inverse(self) -> Array:
+        """d xi/da (..., f, n): the inverse of R_a, its least-squares inverse for redundant strokes."""
+        self._require_actuated()
+        transposed = np.swapaxes(self.actuation, -1, -2)
+        if self.actuation.shape[-1] == self.actuation.shape[-2]:
+            return np.linalg.inv(self.actuation)
+        return np.linalg.solve(transposed @ self.actuation, transposed)
+
+    @property
+    def jacobian(self) -> Array:
+        """J = dx/da (..., 6, n): the ideal platform twist per stroke, V R_a^-1."""
+        return self.motion @ self.inverse
+
+    @property
+    def projection(self) -> Array:
+        """V^+ (..., f, 6): the part of a platform twist that is an ideal motion, rotations weighted with `length`."""
+        weight = _scales(COMPONENTS, self.length) ** 2
+        weighted = np.swapaxes(self.motion, -1, -2) * weight
+        return np.linalg.solve(weighted @ self.motion, weighted)
+
+    def _require_actuated(self) -> None:
+        if not self.actuated:
+            strokes = "1 stroke does" if len(self.actuators) == 1 else f"{len(self.actuators)} strokes do"
+            motions = f"{self.mobility} ideal motion{'' if self.mobility == 1 else 's'}"
+            held = f"; the links hold {', '.join(self.immobile)}" if self.immobile else ""
+            mend = [finding.advice for finding in self.blockages] or ["Add actuators or lock freedoms of links"]
+            raise refuse(
+                "mapping",
+                f"{strokes} not determine the platform's {motions} ({', '.join(self.coordinates) or 'none'}){held}",
+                f"{'; '.join(mend)}; stiffness, modes and response are given all the same",
+            )
+
+    @property
+    def blockages(self) -> tuple[Finding, ...]:
+        """Strokes that cannot move, the links that block them, strongest first, and what to free; those blocked alike are told once."""
+        return joined(
+            Finding(name, f"the stroke cannot move: it is blocked by the locked freedoms of {_by_link(each.against)}", _freeing(each))
+            for name, each in self.blocked.items()
+        )
+
+
+def _by_link(freedoms: tuple[str, ...]) -> str:
+    links: dict[str, list[str]] = {}
+    for freedom in freedoms:
+        link, _, name = freedom.rpartition(".")
+        links.setdefault(link, []).append(name)
+    return ", ".join(f"{link} ({', '.join(names)})" for link, names in links.items())
+
+
+def _freeing(blockage: Blockage) -> str:
+    *rest, last = blockage.free or ("one of them",)
+    word = "and" if blockage.together else "or"
+    return f"Free {', '.join(rest)} {word} {last}" if rest else f"Free {last}"
+
+
+def _scales(names: tuple[str, ...], rotation: float) -> Array:
+    return np.array([rotation if name.startswith("r") else 1.0 for name in names])

@@ -1,0 +1,167 @@
+"""LinearModel: what every elastic reading ends in."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TypeAlias
+
+import numpy as np
+
+from flexstage.base.labelled import Matrix, ratio_units
+from flexstage.base.number import Array, Number
+from flexstage.mechanism.mechanism import Damping
+
+
+@dataclass(frozen=True, eq=False)
+class Contribution:
+    """One part's share of a matrix: `operator`^T `law` `operator`, operator (..., r, n), law (..., r, r)."""
+
+    operator: Array
+    law: Array
+    loss_factor: Number = 0.0
+
+
+@dataclass(frozen=True)
+class Channel:
+    """A named input or output with its unit."""
+
+    name: str
+    unit: str
+
+
+Contributions: TypeAlias = Mapping[str, Contribution]
+
+
+@dataclass(frozen=True, eq=False)
+class LinearModel:
+    """M q'' + D q' + K q = B u - M_u u'', y = C q + D u, with K and M as named sums of contributions.
+
+    `force` (..., n, m) are direct generalised forces of the inputs; `imposed` gives per stiffness contribution the deformation (..., r, m)
+    an input imposes (the free stroke of a stack): B = force + sum G^T k imposed. `output` (..., p, n) and `feedthrough` (..., p, m).
+    `rigid` (..., n, 6) is the motion of all coordinates with the ground (its twist given at the platform's reference), `rigid_output`
+    (..., p, 6) that of the outputs, `base_inertia` (..., n, 6) the inertial force per unit base acceleration. `inertial` (..., n, m) is
+    M_u, what inputs that impose a motion accelerate (absent: none do). `unknown` names outputs that the model cannot tell: forces of locked
+    freedoms. Batch axes lead, and only where something varies: an array without them holds for every design.
+
+    `idle` names coordinates that no stiffness holds. They are left out with their zero modes: what is kept is M-orthogonal to them, so that
+    neither frequencies nor shapes depend on which were named. `idle_output` (..., p, k) is how the outputs see the k idle motions,
+    `idle_inertia` (..., k, 6) what accelerating the ground exerts on them (both absent: there are none).
+    """
+
+    coordinates: tuple[str, ...]
+    stiffness: Contributions
+    inertia: Contributions
+    inputs: tuple[Channel, ...]
+    force: Array
+    imposed: Mapping[str, Array]
+    outputs: tuple[Channel, ...]
+    output: Array
+    feedthrough: Array
+    rigid: Array
+    rigid_output: Array
+    base_inertia: Array
+    damping: Damping | None
+    idle: tuple[str, ...]
+    provenance: str
+    inertial: Array | None = None
+    idle_output: Array | None = None
+    idle_inertia: Array | None = None
+    unknown: tuple[str, ...] = ()
+
+    @cached_property
+    def stiffness_matrix(self) -> Array:
+        """K (..., n, n), read-only."""
+        return _kept(assembled(self.stiffness, len(self.coordinates)))
+
+    @cached_property
+    def inertia_matrix(self) -> Array:
+        """M (..., n, n), read-only."""
+        return _kept(assembled(self.inertia, len(self.coordinates)))
+
+    @property
+    def input_matrix(self) -> Array:
+        """B (..., n, m): direct forces and the forces of imposed deformations."""
+        return self.force + self._of_imposed(lost=False)
+
+    @property
+    def lost_matrix(self) -> Array:
+        """What structural damping adds to B, (..., n, m), to be taken times j: an imposed deformation is lost like any other."""
+        return self._of_imposed(lost=True)
+
+    def _of_imposed(self, *, lost: bool) -> Array:
+        total = np.zeros_like(self.force)
+        for name, deformation in self.imposed.items():
+            part = self.stiffness[name]
+            factor = np.asarray(part.loss_factor)[..., None, None] if lost else 1.0
+            total = total + factor * (_transposed(part.operator) @ (part.law @ deformation))
+        return total
+
+    def output_index(self, names: tuple[str, ...]) -> list[int]:
+        """Positions of outputs by name."""
+        known = {channel.name: index for index, channel in enumerate(self.outputs)}
+        return [known[name] for name in names]
+
+    def input_index(self, names: tuple[str, ...]) -> list[int]:
+        """Positions of inputs by name."""
+        known = {channel.name: index for index, channel in enumerate(self.inputs)}
+        return [known[name] for name in names]
+
+    @property
+    def strokes(self) -> tuple[str, ...]:
+        """Names of the stroke inputs."""
+        return tuple(channel.name for channel in self.inputs if channel.unit == "m")
+
+
+def assembled(contributions: Contributions, size: int) -> Array:
+    """Sum of contributions as one matrix (..., n, n), symmetric by construction.
+
+    >>> half = Contribution(np.array([[1.0, -1.0]]), np.array([[0.5]]))
+    >>> assembled({"a": half, "b": half}, 2).tolist()
+    [[1.0, -1.0], [-1.0, 1.0]]
+    """
+    if not contributions:
+        return np.zeros((size, size))
+    total = gathered(contributions, {name: item.operator for name, item in contributions.items()})
+    return 0.5 * (total + _transposed(total))
+
+
+def gathered(contributions: Contributions, strains: Mapping[str, Array]) -> Array:
+    """Generalised forces (..., n, k) of given strains (..., r, k): sum of operator^T law strain over the contributions.
+
+    >>> half = Contribution(np.array([[1.0, -1.0]]), np.array([[0.5]]))
+    >>> gathered({"a": half, "b": half}, {"a": np.array([[2.0]]), "b": np.array([[4.0]])}).tolist()
+    [[3.0], [-3.0]]
+    """
+    operators = [item.operator for item in contributions.values()]
+    forces = [item.law @ strains[name] for name, item in contributions.items()]
+    return _transposed(_stacked(operators)) @ _stacked(forces)
+
+
+def _kept(matrix: Array) -> Array:
+    """A matrix that whoever is given it cannot change for others."""
+    matrix.flags.writeable = False
+    return matrix
+
+
+def _stacked(matrices: list[Array]) -> Array:
+    batch = np.broadcast_shapes(*{matrix.shape[:-2] for matrix in matrices})
+    return np.concatenate([np.broadcast_to(matrix, (*batch, *matrix.shape[-2:])) if batch else matrix for matrix in matrices], axis=-2)
+
+
+def _transposed(matrix: Array) -> Array:
+    return np.swapaxes(matrix, -1, -2)
+
+
+def labelled(model: LinearModel, values: Array, rows: tuple[str, ...], columns: tuple[str, ...]) -> Matrix:
+    """A matrix from the model's inputs to outputs, with units from its channels.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.models.mapped import mapped
+    >>> labelled(mapped(double_triangle()), np.eye(1), ("platform.rx",), ("B4",)).unit
+    (('rad/m',),)
+    """
+    row_units = tuple(model.outputs[index].unit for index in model.output_index(rows))
+    column_units = tuple(model.inputs[index].unit for index in model.input_index(columns))
+    return Matrix(values, rows, columns, ratio_units(row_units, column_units))

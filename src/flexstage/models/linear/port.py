@@ -1,0 +1,146 @@
+"""Ports: the inputs and outputs of a linear model picked by name, wrenches on any body and motion of the ground included."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.base.finding import Finding, nearest, require
+from flexstage.base.number import Array
+from flexstage.mechanism.mechanism import GROUND
+from flexstage.models.linear.model import Channel, LinearModel
+from flexstage.models.linear.undetermined import require_held, require_known
+from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNITS
+
+
+@dataclass(frozen=True, eq=False)
+class Ports:
+    """Chosen inputs u and outputs y: M z'' + D z' + K z = `force` u - `inertial` u'', y = `output` z + `feedthrough` u.
+
+    `force` (..., n, m), `inertial` (..., n, m), `output` (..., p, n), `feedthrough` (..., p, m). For motions of the ground, z is relative
+    to the ground, y absolute; `inertial` is zero for inputs that impose no motion. `lost` (..., n, m) is what structural damping adds to
+    the force, times j (see `LinearModel.lost_matrix`), `loss` (..., p) the loss factor of the link whose force an output is, else zero.
+    """
+
+    inputs: tuple[Channel, ...]
+    outputs: tuple[Channel, ...]
+    force: Array
+    inertial: Array
+    output: Array
+    feedthrough: Array
+    lost: Array | float = 0.0
+    loss: Array | float = 0.0
+
+
+def ports(model: LinearModel, outputs: Iterable[str], inputs: Iterable[str]) -> Ports:
+    """Pick outputs and inputs by name.
+
+    A name is that of a channel (`platform.x`, `S1`, `B4/pivot.mz`), or of a group: `platform` means its six components. Inputs are the
+    model's own (strokes; wrenches on platform and points), a wrench component on any body whose twist is an output (`B1/tip.fx`, at the
+    body's reference point, stage axes), and the ground's absolute motion `ground.x` ... `ground.rz` (m, rad; given at the platform's
+    reference point). Raises `DesignError` for every unknown name, with the nearest known ones.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.models.lumped import lumped
+    >>> model = lumped(parallelogram())
+    >>> [channel.name for channel in ports(model, ["S"], ["B", "B/tip.fz", "ground.x"]).inputs]
+    ['B', 'B/tip.fz', 'ground.x']
+    """
+    known = {channel.name: number for number, channel in enumerate(model.outputs)}
+    rows = _expanded(outputs, tuple(known), "output")
+    sources = {channel.name: number for number, channel in enumerate(model.inputs)}
+    columns = _expanded(inputs, (*sources, *_further_inputs(model)), "input")
+    named = {"outputs": rows, "inputs": columns}
+    require(Finding(kind, "none is named", "Name at least one") for kind, names in named.items() if not names)
+    picked = [known[name] for name in rows]
+    require_known(model, rows)
+    require_held(model, rows, columns)
+    parts = [_column(model, name, known, sources) for name in columns]
+    return Ports(
+        inputs=tuple(part[0] for part in parts),
+        outputs=tuple(model.outputs[number] for number in picked),
+        force=_side_by_side([part[1] for part in parts]),
+        inertial=_side_by_side([part[2] for part in parts]),
+        output=model.output[..., picked, :],
+        feedthrough=_side_by_side([part[3] for part in parts])[..., picked, :],
+        lost=_side_by_side([_lost(model, name, sources) for name in columns]),
+        loss=np.stack(np.broadcast_arrays(*(_loss(model, name) for name in rows)), axis=-1),
+    )
+
+
+def input_names(model: LinearModel) -> tuple[str, ...]:
+    """All names `ports` accepts as inputs, groups excluded.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.models.lumped import lumped
+    >>> model = lumped(parallelogram())
+    >>> input_names(model)[0], input_names(model)[-1]
+    ('B', 'ground.rz')
+    """
+    own = tuple(channel.name for channel in model.inputs)
+    return (*own, *(name for name in _further_inputs(model) if name not in own))
+
+
+def _further_inputs(model: LinearModel) -> tuple[str, ...]:
+    bodies = dict.fromkeys(name.rpartition(".")[0] for name in _twists(model))
+    wrenches = [f"{body}.{component}" for body in bodies for component in FORCES]
+    return (*wrenches, *(f"{GROUND}.{component}" for component in COMPONENTS))
+
+
+def _twists(model: LinearModel) -> list[str]:
+    """Outputs that are components of a body's or point's twist."""
+    names = [channel.name for channel in model.outputs if channel.name.rpartition(".")[2] in COMPONENTS]
+    return [name for name in names if name.rpartition(".")[0]]
+
+
+def _expanded(names: Iterable[str], known: tuple[str, ...], kind: str) -> list[str]:
+    """Groups written out; unknown names refused together."""
+    result: list[str] = []
+    findings: list[Finding] = []
+    members: dict[str, list[str]] = {}
+    for name in known:
+        members.setdefault(name.rpartition(".")[0], []).append(name)
+    for name in (names,) if isinstance(names, str) else names:
+        if name in known:
+            result.append(name)
+        elif name in members and name:
+            result += dict.fromkeys(members[name])
+        else:
+            findings.append(Finding(name, f"the model has no {kind} of this name", nearest(name, [*known, *filter(None, members)])))
+    require(findings)
+    return result
+
+
+def _column(model: LinearModel, name: str, known: dict[str, int], sources: dict[str, int]) -> tuple[Channel, Array, Array, Array]:
+    """Channel, force, inertial force and feed-through of one input, matrices of one column."""
+    if name in sources:
+        number = [sources[name]]
+        force = model.input_matrix[..., number]
+        inertial = np.zeros_like(force) if model.inertial is None else model.inertial[..., number]
+        return model.inputs[number[0]], force, inertial, model.feedthrough[..., number]
+    owner, _, component = name.rpartition(".")
+    if owner == GROUND:
+        axis = COMPONENTS.index(component)
+        inertial = model.base_inertia[..., [axis]]
+        return Channel(name, TWIST_UNITS[axis]), np.zeros_like(inertial), inertial, model.rigid_output[..., [axis]]
+    axis = FORCES.index(component)
+    row = model.output[..., [known[f"{owner}.{COMPONENTS[axis]}"]], :]
+    force = np.swapaxes(row, -1, -2)
+    return Channel(name, WRENCH_UNITS[axis]), force, np.zeros_like(force), np.zeros((len(model.outputs), 1))
+
+
+def _lost(model: LinearModel, name: str, sources: dict[str, int]) -> Array:
+    return model.lost_matrix[..., [sources[name]]] if name in sources else np.zeros((len(model.coordinates), 1))
+
+
+def _loss(model: LinearModel, output: str) -> Array:
+    owner, _, component = output.rpartition(".")
+    force = component in FORCES and owner in model.stiffness
+    return np.asarray(model.stiffness[owner].loss_factor if force else 0.0)
+
+
+def _side_by_side(columns: list[Array]) -> Array:
+    batch = np.broadcast_shapes(*(column.shape[:-2] for column in columns))
+    return np.concatenate([np.broadcast_to(column, (*batch, *column.shape[-2:])) for column in columns], axis=-1)

@@ -1,0 +1,109 @@
+"""State space of a linear model, for controllers and other programs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from flexstage.base.number import Array
+from flexstage.mechanism.mechanism import Damping, ModalDamping, RayleighDamping
+from flexstage.models.linear.damping import modal_ratios
+from flexstage.models.linear.eigen import Eigen, eigen
+from flexstage.models.linear.frequency import modal_forces, residual
+from flexstage.models.linear.model import Channel, LinearModel
+from flexstage.models.linear.port import Ports
+
+
+@dataclass(frozen=True, eq=False)
+class StateSpace:
+    """x' = A x + B u, y = C x + D u with A (..., 2k, 2k), B (..., 2k, m), C (..., p, 2k), D (..., p, m), SI.
+
+    `states` are modal coordinates `mode1`, ... and their rates `mode1'`, ...; `ratios` (..., k) the damping ratios used, `note` says what
+    was simplified on the way.
+    """
+
+    A: Array
+    B: Array
+    C: Array
+    D: Array
+    states: tuple[str, ...]
+    inputs: tuple[Channel, ...]
+    outputs: tuple[Channel, ...]
+    ratios: Array
+    note: str
+    provenance: str
+
+    def transfer(self, frequencies: Array) -> Array:
+        """H = C (j omega - A)^-1 B + D (..., f, p, m) at `frequencies` (f,) in Hz."""
+        shifted = 2j * np.pi * np.asarray(frequencies)[:, None, None] * np.eye(self.A.shape[-1]) - self.A[..., None, :, :]
+        load = np.broadcast_to(self.B[..., None, :, :], (*shifted.shape[:-2], *self.B.shape[-2:]))
+        return self.C[..., None, :, :] @ np.linalg.solve(shifted, load) + self.D[..., None, :, :]
+
+    def to_dict(self) -> dict[str, Any]:
+        """The matrices and names as a plain dictionary, ready for `scipy.io.savemat`."""
+        names = {"inputs": self.inputs, "outputs": self.outputs}
+        labels = {key: [f"{channel.name} [{channel.unit}]" for channel in channels] for key, channels in names.items()}
+        return {"A": self.A, "B": self.B, "C": self.C, "D": self.D, "states": list(self.states), **labels, "note": self.note}
+
+
+def state_space(model: LinearModel, chosen: Ports, damping: Damping, modes: int | None = None) -> StateSpace:
+    """Modal state space between chosen ports, with the lowest `modes` modes (absent: all) and the rest as a static term in D.
+
+    eta'' + 2 zeta omega eta' + omega^2 eta = Phi^T B u - Phi^T M_b u''. A ground displacement as input is absorbed into the states, eta +
+    Phi^T M_b u, so that no input is differentiated. Modal damping is exact; Rayleigh damping is exact but for the freedoms left
+    out; structural damping has no time-domain form: each mode takes its equivalent ratio, and `note` says so.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.models.linear.port import ports
+    >>> from flexstage.models.lumped import lumped
+    >>> model = lumped(parallelogram())
+    >>> space = state_space(model, ports(model, ["S"], ["B"]), model.damping, modes=6)
+    >>> space.A.shape, space.note
+    ((12, 12), 'modal damping, exact; modes above the first 6 as a static term')
+    """
+    solved = _lowest(eigen(model), modes)
+    ratios = modal_ratios(model, solved, damping)
+    omega = np.sqrt(solved.values)
+    force, inertial = modal_forces(solved, chosen)
+    seen = chosen.output @ solved.shapes
+    rate, square = (2.0 * ratios * omega)[..., None], solved.values[..., None]
+    lower = force + (square - rate**2) * inertial
+    zero = np.zeros_like(seen)
+    return StateSpace(
+        A=_dynamics(solved.values, rate[..., 0]),
+        B=np.concatenate(np.broadcast_arrays(rate * inertial, lower), axis=-2),
+        C=np.concatenate([seen, zero], axis=-1),
+        D=chosen.feedthrough + residual(model, solved, chosen) - seen @ inertial,
+        states=tuple(f"mode{number + 1}{mark}" for mark in ("", "'") for number in range(omega.shape[-1])),
+        inputs=chosen.inputs,
+        outputs=chosen.outputs,
+        ratios=ratios,
+        note=_note(damping, modes),
+        provenance=model.provenance,
+    )
+
+
+def _lowest(solved: Eigen, modes: int | None) -> Eigen:
+    return solved if modes is None else replace(solved, values=solved.values[..., :modes], shapes=solved.shapes[..., :modes])
+
+
+def _dynamics(values: Array, rate: Array) -> Array:
+    """A = [[0, I], [-Lambda, -2 Z Omega]]."""
+    values, rate = np.broadcast_arrays(values, rate)
+    count = values.shape[-1]
+    result = np.zeros((*values.shape[:-1], 2 * count, 2 * count))
+    result[..., :count, count:] = np.eye(count)
+    result[..., count:, :count] = -values[..., None] * np.eye(count)
+    result[..., count:, count:] = -rate[..., None] * np.eye(count)
+    return result
+
+
+def _note(damping: Damping, modes: int | None) -> str:
+    left = "freedoms without inertia" if modes is None else f"modes above the first {modes}"
+    if isinstance(damping, ModalDamping):
+        return f"modal damping, exact; {left} as a static term"
+    if isinstance(damping, RayleighDamping):
+        return f"Rayleigh damping as exact modal ratios; {left} as an undamped static term"
+    return f"structural damping replaced by equivalent modal ratios (modal strain energy); {left} as a static term"

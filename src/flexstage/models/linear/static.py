@@ -1,0 +1,54 @@
+"""Static solves of a linear model."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from flexstage.base.labelled import Matrix
+from flexstage.base.number import Array
+from flexstage.models.linear.model import LinearModel, labelled
+from flexstage.models.linear.undetermined import require_known, require_still, require_unmoved
+
+
+def displacement(model: LinearModel, load: Array) -> Array:
+    """Coordinates q = K^-1 load (..., n, k) under generalised forces (..., n, k).
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.models.mapped import mapped
+    >>> force = np.eye(6)[:, 2:3]
+    >>> round(1e-6 / displacement(mapped(double_triangle()), force)[2].item(), 3)  # K_z, N/um
+    10.093
+    """
+    return np.linalg.solve(model.stiffness_matrix, load)
+
+
+def static_gain(model: LinearModel, outputs: tuple[str, ...], inputs: tuple[str, ...]) -> Matrix:
+    """Static response C K^-1 B + D of named outputs to named inputs.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.models.mapped import mapped
+    >>> round(static_gain(mapped(double_triangle()), ("platform.z",), ("B4",)).values.item(), 9)
+    1.0
+    """
+    rows, columns = model.output_index(outputs), model.input_index(inputs)
+    require_known(model, outputs)
+    require_still(model, outputs)
+    require_unmoved(model, inputs)
+    motion = displacement(model, model.input_matrix[..., columns])
+    values = model.output[..., rows, :] @ motion + model.feedthrough[..., rows, :][..., columns]
+    return labelled(model, values, outputs, inputs)
+
+
+def part_deformation(model: LinearModel, motion: Array, inputs: Array | None = None) -> dict[str, Array]:
+    """Elastic deformation of every part (..., r, k): G q - imposed u, for coordinates (..., n, k) and inputs u (..., m, k).
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.models.mapped import mapped
+    >>> sorted(part_deformation(mapped(double_triangle()), np.zeros((6, 1))))
+    ['B1', 'B2', 'B3', 'B4', 'B5', 'B6']
+    """
+    result = {name: part.operator @ motion for name, part in model.stiffness.items()}
+    if inputs is not None:
+        for name, imposed in model.imposed.items():
+            result[name] = result[name] - imposed @ inputs
+    return result

@@ -1,0 +1,131 @@
+"""What a model leaves undetermined, told by name and never chosen: idle motions, held by no stiffness, and forces of locked freedoms."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+import numpy as np
+
+from flexstage.base.finding import Finding, refuse, require
+from flexstage.base.number import Array, first_design
+from flexstage.models.linear.model import Channel, LinearModel
+from flexstage.spatial.frame import COMPONENTS, FORCES
+
+_SEEN = 1e-9
+_TENTH = 0.1
+_METRE = np.array([1.0, 1.0, 1.0, _TENTH, _TENTH, _TENTH])
+"""Rotations are compared with translations over 0.1 m."""
+_ADVICE = "Give a link of these bodies stiffness in that freedom, or lock it"
+
+
+def require_known(model: LinearModel, outputs: Iterable[str]) -> None:
+    """Refuse forces of locked freedoms: no spring feels them.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.models.lumped import lumped
+    >>> require_known(lumped(parallelogram()), ["B/pzt.fx"])
+    """
+    unknown = set(model.unknown)
+    require(
+        Finding(name, "its force is not known: this freedom of the link is locked, and no spring feels what it passes", "Give it stiffness")
+        for name in outputs
+        if name in unknown
+    )
+
+
+def require_still(model: LinearModel, outputs: Iterable[str]) -> None:
+    """Refuse gauges that see an idle motion: at rest nothing tells how far it has gone. Twists of the idle bodies themselves may be asked.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.models.lumped import lumped
+    >>> require_still(lumped(parallelogram()), ["S"])
+    """
+    seen = _seen(model)
+    number = {channel.name: index for index, channel in enumerate(model.outputs)}
+    require(
+        Finding(name, f"this gauge sees an idle motion that no stiffness holds: {_named(model)}", f"{_ADVICE}, or move the gauge")
+        for name in outputs
+        if number[name] in seen and name.rpartition(".")[2] not in (*COMPONENTS, *FORCES)
+    )
+
+
+def require_unmoved(model: LinearModel, inputs: Iterable[str]) -> None:
+    """Refuse wrenches that drive an idle motion: they have no answer at rest.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.models.lumped import lumped
+    >>> require_unmoved(lumped(parallelogram()), ["B", "corner.fx"])
+    """
+    driving = _driving(model)
+    require(
+        Finding(name, f"it drives an idle motion that no stiffness holds: {_named(model)}", f"{_ADVICE}, or load another body")
+        for name in inputs
+        if name in driving
+    )
+
+
+def require_held(model: LinearModel, outputs: Iterable[str], inputs: Iterable[str]) -> None:
+    """Refuse wrenches that drive an idle motion which one of the outputs sees: that one moves without bound.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.models.lumped import lumped
+    >>> require_held(lumped(parallelogram()), ["S"], ["corner.fx"])
+    """
+    seen, driving = _seen(model), _driving(model)
+    number = {channel.name: index for index, channel in enumerate(model.outputs)}
+    watched = {motion for name in outputs for motion in seen.get(number[name], ())}
+    require(
+        Finding(name, f"it drives an idle motion that an output sees and no stiffness holds: {_named(model)}", _ADVICE)
+        for name in inputs
+        if watched & driving.get(name, set())
+    )
+
+
+def require_balanced(model: LinearModel, where: str, load: Array, rows: list[int] | None = None) -> None:
+    """Refuse a load at rest that drives an idle motion: there is no equilibrium.
+
+    `load` is a twist's conjugate wrench (6,) on the body whose twist the output `rows` are, or, without rows, the acceleration of gravity
+    (6,).
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.models.lumped import lumped
+    >>> require_balanced(lumped(parallelogram()), "gravity", np.array([0.0, 0.0, -9.8, 0.0, 0.0, 0.0]))
+    """
+    if model.idle_output is None or model.idle_inertia is None:
+        return
+    load = np.real(first_design(load, 1))
+    if rows is None:
+        works = np.real(first_design(model.idle_inertia, 2))
+        least = np.linalg.norm(works, axis=1) * np.linalg.norm(load)
+    else:
+        motions = np.real(first_design(model.idle_output, 2))
+        works = motions[rows].T
+        # by what the motion does to any output: of a body that takes no part in it, only rounding is seen
+        least = _TENTH * np.max(np.abs(motions), axis=0) * np.linalg.norm(load / _METRE)
+    if np.any(np.abs(works @ load) > _SEEN * least):
+        raise refuse(where, f"it drives an idle motion that no stiffness holds, so there is no rest: {_named(model)}", _ADVICE)
+
+
+def _seen(model: LinearModel) -> dict[int, set[int]]:
+    """The idle motions that each output sees, by number."""
+    if model.idle_output is None:
+        return {}
+    first = np.abs(np.real(first_design(model.idle_output, 2)))
+    found = first > _SEEN * np.max(first, axis=0, initial=0.0)
+    return {int(row): set(np.flatnonzero(found[row]).tolist()) for row in np.flatnonzero(found.any(axis=1))}
+
+
+def _driving(model: LinearModel) -> dict[str, set[int]]:
+    """The idle motions that a wrench drives, by the wrench's name: it does work on the twists that see them."""
+    return dict(_pairs(model.outputs, _seen(model)))
+
+
+def _pairs(outputs: tuple[Channel, ...], seen: dict[int, set[int]]) -> Iterator[tuple[str, set[int]]]:
+    for row, motions in seen.items():
+        owner, _, component = outputs[row].name.rpartition(".")
+        if component in COMPONENTS:
+            yield f"{owner}.{FORCES[COMPONENTS.index(component)]}", motions
+
+
+def _named(model: LinearModel) -> str:
+    return ", ".join(dict.fromkeys(name.rpartition(".")[0] for name in model.idle))

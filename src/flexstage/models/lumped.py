@@ -1,0 +1,474 @@
+"""Lumped reading: rigid bodies of six freedoms each, joined by 6x6 links.
+
+K = sum H^T k H with H the relative twist at each link; M from bodies and parts; strokes are imposed deformations of the stacks.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from enum import Enum
+from typing import TypeVar
+
+import numpy as np
+
+from flexstage.base.digest import digest
+from flexstage.base.finding import Finding, refuse, require
+from flexstage.base.number import Array, Number, first_design
+from flexstage.beams.compliance import law
+from flexstage.beams.mass import mass
+from flexstage.mechanism.drawn import as_drawn
+from flexstage.mechanism.expand import Assembly, PlacedLink, expand
+from flexstage.mechanism.grammar import node_of, numbers
+from flexstage.mechanism.incidence import Layout, end_twists, layout, require_room, twist_at, with_ground
+from flexstage.mechanism.mechanism import PLATFORM, Mechanism
+from flexstage.mechanism.moving_mass import moving_inertia
+from flexstage.models.linear.channels import (
+    Motions,
+    absolute,
+    gauge_rows,
+    imposed_strokes,
+    input_channels,
+    loaded_places,
+    output_channels,
+    place_twists,
+    seen_places,
+)
+from flexstage.models.linear.elimination import Elimination, eliminate, imposed_motion, pivoted
+from flexstage.models.linear.model import Contribution, LinearModel, assembled, gathered
+from flexstage.parts.freedom import Freedom
+from flexstage.parts.material import Material
+from flexstage.parts.part import Part, Restricted
+from flexstage.spatial.frame import COMPONENTS, FORCES, seen_at
+
+_SINGULAR = 1e-11
+_ROUNDING = 1e-12
+_MASSLESS = 1e-12
+_STILL = 1e-7
+_BLOCKED = 1e-7
+_MATRICES = 20.0
+"""Dense matrices alive at once, modes and their energies by body included: 19 to 24 on chains of 200 and 300 rods, measured."""
+_STRETCHES = 1e-5
+_OVER: Array = np.array([1.0, 1.0, 1.0, 0.1, 0.1, 0.1])
+"""Rotations are compared with translations over 0.1 m."""
+_STRETCHED: Array = np.eye(6)[0]
+
+_Value = TypeVar("_Value")
+
+
+class Masses(Enum):
+    """Which masses count: all bodies and links, or the platform with its payloads only (the paper's model)."""
+
+    ALL = "all"
+    PLATFORM = "platform"
+
+
+@dataclass(frozen=True, eq=False)
+class _Stage:
+    """The stage as operators: twists of every link's `ends`, `strains`, rows of locked `freedoms`, `rigid` motion with the ground."""
+
+    assembly: Assembly
+    order: Layout
+    ends: Mapping[str, tuple[Array, Array]]
+    strains: Mapping[str, Contribution]
+    freedoms: Mapping[str, tuple[Freedom, ...]]
+    rigid: Array
+
+    @property
+    def locked(self) -> Mapping[str, Array]:
+        """The rows (..., l, N) of every link's locked freedoms."""
+        found = {name: [freedom.index for freedom in freedoms] for name, freedoms in self.freedoms.items()}
+        return {name: self.strains[name].operator[..., rows, :] for name, rows in found.items()}
+
+    @property
+    def motions(self) -> Motions:
+        bodies = {name: self.order.selector(name) for name in self.assembly.bodies}
+        return Motions(bodies, lambda body, frame: twist_at(self.assembly, self.order, body, frame))
+
+
+def lumped(mechanism: Mechanism, masses: Masses = Masses.ALL) -> LinearModel:
+    """Read a stage as rigid bodies on 6x6 links.
+
+    Valid for small displacements about the drawn position and frequencies below the first resonance of the parts themselves. Locked
+    freedoms of `Restricted` and `Joint` parts are eliminated exactly, a stroke along a locked axis as an imposed motion. Motions without
+    stiffness that nothing feels keep their inertia, drop out with their zero modes and are listed in `idle`. Raises `DesignError` for a
+    mechanism (K singular), naming the bodies that can move freely, and for a stroke that locked freedoms block.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> len(lumped(double_triangle()).coordinates)
+    114
+    """
+    stage = _stage(mechanism)
+    inertia = _inertia(mechanism, stage, masses)
+    carried = _carried(stage, inertia)
+    kept = _kept(stage, inertia)
+    basis = kept.basis
+    force, imposed = _inputs(stage, kept.driven)
+    output, feedthrough = _outputs(stage, imposed)
+    if kept.driven is not None:
+        feedthrough = feedthrough + _unsprung(stage, output) @ kept.driven
+    idle = kept.idle
+    return LinearModel(
+        coordinates=kept.coordinates,
+        stiffness={name: _through(item, basis) for name, item in stage.strains.items()},
+        inertia={name: _through(item, basis) for name, item in inertia.items()},
+        inputs=input_channels(stage.assembly),
+        force=_project(force, basis),
+        imposed=imposed,
+        outputs=output_channels(stage.assembly),
+        output=output if basis is None else output @ basis,
+        feedthrough=feedthrough,
+        rigid=_rigid_coordinates(stage, kept.coordinates),
+        rigid_output=_rigid_output(stage, output, carried, idle),
+        base_inertia=_project(carried, basis),
+        damping=mechanism.damping,
+        idle=() if idle is None else idle.names,
+        provenance=f"lumped reading of {digest(mechanism, physics=True)[:16]}",
+        inertial=None if kept.driven is None else _project(_momentum(inertia, kept.driven), basis),
+        idle_output=None if idle is None else output @ idle.motions,
+        idle_inertia=None if idle is None else _idle_inertia(stage, inertia, idle, carried),
+        unknown=tuple(f"{name}.{FORCES[freedom.index]}" for name, freedoms in stage.freedoms.items() for freedom in freedoms),
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class _Idle:
+    """Motions (..., N, k) that no stiffness holds, the coordinates named for them, and which of them have inertia `mass` (..., h, h)."""
+
+    motions: Array
+    names: tuple[str, ...]
+    heavy: tuple[int, ...]
+    mass: Array
+
+    def momentless(self, momentum: Array) -> Array:
+        """What to add to a motion (..., N, m) of `momentum` M z (..., N, m) to leave none in the idle motions."""
+        heavy = self.motions[..., list(self.heavy)]
+        return -(heavy @ np.linalg.solve(*_spread((self.mass, _transposed(heavy) @ momentum))))
+
+
+@dataclass(frozen=True, eq=False)
+class _Kept:
+    """z = `basis` q + `driven` u: the motions that are left (absent: all), and what inputs impose on locked freedoms (absent: nothing)."""
+
+    basis: Array | None
+    driven: Array | None
+    coordinates: tuple[str, ...]
+    idle: _Idle | None
+
+
+def _stage(mechanism: Mechanism) -> _Stage:
+    assembly = expand(mechanism)
+    require_room(assembly, _MATRICES)
+    order = layout(assembly)
+    with np.errstate(all="ignore"):  # what comes of it is told below
+        laws = _by_part(law, assembly)
+    ends = {name: end_twists(assembly, order, link) for name, link in assembly.links.items()}
+    strains: dict[str, Contribution] = {}
+    for name, link in assembly.links.items():
+        operator = ends[name][1] - ends[name][0]
+        strains[name] = Contribution(operator, laws[name].stiffness, _loss_factor(as_drawn(mechanism, link)))
+    require(_endless(assembly, {name: item.stiffness for name, item in laws.items()}, "stiffness"))
+    locked = {name: item.locked for name, item in laws.items() if item.locked}
+    return _Stage(assembly, order, ends, strains, locked, with_ground(assembly, order))
+
+
+def _endless(assembly: Assembly, values: Mapping[str, Array], what: str) -> Iterator[Finding]:
+    """Links whose stiffness or inertia is no finite number on the first design, once a part, with the numbers of the part."""
+    told: set[str] = set()
+    for name, value in values.items():
+        link = assembly.links[name]
+        if link.link.part not in told and not np.all(np.isfinite(np.real(first_design(value, 2)))):
+            told.add(link.link.part)
+            found = numbers(node_of(type(link.part)), link.part)
+            stated = ", ".join(f"{place} {float(np.ravel(np.real(number))[0]):.4g} {node.quantity.si}" for place, number, node in found)
+            advice = "Mend the one that is out of all proportion"
+            yield Finding(name, f"its {what} is beyond what can be computed, by the numbers of part {link.link.part}: {stated}", advice)
+
+
+def _require_told_apart(stage: _Stage, loose: Array, basis: Array | None) -> None:
+    """A motion that stretches a link is not loose: where rounding of stiffer links hides it, no answer would be right."""
+    stiffness = {name: np.diag(np.real(first_design(item.law, 2))) / _OVER**2 for name, item in stage.strains.items()}
+    full = loose if basis is None else np.real(first_design(basis, 2)) @ loose
+    weights = np.array([_OVER[COMPONENTS.index(name.rpartition(".")[2])] for name in stage.order.coordinates])
+    size = np.max(np.abs(full) * weights[:, None], axis=0)
+    hidden = [
+        name
+        for name, item in stage.strains.items()
+        if np.any((np.abs(np.real(first_design(item.operator, 2)) @ full) * _OVER[:, None])[stiffness[name] > 0.0] > _STRETCHES * size)
+    ]
+    if hidden:
+        ends = {name: value[value > 0.0] for name, value in stiffness.items() if np.any(value > 0.0)}
+        soft = min(hidden, key=lambda name: ends[name].min())
+        stiff = max(ends, key=lambda name: ends[name].max())
+        raise refuse(
+            stiff,
+            f"stiffnesses from {ends[soft].min():.3g} N/m ({soft}) to {ends[stiff].max():.3g} N/m ({stiff}), rotations over 0.1 m, "
+            "are too far apart for the digits that computers carry",
+            f"Look for a value out of all proportion in {stiff} or {soft}, or lock the stiff freedoms",
+        )
+
+
+def _by_part(function: Callable[[Part, Material | None], _Value], assembly: Assembly) -> dict[str, _Value]:
+    """A value for every link, computed once for all links of one part and material."""
+    keys = {name: (id(link.part), id(link.material)) for name, link in assembly.links.items()}
+    distinct = {keys[name]: link for name, link in assembly.links.items()}
+    values = {key: function(link.part, link.material) for key, link in distinct.items()}
+    return {name: values[key] for name, key in keys.items()}
+
+
+def _loss_factor(link: PlacedLink) -> Number:
+    inner = link.part.part if isinstance(link.part, Restricted) else link.part
+    holder = link.material if link.material is not None else inner
+    value = getattr(holder, "loss_factor", None)
+    return 0.0 if value is None else value
+
+
+def _kept(stage: _Stage, inertia: Mapping[str, Contribution]) -> _Kept:
+    """What satisfies the locked freedoms and leaves idle motions without momentum."""
+    names = stage.order.coordinates
+    scale = np.array([10.0 if name.rpartition(".")[2].startswith("r") else 1.0 for name in names])
+    basis: Array | None = None
+    driven: Array | None = None
+    independent = tuple(range(stage.order.size))
+    if stage.locked:
+        rows = np.concatenate(_spread(tuple(stage.locked.values())), axis=-2)
+        solution = eliminate(rows, scale, keep=tuple(range(6)))
+        basis, independent = solution.basis, solution.independent
+        driven = _driven(stage, solution, rows)
+    if not independent:
+        what = f"every freedom is locked, by {', '.join(stage.freedoms)}: strokes move the platform, and nothing is elastic"
+        raise refuse("stage", what, "Give a link stiffness in some freedom; the ideal reading tells how strokes move it as it is")
+    loose = _loose(stage, basis)
+    if loose.shape[1] == 0:
+        return _Kept(basis, driven, tuple(names[index] for index in independent), None)
+    named = _named(stage, loose, independent)
+    left = [index for index in range(len(independent)) if index not in named]
+    full = np.eye(stage.order.size) if basis is None else basis
+    idle = _idle(stage, inertia, full, (left, named), tuple(names[independent[index]] for index in named))
+    kept, driven = (
+        None if motion is None else motion + idle.momentless(_momentum(inertia, motion)) for motion in (full[..., left], driven)
+    )
+    return _Kept(kept, driven, tuple(names[independent[index]] for index in left), idle)
+
+
+def _driven(stage: _Stage, solution: Elimination, rows: Array) -> Array | None:
+    """The motion (..., N, inputs) that strokes of locked stacks impose; absent where no stack is locked along its axis."""
+    channels = len(input_channels(stage.assembly))
+    strokes = {(link, Freedom.X): number for number, link in enumerate(stage.assembly.actuators.values())}
+    locked = [(name, freedom) for name, freedoms in stage.freedoms.items() for freedom in freedoms]
+    imposed = np.zeros((len(locked), channels))
+    for row, key in enumerate(locked):
+        if key in strokes:
+            imposed[row, strokes[key]] = 1.0
+    if not imposed.any():
+        return None
+    motion = imposed_motion(solution, rows, imposed)
+    missed = np.abs(np.real(first_design(rows @ motion, 2)) - imposed) > _BLOCKED
+    require(_blocked(stage, locked, missed))
+    return motion
+
+
+def _blocked(stage: _Stage, locked: list[tuple[str, Freedom]], missed: Array) -> Iterator[Finding]:
+    """Strokes (columns) that locked freedoms (rows) cannot follow."""
+    for number, (name, link) in enumerate(stage.assembly.actuators.items()):
+        held = [f"{locked[row][0]}.{locked[row][1].value}" for row in np.flatnonzero(missed[:, number])]
+        if held:
+            what = (
+                f"the stroke of actuator {name} is blocked: its axis is locked, and nothing gives way between it and {', '.join(held[:6])}"
+            )
+            yield Finding(link, what, "Free one of these, or give it stiffness")
+
+
+def _idle(
+    stage: _Stage, inertia: Mapping[str, Contribution], basis: Array, parts: tuple[list[int], list[int]], names: tuple[str, ...]
+) -> _Idle:
+    """The idle motions, each with a unit in one of the `named` coordinates, the `left` ones following: K_ll n_l = -K_ln."""
+    left, named = parts
+    stiffness = assembled({name: _through(item, basis) for name, item in stage.strains.items()}, basis.shape[-1])
+    inner = stiffness[..., left, :][..., left]
+    root = np.sqrt(np.abs(np.diagonal(np.real(inner), axis1=-2, axis2=-1)))
+    root = np.where(root > 0.0, root, 1.0)
+    solved = np.linalg.solve(inner / root[..., None] / root[..., None, :], stiffness[..., left, :][..., named] / root[..., None])
+    small = np.zeros((*stiffness.shape[:-2], basis.shape[-1], len(named)), dtype=stiffness.dtype)
+    small[..., left, :] = -solved / root[..., None]
+    small[..., named, :] = np.eye(len(named))
+    motions = basis @ small
+    mass = _transposed(motions) @ _momentum(inertia, motions)
+    heavy = _heavy(np.real(first_design(mass, 2)), _largest(inertia, np.real(first_design(motions, 2)), stage.order.coordinates))
+    return _Idle(motions, names, heavy, mass[..., heavy, :][..., heavy])
+
+
+def _largest(inertia: Mapping[str, Contribution], motions: Array, coordinates: tuple[str, ...]) -> Array:
+    """What n^T M n (k,) would be if nothing in its sum cancelled: an idle motion with much less has no inertia but rounding.
+
+    Coordinates that stand still but for rounding count as if they moved by a share of the largest, 0.1 m making lengths of angles.
+    """
+    lengths = np.array([0.1 if name.rpartition(".")[2].startswith("r") else 1.0 for name in coordinates])[:, None]
+    least = _STILL * np.max(lengths * np.abs(motions), axis=0) / lengths
+    total = np.zeros(motions.shape[1])
+    for item in inertia.values():
+        seen = np.abs(np.real(first_design(item.operator, 2))) @ np.maximum(np.abs(motions), least)
+        total = total + np.sum(seen * (np.abs(np.real(first_design(item.law, 2))) @ seen), axis=0)
+    return total
+
+
+def _heavy(mass: Array, largest: Array) -> tuple[int, ...]:
+    """As many idle motions as have inertia of their own; M-orthogonal to these is M-orthogonal to all."""
+    some = np.flatnonzero(np.diag(mass) > _MASSLESS * largest)
+    if not len(some):
+        return ()
+    root = np.sqrt(np.diag(mass)[some])
+    _, triangle, order = pivoted(mass[np.ix_(some, some)] / root / root[:, None])
+    rank = int(np.sum(np.abs(np.diag(triangle)) > _MASSLESS))
+    return tuple(sorted(int(some[index]) for index in order[:rank]))
+
+
+def _momentum(inertia: Mapping[str, Contribution], motion: Array) -> Array:
+    """M times a motion (..., N, m)."""
+    return gathered(inertia, {name: item.operator @ motion for name, item in inertia.items()}) if inertia else np.zeros_like(motion)
+
+
+def _unsprung(stage: _Stage, output: Array) -> Array:
+    """The output rows (..., p, N) without those of link forces, which know what is imposed by their own deformation."""
+    forces = 6 * len(stage.assembly.links)
+    return np.concatenate([output[..., : output.shape[-2] - forces, :], np.zeros((*output.shape[:-2], forces, output.shape[-1]))], axis=-2)
+
+
+def _spread(arrays: tuple[Array, ...]) -> list[Array]:
+    batch = np.broadcast_shapes(*(array.shape[:-2] for array in arrays))
+    return [np.broadcast_to(array, (*batch, *array.shape[-2:])) for array in arrays] if batch else list(arrays)
+
+
+def _loose(stage: _Stage, basis: Array | None) -> Array:
+    """Null space (n, k) of the first design's stiffness in the independent coordinates."""
+    first = None if basis is None else np.real(first_design(basis, 2))
+    strains = {
+        name: Contribution(_without_rounding(np.real(first_design(item.operator, 2)), first), np.real(first_design(item.law, 2)))
+        for name, item in stage.strains.items()
+    }
+    stiffness = assembled(strains, stage.order.size if first is None else first.shape[1])
+    diagonal = np.sqrt(np.where(np.diag(stiffness) > 0.0, np.diag(stiffness), 1.0))
+    scaled = stiffness / diagonal / diagonal[:, None]
+    try:
+        pivots = np.diag(np.linalg.cholesky(scaled))
+        if np.min(pivots) ** 2 > _SINGULAR:
+            return np.zeros((len(diagonal), 0))
+    except np.linalg.LinAlgError:
+        pass
+    values, vectors = np.linalg.eigh(scaled)
+    loose = vectors[:, values < _SINGULAR] / diagonal[:, None]
+    _require_told_apart(stage, loose, basis)
+    return loose
+
+
+def _without_rounding(operator: Array, basis: Array | None) -> Array:
+    """The operator in the basis without entries that are only rounding: else an idle coordinate would seem to have some stiffness."""
+    if basis is None:
+        return operator
+    product = operator @ basis
+    largest = np.max(np.abs(operator), axis=1, keepdims=True) * np.max(np.abs(basis), axis=0)
+    return np.where(np.abs(product) > _ROUNDING * largest, product, 0.0)
+
+
+def _named(stage: _Stage, loose: Array, independent: tuple[int, ...]) -> list[int]:
+    """Coordinates that tell the loose motions apart; a loose motion that moves the platform makes the stage a mechanism."""
+    platform = [position for position, index in enumerate(independent) if index < 6]
+    moved = np.max(np.abs(loose), axis=0, initial=0.0)
+    if np.any(np.abs(loose[platform]) > 1e-6 * moved):
+        raise refuse(
+            "stage",
+            f"the stiffness matrix is singular: {loose.shape[1]} motion(s) without any stiffness move the platform, and with it "
+            f"{', '.join(_moving(stage, loose, independent))}",
+            "Add a link that holds this motion, or check which freedoms the links leave free",
+        )
+    order = pivoted((loose / moved).T)[2]
+    return sorted(int(index) for index in order[: loose.shape[1]])
+
+
+def _moving(stage: _Stage, loose: Array, independent: tuple[int, ...]) -> list[str]:
+    size = np.max(np.abs(loose), axis=1)
+    names = [stage.order.coordinates[independent[index]].rpartition(".")[0] for index in np.flatnonzero(size > 0.1 * size.max())]
+    return list(dict.fromkeys(names))[:6]
+
+
+def _through(item: Contribution, basis: Array | None) -> Contribution:
+    return item if basis is None else Contribution(item.operator @ basis, item.law, item.loss_factor)
+
+
+def _project(force: Array, basis: Array | None) -> Array:
+    return force if basis is None else _transposed(basis) @ force
+
+
+def _inertia(mechanism: Mechanism, stage: _Stage, masses: Masses) -> dict[str, Contribution]:
+    result: dict[str, Contribution] = {}
+    for name, placed in stage.assembly.bodies.items():
+        if masses is Masses.PLATFORM and name != PLATFORM:
+            continue
+        matrix = moving_inertia(mechanism, placed)
+        if matrix is not None:
+            result[name] = Contribution(stage.order.selector(name), matrix)
+    if masses is Masses.ALL:
+        own = _by_part(mass, stage.assembly)
+        require(_endless(stage.assembly, own, "inertia"))
+        for name, matrix in own.items():
+            result[_of_link(name)] = Contribution(np.concatenate(_spread(stage.ends[name]), axis=-2), matrix)
+    return result
+
+
+def _of_link(name: str) -> str:
+    return f"{name} (link)"
+
+
+def _carried(stage: _Stage, inertia: Mapping[str, Contribution]) -> Array:
+    """Inertial forces (..., n, 6) on the coordinates when everything, the ground included, is accelerated rigidly."""
+    centre = stage.assembly.bodies[PLATFORM].reference
+    seen = {name: stage.rigid[..., stage.order.columns(name), :] for name in stage.order.bodies}
+    for name, link in stage.assembly.links.items():
+        carry = seen_at(link.frame, centre)
+        seen[_of_link(name)] = np.concatenate([carry, carry], axis=-2)
+    return gathered(inertia, seen) if inertia else np.zeros((stage.order.size, 6))
+
+
+def _idle_inertia(stage: _Stage, inertia: Mapping[str, Contribution], idle: _Idle, carried: Array) -> Array:
+    """What accelerating the ground exerts on the idle motions (..., k, 6), without what is only rounding."""
+    exerted = _transposed(idle.motions) @ carried
+    names = stage.order.coordinates
+    spin, rigid = (_largest(inertia, np.real(first_design(motions, 2)), names) for motions in (idle.motions, stage.rigid))
+    most = spin[:, None] * rigid
+    return np.where(np.abs(np.real(exerted)) > _ROUNDING * np.sqrt(most), exerted, 0.0)
+
+
+def _inputs(stage: _Stage, driven: Array | None) -> tuple[Array, dict[str, Array]]:
+    """Direct forces, and what the inputs impose on links: strokes of sprung stacks, less what a motion imposed elsewhere takes up."""
+    drives = stage.assembly.actuators
+    wrenches = [_transposed(rows) for rows in place_twists(loaded_places(stage.assembly), stage.motions)]
+    columns = _spread((np.zeros((stage.order.size, len(drives))), *wrenches))
+    imposed = imposed_strokes(stage.assembly, dict.fromkeys(drives.values(), _STRETCHED))
+    if driven is not None:
+        imposed = {name: imposed.get(name, 0.0) - item.operator @ driven for name, item in stage.strains.items()}
+    return np.concatenate(columns, axis=-1), imposed
+
+
+def _outputs(stage: _Stage, imposed: Mapping[str, Array]) -> tuple[Array, Array]:
+    rows = [*place_twists(seen_places(stage.assembly), stage.motions), *gauge_rows(stage.assembly, stage.motions)]
+    inputs = len(input_channels(stage.assembly))
+    passed = [np.zeros((row.shape[-2], inputs)) for row in rows]
+    for name, item in stage.strains.items():
+        rows.append(item.law @ item.operator)
+        passed.append(-item.law @ imposed[name] if name in imposed else np.zeros((6, inputs)))
+    return np.concatenate(_spread(tuple(rows)), axis=-2), np.concatenate(_spread(tuple(passed)), axis=-2)
+
+
+def _rigid_coordinates(stage: _Stage, coordinates: tuple[str, ...]) -> Array:
+    places = {name: number for number, name in enumerate(stage.order.coordinates)}
+    return stage.rigid[..., [places[name] for name in coordinates], :]
+
+
+def _rigid_output(stage: _Stage, output: Array, carried: Array, idle: _Idle | None) -> Array:
+    """Outputs that move with the ground (..., p, 6); idle motions stay behind, as nothing but inertia moves them."""
+    carried_along = np.where(absolute(stage.assembly)[:, None], output @ stage.rigid, 0.0)
+    return carried_along if idle is None else carried_along + output @ idle.momentless(carried)
+
+
+def _transposed(matrix: Array) -> Array:
+    return np.swapaxes(matrix, -1, -2)

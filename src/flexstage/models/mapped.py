@@ -1,0 +1,257 @@
+"""Mapped reading: the paper's axial-spring model (Eqs. 17-28 of Shin & Moon).
+
+K = R_a^T diag(K_i) R_a with each unit's own stiffness in actuator coordinates, M of the platform alone. Units are massless, hinges have no
+bending stiffness.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.base.digest import digest
+from flexstage.base.finding import DesignError, Finding, refuse, require
+from flexstage.base.number import Array, Number
+from flexstage.beams.compliance import compliance
+from flexstage.mechanism.expand import Assembly, PlacedLink, copies, expand
+from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
+from flexstage.mechanism.moving_mass import moving_inertia
+from flexstage.models.ideal import ideal
+from flexstage.models.linear.kinematics import Kinematics
+from flexstage.models.linear.model import Channel, Contribution, LinearModel
+from flexstage.parts.freedom import ALL, Freedom
+from flexstage.parts.given import Joint
+from flexstage.parts.part import Restricted
+from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNITS
+
+_COLLINEAR = 1e-6
+
+
+@dataclass(frozen=True, eq=False)
+class LeverStiffness:
+    """The springs of a lever unit as in Fig. 7 and Eqs. 3-11 of the paper, SI.
+
+    `drive` K_1 (stack and its hinges), `pivot` K_theta2, `pole` K_3, `short_arm` r_1, `long_arm` r_2.
+    """
+
+    drive: Number
+    pivot: Number
+    pole: Number
+    short_arm: Number
+    long_arm: Number
+
+    @property
+    def softness(self) -> Number:
+        """eps = K_theta2 / (r_1^2 K_1): the pivot against the drive."""
+        return self.pivot / (self.short_arm**2 * self.drive)
+
+    @property
+    def gain(self) -> Number:
+        """Eq. 11's first term: output per stroke, (r_2 / r_1) / (1 + eps)."""
+        return self.long_arm / self.short_arm / (1.0 + self.softness)
+
+    @property
+    def tip_compliance(self) -> Number:
+        """Eq. 11's load term: r_2^2 / (K_theta2 + r_1^2 K_1) + 1 / K_3 [m/N]."""
+        return self.long_arm**2 / (self.pivot + self.short_arm**2 * self.drive) + 1.0 / self.pole
+
+    @property
+    def stiffness(self) -> Number:
+        """K_v in actuator coordinates: (r_2 / r_1)^2 over the tip compliance."""
+        return (self.long_arm / self.short_arm) ** 2 / self.tip_compliance
+
+
+def mapped(mechanism: Mechanism) -> LinearModel:
+    """Read a stage as the paper does: axial springs in actuator coordinates under a rigid platform.
+
+    Each unit's stiffness is stated in the description, or computed for direct units (a straight strut) and lever units. Raises
+    `DesignError` naming every other unit and the key that states it.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> (mapped(double_triangle()).stiffness_matrix[0, 0] / 1e6).round(2).item()  # 1.5 K_a
+    15.45
+    """
+    kinematics = ideal(mechanism)
+    kinematics.mapping  # noqa: B018  (refuses under-actuated stages)
+    assembly = expand(mechanism)
+    springs = unit_stiffness(mechanism, assembly)
+    mass = moving_inertia(mechanism, assembly.bodies[PLATFORM])
+    if mass is None:
+        raise refuse("bodies.platform", "it has no mass", "State its mass, centre and inertia, or give it solids")
+    return _model(mechanism, kinematics, springs, mass)
+
+
+def _model(mechanism: Mechanism, kinematics: Kinematics, springs: Mapping[str, Number], mass: Array) -> LinearModel:
+    count, freedoms = len(kinematics.actuators), kinematics.mobility
+    outputs = np.concatenate(np.broadcast_arrays(kinematics.motion), axis=-2)
+    sensing = kinematics.sensing @ kinematics.motion
+    channels = [Channel(f"{PLATFORM}.{name}", unit) for name, unit in zip(COMPONENTS, TWIST_UNITS, strict=True)]
+    channels += [Channel(name, "m") for name in kinematics.gauges]
+    inputs = [Channel(name, "m") for name in kinematics.actuators]
+    inputs += [Channel(f"{PLATFORM}.{name}", unit) for name, unit in zip(FORCES, WRENCH_UNITS, strict=True)]
+    transposed = np.swapaxes(kinematics.motion, -1, -2)
+    batch = kinematics.motion.shape[:-2]
+    return LinearModel(
+        coordinates=tuple(f"{PLATFORM}.{name}" for name in kinematics.coordinates),
+        stiffness={
+            name: Contribution(kinematics.actuation[..., index : index + 1, :], np.asarray(springs[name])[..., None, None])
+            for index, name in enumerate(kinematics.actuators)
+        },
+        inertia={PLATFORM: Contribution(kinematics.motion, mass)},
+        inputs=tuple(inputs),
+        force=np.concatenate([np.zeros((*batch, freedoms, count)), transposed], axis=-1),
+        imposed={name: np.eye(count + 6)[index : index + 1] for index, name in enumerate(kinematics.actuators)},
+        outputs=tuple(channels),
+        output=np.concatenate(_spread(outputs, sensing), axis=-2),
+        feedthrough=np.zeros((len(channels), count + 6)),
+        rigid=kinematics.projection,
+        rigid_output=np.concatenate([np.eye(6), np.zeros((len(kinematics.gauges), 6))]),
+        base_inertia=transposed @ mass,
+        damping=mechanism.damping,
+        idle=(),
+        provenance=f"mapped reading of {digest(mechanism, physics=True)[:16]}",
+    )
+
+
+def _spread(*arrays: Array) -> list[Array]:
+    batch = np.broadcast_shapes(*(array.shape[:-2] for array in arrays))
+    return [np.broadcast_to(array, (*batch, *array.shape[-2:])) for array in arrays]
+
+
+def unit_stiffness(mechanism: Mechanism, assembly: Assembly) -> dict[str, Number]:
+    """Stiffness of every actuator's unit in actuator coordinates [N/m], stated or computed.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> stage = double_triangle()
+    >>> round(float(unit_stiffness(stage, expand(stage))["B1"]) / 1e6, 3)
+    10.3
+    """
+    unit_of = {copy: unit for copy, unit, _ in copies(mechanism)}
+    findings: list[Finding] = []
+    result: dict[str, Number] = {}
+    for name, drive in assembly.actuators.items():
+        copy = drive.rpartition("/")[0]
+        stated = mechanism.units[unit_of[copy]].stiffness if copy else None
+        try:
+            result[name] = stated if stated is not None else computed_stiffness(assembly, drive)
+        except DesignError as error:
+            key = f"State units.{unit_of[copy]}.stiffness" if copy else "Draw the actuator in a unit, whose stiffness can be stated"
+            findings += [Finding(item.where, item.what, f"{key}, or use the lumped reading") for item in error.findings]
+    require(findings)
+    return result
+
+
+def computed_stiffness(assembly: Assembly, drive: str) -> Number:
+    """Stiffness in actuator coordinates of a direct or a lever unit, by the name of its actuator's link.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> round(float(computed_stiffness(expand(double_triangle()), "B4/pzt")) / 1e6, 2)
+    30.28
+    """
+    ways = _ways(assembly, drive)
+    levers = [body for body, links in ways.items() if len(links) > 2 and body not in (GROUND, PLATFORM)]
+    if levers:
+        return lever_stiffness(assembly, drive).stiffness
+    chain = _chain(ways, assembly, drive, frozenset({GROUND, PLATFORM}))
+    ends = _ends(chain)
+    if sorted(ends) != sorted((GROUND, PLATFORM)):
+        raise refuse(drive, f"its strut ends at {' and '.join(ends)}, not at ground and platform", "")
+    return 1.0 / _series(chain, assembly.links[drive])
+
+
+def lever_stiffness(assembly: Assembly, drive: str) -> LeverStiffness:
+    """The springs and arms of a lever unit: drive ground - lever, one pivot ground - lever, pole lever - platform.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> round(float(lever_stiffness(expand(double_triangle()), "B4/pzt").gain) / 3, 3)  # Table 2: 585 of 600
+    0.975
+    """
+    ways = _ways(assembly, drive)
+    levers = [body for body, links in ways.items() if len(links) > 2 and body not in (GROUND, PLATFORM)]
+    stop = frozenset({GROUND, PLATFORM, *levers})
+    driving = _chain(ways, assembly, drive, stop)
+    if len(levers) != 1 or sorted(_ends(driving)) != sorted((GROUND, levers[0])):
+        raise refuse(drive, f"its unit is neither a straight strut nor a single lever (branching bodies: {', '.join(levers)})", "")
+    rest = [link for link in ways[levers[0]] if link not in driving]
+    pivots = [link for link in rest if GROUND in link.joins]
+    poles = [link for link in rest if GROUND not in link.joins]
+    if len(pivots) != 1 or len(poles) != 1:
+        raise refuse(drive, f"its lever has {len(pivots)} pivots to ground and {len(poles)} output poles, expected one each", "")
+    pole = _chain(ways, assembly, poles[0].name, stop)
+    pivot = pivots[0]
+    turning = 1.0 / _compliance(pivot)[..., 5, 5]
+    centre = pivot.frame.position
+    return LeverStiffness(
+        drive=1.0 / _series(driving, assembly.links[drive]),
+        pivot=turning,
+        pole=1.0 / _series(pole, poles[0]),
+        short_arm=_distance(centre, assembly.links[drive]),
+        long_arm=_distance(centre, poles[0]),
+    )
+
+
+def _ways(assembly: Assembly, drive: str) -> dict[str, list[PlacedLink]]:
+    """Links at each body, within the actuator's own unit."""
+    owner = drive.rpartition("/")[0]
+    ways: dict[str, list[PlacedLink]] = {}
+    for link in assembly.links.values():
+        if link.name.rpartition("/")[0] == owner and (owner or link.name == drive):
+            for body in link.joins:
+                ways.setdefault(body, []).append(link)
+    return ways
+
+
+def _chain(ways: Mapping[str, list[PlacedLink]], assembly: Assembly, start: str, stop: frozenset[str]) -> list[PlacedLink]:
+    """The links in series with one link, up to bodies of `stop` or dead ends."""
+    chain = [assembly.links[start]]
+    for body in assembly.links[start].joins:
+        here, last = body, chain[0] if body == assembly.links[start].joins[0] else assembly.links[start]
+        while here not in stop:
+            onward = [link for link in ways[here] if link.name != last.name]
+            if len(onward) != 1:
+                break
+            last = onward[0]
+            chain.append(last)
+            here = last.joins[1] if last.joins[0] == here else last.joins[0]
+    return chain
+
+
+def _ends(chain: list[PlacedLink]) -> list[str]:
+    joined = [body for link in chain for body in link.joins]
+    return [body for body in dict.fromkeys(joined) if joined.count(body) == 1]
+
+
+def _series(chain: list[PlacedLink], line: PlacedLink) -> Array:
+    """Compliance in series along the line of one link; every link must lie on that line."""
+    axis = line.frame.rotation[..., :, 0]
+    total: Array = np.zeros(())
+    for link in chain:
+        offset = np.max(np.abs(np.real(_perpendicular(link.frame.position - line.frame.position, axis))))
+        if offset > _COLLINEAR:
+            raise refuse(link.name, f"it lies {offset * 1e3:.4g} mm beside the line of {line.name}, expected 0", "")
+        local = (np.swapaxes(link.frame.rotation, -1, -2) @ axis[..., None])[..., 0]
+        matrix = _compliance(link)[..., :3, :3]
+        total = total + (local[..., None, :] @ matrix @ local[..., :, None])[..., 0, 0]
+    return total
+
+
+def _compliance(link: PlacedLink) -> Array:
+    """Compliance of a link's part; a restricted part gives its elastic freedoms only, and what it frees has no stiffness to state."""
+    part = link.part
+    if isinstance(part, Joint) or (isinstance(part, Restricted) and Freedom.X in part.free):
+        raise refuse(link.name, "it is an ideal joint or has no axial stiffness, and the unit's stiffness needs one", "")
+    if isinstance(part, Restricted):
+        elastic = np.array([freedom in part.elastic for freedom in ALL])
+        return np.where(elastic[:, None] & elastic, compliance(part.part, link.material), 0.0)
+    return compliance(part, link.material)
+
+
+def _perpendicular(arm: Array, axis: Array) -> Array:
+    return arm - np.sum(arm * axis, axis=-1, keepdims=True) * axis
+
+
+def _distance(point: Array, line: PlacedLink) -> Array:
+    arm = _perpendicular(line.frame.position - point, line.frame.rotation[..., :, 0])
+    return np.sqrt(np.sum(arm * arm, axis=-1))

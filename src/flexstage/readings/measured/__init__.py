@@ -1,1 +1,0 @@
-"""Measured reading: records of tests to spectra to modes."""

@@ -1,0 +1,85 @@
+"""Answers: one result as a JSON document, as tables on the terminal, or both."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from pathlib import Path
+
+from rich.console import Console
+
+from flexstage.analysis.cautions import Caveats, caveats
+from flexstage.base.finding import Finding
+from flexstage.base.text import printable
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.models.theory import Reading
+from flexstage.show.command.output import STDOUT, announce, write
+from flexstage.show.command.terminal import styled, tell, warn
+from flexstage.show.documents.envelope import Document, as_text, enveloped
+from flexstage.show.render import to_rich
+from flexstage.show.table import Table
+
+_UNFOLDED = 1000
+
+
+def answer(
+    kind: str,
+    mechanism: Mechanism | None,
+    body: Callable[[], Document],
+    tables: Callable[[], Iterable[Table | None]],
+    *,
+    json: str | None,
+    reading: Reading | None = None,
+    cautions: tuple[Finding, ...] = (),
+    beside: tuple[Path | None, ...] = (),
+) -> None:
+    """Write the JSON document where one was asked for (`json`), and show the tables unless stdout is the document's.
+
+    `kind` is that of the document, `mechanism` the description it is about (`None`: none, a record alone). `cautions` are the result's
+    own, told after those about the description. `beside` are the command's other outputs: where one of them goes to stdout, tables do not,
+    and cautions go to stderr.
+    """
+    if json is not None:
+        write(json, as_text(enveloped(kind, mechanism, reading, body(), cautions)) + "\n", "--json")
+        if json == STDOUT:
+            return
+        announce(f"Wrote {json}")
+    if STDOUT in map(str, beside):
+        for each in (*(() if mechanism is None else caveats(mechanism).cautions), *cautions):
+            warn(str(each))
+        return
+    show((*caveat_lines(kind, mechanism, cautions), *tables()))
+
+
+def caveat_lines(kind: str, mechanism: Mechanism | None, more: tuple[Finding, ...] = ()) -> Iterator[str]:
+    """Cautions about a description (none: a record alone) and `more` about the result, and what this kind of result takes by default."""
+    found = Caveats() if mechanism is None else caveats(mechanism)
+    for title, findings in (("Cautions", (*found.cautions, *more)), ("Taken by default", found.defaults_of(kind))):
+        if findings:
+            yield "\n".join([title, "", *(f"  {each}" for each in findings)])
+
+
+def tell_missing(missing: Mapping[str, str]) -> None:
+    """Say on stderr which results are not given, and why; a reason that several share once."""
+    for reason in dict.fromkeys(missing.values()):
+        names = ", ".join(name.replace("_", " ") for name, each in missing.items() if each == reason)
+        tell(f"not given: {names}: {reason}")
+
+
+def show(shown: Iterable[Table | str | None]) -> None:
+    """Print tables, and lines as they are, to stdout, with an empty line between; what is absent is left out.
+
+    Tables have the terminal's width; where the output is no terminal they are not folded and have no escape codes.
+    """
+    console = Console(file=sys.stdout, highlight=False, markup=False)
+    if not console.is_terminal:
+        console.width = _UNFOLDED
+    for number, each in enumerate(each for each in shown if each is not None):
+        lines = printable(each, keep="\n").splitlines() if isinstance(each, str) else _rendered(console, each)
+        styled("\n".join(["", *lines][number == 0 :]).rstrip("\n") + "\n")
+
+
+def _rendered(console: Console, table: Table) -> list[str]:
+    with console.capture() as captured:
+        console.print(to_rich(table))
+    return [line.rstrip() for line in captured.get().splitlines()]

@@ -1,0 +1,62 @@
+"""Opening a design for a command: outputs tried, file read and checked, `--set` applied; its model and the points of it that are named."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from flexstage.analysis.complete import read
+from flexstage.base.finding import DesignError, Finding, nearest, refuse, require
+from flexstage.mechanism.address import assign
+from flexstage.mechanism.checks import checked
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.mechanism.store import load
+from flexstage.models.linear.model import LinearModel
+from flexstage.models.theory import Reading
+from flexstage.show.command.output import require_writable
+from flexstage.spatial.frame import COMPONENTS
+
+
+def open_design(path: Path, changes: Sequence[str] | None = None, outputs: Sequence[tuple[str, str | Path | None]] = ()) -> Mechanism:
+    """The description in a file, with changes, after the outputs (option and path) were found writable.
+
+    Raises `DesignError` with all findings.
+    """
+    require_writable(outputs, path)
+    return change(load(path), changes or ())
+
+
+def change(mechanism: Mechanism, changes: Sequence[str]) -> Mechanism:
+    """The description after all assignments, checked anew; raises `DesignError` with all that is wrong with any of them."""
+    findings: list[Finding] = []
+    result = mechanism
+    for text in changes:
+        try:
+            result = assign(result, text)
+        except DesignError as error:
+            findings += [Finding(_where(text, each.where), each.what, each.advice) for each in error.findings]
+    require(findings)
+    return checked(result) if changes else mechanism
+
+
+def _where(text: str, inner: str) -> str:
+    """The assignment, and the place a finding names where that says more than the assignment does."""
+    said = {text.partition("=")[0].strip(), f'"{text}"'}
+    return f"--set {text}" if inner in said else f"--set {text}: {inner}"
+
+
+def elastic_model(mechanism: Mechanism, reading: Reading) -> LinearModel:
+    """The linear model of a reading; the ideal one is refused."""
+    model = read(mechanism, reading)
+    if model is None:
+        raise refuse("--reading ideal", "rigid bodies have no stiffness, no lost motion and no modes", "Use --reading lumped or mapped")
+    return model
+
+
+def known_point(model: LinearModel, name: str) -> str:
+    """The name, if it is one of a body or point whose twist the model gives; else refused with the nearest ones."""
+    outputs = {channel.name for channel in model.outputs}
+    places = {each.rpartition(".")[0] for each in outputs if each.rpartition(".")[2] in COMPONENTS}
+    if name not in places:
+        raise refuse("--at", f"there is no body or point {name}", nearest(name, places))
+    return name

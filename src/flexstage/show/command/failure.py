@@ -1,0 +1,127 @@
+"""Exit codes, and what is said of failures: bad input finding by finding, a fault of flexstage without a traceback."""
+
+from __future__ import annotations
+
+import errno
+import os
+import signal
+import sys
+import warnings
+from collections.abc import Callable, Generator
+from contextlib import contextmanager
+from pathlib import Path
+
+from flexstage.base.finding import DesignError, refuse
+from flexstage.base.store import sweep_temporary
+from flexstage.show.command.output import together
+from flexstage.show.command.terminal import streams, tell, warn
+
+DONE, MISSED, BAD_INPUT, INTERRUPTED, FAULT = 0, 1, 2, 2, 70
+SIGNALLED = 128
+"""To this the number of a signal is added that ended the command."""
+ENDINGS = tuple(getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name))
+_FRAMEWORKS_INTERRUPTED = 130
+_DISKS = {getattr(errno, name, None) for name in ("ENAMETOOLONG", "EACCES", "EPERM", "ENOTDIR", "ELOOP", "EROFS", "EIO", "ENOSPC")}
+_DEBUG = "FLEXSTAGE_DEBUG"
+_THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
+
+
+def guarded(action: Callable[[], object]) -> int:
+    """Run an action and turn however it ends into an exit code; messages go to stderr."""
+    with streams():
+        return _ended(action)
+
+
+def _ended(action: Callable[[], object]) -> int:
+    sweep_temporary()
+    for name in _THREADS:  # many small matrices: a second thread costs more than it gives. Read when numpy is loaded.
+        os.environ.setdefault(name, "1")
+    try:
+        with _told_warnings(), together():
+            _finished(action)
+    except SystemExit as end:
+        return _left(end)
+    except DesignError as error:
+        return _bad_input(error)
+    except ModuleNotFoundError as error:
+        return _missing(error)
+    except BrokenPipeError:
+        return DONE  # `| head`
+    except KeyboardInterrupt:
+        return _interrupted()
+    except MemoryError as error:
+        return _bad_input(refuse("memory", f"there is not enough for this: {error}", "Ask for less at once, or free memory"))
+    except Exception as error:  # noqa: BLE001 (the last resort: a message instead of a traceback)
+        return _fault(error)
+    return DONE
+
+
+def _left(end: SystemExit) -> int:
+    """The exit code of a command that left early."""
+    if end.code == _FRAMEWORKS_INTERRUPTED:  # the command line's framework turns the interruption into this
+        return _interrupted()
+    if isinstance(end.__context__, BrokenPipeError):  # and a reader that has gone into a code of failure
+        return DONE
+    if end.code in {SIGNALLED + each for each in ENDINGS}:
+        tell("Ended by a signal; nothing was written. Finished parts are kept: the same command resumes from there.")
+    return end.code if isinstance(end.code, int) else DONE if end.code is None else MISSED
+
+
+def _finished(action: Callable[[], object]) -> None:
+    """The action, until its reader has all of it, however it ends."""
+    try:
+        action()
+    except SystemExit:
+        sys.stdout.flush()
+        raise
+    sys.stdout.flush()
+
+
+def _interrupted() -> int:
+    tell("Interrupted; nothing was written. Finished parts are kept in the cache: the same command resumes from there.")
+    return INTERRUPTED
+
+
+def _bad_input(error: DesignError) -> int:
+    count = len(error.findings)
+    tell(f"error: {count} finding{'s' * (count > 1)}")
+    for finding in error.findings:
+        tell(f"  {finding}")
+    return BAD_INPUT
+
+
+def _fault(error: Exception) -> int:
+    if isinstance(error, OSError) and error.filename and error.errno in _DISKS:
+        return _bad_input(refuse(os.fsdecode(error.filename), f"the system refuses it: {error.strerror}", "Name another file or folder"))
+    if isinstance(error, FileNotFoundError) and _folder_is_gone():
+        what = "it has been removed, so that no file can be named from here"
+        return _bad_input(refuse("the folder this runs in", what, "Change to another folder"))
+    if os.environ.get(_DEBUG):
+        raise error
+    tell(f"error: flexstage failed, and that is its fault, not your design's: {type(error).__name__}: {error}")
+    tell(f"Run the same command with {_DEBUG}=1 in the environment and report its output with the design file and `flexstage version`.")
+    tell("`flexstage doctor` says whether the installation is sound.")
+    return FAULT
+
+
+def _folder_is_gone() -> bool:
+    try:
+        Path.cwd()
+    except FileNotFoundError:
+        return True
+    return False
+
+
+def _missing(error: ModuleNotFoundError) -> int:
+    if os.environ.get(_DEBUG) or (error.name or "").partition(".")[0] == "flexstage":
+        raise error
+    tell(f"error: the package {error.name} is missing. Run: flexstage doctor --mend")
+    return FAULT
+
+
+@contextmanager
+def _told_warnings() -> Generator[None]:
+    """Python's warnings as one line each, without file and line of code."""
+    with warnings.catch_warnings():
+        warnings.showwarning = lambda message, *_, **__: warn(str(message))
+        yield

@@ -1,0 +1,89 @@
+"""Arguments and options that several commands share, and the forms of those of one command: a text, or one of a few words."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from enum import Enum
+from pathlib import Path
+from types import MappingProxyType
+from typing import Annotated, Any, TypeAlias, TypeVar
+
+import typer
+
+from flexstage.models.theory import Reading
+from flexstage.show.command.failure import BAD_INPUT
+from flexstage.show.command.terminal import tell
+
+_Kind = TypeVar("_Kind", bound=Enum)
+_NOTHING: Mapping[str, str] = MappingProxyType({})
+
+
+def text_option(name: str, metavar: str, about: str) -> Any:
+    """An option that is a text; its default is said in words, if at all."""
+    return typer.Option(name, metavar=metavar, help=about, show_default=False)
+
+
+def output_option(metavar: str, about: str) -> Any:
+    """The option of the file that a command writes."""
+    return typer.Option("--output", "-o", metavar=metavar, help=about, show_default=False)
+
+
+def word_option(name: str, kind: type[Enum], about: str, *, otherwise: Mapping[str, str] = _NOTHING, show_default: bool = True) -> Any:
+    """An option that is one of a few words; `otherwise` says what to do instead for words that one might expect."""
+    words = [str(each.value) for each in kind]
+    return typer.Option(
+        name,
+        parser=_reader(name, kind, otherwise),
+        metavar=f"<{'|'.join(words)}>",
+        autocompletion=lambda: words,
+        help=about,
+        show_default=show_default,
+    )
+
+
+def _reader(option: str, kind: type[_Kind], otherwise: Mapping[str, str]) -> Callable[[str | _Kind], _Kind]:
+    """A reader of an option's word, which refuses others in one line."""
+
+    def read(word: str | _Kind) -> _Kind:
+        for each in kind:
+            if word in (each, each.value):  # each: the default
+                return each
+        advice = f" {otherwise[str(word)]}." if word in otherwise else ""
+        tell(f'error: {option}: "{word}" is none of {", ".join(str(each.value) for each in kind)}.{advice}')
+        raise typer.Exit(BAD_INPUT)
+
+    return read
+
+
+Design: TypeAlias = Annotated[Path, typer.Argument(help="Design file (TOML).", metavar="STAGE.TOML", show_default=False)]
+
+Theory: TypeAlias = Annotated[
+    Reading,
+    word_option(
+        "--reading",
+        Reading,
+        "Theory to read the stage by: rigid bodies, the paper's axial springs, or lumped 6x6 hinges.",
+        otherwise={"solid": "Solids have commands of their own: flexstage solid, flexstage verify"},
+    ),
+]
+
+Changes: TypeAlias = Annotated[
+    list[str] | None,
+    text_option(
+        "--set",
+        "ADDRESS=VALUE",
+        "Change a value before the analysis, e.g. horizontal/front.thickness=1.4mm. May be given several times.",
+    ),
+]
+
+Json: TypeAlias = Annotated[str | None, text_option("--json", "-|FILE", "Write the result as JSON: to stdout (-) or a file.")]
+
+Report: TypeAlias = Annotated[Path | None, text_option("--report", "FILE", "Write a self-contained HTML report with pictures.")]
+
+Study: TypeAlias = Annotated[Path, typer.Argument(help="File of the study (TOML).", metavar="STUDY.TOML", show_default=False)]
+
+Resume: TypeAlias = Annotated[bool, typer.Option("--resume", help="Go on with a results file that is not complete.")]
+
+Workers: TypeAlias = Annotated[int | None, text_option("--workers", "N", "Processes. Default: one a core.")]
+
+Scheduler: TypeAlias = Annotated[str | None, text_option("--scheduler", "ADDRESS", "Dask scheduler of a cluster, e.g. tcp://host:8786.")]

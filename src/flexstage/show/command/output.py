@@ -1,0 +1,160 @@
+"""Output files: found unwritable before anything is computed, all written whole, or none."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from collections.abc import Generator, Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from contextvars import ContextVar
+from pathlib import Path
+
+from flexstage.base.finding import Finding, refuse, require
+from flexstage.base.store import Waiting, put_together, written
+from flexstage.show.command.terminal import put_out, tell
+
+STDOUT = "-"
+_ENDED_WELL = (None, 0, 1)
+
+
+class _Pending:
+    """Outputs of one command that wait for its end, and what is told once they are there."""
+
+    def __init__(self) -> None:
+        self.files: list[Waiting] = []
+        self.texts: list[str] = []
+
+    def put(self) -> None:
+        put_together(self.files)
+        for text in self.texts:
+            tell(text)
+
+    def drop(self) -> None:
+        for each in self.files:
+            each.drop()
+
+
+# The command that runs decides when its outputs appear, however deep in it they are written: one value for the time of one command.
+_PENDING: ContextVar[_Pending | None] = ContextVar("outputs that wait", default=None)
+
+
+@contextmanager
+def together() -> Generator[None]:
+    """All files written inside appear together at its end, or none where it fails.
+
+    A command that ends by saying what was missed, or whose reader has gone, has not failed.
+    """
+    pending = _Pending()
+    token = _PENDING.set(pending)
+    try:
+        yield
+        pending.put()
+    except SystemExit as end:
+        if end.code in _ENDED_WELL:
+            pending.put()
+        raise
+    except BrokenPipeError:
+        pending.put()
+        raise
+    finally:
+        pending.drop()
+        _PENDING.reset(token)
+
+
+def announce(text: str) -> None:
+    """Say that a file was written, once it is there."""
+    pending = _PENDING.get()
+    if pending is None:
+        tell(text)
+    else:
+        pending.texts.append(text)
+
+
+def require_writable(wanted: Sequence[tuple[str, str | Path | None]], design: Path | None = None, records: Iterable[Path] = ()) -> None:
+    """Raise a `DesignError` of all that keeps the outputs, pairs of an option and its path, from being written.
+
+    They must not overwrite what is read: the `design` (or the study) and `records`.
+    """
+    read = {_whole(path) for path in records}
+    clashes = [
+        Finding(option, f"{target} is a record that is read", "Choose another file")
+        for option, target in wanted
+        if target is not None and str(target) != STDOUT and _whole(Path(target)) in read
+    ]
+    require([*_unwritable(wanted, design), *clashes])
+
+
+def _unwritable(wanted: Iterable[tuple[str, str | Path | None]], design: Path | None) -> Iterator[Finding]:
+    taken: dict[Path, str] = {} if design is None else {_whole(design): "the design file"}
+    spoken: str | None = None
+    for option, target in wanted:
+        if target is not None and str(target) == STDOUT:
+            if spoken is not None:
+                yield Finding(option, f"stdout is the output of {spoken} too", "Write one of them to a file")
+            spoken = option
+        if target is None or str(target) == STDOUT:
+            continue
+        path = Path(target)
+        if (owner := taken.get(_whole(path))) is not None:
+            yield Finding(option, f"{path} is {owner} too", "Choose another file")
+        elif (problem := _problem(path)) is not None:
+            yield Finding(option, f"{path} cannot be written: {problem}", "Choose another file or folder")
+        else:
+            taken[_whole(path)] = f"the output of {option}"
+
+
+def _whole(path: Path) -> Path:
+    """The path without links, where they do not end in a loop."""
+    return Path(os.path.realpath(path))
+
+
+def _problem(path: Path) -> str | None:
+    """Why a file cannot be written; tried, not concluded from its mode."""
+    try:
+        return _refused(path)
+    except OSError as error:  # a name that is too long, a loop of links, a folder that may not be looked into
+        return error.strerror or str(error)
+
+
+def _refused(path: Path) -> str | None:
+    if path.is_dir():
+        return "it is a folder"
+    if path.exists() and not os.access(path, os.W_OK):
+        return "it is write-protected"
+    if _is_device(path):
+        return None
+    folder = _whole(path).parent
+    if not folder.is_dir():
+        return f"there is no folder {path.parent}"
+    with tempfile.TemporaryFile(dir=folder):
+        return None
+
+
+def _is_device(path: Path) -> bool:
+    return path.exists() and not path.is_file()
+
+
+def write(target: str | Path, content: str | bytes, option: str) -> None:
+    """Write to a file, which is in its place at the end of the command, or to stdout for `-`; raises where the disk refuses."""
+    data = content.encode() if isinstance(content, str) else content
+    if str(target) == STDOUT:
+        put_out(data)
+        return
+    if not _is_device(Path(target)):
+        pending, waiting = _PENDING.get(), written(target, data)
+        if pending is None:
+            waiting.put()
+        else:
+            pending.files.append(waiting)
+        return
+    try:
+        Path(target).write_bytes(data)
+    except OSError as error:
+        raise refuse(option, f"{target} cannot be written: {error.strerror}", "Choose another file") from None
+
+
+def save(target: str | Path, content: str | bytes, option: str) -> None:
+    """Write to a file and say so once it is there, or to stdout for `-`."""
+    write(target, content, option)
+    if str(target) != STDOUT:
+        announce(f"Wrote {target}")

@@ -1,0 +1,95 @@
+"""Values in the texts of options: quantities with units, motions of the platform, random inputs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import TypeVar
+
+from flexstage.analysis.random_response import Rate, Spectrum
+from flexstage.base.finding import DesignError, Finding, nearest, require
+from flexstage.base.quantity import ANGLE, DISPLACEMENT, Quantity
+from flexstage.base.unit import parse
+from flexstage.models.linear.model import LinearModel
+from flexstage.models.linear.port import ports
+from flexstage.spatial.frame import COMPONENTS
+
+_Value = TypeVar("_Value")
+_NOISE_EXAMPLE = 'Write for example --noise "ground.z=1 nm/Hz^0.5", or an acceleration, "ground.z=1e-5 m/s^2/Hz^0.5"'
+
+
+class Values:
+    """Reads texts and gathers what is wrong with them, so that all of it is told together."""
+
+    def __init__(self) -> None:
+        self.findings: list[Finding] = []
+
+    def attempt(self, action: Callable[[], _Value]) -> _Value | None:
+        """What an action gives; nothing, and its findings noted, where it fails."""
+        try:
+            return action()
+        except DesignError as error:
+            self.findings += error.findings
+            return None
+
+    def value(self, option: str, text: str | None, quantity: Quantity) -> float | None:
+        """The value of a text in SI units; nothing where it is absent or wrong."""
+        return None if text is None else self.attempt(lambda: parse(text, quantity, where=option))
+
+
+def first_fit(text: str, known: Mapping[str, Quantity]) -> tuple[str, float] | None:
+    """The name of the first quantity that a text is of, and its value in SI units; nothing where it is of none."""
+    for name, quantity in known.items():
+        try:
+            return name, parse(text, quantity)
+        except DesignError:
+            continue
+    return None
+
+
+def motions(texts: Sequence[str]) -> dict[str, float]:
+    """Amounts [m, rad] by motion of the platform from texts AXIS=VALUE of `--command`; all mistakes are told together."""
+    found: dict[str, float] = {}
+    findings: list[Finding] = []
+    for text in texts:
+        name, _, value = (part.strip() for part in text.partition("="))
+        if name not in COMPONENTS or not value:
+            findings.append(
+                Finding(f"--command {text}", "this names no motion and value", f"Write for example z=150um; {nearest(name, COMPONENTS)}")
+            )
+            continue
+        try:
+            found[name] = abs(parse(value, ANGLE if name.startswith("r") else DISPLACEMENT, where=f"--command {text}"))
+        except DesignError as error:
+            findings += error.findings
+    require(findings)
+    return found
+
+
+def spectra(model: LinearModel, noises: Sequence[str]) -> dict[str, Spectrum]:
+    """White spectra by input from texts INPUT=AMPLITUDE DENSITY of `--noise`, of the input or of its first or second rate.
+
+    All mistakes are told together.
+    """
+    found: dict[str, Spectrum] = {}
+    findings: list[Finding] = []
+    for text in noises:
+        name, _, value = (part.strip() for part in text.partition("="))
+        try:
+            found[name] = _spectrum(model, name, value, f"--noise {text}")
+        except DesignError as error:
+            findings += error.findings
+    require(findings)
+    return found
+
+
+def _spectrum(model: LinearModel, name: str, value: str, where: str) -> Spectrum:
+    unit = ports(model, ("platform",), (name,)).inputs[0].unit
+    units = {Rate.VALUE: unit, Rate.VELOCITY: f"{unit}/s", Rate.ACCELERATION: f"{unit}/s^2"}
+    for rate, form in units.items():
+        density = Quantity("amplitude density", f"{form}/Hz^0.5", f"{form}/Hz^0.5", f"1e-9 {form}/Hz^0.5")
+        try:
+            return Spectrum(parse(value, density, where=where) ** 2, rate=rate)
+        except DesignError:
+            continue
+    what = f'found "{value}", which is no amplitude density of {name} [{unit}/Hz^0.5] or of its rates'
+    raise DesignError([Finding(where, what, _NOISE_EXAMPLE)])

@@ -1,0 +1,43 @@
+"""A figure as a file of its own: SVG, PDF or PNG by the name's ending."""
+
+from __future__ import annotations
+
+import io
+from pathlib import PurePath
+from typing import Any
+
+from flexstage.base.finding import refuse
+from flexstage.base.text import printable
+from flexstage.show.figures.export import to_png
+from flexstage.show.figures.style import styled
+
+FORMATS = (".svg", ".pdf", ".png")
+
+
+def format_of(name: str) -> str:
+    """The format a file name asks for. Raises `DesignError` for an unknown ending.
+
+    >>> format_of("plan.SVG")
+    '.svg'
+    """
+    ending = PurePath(name).suffix.lower()
+    if ending not in FORMATS:
+        raise refuse(name, f'the ending "{ending}" is no format a drawing can have', f"End the name in {', '.join(FORMATS)}")
+    return ending
+
+
+def drawing(figure: Any, ending: str) -> bytes:
+    """The figure as a file's content; the same figure always gives the same bytes.
+
+    >>> from flexstage.show.figures.style import canvas
+    >>> drawing(canvas(1.0, 1.0), ".svg")[:5]
+    b'<?xml'
+    """
+    if ending == ".png":
+        return to_png(figure)
+    buffer = io.BytesIO()
+    with styled():
+        dates = {"Date": None} if ending == ".svg" else {"CreationDate": None}
+        figure.savefig(buffer, format=ending.removeprefix("."), metadata=dates, facecolor="white")
+    content = buffer.getvalue()
+    return printable(content.decode(), keep="\n\t").encode() if ending == ".svg" else content

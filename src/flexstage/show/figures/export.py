@@ -1,0 +1,182 @@
+"""Writing figures: SVG small enough to stand inside a page, taking its colours and font from it; PNG for everything else."""
+
+from __future__ import annotations
+
+import io
+import re
+from typing import Any
+
+from flexstage.base.text import printable
+from flexstage.show.figures.style import DRIVE, GAUGE, GRID, INK, MUTED, PAPER, styled
+
+_NUMBER = re.compile(r"-?\d+\.\d+(?:e-?\d+)?")
+_PATH = re.compile(r'<path([^>]*?) d="([^"]*)"([^>]*)>')
+_STRAIGHT = re.compile(r"[MLz\d.\s-]+")
+_STEP = re.compile(r"([MLz])\s*(?:(-?[\d.]+)\s+(-?[\d.]+))?")
+_GEOMETRY = re.compile(r'(?<=\s)(x|y|x1|x2|y1|y2|width|height|transform|points|viewBox)="([^"]*)"')
+_STYLE = re.compile(r' style="([^"]+)"')
+_THEME = {INK: "ink", MUTED: "muted", GRID: "rule", PAPER: "paper", DRIVE: "drive", GAUGE: "gauge"}
+
+
+def to_svg(figure: Any, name: str, description: str) -> str:
+    """The figure as an SVG element to stand inside a page; `name` keeps its identifiers apart from those of other figures.
+
+    The same figure always gives the same text. Colours of ink, rules and paper are the page's variables, with the style's own as default.
+    `description` is read to those who cannot see the picture.
+
+    >>> from flexstage.show.figures.style import canvas
+    >>> to_svg(canvas(1.0, 1.0), "empty", "nothing")[:33]
+    '<svg viewBox="0 0 72 72" role="im'
+    """
+    buffer = io.StringIO()
+    with styled():
+        figure.savefig(buffer, format="svg", metadata={"Date": None, "Creator": None, "Format": None, "Type": None})
+    return compact(buffer.getvalue(), name, description)
+
+
+def to_png(figure: Any, *, dots_per_inch: int = 160) -> bytes:
+    """The figure as PNG on white.
+
+    >>> from flexstage.show.figures.style import canvas
+    >>> to_png(canvas(1.0, 1.0))[1:4]
+    b'PNG'
+    """
+    buffer = io.BytesIO()
+    with styled():
+        figure.savefig(buffer, format="png", dpi=dots_per_inch, facecolor="white", metadata={"Software": None})
+    return buffer.getvalue()
+
+
+def compact(text: str, name: str, description: str) -> str:
+    """matplotlib's SVG without header, metadata, unused identifiers and digits nobody sees; repeated styles become classes.
+
+    >>> compact('<?xml version="1.0"?><svg width="72pt" viewBox="0 0 72 72"><g id="a"><path d="M 1.23456 2"/></g></svg>', "f", "a path")
+    '<svg viewBox="0 0 72 72" role="img" aria-label="a path" style="max-width:96px"><path d="M1.2 2"/></svg>'
+    """
+    body = re.sub(r"<metadata>.*?</metadata>|<!--.*?-->|<\?xml.*?\?>|<!DOCTYPE.*?>", "", text, flags=re.DOTALL)
+    body = body[body.index("<svg") :].replace("xlink:href", "href")
+    view = re.search(r'viewBox="([^"]*)"', body)
+    box = view[1] if view else "0 0 100 100"
+    body = re.sub(r"<svg[^>]*>", "", body, count=1).removesuffix("\n").removesuffix("</svg>")
+    # matplotlib's own rule would reach the whole page.
+    body = re.sub(r"<style type=.text/css.>.*?</style>", "", body, flags=re.DOTALL)
+    body = re.sub(r' transform="rotate\(-?0(?:\.0)? [^"]*\)"', "", body)
+    body = _own_names(body, name)
+    body = _PATH.sub(_path, body)
+    body = _GEOMETRY.sub(lambda found: f'{found[1]}="{_short(found[2])}"', body)
+    body = _STYLE.sub(lambda found: f' style="{_styling(found[1])}"', body)
+    body = _without_empty(re.sub(r">\s+<", "><", body))
+    body, classes = _classes(body, name)
+    width = round(float(box.split()[2]) * 96.0 / 72.0)
+    head = f'<svg viewBox="{_short(box)}" role="img" aria-label="{_attribute(description)}" style="max-width:{width}px">'
+    return printable(f"{head}{classes}{body.strip()}</svg>", keep="\n\t")
+
+
+def _attribute(text: str) -> str:
+    for sign, entity in (("&", "&amp;"), ("<", "&lt;"), (">", "&gt;"), ('"', "&quot;")):
+        text = text.replace(sign, entity)
+    return text
+
+
+def _own_names(body: str, name: str) -> str:
+    """Identifiers that are referred to get the figure's name in front, the others go."""
+    used = set(re.findall(r'(?:url\(#|href="#)([^)"]+)', body))
+    body = re.sub(r' id="([^"]+)"', lambda found: f' id="{name}-{found[1]}"' if found[1] in used else "", body)
+    return re.sub(r'(url\(#|href="#)([^)"]+)', rf"\g<1>{name}-\g<2>", body)
+
+
+def _short(numbers: str, decimals: int = 1) -> str:
+    """Numbers to a tenth of a point, without zeros that say nothing."""
+    text = _NUMBER.sub(lambda found: _rounded(found[0], decimals), numbers)
+    text = re.sub(r"\s+", " ", text).strip()
+    return re.sub(r"(?<=[A-Za-z]) (?=[-\d])| (?=[A-Za-z])", "", text) if text[:1] == "M" else text
+
+
+def _path(found: re.Match[str]) -> str:
+    """A path with fewer digits; translucent areas keep one more, or their seams show."""
+    decimals = 2 if "fill-opacity" in found[3] else 1
+    text = found[2].replace("\n", " ")
+    outline = _relative(text, decimals) if _STRAIGHT.fullmatch(text) else _short(text, decimals)
+    return f'<path{found[1]} d="{outline}"{found[3]}>'
+
+
+def _relative(text: str, decimals: int) -> str:
+    """A path of straight lines with steps instead of points; a line that goes on from the last point needs no new start."""
+    scale = 10**decimals
+    here: tuple[int, int] | None = None
+    pieces: list[str] = []
+    drawing = False
+    for sign, x, y in _STEP.findall(text):
+        if not x:
+            pieces.append("z")
+            here = None
+            continue
+        point = (round(float(x) * scale), round(float(y) * scale))
+        if sign == "L" and here is not None:
+            pieces.append(_step("" if drawing else "l", point[0] - here[0], point[1] - here[1], decimals))
+            drawing = True
+        elif point != here:
+            pieces.append(f"M{_decimal(point[0], decimals)} {_decimal(point[1], decimals)}")
+            drawing = False
+        here = point
+    return "".join(pieces)
+
+
+def _step(sign: str, across: int, up: int, decimals: int) -> str:
+    first, second = _decimal(across, decimals), _decimal(up, decimals)
+    start = sign or ("" if first.startswith("-") else " ")
+    return f"{start}{first}{'' if second.startswith('-') else ' '}{second}"
+
+
+def _decimal(value: int, decimals: int) -> str:
+    """An integer number of units of the last decimal, as short as it goes.
+
+    >>> _decimal(-5, 1), _decimal(120, 1)
+    ('-.5', '12')
+    """
+    text = f"{value / 10**decimals:.{decimals}f}".rstrip("0").rstrip(".")
+    return text.replace("0.", ".", 1) if text.startswith(("0.", "-0.")) else text
+
+
+def _rounded(number: str, decimals: int) -> str:
+    text = f"{float(number):.{decimals}f}".rstrip("0").rstrip(".")
+    return "0" if text == "-0" else text
+
+
+def _styling(style: str) -> str:
+    """A style with the page's colours and font, without blanks."""
+    style = re.sub(r"font: (?:(bold|\d+) )?([\d.]+)px [^;]+", _font, style)
+    for colour, variable in _THEME.items():
+        style = style.replace(colour, f"var(--{variable},{colour})")
+    style = re.sub(r"stroke-linejoin: \w+;? ?|font-family: [^;]+;? ?", "", style)
+    if "fill-opacity" in style:
+        style += "; shape-rendering: crispEdges"  # or the seams between neighbours show
+    style = _NUMBER.sub(lambda found: f"{float(found[0]):.2f}".rstrip("0").rstrip("."), style)
+    return style.replace(": ", ":").replace("; ", ";").rstrip("; ")
+
+
+def _font(found: re.Match[str]) -> str:
+    weight = f"; font-weight: {found[1]}" if found[1] else ""
+    return f"font-size: {found[2]}px{weight}"
+
+
+def _without_empty(body: str) -> str:
+    """Groups without attributes unwrapped, empty ones removed."""
+    before = ""
+    while before != body:
+        before = body
+        body = re.sub(r"<g>((?:(?!</?g\b).)*)</g>", r"\1", body, flags=re.DOTALL)
+        body = re.sub(r"<defs>\s*</defs>|<defs/>|<g/>", "", body)
+    return body
+
+
+def _classes(body: str, name: str) -> tuple[str, str]:
+    """Styles used more than twice become classes of a style sheet of the figure's own."""
+    counts: dict[str, int] = {}
+    for style in _STYLE.findall(body):
+        counts[style] = counts.get(style, 0) + 1
+    common = [style for style, count in counts.items() if count > 2]
+    names = {style: f"{name}-{number}" for number, style in enumerate(common)}
+    body = _STYLE.sub(lambda found: f' class="{names[found[1]]}"' if found[1] in names else found[0], body)
+    rules = "".join(f".{names[style]}{{{style}}}" for style in common)
+    return body, f"<style>{rules}</style>" if rules else ""

@@ -1,0 +1,93 @@
+"""Listings: the shipped cases, the catalogue and findings as tables."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+from flexstage.base.finding import nearest, refuse
+from flexstage.cases.parameters import parameters
+from flexstage.cases.registry import CASES, shipped
+from flexstage.mechanism.grammar import TAGS
+from flexstage.mechanism.store.catalogue import Catalogue, Section
+from flexstage.parts.gauge import Gauge
+from flexstage.parts.material import Material
+from flexstage.parts.piezo import Piezo
+from flexstage.show.table import Cell, Mark, Table, build
+
+_SECTIONS: Mapping[type, str] = {Material: "materials", Piezo: "stacks", Gauge: "gauges"}
+_TITLES: Mapping[type, str] = {Material: "Materials", Piezo: "Piezo stacks", Gauge: "Gauges"}
+
+
+def case_table() -> Table:
+    """The shipped cases by name.
+
+    >>> case_table().rows[0][0].text
+    'double-triangle'
+    """
+    rows = [(Cell(name, Mark.STRONG), case.summary) for name, case in CASES.items()]
+    return build("Cases", ["name", "what it is"], rows, notes=["flexstage new stage.toml --case NAME"])
+
+
+def parameter_table(name: str) -> Table:
+    """The parameters of a shipped case: name, quantity, value. Raises `DesignError` with the nearest name where there is no such case.
+
+    >>> parameter_table("parallelogram").texts()[-2]
+    ['spacing', 'length', '50 mm']
+    """
+    own = shipped(name).parameters
+    rows = [(Cell(each.name, Mark.STRONG), each.kind, each.text) for each in parameters(own).values()]
+    meaning = " ".join((inspect.getdoc(type(own)) or "").partition("\n\n")[2].replace("`", "").split())
+    notes = [meaning, f"flexstage new stage.toml --case {name} --parameter NAME=VALUE"]
+    return build(f"Parameters of {name}", ["name", "quantity", "value"], rows, notes=notes)
+
+
+def catalogue_tables(catalogue: Catalogue) -> tuple[Table, ...]:
+    """Materials, stacks and gauges: every number as it would stand in a design file, with its source.
+
+    >>> from flexstage.mechanism.store.catalogue import catalogue_from
+    >>> catalogue_tables(catalogue_from({"materials": {"steel": {"young": "200 GPa"}}}))[0].texts()[1]
+    ['steel', '200 GPa']
+    """
+    return tuple(_section_table(section, catalogue.sources) for section in catalogue.sections if section.entries)
+
+
+def section_named(catalogue: Catalogue, name: str) -> Catalogue:
+    """The catalogue with one section only: `materials`, `stacks` or `gauges`. Raises `DesignError` for another name.
+
+    >>> from flexstage.mechanism.store.catalogue import shipped
+    >>> [section.record.__name__ for section in section_named(shipped(), "gauges").sections]
+    ['Gauge']
+    """
+    if name not in _SECTIONS.values():
+        raise refuse(name, "the catalogue has no such section", nearest(name, _SECTIONS.values()))
+    return replace(catalogue, sections=tuple(section for section in catalogue.sections if _SECTIONS[section.record] == name))
+
+
+def catalogue_body(catalogue: Catalogue) -> dict[str, Any]:
+    """The catalogue as plain values: section, entry, and its values as they would stand in a design file; and the sources.
+
+    >>> from flexstage.mechanism.store.catalogue import catalogue_from
+    >>> catalogue_body(catalogue_from({"materials": {"steel": {"young": "200 GPa"}}}))["materials"]
+    {'steel': {'young': '200 GPa'}}
+    """
+    return {**{_SECTIONS[section.record]: dict(section.entries) for section in catalogue.sections}, "sources": dict(catalogue.sources)}
+
+
+def _section_table(section: Section, sources: Mapping[str, str]) -> Table:
+    keys = list(dict.fromkeys(key for entry in section.entries.values() for key in entry if key not in (TAGS, "source")))
+    rows = [[Cell(name, Mark.STRONG), *(_entry_cell(entry, key) for key in keys)] for name, entry in section.entries.items()]
+    tags = [tag for entry in section.entries.values() for tag in entry.get(TAGS, {}).values()]
+    used = {word for tag in tags for word in tag.split()[1:2]}
+    notes = [f"{key}: {text}" for key, text in sources.items() if key in used]
+    return build(_TITLES[section.record], ["name", *keys], rows, notes=notes)
+
+
+def _entry_cell(entry: Mapping[str, Any], key: str) -> Cell:
+    if key not in entry:
+        return Cell("", Mark.FAINT)
+    tag = str(entry.get(TAGS, {}).get(key, "")).partition(" ")[0]
+    marks = {"stated": Mark.STATED, "derived": Mark.DERIVED, "assumed": Mark.ASSUMED}
+    return Cell(str(entry[key]), marks.get(tag, Mark.PLAIN))

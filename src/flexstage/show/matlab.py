@@ -1,0 +1,113 @@
+"""MATLAB files (v5): mappings, matrices and state space of a stage under their names in the field, with names and units beside them."""
+
+from __future__ import annotations
+
+import io
+from typing import Any
+
+import numpy as np
+
+import flexstage
+from flexstage.analysis.complete import Analysis
+from flexstage.base.digest import digest
+from flexstage.base.finding import DesignError
+from flexstage.base.labelled import Matrix
+from flexstage.base.text import printable
+from flexstage.models.linear.damping import damping_law
+from flexstage.models.linear.model import Channel, LinearModel
+from flexstage.models.linear.port import ports
+from flexstage.models.linear.state_space import state_space
+
+
+def as_mat(analysis: Analysis) -> bytes:
+    """The MATLAB v5 file of an analysis (see `mat_variables`).
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.analysis.complete import Reading, analyse
+    >>> as_mat(analyse(double_triangle(), Reading.IDEAL))[:10]
+    b'MATLAB 5.0'
+    """
+    from scipy.io import savemat
+
+    content = io.BytesIO()
+    savemat(content, mat_variables(analysis), do_compression=True, oned_as="column")
+    return content.getvalue()
+
+
+def mat_variables(analysis: Analysis) -> dict[str, Any]:
+    """Variables of the MATLAB file: R_a, R_s, and of elastic readings K, M, B, C, D, frequencies and state space.
+
+    M q'' + K q = B u, y = C q + D u. What a reading or a stage does not have is left out, and `notes` says why. SI units; names and
+    units of rows and columns in cell arrays.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.analysis.complete import Reading, analyse
+    >>> mat_variables(analyse(double_triangle(), Reading.IDEAL))["R_a"].shape
+    (6, 6)
+    """
+    kinematics, notes = analysis.kinematics, []
+    variables: dict[str, Any] = {
+        "name": printable(analysis.mechanism.name),
+        "reading": analysis.reading.value,
+        "flexstage_version": flexstage.__version__,
+        "physics_digest": digest(analysis.mechanism, physics=True),
+        **_labelled("R_s", kinematics.gauge_mapping),
+    }
+    if kinematics.actuated:
+        variables |= _labelled("R_a", kinematics.mapping)
+    else:
+        notes.append("R_a: the strokes do not determine the platform")
+    if analysis.model is None:
+        notes.append("K, M, B, C, D: the ideal reading has no elasticity")
+    else:
+        variables |= _model(analysis.model) | _state_space(analysis.model, notes)
+    if analysis.modes is not None:
+        variables |= {
+            "frequencies_hz": analysis.modes.frequencies,
+            "platform_modes": np.array(analysis.modes.platform, dtype=float) + 1.0,
+            "mode_names": _cells(analysis.modes.names),
+        }
+    return {**variables, "notes": _cells(notes)}
+
+
+def _labelled(name: str, matrix: Matrix) -> dict[str, Any]:
+    shape = (len(matrix.rows), len(matrix.columns))
+    unit = matrix.unit if isinstance(matrix.unit, str) else np.array(matrix.unit, dtype=object).reshape(shape)
+    return {name: matrix.values, f"{name}_rows": _cells(matrix.rows), f"{name}_columns": _cells(matrix.columns), f"{name}_unit": unit}
+
+
+def _model(model: LinearModel) -> dict[str, Any]:
+    return {
+        "K": model.stiffness_matrix,
+        "M": model.inertia_matrix,
+        "B": model.input_matrix,
+        "C": model.output,
+        "D": model.feedthrough,
+        **({} if model.inertial is None else {"Mu": model.inertial}),
+        "coordinates": _cells(model.coordinates),
+        "coordinate_units": _cells(["rad" if name.rpartition(".")[2].startswith("r") else "m" for name in model.coordinates]),
+        **_channels("input", model.inputs),
+        **_channels("output", model.outputs),
+    }
+
+
+def _channels(kind: str, channels: tuple[Channel, ...]) -> dict[str, Any]:
+    return {f"{kind}s": _cells([each.name for each in channels]), f"{kind}_units": _cells([each.unit for each in channels])}
+
+
+def _state_space(model: LinearModel, notes: list[str]) -> dict[str, Any]:
+    """State space from all inputs to what is seen from outside: twists of platform and points, gauges."""
+    places = {each.name.rpartition(".")[0] for each in model.inputs if each.unit != "m"}
+    seen = [each.name for each in model.outputs if each.name.rpartition(".")[0] in places | {""}]
+    try:
+        law = damping_law(model)
+    except DesignError as error:
+        notes.append(f"state_space: {error}")
+        return {}
+    space = state_space(model, ports(model, seen, [each.name for each in model.inputs]), law)
+    cells = {key: _cells(value) if isinstance(value, list) else value for key, value in space.to_dict().items()}
+    return {"state_space": cells}
+
+
+def _cells(texts: Any) -> Any:
+    return np.array([printable(each) for each in texts], dtype=object).reshape(-1, 1)

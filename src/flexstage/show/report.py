@@ -1,0 +1,64 @@
+"""The report of a complete analysis: one HTML file that stands alone and is the same for the same input."""
+
+from __future__ import annotations
+
+import flexstage
+from flexstage.analysis.complete import Analysis
+from flexstage.analysis.difference import Comparison
+from flexstage.base.digest import digest
+from flexstage.show.page import Head, page
+from flexstage.show.scene.stage import scene
+from flexstage.show.sections.accuracy import drift_section, error_section
+from flexstage.show.sections.caveats import caveat_section
+from flexstage.show.sections.dynamics import mode_section, response_section
+from flexstage.show.sections.mechanics import kinematics_section, lost_motion_section, stiffness_section
+from flexstage.show.sections.overview import change_section, requirement_section, summary_section
+from flexstage.show.sections.reach import strength_section, workspace_section
+from flexstage.show.sections.sources import description_section, limit_section, reference_section
+from flexstage.show.sections.stage import stage_section
+
+
+def report(analysis: Analysis, compared: Comparison | None = None) -> str:
+    """The analysis of a stage as a self-contained HTML page: verdicts first, pictures inline, nothing loaded from anywhere, no date.
+
+    With `compared`, the values that were set and what that did stand after the verdicts, as old, new and change.
+    Results that the reading or the stage does not give are left out, with the reasons under "Limits". One design; of a
+    batch the first is shown.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.analysis.complete import Reading, analyse
+    >>> report(analyse(double_triangle(), Reading.IDEAL))[:15]
+    '<!doctype html>'
+    """
+    mechanism = analysis.mechanism
+    seen = scene(mechanism)
+    sections = (
+        requirement_section(analysis),
+        caveat_section(mechanism),
+        change_section(analysis, compared),
+        summary_section(analysis),
+        stage_section(mechanism, seen),
+        kinematics_section(analysis),
+        stiffness_section(analysis),
+        lost_motion_section(analysis),
+        mode_section(analysis, seen),
+        response_section(analysis),
+        workspace_section(analysis),
+        strength_section(analysis),
+        drift_section(analysis),
+        error_section(analysis),
+        description_section(mechanism),
+        limit_section(analysis),
+        reference_section(analysis),
+    )
+    return page(_head(analysis), [each for each in sections if each is not None])
+
+
+def _head(analysis: Analysis) -> Head:
+    origin = (
+        ("reading", analysis.reading.value),
+        ("physics", digest(analysis.mechanism, physics=True)[:16]),
+        ("document", digest(analysis.mechanism)[:16]),
+        ("flexstage", flexstage.__version__),
+    )
+    return Head(analysis.mechanism.name or "stage", "Analysis of a flexure stage", origin)

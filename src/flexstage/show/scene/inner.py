@@ -1,0 +1,65 @@
+"""Inner faces: what the outlines of one body hide from one another where they touch."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from flexstage.base.number import Array
+from flexstage.show.scene.facet import Facet, cross
+from flexstage.show.scene.order import split
+
+_FLUSH = 1e-6
+"""Faces touch, and pieces are worth drawing, from this distance on [m]."""
+
+
+def outer(facets: Sequence[Facet]) -> list[Facet]:
+    """The facets of one body without what lies on faces of its other outlines that look at them: seen through, it would look like a cut.
+
+    >>> from flexstage.show.scene.facet import Kind, Paint, loft
+    >>> square = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0.0]])
+    >>> low = loft(np.stack([square, square + [0, 0, 1.0]]), Paint(Kind.PLATFORM, ("a", "a"), "low"))
+    >>> high = loft(np.stack([square + [0, 0, 1.0], square + [0, 0, 2.0]]), Paint(Kind.PLATFORM, ("a", "a"), "high"))
+    >>> len(low + high), len(outer(low + high))
+    (12, 10)
+    """
+    covers: list[list[Facet]] = [[] for _ in facets]
+    for one, other in np.argwhere(_against(facets)).tolist():
+        if facets[one].paint.name != facets[other].paint.name:
+            covers[one].append(facets[other])
+    return [piece for facet, own in zip(facets, covers, strict=True) for piece in _less(facet, own)]
+
+
+def _against(facets: Sequence[Facet]) -> Array:
+    """Which facets (n, n) lie in one plane and look opposite ways."""
+    normals = np.array([facet.normal for facet in facets]).reshape(-1, 3)
+    offsets = np.array([facet.points[0] @ facet.normal for facet in facets])
+    return (normals @ normals.T < -1.0 + 1e-9) & (np.abs(offsets[:, None] + offsets) < _FLUSH)
+
+
+def _less(facet: Facet, covers: Sequence[Facet]) -> Iterator[Facet]:
+    """What is left of a facet, in convex pieces."""
+    if not covers:
+        yield facet
+        return
+    rest, pieces = facet, list[Facet]()
+    for start, outward in _sides(covers[0]):
+        distance = (rest.points - start) @ outward
+        if np.all(distance < _FLUSH):
+            continue
+        if np.all(distance > -_FLUSH):
+            yield from _less(facet, covers[1:])
+            return
+        beyond, rest = (replace(piece, whole=None) for piece in split(rest, distance))
+        pieces.append(beyond)
+    for piece in pieces:
+        yield from _less(piece, covers[1:])
+
+
+def _sides(cover: Facet) -> Iterator[tuple[Array, Array]]:
+    """A point of each side of a facet and the unit direction out of it, in its plane."""
+    for start, end in zip(cover.points, np.roll(cover.points, -1, axis=0), strict=True):
+        outward = cross(end - start, cover.normal)
+        yield start, outward / np.sqrt(outward @ outward)

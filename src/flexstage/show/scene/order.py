@@ -1,0 +1,123 @@
+"""Depth order: a binary space partition of facets, built once and read from any direction (Fuchs, Kedem and Naylor 1980)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import numpy as np
+
+from flexstage.base.number import Array
+from flexstage.show.scene.facet import Edge, Facet
+
+_CANDIDATES = 6
+_TOLERANCE = 1e-6
+
+
+@dataclass(frozen=True, eq=False)
+class Partition:
+    """A plane (normal (3,), offset), the facets in it, and what lies before and behind it."""
+
+    normal: Array
+    facets: tuple[Facet, ...]
+    before: Partition | None
+    behind: Partition | None
+
+
+def partition(facets: Sequence[Facet], size: float) -> Partition | None:
+    """Divide facets by their own planes, splitting those that cross one; `size` [m] is the scene's, for the tolerance.
+
+    >>> partition((), 1.0) is None
+    True
+    """
+    if not facets:
+        return None
+    if all(len(facet.points) < 3 for facet in facets):
+        return Partition(np.array([0.0, 0.0, 1.0]), tuple(facets), None, None)
+    normal, sides, distances = _best(facets, _TOLERANCE * size)
+    here: list[Facet] = []
+    before: list[Facet] = []
+    behind: list[Facet] = []
+    for facet, side, distance in zip(facets, sides, distances, strict=True):
+        if side == 0:
+            here.append(facet)
+        elif side == 2:
+            first, second = split(facet, distance)
+            before.append(first)
+            behind.append(second)
+        else:
+            (before if side == 1 else behind).append(facet)
+    return Partition(normal, tuple(here), partition(before, size), partition(behind, size))
+
+
+def _best(facets: Sequence[Facet], tolerance: float) -> tuple[Array, list[int], list[Array]]:
+    """The candidate plane that splits least; the side of each facet (0 in the plane, 1 before, -1 behind, 2 split), and distances."""
+    points = np.concatenate([facet.points for facet in facets])
+    starts = np.concatenate([[0], np.cumsum([len(facet.points) for facet in facets])])
+    flat = [index for index, facet in enumerate(facets) if len(facet.points) > 2]
+    tried = flat[:: max(1, len(flat) // _CANDIDATES)][:_CANDIDATES]
+    trials = [(*_trial(facets[index], points, starts, tolerance), index) for index in tried]
+    _, normal, sides, distance, chosen = min(trials, key=lambda trial: trial[0])
+    sides[chosen] = 0  # also where rounding says otherwise: every step takes at least one facet away
+    return normal, sides.tolist(), [distance[start:end] for start, end in pairwise(starts)]
+
+
+def _trial(divider: Facet, points: Array, starts: Array, tolerance: float) -> tuple[float, Array, Array, Array]:
+    """Cost, normal, sides and distances of the plane of one facet: splits are dear, imbalance is cheap."""
+    normal = divider.normal
+    distance = (points - divider.points[0]) @ normal
+    ahead = np.maximum.reduceat(distance, starts[:-1]) > tolerance
+    back = np.minimum.reduceat(distance, starts[:-1]) < -tolerance
+    cost = 4.0 * np.sum(ahead & back) + abs(int(np.sum(ahead)) - int(np.sum(back)))
+    return float(cost), normal, np.where(ahead & back, 2, ahead.astype(int) - back.astype(int)), distance
+
+
+def split(facet: Facet, distance: Array) -> tuple[Facet, Facet]:
+    """The parts of a facet before and behind a plane at signed distances (n,) of its points; they know the whole.
+
+    >>> from flexstage.show.scene.facet import Kind, Paint, line
+    >>> halves = split(line(np.array([[-1.0, 0, 0], [1.0, 0, 0]]), Paint(Kind.BODY, ("a", "b"))), np.array([-1.0, 1.0]))
+    >>> [half.points[:, 0].tolist() for half in halves]
+    [[0.0, 1.0], [-1.0, 0.0]]
+    """
+    return _clipped(facet, distance), _clipped(facet, -distance)
+
+
+def _clipped(facet: Facet, distance: Array) -> Facet:
+    """Sutherland and Hodgman's clip to the side of positive distances; the cut is no edge."""
+    points: list[Array] = []
+    share: list[float] = []
+    edges: list[Edge] = []
+    count = len(facet.points)
+    for index in range(count):
+        after = (index + 1) % count
+        inside, onward = distance[index] >= 0.0, distance[after] >= 0.0
+        if inside:
+            points.append(facet.points[index])
+            share.append(facet.share[index])
+            edges.append(facet.edges[index])
+        if inside != onward:
+            part = distance[index] / (distance[index] - distance[after])
+            points.append(facet.points[index] + part * (facet.points[after] - facet.points[index]))
+            share.append(facet.share[index] + part * (facet.share[after] - facet.share[index]))
+            edges.append(None if inside else facet.edges[index])
+    if count == 2:
+        points, share, edges = points[:2], share[:2], [facet.edges[0], None]
+    return replace(facet, points=np.array(points), share=np.array(share), edges=tuple(edges), whole=facet.whole or facet)
+
+
+def farthest_first(tree: Partition | None, eye: Array) -> Iterator[Facet]:
+    """Facets from the farthest to the nearest, seen from the direction `eye` (3,), towards the viewer.
+
+    >>> list(farthest_first(None, np.array([0.0, 0.0, 1.0])))
+    []
+    """
+    stack: list[Partition | tuple[Facet, ...] | None] = [tree]
+    while stack:
+        item = stack.pop()
+        if isinstance(item, Partition):
+            near, far = (item.before, item.behind) if item.normal @ eye >= 0.0 else (item.behind, item.before)
+            stack += [near, item.facets, far]
+        elif item is not None:
+            yield from item

@@ -1,0 +1,252 @@
+"""The scene of a stage: facets of its bodies, links, grounds and gauges, and the names to write beside them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from flexstage.base.number import Array
+from flexstage.mechanism.expand import Assembly, PlacedBody, PlacedGauge, PlacedLink, PlacedSolid, expand
+from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
+from flexstage.parts.part import is_actuator
+from flexstage.show.scene.facet import Facet, Kind, Paint, circle, cross, extruded, line, loft, rectangle
+from flexstage.show.scene.inner import outer
+from flexstage.show.scene.order import Partition, partition
+from flexstage.show.scene.primitives import part_facets, part_length, part_section, solid_facets
+from flexstage.spatial.frame import Frame, axes
+
+_MARKER = 0.02
+_BAR = 0.009
+_ARROW = 0.11
+
+
+@dataclass(frozen=True)
+class Label:
+    """A name at a point of the stage, shown in the colour of its kind."""
+
+    text: str
+    point: tuple[float, float, float]
+    kind: Kind
+
+
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """Facets in depth `order` and labels in the stage's frame [m]; `size` is the diagonal of the box around everything.
+
+    `references` are the bodies' reference points (3,), about which their twists turn them.
+    """
+
+    facets: tuple[Facet, ...]
+    order: Partition | None
+    labels: tuple[Label, ...]
+    references: dict[str, Array]
+    size: float
+
+
+def scene(mechanism: Mechanism) -> Scene:
+    """The scene of the first design of a description.
+
+    Bodies without outlines are bars between their joints; where a joint lies off its body's outline a thin line joins them. Ground is shown
+    at each link that is fixed to it.
+
+    >>> scene(Mechanism("", bodies={})).facets
+    ()
+    """
+    assembly = expand(mechanism)
+    joints = _joints(assembly)
+    size = _span(np.array([point for points in joints.values() for point in points]).reshape(-1, 3))
+    facets = [facet for body in assembly.bodies.values() for facet in _body(body, joints.get(body.name, []), size)]
+    facets += _solids(assembly.ground, Paint(Kind.GROUND, (GROUND, GROUND)))
+    size = max(size, _span(np.concatenate([facet.points for facet in facets])) if facets else size)
+    facets += [facet for link in assembly.links.values() for facet in _link(link, assembly, size)]
+    facets += [facet for gauge in assembly.gauges.values() for facet in _gauge(gauge, size)]
+    references = {name: _first(body.reference) for name, body in assembly.bodies.items()}
+    return Scene(tuple(facets), partition(facets, size), tuple(_labels(assembly, size)), references, size)
+
+
+def displaced(facets: Sequence[Facet], still: Scene, twists: Mapping[str, Array], factor: float) -> list[Facet]:
+    """Facets with every body of the scene moved by `factor` times its twist (6,) at its reference point; others stand still.
+
+    Links bend from the motion of the one body to that of the other.
+
+    >>> displaced([], scene(Mechanism("")), {}, 1.0)
+    []
+    """
+    if not facets:
+        return []
+    points, change = _displacement(facets, still, twists, factor)
+    ends = np.cumsum([len(facet.points) for facet in facets])[:-1]
+    return [replace(facet, points=piece) for facet, piece in zip(facets, np.split(points + change, ends), strict=True)]
+
+
+def _displacement(facets: Sequence[Facet], still: Scene, twists: Mapping[str, Array], factor: float) -> tuple[Array, Array]:
+    """All points of the facets (p, 3) and their displacements: each between the motions of the two bodies that carry it."""
+    known = {name: number for number, name in enumerate(twists)}
+    motion = np.array([*(np.real(twist) for twist in twists.values()), np.zeros(6)])
+    centres = np.array([*(still.references[name] for name in twists), np.zeros(3)])
+    points = np.concatenate([facet.points for facet in facets])
+    share = np.concatenate([facet.share for facet in facets])[:, None]
+    counts = [len(facet.points) for facet in facets]
+    moves: list[Array] = []
+    for side in (0, 1):
+        rows = np.repeat([known.get(facet.paint.carriers[side], len(known)) for facet in facets], counts)
+        moves.append(motion[rows, :3] + cross(motion[rows, 3:], points - centres[rows]))
+    return points, factor * ((1.0 - share) * moves[0] + share * moves[1])
+
+
+def largest_motion(still: Scene, twists: Mapping[str, Array]) -> float:
+    """Largest displacement [m] of any point of the scene under the bodies' twists.
+
+    >>> largest_motion(scene(Mechanism("")), {})
+    0.0
+    """
+    if not still.facets:
+        return 0.0
+    _, change = _displacement(still.facets, still, twists, 1.0)
+    return float(np.sqrt(np.sum(change**2, axis=1).max()))
+
+
+def _first(values: Array) -> Array:
+    values = np.asarray(values)
+    return np.real(values.reshape(-1, values.shape[-1])[0])
+
+
+def _frame(frame: Frame) -> Frame:
+    """The frame of the first design."""
+    rotation = np.real(frame.rotation.reshape(-1, 3, 3)[0])
+    return Frame(rotation, _first(frame.position))
+
+
+def _span(points: Array) -> float:
+    if len(points) == 0:
+        return 1.0
+    extent = points.max(axis=0) - points.min(axis=0)
+    return float(np.sqrt(extent @ extent)) or 1.0
+
+
+def _joints(assembly: Assembly) -> dict[str, list[Array]]:
+    joints: dict[str, list[Array]] = {}
+    for link in assembly.links.values():
+        for body, end in zip(link.joins, _ends(link, assembly), strict=True):
+            joints.setdefault(body, []).append(end)
+    return joints
+
+
+def _ends(link: PlacedLink, assembly: Assembly) -> tuple[Array, Array]:
+    """Where the link meets its first and its second body: the end nearer to what else each body holds."""
+    frame = _frame(link.frame)
+    half = 0.5 * part_length(link.part) * frame.rotation[:, 0]
+    centres = [_middle(body, link, assembly) for body in link.joins]
+    there, here = centres[1], centres[0]
+    if there is None and here is None:
+        forward = True
+    elif there is None or here is None:
+        known = there if there is not None else here
+        forward = bool((known - frame.position) @ half > 0.0) == (there is not None)
+    else:
+        forward = bool((there - here) @ half >= 0.0)
+    return (frame.position - half, frame.position + half) if forward else (frame.position + half, frame.position - half)
+
+
+def _middle(body: str, link: PlacedLink, assembly: Assembly) -> Array | None:
+    """Mean position of a body's other links, else its reference; None for the ground."""
+    if body == GROUND:
+        return None
+    others = [_first(other.frame.position) for other in assembly.links.values() if body in other.joins and other is not link]
+    return np.mean(others, axis=0) if others else _first(assembly.bodies[body].reference)
+
+
+def _body(body: PlacedBody, joints: list[Array], size: float) -> list[Facet]:
+    paint = Paint(Kind.PLATFORM if body.name == PLATFORM else Kind.BODY, (body.name, body.name), body.name)
+    if not body.solids:
+        return _bars(joints, paint, _BAR * size)
+    facets = _solids(body.solids, paint)
+    if paint.kind is Kind.PLATFORM:  # it is seen through
+        facets = outer(facets)
+    points = np.concatenate([facet.points for facet in facets])
+    return facets + list(_legs(points, joints, paint, size))
+
+
+def _solids(solids: Mapping[str, PlacedSolid], paint: Paint) -> list[Facet]:
+    named = [(placed, _frame(placed.frame), replace(paint, name=name)) for name, placed in solids.items()]
+    return [_placed(facet, frame) for placed, frame, own in named for facet in solid_facets(placed.solid, own)]
+
+
+def _placed(facet: Facet, frame: Frame) -> Facet:
+    turned = tuple(None if edge is None else frame.rotation @ edge for edge in facet.edges)
+    return replace(facet, points=facet.points @ frame.rotation.T + frame.position, edges=turned)
+
+
+def _bars(joints: list[Array], paint: Paint, thickness: float) -> list[Facet]:
+    """Bars between all pairs of up to four joints, else from their middle to each."""
+    if len(joints) > 4:
+        middle = np.mean(joints, axis=0)
+        pairs = [(middle, joint) for joint in joints]
+    else:
+        pairs = [(joints[first], joints[second]) for first in range(len(joints)) for second in range(first)]
+    return [facet for first, second in pairs for facet in _bar(first, second, paint, thickness)]
+
+
+def _bar(first: Array, second: Array, paint: Paint, thickness: float) -> list[Facet]:
+    reach = second - first
+    distance = float(np.sqrt(reach @ reach))
+    if distance < 1e-9:
+        return []
+    rings = extruded(np.array([0.0, distance]), [rectangle(thickness, thickness)] * 2)
+    return [_placed(facet, Frame(axes(reach), first)) for facet in loft(rings, paint)]
+
+
+def _legs(points: Array, joints: list[Array], paint: Paint, size: float) -> Iterator[Facet]:
+    """Lines from joints that lie off the outline to its nearest box point."""
+    low, high = points.min(axis=0), points.max(axis=0)
+    for joint in joints:
+        nearest = np.clip(joint, low, high)
+        if np.max(np.abs(joint - nearest)) > 0.01 * size:
+            yield line(np.stack([joint, nearest]), paint)
+
+
+def _link(link: PlacedLink, assembly: Assembly, size: float) -> list[Facet]:
+    ends = _ends(link, assembly)
+    frame = _frame(link.frame)
+    forward = bool((ends[1] - ends[0]) @ frame.rotation[:, 0] >= 0.0)
+    carriers = link.joins if forward else (link.joins[1], link.joins[0])
+    paint = Paint(Kind.DRIVE if is_actuator(link.part) else Kind.HINGE, carriers, link.name)
+    facets = [_placed(facet, frame) for facet in part_facets(link.part, paint, _MARKER * size)]
+    if GROUND in link.joins:
+        facets += _foot(f"{link.name} foot", ends[link.joins.index(GROUND)], frame, (*part_section(link.part), _MARKER * size))
+    return facets
+
+
+def _foot(name: str, end: Array, frame: Frame, section: tuple[float, float, float]) -> list[Facet]:
+    """A block of ground behind the end of a link, somewhat larger than the link's section; `section` is height, width and depth."""
+    depth = section[2]
+    outward = (end - frame.position) @ frame.rotation[:, 0]
+    stations = (0.0, depth) if outward >= 0.0 else (-depth, 0.0)
+    height, width = (max(1.15 * extent, 1.6 * depth) for extent in section[:2])
+    rings = extruded(np.array(stations), [rectangle(height, width)] * 2)
+    return [_placed(facet, Frame(frame.rotation, end)) for facet in loft(rings, Paint(Kind.GROUND, (GROUND, GROUND), name))]
+
+
+def _gauge(gauge: PlacedGauge, size: float) -> list[Facet]:
+    """An arrow along the measuring direction, its tip at the measured point."""
+    tip, head, shaft = 0.0, -0.35 * _ARROW * size, -_ARROW * size
+    thick, thin, none = circle(0.022 * size, 10), circle(0.008 * size, 10), circle(1e-4 * size, 10)
+    paint = Paint(Kind.GAUGE, (gauge.base, gauge.base), gauge.name)
+    facets = loft(extruded(np.array([head, tip]), [thick, none]), paint, round_section=True)
+    facets += loft(extruded(np.array([shaft, head]), [thin, thin]), replace(paint, name=f"{gauge.name} shaft"), round_section=True)
+    return [_placed(facet, _frame(gauge.frame)) for facet in facets]
+
+
+def _labels(assembly: Assembly, size: float) -> Iterator[Label]:
+    for name, link in assembly.actuators.items():
+        yield Label(name, _point(assembly.links[link].frame.position), Kind.DRIVE)
+    for name, gauge in assembly.gauges.items():
+        frame = _frame(gauge.frame)
+        yield Label(name, _point(frame.position - _ARROW * size * frame.rotation[:, 0]), Kind.GAUGE)
+
+
+def _point(position: Array) -> tuple[float, float, float]:
+    x, y, z = (float(value) for value in _first(position))
+    return x, y, z

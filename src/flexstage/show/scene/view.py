@@ -1,0 +1,265 @@
+"""Views: parallel projection of a scene from a direction, and its drawing on matplotlib axes."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import Enum
+from functools import cache
+from typing import Any
+
+import numpy as np
+
+from flexstage.base.number import Array
+from flexstage.show.figures.style import DRIVE, GAUGE, INK, MUTED, PAPER
+from flexstage.show.scene.facet import Facet, Kind
+from flexstage.show.scene.hidden import visible
+from flexstage.show.scene.order import farthest_first
+from flexstage.show.scene.stage import Label, Scene
+
+_COLOURS = {
+    Kind.PLATFORM: ("#6ea8d8", 0.42),
+    Kind.BODY: ("#b9c2cc", 1.0),
+    Kind.HINGE: ("#0f8a7e", 1.0),
+    Kind.DRIVE: ("#f2a33c", 1.0),
+    Kind.GAUGE: ("#c2395a", 1.0),
+    Kind.GROUND: ("#56606b", 1.0),
+}
+NAMES = {
+    Kind.PLATFORM: "platform",
+    Kind.BODY: "bodies",
+    Kind.HINGE: "hinges",
+    Kind.DRIVE: "actuators",
+    Kind.GAUGE: "gauges",
+    Kind.GROUND: "ground",
+}
+_LABEL_COLOURS = {Kind.DRIVE: DRIVE, Kind.GAUGE: GAUGE}
+_SHADES = 9
+_ARROW = {"arrowstyle": "-|>", "color": MUTED, "lw": 0.8, "mutation_scale": 5, "shrinkA": 0.0, "shrinkB": 0.0}
+_NONE = (0.0, 0.0, 0.0, 0.0)
+_EDGE = (*(int(INK[place : place + 2], 16) / 255.0 for place in (1, 3, 5)), 1.0)
+_LIGHT = np.array([-0.35, 0.55, 0.76])
+
+
+class Side(Enum):
+    """From where the stage is seen; the value is the direction towards the viewer and the direction that is up in the picture."""
+
+    TOP = ((0.0, 0.0, 1.0), (0.0, 1.0, 0.0))
+    FRONT = ((0.0, -1.0, 0.0), (0.0, 0.0, 1.0))
+    RIGHT = ((1.0, 0.0, 0.0), (0.0, 0.0, 1.0))
+    ISOMETRIC = ((0.62, -0.88, 0.72), (0.0, 0.0, 1.0))
+
+
+@dataclass(frozen=True, eq=False)
+class View:
+    """A direction of sight: unit vectors to the right, up and towards the viewer, rows of `axes` (3, 3)."""
+
+    axes: Array
+
+    def flat(self, points: Array) -> Array:
+        """Points (..., 3) [m] in the picture (..., 2) [mm]."""
+        return 1e3 * points @ self.axes[:2].T
+
+
+def view(side: Side) -> View:
+    """The view from a side.
+
+    >>> view(Side.FRONT).flat(np.array([0.001, 0.0, 0.002])).round(9).tolist()
+    [1.0, 2.0]
+    """
+    eye, up = (np.array(direction) for direction in side.value)
+    eye = eye / np.sqrt(eye @ eye)
+    right = np.cross(up, eye)
+    right = right / np.sqrt(right @ right)
+    return View(np.stack([right, np.cross(eye, right), eye]))
+
+
+def ordered(scene: Scene, seen: View) -> list[Facet]:
+    """The facets that face the viewer, from the farthest to the nearest.
+
+    >>> from flexstage.mechanism.mechanism import Mechanism
+    >>> from flexstage.show.scene.stage import scene
+    >>> ordered(scene(Mechanism("")), view(Side.TOP))
+    []
+    """
+    return unsplit([facet for facet in farthest_first(scene.order, seen.axes[2]) if _faces(facet, seen)], seen)
+
+
+def _faces(facet: Facet, seen: View) -> bool:
+    return len(facet.points) == 2 or float(facet.normal @ seen.axes[2]) > 1e-6
+
+
+def unsplit(facets: list[Facet], seen: View) -> list[Facet]:
+    """The facets with translucent ones made whole again and drawn last, where nothing opaque stands before them: pieces show their seams.
+
+    >>> unsplit([], view(Side.TOP))
+    []
+    """
+    wholes = {id(facet.whole or facet): facet.whole or facet for facet in facets if _is_translucent(facet)}
+    opaque = [facet for facet in facets if not _is_translucent(facet)]
+    if not wholes or not opaque:
+        return facets
+    points = np.concatenate([facet.points for facet in opaque])
+    starts = np.cumsum([0, *(len(facet.points) for facet in opaque)])[:-1]
+    free = {key for key, whole in wholes.items() if not np.any(_before(whole, points, starts, seen))}
+    return [facet for facet in facets if id(facet.whole or facet) not in free] + [wholes[key] for key in wholes if key in free]
+
+
+def _is_translucent(facet: Facet) -> bool:
+    return _COLOURS[facet.paint.kind][1] < 1.0
+
+
+def _before(whole: Facet, points: Array, starts: Array, seen: View) -> Array:
+    """Which of the facets whose points start at `starts` reach before a facet's plane, in the picture's box around it."""
+    ahead = np.maximum.reduceat((points - whole.points[0]) @ whole.normal, starts) > 1e-5
+    if len(whole.points) < 3:
+        return ahead
+    flat, own = seen.flat(points), seen.flat(whole.points)
+    low, high = np.minimum.reduceat(flat, starts, axis=0), np.maximum.reduceat(flat, starts, axis=0)
+    return ahead & np.all((high > own.min(axis=0)) & (low < own.max(axis=0)), axis=1)
+
+
+def draw(axes: Any, facets: Sequence[Facet], seen: View) -> None:
+    """Draw facets in their order on matplotlib axes, in mm; those that others hide are left out.
+
+    The platform is translucent, so that what is under it shows.
+
+    >>> from flexstage.show.figures.style import canvas
+    >>> axes = canvas(1.0, 1.0).add_subplot()
+    >>> draw(axes, [], view(Side.TOP))
+    >>> len(axes.collections)
+    0
+    """
+    from matplotlib.collections import PathCollection
+
+    flats = [seen.flat(facet.points) for facet in facets]
+    solid = [_COLOURS[facet.paint.kind][1] == 1.0 for facet in facets]
+    strokes: list[_Stroke] = []
+    for facet, flat, shows in zip(facets, flats, visible(flats, solid), strict=True):
+        if shows:
+            strokes += _strokes(facet, flat, seen)
+    if strokes:
+        fills, edges = (np.array([getattr(each, name) for each in strokes]) for name in ("fill", "edge"))
+        widths = [each.width for each in strokes]
+        axes.add_collection(
+            PathCollection([each.path for each in strokes], facecolors=fills, edgecolors=edges, linewidths=widths, clip_on=False)
+        )
+
+
+@dataclass(frozen=True)
+class _Stroke:
+    path: Any
+    fill: tuple[float, ...]
+    edge: tuple[float, ...]
+    width: float
+
+
+def _strokes(facet: Facet, flat: Array, seen: View) -> list[_Stroke]:
+    """A facet's area and its drawn edges."""
+    from matplotlib.path import Path
+
+    result: list[_Stroke] = []
+    if len(flat) > 2:
+        fill = _shade(facet, seen)
+        codes = [Path.MOVETO, *[Path.LINETO] * (len(flat) - 1), Path.CLOSEPOLY]
+        result.append(_Stroke(Path(np.vstack([flat, flat[:1]]), codes), fill, fill if fill[3] == 1.0 else _NONE, 0.45))
+    ends = _edges(facet, seen)
+    if ends:
+        codes = [Path.MOVETO, Path.LINETO] * len(ends)
+        result.append(_Stroke(Path(flat[np.ravel(ends)], codes), _NONE, _EDGE, 0.4))
+    return result
+
+
+def _edges(facet: Facet, seen: View) -> list[tuple[int, int]]:
+    count = len(facet.points)
+    return [(index, (index + 1) % count) for index, edge in enumerate(facet.edges) if edge is not None and edge @ seen.axes[2] <= 0.0]
+
+
+def _shade(facet: Facet, seen: View) -> tuple[float, ...]:
+    """The kind's colour, darker the more the facet turns away from a light above the viewer's left shoulder."""
+    light = float(facet.normal @ (_LIGHT @ seen.axes))
+    return _toned(facet.paint.kind, round((0.62 + 0.38 * max(0.0, light)) * _SHADES))
+
+
+@cache
+def _toned(kind: Kind, tone: int) -> tuple[float, ...]:
+    from matplotlib.colors import to_rgb
+
+    colour, alpha = _COLOURS[kind]
+    return (*(round(channel * tone / _SHADES, 3) for channel in to_rgb(colour)), alpha)
+
+
+def outline(axes: Any, facets: Sequence[Facet], seen: View) -> None:
+    """Draw the edges of facets only, as thin lines.
+
+    >>> from flexstage.show.figures.style import canvas
+    >>> outline(canvas(1.0, 1.0).add_subplot(), [], view(Side.TOP))
+    """
+    from matplotlib.collections import LineCollection
+
+    lines = [seen.flat(facet.points)[list(edge)] for facet in facets for edge in _edges(facet, seen)]
+    axes.add_collection(LineCollection(lines, colors=MUTED, linewidths=0.5, linestyles="dashed", clip_on=False))
+
+
+def write(axes: Any, labels: tuple[Label, ...], seen: View) -> None:
+    """Write names beside their points, moved apart where they would cover one another.
+
+    >>> from flexstage.show.figures.style import canvas
+    >>> axes = canvas(1.0, 1.0).add_subplot()
+    >>> write(axes, (Label("B1", (0.0, 0.0, 0.0), Kind.DRIVE),), view(Side.TOP))
+    >>> axes.texts[0].get_text()
+    'B1'
+    """
+    width = 0.045 * (axes.get_xlim()[1] - axes.get_xlim()[0])
+    places = _apart(seen.flat(np.array([label.point for label in labels]).reshape(-1, 3)), np.array([width, 0.55 * width]))
+    box = {"boxstyle": "round,pad=0.18", "facecolor": PAPER, "edgecolor": "none", "alpha": 0.8}
+    for label, (x, y) in zip(labels, places, strict=True):
+        colour = _LABEL_COLOURS.get(label.kind, INK)
+        axes.text(x, y, label.text, ha="center", va="center", fontsize=7, color=colour, fontweight="bold", bbox=box, parse_math=False)
+
+
+def _apart(places: Array, size: Array) -> Array:
+    """Places (n, 2) pushed apart, a little a round, until boxes of that size no longer overlap."""
+    places = np.array(places)
+    for _ in range(60):
+        gap = places[:, None] - places[None, :]
+        overlap = np.clip(1.0 - np.abs(gap) / size, 0.0, None).prod(axis=-1)
+        np.fill_diagonal(overlap, 0.0)
+        if not np.any(overlap > 1e-9):
+            break
+        first = np.triu(np.ones_like(overlap))
+        sense = np.where(gap[..., 1] == 0.0, first - first.T, np.sign(gap[..., 1]))
+        places[:, 1] += 0.25 * size[1] * np.sum(sense * (overlap > 1e-9), axis=1)
+    return places
+
+
+def triad(axes: Any, seen: View) -> None:
+    """The stage's axes as a small sign in the lower left corner.
+
+    >>> from flexstage.show.figures.style import canvas
+    >>> axes = canvas(1.0, 1.0).add_subplot()
+    >>> triad(axes, view(Side.TOP))
+    >>> [text.get_text() for text in axes.texts if text.get_text()]
+    ['x', 'y']
+    """
+    (left, right), bottom = axes.get_xlim(), axes.get_ylim()[0]
+    length = 0.05 * (right - left)
+    start = np.array([left, bottom]) + 0.5 * length + np.clip(-1.2 * length * seen.axes[:2], 0.0, None).max(axis=1)
+    for name, direction in zip("xyz", seen.axes[:2].T, strict=True):
+        if direction @ direction < 0.02:
+            continue
+        tip = start + length * direction
+        axes.annotate("", xy=tuple(tip), xytext=tuple(start), arrowprops=_ARROW)
+        axes.text(*(start + 1.3 * length * direction), name, ha="center", va="center", fontsize=6.5, color=MUTED, style="italic")
+
+
+def legend(scene: Scene) -> tuple[tuple[str, str], ...]:
+    """Colours and names of the kinds a scene shows.
+
+    >>> from flexstage.mechanism.mechanism import Mechanism
+    >>> from flexstage.show.scene.stage import scene
+    >>> legend(scene(Mechanism("")))
+    ()
+    """
+    shown = {facet.paint.kind for facet in scene.facets}
+    return tuple((_COLOURS[kind][0], name) for kind, name in NAMES.items() if kind in shown)

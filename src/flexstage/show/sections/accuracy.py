@@ -1,0 +1,47 @@
+"""Thermal drift and the error budget."""
+
+from __future__ import annotations
+
+from flexstage.analysis.complete import Analysis
+from flexstage.show.figures.budget import error_figure
+from flexstage.show.figures.export import to_svg
+from flexstage.show.page import Picture, Prose, Section, folded, section
+from flexstage.show.tables.errors import drift_table, error_budget_tables, gauge_drift_table
+
+
+def drift_section(analysis: Analysis) -> Section | None:
+    """Motion per kelvin; `None` without drift.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.analysis.complete import Reading, analyse
+    >>> drift_section(analyse(double_triangle(), Reading.IDEAL)) is None
+    True
+    """
+    drift = analysis.drift
+    if drift is None:
+        return None
+    text = (
+        "Free growth of all bodies and parts, redistributed by the elasticity of the links, per kelvin of uniform change and per gradient "
+        "of 1 K/m."
+    )
+    gauges = gauge_drift_table(drift)
+    return section("Thermal drift", [Prose(text), drift_table(drift), folded("What the gauges read", gauges)])
+
+
+def error_section(analysis: Analysis) -> Section | None:
+    """Every source of pose error on one line an axis; `None` without it.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.analysis.complete import Reading, analyse
+    >>> error_section(analyse(double_triangle(), Reading.IDEAL)) is None
+    True
+    """
+    budget = analysis.error_budget
+    if budget is None:
+        return None
+    ideal, corrected = error_budget_tables(budget)
+    picture = Picture(
+        to_svg(error_figure(budget), "errors", "Error budget by axis and source"),
+        "Largest errors by source, added up: with the ideal mapping commanded, and with lost motion corrected by command.",
+    )
+    return section("Error budget", [picture, ideal, corrected])

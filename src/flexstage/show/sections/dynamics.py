@@ -1,0 +1,111 @@
+"""Modes and frequency responses."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from flexstage.analysis.complete import Analysis
+from flexstage.analysis.modes import Modes
+from flexstage.base.number import Array
+from flexstage.models.linear.kinematics import Kinematics
+from flexstage.models.linear.model import LinearModel
+from flexstage.show.display import number
+from flexstage.show.figures.export import to_svg
+from flexstage.show.figures.response import response_figure
+from flexstage.show.figures.spectrum import spectrum_figure
+from flexstage.show.figures.style import THIRD
+from flexstage.show.page import Abreast, Folded, Picture, Prose, Section, section
+from flexstage.show.scene.pictures import moved_picture
+from flexstage.show.scene.stage import Scene, largest_motion
+from flexstage.show.table import first_design
+from flexstage.show.tables.modes import mode_table
+from flexstage.show.tables.response import response_table
+from flexstage.spatial.frame import COMPONENTS
+
+_SHAPES = 6
+_REACH = 0.07
+
+
+def mode_section(analysis: Analysis, seen: Scene) -> Section | None:
+    """Modes with pictures of the platform's shapes; `None` for the ideal reading.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.show.scene.stage import scene
+    >>> from flexstage.analysis.complete import Reading, analyse
+    >>> mode_section(analyse(double_triangle(), Reading.IDEAL), scene(double_triangle())) is None
+    True
+    """
+    modes, model = analysis.modes, analysis.model
+    if modes is None or model is None or not modes.names:
+        return None
+    text = (
+        "Undamped modes, strokes held. A mode is the platform's if the platform has a large share of the kinetic energy; modes of single "
+        "units that lie near the platform's are listed as local neighbours."
+    )
+    spectrum = to_svg(spectrum_figure(modes), "spectrum", "Modes over frequency and the platform's share of each")
+    shapes = tuple(_shapes(modes, model, analysis.kinematics, seen))
+    note = f"The amplitude is arbitrary: the largest motion is {100 * _REACH:g} % of the stage's diagonal. Dashed: the platform at rest."
+    gallery = [Abreast(shapes, narrow=True), Prose(note)] if shapes else []
+    return section("Modes", [Prose(text), mode_table(modes), Picture(spectrum), *gallery])
+
+
+def _shapes(modes: Modes, model: LinearModel, kinematics: Kinematics, seen: Scene) -> Iterator[Picture]:
+    frequencies, shapes = first_design(modes.frequencies, 1), first_design(modes.shapes, 2)
+    for index in modes.platform[:_SHAPES]:
+        twists = body_twists(model, kinematics, shapes[:, index], tuple(seen.references))
+        largest = largest_motion(seen, twists)
+        if largest > 0.0:
+            picture = moved_picture(seen, twists, _REACH * seen.size / largest, width=THIRD)
+            caption = f"{index + 1}: {modes.names[index]}, {number(float(frequencies[index]))} Hz"
+            yield Picture(to_svg(picture, f"mode{index + 1}", caption), caption)
+
+
+def body_twists(model: LinearModel, kinematics: Kinematics, shape: Array, bodies: tuple[str, ...]) -> dict[str, Array]:
+    """Twists (6,) of the bodies in a shape (n,) of the model's coordinates (first design).
+
+    A model that knows the platform only moves the other bodies as the ideal kinematics do.
+
+    >>> import flexstage as fs
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> stage = double_triangle()
+    >>> twists = body_twists(fs.mapped(stage), fs.ideal(stage), np.eye(6)[2], ("platform", "B4/pole"))
+    >>> twists["platform"].round(9).tolist(), float(twists["B4/pole"][2].round(9))
+    ([0.0, 0.0, 1.0, 0.0, 0.0, 0.0], 1.0)
+    """
+    known = {channel.name: index for index, channel in enumerate(model.outputs)}
+    output = first_design(model.output, 2)
+    result: dict[str, Array] = {}
+    for body in bodies:
+        names = [f"{body}.{component}" for component in COMPONENTS]
+        if all(name in known for name in names):
+            result[body] = output[[known[name] for name in names]] @ shape
+        elif names[0] in kinematics.body_coordinates and len(shape) == kinematics.mobility:
+            rows = [kinematics.body_coordinates.index(name) for name in names]
+            result[body] = first_design(kinematics.bodies, 2)[rows] @ shape
+    return result
+
+
+def response_section(analysis: Analysis) -> Section | None:
+    """Frequency responses to the strokes and to the ground; `None` where neither is known.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.analysis.complete import Reading, analyse
+    >>> response_section(analyse(double_triangle(), Reading.IDEAL)) is None
+    True
+    """
+    response, ground = analysis.response, analysis.transmissibility
+    blocks: list[Picture | Folded] = []
+    if response is not None and np.size(response.values):
+        drawn = to_svg(response_figure(response, analysis.modes), "strokes", "Response of the platform to the strokes")
+        blocks.append(
+            Picture(drawn, "Platform motion per stroke, each output with the actuator that moves it most; dotted: the platform's modes.")
+        )
+    if ground is not None and np.size(ground.values):
+        drawn = to_svg(response_figure(ground, analysis.modes), "ground", "Transmissibility from the ground to the platform")
+        blocks.append(Picture(drawn, "Transmissibility: absolute motion of the platform per absolute motion of the ground."))
+    known = [item for item in (response, ground) if item is not None]
+    if known:
+        blocks.append(Folded("Gains and peaks", tuple(response_table(item) for item in known)))
+    return section("Frequency responses", blocks)

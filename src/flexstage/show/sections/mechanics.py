@@ -1,0 +1,135 @@
+"""Kinematics, stiffness and lost motion."""
+
+from __future__ import annotations
+
+from flexstage.analysis.complete import Analysis
+from flexstage.models.linear.kinematics import Kinematics
+from flexstage.show.figures.budget import energy_figure, loss_figure
+from flexstage.show.figures.directional import directional_figure
+from flexstage.show.figures.export import to_svg
+from flexstage.show.page import Abreast, Block, Folded, Picture, Prose, Section, folded, section
+from flexstage.show.tables.deflection import deflection_table
+from flexstage.show.tables.kinematics import (
+    freedom_table,
+    gauge_table,
+    idle_table,
+    jacobian_table,
+    mapping_table,
+    mobility_table,
+    motion_table,
+    redundant_table,
+)
+from flexstage.show.tables.lost_motion import (
+    budget_table,
+    correction_table,
+    crosstalk_table,
+    energy_table,
+    gain_table,
+    loss_table,
+    parasitic_table,
+)
+from flexstage.show.tables.statics import centre_table, compliance_table, direction_table, principal_table, stiffness_table
+from flexstage.show.tables.units import lever_table, omitted_table, unit_table
+
+
+def kinematics_section(analysis: Analysis) -> Section | None:
+    """Mobility, mappings, idle freedoms and redundant constraints.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.analysis.complete import Reading, analyse
+    >>> kinematics_section(analyse(double_triangle(), Reading.IDEAL)).title
+    'Kinematics'
+    """
+    kinematics = analysis.kinematics
+    text = (
+        "The ideal stage: rigid bodies, hinges free about the axes they are meant to turn about and locked about all others. What follows "
+        "is for small motions about the drawn position, in the platform's reference point."
+    )
+    return section(
+        "Kinematics",
+        [
+            Prose(text),
+            mobility_table(kinematics),
+            *_mappings(kinematics),
+            motion_table(kinematics),
+            Folded("Freedoms taken as free", (freedom_table(kinematics),)),
+            folded("Idle freedoms and redundant constraints", idle_table(kinematics), redundant_table(kinematics)),
+        ],
+    )
+
+
+def _mappings(kinematics: Kinematics) -> list[Block]:
+    gauges = [gauge_table(kinematics)] if kinematics.gauges else []
+    if not kinematics.actuated:
+        return [*gauges]
+    return [mapping_table(kinematics), Folded("Platform motion per stroke and gauge mapping", (jacobian_table(kinematics), *gauges))]
+
+
+def stiffness_section(analysis: Analysis) -> Section | None:
+    """Stiffness and compliance of the platform, and by direction; `None` for the ideal reading.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.analysis.complete import Reading, analyse
+    >>> stiffness_section(analyse(double_triangle(), Reading.IDEAL)) is None
+    True
+    """
+    statics = analysis.statics
+    if statics is None:
+        return None
+    polar = to_svg(directional_figure(statics), "polar", "Stiffness by direction in the plane")
+    sag = () if analysis.deflection is None else (deflection_table(analysis.deflection),)
+    caption = "Stiffness in the plane by direction of the force. Free: what a push test measures. Held: all other motions are prevented."
+    return section(
+        "Stiffness",
+        [
+            Prose("Stiffness of the platform with the strokes held, as seen at its reference point."),
+            stiffness_table(statics),
+            Abreast((Picture(polar, caption), Abreast((principal_table(statics), centre_table(statics), *sag)))),
+            *([] if analysis.units is None else [unit_table(analysis.units)]),
+            folded(
+                "Compliance, stiffness by angle, springs of the lever units",
+                compliance_table(statics),
+                direction_table(statics),
+                None if analysis.units is None else lever_table(analysis.units),
+            ),
+        ],
+    )
+
+
+def lost_motion_section(analysis: Analysis) -> Section | None:
+    """Gains, losses, their budget by part and the corrected mapping; `None` where there are none.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.analysis.complete import Reading, analyse
+    >>> lost_motion_section(analyse(double_triangle(), Reading.IDEAL)) is None
+    True
+    """
+    lost = analysis.lost_motion
+    if lost is None:
+        return None
+    text = (
+        "What elasticity takes from the ideal motion. The budget is exact: by virtual work every link contributes the force it carries "
+        "times the deformation it has in the ideal motion, and the contributions add up to the loss."
+    )
+    loss = to_svg(loss_figure(lost), "loss", "Lost motion by actuator and part")
+    energy = to_svg(energy_figure(lost), "energy", "Strain energy by actuator and part")
+    pictures = [
+        Picture(loss, "Lost motion of each actuator by part and axis of its unit."),
+        Picture(energy, "Where the stroke goes: strain energy by part when one actuator expands and nothing else acts."),
+    ]
+    return section(
+        "Lost motion",
+        [
+            Prose(text),
+            loss_table(lost),
+            *(pictures if lost.budget else []),
+            parasitic_table(lost),
+            Folded("Budget by part, and energy by part", (budget_table(lost), energy_table(lost))),
+            Folded("Gains, crosstalk, corrected mapping", (gain_table(lost), crosstalk_table(lost), correction_table(lost))),
+            *[
+                Folded(f"What Eq. 3 omits of the {name} unit's gain", (omitted_table(unit.omitted),))
+                for name, unit in (analysis.units or {}).items()
+                if unit.omitted is not None
+            ],
+        ],
+    )

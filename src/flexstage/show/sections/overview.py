@@ -1,0 +1,189 @@
+"""The first page of a report: verdicts on the requirements, and the stage in a few numbers and sentences."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from flexstage.analysis.complete import Analysis
+from flexstage.analysis.difference import Comparison
+from flexstage.analysis.requirements import Verdict
+from flexstage.show.display import number, percent, value_with_unit
+from flexstage.show.page import Fact, Facts, Prose, Section, section
+from flexstage.show.table import Cell, Column, Mark, Table, build, first_design
+from flexstage.show.tables.change import change_table, set_table
+from flexstage.show.tables.requirements import margin_text, meaning, met, shown_value
+
+_SILENT = 1e-9
+
+
+def requirement_section(analysis: Analysis) -> Section | None:
+    """Verdicts first, those that fail before the others; `None` without requirements.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.analysis.complete import Reading, analyse
+    >>> requirement_section(analyse(double_triangle(), Reading.IDEAL)).blocks[0].text
+    'All 8 requirements are met; the least margin is 6.01 %, for frequency.platform.1.'
+    """
+    verdicts = analysis.verdicts
+    if not verdicts:
+        return None
+    note = "Judged by the lumped reading, whichever reading the rest of this report uses."
+    return section("Requirements", [Prose(_verdict_text(verdicts)), _verdict_table(verdicts), Prose(note)])
+
+
+def change_section(analysis: Analysis, compared: Comparison | None) -> Section | None:
+    """The values that were set, and the key figures before and after; `None` where nothing was set.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.analysis.complete import Reading, analyse
+    >>> change_section(analyse(double_triangle(), Reading.IDEAL), None) is None
+    True
+    """
+    if compared is None:
+        return None
+    values = set_table(compared.stated, analysis.mechanism, compared.addresses)
+    return section("Changes", [values, change_table(compared.figures)])
+
+
+def _verdict_text(verdicts: Sequence[Verdict]) -> str:
+    failed = [verdict for verdict in verdicts if not met(verdict)]
+    if failed:
+        names = ", ".join(verdict.requirement.key for verdict in failed)
+        return f"{len(verdicts) - len(failed)} of {len(verdicts)} requirements are met. Not met: {names}."
+    margins = {verdict.requirement.key: _margin(verdict) for verdict in verdicts}
+    least = min(margins, key=lambda key: margins[key])
+    which = f"All {len(verdicts)} requirements are met" if len(verdicts) > 1 else "The requirement is met"
+    return f"{which}; the least margin is {percent(margins[least], 3)}, for {least}."
+
+
+def _margin(verdict: Verdict) -> float:
+    return float(first_design(np.atleast_1d(verdict.margin), 1)[0])
+
+
+def _verdict_table(verdicts: Sequence[Verdict]) -> Table:
+    ranked = sorted(verdicts, key=met)
+    notes = [f"{verdict.requirement.key}: {verdict.reason}" for verdict in verdicts if verdict.reason]
+    heads = ["", "requirement", "what it means", Column("demand"), Column("value"), Column("margin")]
+    return build("", heads, [_verdict_row(verdict) for verdict in ranked], notes=notes)
+
+
+def _verdict_row(verdict: Verdict) -> tuple[Cell, ...]:
+    good = met(verdict)
+    mark = Mark.PASS if good else Mark.FAIL
+    margin = _margin(verdict)
+    bar = min(1.0, margin) if good and np.isfinite(margin) else None
+    return (
+        Cell("✓" if good else "✗", mark),
+        Cell(verdict.requirement.key, Mark.STRONG),
+        Cell(meaning(verdict)),
+        Cell(verdict.requirement.text),
+        Cell(shown_value(verdict)),
+        Cell(margin_text(verdict), mark, bar),
+    )
+
+
+def summary_section(analysis: Analysis) -> Section | None:
+    """The stage in a few numbers and sentences.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.analysis.complete import Reading, analyse
+    >>> [fact.name for fact in summary_section(analyse(double_triangle(), Reading.IDEAL)).blocks[0].items]
+    ['Freedoms', 'Stroke along x']
+    """
+    return section("Summary", [Facts(tuple(_facts(analysis))), *(Prose(text) for text in _sentences(analysis))])
+
+
+def _facts(analysis: Analysis) -> Iterator[Fact]:
+    kinematics = analysis.kinematics
+    driven = f"{_counted(len(kinematics.actuators), 'actuator')}, {_counted(len(kinematics.gauges), 'gauge')}"
+    yield Fact("Freedoms", str(kinematics.mobility), driven)
+    if analysis.modes is not None and analysis.modes.platform:
+        index = analysis.modes.platform[0]
+        frequency = float(first_design(analysis.modes.frequencies, 1)[index])
+        yield Fact("First platform mode", value_with_unit(frequency, "Hz", 4), analysis.modes.names[index])
+    if analysis.statics is not None:
+        most, least = (float(value) for value in first_design(analysis.statics.free.principal, 1))
+        spread = "in every direction" if most - least < _SILENT * most else f"to {value_with_unit(most, 'N/m', 4)}"
+        yield Fact("Stiffness in the plane", value_with_unit(least, "N/m", 4), spread)
+    if analysis.lost_motion is not None:
+        losses = np.diagonal(first_design(analysis.lost_motion.loss.values, 2))
+        worst = int(np.argmax(np.round(np.abs(losses), 9)))
+        yield Fact("Lost motion", percent(_quiet(float(losses[worst])), 3), f"at worst, actuator {analysis.lost_motion.loss.rows[worst]}")
+    yield from _reach_facts(analysis)
+
+
+def _counted(count: int, thing: str) -> str:
+    return f"{count} {thing}{'' if count == 1 else 's'}"
+
+
+def _quiet(share: float) -> float:
+    return 0.0 if abs(share) < _SILENT else share
+
+
+def _reach_facts(analysis: Analysis) -> Iterator[Fact]:
+    if analysis.workspace is None:
+        return
+    single = analysis.workspace.corrected or analysis.workspace.single
+    if single.coordinates:
+        name = single.coordinates[0]
+        value = float(first_design(single.symmetric, 1)[0])
+        yield Fact(f"Stroke along {name}", f"±{value_with_unit(value, 'rad' if name.startswith('r') else 'm', 4)}", "one axis at a time")
+    stress = analysis.workspace.stress
+    if stress is not None and stress.links:
+        least = float(first_design(np.atleast_1d(stress.least), 1)[0])
+        yield Fact("Least safety factor", number(least, 3), f"against yield, in {stress.weakest}")
+
+
+def _sentences(analysis: Analysis) -> Iterator[str]:
+    if analysis.modes is not None and analysis.modes.platform:
+        yield _mode_sentence(analysis)
+    if analysis.lost_motion is not None:
+        yield _loss_sentence(analysis)
+    if analysis.workspace is not None and analysis.workspace.corner is not None:
+        scale = float(first_design(np.atleast_1d(analysis.workspace.corner.scale), 1)[0])
+        reached = "can be reached at once" if scale >= 1.0 else f"cannot all be reached at once: at most {percent(scale, 3)} of the box can"
+        yield f"The commanded strokes {reached}."
+
+
+def _mode_sentence(analysis: Analysis) -> str:
+    modes = analysis.modes
+    if modes is None:
+        return ""
+    frequencies = first_design(modes.frequencies, 1)
+    listed = [f"{name} at {' and '.join(values)} Hz" for name, values in _by_name(analysis, [float(value) for value in frequencies])]
+    text = f"The platform's modes are {_enumerated(listed)}."
+    if modes.local:
+        lowest = min(float(frequencies[index]) for index in modes.local)
+        text += f" {len(modes.local)} modes of single units lie below 1.5 times the highest of them, the lowest at {number(lowest, 4)} Hz."
+    return text
+
+
+def _by_name(analysis: Analysis, frequencies: list[float]) -> list[tuple[str, list[str]]]:
+    modes = analysis.modes
+    result: dict[str, list[str]] = {}
+    for index in () if modes is None else modes.platform:
+        text = number(frequencies[index], 4)
+        if modes is not None and text not in result.setdefault(modes.names[index], []):
+            result[modes.names[index]].append(text)
+    return list(result.items())
+
+
+def _enumerated(items: Sequence[str]) -> str:
+    return items[0] if len(items) == 1 else f"{', '.join(items[:-1])} and {items[-1]}"
+
+
+def _loss_sentence(analysis: Analysis) -> str:
+    lost = analysis.lost_motion
+    if lost is None:
+        return ""
+    loss = first_design(lost.loss.values, 2)
+    own = np.abs(np.diagonal(loss))
+    others = np.abs(loss - np.diag(np.diagonal(loss)))
+    if max(own.max(), others.max(initial=0.0)) < _SILENT:
+        return "In this reading the actuators lose no motion: its springs lie in line with the strokes."
+    range_text = f"{percent(float(own.min()), 3)} to {percent(float(own.max()), 3)}" if np.ptp(own) > 1e-4 else percent(float(own.max()), 3)
+    taken = f"Elasticity takes {range_text} of the actuators' strokes"
+    stirred = float(others.max(initial=0.0))
+    return f"{taken}, and up to {percent(stirred, 3)} of a stroke appears as another's." if stirred > _SILENT else f"{taken}."

@@ -1,0 +1,120 @@
+"""What a report rests on: the description with its provenance, known limits, references."""
+
+from __future__ import annotations
+
+from flexstage.analysis.cautions import part_cautions
+from flexstage.analysis.complete import Analysis, Reading
+from flexstage.beams.validity import validity
+from flexstage.mechanism.mechanism import Mechanism, StructuralDamping
+from flexstage.parts.neck import Neck
+from flexstage.parts.notch import Notch
+from flexstage.show.display import NO_VALUE, percent
+from flexstage.show.page import Block, Folded, Prose, Section, folded, section
+from flexstage.show.scene.primitives import plain
+from flexstage.show.table import Cell, Column, Mark, Table, build
+from flexstage.show.tables.description import provenance_table, requirement_lines, source_table, value_tables
+from flexstage.spatial.frame import COMPONENTS
+
+_LIMITS = {
+    Reading.IDEAL: (
+        "Ideal reading: rigid bodies and perfect hinges, small motions about the drawn position. It knows no stiffness, load or mode."
+    ),
+    Reading.MAPPED: (
+        "Mapped reading, as in the paper: springs along the strokes under a rigid platform, massless units, no bending of hinges. It has "
+        "no lost motion, no local modes and no crosstalk."
+    ),
+    Reading.LUMPED: (
+        "Lumped reading: rigid bodies joined by 6x6 beam-theory hinges, small displacements, frequencies below the first resonance of the "
+        "parts themselves. The bodies' own elasticity is left out: a real plate or lever makes the stage softer."
+    ),
+}
+_PAPER = "Shin & Moon, Static and Dynamic Analyses of a 6-DOF Ultra-Precision Parallel Mechanism: mappings, unit stiffness, Eq. 28."
+_NOTCH = (
+    "J. M. Paros, L. Weisbord, How to design flexure hinges, Machine Design 37, 1965; Y. Wu, Z. Zhou, Review of Scientific Instruments 73, "
+    "2002: circular notches."
+)
+_NECK = "S. T. Smith, Flexures, 2000: toroidal necks, notch factor."
+_CENTRE = "J. Loncaric, Normal forms of stiffness and compliance matrices, IEEE J. Robotics and Automation 3, 1987: centre of stiffness."
+_DAMPING = "E. E. Ungar, E. M. Kerwin, J. Acoustical Society of America 34, 1962: equivalent modal damping of loss factors."
+
+
+def description_section(mechanism: Mechanism) -> Section | None:
+    """Every value with its unit and where it comes from.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> description_section(double_triangle()).title
+    'Description and provenance'
+    """
+    text = "Stated: printed in a source. Derived: follows from stated values. Assumed: chosen, or not tagged."
+    values: tuple[Block, ...] = value_tables(mechanism)
+    return section(
+        "Description and provenance",
+        [
+            Prose(text),
+            provenance_table(mechanism),
+            source_table(mechanism),
+            Folded("Every value", values),
+            folded("Requirements as written", requirement_lines(mechanism)),
+        ],
+    )
+
+
+def limit_section(analysis: Analysis) -> Section | None:
+    """What the reading leaves out, and results that could not be given, with the reasons.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.analysis.complete import Reading, analyse
+    >>> limit_section(analyse(double_triangle(), Reading.IDEAL)).title
+    'Limits'
+    """
+    blocks: list[Block | None] = [Prose(_LIMITS[analysis.reading])]
+    if not part_cautions(analysis.mechanism):
+        blocks.append(Prose("No part lies outside the range that beam theory was compared with."))
+    blocks.append(_missing_table(analysis))
+    accuracy = error_of_theory_table(analysis.mechanism) if analysis.reading is not Reading.IDEAL else None
+    return section("Limits", [*blocks, accuracy])
+
+
+def _missing_table(analysis: Analysis) -> Table | None:
+    gone = dict(analysis.missing)
+    if analysis.workspace is not None:
+        gone |= {f"workspace: {name}": reason for name, reason in analysis.workspace.missing.items()}
+    rows = [(Cell(name.replace("_", " "), Mark.STRONG), reason) for name, reason in gone.items()]
+    return build("Not given, and why", ["result", "reason"], rows) if rows else None
+
+
+def error_of_theory_table(mechanism: Mechanism) -> Table | None:
+    """The error of beam theory to expect in the compliance of each part, against 3-D elasticity; `None` where nothing is known.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> error_of_theory_table(double_triangle()).texts()[0]
+    ['part', 'x', 'y', 'z', 'rx', 'ry', 'rz']
+    """
+    materials = mechanism.materials
+    known = {name: validity(part, name, materials.get(getattr(part, "material", ""))).errors for name, part in mechanism.parts.items()}
+    rows = [
+        (Cell(name, Mark.STRONG), *(percent(plain(errors[axis]), 2) if axis in errors else NO_VALUE for axis in COMPONENTS))
+        for name, errors in known.items()
+        if errors
+    ]
+    note = "Negative: beam theory is too stiff. A component without a number was not compared with elasticity."
+    columns = ["part", *(Column(axis) for axis in COMPONENTS)]
+    return build("Error of beam theory to expect in the compliance of the parts", columns, rows, notes=[note]) if rows else None
+
+
+def reference_section(analysis: Analysis) -> Section | None:
+    """The publications whose equations were used.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.analysis.complete import Reading, analyse
+    >>> len(reference_section(analyse(double_triangle(), Reading.IDEAL)).blocks)
+    1
+    """
+    parts = analysis.mechanism.parts.values()
+    elastic = analysis.reading is not Reading.IDEAL
+    used = [_PAPER]
+    used += [_NOTCH] if elastic and any(isinstance(part, Notch) for part in parts) else []
+    used += [_NECK] if elastic and any(isinstance(part, Notch | Neck) for part in parts) else []
+    used += [_CENTRE] if analysis.statics is not None else []
+    used += [_DAMPING] if isinstance(analysis.mechanism.damping, StructuralDamping) else []
+    return section("References", [Prose(text) for text in used])

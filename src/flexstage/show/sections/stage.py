@@ -1,0 +1,59 @@
+"""The stage in pictures: above the corner, from three sides, and as a dimensioned plan."""
+
+from __future__ import annotations
+
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.show.figures.export import to_svg
+from flexstage.show.page import Abreast, Folded, Legend, Picture, Section, section
+from flexstage.show.plan import plan_figure, rings
+from flexstage.show.scene.pictures import stage_picture
+from flexstage.show.scene.stage import Scene
+from flexstage.show.scene.view import Side, legend
+from flexstage.show.tables.description import composition_table, link_table
+
+_WIDTH = 4.4
+_SIDES = (
+    (Side.TOP, "top", "From above."),
+    (Side.FRONT, "front", "From the front, along +y."),
+    (Side.RIGHT, "right", "From the right, along −x."),
+)
+
+
+def stage_section(mechanism: Mechanism, seen: Scene) -> Section | None:
+    """Pictures of the stage and what it consists of; `seen` is its scene.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.show.scene.stage import scene
+    >>> stage_section(double_triangle(), scene(double_triangle())).title
+    'The stage'
+    """
+    corner = to_svg(stage_picture(seen), "corner", "The stage from above its front corner")
+    sides = tuple(_side(seen, *each) for each in _SIDES)
+    plan = to_svg(plan_figure(mechanism, seen), "plan", "Dimensioned plan of the stage")
+    caption = "Rigid bodies as described, the platform translucent; where a hinge lies off the outline of its body, a thin line joins them."
+    plan_caption = " ".join(["Plan, dimensions in mm.", *_ring_texts(mechanism)])
+    return section(
+        "The stage",
+        [
+            Picture(corner, caption),
+            Legend(legend(seen)),
+            Abreast((sides[0], Abreast(sides[1:]))),
+            Picture(plan, plan_caption),
+            composition_table(mechanism),
+            Folded("Every link as drawn", (link_table(mechanism),)),
+        ],
+    )
+
+
+def _side(seen: Scene, side: Side, name: str, caption: str) -> Picture:
+    return Picture(to_svg(stage_picture(seen, side=side, width=_WIDTH, names=side is Side.TOP), name, caption), caption)
+
+
+def _ring_texts(mechanism: Mechanism) -> list[str]:
+    """Where the units and gauges on circles stand."""
+    result: list[str] = []
+    for ring in rings(mechanism):
+        names = " to ".join(dict.fromkeys((*ring.names[:1], *ring.names[-1:])))
+        step = f", every {ring.step:g}°" if len(ring.names) > 1 else ""
+        result.append(f"{names}: radius {ring.radius:g} mm, first at {ring.first:g}°{step}.")
+    return result

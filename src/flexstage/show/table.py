@@ -1,0 +1,228 @@
+"""Tables: results laid out for people, independent of where they are shown."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from enum import Enum
+from typing import TypeAlias
+
+import numpy as np
+
+from flexstage.base.labelled import Matrix, ratio_units
+from flexstage.base.number import Array
+from flexstage.show.display import NO_VALUE, NOISE, NOISE_RULE, Shown, aligned, number, preferred, quiet, value_with_unit
+
+
+class Mark(Enum):
+    """What a cell means besides its text; a renderer shows it by colour, weight or a sign."""
+
+    PLAIN = "plain"
+    STRONG = "strong"
+    FAINT = "faint"
+    PASS = "pass"
+    FAIL = "fail"
+    WARN = "warn"
+    STATED = "stated"
+    DERIVED = "derived"
+    ASSUMED = "assumed"
+
+
+@dataclass(frozen=True)
+class Cell:
+    """A table's cell: its text, its mark, and optionally the length of a bar behind it (a share between 0 and 1)."""
+
+    text: str
+    mark: Mark = Mark.PLAIN
+    bar: float | None = None
+
+
+@dataclass(frozen=True)
+class Column:
+    """A table's column: head and unit; `numeric` columns are set flush right."""
+
+    head: str
+    unit: str = ""
+    numeric: bool = True
+
+
+Content: TypeAlias = str | Cell
+
+
+@dataclass(frozen=True)
+class Table:
+    """A table for people: title, columns, rows, notes under it and where its numbers come from."""
+
+    title: str
+    columns: tuple[Column, ...]
+    rows: tuple[tuple[Cell, ...], ...]
+    notes: tuple[str, ...] = ()
+    provenance: str = ""
+
+    def texts(self) -> list[list[str]]:
+        """Heads (with units) and cells as plain text, row by row."""
+        heads = [f"{column.head} [{column.unit}]" if column.unit else column.head for column in self.columns]
+        return [heads, *([cell.text for cell in row] for row in self.rows)]
+
+    def _repr_html_(self) -> str:
+        from flexstage.show.render import to_html
+
+        return to_html(self)
+
+
+def build(
+    title: str,
+    columns: Iterable[Column | str],
+    rows: Iterable[Sequence[Content]],
+    *,
+    notes: Iterable[str] = (),
+    provenance: str = "",
+) -> Table:
+    """A table from columns (a text alone is the head of a column of words) and rows of cells (a text alone is a plain cell).
+
+    >>> build("Masses", ["body", Column("mass", "kg")], [("platform", "14")]).texts()
+    [['body', 'mass [kg]'], ['platform', '14']]
+    """
+    heads = tuple(column if isinstance(column, Column) else Column(column, numeric=False) for column in columns)
+    cells = tuple(tuple(cell if isinstance(cell, Cell) else Cell(cell) for cell in row) for row in rows)
+    return Table(title, heads, cells, tuple(notes), provenance)
+
+
+def figures(values: Iterable[float], form: Shown, digits: int = 5) -> list[Cell]:
+    """A column of SI values in a display unit, decimals aligned; rounding noise against the column's largest value is shown as 0.
+
+    >>> [cell.text for cell in figures([15e6, 1e-6], Shown("N/um", 1e-6))]
+    ['15', '0']
+    """
+    items = np.array([float(value) for value in values])
+    largest = np.max(np.abs(items[np.isfinite(items)]), initial=0.0)
+    silent = np.isfinite(items) & (np.abs(items) < NOISE * largest)
+    texts = aligned(np.where(silent, 0.0, items * form.factor), digits)
+    return [Cell(text, _faint(text)) for text in texts]
+
+
+def matrix_table(title: str, matrix: Matrix, *, against: Matrix | None = None, fine: bool = True, notes: Iterable[str] = ()) -> Table:
+    """A labelled matrix (first design of a batch) in display units.
+
+    Rows and columns carry units and an entry is in row unit per column unit; where the entries' units are no such ratios, each entry
+    carries its own. `against` sets the scale of rounding noise; `fine`: angles in urad, else in mrad (lever arms come out in mm).
+
+    >>> table = matrix_table("K", Matrix(np.array([[2e6]]), ("fx",), ("x",), (("N/m",),)))
+    >>> table.texts()
+    [['', 'x [um]'], ['fx [N]', '2']]
+    """
+    values = first_design(matrix.values, 2)
+    kept = quiet(values, None if against is None else first_design(against.values, 2))
+    said = [NOISE_RULE] if np.any((kept == 0.0) & (values != 0.0)) else []
+    said += batch_note(matrix.values, 2)
+    ends = _ends(matrix)
+    if ends is None:
+        return _entries_with_units(title, matrix, kept, (*notes, *said))
+    rows, columns = (tuple(_form(unit, fine=fine) for unit in units) for units in ends)
+    heads = [Column(name, _unit(form)) for name, form in zip(short_names(matrix.columns), columns, strict=True)]
+    lines = [
+        [_row_head(name, form), *(_entry(value * form.factor / column.factor) for value, column in zip(line, columns, strict=True))]
+        for name, form, line in zip(short_names(matrix.rows), rows, kept, strict=True)
+    ]
+    ratio = ["Entries: row unit per column unit."] if all(any(_unit(form) for form in forms) for forms in (rows, columns)) else []
+    return build(title, [Column("", numeric=False), *heads], lines, notes=[*notes, *ratio, *said])
+
+
+def short_names(names: tuple[str, ...]) -> tuple[str, ...]:
+    """Names without the owner that all of them have in common.
+
+    >>> short_names(("platform.x", "platform.y")), short_names(("platform.x", "chuck.x")), short_names(("B1", "B2"))
+    (('x', 'y'), ('platform.x', 'chuck.x'), ('B1', 'B2'))
+    """
+    owners = {name.rpartition(".")[0] for name in names}
+    return tuple(name.rpartition(".")[2] for name in names) if len(owners) == 1 else names
+
+
+def _row_head(name: str, form: Shown) -> Cell:
+    unit = _unit(form)
+    return Cell(f"{name} [{unit}]" if unit else name, Mark.STRONG)
+
+
+def _entries_with_units(title: str, matrix: Matrix, kept: Array, notes: tuple[str, ...]) -> Table:
+    units = _entry_units(matrix)
+    lines = [
+        [Cell(name, Mark.STRONG), *(_with_unit(value, unit) for value, unit in zip(row, line, strict=True))]
+        for name, row, line in zip(matrix.rows, kept, units, strict=True)
+    ]
+    return build(title, [Column("", numeric=False), *(Column(name) for name in matrix.columns)], lines, notes=notes)
+
+
+_ENDS = ("m", "rad", "N", "N m", "K", "K/m", "V", "1")
+
+
+def _ends(matrix: Matrix) -> tuple[tuple[str, ...], tuple[str, ...]] | None:
+    """Units of rows and columns of which every entry's unit is the ratio; `None` if there are none."""
+    units = _entry_units(matrix)
+    if isinstance(matrix.unit, str):
+        return None if matrix.unit != "1" else (("1",) * len(matrix.rows), ("1",) * len(matrix.columns))
+    for start in _ENDS:
+        columns = _known(_denominator(start, unit) for unit in units[0])
+        rows = _known(_numerator(line[0], columns[0]) for line in units) if columns else ()
+        if (len(rows), len(columns)) == (len(matrix.rows), len(matrix.columns)) and ratio_units(rows, columns) == units:
+            return rows, columns
+    return None
+
+
+def _denominator(top: str, unit: str) -> str | None:
+    return next((bottom for bottom in _ENDS if ratio_units((top,), (bottom,))[0][0] == unit), None)
+
+
+def _numerator(unit: str, bottom: str) -> str | None:
+    return next((top for top in _ENDS if ratio_units((top,), (bottom,))[0][0] == unit), None)
+
+
+def _known(units: Iterable[str | None]) -> tuple[str, ...]:
+    return tuple(unit for unit in units if unit is not None)
+
+
+def _entry_units(matrix: Matrix) -> tuple[tuple[str, ...], ...]:
+    if isinstance(matrix.unit, str):
+        return ((matrix.unit,) * len(matrix.columns),) * len(matrix.rows)
+    return matrix.unit
+
+
+def _form(unit: str, *, fine: bool) -> Shown:
+    return Shown("mrad", 1e3) if unit == "rad" and not fine else preferred(unit)
+
+
+def _unit(form: Shown) -> str:
+    return "" if form.unit == "1" else form.unit
+
+
+def _entry(value: float) -> Cell:
+    text = number(float(value))
+    return Cell(text, _faint(text))
+
+
+def _with_unit(value: float, unit: str) -> Cell:
+    text = value_with_unit(float(value), unit)
+    return Cell(text.split()[0] if text[0] in "0-" and value == 0.0 else text, _faint(text.split()[0]))
+
+
+def _faint(text: str) -> Mark:
+    return Mark.FAINT if text in ("0", NO_VALUE) else Mark.PLAIN
+
+
+def first_design(values: Array, axes: int) -> Array:
+    """The first design of a batch: the last `axes` axes of real values.
+
+    >>> first_design(np.ones((4, 2, 2)), 2).shape
+    (2, 2)
+    """
+    values = np.asarray(values)
+    return np.real(values[(0,) * (values.ndim - axes)])
+
+
+def batch_note(values: Array, axes: int) -> tuple[str, ...]:
+    """What is said under a table of a batch's first design; nothing for a single one.
+
+    >>> batch_note(np.ones((4, 2, 2)), 2)
+    ('The first of 4 designs.',)
+    """
+    count = int(np.prod(values.shape[: values.ndim - axes]))
+    return (f"The first of {count} designs.",) if values.ndim > axes else ()

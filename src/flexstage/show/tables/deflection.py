@@ -1,0 +1,30 @@
+"""Table of the deflection under dead load."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from flexstage.analysis.deflection import Deflection
+from flexstage.show.table import Table, first_design, matrix_table
+
+_NOISE = 1e-9
+
+
+def deflection_table(deflection: Deflection) -> Table:
+    """Deflection of a point by cause: own weight, each payload, each stated force.
+
+    Rounding noise, against the largest translation or rotation, is shown as 0.
+
+    >>> from flexstage.analysis.deflection import deflection
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.models.lumped import lumped
+    >>> deflection_table(deflection(double_triangle(), lumped(double_triangle()))).texts()[1]
+    ['x [um]', '0']
+    """
+    values = np.array(first_design(deflection.by_cause.values, 2))
+    for block in (values[:3], values[3:]):
+        block[np.abs(block) < _NOISE * np.max(np.abs(block), initial=0.0)] = 0.0
+    note = "Strokes held. In closed loop the gauges see it and the strokes take it back."
+    return matrix_table(f"Dead load, {deflection.point}", replace(deflection.by_cause, values=values), notes=[note])

@@ -1,0 +1,169 @@
+"""Tables of a description: what the stage consists of, and every value with its unit and where it comes from."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator
+
+from flexstage.base.quantity import Quantity
+from flexstage.mechanism.address import get, provenance, quantity_of
+from flexstage.mechanism.expand import copy_names, expand
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.parts.part import Part, Restricted
+from flexstage.show.display import field_unit, number
+from flexstage.show.scene.primitives import plain
+from flexstage.show.table import Cell, Column, Mark, Table, build
+from flexstage.spatial.frame import COMPONENTS
+
+TITLES = {
+    "materials": "Materials",
+    "parts": "Parts",
+    "bodies": "Bodies",
+    "links": "Links",
+    "units": "Units",
+    "place": "Placement of units",
+    "sensors": "Gauge types",
+    "gauges": "Placement of gauges",
+    "payloads": "Payloads",
+    "forces": "Forces",
+    "changes": "Departures of single copies",
+    "": "Stage",
+}
+_TAGS = {"stated": Mark.STATED, "derived": Mark.DERIVED, "assumed": Mark.ASSUMED}
+_NUMBER_DIGITS = 6
+
+
+def composition_table(mechanism: Mechanism) -> Table:
+    """How many bodies, links, actuators and gauges the stage has, and of which kinds.
+
+    >>> composition_table(Mechanism("")).texts()[1]
+    ['bodies', '0', '']
+    """
+    assembly = expand(mechanism)
+    kinds = Counter(kind_name(link.part) for link in assembly.links.values())
+    gauges = Counter(probe.gauge for key, probe in mechanism.gauges.items() for _ in copy_names(key))
+    units = Counter(placement.unit for key, placement in mechanism.place.items() for _ in copy_names(key))
+    rows = [
+        ("bodies", str(len(assembly.bodies)), ", ".join(f"{count} x {unit}" for unit, count in units.items())),
+        ("links", str(len(assembly.links)), ", ".join(f"{count} {kind}" for kind, count in kinds.items())),
+        ("actuators", str(len(assembly.actuators)), ", ".join(assembly.actuators)),
+        ("gauges", str(len(assembly.gauges)), ", ".join(f"{count} x {gauge}" for gauge, count in gauges.items())),
+    ]
+    return build("Composition", ["", Column("number"), "of which"], rows)
+
+
+def kind_name(part: Part) -> str:
+    """What a part is called.
+
+    >>> from flexstage.parts.given import Joint
+    >>> kind_name(Joint())
+    'joint'
+    """
+    inner = part.part if isinstance(part, Restricted) else part
+    return type(inner).__name__.lower() if inner is part else f"restricted {type(inner).__name__.lower()}"
+
+
+def link_table(mechanism: Mechanism) -> Table:
+    """Every link as drawn: what it joins, its part, in how many copies.
+
+    >>> link_table(Mechanism("")).rows
+    ()
+    """
+    links = list(expand(mechanism).links.values())
+    counts = Counter(link.drawn for link in links)
+    first = {link.drawn: link for link in reversed(links)}
+    rows = [
+        (Cell(drawn.removeprefix("links."), Mark.STRONG), " - ".join(first[drawn].link.joins), first[drawn].link.part, str(count))
+        for drawn, count in counts.items()
+    ]
+    return build("Links as drawn", ["link", "joins", "part", Column("copies")], rows)
+
+
+def value_tables(mechanism: Mechanism) -> tuple[Table, ...]:
+    """Every number of the description with unit, tag (stated, derived, assumed) and source; one table a kind of thing.
+
+    >>> value_tables(Mechanism(""))[0].texts()[1]
+    ['gravity', '(0, 0, -9.80665)', 'm/s^2', 'assumed', '']
+    """
+    tags = provenance(mechanism)
+    rows: dict[str, list[tuple[Cell, ...]]] = {}
+    for addresses in _joined(tuple(tags)):
+        group, name = _grouped(mechanism, addresses)
+        rows.setdefault(group, []).append(_row(mechanism, name, addresses, tags[addresses[0]]))
+    heads = ["value", Column("", numeric=True), "unit", "tag", "source"]
+    return tuple(build(title, heads, rows[group]) for group, title in TITLES.items() if group in rows)
+
+
+def provenance_table(mechanism: Mechanism) -> Table:
+    """How many numbers of the description are stated, derived and assumed.
+
+    >>> provenance_table(Mechanism("")).texts()
+    [['tag', 'numbers'], ['assumed', '3']]
+    """
+    counts = Counter(tag.split()[0] if tag.split() else "assumed" for tag in provenance(mechanism).values())
+    order = [*_TAGS, *sorted(set(counts) - set(_TAGS))]
+    rows = [(Cell(tag, _TAGS.get(tag, Mark.PLAIN)), str(counts[tag])) for tag in order if counts[tag]]
+    return build("Where the numbers come from", ["tag", Column("numbers")], rows)
+
+
+def source_table(mechanism: Mechanism) -> Table | None:
+    """The sources that tags refer to, materials', parts' and gauges' own included; `None` without any.
+
+    >>> source_table(Mechanism("")) is None
+    True
+    """
+    rows = [(Cell(key, Mark.STRONG), text) for key, text in mechanism.sources.items()]
+    holders = {**mechanism.materials, **mechanism.parts, **mechanism.sensors}
+    own = {name: str(getattr(value, "source", "")) for name, value in holders.items()}
+    rows += [(Cell(name, Mark.STRONG), text) for name, text in own.items() if text]
+    return build("Sources", ["", "source"], rows) if rows else None
+
+
+def requirement_lines(mechanism: Mechanism) -> Table | None:
+    """The requirements as they are written in the description; `None` without any.
+
+    >>> requirement_lines(Mechanism("", requirements={"stroke.x": "at least 50 um"})).texts()[1]
+    ['stroke.x', 'at least 50 um']
+    """
+    rows = [(Cell(key, Mark.STRONG), text) for key, text in mechanism.requirements.items()]
+    return build("Requirements", ["requirement", "demand"], rows) if rows else None
+
+
+def _joined(addresses: tuple[str, ...]) -> Iterator[tuple[str, ...]]:
+    """Addresses of a vector's components together, others alone."""
+    gathered: list[str] = []
+    for address in addresses:
+        owner, _, last = address.rpartition(".")
+        if gathered and (gathered[0].rpartition(".")[0] != owner or last not in COMPONENTS):
+            yield tuple(gathered)
+            gathered = []
+        if last in COMPONENTS and owner:
+            gathered.append(address)
+        else:
+            yield (address,)
+    if gathered:
+        yield tuple(gathered)
+
+
+def _grouped(mechanism: Mechanism, addresses: tuple[str, ...]) -> tuple[str, str]:
+    """The kind of thing an address belongs to, and the name within it."""
+    address = next(iter(addresses))
+    address = address.rpartition(".")[0] if len(addresses) > 1 else address
+    first, _, rest = address.partition(".")
+    if "/" in first or address in mechanism.changes or first not in TITLES or not rest:
+        return ("changes" if "/" in first or address in mechanism.changes else "", address)
+    return first, rest
+
+
+def _row(mechanism: Mechanism, name: str, addresses: tuple[str, ...], tag: str) -> tuple[Cell, ...]:
+    values = [_value(mechanism, address) for address in addresses]
+    word, _, source = tag.partition(" ")
+    unit = values[0][1]
+    text = values[0][0] if len(values) == 1 else f"({', '.join(text for text, _ in values)})"
+    return Cell(name, Mark.STRONG), Cell(text), Cell("" if unit == "1" else unit), Cell(word, _TAGS.get(word, Mark.PLAIN)), Cell(source)
+
+
+def _value(mechanism: Mechanism, address: str) -> tuple[str, str]:
+    quantity: Quantity = quantity_of(mechanism, address)
+    form = field_unit(quantity)
+    return number(plain(get(mechanism, address)) * form.factor, _NUMBER_DIGITS), form.unit

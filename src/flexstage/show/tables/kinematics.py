@@ -1,0 +1,145 @@
+"""Tables of ideal kinematics: mobility, mappings, idle freedoms and redundant constraints by name."""
+
+from __future__ import annotations
+
+from flexstage.base.labelled import Matrix, ratio_units
+from flexstage.models.linear.kinematics import Kinematics
+from flexstage.parts.freedom import Freedom
+from flexstage.show.display import number
+from flexstage.show.table import Cell, Column, Mark, Table, build, matrix_table
+from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
+
+
+def mobility_table(kinematics: Kinematics) -> Table:
+    """Freedoms of the platform, strokes, and how they match.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.models.ideal import ideal
+    >>> mobility_table(ideal(double_triangle())).texts()[1]
+    ['platform freedoms', '6', 'x, y, z, rx, ry, rz']
+    """
+    strokes, mobility = len(kinematics.actuators), kinematics.mobility
+    rows = [
+        ("platform freedoms", str(mobility), ", ".join(kinematics.coordinates)),
+        ("actuators", str(strokes), ", ".join(kinematics.actuators)),
+        ("gauges", str(len(kinematics.gauges)), ", ".join(kinematics.gauges)),
+        ("idle freedoms", str(len(kinematics.idle)), "move neither platform nor stroke"),
+        ("redundant constraints", str(len(kinematics.redundant)), "stress the stage where parts do not fit exactly"),
+    ]
+    return build("Mobility", ["", Column("number"), "which"], rows, notes=[actuation_text(kinematics)], provenance=kinematics.provenance)
+
+
+def actuation_text(kinematics: Kinematics) -> str:
+    """In one sentence, whether the strokes determine the platform.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.models.ideal import ideal
+    >>> actuation_text(ideal(double_triangle()))
+    'Six actuators drive six freedoms: the strokes determine the platform, and every command is free of stress in the ideal stage.'
+    """
+    strokes, mobility = len(kinematics.actuators), kinematics.mobility
+    counted = f"{_count(strokes)} actuator{'s' if strokes != 1 else ''} drive{'s' if strokes == 1 else ''} {_count(mobility)} freedom"
+    counted = counted[:1].upper() + counted[1:] + ("s" if mobility != 1 else "")
+    if not kinematics.actuated:
+        held = f", but the links hold {', '.join(kinematics.immobile)}" if kinematics.immobile and mobility else ""
+        return f"{counted}{held}: the strokes do not determine the platform, and the mapping R_a is refused."
+    if strokes > mobility:
+        return f"{counted}: redundant actuation, commands outside the range of R_a only stress the stage."
+    return f"{counted}: the strokes determine the platform, and every command is free of stress in the ideal stage."
+
+
+def _count(number_of: int) -> str:
+    words = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve")
+    return words[number_of] if number_of < len(words) else str(number_of)
+
+
+def mapping_table(kinematics: Kinematics) -> Table:
+    """R_a = da/dxi: what each actuator must expand for each motion of the platform. Refused for under-actuated stages.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.models.ideal import ideal
+    >>> mapping_table(ideal(double_triangle())).texts()[1][:4]
+    ['B1 [um]', '1', '0', '0']
+    """
+    return matrix_table("Actuator mapping R_a", kinematics.mapping, fine=False)
+
+
+def gauge_table(kinematics: Kinematics) -> Table:
+    """R_s = ds/dx: what each gauge reads for each motion of the platform.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.models.ideal import ideal
+    >>> gauge_table(ideal(double_triangle())).texts()[4][:4]
+    ['S4 [um]', '0', '0', '1']
+    """
+    return matrix_table("Gauge mapping R_s", kinematics.gauge_mapping, fine=False)
+
+
+def jacobian_table(kinematics: Kinematics) -> Table:
+    """J = dx/da: what the platform does when one actuator expands.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.models.ideal import ideal
+    >>> jacobian_table(ideal(double_triangle())).texts()[3][-1]
+    '1'
+    """
+    units = ratio_units(TWIST_UNITS, ("m",) * len(kinematics.actuators))
+    return matrix_table("Platform motion per stroke, J = V R_a^-1", Matrix(kinematics.jacobian, COMPONENTS, kinematics.actuators, units))
+
+
+def motion_table(kinematics: Kinematics) -> Table | None:
+    """V: the platform's ideal motions where it has fewer than six; the entries outside the named coordinates are parasitic.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.models.ideal import ideal
+    >>> motion_table(ideal(double_triangle())) is None
+    True
+    """
+    if kinematics.mobility in (0, 6):
+        return None
+    units = ratio_units(TWIST_UNITS, tuple(TWIST_UNITS[COMPONENTS.index(name)] for name in kinematics.coordinates))
+    note = f"The length that makes rotations comparable with translations is {number(1e3 * kinematics.length, 4)} mm."
+    return matrix_table("Ideal motions V", Matrix(kinematics.motion, COMPONENTS, kinematics.coordinates, units), fine=False, notes=[note])
+
+
+def freedom_table(kinematics: Kinematics) -> Table:
+    """Which freedoms were taken as free at each link; links alike in copies of a unit share a row.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.models.ideal import ideal
+    >>> freedom_table(ideal(double_triangle())).texts()[1]
+    ['back', 'rx, ry, rz', 'B1, B2, B3']
+    """
+    shared: dict[tuple[str, tuple[Freedom, ...]], list[str]] = {}
+    for link, free in kinematics.free.items():
+        copy, _, name = link.rpartition("/")
+        shared.setdefault((name, free), []).append(copy)
+    rows = [
+        (Cell(name, Mark.STRONG), ", ".join(freedom.value for freedom in free) or "none", ", ".join(copy for copy in owners if copy))
+        for (name, free), owners in shared.items()
+    ]
+    return build("Freedoms taken as free", ["link", "free", "in"], rows, notes=["In each link's own frame, x along the part."])
+
+
+def idle_table(kinematics: Kinematics) -> Table | None:
+    """Freedoms that move neither platform nor stroke, by the links that turn; `None` where there are none.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.models.ideal import ideal
+    >>> idle_table(ideal(double_triangle())).texts()[1]
+    ['1', 'B1/base, B1/tip', 'B1/back, B1/front']
+    """
+    rows = [(str(number + 1), ", ".join(idle.bodies), ", ".join(idle.links)) for number, idle in enumerate(kinematics.idle)]
+    return build("Idle freedoms", [Column("no."), "bodies that move", "links that deform"], rows) if rows else None
+
+
+def redundant_table(kinematics: Kinematics) -> Table | None:
+    """Sets of locked freedoms of which one is superfluous; `None` where there are none.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.models.ideal import ideal
+    >>> redundant_table(ideal(double_triangle())).texts()[2]
+    ['2', 'B4/back.rx, B4/pzt.rx, B4/front.rx, B4/pivot.rx']
+    """
+    rows = [(str(number + 1), ", ".join(item.constraints)) for number, item in enumerate(kinematics.redundant)]
+    return build("Redundant constraints", [Column("no."), "locked freedoms, one of them superfluous"], rows) if rows else None

@@ -1,0 +1,209 @@
+"""Tables of lost motion: gains, the budget by part, crosstalk, parasitic motion, and where the stroke's energy goes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+
+import numpy as np
+
+from flexstage.analysis.lost_motion import LostMotion
+from flexstage.base.labelled import Matrix
+from flexstage.show.display import NOISE, number, percent
+from flexstage.show.table import Cell, Column, Mark, Table, build, first_design, matrix_table
+
+ELSEWHERE = "other units"
+_SHOWN = 1e-4
+
+
+def loss_table(lost: LostMotion) -> Table:
+    """Gain and loss of every actuator, with the two links that cost most.
+
+    >>> import flexstage as fs
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> stage = double_triangle()
+    >>> loss_table(fs.lost_motion(fs.ideal(stage), fs.lumped(stage))).texts()[4][:3]
+    ['B4', '0.96632', '3.368 %']
+    """
+    rows = [_loss_row(lost, name) for name in lost.loss.rows]
+    heads = ["actuator", Column("gain"), Column("loss"), Column("crosstalk received"), "largest contributions"]
+    note = "Gain: ideal motion reached per commanded one. Crosstalk received: the largest response to another actuator's command."
+    return build("Lost motion", heads, rows, notes=[note], provenance=lost.provenance)
+
+
+def _loss_row(lost: LostMotion, name: str) -> tuple[Cell, ...]:
+    index = lost.loss.rows.index(name)
+    line = first_design(lost.loss.values, 2)[index]
+    own = _silent(float(line[index]))
+    others = np.delete(np.abs(line), index)
+    least = max(NOISE, 0.02 * abs(own))
+    largest = ", ".join(f"{part} {percent(share, 3)}" for part, share in list(own_budget(lost, name).items())[:2] if abs(share) > least)
+    gain = float(first_design(lost.transfer.values, 2)[index, index])
+    return (
+        Cell(name, Mark.STRONG),
+        Cell(number(gain)),
+        Cell(percent(own), bar=min(1.0, 10.0 * abs(own))),
+        Cell(percent(_silent(float(np.max(others, initial=0.0))), 3)),
+        Cell(largest),
+    )
+
+
+def _silent(share: float) -> float:
+    """A share without rounding noise."""
+    return 0.0 if abs(share) < NOISE else share
+
+
+def own_budget(lost: LostMotion, actuator: str) -> dict[str, float]:
+    """An actuator's loss by link and axis of its own unit, largest first, the links of other units added up as `other units`.
+
+    >>> import flexstage as fs
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> stage = double_triangle()
+    >>> next(iter(own_budget(fs.lost_motion(fs.ideal(stage), fs.lumped(stage)), "B4")))
+    'pivot.rz'
+    """
+    shares = {name: float(first_design(np.asarray(value)[..., None], 1)[0]) for name, value in lost.of(actuator).items()}
+    gathered = gathered_by_unit(shares, actuator)
+    return dict(sorted(gathered.items(), key=lambda item: -abs(round(item[1], 12))))
+
+
+def gathered_by_unit(shares: Mapping[str, float], actuator: str) -> dict[str, float]:
+    """Shares by name with the actuator's own copy left out of the names and all other copies added up.
+
+    >>> gathered_by_unit({"B1/front.rz": 1.0, "B2/front.rz": 2.0, "B3/front.rz": 3.0, "guide.y": 4.0}, "B1")
+    {'front.rz': 1.0, 'other units': 5.0, 'guide.y': 4.0}
+    """
+    result: dict[str, float] = {}
+    owner = actuator.rpartition("/")[0] if "/" in actuator else actuator
+    for name, share in shares.items():
+        copy, slash, own = name.partition("/")
+        key = own if slash and copy == owner else ELSEWHERE if slash else name
+        result[key] = result.get(key, 0.0) + share
+    return result
+
+
+def budget_table(lost: LostMotion) -> Table:
+    """Every actuator's loss divided among the links and axes of its unit; each column adds up to its loss.
+
+    >>> import flexstage as fs
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> stage = double_triangle()
+    >>> budget_table(fs.lost_motion(fs.ideal(stage), fs.lumped(stage))).texts()[-1][4]
+    '3.368 %'
+    """
+    names = lost.loss.rows
+    budgets = {name: own_budget(lost, name) for name in names}
+    notes = [f"Contributions below {percent(_SHOWN)} everywhere are gathered as the rest. Negative ones give back what others take."]
+    return build("Lost-motion budget", ["part.axis", *(Column(name) for name in names)], _share_rows(budgets, "loss"), notes=notes)
+
+
+def _share_rows(columns: Mapping[str, Mapping[str, float]], total: str) -> list[tuple[Cell, ...]]:
+    """Rows by part, largest first, columns by actuator, what is small everywhere gathered, the sum last."""
+    parts = list(dict.fromkeys(part for shares in columns.values() for part in shares))
+    size = {part: max(abs(shares.get(part, 0.0)) for shares in columns.values()) for part in parts}
+    kept = sorted((part for part in parts if size[part] >= _SHOWN), key=lambda part: -round(size[part], 9))
+    small = [part for part in parts if size[part] < _SHOWN]
+    rows = [_share_row(part, [shares.get(part) for shares in columns.values()]) for part in kept]
+    if small:
+        rows.append(_share_row("rest", [sum(shares.get(part, 0.0) for part in small) for shares in columns.values()]))
+    sums = [_silent(sum(shares.values())) for shares in columns.values()]
+    return [*rows, (Cell(total, Mark.STRONG), *(Cell(percent(value), Mark.STRONG) for value in sums))]
+
+
+def _share_row(part: str, shares: Iterable[float | None]) -> tuple[Cell, ...]:
+    cells = [Cell("") if share is None else _share_cell(share) for share in shares]
+    return Cell(part, Mark.STRONG), *cells
+
+
+def _share_cell(share: float) -> Cell:
+    share = _silent(share)
+    text = percent(share, 3 if abs(share) >= 1e-3 else 2)
+    return Cell("0" if share == 0.0 else text, Mark.FAINT if abs(share) < _SHOWN else Mark.PLAIN)
+
+
+def gain_table(lost: LostMotion) -> Table:
+    """T = dx/da: what the elastic platform does when one actuator expands.
+
+    >>> import flexstage as fs
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> stage = double_triangle()
+    >>> gain_table(fs.lost_motion(fs.ideal(stage), fs.lumped(stage))).texts()[3][4]
+    '0.96838'
+    """
+    return matrix_table("Elastic platform motion per stroke, T", lost.gain)
+
+
+def crosstalk_table(lost: LostMotion) -> Table:
+    """R_a V^+ T: how far each commanded motion is reached (diagonal), and what it stirs of the others.
+
+    >>> import flexstage as fs
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> stage = double_triangle()
+    >>> crosstalk_table(fs.lost_motion(fs.ideal(stage), fs.lumped(stage))).texts()[4][4]
+    '0.96632'
+    """
+    note = "Row: what an actuator's motion is reached as. Column: the actuator that is commanded. Ideal: the unit matrix."
+    return matrix_table("Gain and crosstalk, R_a V+ T", lost.transfer, notes=[note])
+
+
+def parasitic_table(lost: LostMotion) -> Table | None:
+    """The platform's motion outside its ideal ones per stroke; `None` where there is none.
+
+    >>> import flexstage as fs
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> stage = double_triangle()
+    >>> parasitic_table(fs.lost_motion(fs.ideal(stage), fs.lumped(stage))) is None
+    True
+    """
+    values, scale = first_design(lost.parasitic.values, 2), first_design(lost.gain.values, 2)
+    weight = np.array([1.0, 1.0, 1.0, *[lost.length] * 3])[:, None]
+    if np.max(np.abs(values * weight), initial=0.0) < NOISE * np.max(np.abs(scale * weight), initial=0.0):
+        return None
+    note = f"Rotations and translations are compared by a length of {number(1e3 * lost.length, 4)} mm."
+    return matrix_table("Parasitic motion per stroke", lost.parasitic, against=lost.gain, notes=[note])
+
+
+def correction_table(lost: LostMotion) -> Table:
+    """The strokes that reach a wanted motion in spite of elasticity, a = (R_a V^+ T)^-1 R_a xi.
+
+    >>> import flexstage as fs
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> stage = double_triangle()
+    >>> correction_table(fs.lost_motion(fs.ideal(stage), fs.lumped(stage))).texts()[4][3]
+    '0.34422'
+    """
+    return matrix_table("Corrected mapping: strokes that reach the wanted motion", lost.correction, fine=False)
+
+
+def energy_table(lost: LostMotion) -> Table:
+    """Where the stroke goes: strain energy by part when one actuator expands and nothing else acts, as a share of its total.
+
+    >>> import flexstage as fs
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> stage = double_triangle()
+    >>> energy_table(fs.lost_motion(fs.ideal(stage), fs.lumped(stage))).texts()[1][0]
+    'other units'
+    """
+    energies = energy_shares(lost)
+    totals = first_design(lost.energy.values, 2).sum(axis=0)
+    rows = _share_rows(energies, "all")
+    whole = [Cell("energy [uJ/um^2]", Mark.STRONG), *(Cell(number(1e-6 * float(total), 4)) for total in totals)]
+    heads = ["part", *(Column(name) for name in lost.energy.columns)]
+    return build("Where the stroke goes: strain energy", heads, [*rows, tuple(whole)])
+
+
+def energy_shares(lost: LostMotion) -> dict[str, dict[str, float]]:
+    """By actuator and part of its unit, the share of strain energy.
+
+    >>> import flexstage as fs
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> stage = double_triangle()
+    >>> round(sum(energy_shares(fs.lost_motion(fs.ideal(stage), fs.lumped(stage)))["B1"].values()), 12)
+    1.0
+    """
+    values = first_design(lost.energy.values, 2)
+    return {name: gathered_by_unit(_shares(lost.energy, values[:, column]), name) for column, name in enumerate(lost.energy.columns)}
+
+
+def _shares(energy: Matrix, column: np.ndarray) -> dict[str, float]:
+    total = float(column.sum()) or 1.0
+    return {part: float(value) / total for part, value in zip(energy.rows, column, strict=True)}

@@ -1,0 +1,106 @@
+"""Tables of verdicts on requirements."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from flexstage.analysis.requirements import KINDS, Verdict
+from flexstage.base.quantity import Quantity
+from flexstage.show.display import field_unit, number, percent, value_with_unit
+from flexstage.show.table import Cell, Column, Mark, Table, build, first_design
+
+
+def verdict_table(verdicts: Sequence[Verdict]) -> Table | None:
+    """Requirements with demand, value and margin, met or not; `None` without any.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.analysis.judge import judge
+    >>> verdict_table(judge(double_triangle())).texts()[7]
+    ['frequency.platform.1', 'at least 100 Hz', '106.01 Hz', '+6.01 %', 'met']
+    """
+    if not verdicts:
+        return None
+    rows = [_row(verdict) for verdict in verdicts]
+    notes = [f"{verdict.requirement.key}: {verdict.reason}" for verdict in verdicts if verdict.reason]
+    heads = ["requirement", "demand", Column("value"), Column("margin"), "verdict"]
+    return build("Requirements", heads, rows, notes=notes)
+
+
+def met(verdict: Verdict) -> bool:
+    """Whether a requirement is met by every design.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.analysis.judge import judge
+    >>> all(met(verdict) for verdict in judge(double_triangle()))
+    True
+    """
+    return bool(np.all(verdict.passed))
+
+
+def meaning(verdict: Verdict) -> str:
+    """What a requirement's key means, in words.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.analysis.judge import judge
+    >>> meaning(judge(double_triangle())[6])
+    'n-th natural frequency of the platform'
+    """
+    return KINDS[verdict.requirement.subject].meaning
+
+
+def shown_value(verdict: Verdict) -> str:
+    """The value a requirement is judged by, in display units (first design).
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.analysis.judge import judge
+    >>> shown_value(judge(double_triangle())[6])
+    '106.01 Hz'
+    """
+    if verdict.value is None:
+        return "unknown"
+    return quantity_text(float(first_design(np.atleast_1d(verdict.value), 1)[0]), verdict.requirement.quantity)
+
+
+def quantity_text(value: float, quantity: Quantity) -> str:
+    """An SI value of a quantity in the unit the quantity is shown in.
+
+    >>> from flexstage.base.quantity import STIFFNESS
+    >>> quantity_text(17e6, STIFFNESS)
+    '17 N/um'
+    """
+    try:
+        form = field_unit(quantity)
+    except KeyError:
+        return value_with_unit(value, quantity.si)
+    text = number(value * form.factor)
+    return text if form.unit == "1" else f"{text} {form.unit}"
+
+
+def margin_text(verdict: Verdict) -> str:
+    """The margin with its sign, as per cent of the limit.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.analysis.judge import judge
+    >>> margin_text(judge(double_triangle())[6])
+    '+6.01 %'
+    """
+    if verdict.value is None:
+        return "-"
+    margin = float(first_design(np.atleast_1d(verdict.margin), 1)[0])
+    if verdict.requirement.limit == 0.0:
+        return quantity_text(margin, verdict.requirement.quantity)
+    return f"{'+' if margin >= 0.0 else ''}{percent(margin, 3)}"
+
+
+def _row(verdict: Verdict) -> tuple[Cell, ...]:
+    good = met(verdict)
+    mark = Mark.PASS if good else Mark.FAIL
+    return (
+        Cell(verdict.requirement.key, Mark.STRONG),
+        Cell(verdict.requirement.text),
+        Cell(shown_value(verdict)),
+        Cell(margin_text(verdict), mark),
+        Cell("met" if good else "withheld" if verdict.reason.startswith("withheld") else "not met", mark),
+    )

@@ -1,0 +1,110 @@
+"""Tables of statics: stiffness, compliance, and stiffness by direction."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from flexstage.analysis.statics import DirectionalStiffness, Statics
+from flexstage.show.display import aligned, number, preferred
+from flexstage.show.table import Cell, Column, Mark, Table, build, first_design, matrix_table
+
+_LOAD = 100.0
+_STEP = 15
+
+
+def stiffness_table(statics: Statics) -> Table:
+    """K of the platform, strokes held.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.models.mapped import mapped
+    >>> from flexstage.analysis.statics import statics
+    >>> stiffness_table(statics(mapped(double_triangle()))).texts()[1][:2]
+    ['fx [N]', '15.45']
+    """
+    return matrix_table(f"Stiffness at {_points(statics)}", statics.stiffness)
+
+
+def compliance_table(statics: Statics) -> Table:
+    """C of the platform, strokes held.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.models.mapped import mapped
+    >>> from flexstage.analysis.statics import statics
+    >>> compliance_table(statics(mapped(double_triangle()))).texts()[3][3]
+    '0.099083'
+    """
+    return matrix_table(f"Compliance at {_points(statics)}", statics.compliance)
+
+
+def _points(statics: Statics) -> str:
+    same = statics.load_point == statics.read_point
+    return statics.read_point if same else f"{statics.read_point}, loaded at {statics.load_point}"
+
+
+def direction_table(statics: Statics, load: float = _LOAD) -> Table:
+    """Displacement under a force in the plane and stiffness, by direction of the force (the form of the paper's Table 1).
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.models.mapped import mapped
+    >>> from flexstage.analysis.statics import statics
+    >>> direction_table(statics(mapped(double_triangle()))).texts()[1]
+    ['0', '7.3326', '13.638', '15.45']
+    """
+    degrees = np.arange(0, 180, _STEP)
+    angles = np.deg2rad(degrees)
+    free, held = (_along(item, angles) for item in (statics.free, statics.held))
+    micro = preferred("N/m").factor
+    columns = [aligned(1e6 * load / free), aligned(micro * free), aligned(micro * held)]
+    rows = [(str(degree), *values) for degree, values in zip(degrees, zip(*columns, strict=True), strict=True)]
+    heads = [
+        Column("direction", "deg"),
+        Column(f"displacement at {number(load)} N", "um"),
+        Column("stiffness, others free", "N/um"),
+        Column("stiffness, others held", "N/um"),
+    ]
+    return build("Stiffness by direction in the plane", heads, rows, notes=["Directions counted from x towards y."])
+
+
+def _along(stiffness: DirectionalStiffness, angles: np.ndarray) -> np.ndarray:
+    return np.array([float(first_design(np.atleast_1d(stiffness.along(float(angle))), 1)[0]) for angle in angles])
+
+
+def principal_table(statics: Statics) -> Table:
+    """Principal stiffnesses in the plane with their directions, with the other freedoms free and held.
+
+    Where the two differ by less than rounding, the direction means nothing and is left out.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.models.mapped import mapped
+    >>> from flexstage.analysis.statics import statics
+    >>> principal_table(statics(mapped(double_triangle()))).texts()[1]
+    ['free', '13.638', '13.638', 'none', '0 %']
+    """
+    rows = [_principal(name, item) for name, item in (("free", statics.free), ("held", statics.held))]
+    heads = ["other freedoms", Column("stiffest", "N/um"), Column("softest", "N/um"), Column("stiffest along", "deg"), Column("spread")]
+    return build("Principal stiffnesses in the plane", heads, rows)
+
+
+def _principal(name: str, stiffness: DirectionalStiffness) -> tuple[Cell, ...]:
+    most, least = (float(value) for value in first_design(stiffness.principal, 1))
+    angle = float(np.rad2deg(first_design(np.atleast_1d(stiffness.angle), 1)[0]))
+    spread = (most - least) / most
+    alike = bool(np.isnan(angle))
+    direction = "none" if alike else number(angle, 4)
+    text = "0 %" if alike else f"{number(100.0 * spread, 3)} %"
+    return Cell(name, Mark.STRONG), Cell(number(1e-6 * most)), Cell(number(1e-6 * least)), Cell(direction), Cell(text)
+
+
+def centre_table(statics: Statics) -> Table:
+    """Centre of stiffness relative to the load point.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.models.mapped import mapped
+    >>> from flexstage.analysis.statics import statics
+    >>> centre_table(statics(mapped(double_triangle()))).texts()[1]
+    ['platform', '0', '0', '-25']
+    """
+    values = 1e3 * first_design(statics.centre, 1)
+    texts = aligned(np.where(np.abs(values) < 1e-6, 0.0, values))
+    heads = ["relative to", *(Column(axis, "mm") for axis in "xyz")]
+    return build("Centre of stiffness", heads, [(Cell(statics.load_point, Mark.STRONG), *texts)])

@@ -1,0 +1,81 @@
+"""Tables of single units and of what simpler theories omit."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from flexstage.analysis.omitted import Omitted
+from flexstage.analysis.units import UnitResult
+from flexstage.show.display import NO_VALUE, NOISE, number, percent, value_with_unit
+from flexstage.show.scene.primitives import plain
+from flexstage.show.table import Cell, Column, Mark, Table, build
+
+
+def unit_table(found: Mapping[str, UnitResult]) -> Table:
+    """Every distinct unit alone: stiffness at its output, gain, loss.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.analysis.units import units
+    >>> unit_table(units(double_triangle())).texts()[1][:2]
+    ['horizontal', 'B1']
+    """
+    rows = [
+        (
+            Cell(name, Mark.STRONG),
+            unit.copy,
+            value_with_unit(unit.axial, "N/m"),
+            " to ".join(value_with_unit(value, "N/m", 4) for value in unit.lateral),
+            number(unit.ideal_gain),
+            number(unit.gain),
+            percent(unit.loss if abs(unit.loss) > NOISE else 0.0),
+            NO_VALUE if unit.series is None else value_with_unit(unit.series, "N/m"),
+        )
+        for name, unit in found.items()
+    ]
+    heads = ["unit", "copy", Column("axial stiffness"), Column("lateral stiffness"), Column("ideal gain"), Column("gain")]
+    heads += [Column("loss"), Column("in strokes")]
+    note = "Each unit alone, strokes held, output guided along its direction. In strokes: in actuator coordinates, as mapped reads it."
+    return build("Units alone", heads, rows, notes=[note])
+
+
+def lever_table(found: Mapping[str, UnitResult]) -> Table | None:
+    """The springs and arms of lever units as in Eqs. 3-11 of Shin & Moon; `None` without lever units.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.analysis.units import units
+    >>> lever_table(units(double_triangle())).texts()[1][:2]
+    ['vertical', '30.996 N/um']
+    """
+    levers = {name: unit.lever for name, unit in found.items() if unit.lever is not None}
+    rows = [
+        (
+            Cell(name, Mark.STRONG),
+            value_with_unit(plain(lever.drive), "N/m"),
+            value_with_unit(plain(lever.pivot), "N m/rad"),
+            value_with_unit(plain(lever.pole), "N/m"),
+            f"{number(1e3 * plain(lever.short_arm))} / {number(1e3 * plain(lever.long_arm))}",
+            number(plain(lever.gain)),
+            value_with_unit(plain(lever.tip_compliance), "m/N", 4),
+        )
+        for name, lever in levers.items()
+    ]
+    heads = ["unit", Column("drive K1"), Column("pivot K_theta2"), Column("pole K3"), Column("arms r1 / r2", "mm")]
+    heads += [Column("gain (Eq. 11)"), Column("tip compliance (Eq. 11)")]
+    return build("Springs of the lever units", heads, rows) if rows else None
+
+
+def omitted_table(found: Omitted, *, top: int = 12) -> Table:
+    """What each freedom that a simpler theory leaves out costs.
+
+    >>> omitted_table(Omitted("platform.z", "B1", 2.0, 1.9, {"lever.rz": -0.1})).texts()[1]
+    ['simple theory', '2', '']
+    """
+    ranked = sorted(found.changes.items(), key=lambda item: -abs(round(item[1] / found.full, 9)))
+    rows: list[tuple[Cell | str, ...]] = [(Cell("simple theory", Mark.STRONG), number(found.simple), "")]
+    rows += [(Cell(name), f"{change:+.4g}", percent(change / found.full, 3)) for name, change in ranked[:top]]
+    rest = sum(change for _, change in ranked[top:])
+    rows += [(Cell("further freedoms"), f"{rest:+.4g}", percent(rest / found.full, 3))] if ranked[top:] else []
+    rows += [(Cell("their interaction"), f"{found.interaction:+.4g}", percent(found.interaction / found.full, 3))]
+    rows += [(Cell("full theory", Mark.STRONG), Cell(number(found.full), Mark.STRONG), "")]
+    title = f"What the simple theory omits: {found.output} over {found.input}"
+    return build(title, ["freedom given back", Column("value"), Column("of the full")], rows)

@@ -1,0 +1,155 @@
+"""Calibration: hinges of beam theory replaced by their 6x6 from finite elements, so that the lumped reading has FEA's accuracy."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from flexstage.base.finding import Finding, require
+from flexstage.base.number import Array, stack
+from flexstage.beams.compliance import compliance
+from flexstage.beams.mass import mass
+from flexstage.mechanism.checks.orientation import is_round
+from flexstage.mechanism.drawn import calibrated
+from flexstage.mechanism.expand import expand
+from flexstage.mechanism.mechanism import Link, Mechanism
+from flexstage.mechanism.store import loads
+from flexstage.mechanism.store.stand_in import KEPT, StandIn, stood_in
+from flexstage.parts.given import Given, Origin
+from flexstage.solid.hinges import STANDARD_HINGES, Hinges, SolidHinge, solid_hinges
+from flexstage.spatial.frame import COMPONENTS, mirror, turned
+
+TAG = "derived FEA"
+_DIGITS = 7
+_LARGEST_ERROR = 0.1
+
+
+@dataclass(frozen=True, eq=False)
+class Calibration:
+    """The hinges that were computed, the `parts` that stand in for them, and the design file's `text` with these parts."""
+
+    hinges: Mapping[str, SolidHinge]
+    parts: Mapping[str, Given]
+    text: str
+
+    @property
+    def softer(self) -> dict[str, Array]:
+        """By part, FEA's compliance over beam theory's less one (6,), along and about x, y, z."""
+        return {
+            name: np.diag(stack(self.parts[name].compliance)) / np.diag(compliance(hinge.form, hinge.material)) - 1.0
+            for name, hinge in self.hinges.items()
+        }
+
+
+def calibrate(text: str, compute: Hinges = STANDARD_HINGES, *, where: str = "text") -> Calibration:
+    """Compute the 6x6 of every distinct hinge in a design file's text and put them in, comments kept.
+
+    Raises `DesignError` for hinges that are calibrated already, that single copies depart from, or whose 6x6 FEA could not find.
+    """
+    mechanism = loads(text, where=where)
+    require(_already(mechanism))
+    require(_departing(mechanism))
+    found = solid_hinges(mechanism, compute)
+    parts = given_parts(found)
+    errors = max(hinge.found.error for hinge in found.values())
+    stands = {name: StandIn(part, found[name].links) for name, part in parts.items()}
+    return Calibration(found, parts, stood_in(text, stands, f"{TAG} within {100.0 * errors:.2g} %", where=where))
+
+
+def given_parts(found: Mapping[str, SolidHinge]) -> dict[str, Given]:
+    """The computed hinges as given parts, of the mass and with the intended freedoms of the drawn ones.
+
+    The 6x6 is given the symmetry of the drawn hinge; a freedom whose compliance FEA cannot tell from that of the blocks beside the hinge
+    keeps beam theory's. Raises `DesignError` for a 6x6 that is known to worse than 10 %.
+
+    >>> given_parts({})
+    {}
+    """
+    parts: dict[str, Given] = {}
+    findings: list[Finding] = []
+    for name, hinge in found.items():
+        matrix = _clean(hinge)
+        if not hinge.found.error <= _LARGEST_ERROR:
+            what = f"its 6x6 by FEA is known to {100.0 * hinge.found.error:.2g} % only, no better than beam theory's"
+            findings.append(Finding(f"parts.{name}", what, "Ask for more accuracy"))
+            continue
+        parts[name] = Given(
+            compliance=tuple(tuple(float(f"{value:.{_DIGITS}g}") for value in row) for row in matrix),
+            free=hinge.form.intended,
+            mass=_mass(hinge),
+            origin=Origin.FEA,
+            source=_source(hinge),
+            stands_for=hinge.drawn.shared + KEPT,
+        )
+    require(findings)
+    return parts
+
+
+def with_matrices(mechanism: Mechanism, found: Mapping[str, SolidHinge]) -> Mechanism:
+    """The stage with the computed hinges as given parts, those of which no copy departs.
+
+    Raises `DesignError` where copies depart from a shared hinge.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> with_matrices(double_triangle(), {}) == double_triangle()
+    True
+    """
+    require(_departing(mechanism))
+    parts = given_parts(found)
+    kept = {hinge.drawn.shared + KEPT: hinge.form for hinge in found.values()}
+    others = {name: part for name, part in mechanism.parts.items() if name + KEPT not in kept}
+    names = {link: name for name, hinge in found.items() for link in hinge.links}
+    units = {unit: replace(drawn, links=_renamed(drawn.links, names, f"{unit}/")) for unit, drawn in mechanism.units.items()}
+    return replace(mechanism, parts={**others, **kept, **parts}, units=units, links=_renamed(mechanism.links, names, "links."))
+
+
+def _renamed(links: Mapping[str, Link], names: Mapping[str, str], owner: str) -> dict[str, Link]:
+    """Links with the parts that stand in for theirs."""
+    return {name: replace(link, part=names.get(owner + name, link.part)) for name, link in links.items()}
+
+
+def _already(mechanism: Mechanism) -> Iterator[Finding]:
+    for name in calibrated(mechanism):
+        yield Finding(f"parts.{name}", "its 6x6 is of FEA origin already", "Calibrate the file that it was made from")
+
+
+def _departing(mechanism: Mechanism) -> Iterator[Finding]:
+    for link in expand(mechanism).links.values():
+        shared = mechanism.parts[link.link.part]
+        if link.part != shared:
+            yield Finding(link.name, f"departs from its part {link.link.part}, whose 6x6 is shared", "Give that link a part of its own")
+
+
+_TURN = turned(np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]]))
+"""A quarter turn about x."""
+
+
+def _clean(hinge: SolidHinge) -> Array:
+    """The 6x6 with the symmetry of the drawn hinge, which its mesh has not quite.
+
+    Reflected across y and z a hinge is itself, and across x if its roots are alike; a round one is alike all round. What cannot be told
+    from the stubs is as beam theory has it, alone.
+    """
+    matrix, known = np.array(hinge.found.compliance), np.array(hinge.separable)
+    matrix[~known] = matrix[:, ~known] = 0.0
+    matrix += np.diag(np.where(known, 0.0, np.diag(compliance(hinge.form, hinge.material))))
+    mirrors = [mirror(axis) for axis in ((0, 1, 2) if hinge.roots == hinge.roots.mirrored else (1, 2))]
+    for symmetry in [*mirrors, *([_TURN] if is_round(hinge.form) else [])]:
+        matrix = 0.5 * (matrix + symmetry @ matrix @ symmetry.T)
+    return matrix
+
+
+def _source(hinge: SolidHinge) -> str:
+    found = hinge.found
+    kept = [axis for axis, known in zip(COMPONENTS, hinge.separable, strict=True) if not known]
+    beam = f"; {', '.join(kept)} by beam theory" if kept else ""
+    return f"finite elements of order {found.order}, {found.freedoms} freedoms, error {100.0 * found.error:.2g} %{beam}"
+
+
+def _mass(hinge: SolidHinge) -> float:
+    """Mass of the drawn hinge [kg]: that of a unit translation of both of its ends."""
+    both = np.zeros(12)
+    both[[0, 6]] = 1.0
+    return float(both @ np.real(mass(hinge.form, hinge.material)) @ both)

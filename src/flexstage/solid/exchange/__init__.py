@@ -1,0 +1,1 @@
+"""Solids in files for other programs: STEP, VTU, GLB."""

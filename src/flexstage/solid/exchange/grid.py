@@ -1,0 +1,88 @@
+"""Grids: a component's mesh as quadratic tetrahedra for other programs, made in a process of its own."""
+
+from __future__ import annotations
+
+import io
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from flexstage.base.number import Array
+from flexstage.solid.fea.fineness import Fineness
+from flexstage.solid.fea.reducing import ComponentJob
+from flexstage.solid.fea.worker import Call
+
+if TYPE_CHECKING:
+    from flexstage.solid.fea.mesh import Meshed
+
+_CORNERS = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0), (0.0, 0.0, 0.0))
+_ORDER = (1, 0, 2, 3)
+"""Corners in the order of VTK, whose tetrahedra turn the other way."""
+_EDGES = ((0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3))
+"""Edges in the order of VTK."""
+
+
+@dataclass(frozen=True, eq=False)
+class Grid:
+    """Quadratic tetrahedra: `points` (p, 3) [m], `cells` (c, 10) in VTK's order, and the number of the piece (c,) they belong to."""
+
+    points: Array
+    cells: Array
+    owner: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Gridding(ComponentJob):
+    """A component to mesh as a grid."""
+
+    fineness: Fineness
+
+    def work(self, call: Call) -> bytes:
+        """The grid, stored as numpy does."""
+        from flexstage.solid.fea.mesh import meshed
+
+        found = grid(meshed(self.component, self.fineness, call.report, call.attempt))
+        stream = io.BytesIO()
+        np.savez(stream, points=found.points, cells=found.cells, owner=found.owner)
+        return stream.getvalue()
+
+
+def stored_grid(data: bytes) -> Grid:
+    """The grid that a job stored.
+
+    >>> stream = io.BytesIO()
+    >>> np.savez(stream, points=np.zeros((10, 3)), cells=np.arange(10)[None], owner=np.zeros(1, dtype=int))
+    >>> stored_grid(stream.getvalue()).cells.shape
+    (1, 10)
+    """
+    with np.load(io.BytesIO(data)) as arrays:
+        return Grid(arrays["points"], arrays["cells"], arrays["owner"])
+
+
+def grid(mesh: Meshed) -> Grid:
+    """A mesh's tetrahedra with the middles of their edges, which lie on the curved geometry.
+
+    >>> import ngsolve
+    >>> from netgen import occ
+    >>> from flexstage.solid.fea.mesh import Meshed
+    >>> cube = ngsolve.Mesh(occ.OCCGeometry(occ.Box((0, 0, 0), (1, 1, 1))).GenerateMesh(maxh=2.0))
+    >>> drawn = grid(Meshed(cube, (), (), np.zeros(cube.ne, dtype=int)))
+    >>> drawn.cells.shape == (cube.ne, 10), float(drawn.points.max())
+    (True, 0.001)
+    """
+    import ngsolve
+
+    from flexstage.solid.fea.draw import MILLIMETRES
+
+    elements = np.array([[vertex.nr for vertex in element.vertices] for element in mesh.mesh.Elements(ngsolve.VOL)])[:, _ORDER]
+    corners = np.array(_CORNERS)[list(_ORDER)]
+    middles = np.array([0.5 * (corners[one] + corners[other]) for one, other in _EDGES])
+    ends = np.sort(np.stack([elements[:, edge] for edge in _EDGES], axis=1), axis=2)
+    _, first, number = np.unique(ends.reshape(-1, 2), axis=0, return_index=True, return_inverse=True)
+    rule = ngsolve.IntegrationRule([tuple(point) for point in middles.tolist()], [0.0] * len(middles))
+    place = ngsolve.CoefficientFunction((ngsolve.x, ngsolve.y, ngsolve.z))
+    mapped = np.asarray(place(mesh.mesh.MapToAllElements(rule, ngsolve.VOL)))
+    points = np.array([vertex.point for vertex in mesh.mesh.vertices])
+    cells = np.hstack([elements, len(points) + number.reshape(-1, len(_EDGES))])
+    return Grid(np.vstack([points, mapped[first]]) / MILLIMETRES, cells, np.asarray(mesh.owner))

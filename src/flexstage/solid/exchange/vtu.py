@@ -1,0 +1,111 @@
+"""VTU files: the meshes of all components of a stage as one unstructured grid of quadratic tetrahedra, in metres.
+
+Cells carry numbers: of their piece, of the body or link it belongs to, of the material and of the component; the names behind the numbers
+stand in a comment at the head of the file. Components do not share points where they meet: they are joined by coordinates, not by nodes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import accumulate
+from xml.sax.saxutils import escape
+
+import meshio
+import numpy as np
+
+from flexstage.base.number import Array
+from flexstage.base.progress import Progress
+from flexstage.base.store import temporary_folder
+from flexstage.base.text import printable
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.solid.exchange.grid import Grid, Gridding, stored_grid
+from flexstage.solid.fea.component import Component, components
+from flexstage.solid.fea.content import content
+from flexstage.solid.fea.fineness import Fineness
+from flexstage.solid.fea.install import require_solver
+from flexstage.solid.fea.remote import Limits, work_all
+from flexstage.solid.fea.stage_pieces import Stage, require_shapes, stage_pieces
+
+_LIMITS = Limits()
+
+
+@dataclass(frozen=True, eq=False)
+class StageMesh:
+    """The grids of all components in the stage's frame, and the pieces' names by number."""
+
+    stage: Stage
+    components: tuple[Component, ...]
+    grids: tuple[Grid, ...]
+    pieces: tuple[str, ...]
+
+
+def stage_mesh(mechanism: Mechanism, fineness: Fineness, limits: Limits = _LIMITS, progress: Progress | None = None) -> StageMesh:
+    """Mesh every distinct component once, in a process of its own, and place it with every copy.
+
+    Raises `DesignError` where the outlines do not form solids or cannot be meshed, and where nothing has a shape.
+
+    >>> stage_mesh(Mechanism("nothing"), Fineness())
+    Traceback (most recent call last):
+    flexstage.base.finding.DesignError: nothing: no body has outlines and no link a shape. ...
+    """
+    stage, parts = stage_pieces(mechanism), components(mechanism)
+    require_shapes(mechanism, stage)
+    require_solver()
+    jobs = [Gridding(content(part), part, fineness) for part in parts]
+    own: dict[str, Grid] = {}
+    work_all(
+        {job.key: job for job in reversed(jobs)}.values(), lambda job, data: own.update({job.key: stored_grid(data)}), limits, progress
+    )
+    numbers = {name: number for number, name in enumerate(stage.pieces)}
+    return StageMesh(stage, parts, tuple(_placed(job.component, own[job.key], numbers) for job in jobs), tuple(stage.pieces))
+
+
+def _placed(part: Component, own: Grid, numbers: Mapping[str, int]) -> Grid:
+    names = np.array([numbers[piece.name] for piece in part.pieces])
+    return Grid(part.place.point(own.points), own.cells, names[own.owner])
+
+
+def vtu(mesh: StageMesh) -> bytes:
+    """The file of a stage's mesh: cell data `piece`, `body`, `material`, `component` (numbers), `young` [Pa] and `density` [kg/m^3]."""
+    pieces = [mesh.stage.pieces[name] for name in mesh.pieces]
+    bodies = _numbered(piece.name if piece.body is None else piece.body for piece in pieces)
+    materials = _numbered(mesh.stage.materials[name] for name in mesh.pieces)
+    owner = np.concatenate([item.owner for item in mesh.grids])
+    part = np.concatenate([np.full(len(item.owner), number) for number, item in enumerate(mesh.grids)])
+    body = np.array([bodies[piece.name if piece.body is None else piece.body] for piece in pieces])
+    material = np.array([materials[mesh.stage.materials[name]] for name in mesh.pieces])
+    data = {
+        "piece": owner,
+        "body": body[owner],
+        "material": material[owner],
+        "component": part,
+        "young": np.array([piece.medium.young for piece in pieces])[owner],
+        "density": np.array([piece.medium.density for piece in pieces])[owner],
+    }
+    names = {"piece": mesh.pieces, "body": tuple(bodies), "material": tuple(materials)}
+    return _commented(_written(mesh.grids, data), {**names, "component": tuple(each.name for each in mesh.components)})
+
+
+def _numbered(names: Iterable[str]) -> dict[str, int]:
+    return {name: number for number, name in enumerate(dict.fromkeys(names))}
+
+
+def _written(grids: Sequence[Grid], data: Mapping[str, Array]) -> bytes:
+    starts = [0, *accumulate(len(item.points) for item in grids)]
+    cells = np.vstack([item.cells + start for item, start in zip(grids, starts, strict=False)])
+    points = np.vstack([item.points for item in grids])
+    mesh = meshio.Mesh(points, [("tetra10", cells)], cell_data={name: [values] for name, values in data.items()})
+    with temporary_folder() as folder:
+        path = folder / "stage.vtu"
+        mesh.write(path, file_format="vtu")
+        return path.read_bytes()
+
+
+def _commented(content: bytes, names: Mapping[str, Sequence[str]]) -> bytes:
+    """The file with the names behind its numbers as a comment."""
+    lines = ["lengths in metres; numbers of the cell data:"]
+    lines += [f"{kind} {number}: {escape(printable(name))}" for kind, members in names.items() for number, name in enumerate(members)]
+    comment = "\n".join(lines).replace("--", "- -")
+    head, start, rest = content.partition(b"<VTKFile")
+    return head + f"<!--\n{comment}\n-->\n".encode() + start + rest

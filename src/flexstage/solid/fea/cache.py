@@ -1,0 +1,147 @@
+"""The cache of superelements: files by content, so that a component is reduced once on a machine and a stopped reading resumes.
+
+What cannot be read or kept is told, never fatal: the component is then computed, or not kept.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import os
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from flexstage.base.finding import DesignError, Finding
+from flexstage.base.number import Array
+from flexstage.base.store import FOLDER_VARIABLE, cache_folder, write
+from flexstage.solid.fea.component import Component
+from flexstage.solid.fea.content import content
+from flexstage.solid.fea.fineness import Reduction
+from flexstage.solid.fea.store import read, versions
+from flexstage.solid.fea.superelement import Superelement
+
+_SUFFIX = ".superelement"
+
+
+@dataclass(frozen=True)
+class Cache:
+    """Where superelements are kept, and how many bytes of them: the least recently used go first.
+
+    Without a `folder`: that named by the environment variable FLEXSTAGE_CACHE, else flexstage in the user's folder for caches.
+    """
+
+    folder: Path | None = None
+    limit: float = 4e9
+
+
+@dataclass(frozen=True, eq=False)
+class Found:
+    """What the cache holds of a component: its superelement or nothing, and what is to be said about it."""
+
+    element: Superelement | None
+    notices: tuple[Finding, ...] = ()
+
+
+def folder_of(cache: Cache) -> Path:
+    """The folder a cache is in; it need not be there yet.
+
+    >>> folder_of(Cache(Path("/tmp/superelements"))).name
+    'superelements'
+    """
+    if cache.folder is not None:
+        return cache.folder
+    return cache_folder()
+
+
+def key_of(component: Component, reduction: Reduction, springs: Array | None = None) -> str:
+    """Digest of what a superelement depends on, versions apart: the component's content and how it is reduced.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.solid.fea.component import components
+    >>> part = components(parallelogram())[0]
+    >>> key_of(part, Reduction()) == key_of(part, Reduction(modes=13))
+    False
+    """
+    state = hashlib.sha256(f"{content(component)} {reduction}".encode())
+    if springs is not None:
+        state.update(np.ascontiguousarray(springs).tobytes())
+    return state.hexdigest()[:32]
+
+
+def find(cache: Cache, key: str, where: str) -> Found:
+    """Look a component up. `where` names it in what is said about files that are damaged or of other versions.
+
+    >>> find(Cache(Path("/nowhere")), "key", "lever").element is None
+    True
+    """
+    path = _path(cache, key)
+    try:
+        data = path.read_bytes()
+    except FileNotFoundError:
+        return Found(None, _other_versions(path, key, where))
+    except OSError as error:
+        return Found(None, (_notice(where, f"its superelement {path} cannot be read ({error.strerror})", _RECOMPUTED),))
+    outcome = read(data, key)
+    if isinstance(outcome, str):
+        return Found(None, (_notice(where, f"its superelement {path} is not used: {outcome}", _RECOMPUTED),))
+    with contextlib.suppress(OSError):
+        os.utime(path)
+    return Found(outcome)
+
+
+_RECOMPUTED = "It is computed anew and replaced"
+
+
+def keep(cache: Cache, key: str, where: str, data: bytes) -> tuple[Finding, ...]:
+    """Keep a superelement's bytes, whole or not at all. Tells why it could not.
+
+    >>> keep(Cache(Path("/proc/nowhere")), "key", "lever", b"")[0].where
+    'lever'
+    """
+    path = _path(cache, key)
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        _swept(cache, path.parent, len(data))
+        write(path, data)
+    except (OSError, DesignError) as error:
+        why = error.strerror if isinstance(error, OSError) else error.findings[0].what
+        what = f"its superelement of {len(data) / 1e6:.3g} MB could not be kept in {path.parent} ({why})"
+        advice = f"The result is complete but will be computed again; free space there, or name another folder in {FOLDER_VARIABLE}"
+        return (_notice(where, what, advice),)
+    return ()
+
+
+def _swept(cache: Cache, folder: Path, coming: int) -> None:
+    """Remove what was not used for longest, until there is room."""
+    total = float(coming)
+    for _, size, path in sorted(_files(folder, _SUFFIX), reverse=True):
+        total += size
+        if total > cache.limit:
+            path.unlink(missing_ok=True)
+
+
+def _files(folder: Path, suffix: str) -> Iterator[tuple[float, int, Path]]:
+    """Last use, size and path of files; another process may remove one meanwhile."""
+    for path in folder.glob(f"*{suffix}"):
+        with contextlib.suppress(FileNotFoundError):
+            state = path.stat()
+            yield state.st_mtime, state.st_size, path
+
+
+def _path(cache: Cache, key: str) -> Path:
+    return folder_of(cache) / f"{key}-{versions().digest}{_SUFFIX}"
+
+
+def _other_versions(path: Path, key: str, where: str) -> tuple[Finding, ...]:
+    others = len(list(path.parent.glob(f"{key}-*{_SUFFIX}"))) if path.parent.is_dir() else 0
+    if not others:
+        return ()
+    what = f"the cache {path.parent} holds its superelement of other versions only ({others}), here is {versions()}"
+    return (_notice(where, what, "It is computed anew; the others stay for the versions they belong to"),)
+
+
+def _notice(where: str, what: str, advice: str) -> Finding:
+    return Finding(where, what, advice)

@@ -1,0 +1,347 @@
+"""Elasticity on a mesh: u in metres over a mesh in millimetres; vectors of degrees of freedom are numpy arrays."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from functools import cached_property
+
+import ngsolve
+import numpy as np
+
+from flexstage.base.number import Array
+from flexstage.solid.fea.draw import MILLIMETRES
+from flexstage.solid.fea.mesh import Meshed
+from flexstage.spatial.frame import Frame
+
+_PER_METRE = 1.0 / MILLIMETRES
+"""Of energies: gradients per mm are 1e3 smaller than per m, squared, over volumes 1e9 larger."""
+_PER_VOLUME = 1.0 / MILLIMETRES**3
+
+
+@dataclass(frozen=True)
+class Field:
+    """The displacement space of a mesh, held on `held` faces, and the coefficients of its media."""
+
+    meshed: Meshed
+    space: ngsolve.VectorH1
+    lame: ngsolve.CoefficientFunction
+    shear: ngsolve.CoefficientFunction
+    density: ngsolve.CoefficientFunction
+
+    @property
+    def size(self) -> int:
+        """Number of degrees of freedom."""
+        return self.space.ndof
+
+    @property
+    def free(self) -> Array:
+        """Which degrees of freedom (n,) are not on a held face."""
+        return np.array([bool(bit) for bit in self.space.FreeDofs()], dtype=bool)
+
+    @cached_property
+    def linear(self) -> tuple[Array, Array]:
+        """Coefficients (n / 3,) of the function 1 and (n / 3, 3) of the coordinates [m], in one component of the space."""
+        one, place = _interpolated(
+            self, [ngsolve.CoefficientFunction((1.0, 1.0, 1.0)), ngsolve.CoefficientFunction(_coordinates())], None
+        ).T
+        return one.reshape(3, -1)[0], place.reshape(3, -1).T / MILLIMETRES
+
+    def stress(self, strain: ngsolve.CoefficientFunction) -> ngsolve.CoefficientFunction:
+        """Hooke's law: 2 mu strain + lambda tr(strain) I [Pa, with strains per m]."""
+        return 2.0 * self.shear * strain + self.lame * ngsolve.Trace(strain) * ngsolve.Id(3)
+
+
+def field(meshed: Meshed, held: Iterable[str], order: int) -> Field:
+    """The displacement space of `order` on a mesh with named faces held.
+
+    >>> from flexstage.solid.fea.bar import bar
+    >>> from flexstage.solid.fea.fineness import Fineness
+    >>> from flexstage.solid.fea.mesh import meshed
+    >>> space = field(meshed(bar(), Fineness(order=2)), ["foot"], 2)
+    >>> space.size == 3 * (space.size // 3) and not space.free.all()
+    True
+    """
+    mesh = meshed.mesh
+    pattern = "|".join(_escaped(name) for name in held)
+    space = ngsolve.VectorH1(mesh, order=order, dirichlet=pattern) if pattern else ngsolve.VectorH1(mesh, order=order)
+
+    def coefficient(values: list[float]) -> ngsolve.CoefficientFunction:
+        return mesh.MaterialCF({f"medium {number}": value for number, value in enumerate(values)})
+
+    media = meshed.media
+    return Field(
+        meshed,
+        space,
+        coefficient([medium.lame for medium in media]),
+        coefficient([medium.shear for medium in media]),
+        coefficient([medium.density for medium in media]),
+    )
+
+
+def _escaped(name: str) -> str:
+    return "".join(f"\\{letter}" if letter in ".+*?()[]{}|^$\\" else letter for letter in name)
+
+
+def strain(displacement: ngsolve.CoefficientFunction) -> ngsolve.CoefficientFunction:
+    """Small strain of a displacement, per mm.
+
+    >>> from flexstage.solid.fea.bar import bar
+    >>> from flexstage.solid.fea.fineness import Fineness
+    >>> from flexstage.solid.fea.mesh import meshed
+    >>> space = field(meshed(bar(), Fineness(order=2)), ["foot"], 2)
+    >>> function = ngsolve.GridFunction(space.space)
+    >>> function.Set(ngsolve.CF((1e-3 * ngsolve.x, 0, 0)))
+    >>> round(ngsolve.Integrate(strain(function)[0, 0], space.meshed.mesh), 6)  # 1e-3 over 10 000 mm^3
+    10.0
+    """
+    return 0.5 * (ngsolve.Grad(displacement) + ngsolve.Grad(displacement).trans)
+
+
+def stiffness(space: Field, elements: Array | None = None, *, assemble: bool = True) -> ngsolve.BilinearForm:
+    """int stress(u) : strain(v) dV [N/m], over some elements (mask) or all; without `assemble` for application only.
+
+    >>> from flexstage.solid.fea.bar import bar
+    >>> from flexstage.solid.fea.fineness import Fineness
+    >>> from flexstage.solid.fea.mesh import meshed
+    >>> space = field(meshed(bar(), Fineness(order=2)), ["foot"], 2)
+    >>> forces = times(stiffness(space), rigid(space, Frame(np.eye(3), np.zeros(3))))
+    >>> bool(np.abs(forces).max() < 1e-3)  # N per m and rad, of a bar of 1e8 N/m
+    True
+    """
+    u, v = space.space.TnT()
+    form = ngsolve.BilinearForm(space.space, symmetric=True, nonassemble=not assemble)
+    form += _PER_METRE * ngsolve.InnerProduct(space.stress(strain(u)), strain(v)) * _volume(elements)
+    return form.Assemble() if assemble else form
+
+
+def inertia(space: Field, elements: Array | None = None, *, assemble: bool = True) -> ngsolve.BilinearForm:
+    """int rho u . v dV [kg], over some elements (mask) or all; without `assemble` for application only.
+
+    >>> from flexstage.solid.fea.bar import bar
+    >>> from flexstage.solid.fea.fineness import Fineness
+    >>> from flexstage.solid.fea.mesh import meshed
+    >>> space = field(meshed(bar(), Fineness(order=2)), ["foot"], 2)
+    >>> moved = rigid(space, Frame(np.eye(3), np.zeros(3)))[:, :1]
+    >>> round((moved.T @ times(inertia(space), moved)).item(), 9)  # the bar's 10 g
+    0.01
+    """
+    u, v = space.space.TnT()
+    form = ngsolve.BilinearForm(space.space, symmetric=True, nonassemble=not assemble)
+    form += _PER_VOLUME * space.density * ngsolve.InnerProduct(u, v) * _volume(elements)
+    return form.Assemble() if assemble else form
+
+
+def _volume(elements: Array | None) -> object:
+    return ngsolve.dx if elements is None else ngsolve.dx(definedonelements=ngsolve.BitArray(elements.tolist()))
+
+
+def applied(form: ngsolve.BilinearForm, vectors: Array) -> Array:
+    """A form applied to columns (n, k), without a matrix.
+
+    >>> from flexstage.solid.fea.bar import bar
+    >>> from flexstage.solid.fea.fineness import Fineness
+    >>> from flexstage.solid.fea.mesh import meshed
+    >>> space = field(meshed(bar(), Fineness(order=2)), ["foot"], 2)
+    >>> moved = rigid(space, Frame(np.eye(3), np.zeros(3)))[:, :1]
+    >>> round((moved.T @ applied(inertia(space, assemble=False), moved)).item(), 9)
+    0.01
+    """
+    return _by_columns(form.Apply, vectors)
+
+
+def _by_columns(operator: Callable[[ngsolve.BaseVector, ngsolve.BaseVector], object], vectors: Array) -> Array:
+    """Columns (n, k) that an operator, which writes to its second vector, makes of columns (n, k)."""
+    x, y = ngsolve.BaseVector(len(vectors)), ngsolve.BaseVector(len(vectors))
+    result = np.empty_like(vectors)
+    for number in range(vectors.shape[1]):
+        x.FV().NumPy()[:] = vectors[:, number]
+        operator(x, y)
+        result[:, number] = y.FV().NumPy()
+    return result
+
+
+def stroke_force(space: Field, frame: Frame, length: float) -> Array:
+    """Forces (n,) of a unit free stroke: int C e0 : strain(v) dV with the imposed strain e0 = x x^T / length along the frame's x axis.
+
+    >>> from flexstage.solid.fea.bar import bar
+    >>> from flexstage.solid.fea.fineness import Fineness
+    >>> from flexstage.solid.fea.mesh import meshed
+    >>> space = field(meshed(bar(), Fineness(order=2)), ["foot"], 2)
+    >>> end = Frame(np.eye(3), np.array([0.1, 0.0, 0.0]))
+    >>> motion = factored(space, stiffness(space))(stroke_force(space, Frame(np.eye(3), np.zeros(3)), 0.1))
+    >>> round(float((mean_motion(space, end, "end") @ motion)[0]), 9)  # a unit stroke lengthens it by one
+    1.0
+    """
+    axis = np.outer(frame.rotation[:, 0], frame.rotation[:, 0]) / length
+    imposed = ngsolve.CoefficientFunction(tuple(axis.ravel()), dims=(3, 3))
+    v = space.space.TestFunction()
+    form = ngsolve.LinearForm(space.space)
+    # Strains of v are per mm: one factor 1e3; the volume 1e-9.
+    form += MILLIMETRES * _PER_VOLUME * ngsolve.InnerProduct(space.stress(imposed), strain(v)) * ngsolve.dx
+    form.Assemble()
+    return np.array(form.vec.FV().NumPy())
+
+
+def rigid(space: Field, frame: Frame, faces: str | None = None) -> Array:
+    """The six rigid motions (n, 6) in a frame's axes about its origin; on some faces only if named.
+
+    Translations of 1 m and rotations of 1 rad.
+
+    >>> from flexstage.solid.fea.bar import bar
+    >>> from flexstage.solid.fea.fineness import Fineness
+    >>> from flexstage.solid.fea.mesh import meshed
+    >>> space = field(meshed(bar(), Fineness(order=2)), ["foot"], 2)
+    >>> end = Frame(np.eye(3), np.array([0.1, 0.0, 0.0]))
+    >>> (mean_motion(space, end, "end") @ rigid(space, end)).round(9).tolist() == np.eye(6).tolist()
+    True
+    """
+    if faces is not None:
+        return _interpolated(space, [_rigid_motion(frame, axis) for axis in range(6)], faces)
+    one, place = space.linear
+    arm = place - one[:, None] * frame.position
+    axes = frame.rotation.T
+    motions = [*(np.outer(one, axis) for axis in axes), *(np.cross(axis, arm) for axis in axes)]
+    return np.stack([motion.T.ravel() for motion in motions], axis=1)
+
+
+def warped(space: Field, frame: Frame, size: float, faces: str) -> Array:
+    """The twelve motions (n, 12) of a face across a frame's x axis that are linear or quadratic over it, and not rigid.
+
+    With y and z over `size` [m]: in-plane strains and shear; u_x, u_y and u_z as y^2, y z and z^2, in the frame's axes.
+
+    >>> from flexstage.solid.fea.bar import bar
+    >>> from flexstage.solid.fea.fineness import Fineness
+    >>> from flexstage.solid.fea.mesh import meshed
+    >>> space = field(meshed(bar(), Fineness(order=2)), ["foot"], 2)
+    >>> end = Frame(np.eye(3), np.array([0.1, 0.0, 0.0]))
+    >>> from flexstage.solid.fea.fineness import WARPS
+    >>> warped(space, end, 0.01, "end").shape == (space.size, WARPS)
+    True
+    """
+    arm = [coordinate * (1.0 / MILLIMETRES) - float(at) for coordinate, at in zip(_coordinates(), frame.position, strict=True)]
+    across = [sum(float(c) * a for c, a in zip(frame.rotation[:, k], arm, strict=True)) * (1.0 / size) for k in (1, 2)]
+    y, z = across
+    square = (y * y, y * z, z * z)
+    local = [(0, y, 0), (0, 0, z), (0, z, y), *(tuple(f if k == axis else 0 for k in range(3)) for axis in range(3) for f in square)]
+    turn = ngsolve.CoefficientFunction(tuple(frame.rotation.ravel().tolist()), dims=(3, 3))
+    return _interpolated(space, [turn * ngsolve.CoefficientFunction(each) for each in local], faces)
+
+
+def _rigid_motion(frame: Frame, axis: int) -> ngsolve.CoefficientFunction:
+    direction = frame.rotation[:, axis % 3]
+    if axis < 3:
+        return ngsolve.CoefficientFunction(tuple(float(value) for value in direction))
+    arm = [coordinate * (1.0 / MILLIMETRES) - float(at) for coordinate, at in zip(_coordinates(), frame.position, strict=True)]
+    a, b, c = (float(value) for value in direction)
+    return ngsolve.CoefficientFunction((b * arm[2] - c * arm[1], c * arm[0] - a * arm[2], a * arm[1] - b * arm[0]))
+
+
+def _coordinates() -> tuple[ngsolve.CoefficientFunction, ...]:
+    return ngsolve.x, ngsolve.y, ngsolve.z
+
+
+def _interpolated(space: Field, columns: list[ngsolve.CoefficientFunction], faces: str | None) -> Array:
+    result = np.empty((space.size, len(columns)))
+    function = ngsolve.GridFunction(space.space)
+    mesh = space.meshed.mesh
+    for number, column in enumerate(columns):
+        if faces is None:
+            function.Set(column, dual=False)
+        else:
+            function.Set(column, definedon=mesh.Boundaries(_escaped(faces)))
+        result[:, number] = function.vec.FV().NumPy()
+    return result
+
+
+def degrees_of(space: Field, elements: Array) -> Array:
+    """Which degrees of freedom (n,) belong to some of the elements (mask).
+
+    >>> from flexstage.solid.fea.bar import bar
+    >>> from flexstage.solid.fea.fineness import Fineness
+    >>> from flexstage.solid.fea.mesh import meshed
+    >>> space = field(meshed(bar(), Fineness(order=2)), ["foot"], 2)
+    >>> bool(degrees_of(space, np.ones(space.meshed.mesh.ne, dtype=bool)).all())
+    True
+    """
+    result = np.zeros(space.size, dtype=bool)
+    for number in np.flatnonzero(elements):
+        result[list(space.space.GetDofNrs(ngsolve.ElementId(ngsolve.VOL, int(number))))] = True
+    return result
+
+
+def mean_motion(space: Field, frame: Frame, face: str) -> Array:
+    """Rows (6, n) of a face's mean twist: G^-1 int R^T u dS with G = int R^T R dS, R its rigid motions in a frame.
+
+    >>> from flexstage.solid.fea.bar import bar
+    >>> from flexstage.solid.fea.fineness import Fineness
+    >>> from flexstage.solid.fea.mesh import meshed
+    >>> space = field(meshed(bar(), Fineness(order=2)), ["foot"], 2)
+    >>> end = Frame(np.eye(3), np.array([0.1, 0.0, 0.0]))
+    >>> mean_motion(space, end, "end").shape == (6, space.size)
+    True
+    """
+    v = space.space.TestFunction()
+    rows = np.empty((6, space.size))
+    for axis in range(6):
+        form = ngsolve.LinearForm(space.space)
+        form += ngsolve.InnerProduct(_rigid_motion(frame, axis), v) * ngsolve.ds(_escaped(face))
+        form.Assemble()
+        rows[axis] = form.vec.FV().NumPy()
+    return np.linalg.solve(rows @ rigid(space, frame), rows)
+
+
+def times(form: ngsolve.BilinearForm, vectors: Array) -> Array:
+    """An assembled form's matrix times columns (n, k).
+
+    >>> from flexstage.solid.fea.bar import bar
+    >>> from flexstage.solid.fea.fineness import Fineness
+    >>> from flexstage.solid.fea.mesh import meshed
+    >>> space = field(meshed(bar(), Fineness(order=2)), ["foot"], 2)
+    >>> times(inertia(space), np.zeros((space.size, 2))).shape == (space.size, 2)
+    True
+    """
+    return _by_columns(form.mat.Mult, vectors)
+
+
+def shifted(space: Field, elastic: ngsolve.BilinearForm, mass: ngsolve.BilinearForm, shift: float) -> ngsolve.BilinearForm:
+    """Stiffness plus shift times inertia: definite without any support.
+
+    >>> from flexstage.solid.fea.bar import bar
+    >>> from flexstage.solid.fea.fineness import Fineness
+    >>> from flexstage.solid.fea.mesh import meshed
+    >>> space = field(meshed(bar(), Fineness(order=2)), ["foot"], 2)
+    >>> elastic, mass = stiffness(space), inertia(space)
+    >>> moved = rigid(space, Frame(np.eye(3), np.zeros(3)))[:, :1]
+    >>> round((moved.T @ times(shifted(space, elastic, mass, 100.0), moved)).item(), 5)  # 100 / s^2 times 10 g
+    1.0
+    """
+    u, v = space.space.TnT()
+    form = ngsolve.BilinearForm(space.space, symmetric=True)
+    form += ngsolve.InnerProduct(u, v) * ngsolve.dx
+    form.Assemble()
+    form.mat.AsVector().data = elastic.mat.AsVector() + shift * mass.mat.AsVector()
+    return form
+
+
+Solver = Callable[[Array], Array]
+
+
+def factored(space: Field, form: ngsolve.BilinearForm) -> Solver:
+    """Solve with a form's matrix on the free degrees of freedom: columns (n, k) of forces to columns of displacements, zero where held.
+
+    >>> from flexstage.solid.fea.bar import bar
+    >>> from flexstage.solid.fea.fineness import Fineness
+    >>> from flexstage.solid.fea.mesh import meshed
+    >>> space = field(meshed(bar(), Fineness(order=2)), ["foot"], 2)
+    >>> end = Frame(np.eye(3), np.array([0.1, 0.0, 0.0]))
+    >>> mean = mean_motion(space, end, "end")
+    >>> round(1e-6 / float((mean @ factored(space, stiffness(space))(mean.T))[0, 0]), 6)  # E A / L, N/um
+    100.0
+    """
+    inverse = form.mat.Inverse(space.space.FreeDofs(), inverse="sparsecholesky")
+
+    def solve(forces: Array) -> Array:
+        return _by_columns(inverse.Mult, forces) if forces.ndim == 2 else _by_columns(inverse.Mult, forces[:, None])[:, 0]
+
+    return solve

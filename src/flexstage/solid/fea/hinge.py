@@ -1,0 +1,323 @@
+"""A hinge by three-dimensional elasticity: its 6x6 between the ends of its arcs, with an estimate of its error.
+
+The hinge stands between rigid outer faces, with a stub of the block on each side that it grows on; the stubs are then taken off as beams,
+so that what its roots yield remains with the hinge. An end without a root is held rigid itself, where its arcs end.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import ngsolve
+import numpy as np
+
+from flexstage.base.finding import Finding, refuse, require
+from flexstage.base.number import Array
+from flexstage.mechanism.outline import rise as cut_height
+from flexstage.parts.leaf import Leaf
+from flexstage.parts.material import Material
+from flexstage.parts.neck import Neck
+from flexstage.parts.profile import Filleted
+from flexstage.parts.rod import Rod
+from flexstage.solid.fea.estimate import Accuracy, change, remaining
+from flexstage.solid.fea.field import Field, applied, factored, field, rigid, stiffness, times
+from flexstage.solid.fea.memory import Counts
+from flexstage.solid.fea.mesh import Meshed, generated
+from flexstage.solid.fea.piece import Medium, medium, span
+from flexstage.solid.fea.progress import Report, Stage, silent
+from flexstage.solid.fea.roots import Roots, own_roots
+from flexstage.solid.fea.specimen import END, START, Hinge, Specimen, seat, specimen
+from flexstage.solid.fea.stub import Section, beam, circle, rectangle
+from flexstage.spatial.frame import identity, transport
+
+_SYMMETRY = 1e-8
+_LATTICE, _INSIDE = 6, 0.015
+"""Steps of the lattice in an element, and how far inside its faces it ends: as far as the points of the rules that integrate there."""
+_BLUNT = 5e-4
+"""What the blunted wedges of arcs at rigid faces change of the compliance at the hinge's end, relatively: twice what was found."""
+_ATTEMPTS = (
+    (1.0, 0.5, 1.2),
+    (1.0, 0.5, 1.6),
+    (1.0, 0.5, 2.0),
+    (1.0, 0.4, 3.0),
+    (0.8, 0.5, 2.0),
+    (0.8, 0.3, 3.0),
+    (0.6, 0.5, 2.5),
+    (0.6, 0.3, 4.0),
+    (0.4, 0.3, 3.0),
+)
+"""Factors on sizes, grading and segments per radius of curvature, tried one after the other."""
+
+
+@dataclass(frozen=True, eq=False)
+class HingeSolid:
+    """The 6x6 of a hinge by three-dimensional elasticity, about its centre in the link frame, between the ends of its arcs [SI].
+
+    `compliance` and `stiffness` (6, 6): twist of the second side against the first, (x, y, z, rx, ry, rz). `error` estimates the largest
+    relative error of the compliance *at the hinge's end*, where it acts, each entry ij against sqrt(C_ii C_jj) there; `changes` (6,) are
+    the last relative changes of the diagonal about the centre: those of y and z are larger, being small differences of lever arms.
+    `whole` (6, 6) is the compliance with the stubs of length `stub` [m]. `freedoms`, `elements` and `order` are those of the last solve;
+    `finding` says what was not reached, if anything.
+    """
+
+    compliance: Array
+    stiffness: Array
+    error: float
+    changes: Array
+    whole: Array
+    stub: float
+    freedoms: int
+    elements: int
+    order: int
+    finding: Finding | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class _Solve:
+    stiffness: Array
+    freedoms: int
+    elements: int
+    order: int
+
+
+@dataclass(frozen=True, eq=False)
+class Told:
+    """Who is told how far a hinge is, and who is asked whether there is room for its first mesh (nobody, unless stated)."""
+
+    report: Report = silent
+    ask: Callable[[Counts], None] = lambda _counts: None
+
+
+_NOBODY = Told()
+
+
+def hinge_compliance(
+    part: Hinge,
+    material: Material,
+    accuracy: Accuracy | None = None,
+    stub: float | None = None,
+    told: Told = _NOBODY,
+    *,
+    roots: Roots | None = None,
+) -> HingeSolid:
+    """The 6x6 of a notch, neck, leaf or rod by finite elements, to the accuracy asked for (1 % unless told).
+
+    Energies: with one outer face held and the other moved rigidly by e_i about the centre, K_ij = u_i . K u_j; C = K^-1 - sum over stubs of
+    X C_stub X^T. The order is raised, then the mesh refined, until the error estimated from the last changes (`estimate.remaining`) is
+    within `accuracy.error`. `roots` say which ends grow on blocks (unless told: both of a profile that rises, none of a prismatic hinge),
+    `stub` [m] how long a stub is: the hinge's full height, and five times the `grain` of a prismatic hinge, as much wider on each side.
+
+    Linear elasticity; the stubs' outer faces stay plane. How much of the blocks counts as root is a convention: C_x depends on the stub's
+    length by 1-3 %, C_y by some 10 %, and C_rx of a hinge several times wider than high by a factor. Raises `DesignError` for a part
+    without a shape, for a batch, and where no mesh can be made. `told` hears of every mesh and solve.
+
+    >>> from flexstage.parts.profile import Straight
+    >>> steel = Material(young=200e9, poisson=0.3, density=7750.0)
+    >>> coarse = Accuracy(error=0.5, orders=(2, 3), meshes=1)
+    >>> bar = hinge_compliance(Neck("steel", 1e-3, Straight(0.01), width=2e-3), steel, coarse)
+    >>> round(float(bar.compliance[0, 0]) * 200e9 * 1e-3 * 2e-3 / 0.01, 1), bar.stub, bar.finding is None
+    (1.0, 0.0, True)
+    """
+    asked = accuracy or Accuracy()
+    require(_refusals(part))
+    own = medium(material)
+    lengths = _stub_lengths(part, stub, roots or own_roots(part))
+    taken, blunt = _stubs(part, lengths, own), _blunted(part, lengths)
+    found: list[Array] = []
+    last = None
+    for last in _solves(part, lengths, own, asked, told):
+        found.append(_symmetric(np.linalg.inv(last.stiffness)) - taken)
+        if blunt + _error(part, found) <= asked.error:
+            break
+    if last is None:
+        what = f"its coarsest mesh has more than the {asked.freedoms} freedoms allowed"
+        raise refuse(_named(part), what, "Allow more freedoms")
+    alone, error = found[-1], blunt + _error(part, found)
+    return HingeSolid(
+        compliance=alone,
+        stiffness=_symmetric(np.linalg.inv(alone)),
+        error=error,
+        changes=np.abs(np.diag(alone - found[-2]) / np.diag(alone)) if len(found) > 1 else np.full(6, np.inf),
+        whole=alone + taken,
+        stub=max(lengths),
+        freedoms=last.freedoms,
+        elements=last.elements,
+        order=last.order,
+        finding=None if error <= asked.error else _short(part, error, asked),
+    )
+
+
+def _refusals(part: Hinge) -> Iterator[Finding]:
+    """Parts without a shape, batches, fillets longer than the hinge."""
+    if not isinstance(part, Hinge):
+        yield Finding(_named(part), "has no shape, or is no hinge", "Give a notch, neck, leaf or rod")
+        return
+    profile = None if isinstance(part, (Leaf, Rod)) else part.profile
+    for owner in (part, profile):
+        for name, value in vars(owner).items() if owner is not None else ():
+            if np.ndim(value) > 0:
+                yield Finding(f"{_named(part)}'s {name}", f"is a batch of {np.size(value)}", "A solid is one design: read them one by one")
+    if isinstance(profile, Filleted) and np.ndim(profile.length) == np.ndim(profile.radius) == 0:
+        total, radius = float(np.real(profile.length)), float(np.real(profile.radius))
+        if 2.0 * radius > total:
+            yield Finding(_named(part), f"its fillets of {radius:.4g} m do not fit into its length of {total:.4g} m", "Need 2 r <= l")
+
+
+def _error(part: Hinge, found: Sequence[Array]) -> float:
+    """Estimated error of the last of the compliances found, all taken at the hinge's end."""
+    arm = transport(np.array([0.5 * span(part), 0.0, 0.0]))
+    ends = [arm @ compliance @ arm.T for compliance in found]
+    return remaining([change(first, second) for first, second in pairwise(ends)])
+
+
+def _blunted(part: Hinge, stubs: tuple[float, float]) -> float:
+    """What is not known because arcs that end on a rigid face are blunted there."""
+    return _BLUNT if min(stubs) == 0.0 and _profile_height(part) > 0.0 else 0.0
+
+
+def _named(part: Hinge) -> str:
+    return f"the {type(part).__name__.lower()}"
+
+
+def _solves(part: Hinge, stubs: tuple[float, float], own: Medium, asked: Accuracy, told: Told) -> Iterator[_Solve]:
+    """Solves of rising order on one mesh, then of the highest on finer ones, until the next would have too many freedoms."""
+    lowest, highest = asked.orders
+    for refinement in range(asked.meshes):
+        told.report(Stage.MESHING, 0.0)
+        mesh = _mesh(part, stubs, asked.shrink**refinement, highest)
+        if refinement == 0:
+            told.ask(Counts(mesh.nv, mesh.nedge, mesh.nface, mesh.ne))
+        for order in range(lowest if refinement == 0 else highest, highest + 1):
+            space = _space(mesh, own, order)
+            if space.size > asked.freedoms:
+                return
+            told.report(Stage.FACTORISING, 0.0)
+            yield _Solve(_law(part, space), space.size, mesh.ne, order)
+
+
+def _space(mesh: ngsolve.Mesh, own: Medium, order: int) -> Field:
+    mesh.Curve(order)
+    return field(Meshed(mesh, (own,), (START, END), np.zeros(mesh.ne, dtype=int)), [START, END], order)
+
+
+def _law(part: Hinge, space: Field) -> Array:
+    """Stiffness (6, 6) of the whole specimen: energies of the motions that move one outer face and hold the other."""
+    form, motion = stiffness(space), rigid(space, identity(), faces=END)
+    motion -= factored(space, form)(times(form, motion))
+    law = motion.T @ applied(stiffness(space, assemble=False), motion)  # by strains: the rounding of K u drowns a thin leaf
+    _require_symmetric(part, law)
+    return _symmetric(law)
+
+
+def hinge_mesh(part: Hinge, stub: float | None = None, factor: float = 1.0, order: int = 5) -> ngsolve.Mesh:
+    """A mesh [mm] of a hinge with its stubs, faces `start` and `end` named; no element is turned inside out at any order up to `order`.
+
+    Elements are `factor` times as large as usual. Where the mesher fails or an element folds, other sizes are tried, a few times. Raises
+    `DesignError` when none of that helps.
+
+    >>> from flexstage.parts.profile import Straight
+    >>> hinge_mesh(Neck("steel", 1e-3, Straight(1e-3), width=1e-3)).GetMaterials()
+    ('medium 0',)
+    """
+    return _mesh(part, _stub_lengths(part, stub, own_roots(part)), factor, order)
+
+
+def _mesh(part: Hinge, stubs: tuple[float, float], factor: float, order: int) -> ngsolve.Mesh:
+    reason = "the mesher was not asked"
+    for shrink, grading, curvature in _ATTEMPTS:
+        drawn = specimen(part, stubs, factor * shrink)
+        outcome = _attempt(drawn, grading, curvature / factor, order)
+        if isinstance(outcome, ngsolve.Mesh):
+            return outcome
+        reason = outcome
+    raise refuse(_named(part), f"no mesh could be made: {reason}", "Look for proportions far from a hinge's")
+
+
+def _attempt(drawn: Specimen, grading: float, curvature: float, order: int) -> ngsolve.Mesh | str:
+    mesh = generated(drawn.solid, {"maxh": drawn.largest, "grading": grading, "curvaturesafety": curvature})
+    if isinstance(mesh, str):
+        return mesh
+    for degree in range(2, order + 1):
+        mesh.Curve(degree)
+        lowest = lowest_jacobian(mesh)
+        if lowest <= 0.0:
+            return f"a curved face turns an element inside out, Jacobian {lowest:.3g}"
+    return mesh
+
+
+def lowest_jacobian(mesh: ngsolve.Mesh) -> float:
+    """The lowest Jacobian determinant [mm^3] at a lattice of points in every element, close to its corners and edges: they fold first.
+
+    Not at the edges: where two faces of an element lie on one smooth surface the determinant is nought on their edge, harmlessly.
+
+    >>> lowest_jacobian(hinge_mesh(Leaf("steel", 1e-3, 1e-3, 1e-3))) > 0.0
+    True
+    """
+    steps = range(_LATTICE + 1)
+    lattice = np.array([(i, j, k) for i in steps for j in steps for k in steps if i + j + k <= _LATTICE])
+    points = _INSIDE + (1.0 - 4.0 * _INSIDE) / _LATTICE * lattice
+    rule = ngsolve.IntegrationRule([tuple(point) for point in points.tolist()], [1.0] * len(points))
+    return float(np.min(ngsolve.Det(ngsolve.specialcf.JacobianMatrix(3))(mesh.MapToAllElements(rule, ngsolve.VOL))))
+
+
+def _profile_height(part: Hinge) -> float:
+    return 0.0 if isinstance(part, (Leaf, Rod)) else float(np.real(cut_height(part.profile)))
+
+
+def _stub_lengths(part: Hinge, stub: float | None, roots: Roots) -> tuple[float, float]:
+    """Lengths [m] of the stubs of both ends, nought where there is none."""
+    rise = _profile_height(part)
+    usual = seat(part)[2] if isinstance(part, (Leaf, Rod)) or rise == 0.0 else float(np.real(part.thickness)) + 2.0 * rise
+    length = usual if stub is None else stub
+    return length if roots.first else 0.0, length if roots.second else 0.0
+
+
+def _stubs(part: Hinge, lengths: tuple[float, float], own: Medium) -> Array:
+    """Compliance (6, 6) of both stubs about the hinge's centre."""
+    total = np.zeros((6, 6))
+    for sign, length in zip((-1.0, 1.0), lengths, strict=True):
+        if length > 0.0:
+            total += _seen(beam(_stub_section(part), length, own), sign * 0.5 * (span(part) + length))
+    return total
+
+
+def _seen(compliance: Array, away: float) -> Array:
+    """A compliance about a point `away` [m] along x, about the centre."""
+    shift = transport(np.array([-away, 0.0, 0.0]))
+    return shift @ compliance @ shift.T
+
+
+def _stub_section(part: Hinge) -> Section:
+    """The section where the profile has risen."""
+    rise = 2.0 * _profile_height(part)
+    if isinstance(part, (Leaf, Rod)) or rise == 0.0:
+        high, wide, _ = seat(part)
+        return circle(high) if isinstance(part, Rod) or part.width is None else rectangle(high, wide)
+    height = float(np.real(part.thickness)) + rise
+    if part.width is None:
+        return circle(height)
+    return rectangle(height, float(np.real(part.width)) + (rise if isinstance(part, Neck) else 0.0))
+
+
+def _symmetric(matrix: Array) -> Array:
+    return 0.5 * (matrix + matrix.T)
+
+
+def _require_symmetric(part: Hinge, law: Array) -> None:
+    skew = change(law, law.T)
+    if skew > _SYMMETRY:
+        raise refuse(
+            _named(part),
+            f"its stiffness is unsymmetric by {skew:.1e}, {_SYMMETRY:.0e} is allowed",
+            "Its mesh is ill-conditioned: check the proportions",
+        )
+
+
+def _short(part: Hinge, error: float, asked: Accuracy) -> Finding:
+    return Finding(
+        _named(part),
+        f"its 6x6 is known to {100.0 * error:.2g} %, {100.0 * asked.error:.2g} % was asked, within {asked.freedoms} freedoms",
+        "Allow more freedoms, or ask for less",
+    )

@@ -1,0 +1,95 @@
+"""Interfaces held: faces that move rigidly and warp as quadratic functions, or whose mean motion counts while they warp freely (averaged).
+
+What is held is stiffer than the joint it stands for, an averaged face softer: the two bracket what cutting there costs. The end caps of
+stacks and faces on rigid bodies stay plane always.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import ngsolve
+import numpy as np
+
+from flexstage.base.number import Array
+from flexstage.parts.piezo import Piezo
+from flexstage.solid.fea.component import Component, Interface
+from flexstage.solid.fea.field import Field, Solver, factored, mean_motion, rigid, shifted, times, warped
+from flexstage.solid.fea.fineness import Hold
+from flexstage.spatial.frame import Frame
+
+_SHIFT = (2.0 * np.pi * 10.0) ** 2
+"""Inertia that carries a component no face holds, as of a motion at 10 Hz: it enters the basis only, not the energies [1/s^2]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Held:
+    """Motions (n, 6 m) of unit interface twists, (n, w) of unit warps of faces, and the solver for loads within with all of them zero."""
+
+    faces: Array
+    warps: Array
+    solve: Solver
+
+
+def is_rigid(component: Component, interface: Interface, hold: Hold) -> bool:
+    """Whether an interface stays plane: asked for, or a stack's end cap.
+
+    >>> from flexstage.solid.fea.bar import bar
+    >>> is_rigid(bar(), bar().interfaces[0], Hold.RIGID), is_rigid(bar(), bar().interfaces[0], Hold.AVERAGED)
+    (True, False)
+    """
+    stacks = [piece.name for piece in component.pieces if isinstance(piece.form, Piezo)]
+    return hold is Hold.RIGID or interface.joint.link in stacks or isinstance(interface.footprint, Piezo)
+
+
+def held(component: Component, space: Field, forms: tuple[ngsolve.BilinearForm, ngsolve.BilinearForm], hold: Hold) -> Held:
+    """Hold a component's interfaces; `forms` are its stiffness and inertia, and `space` must hold its rigid and grounded faces.
+
+    >>> from flexstage.solid.fea.bar import bar
+    >>> from flexstage.solid.fea.field import field, inertia, stiffness
+    >>> from flexstage.solid.fea.fineness import Fineness
+    >>> from flexstage.solid.fea.mesh import meshed
+    >>> space = field(meshed(bar(), Fineness(order=2)), ["foot"], 2)
+    >>> elastic = stiffness(space)
+    >>> faces = held(bar(), space, (elastic, inertia(space)), Hold.AVERAGED).faces
+    >>> round(float((faces.T @ times(elastic, faces))[0, 0]) * 1e-6, 6)  # E A / L, N/um
+    100.0
+    """
+    elastic, mass = forms
+    loose = [item for item in component.interfaces if not is_rigid(component, item, hold)]
+    unsupported = len(loose) == len(component.interfaces) and not component.fixed
+    plain = factored(space, shifted(space, elastic, mass, _SHIFT) if unsupported else elastic)
+    if not loose:
+        faces = _moved_faces(component.interfaces, space, elastic, plain)
+        return Held(faces, _warped_faces([item for item in component.interfaces if item.yields], space, elastic, plain), plain)
+    means = np.vstack([mean_motion(space, _frame(item), item.joint.name) for item in loose])
+    carried = plain(means.T)
+    gain = np.linalg.inv(means @ carried)
+
+    def solve(forces: Array) -> Array:
+        motion = plain(forces)
+        return motion - carried @ (gain @ (means @ motion))
+
+    free = np.split(carried @ gain, len(loose), axis=1)
+    columns = [free[loose.index(item)] if item in loose else _moved_faces([item], space, elastic, solve) for item in component.interfaces]
+    return Held(np.hstack(columns), np.zeros((space.size, 0)), solve)
+
+
+def _moved_faces(interfaces: Sequence[Interface], space: Field, elastic: ngsolve.BilinearForm, solve: Solver) -> Array:
+    return _carried(space, [rigid(space, _frame(item), faces=item.joint.name) for item in interfaces], elastic, solve)
+
+
+def _warped_faces(interfaces: Sequence[Interface], space: Field, elastic: ngsolve.BilinearForm, solve: Solver) -> Array:
+    moved = [warped(space, item.joint.frame, float(np.sqrt(item.joint.area)), item.joint.name) for item in interfaces]
+    return _carried(space, moved, elastic, solve)
+
+
+def _carried(space: Field, moved: Sequence[Array], elastic: ngsolve.BilinearForm, solve: Solver) -> Array:
+    """One face moved and all others held: u = R - K_ff^-1 K R."""
+    columns = [motion - solve(times(elastic, motion)) for motion in moved]
+    return np.hstack(columns) if columns else np.zeros((space.size, 0))
+
+
+def _frame(interface: Interface) -> Frame:
+    return Frame(np.eye(3), interface.joint.frame.position)

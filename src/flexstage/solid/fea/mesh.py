@@ -1,0 +1,224 @@
+"""Meshes: tetrahedra graded to the thickness of each neck, curved to the drawn geometry."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import ngsolve
+import numpy as np
+from netgen import occ
+from netgen.meshing import MeshingParameters
+
+from flexstage.base.finding import Finding, refuse, require
+from flexstage.base.number import Array
+from flexstage.parts.neck import Neck
+from flexstage.parts.notch import Notch
+from flexstage.parts.profile import Circular, Elliptic, Straight
+from flexstage.solid.fea.cad import Cad, cad, half_extents, region
+from flexstage.solid.fea.component import Component
+from flexstage.solid.fea.draw import MILLIMETRES
+from flexstage.solid.fea.fineness import ATTEMPTS, Fineness
+from flexstage.solid.fea.piece import Medium, Piece, span, thinnest
+from flexstage.solid.fea.progress import Report, Stage, silent
+from flexstage.solid.fea.straighten import straighten
+
+_HINGE_CURVATURE = 2.0
+_ROUND_CURVATURE = 1.5
+_NECK = 0.5
+"""Share of a link's length, about its middle, whose elements follow the drawing."""
+_THIN, _AROUND = 0.47, 0.7
+"""Elements where a hinge is thinnest are this share of those on its faces: about two through the thickness, as bending wants. So far along
+it, on both sides, in geometric means of radius and thickness."""
+_SLENDER = 0.4
+"""Share for straight necks: as wide as thick, they cost little."""
+_PRINT = 1.0 / 3.0
+"""Elements under another component's end face over the root of its area, at a neck of one: a small one presses a root into the body."""
+_MOST = 3e5
+"""Elements that may cover one link."""
+_WITHIN = 1e-6
+"""A face belongs to a piece when its centre is this near its bounding box [m]."""
+
+
+@dataclass(frozen=True)
+class Meshed:
+    """A component's mesh [mm], its media by name `medium 0`, ..., named faces, and the piece (index) each element belongs to."""
+
+    mesh: ngsolve.Mesh
+    media: tuple[Medium, ...]
+    faces: tuple[str, ...]
+    owner: Array
+
+
+def meshed(component: Component, fineness: Fineness, report: Report = silent, first: int = 0) -> Meshed:
+    """Draw and mesh a component.
+
+    Elements that curved faces turn inside out get straight sides, near the ends of arcs. Where the mesher fails, or an element of a neck is
+    turned inside out, sizes and grading are varied and it is tried again, a few times; `first` is the attempt to begin with, where an
+    earlier one took the process down. Raises `DesignError` when none of that helps.
+
+    >>> from flexstage.solid.fea.bar import bar
+    >>> from flexstage.solid.fea.fineness import Fineness
+    >>> whole = meshed(bar(), Fineness(order=2))
+    >>> round(ngsolve.Integrate(1, whole.mesh), 6), whole.faces  # mm^3
+    (10000.0, ('end', 'foot'))
+    """
+    require(_too_thin(component, fineness))
+    report(Stage.DRAWING, 0.0)
+    drawing = cad(component)
+    failure = "the mesher was not asked"
+    for number, (shrink, grading, curvature) in enumerate(ATTEMPTS[first:], start=first):
+        report(Stage.MESHING, number / len(ATTEMPTS))
+        largest = _sized(component, drawing, fineness, shrink)
+        outcome = _attempted(
+            drawing,
+            fineness.order,
+            {
+                "mp": _thinner(component.pieces, shrink * fineness.neck),
+                "maxh": largest,
+                "grading": grading * fineness.grading,
+                "curvaturesafety": curvature * _curvature(component),
+            },
+        )
+        result = outcome if isinstance(outcome, str) else _finished(component.pieces, drawing, outcome)
+        if isinstance(result, Meshed):
+            return result
+        failure = result
+    raise _unmeshed(component, failure)
+
+
+def _too_thin(component: Component, fineness: Fineness) -> Iterator[Finding]:
+    """Links so thin for their length and width that elements of their size would never end."""
+    for piece in component.pieces:
+        size = _size(piece, fineness) / MILLIMETRES
+        sides = sorted(2.0 * half_extents(piece))
+        count = sides[1] * sides[2] / size**2
+        if piece.body is None and count > _MOST:
+            over = " x ".join(f"{side * MILLIMETRES:.4g}" for side in (sides[2], sides[1]))
+            what = f"its {thinnest(piece.form) * MILLIMETRES:.3g} mm are too thin to mesh over {over} mm"
+            more = f"that takes some {count:.1g} elements of {size * MILLIMETRES:.3g} mm, {_MOST:.1g} are allowed"
+            yield Finding(piece.name, f"{what}: {more}", "Check the thickness, or ask for larger elements (Fineness.neck)")
+
+
+def _attempted(drawing: Cad, order: int, sizes: Mapping[str, Any]) -> ngsolve.Mesh | str:
+    """One attempt, curved to the drawing; else what went wrong."""
+    mesh = generated(drawing.shape, sizes)
+    if isinstance(mesh, ngsolve.Mesh):
+        mesh.Curve(order)
+    return mesh
+
+
+def generated(shape: occ.TopoDS_Shape, sizes: Mapping[str, Any]) -> ngsolve.Mesh | str:
+    """A mesh [mm] of a drawing with the sizes the mesher is given; else what went wrong.
+
+    By one thread: several may make another mesh from run to run, and spend most of their time waiting for one another.
+
+    >>> generated(occ.Box(occ.Pnt(0, 0, 0), occ.Pnt(1, 1, 1)), {"maxh": 2.0}).ne > 0
+    True
+    """
+    try:
+        raw = occ.OCCGeometry(shape).GenerateMesh(**sizes, parallel_meshing=False)
+    except Exception as error:  # noqa: BLE001 (netgen raises a bare NgException, and others for CAD it cannot read)
+        return str(error)
+    mesh = ngsolve.Mesh(raw)
+    return mesh if mesh.ne else "no elements came out"
+
+
+def _finished(pieces: tuple[Piece, ...], drawing: Cad, mesh: ngsolve.Mesh) -> Meshed | str:
+    """A mesh without folded elements, those of necks curved; else what is wrong with it."""
+    places = centroids(mesh)
+    owner = owners(pieces, places)
+    necks = np.zeros(len(places), dtype=bool)
+    for number, piece in enumerate(pieces):
+        if piece.body is None:
+            within = np.abs((places - piece.frame.position) @ piece.frame.rotation[:, 0]) < _NECK * half_extents(piece)[0]
+            necks |= within & (owner == number)
+    return straighten(mesh, necks) or Meshed(mesh, drawing.media, drawing.faces, owner)
+
+
+def _curvature(component: Component) -> float:
+    """Segments per radius: the arcs of hinges fold elements that are too coarse; stacks and discs do not."""
+    hinged = any(isinstance(piece.form, (Notch, Neck)) and not isinstance(piece.form.profile, Straight) for piece in component.pieces)
+    return _HINGE_CURVATURE if hinged else _ROUND_CURVATURE
+
+
+def _thinner(pieces: tuple[Piece, ...], neck: float) -> MeshingParameters:
+    """Smaller elements about the thinnest line of each hinge with an arc."""
+    result = MeshingParameters()
+    for piece in pieces:
+        if isinstance(piece.form, (Notch, Neck)) and isinstance(piece.form.profile, (Circular, Elliptic)):
+            for point in _thin_points(piece.form, _THIN * neck) @ piece.frame.rotation.T + piece.frame.position:
+                x, y, z = (float(value) * MILLIMETRES for value in point)
+                result.RestrictH(x, y, z, h=_THIN * neck * thinnest(piece.form) * MILLIMETRES)
+    return result
+
+
+def _thin_points(form: Notch | Neck, share: float) -> Array:
+    """Points (n, 3) on both faces of a hinge around its thinnest line, in its frame [m]."""
+    thickness, width = (float(np.real(value)) for value in (form.thickness, form.thickness if form.width is None else form.width))
+    step = share * thinnest(form)
+    reach = _AROUND * np.sqrt(0.5 * span(form) * thickness)
+    along, across = (np.linspace(-half, half, 1 + int(np.ceil(2.0 * half / step))) for half in (reach, 0.5 * width))
+    return np.array([(x, y, z) for x in along for y in (-0.5 * thickness, 0.5 * thickness) for z in across])
+
+
+def _sized(component: Component, drawing: Cad, fineness: Fineness, shrink: float) -> float:
+    """Set the faces' mesh sizes; return the largest size anywhere [mm]."""
+    sizes = [shrink * _size(piece, fineness) for piece in component.pieces]
+    scale = _PRINT * fineness.neck * shrink * MILLIMETRES
+    prints = {item.joint.name: scale * item.joint.area**0.5 for item in component.interfaces if item.footprint}
+    for face in drawing.shape.faces:
+        own = min(_near(component.pieces, sizes, face), default=max(sizes))
+        face.maxh = min(own, prints.get(face.name or "", own))
+    return max(sizes)
+
+
+def _near(pieces: tuple[Piece, ...], sizes: list[float], face: occ.Face) -> list[float]:
+    """Sizes of the pieces a face belongs to: links it lies on as a whole, bodies that hold its centre."""
+    centre = np.array([[face.center.x, face.center.y, face.center.z]]) / MILLIMETRES
+    corners = np.array([[vertex.p.x, vertex.p.y, vertex.p.z] for vertex in face.vertices]).reshape(-1, 3) / MILLIMETRES
+    held = [region(piece, centre)[0] <= _WITHIN for piece in pieces]
+    # A wall of a block around the end of a hinge has its centre on the hinge.
+    whole = [piece.body is not None or bool(np.all(region(piece, corners) <= _WITHIN)) for piece in pieces]
+    return [size for size, centred, all_of_it in zip(sizes, held, whole, strict=True) if centred and all_of_it]
+
+
+def _size(piece: Piece, fineness: Fineness) -> float:
+    slender = isinstance(piece.form, Neck) and isinstance(piece.form.profile, Straight)
+    factor = fineness.block if piece.body is not None else fineness.neck * (_SLENDER if slender else 1.0)
+    return factor * thinnest(piece.form) * MILLIMETRES
+
+
+def _unmeshed(component: Component, reason: str) -> Exception:
+    thin = min(component.pieces, key=lambda piece: thinnest(piece.form))
+    return refuse(
+        component.name,
+        f"no mesh could be made ({reason}); its thinnest piece is {thin.name} with {thinnest(thin.form) * MILLIMETRES:.4g} mm",
+        "Ask for a finer mesh, or look for steps and slivers between outlines that are much smaller than the neck",
+    )
+
+
+def centroids(mesh: ngsolve.Mesh) -> Array:
+    """Vertex means of all elements (n, 3) [m].
+
+    >>> from flexstage.solid.fea.bar import bar
+    >>> from flexstage.solid.fea.fineness import Fineness
+    >>> found = centroids(meshed(bar(), Fineness(order=2)).mesh)
+    >>> bool(np.all((0.0 < found[:, 0]) & (found[:, 0] < 0.1)))
+    True
+    """
+    corners = np.array([vertex.point for vertex in mesh.vertices])
+    members = np.array([[vertex.nr for vertex in element.vertices] for element in mesh.Elements(ngsolve.VOL)])
+    return corners[members].mean(axis=1) / MILLIMETRES
+
+
+def owners(pieces: tuple[Piece, ...], points: Array) -> Array:
+    """The piece (index) each point belongs to: the nearest by bounding box, links before bodies where both hold it.
+
+    >>> from flexstage.solid.fea.bar import bar
+    >>> owners(bar().pieces, np.array([[0.05, 0.0, 0.0]])).tolist()
+    [0]
+    """
+    away = np.stack([region(piece, points) - (1e-9 if piece.body is None else 0.0) for piece in pieces])
+    return np.argmin(away, axis=0)

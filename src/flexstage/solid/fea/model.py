@@ -1,0 +1,93 @@
+"""Solid reading: the same description as 3-D elastic bodies, by substructures."""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import dataclass
+
+from flexstage.base.digest import digest
+from flexstage.base.finding import Finding
+from flexstage.base.progress import Progress
+from flexstage.mechanism.drawn import drawn
+from flexstage.mechanism.expand import expand
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.models.linear.model import LinearModel
+from flexstage.solid.fea.assemble import linear_model
+from flexstage.solid.fea.cache import Cache
+from flexstage.solid.fea.component import Component
+from flexstage.solid.fea.fineness import Reduction
+from flexstage.solid.fea.parts import Parts, Ways, reduce_parts
+from flexstage.solid.fea.remote import Limits
+from flexstage.solid.fea.sound import sound_components
+from flexstage.solid.fea.superelement import Superelement
+
+_CACHE, _STANDARD = Cache(), Reduction()
+
+
+@dataclass(frozen=True, eq=False)
+class SolidModel:
+    """A stage read as solids: its linear model, the components with the superelements it is made of, how they were reduced.
+
+    `notices` say what is to be known about the cache; the result is complete all the same.
+    """
+
+    model: LinearModel
+    parts: Parts
+    reduction: Reduction
+    notices: tuple[Finding, ...]
+
+    @property
+    def components(self) -> tuple[Component, ...]:
+        """The components, copies included."""
+        return tuple(component for component, _ in self.parts)
+
+    @property
+    def superelements(self) -> tuple[Superelement, ...]:
+        """The superelement of each component; copies share one."""
+        return tuple(element for _, element in self.parts)
+
+
+def model(
+    mechanism: Mechanism,
+    reduction: Reduction = _STANDARD,
+    *,
+    cache: Cache | None = _CACHE,
+    progress: Progress | None = None,
+    memory: float | None = None,
+) -> LinearModel:
+    """Read a stage as 3-D elastic solids: finite elements of each distinct component, reduced by Craig and Bampton's method and joined.
+
+    Same names of inputs and outputs as `lumped`. Every component is drawn, meshed and reduced once, in a process of its own, and kept in
+    the `cache` (`None`: neither looked up nor kept). `progress` is told what is done, the fraction and the seconds left; `memory` [bytes]
+    bounds what is planned with (absent: what the machine has left). Raises `DesignError` for links without a shape, for gaps, overlaps and
+    slivers of outlines, all by name before anything is meshed, for meshes that cannot be made, too little memory or time, and stages that
+    move freely. What is to be said about the cache is warned.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> model(parallelogram(), memory=1e6, cache=None)
+    Traceback (most recent call last):
+    flexstage.base.finding.DesignError: ...
+    """
+    reading = model_with_parts(mechanism, reduction, cache=cache, progress=progress, memory=memory)
+    for notice in reading.notices:
+        warnings.warn(str(notice), stacklevel=2)
+    return reading.model
+
+
+def model_with_parts(
+    mechanism: Mechanism,
+    reduction: Reduction = _STANDARD,
+    *,
+    cache: Cache | None = _CACHE,
+    progress: Progress | None = None,
+    memory: float | None = None,
+) -> SolidModel:
+    """Read a stage as `model` does, and return the reduced components as well: fields for pictures and stress, and notices.
+
+    Calibrated hinges are read as the shapes they stand for.
+    """
+    ways = Ways(cache, progress, Limits(memory=memory))
+    shape = drawn(mechanism)
+    reduced = reduce_parts(sound_components(shape, cache), reduction, ways)
+    model = linear_model(shape, expand(shape), reduced.parts, f"solid reading of {digest(shape, physics=True)[:16]}")
+    return SolidModel(model, reduced.parts, reduction, reduced.notices)

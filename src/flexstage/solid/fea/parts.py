@@ -1,0 +1,94 @@
+"""The reduced components of a stage: each distinct one once, from the cache where it is there, else in a process of its own."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import TypeAlias
+
+from flexstage.base.finding import Finding, refuse
+from flexstage.base.number import Array
+from flexstage.base.progress import Progress
+from flexstage.solid.fea.cache import Cache, find, keep, key_of
+from flexstage.solid.fea.component import Component
+from flexstage.solid.fea.fineness import Reduction
+from flexstage.solid.fea.install import require_solver
+from flexstage.solid.fea.reducing import Reducing
+from flexstage.solid.fea.remote import Limits, work_all
+from flexstage.solid.fea.store import read
+from flexstage.solid.fea.superelement import Superelement
+
+Parts: TypeAlias = tuple[tuple[Component, Superelement], ...]
+"""Components of a stage with their superelements; equal components share one."""
+
+_NO_SPRINGS: Mapping[str, Array] = MappingProxyType({})
+
+
+@dataclass(frozen=True)
+class Ways:
+    """How components are come by: the `cache` (`None`: none is used), who is told of the `progress`, and the `limits`."""
+
+    cache: Cache | None = Cache()
+    progress: Progress | None = None
+    limits: Limits = Limits()
+
+
+@dataclass(frozen=True, eq=False)
+class ReducedParts:
+    """Reduced components, and what is to be said about the cache: files damaged or of other versions, or that could not be kept."""
+
+    parts: Parts
+    notices: tuple[Finding, ...] = ()
+
+
+def reduce_parts(
+    parts: Sequence[Component], reduction: Reduction, ways: Ways = Ways(), springs: Mapping[str, Array] = _NO_SPRINGS
+) -> ReducedParts:
+    """Reduce components; `springs` between the interfaces of some, by name.
+
+    The solver is needed only for those that are not in the cache. Each is kept as soon as it is done: what is interrupted resumes. Raises
+    `DesignError` with all that could not be reduced.
+
+    >>> reduce_parts((), Reduction()).parts
+    ()
+    """
+    jobs = [Reducing(key_of(part, reduction, springs.get(part.name)), part, reduction, springs.get(part.name)) for part in parts]
+    store = _Store(ways.cache)
+    first: dict[str, Reducing] = {}
+    for job in jobs:
+        first.setdefault(job.key, job)
+    missing = [job for job in first.values() if not store.holds(job)]
+    if missing:
+        require_solver()
+        work_all(missing, store.take, ways.limits, ways.progress)
+    return ReducedParts(tuple((job.component, store.elements[job.key]) for job in jobs), tuple(store.notices))
+
+
+class _Store:
+    """Superelements at hand, by key, on top of a cache."""
+
+    def __init__(self, cache: Cache | None) -> None:
+        self.cache = cache
+        self.elements: dict[str, Superelement] = {}
+        self.notices: list[Finding] = []
+
+    def holds(self, job: Reducing) -> bool:
+        """Whether a superelement is in the cache; it is at hand then."""
+        if self.cache is None:
+            return False
+        found = find(self.cache, job.key, job.name)
+        self.notices += found.notices
+        if found.element is not None:
+            self.elements[job.key] = found.element
+        return found.element is not None
+
+    def take(self, job: Reducing, data: bytes) -> None:
+        """Take a superelement as a worker wrote it, and keep it."""
+        element = read(data, job.key)
+        if isinstance(element, str):
+            advice = "See that the folder for temporary files (environment variable TMPDIR) keeps what is written to it, and run it again"
+            raise refuse(job.name, f"what its process wrote cannot be used: {element}", advice)
+        self.elements[job.key] = element
+        if self.cache is not None:
+            self.notices += keep(self.cache, job.key, job.name, data)

@@ -1,0 +1,240 @@
+"""Reduction of a component by Craig and Bampton's method (AIAA J. 6, 1313, 1968), with attachment motions for the loads within.
+
+u = sum of rigid motions and warps of the interface faces and their static continuation + fixed-interface modes + static response, faces
+held, to a wrench on each body and to each stroke: statics under these loads is that of the full model, whatever the number of modes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import ngsolve
+import numpy as np
+from scipy.sparse.linalg import LinearOperator, eigsh
+
+from flexstage.base.number import Array
+from flexstage.mechanism.mechanism import PLATFORM
+from flexstage.parts.piezo import Piezo
+from flexstage.solid.fea.component import Component, groups
+from flexstage.solid.fea.contribution import contributions
+from flexstage.solid.fea.field import Field, Solver, applied, degrees_of, field, inertia, rigid, stiffness, stroke_force, times
+from flexstage.solid.fea.fineness import Reduction
+from flexstage.solid.fea.hold import held, is_rigid
+from flexstage.solid.fea.mesh import Meshed, centroids, meshed
+from flexstage.solid.fea.piece import span
+from flexstage.solid.fea.progress import Report, Stage, silent
+from flexstage.solid.fea.skin import skin
+from flexstage.solid.fea.superelement import Superelement
+from flexstage.spatial.frame import Frame, identity, transport
+
+_DEPENDENT = 1e-13
+_EIGENVALUES = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class _Problem:
+    component: Component
+    field: Field
+    stiffness: ngsolve.BilinearForm
+    inertia: ngsolve.BilinearForm
+    faces: Array
+    warps: Array
+    solve: Solver
+
+
+def reduced(component: Component, reduction: Reduction, springs: Array | None = None) -> Superelement:
+    """Mesh, assemble and reduce a component.
+
+    With `springs` (6 m, 6 m) between its interfaces the modes kept are those of the component free at its interfaces and joined by the
+    springs, in place of the fixed-interface modes: so a whole stage in one piece has its own modes, exactly. Its statics is then exact
+    for strokes and wrenches on the platform only, which spares most of the motions of so large a mesh.
+
+    >>> from flexstage.solid.fea.bar import bar
+    >>> from flexstage.solid.fea.fineness import Fineness
+    >>> element = reduced(bar(), Reduction(Fineness(order=2)))
+    >>> round(float(element.stiffness["bar"][0, 0]) * 1e-6, 6)  # E A / L, N/um
+    100.0
+    """
+    return reduced_mesh(component, meshed(component, reduction.fineness), reduction, springs)
+
+
+def reduced_mesh(
+    component: Component, mesh: Meshed, reduction: Reduction, springs: Array | None = None, report: Report = silent
+) -> Superelement:
+    """Assemble and reduce a component that is meshed already, telling how far it is.
+
+    >>> from flexstage.solid.fea.bar import bar
+    >>> from flexstage.solid.fea.fineness import Fineness
+    >>> plan = Reduction(Fineness(order=2), modes=0)
+    >>> reduced_mesh(bar(), meshed(bar(), plan.fineness), plan).interfaces
+    1
+    """
+    problem = _problem(component, mesh, reduction, report)
+    report(Stage.REDUCING, 0.0)
+    strokes = {str(number): force for number, force in _strokes(problem).items()}
+    loaded = [PLATFORM] if springs is not None and PLATFORM in component.bodies else list(component.bodies)
+    loads = [_wrenches(problem, body) for body in loaded] + [force[:, None] for force in strokes.values()]
+    inner = _independent(problem, [_modes(problem, reduction.modes, springs), *(problem.solve(load) for load in loads)])
+    basis = np.hstack([problem.faces, problem.warps, inner])
+    return _projected(problem, basis, strokes, report)
+
+
+def _problem(component: Component, mesh: Meshed, reduction: Reduction, report: Report) -> _Problem:
+    report(Stage.ASSEMBLING, 0.0)
+    plane = [item.joint.name for item in component.interfaces if is_rigid(component, item, reduction.hold)]
+    space = field(mesh, plane + [joint.name for joint in component.fixed], reduction.fineness.order)
+    elastic, mass = stiffness(space), inertia(space)
+    report(Stage.FACTORISING, 0.0)
+    interfaces = held(component, space, (elastic, mass), reduction.hold)
+    return _Problem(component, space, elastic, mass, interfaces.faces, interfaces.warps, interfaces.solve)
+
+
+def _strokes(problem: _Problem) -> dict[int, Array]:
+    return {
+        number: stroke_force(problem.field, piece.frame, span(piece.form))
+        for number, piece in enumerate(problem.component.pieces)
+        if isinstance(piece.form, Piezo)
+    }
+
+
+def _elements(problem: _Problem, name: str) -> Array:
+    return np.isin(problem.field.meshed.owner, groups(problem.component)[name])
+
+
+def _wrenches(problem: _Problem, body: str) -> Array:
+    """Forces (n, 6) of unit wrenches on a body, spread over its mass: M R (R^T M R)^-1."""
+    frame = Frame(np.eye(3), problem.component.bodies[body])
+    motion = rigid(problem.field, frame)
+    momentum = applied(inertia(problem.field, _elements(problem, body), assemble=False), motion)
+    return momentum @ np.linalg.inv(motion.T @ momentum)
+
+
+def _modes(problem: _Problem, count: int, springs: Array | None) -> Array:
+    """The lowest modes (n, count) by shift and invert at zero: with interfaces fixed, or free and joined by springs.
+
+    Motions are u = v + faces q with v zero on the interfaces: the stiffness is then diag(K, S), S = faces^T K faces + springs.
+    """
+    free = np.flatnonzero(problem.field.free)
+    joined = problem.faces if springs is not None else problem.faces[:, :0]
+    boundary = joined.T @ times(problem.stiffness, joined) + (springs if springs is not None else 0.0)
+    size = len(free) + joined.shape[1]
+    count = min(count, size - 2)
+    if count <= 0:
+        return np.zeros((problem.field.size, 0))
+
+    def motion(x: Array) -> Array:
+        full = joined @ x[len(free) :]
+        full[free] += x[: len(free)]
+        return full
+
+    def weighed(x: Array) -> Array:
+        force = times(problem.inertia, motion(x.ravel())[:, None])[:, 0]
+        return np.concatenate([force[free], joined.T @ force])
+
+    def inverse(force: Array) -> Array:
+        full = np.zeros(problem.field.size)
+        full[free] = force.ravel()[: len(free)]
+        return np.concatenate([problem.solve(full)[free], np.linalg.solve(boundary, force.ravel()[len(free) :])])
+
+    start = np.random.default_rng(0).standard_normal(size)
+    if not np.any(weighed(start)):  # without mass there are no modes
+        return np.zeros((problem.field.size, 0))
+    mass, solve = (_operator(size, function) for function in (weighed, inverse))
+    # With OPinv the first argument is used for its shape only.
+    _, vectors = eigsh(solve, k=count, M=mass, sigma=0.0, OPinv=solve, v0=start, tol=_EIGENVALUES)  # pyright: ignore[reportArgumentType]
+    result = np.zeros((problem.field.size, count))
+    result[free] = vectors[: len(free)]
+    return result
+
+
+def _operator(size: int, function: Callable[[Array], Array]) -> LinearOperator:
+    return LinearOperator((size, size), matvec=function, dtype=float)  # pyright: ignore[reportCallIssue]  (its stubs know only __new__)
+
+
+def _independent(problem: _Problem, motions: list[Array]) -> Array:
+    """An independent set spanning the motions, orthonormal in strain energy."""
+    everything = np.hstack(motions)
+    energy = everything.T @ times(problem.stiffness, everything)
+    scale = 1.0 / np.sqrt(np.maximum(np.diag(energy), np.finfo(float).tiny))
+    values, vectors = np.linalg.eigh(0.5 * (energy + energy.T) * scale * scale[:, None])
+    kept = values > _DEPENDENT
+    return everything @ (scale[:, None] * vectors[:, kept] / np.sqrt(values[kept]))
+
+
+def _projected(problem: _Problem, basis: Array, strokes: Mapping[str, Array], report: Report) -> Superelement:
+    component, space = problem.component, problem.field
+    elastic: dict[str, Array] = {}
+    mass: dict[str, Array] = {}
+    bodies: dict[str, Array] = {}
+    moving: dict[str, Array] = {}
+    resultants: dict[str, Array] = {}
+    names = groups(component)
+    wholes = {name: _elements(problem, name) for name in names}
+    for number, part in enumerate(contributions(space, wholes, basis)):
+        report(Stage.PROJECTING, number / len(names))
+        name = part.name
+        elastic[name], mass[name] = _symmetric(part.strained.T @ part.forces), _symmetric(part.motions.T @ part.momenta)
+        if name in component.bodies:
+            motion = rigid(space, Frame(np.eye(3), component.bodies[name]))
+            own = motion.T @ applied(inertia(space, wholes[name], assemble=False), motion)
+            bodies[name], moving[name] = np.linalg.solve(own, motion[part.rows].T @ part.momenta), _symmetric(own)
+        else:
+            resultants[name] = _sections(problem, names[name][0])[part.rows].T @ part.forces
+    everything = rigid(space, identity())
+    carried = basis.T @ times(problem.inertia, everything)
+    projected = {int(number): basis.T @ force for number, force in strokes.items()}
+    return Superelement(
+        interfaces=len(component.interfaces),
+        warps=problem.warps.shape[1],
+        stiffness={name: elastic[name] for name in names},
+        inertia={name: mass[name] for name in names},
+        bodies=bodies,
+        body_inertia=moving,
+        resultants=resultants,
+        strokes={component.pieces[number].name: force for number, force in projected.items()},
+        free_strokes={component.pieces[number].name: _free_stroke(problem, number, force) for number, force in projected.items()},
+        rigid=_rigid_coordinates(component, basis.shape[1]),
+        carried=carried,
+        skin=skin(space, basis),
+        freedoms=space.size,
+        elements=space.meshed.mesh.ne,
+    )
+
+
+def _sections(problem: _Problem, number: int) -> Array:
+    """Test motions (n, 6): a link's elements beyond its middle move rigidly, in its frame about its centre, all others rest.
+
+    The work of the link's stresses on them is what passes through it, exactly, by equilibrium in the discrete sense.
+    """
+    piece = problem.component.pieces[number]
+    along = (centroids(problem.field.meshed.mesh) - piece.frame.position) @ piece.frame.rotation[:, 0]
+    beyond = degrees_of(problem.field, (problem.field.meshed.owner == number) & (along > 0.0))
+    return rigid(problem.field, piece.frame) * beyond[:, None]
+
+
+def _free_stroke(problem: _Problem, number: int, force: Array) -> Array:
+    """Coordinates that strain a stack as its unconstrained stroke does: its end caps moved apart by the stroke, and what follows within.
+
+    Internal coordinates are orthonormal in energy with the interfaces held, so the response to the stroke's force is that force itself.
+    """
+    component = problem.component
+    piece, result = component.pieces[number], np.array(force)
+    result[: problem.faces.shape[1] + problem.warps.shape[1]] = 0.0
+    ends = [(place, item.joint.frame) for place, item in enumerate(component.interfaces) if item.joint.link == piece.name]
+    for place, frame in ends:
+        outward = float(np.sign((frame.position - piece.frame.position) @ piece.frame.rotation[:, 0]))
+        result[6 * place : 6 * place + 3] = piece.frame.rotation[:, 0] * outward / len(ends)
+    return result
+
+
+def _rigid_coordinates(component: Component, size: int) -> Array:
+    result = np.zeros((size, 6))
+    for number, item in enumerate(component.interfaces):
+        arm = item.joint.frame.position
+        result[6 * number : 6 * number + 6] = transport(arm)
+    return result
+
+
+def _symmetric(matrix: Array) -> Array:
+    return 0.5 * (matrix + matrix.T)

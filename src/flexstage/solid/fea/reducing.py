@@ -1,0 +1,97 @@
+"""The job of reducing one component."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from flexstage.base.finding import Finding
+from flexstage.base.number import Array
+from flexstage.parts.piezo import Piezo
+from flexstage.solid.fea.component import Component
+from flexstage.solid.fea.fineness import ATTEMPTS, WARPS, Fineness, Reduction
+from flexstage.solid.fea.memory import Counts, needed, refusal
+from flexstage.solid.fea.piece import Form, Piece, span, thinnest
+from flexstage.solid.fea.store import written
+from flexstage.solid.fea.worker import Call, Job
+
+_TRIANGLE = 0.433
+"""Area of an equilateral triangle of side one."""
+
+
+def fewest_elements(component: Component, fineness: Fineness) -> float:
+    """Elements a mesh has at least: one at every triangle of the surface, were it that of the pieces' necks and blocks alone.
+
+    What asks for more memory than there is need not be meshed first.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.solid.fea.component import components
+    >>> part = components(parallelogram())[-1]  # a stack, 5 mm thick and 40 mm long
+    >>> round(fewest_elements(part, Fineness(neck=0.1)) / fewest_elements(part, Fineness(neck=1.0)))
+    100
+    """
+    return sum(_surface(piece.form) / (_TRIANGLE * _size(piece, fineness) ** 2) for piece in component.pieces)
+
+
+def _size(piece: Piece, fineness: Fineness) -> float:
+    return (fineness.neck if piece.body is None else fineness.block) * thinnest(piece.form)
+
+
+def _surface(form: Form) -> float:
+    """Lateral surface [m^2], that of the square around the least dimension."""
+    return 4.0 * thinnest(form) * max(span(form), thinnest(form))
+
+
+@dataclass(frozen=True, eq=False)
+class ComponentJob(Job):
+    """A component to mesh, and what is made of it stored for `key`."""
+
+    key: str
+    component: Component
+
+    attempts = len(ATTEMPTS)
+
+    @property
+    def name(self) -> str:
+        """The component's name."""
+        return self.component.name
+
+    @property
+    def weight(self) -> int:
+        """Number of pieces."""
+        return len(self.component.pieces)
+
+
+@dataclass(frozen=True, eq=False)
+class Reducing(ComponentJob):
+    """A component to reduce; `springs` (6 m, 6 m) between its interfaces, for modes of a whole stage in one piece."""
+
+    reduction: Reduction
+    springs: Array | None = None
+
+    @property
+    def columns(self) -> int:
+        """Coordinates its superelement will have at most."""
+        part = self.component
+        stacks = sum(isinstance(piece.form, Piezo) for piece in part.pieces)
+        warps = WARPS * sum(item.yields for item in part.interfaces)
+        return 6 * (len(part.interfaces) + len(part.bodies)) + warps + stacks + self.reduction.modes
+
+    def needed(self, counts: Counts) -> float:
+        """Memory of the reduction [bytes]."""
+        return needed(counts, self.reduction.fineness.order, self.columns)
+
+    def refusal(self, counts: Counts, limit: float) -> Finding | None:
+        """Why it does not fit, with an order or a fineness that does."""
+        return refusal(self.name, counts, self.reduction.fineness, self.columns, limit)
+
+    def work(self, call: Call) -> bytes:
+        """Ask for what the surface alone takes, draw, mesh, ask for the mesh, reduce; the superelement as stored."""
+        from flexstage.solid.fea.mesh import meshed
+        from flexstage.solid.fea.reduce import reduced_mesh
+
+        call.ask(Counts.of(fewest_elements(self.component, self.reduction.fineness)))
+        mesh = meshed(self.component, self.reduction.fineness, call.report, call.attempt)
+        size = mesh.mesh
+        call.ask(Counts(size.nv, size.nedge, size.nface, size.ne))
+        element = reduced_mesh(self.component, mesh, self.reduction, self.springs, call.report)
+        return written(element, self.key, call.made)

@@ -1,0 +1,53 @@
+"""Roots: where a hinge grows out of an elastic block, which yields there, and where it ends on something rigid."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from flexstage.mechanism.expand import Assembly, PlacedLink
+from flexstage.parts.leaf import Leaf
+from flexstage.parts.neck import Neck
+from flexstage.parts.notch import Notch
+from flexstage.parts.profile import Circular, Elliptic, Filleted
+from flexstage.parts.rod import Rod
+from flexstage.solid.fea.component import is_elastic
+
+
+@dataclass(frozen=True)
+class Roots:
+    """Whether a hinge's `first` end (towards -x of its frame) and its `second` grow on an elastic block; else an end is held rigid."""
+
+    first: bool
+    second: bool
+
+    @property
+    def mirrored(self) -> Roots:
+        """The roots of the hinge turned end for end.
+
+        >>> Roots(True, False).mirrored
+        Roots(first=False, second=True)
+        """
+        return Roots(self.second, self.first)
+
+
+def own_roots(part: Notch | Neck | Leaf | Rod) -> Roots:
+    """The roots of a hinge by itself: profiles that rise grow on the blocks they rise to, prismatic hinges stand between rigid faces.
+
+    >>> own_roots(Leaf("steel", length=0.01, thickness=1e-3, width=5e-3))
+    Roots(first=False, second=False)
+    """
+    rises = isinstance(part, (Notch, Neck)) and isinstance(part.profile, (Circular, Elliptic, Filleted))
+    return Roots(rises, rises)
+
+
+def roots_of(assembly: Assembly, link: PlacedLink) -> Roots:
+    """The roots a link has where it is: on bodies with outlines; the ground and bodies without outlines are rigid.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.mechanism.expand import expand
+    >>> assembly = expand(double_triangle())
+    >>> roots_of(assembly, assembly.links["B1/back"])
+    Roots(first=False, second=True)
+    """
+    first, second = (is_elastic(assembly, body) for body in link.joins)
+    return Roots(first, second)

@@ -1,0 +1,55 @@
+"""Sound stages: outlines are checked against each other before anything is meshed, once for what is known to be sound already."""
+
+from __future__ import annotations
+
+import contextlib
+from pathlib import Path
+
+from flexstage.base.digest import digest
+from flexstage.base.finding import DesignError, Finding, require
+from flexstage.base.store import write
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.parts.body import Imported
+from flexstage.solid.fea.apart import contact_apart
+from flexstage.solid.fea.cache import Cache, folder_of
+from flexstage.solid.fea.component import Component, Cut, components
+from flexstage.solid.fea.store import versions
+
+
+def sound_components(mechanism: Mechanism, cache: Cache | None, cut: Cut = Cut.UNITS) -> tuple[Component, ...]:
+    """Cut a stage into components, its outlines checked against each other.
+
+    Raises `DesignError` naming every link that has no shape, and every gap, overlap and sliver with its size (`contact_findings`).
+
+    >>> sound_components(Mechanism("nothing"), None)
+    ()
+    """
+    parts = components(mechanism, cut)
+    if parts:
+        require(stage_findings(mechanism, cache))
+    return parts
+
+
+def stage_findings(mechanism: Mechanism, cache: Cache | None) -> tuple[Finding, ...]:
+    """What keeps a stage's outlines from forming solids. Sound stages are remembered in the cache by their content.
+
+    Those with imported solids are not: their files may change.
+    """
+    mark = None if cache is None or _imports(mechanism) else _mark(mechanism, cache)
+    if mark is not None and mark.is_file():
+        return ()
+    found = contact_apart(mechanism)
+    if mark is not None and not found:
+        with contextlib.suppress(OSError, DesignError):  # it is checked again then
+            mark.parent.mkdir(parents=True, exist_ok=True)
+            write(mark, "")
+    return found
+
+
+def _mark(mechanism: Mechanism, cache: Cache) -> Path:
+    return folder_of(cache) / f"{digest(mechanism, physics=True)[:32]}-{versions('contact').digest}.sound"
+
+
+def _imports(mechanism: Mechanism) -> bool:
+    bodies = [*mechanism.bodies.values(), *(body for unit in mechanism.units.values() for body in unit.bodies.values())]
+    return any(isinstance(solid, Imported) for body in bodies for solid in body.solids.values())

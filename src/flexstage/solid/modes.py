@@ -1,0 +1,77 @@
+"""Modes by finite elements for a comparison: computed when asked for, else taken from the cache where all of a stage is there."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from flexstage.analysis.complete import platform_modes
+from flexstage.analysis.solid_modes import FeaModes
+from flexstage.base.digest import digest
+from flexstage.base.finding import DesignError
+from flexstage.mechanism.drawn import drawn
+from flexstage.mechanism.expand import expand
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.solid.fea.assemble import linear_model
+from flexstage.solid.fea.cache import Cache, find, key_of
+from flexstage.solid.fea.component import components
+from flexstage.solid.fea.fineness import Reduction
+from flexstage.solid.fea.parts import Parts
+from flexstage.solid.read import STANDARD_SOLIDS, Solids, coarser, read_solid
+from flexstage.solid.resolution import DEFAULT, HIGHEST, Resolution, at_order, changes, resolved
+
+_AT_ORDER_TWO = 0.25
+
+
+def fea_modes(mechanism: Mechanism, asked: Resolution = DEFAULT, reduce: Solids = STANDARD_SOLIDS) -> FeaModes:
+    """The modes of a stage as a solid, to the accuracy asked. Raises `DesignError` as the solid reading does."""
+
+    def work(way: Reduction) -> FeaModes:
+        model = read_solid(mechanism, way, reduce).model
+        return FeaModes(platform_modes(mechanism, model), model, way.fineness.order)
+
+    found = resolved(work, _figures, asked)
+    errors = tuple(found.errors.get(name) for name in _figures(found.result))
+    return FeaModes(found.result.modes, found.result.model, found.order, errors)
+
+
+def kept_fea_modes(mechanism: Mechanism, cache: Cache) -> FeaModes | None:
+    """The modes of a stage as a solid where every component of some order is in the cache, the highest order first; else `None`.
+
+    >>> from pathlib import Path
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> kept_fea_modes(parallelogram(), Cache(Path("/nowhere"))) is None
+    True
+    """
+    try:
+        for order in range(HIGHEST, 1, -1):
+            found = _kept(mechanism, cache, at_order(order))
+            if found is not None:
+                before = _kept(mechanism, cache, coarser(at_order(order)))
+                return found if before is None else FeaModes(found.modes, found.model, order, _errors(before, found))
+    except DesignError:  # parts without a shape: there is no solid reading of this stage
+        return None
+    return None
+
+
+def _kept(mechanism: Mechanism, cache: Cache, reduction: Reduction) -> FeaModes | None:
+    shape = drawn(mechanism)
+    parts: Parts = ()
+    for part in components(shape):
+        element = find(cache, key_of(part, reduction), part.name).element
+        if element is None:
+            return None
+        parts = (*parts, (part, element))
+    order = reduction.fineness.order
+    said = f"solid reading of {digest(shape, physics=True)[:16]}, order {order}, {reduction.modes} modes a component"
+    model = linear_model(shape, expand(shape), parts, said)
+    return FeaModes(platform_modes(mechanism, model), model, order) if parts else None
+
+
+def _figures(found: FeaModes) -> Mapping[str, float]:
+    return {f"platform mode {number + 1}": float(value) for number, value in enumerate(found.modes.platform_frequencies)}
+
+
+def _errors(before: FeaModes, after: FeaModes) -> tuple[float | None, ...]:
+    share = _AT_ORDER_TWO if after.order == 2 else 1.0
+    found = changes(_figures(before), _figures(after))
+    return tuple(share * found[name] if name in found else None for name in _figures(after))

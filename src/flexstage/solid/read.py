@@ -1,0 +1,104 @@
+"""How studies read solids: a stage, reduced by whoever is asked to (from a cache, with progress, or plainly)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import TypeAlias
+
+from flexstage.base.digest import digest
+from flexstage.base.finding import Finding
+from flexstage.mechanism.drawn import drawn
+from flexstage.mechanism.expand import expand
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.models.linear.model import LinearModel
+from flexstage.solid.fea.assemble import Placed, linear_model, placed_parts
+from flexstage.solid.fea.fineness import Reduction
+from flexstage.solid.fea.parts import Parts, Ways, reduce_parts
+from flexstage.solid.fea.sound import sound_components
+
+Solids: TypeAlias = Callable[[Mechanism, Reduction], Parts]
+"""Reduces the components of a stage."""
+
+Notice: TypeAlias = Callable[[Finding], None]
+"""Told what is to be known but stops nothing: a damaged file of the cache."""
+
+STANDARD_WAYS = Ways()
+
+
+@dataclass(frozen=True, eq=False)
+class SolidRead:
+    """A stage read as solids: its linear model, and the components with the operators that give their fields."""
+
+    mechanism: Mechanism
+    model: LinearModel
+    placed: tuple[Placed, ...]
+
+    @property
+    def elements(self) -> int:
+        """Number of finite elements of all distinct components."""
+        return sum(item.element.elements for item in self._distinct)
+
+    @property
+    def freedoms(self) -> int:
+        """Number of unknowns of all distinct components before they were reduced."""
+        return sum(item.element.freedoms for item in self._distinct)
+
+    @property
+    def _distinct(self) -> list[Placed]:
+        return list({id(item.element): item for item in self.placed}.values())
+
+
+def solids(ways: Ways = STANDARD_WAYS, notice: Notice | None = None) -> Solids:
+    """Checks outlines and reduces components by `ways`: from a cache, telling the progress; `notice` is told what is to be said about it.
+
+    >>> solids()(Mechanism("nothing"), Reduction())
+    ()
+    """
+
+    def reduce(mechanism: Mechanism, reduction: Reduction) -> Parts:
+        found = reduce_parts(sound_components(mechanism, ways.cache), reduction, ways)
+        for finding in found.notices:
+            (notice or _ignore)(finding)
+        return found.parts
+
+    return reduce
+
+
+def _ignore(_finding: Finding) -> None:
+    """Nobody is told."""
+
+
+STANDARD_SOLIDS = solids()
+"""By the cache of the user, told to nobody."""
+
+STANDARD_REDUCTION = Reduction()
+
+
+def read_solid(mechanism: Mechanism, reduction: Reduction, reduce: Solids) -> SolidRead:
+    """Read a stage as solids; calibrated hinges as the shapes they stand for.
+
+    Raises `DesignError` for parts without a shape, outlines that do not meet, overlap or leave slivers, and when the stage can move freely.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.mechanism.restrict import restrict
+    >>> from flexstage.parts.freedom import Freedom
+    >>> read_solid(restrict(parallelogram(), {'leaf': ((Freedom.X,), ())}), Reduction(), solids())
+    Traceback (most recent call last):
+        ...
+    flexstage.base.finding.DesignError: left: some of its freedoms are locked or freed by a restriction. ...
+    """
+    shape = drawn(mechanism)
+    assembly = expand(shape)
+    parts = reduce(shape, reduction)
+    said = f"solid reading of {digest(shape, physics=True)[:16]}, order {reduction.fineness.order}, {reduction.modes} modes a component"
+    return SolidRead(shape, linear_model(shape, assembly, parts, said), placed_parts(assembly, parts))
+
+
+def coarser(reduction: Reduction) -> Reduction:
+    """The resolution that an error is estimated against: the same mesh, one order less.
+
+    >>> coarser(Reduction()).fineness.order
+    2
+    """
+    return replace(reduction, fineness=replace(reduction.fineness, order=reduction.fineness.order - 1))

@@ -1,0 +1,143 @@
+"""The whole stage as a solid: directional stiffness, modes, and the highest stress of every link over the strokes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from flexstage.analysis.complete import platform_modes
+from flexstage.analysis.modes import Modes
+from flexstage.analysis.statics import Statics, statics
+from flexstage.analysis.workspace.load import dead_loads
+from flexstage.analysis.workspace.stroke import stroke_limits
+from flexstage.base.finding import DesignError
+from flexstage.base.number import Array
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.models.linear.static import displacement
+from flexstage.solid.fea.fineness import Reduction
+from flexstage.solid.read import STANDARD_REDUCTION, STANDARD_SOLIDS, SolidRead, Solids, read_solid
+from flexstage.solid.stress import LinkStress, link_stress
+from flexstage.spatial.frame import COMPONENTS
+
+if TYPE_CHECKING:
+    from flexstage.models.linear.model import Contribution, LinearModel
+
+_BODY = " (body)"
+
+
+@dataclass(frozen=True, eq=False)
+class SolidStage:
+    """A stage by the solid reading.
+
+    `statics` and `modes` as of any reading; `stress` at every link and body, the highest over all corners of the strokes counted from zero,
+    dead load included (`None` where a stage has no strokes or too many corners). `worst` (N,) are the coordinates at the corner of the
+    weakest link. `blocks` (k,) is the share of strain energy that the bodies, which other readings take as rigid, hold in each mode.
+    """
+
+    statics: Statics
+    modes: Modes
+    stress: LinkStress | None
+    worst: Array | None
+    blocks: Array
+    read: SolidRead
+
+    @property
+    def figures(self) -> Mapping[str, float]:
+        """What an error is estimated of, in SI."""
+        frequencies = {f"platform mode {number + 1}": float(value) for number, value in enumerate(self.modes.platform_frequencies)}
+        return stiffness_figures(self.statics) | frequencies
+
+    @property
+    def flexible(self) -> Array:
+        """What the elasticity of the bodies takes from each frequency (k,), to first order: sqrt(1 - share) - 1 of the energy's share."""
+        return np.sqrt(1.0 - self.blocks) - 1.0
+
+
+def stiffness_figures(found: Statics) -> dict[str, float]:
+    """The platform's stiffness as readings are compared by it: principal values in plane, and along and about the other axes [SI].
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.models.mapped import mapped
+    >>> round(stiffness_figures(statics(mapped(double_triangle())))["stiffest in plane, others held"] / 1e6, 2)  # N/um
+    15.45
+    """
+    held, free = found.held.principal, found.free.principal
+    return {
+        "stiffest in plane, others held": float(held[0]),
+        "softest in plane, others held": float(held[1]),
+        "stiffest in plane, others free": float(free[0]),
+        "softest in plane, others free": float(free[1]),
+        **{f"stiffness {COMPONENTS[index]}": float(found.stiffness.values[index, index]) for index in (2, 3, 4, 5)},
+    }
+
+
+def solid_stage(mechanism: Mechanism, reduction: Reduction = STANDARD_REDUCTION, reduce: Solids = STANDARD_SOLIDS) -> SolidStage:
+    """Read a whole stage as a solid.
+
+    Raises `DesignError` for parts without a shape, outlines that do not touch, and when the stage can move freely.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.mechanism.restrict import restrict
+    >>> from flexstage.parts.freedom import Freedom
+    >>> solid_stage(restrict(parallelogram(), {'leaf': ((Freedom.X,), ())}))
+    Traceback (most recent call last):
+        ...
+    flexstage.base.finding.DesignError: left: some of its freedoms are locked or freed by a restriction. ...
+    """
+    read = read_solid(mechanism, reduction, reduce)
+    found = platform_modes(mechanism, read.model)
+    corners = _corners(read)
+    stress = None if corners is None else link_stress(read, *corners)
+    return SolidStage(
+        statics=statics(read.model),
+        modes=found,
+        stress=stress,
+        worst=None if corners is None or stress is None else corners[0][:, stress.case[stress.names.index(stress.weakest)]],
+        blocks=block_energy(read.model, found.shapes),
+        read=read,
+    )
+
+
+def _corners(read: SolidRead) -> tuple[Array, dict[str, Array]] | None:
+    """Coordinates (N, 2^n) at the corners of the strokes from zero, dead load included, and the strokes by input."""
+    if not read.model.strokes:
+        return None
+    limits = stroke_limits(read.mechanism).from_zero
+    try:
+        strokes = limits.corners
+    except DesignError:
+        return None
+    columns = read.model.input_index(limits.actuators)
+    dead = sum(dead_loads(read.mechanism, read.model).values(), np.zeros(len(read.model.coordinates)))
+    motion = displacement(read.model, read.model.input_matrix[:, columns] @ strokes.T + dead[:, None])
+    return motion, {name: strokes[:, number] for number, name in enumerate(limits.actuators)}
+
+
+def worst_strokes(stage: SolidStage) -> dict[str, float]:
+    """The strokes [m] by actuator at the corner of the weakest link."""
+    if stage.stress is None:
+        return {}
+    limits = stroke_limits(stage.read.mechanism).from_zero
+    case = int(stage.stress.case[stage.stress.names.index(stage.stress.weakest)])
+    return dict(zip(limits.actuators, (float(value) for value in limits.corners[case]), strict=True))
+
+
+def block_energy(model: LinearModel, shapes: Array) -> Array:
+    """Share (k,) of the strain energy of shapes (N, k) that the elastic bodies hold.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.models.lumped import lumped
+    >>> model = lumped(double_triangle())
+    >>> block_energy(model, np.eye(len(model.coordinates))[:, :1]).tolist()  # the lumped reading's are rigid
+    [0.0]
+    """
+    bodies = sum((_energy(item, shapes) for name, item in model.stiffness.items() if name.endswith(_BODY)), np.zeros(shapes.shape[1]))
+    return bodies / sum(_energy(item, shapes) for item in model.stiffness.values())
+
+
+def _energy(item: Contribution, shapes: Array) -> Array:
+    strain = item.operator @ shapes
+    return np.sum(strain * (item.law @ strain), axis=0)

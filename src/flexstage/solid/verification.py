@@ -1,0 +1,337 @@
+"""Verification: theory beside finite elements for hinges, units and the whole stage, with the error of both and which to trust where."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.analysis.complete import platform_modes
+from flexstage.analysis.pairing import RELIABLE, Moving, Pair, paired
+from flexstage.analysis.statics import statics
+from flexstage.analysis.trust import Trust
+from flexstage.analysis.units import UnitResult, driven_units, unit_alone, units
+from flexstage.base.finding import DesignError
+from flexstage.beams.compliance import compliance
+from flexstage.mechanism.drawn import calibrated
+from flexstage.mechanism.expand import expand
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.mechanism.restrict import isolate
+from flexstage.models.linear.model import LinearModel
+from flexstage.models.lumped import lumped
+from flexstage.models.mapped import mapped
+from flexstage.solid.calibration import with_matrices
+from flexstage.solid.hinges import STANDARD_HINGES, Hinges, SolidHinge, solid_hinges
+from flexstage.solid.read import STANDARD_SOLIDS, Solids
+from flexstage.solid.resolution import DEFAULT, Resolution, Resolved, resolved
+from flexstage.solid.stage import SolidStage, solid_stage, stiffness_figures
+from flexstage.solid.units import SolidUnit, solid_units
+from flexstage.spatial.frame import COMPONENTS
+
+_CLOSE = 0.02
+
+
+@dataclass(frozen=True)
+class Row:
+    """One number by theory and by FEA, SI.
+
+    `theory` is the lumped reading's (for hinges beam theory's), `mapped` the paper's axial springs where they give it, `calibrated` the
+    lumped reading with the hinges' FEA 6x6; `error` the relative error estimated of FEA. `calibration` names the parts of FEA origin that
+    the theory contains. `assurance` is the modal assurance of paired modes. Absent is unknown, and `reason` says why: without `theory` and
+    `error` there is no verdict.
+    """
+
+    group: str
+    figure: str
+    unit: str
+    theory: float | None
+    fea: float
+    error: float | None
+    mapped: float | None = None
+    calibrated: float | None = None
+    calibration: tuple[str, ...] = ()
+    assurance: float | None = None
+    reason: str = ""
+
+    @property
+    def difference(self) -> float | None:
+        """Theory over FEA less one."""
+        return None if self.theory is None else _relative(self.theory, self.fea)
+
+    @property
+    def calibrated_difference(self) -> float | None:
+        """Calibrated theory over FEA less one."""
+        return None if self.calibrated is None else _relative(self.calibrated, self.fea)
+
+    @property
+    def trust(self) -> Trust:
+        """Which of them to trust."""
+        if self.calibration:
+            return Trust.DEPENDENT
+        if self.difference is None or self.error is None:
+            return Trust.UNKNOWN
+        away = abs(self.difference)
+        if self.error > max(0.5 * away, _CLOSE):
+            return Trust.UNCLEAR
+        if away <= self.error:
+            return Trust.EITHER
+        if away <= _CLOSE:
+            return Trust.THEORY
+        if self.calibrated is not None and abs(_relative(self.calibrated, self.fea)) <= _CLOSE + self.error:
+            return Trust.CALIBRATED
+        return Trust.FEA
+
+
+def _relative(value: float, reference: float) -> float:
+    return value / reference - 1.0 if reference else float("inf") if value else 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class Verification:
+    """The rows of a verification, and the solid results behind them; `missing` says why a group is not there."""
+
+    mechanism: Mechanism
+    rows: tuple[Row, ...]
+    hinges: Mapping[str, SolidHinge]
+    units: Resolved[dict[str, SolidUnit]] | None
+    stage: Resolved[SolidStage] | None
+    missing: Mapping[str, str]
+
+    @property
+    def groups(self) -> dict[str, tuple[Row, ...]]:
+        """The rows by what they are about, in order."""
+        return {name: tuple(row for row in self.rows if row.group == name) for name in dict.fromkeys(row.group for row in self.rows)}
+
+    @property
+    def verdicts(self) -> dict[str, str]:
+        """For every group, in words, which theory to trust."""
+        return {name: verdict(rows) for name, rows in self.groups.items()}
+
+
+def verify(
+    mechanism: Mechanism, asked: Resolution = DEFAULT, reduce: Solids = STANDARD_SOLIDS, compute: Hinges = STANDARD_HINGES
+) -> Verification:
+    """Compare theory with finite elements for every distinct hinge and unit and for the whole stage.
+
+    Theory is the description as it stands; FEA the shapes it draws. Raises `DesignError` where the stage cannot be read as a solid.
+    """
+    missing: dict[str, str] = {}
+    stage = stage_solid(mechanism, asked, reduce)
+    found = solid_hinges(mechanism, compute)
+    matched = with_matrices(mechanism, found)
+    try:
+        alone = units_solid(mechanism, asked, reduce) if driven_units(mechanism) else None
+    except DesignError as error:
+        alone, missing["units"] = None, str(error)
+    if alone is None:
+        missing.setdefault("units", "none of the stage's units drives an output of its own by one actuator")
+    rows = (
+        *hinge_rows(mechanism, found),
+        *(() if alone is None else unit_rows(mechanism, units_matched(mechanism, compute), alone)),
+        *stage_rows(mechanism, matched, stage),
+    )
+    return Verification(mechanism, rows, found, alone, stage, missing)
+
+
+def stage_solid(mechanism: Mechanism, asked: Resolution = DEFAULT, reduce: Solids = STANDARD_SOLIDS) -> Resolved[SolidStage]:
+    """The whole stage as a solid, to the accuracy asked."""
+    return resolved(lambda way: solid_stage(mechanism, way, reduce), lambda found: found.figures, asked)
+
+
+def units_solid(mechanism: Mechanism, asked: Resolution = DEFAULT, reduce: Solids = STANDARD_SOLIDS) -> Resolved[dict[str, SolidUnit]]:
+    """Every distinct unit alone as a solid, to the accuracy asked; the errors by `unit: figure`."""
+
+    def figures(found: dict[str, SolidUnit]) -> dict[str, float]:
+        return {f"{name}: {figure}": value for name, unit in found.items() for figure, value in unit.figures.items()}
+
+    return resolved(lambda way: solid_units(mechanism, way, reduce), figures, asked)
+
+
+def hinge_rows(mechanism: Mechanism, found: Mapping[str, SolidHinge]) -> Iterator[Row]:
+    """The six direct compliances of every hinge, by beam theory (or as the file gives them) and by FEA.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> list(hinge_rows(double_triangle(), {}))
+    []
+    """
+    given = calibrated(mechanism)
+    links = {link.drawn: link for link in expand(mechanism).links.values()}
+    for name, hinge in found.items():
+        link = links.get(hinge.links[0]) or links[hinge.links[0].removeprefix("links.")]
+        theory = np.diag(compliance(link.part, link.material))  # pyright: ignore[reportArgumentType]
+        touched = (link.link.part,) if link.link.part in given else ()
+        for index, axis in enumerate(COMPONENTS):
+            if not hinge.separable[index]:
+                continue
+            unit = "m/N" if index < 3 else "rad/(N m)"
+            value = float(np.real(theory[index]))
+            fea = float(hinge.found.compliance[index, index])
+            error = _known(float(hinge.errors[index]))
+            yield Row(f"hinge {name}", f"compliance {axis}", unit, value, fea, error, calibration=touched, reason=_unestimated(error))
+
+
+def units_matched(mechanism: Mechanism, compute: Hinges = STANDARD_HINGES) -> dict[str, UnitResult]:
+    """Units alone with the FEA 6x6 of the hinges they have alone: an output without outlines holds the end of its hinge rigid."""
+    found: dict[str, UnitResult] = {}
+    for unit, (copy, direction) in driven_units(mechanism).items():
+        alone = isolate(mechanism, copy)
+        found[unit] = unit_alone(with_matrices(alone, solid_hinges(alone, compute)), copy, unit, direction)
+    return found
+
+
+def unit_rows(mechanism: Mechanism, better: Mapping[str, UnitResult], found: Resolved[dict[str, SolidUnit]]) -> Iterator[Row]:
+    """K_a, K_l, gain and loss of every unit alone; `better` are the units with calibrated hinges.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> list(unit_rows(double_triangle(), {}, Resolved({}, {}, 3)))
+    []
+    """
+    theory = units(mechanism)
+    for name, unit in found.result.items():
+        touched = _touched(mechanism, name)
+        first, second = theory[name].figures, better[name].figures
+        simple = _mapped_unit(theory[name])
+        for figure, value in unit.figures.items():
+            dimension = "1" if figure == "gain" else "N/m"
+            error = _known(found.errors.get(f"{name}: {figure}"))
+            yield Row(
+                group=f"unit {name}",
+                figure=figure,
+                unit=dimension,
+                theory=first[figure],
+                fea=value,
+                error=error,
+                mapped=simple.get(figure),
+                calibrated=second[figure],
+                calibration=touched,
+                reason=_unestimated(error),
+            )
+        if unit.loss > 1e-4:
+            gain = _known(found.errors.get(f"{name}: gain"))
+            error = None if gain is None else gain * (1.0 - unit.loss) / unit.loss
+            values = (theory[name].loss, unit.loss, error)
+            yield Row(f"unit {name}", "loss", "1", *values, None, better[name].loss, touched, reason=_unestimated(error))
+
+
+def _mapped_unit(unit: UnitResult) -> dict[str, float]:
+    """What the paper's springs give of a unit: Eq. 11 for levers, the series of axial springs for direct ones."""
+    if unit.lever is not None:
+        return {"axial stiffness": float(1.0 / unit.lever.tip_compliance), "gain": float(unit.lever.gain)}
+    return {} if unit.series is None else {"axial stiffness": unit.series}
+
+
+def _touched(mechanism: Mechanism, unit: str | None) -> tuple[str, ...]:
+    """The calibrated parts that a unit, or with `None` the stage, is built of."""
+    given = calibrated(mechanism)
+    links = [link.link for link in expand(mechanism).links.values() if unit is None or link.drawn.startswith(f"{unit}/")]
+    return tuple(name for name in given if any(link.part == name for link in links))
+
+
+def stage_rows(mechanism: Mechanism, matched: Mechanism, found: Resolved[SolidStage]) -> Iterator[Row]:
+    """Stiffness of the platform by direction, and its modes, paired by shape."""
+    touched = _touched(mechanism, None)
+    readings = {"theory": lumped(mechanism), "calibrated": lumped(matched), "mapped": _mapped(mechanism)}
+    known = {name: model for name, model in readings.items() if model is not None}
+    fea = found.result
+    tables = {name: stiffness_figures(statics(model)) for name, model in known.items()}
+    for figure, value in stiffness_figures(fea.statics).items():
+        unit = "N m/rad" if figure.endswith(("rx", "ry", "rz")) else "N/m"
+        extra = {name: table[figure] for name, table in tables.items() if np.isfinite(table[figure])}
+        error = _known(found.errors.get(figure))
+        values = (extra.get("theory"), value, error, extra.get("mapped"), extra.get("calibrated"))
+        reason = _unestimated(error) if "theory" in extra else "theory gives no finite value"
+        yield Row("stage", figure, unit, *values, touched, reason=reason)
+    own = Moving(fea.modes, fea.read.model)
+    pairs = {name: paired(own, Moving(platform_modes(mechanism, model), model)) for name, model in known.items()}
+    for number, index in enumerate(fea.modes.platform):
+        figure = f"platform mode {number + 1}"
+        best = {name: pair[index] for name, pair in pairs.items() if index in pair}
+        alike = {name: pair.frequency for name, pair in best.items() if pair.reliable}
+        error = _known(found.errors.get(figure))
+        yield Row(
+            group="stage",
+            figure=f"{figure} ({fea.modes.names[index]})",
+            unit="Hz",
+            theory=alike.get("theory"),
+            fea=float(fea.modes.frequencies[index]),
+            error=error,
+            mapped=alike.get("mapped"),
+            calibrated=alike.get("calibrated"),
+            calibration=touched,
+            assurance=best["theory"].assurance if "theory" in best else None,
+            reason=_unestimated(error) if "theory" in alike else _unpaired(best.get("theory")),
+        )
+
+
+def _unpaired(best: Pair | None) -> str:
+    if best is None:
+        return "theory has fewer modes"
+    return f"theory has no mode like it: that at {best.frequency:.4g} Hz shares {best.assurance:.2f} of its motion, {RELIABLE} is needed"
+
+
+def _known(error: float | None) -> float | None:
+    """An error that is a number."""
+    return error if error is not None and np.isfinite(error) else None
+
+
+def _unestimated(error: float | None) -> str:
+    return "" if error is not None else "FEA's error was not estimated: nothing coarser was at hand that gives this figure"
+
+
+def _mapped(mechanism: Mechanism) -> LinearModel | None:
+    try:
+        return mapped(mechanism)
+    except DesignError:
+        return None
+
+
+def verdict(rows: tuple[Row, ...]) -> str:
+    """In words, what the rows of one group say about which theory to trust.
+
+    >>> verdict((Row("stage", "mode 1", "Hz", 105.0, 100.0, 0.001, calibrated=100.5),))
+    'Lumped theory is up to 5 % off (mode 1); with calibrated hinges 0.5 %: calibrate, then trust the lumped reading.'
+    """
+    open_rows = [row for row in rows if row.difference is None or (row.error is None and not row.calibration)]
+    judged = [row for row in rows if row not in open_rows]
+    if not judged:
+        return f"No verdict. {_reasons(open_rows)}"
+    said = _judged(tuple(judged))
+    return f"{said} No verdict on {len(open_rows)} of {len(rows)} figures. {_reasons(open_rows)}" if open_rows else said
+
+
+def _reasons(rows: Iterable[Row]) -> str:
+    reasons: dict[str, list[str]] = {}
+    for row in rows:
+        reasons.setdefault(row.reason or "unknown", []).append(row.figure)
+    return " ".join(f"{', '.join(figures)}: {reason}." for reason, figures in reasons.items())
+
+
+def _judged(rows: tuple[Row, ...]) -> str:
+    """What rows say whose difference is known, and, unless they are not independent, whose error is."""
+    worst = max(rows, key=_away)
+    least = max((row.error for row in rows if row.error is not None), default=0.0)
+    off = f"up to {_percent(_away(worst))} off ({worst.figure})"
+    if any(row.calibration for row in rows):
+        names = ", ".join(dict.fromkeys(name for row in rows for name in row.calibration))
+        return f"Not independent: the theory contains the FEA 6x6 of {names}. It is {off}: what is left is not the hinges'."
+    name = "Beam theory" if worst.group.startswith("hinge") else "Lumped theory"
+    if all(row.trust in {Trust.EITHER, Trust.THEORY} for row in rows):
+        return f"{name} is {off}, FEA's own error {_percent(least)}: trust the theory."
+    if any(row.trust is Trust.UNCLEAR for row in rows):
+        return f"{name} is {off}, but FEA's own error is up to {_percent(least)}: ask for more accuracy before deciding."
+    better = [abs(row.calibrated_difference) for row in rows if row.calibrated_difference is not None]
+    if not better:
+        return f"{name} is {off}, FEA's own error {_percent(least)}: trust FEA, or calibrate."
+    after = f"with calibrated hinges {_percent(max(better))}"
+    if all(row.trust is not Trust.FEA for row in rows):
+        return f"{name} is {off}; {after}: calibrate, then trust the lumped reading."
+    return f"{name} is {off}; {after}: the rest is the elasticity of bodies and joints, which only the solid reading knows. Trust FEA."
+
+
+def _away(row: Row) -> float:
+    return abs(row.difference or 0.0)
+
+
+def _percent(share: float) -> str:
+    return f"{100.0 * share:.2g} %"

@@ -1,0 +1,26 @@
+"""A small optimisation, for examples."""
+
+from __future__ import annotations
+
+from flexstage.studies.optimisation.wanted import Aim, Objective, Wanted
+from flexstage.studies.sweeps.definition import Study
+from flexstage.studies.sweeps.file import loads_study
+
+_TEXT = """
+format = "flexstage study 1"
+name = "thicker leaves"
+case = "parallelogram"
+variables.leaf = { of = "parts.leaf.thickness", from = "0.6 mm", to = "2 mm", step = "10 um" }
+responses.f1 = "frequency.platform.1"
+optimise = { maximise = "f1", starts = 2 }
+"""
+
+
+def leaf_study() -> tuple[Study, Wanted]:
+    """The parallelogram with leaves as thick as its stroke allows.
+
+    >>> leaf_study()[1].objectives[0].name
+    'f1'
+    """
+    study = loads_study(_TEXT)
+    return study, Wanted((Objective("f1", study.responses["f1"], Aim.MAXIMISE),), starts=2)

@@ -1,0 +1,118 @@
+"""Rounding an optimum to values that can be made."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator
+
+import numpy as np
+
+from flexstage.base.number import Array
+from flexstage.studies.optimisation.problem import SPARE, Problem
+from flexstage.studies.optimisation.result import Rounded
+from flexstage.studies.optimisation.setting import Setting, share_of
+from flexstage.studies.optimisation.values import Point
+from flexstage.studies.sweeps.definition import Study
+
+_TRIED, _BATCH = 64, 16
+_ALL = 12
+_ROUNDS = 5
+_EDGE = 1e-9
+
+
+def rounded(setting: Setting, problem: Problem, point: Point) -> Rounded | None:
+    """The best neighbour on the variables' steps that keeps the limits; `None` where no variable has a step.
+
+    All neighbours (of more than 12 variables those nearest), ranked by the linear model of objective and limits, are evaluated in order
+    until one keeps the limits; then single steps of every variable are tried while they make it better. Variables without a step stay.
+    """
+    stepped = [number for number, each in enumerate(setting.study.variables) if each.step is not None]
+    if not stepped:
+        return None
+    ranked = _ranked(problem, point, _neighbours(setting, point, stepped))[:_TRIED]
+    best, tried = None, 0
+    for first in range(0, len(ranked), _BATCH):
+        best = _best(problem, setting, ranked[first : first + _BATCH])
+        tried += len(ranked[first : first + _BATCH])
+        if best is not None:
+            break
+    if best is None:
+        reason = f"none of the {tried} nearest designs on the steps keeps all limits: make the steps finer, or the limits looser"
+        return Rounded(None, None, np.nan, tried, reason)
+    for _ in range(_ROUNDS):
+        around = np.array(list(_single(setting, best, stepped)))
+        better = _best(problem, setting, around) if len(around) else None
+        tried += len(around)
+        if better is None or problem.worth(better) >= problem.worth(best) - _EDGE:
+            break
+        best = better
+    loss = (problem.worth(best) - problem.worth(point)) * setting.scale(0)
+    return Rounded(best, values_of(setting.study, best.shares), loss, tried)
+
+
+def values_of(study: Study, shares: Array) -> Array:
+    """Values (d,) of the variables at shares; what is within a millionth of the range of a step is on it.
+
+    >>> from flexstage.studies.optimisation.example import leaf_study
+    >>> values_of(leaf_study()[0], np.array([0.5000000001])).round(12).tolist()
+    [0.0013]
+    """
+    found = []
+    for each, share in zip(study.variables, shares, strict=True):
+        value = float(np.real(each.at(np.asarray(share))))
+        near = value if each.step is None else round(value / each.step) * each.step
+        found.append(near if abs(near - value) <= 1e-6 * (each.high - each.low) else value)
+    return np.array(found)
+
+
+def _neighbours(setting: Setting, point: Point, stepped: list[int]) -> Array:
+    """Shares (k, n) of designs whose stepped variables are on the multiples below or above."""
+    choices = [_multiples(setting, point, number) for number in stepped]
+    if len(stepped) > _ALL:
+        choices = [own if number < _ALL else own[:1] for number, own in enumerate(choices)]
+    rows = []
+    for picked in itertools.product(*choices):
+        shares = point.shares.copy()
+        shares[stepped] = picked
+        rows.append(shares)
+    return np.array(rows)
+
+
+def _multiples(setting: Setting, point: Point, number: int) -> list[float]:
+    """Shares of the multiples of the step below and above, the nearest first; within the range."""
+    variable = setting.study.variables[number]
+    assert variable.step is not None  # noqa: S101  of stepped variables only
+    count = float(np.real(variable.at(np.asarray(point.shares[number])))) / variable.step
+    whole = {int(np.floor(count + 1e-6)), int(np.ceil(count - 1e-6))}
+    found = [share_of(variable, each * variable.step) for each in sorted(whole, key=lambda each: abs(each - count))]
+    return [share for share in found if -_EDGE <= share <= 1.0 + _EDGE] or [float(point.shares[number])]
+
+
+def _ranked(problem: Problem, point: Point, neighbours: Array) -> Array:
+    """Neighbours by the linear model: those that keep the limits first, the better objective first."""
+    moves = neighbours - point.shares
+    values = point.values[None] + moves @ point.gradient.T
+    worth = np.array([max(side.of(row[side.index]) for side in problem.objective) for row in values])
+    excess = np.array([max((side.of(row[side.index]) for side in problem.limits), default=0.0) for row in values])
+    return neighbours[np.lexsort([worth + 10.0 * np.maximum(excess, 0.0), excess > 0.0])]
+
+
+def _best(problem: Problem, setting: Setting, shares: Array) -> Point | None:
+    """The best of some designs that keeps the limits."""
+    found = [point for point in setting.values.plain(shares) if isinstance(point, Point)]
+    kept = [point for point in found if problem.excess(point) <= SPARE]
+    return min(kept, key=problem.worth, default=None)
+
+
+def _single(setting: Setting, best: Point, stepped: list[int]) -> Iterator[Array]:
+    """Designs one step of one variable away."""
+    for number in stepped:
+        variable = setting.study.variables[number]
+        assert variable.step is not None  # noqa: S101
+        value = float(np.real(variable.at(np.asarray(best.shares[number]))))
+        for change in (-variable.step, variable.step):
+            share = share_of(variable, round((value + change) / variable.step) * variable.step)
+            if -_EDGE <= share <= 1.0 + _EDGE:
+                shares = best.shares.copy()
+                shares[number] = share
+                yield shares

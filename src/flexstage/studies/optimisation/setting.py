@@ -1,0 +1,147 @@
+"""An optimisation set up: measures, their sides and scales, the design as it stands among the ranges, the starts."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.analysis.judge import bench_of, measured_on
+from flexstage.analysis.requirements import Measure, Requirement, Sense
+from flexstage.base.finding import Finding, require
+from flexstage.base.number import Array
+from flexstage.mechanism.address import get
+from flexstage.mechanism.checks import checked
+from flexstage.studies.optimisation.problem import SPARE, Problem, Side
+from flexstage.studies.optimisation.values import Point, Values
+from flexstage.studies.optimisation.wanted import Objective, Wanted, limits
+from flexstage.studies.sweeps.definition import Study
+from flexstage.studies.sweeps.variable import Variable
+
+_EDGE = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class Setting:
+    """What a search needs: `values` evaluates objectives first, then what the `kept` limits are on; `before` is the design as it stands."""
+
+    study: Study
+    wanted: Wanted
+    kept: tuple[Requirement, ...]
+    values: Values
+    before: Point
+
+    @property
+    def problem(self) -> Problem:
+        """The first objective under all limits."""
+        return Problem((self.aim(0),), tuple(self.side(number) for number in range(len(self.kept))))
+
+    def aim(self, number: int) -> Side:
+        """An objective as a side: c is its value over its scale, negative where it is maximised."""
+        return Side(number, self.wanted.objectives[number].aim.sense, 0.0, self.scale(number))
+
+    def scale(self, number: int) -> float:
+        """What an objective is measured by: its value in the design as it stands."""
+        return abs(float(self.before.values[number])) or 1.0
+
+    def side(self, number: int) -> Side:
+        """A limit as a side, with a little to spare."""
+        limit = self.kept[number]
+        index = len(self.wanted.objectives) + number
+        scale = abs(limit.limit) or abs(float(self.before.values[index])) or 1.0
+        spare = SPARE * scale
+        return Side(index, limit.sense, limit.limit + (spare if limit.sense is Sense.AT_LEAST else -spare), scale)
+
+    def starts(self) -> Array:
+        """Shares (starts, n): the design as it stands, then a scrambled Sobol sequence."""
+        from scipy.stats import qmc
+
+        count, size = self.wanted.starts - 1, len(self.study.variables)
+        generator = qmc.Sobol(size, scramble=True, rng=np.random.default_rng(self.wanted.seed))
+        drawn = generator.random(1 << max(count - 1, 0).bit_length())[:count]
+        return np.concatenate([self.before.shares[None], drawn])
+
+    @property
+    def idle(self) -> tuple[str, ...]:
+        """Variables that move none of the measures, at the design as it stands."""
+        largest = np.max(np.abs(self.before.gradient) / np.maximum(np.abs(self.before.values), 1e-300)[:, None], axis=0)
+        return tuple(each.name for each, most in zip(self.study.variables, largest, strict=True) if most <= 1e-14)
+
+
+def setting(study: Study, wanted: Wanted) -> Setting:
+    """Set up an optimisation; the design as it stands is evaluated.
+
+    Raises `DesignError` for measures that the stage does not have, designs that stand outside their ranges, and one that cannot be read.
+
+    >>> from flexstage.studies.optimisation.example import leaf_study
+    >>> found = setting(*leaf_study())
+    >>> found.before.shares.round(3).tolist(), round(found.before.values[0])
+    ([0.286], 875)
+    """
+    kept = limits(study, wanted)
+    measures = (*(each.measure for each in wanted.objectives), *kept)
+    require(_missing(study, wanted.objectives, kept))
+    require(_outside(study))
+    values = Values(study, tuple(measures))
+    shares = np.array([share_of(each, as_stands(study, each)) for each in study.variables])
+    before = values(np.clip(shares, 0.0, 1.0)[None])[0]
+    if isinstance(before, str):
+        require([Finding("design", before, "Mend it before it is optimised")])
+    assert isinstance(before, Point)  # noqa: S101  refused just above
+    return Setting(study, wanted, kept, values, before)
+
+
+def _missing(study: Study, objectives: tuple[Objective, ...], kept: tuple[Requirement, ...]) -> Iterator[Finding]:
+    """Measures that this stage does not have."""
+    bench = bench_of(checked(study.design))
+    asked: list[tuple[str, Measure]] = [(f"responses.{each.name}", each.measure) for each in objectives]
+    asked += [(f"limits.{each.key}", each) for each in kept]
+    for where, each in asked:
+        value = measured_on(bench, each)
+        if isinstance(value, str):
+            yield Finding(where, value, "Ask for what this stage has")
+
+
+def as_stands(study: Study, variable: Variable) -> float:
+    """The value of a variable in the design as it stands; 1 for a relative one.
+
+    >>> from flexstage.studies.optimisation.example import leaf_study
+    >>> as_stands(leaf_study()[0], leaf_study()[0].variables[0])
+    0.001
+    """
+    return 1.0 if variable.relative else _stated(study, variable)[0]
+
+
+def _stated(study: Study, variable: Variable) -> list[float]:
+    """What the design states at each address, or the case for each parameter."""
+    variant = variable.variant
+    return [float(get(study.design, address) if variant is None else variant.value(address)) for address in variable.addresses]
+
+
+def share_of(variable: Variable, value: float) -> float:
+    """The share of a variable's range at which it has a value: the inverse of `Variable.at`.
+
+    >>> from flexstage.base.quantity import LENGTH
+    >>> share_of(Variable("t", (), LENGTH, 1.0, 4.0, logarithmic=True), 2.0)
+    0.5
+    """
+    if variable.logarithmic:
+        return float(np.log(value / variable.low) / np.log(variable.high / variable.low))
+    return (value - variable.low) / (variable.high - variable.low)
+
+
+def _outside(study: Study) -> Iterator[Finding]:
+    """Variables whose value in the design as it stands lies outside their range, or differs among their addresses."""
+    for each in study.variables:
+        where, value = f"variables.{each.name}", as_stands(study, each)
+        unit = "" if each.relative else f" {each.quantity.si}"
+        slack = _EDGE * (each.high - each.low)
+        if not each.low - slack <= value <= each.high + slack:
+            what = f"the design as it stands has {value:.6g}{unit}, outside {each.low:.6g} to {each.high:.6g}{unit}"
+            yield Finding(where, what, "Widen the range, or change the design")
+        if not each.relative:
+            found = _stated(study, each)
+            if max(found) - min(found) > _EDGE * max(map(abs, found)):
+                what = f"its addresses state different values, {min(found):.6g} to {max(found):.6g}{unit}"
+                yield Finding(where, what, "Give the range in percent, or use two variables")

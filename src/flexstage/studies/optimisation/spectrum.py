@@ -1,0 +1,142 @@
+"""Frequencies of neighbouring modes together with their derivatives as matrices, which stay true where modes meet and cross."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.base.finding import refuse
+from flexstage.base.number import Array
+from flexstage.mechanism.mechanism import PLATFORM, Mechanism
+from flexstage.models.batch.choice import Choice, chosen
+from flexstage.models.linear.eigen import Eigen, solve
+from flexstage.models.linear.model import Contribution, LinearModel, assembled
+
+_STEP = 1e-20
+_ROOM = 6
+"""How many modes beyond those asked for are kept: they may come down."""
+
+
+@dataclass(frozen=True, eq=False)
+class Spectrum:
+    """k modes of one design: `frequencies` (k,) ascending [Hz] and `slopes` (n, k, k) [Hz per unit of each variable].
+
+    Eigenvalues of diag(f) + sum_p d_p slopes_p are the frequencies after a small change d, to first order, whether modes are distinct,
+    repeated or about to cross: slopes_ij = phi_i^T (dK - (lambda_i + lambda_j)/2 dM) phi_j / (2 pi (omega_i + omega_j)). `shapes` (N, k)
+    and `weighted` = M shapes tell the modes of two designs apart.
+    """
+
+    frequencies: Array
+    slopes: Array
+    shapes: Array
+    weighted: Array
+
+    def turned(self, others: Spectrum) -> Array:
+        """The orthogonal matrix (k, k) nearest to the overlap of these modes with another design's.
+
+        >>> one = Spectrum(np.ones(1), np.zeros((0, 1, 1)), np.eye(1), np.eye(1))
+        >>> one.turned(one).tolist()
+        [[1.0]]
+        """
+        left, _, right = np.linalg.svd(self.weighted.T @ others.shapes)
+        return left @ right
+
+
+@dataclass(frozen=True)
+class Modes:
+    """Which modes are asked for: the lowest `count`, of the platform or of any body."""
+
+    count: int
+    platform: bool
+
+
+def spectra(mechanism: Mechanism, model: LinearModel, asked: tuple[Modes, ...], shape: tuple[int, int]) -> list[tuple[Spectrum, ...]]:
+    """Spectra of s designs from the model of a batch (s n,): design after design, each with a tiny imaginary step in one variable.
+
+    `shape` is (s, n); with n = 0 the batch is (s,), real, and there are no slopes. Raises `DesignError` where there are fewer modes.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.models.lumped import lumped
+    >>> stage = double_triangle()
+    >>> spectra(stage, lumped(stage), (Modes(1, platform=True),), (1, 0))[0][0].frequencies.round(1).tolist()
+    [106.0, 106.0, 126.2, 144.2, 173.1, 173.1]
+    """
+    designs, variables = shape
+    each = max(variables, 1)
+    first = slice(None, None, each)
+    size = len(model.coordinates)
+    stiffness, inertia = (
+        np.broadcast_to(assembled({name: _real(_cut(item, first)) for name, item in matrix.items()}, size), (designs, size, size))
+        for matrix in (model.stiffness, model.inertia)
+    )
+    solved = solve(stiffness, inertia, np.ones(stiffness.shape[-1]))
+    picked = [[_picked(mechanism, model, solved, (design, each), wanted) for wanted in asked] for design in range(designs)]
+    result = []
+    for design in range(designs):
+        own = picked[design]
+        union = np.unique(np.concatenate(own)) if own else np.zeros(0, dtype=int)
+        values, shapes = solved.values[design, union], solved.shapes[design][:, union]
+        slopes = _slopes(model, (values, shapes), slice(design * each, (design + 1) * each), variables)
+        places = [np.searchsorted(union, each_) for each_ in own]
+        frequencies = np.sqrt(values) / (2.0 * np.pi)
+        weighted = inertia[design] @ shapes
+        result.append(tuple(Spectrum(frequencies[at], slopes[:, at[:, None], at[None]], shapes[:, at], weighted[:, at]) for at in places))
+    return result
+
+
+def _real(item: Contribution) -> Contribution:
+    return Contribution(np.real(item.operator), np.real(item.law))
+
+
+def _picked(mechanism: Mechanism, model: LinearModel, solved: Eigen, at: tuple[int, int], wanted: Modes) -> Array:
+    """Indices of the modes asked for and of some above them."""
+    design, each = at
+    if not np.all(np.isfinite(solved.values[design])):
+        raise refuse("frequency", "some motion has no stiffness", "Narrow the ranges")
+    if not wanted.platform:
+        found = np.arange(min(wanted.count + _ROOM, solved.values.shape[-1]))
+    else:
+        limit = np.inf if mechanism.mode_limit is None else float(np.max(np.real(mechanism.mode_limit)))
+        share = _share(model, solved.shapes[design], design * each)
+        found = np.flatnonzero(chosen(solved.values[design][None], share[None], Choice(limit=limit)).mask[0])
+    if len(found) < wanted.count:
+        raise refuse("frequency", f"there are {len(found)} such modes", "Ask for a lower number")
+    return found
+
+
+def _share(model: LinearModel, shapes: Array, row: int) -> Array:
+    """The platform's share of each mode's kinetic energy."""
+    if PLATFORM not in model.inertia:
+        return np.zeros(shapes.shape[-1])
+    item = model.inertia[PLATFORM]
+    operator, law = (np.real(part if part.ndim == 2 else part[min(row, len(part) - 1)]) for part in (item.operator, item.law))
+    seen = operator @ shapes
+    return np.sum(seen * (law @ seen), axis=0)
+
+
+def _slopes(model: LinearModel, modes: tuple[Array, Array], rows: slice, variables: int) -> Array:
+    values, shapes = modes
+    count = len(values)
+    if not variables:
+        return np.zeros((0, count, count))
+    own = [{name: _cut(item, rows) for name, item in matrix.items()} for matrix in (model.stiffness, model.inertia)]
+    stiffness, inertia = (_projected(contributions, shapes) for contributions in own)
+    change = stiffness - 0.5 * (values[:, None] + values[None]) * inertia
+    omega = np.sqrt(values)
+    return np.broadcast_to(change / (2.0 * np.pi * (omega[:, None] + omega[None])), (variables, count, count))
+
+
+def _cut(item: Contribution, rows: slice) -> Contribution:
+    operator, law = (part if part.ndim == 2 or len(part) == 1 else part[rows] for part in (item.operator, item.law))
+    return Contribution(operator, law)
+
+
+def _projected(contributions: dict[str, Contribution], shapes: Array) -> Array:
+    """Phi^T dA Phi (n, k, k) of a stepped matrix given as contributions; those that no variable moves are passed over."""
+    total = np.zeros((shapes.shape[-1], shapes.shape[-1]))
+    for item in contributions.values():
+        if np.iscomplexobj(item.operator) or np.iscomplexobj(item.law):
+            seen = item.operator @ shapes
+            total = total + np.imag(np.swapaxes(seen, -1, -2) @ item.law @ seen) / _STEP
+    return 0.5 * (total + np.swapaxes(total, -1, -2))

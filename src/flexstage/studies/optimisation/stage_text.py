@@ -1,0 +1,73 @@
+"""The design file of an optimised stage: the text given, with the new values and where they are from; comments stay."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+import numpy as np
+
+from flexstage.base.number import Array
+from flexstage.mechanism.address import get
+from flexstage.mechanism.grammar import node_of, numbers
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.mechanism.store import dumps, patch
+from flexstage.mechanism.store.file import parse_toml, read_text
+from flexstage.mechanism.store.retag import retagged
+from flexstage.studies.optimisation.wanted import Wanted
+from flexstage.studies.sweeps.definition import Study
+
+_DIGITS = 12
+_SAME = 1e-11
+
+
+def design_path(study: Study, folder: Path) -> Path | None:
+    """Where the design file stands that a study names; `None` where it names a shipped case.
+
+    >>> from flexstage.studies.optimisation.example import leaf_study
+    >>> design_path(leaf_study()[0], Path()) is None
+    True
+    """
+    named = parse_toml(study.text, "study").get("design") if study.text else None
+    return None if named is None else folder / str(named)
+
+
+def design_text(study: Study, folder: Path) -> str:
+    """The text of the design file that a study names, or that of its shipped case as a new file shows it.
+
+    >>> from flexstage.studies.optimisation.example import leaf_study
+    >>> design_text(leaf_study()[0], Path()).splitlines()[0]
+    '# The stage that the study "thicker leaves" starts from.'
+    """
+    path = design_path(study, folder)
+    return read_text(path) if path is not None else dumps(study.design, {"": f'The stage that the study "{study.name}" starts from.'})
+
+
+def optimised_text(text: str, study: Study, wanted: Wanted, values: Array | Sequence[float], *, where: str = "text") -> str:
+    """The text of the design file with `values` (d,) of the study's variables, each tagged `derived optimise STUDY, OBJECTIVE`.
+
+    Raises `DesignError` where the file's layout does not allow it.
+
+    >>> from flexstage.mechanism.store import dumps, loads
+    >>> from flexstage.studies.optimisation.example import leaf_study
+    >>> study, wanted = leaf_study()
+    >>> text = optimised_text(dumps(study.design), study, wanted, [0.00123])
+    >>> loads(text).parts["leaf"].thickness, loads(text).tags["parts.leaf.thickness"]
+    (0.00123, 'derived optimise thicker leaves, maximise f1')
+    """
+    changed = dict(_changed(study, np.asarray(values, dtype=float)))
+    aims = ", ".join(f"{each.aim.value} {each.name}" for each in wanted.objectives)
+    tags = dict.fromkeys(changed, f"derived optimise {study.name}, {aims}")
+    return retagged(patch(text, changed, where=where), tags, where=where)
+
+
+def _changed(study: Study, values: Array) -> Iterator[tuple[str, float]]:
+    """The numbers that become others, by address; those of one address each, and all that parameters of a case move."""
+    final = study.described(values)
+    addresses = [address for each in study.variables if each.variant is None for address in each.addresses]
+    if any(each.variant is not None for each in study.variables):
+        addresses += [address for address, _, _ in numbers(node_of(Mechanism), study.design)]
+    for address in dict.fromkeys(addresses):
+        before, after = get(study.design, address), get(final, address)
+        if isinstance(before, float) and abs(after - before) > _SAME * abs(before):
+            yield address, float(f"{after:.{_DIGITS}g}")

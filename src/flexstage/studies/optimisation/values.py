@@ -1,0 +1,188 @@
+"""Measures of designs and their derivatives by all variables: exact, by complex step, several designs in one batch."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from flexstage.analysis.judge import Bench, bench_of
+from flexstage.analysis.requirements import Measure, Subject
+from flexstage.base.finding import DesignError
+from flexstage.base.number import Array, Table
+from flexstage.mechanism.checks import checked
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.studies.optimisation.pieces import Extreme, pieces
+from flexstage.studies.optimisation.spectrum import Modes, Spectrum, spectra
+from flexstage.studies.sweeps.definition import Study
+
+_STEP = 1e-20
+_APART = 1e-3
+_DIFFERENCED = {Subject.MAP_ERROR, Subject.OPENING}
+_SPECTRAL = {Subject.FREQUENCY, Subject.PLATFORM_FREQUENCY}
+
+
+@dataclass(frozen=True, eq=False)
+class Scalars:
+    """Pieces of a measure at one design: `values` (m,) in SI, `gradient` (m, n) per share of each variable's range."""
+
+    values: Array
+    gradient: Array
+    extreme: Extreme
+
+    @property
+    def value(self) -> float:
+        """The measure."""
+        return float(self.extreme.of(self.values))
+
+    @property
+    def slope(self) -> Array:
+        """The gradient (n,) of the piece that the measure is."""
+        return self.gradient[int(np.argmin(self.values) if self.extreme is Extreme.LEAST else np.argmax(self.values))]
+
+
+@dataclass(frozen=True, eq=False)
+class Numbered:
+    """The frequency number `count` of a spectrum."""
+
+    spectrum: Spectrum
+    count: int
+
+    @property
+    def value(self) -> float:
+        """The measure [Hz]."""
+        return float(self.spectrum.frequencies[self.count - 1])
+
+    @property
+    def slope(self) -> Array:
+        """The gradient (n,); of a repeated mode, that of the mean over its cluster."""
+        own = self.spectrum.frequencies
+        near = np.abs(own - own[self.count - 1]) <= 1e-6 * own[self.count - 1]
+        return np.mean(np.diagonal(self.spectrum.slopes, axis1=1, axis2=2)[:, near], axis=1)
+
+
+@dataclass(frozen=True, eq=False)
+class Point:
+    """A design at `shares` (n,) of the variables' ranges, with its measures in the order asked for."""
+
+    shares: Array
+    found: tuple[Scalars | Numbered, ...]
+
+    @property
+    def values(self) -> Array:
+        """The measures (r,) in SI."""
+        return np.array([each.value for each in self.found])
+
+    @property
+    def gradient(self) -> Array:
+        """Derivatives (r, n) of the measures per share of each variable's range."""
+        return np.array([each.slope for each in self.found])
+
+
+@dataclass(frozen=True, eq=False)
+class Values:
+    """Evaluates `measures` of a study's designs.
+
+    Derivatives are exact (complex step through the readings' formulas; eigenvalues analytically), except of map_error and opening: those
+    are worked out from real corners and outlines, and take central differences a thousandth of the range to either side, which is where
+    rounding of the finite motion and curvature balance.
+    """
+
+    study: Study
+    measures: tuple[Measure, ...]
+
+    @cached_property
+    def _bare(self) -> Study:
+        """The study without the tags of its design, which every change would have to look through."""
+        return replace(self.study, design=replace(self.study.design, tags=Table({})))
+
+    @cached_property
+    def _command(self) -> Mapping[str, float]:
+        """The required strokes as a box, the same for all designs."""
+        return bench_of(self.study.design).command
+
+    @cached_property
+    def _modes(self) -> tuple[Modes, ...]:
+        """The spectra needed: of the platform, of all bodies, or both; each as far up as the highest number asked for."""
+        highest: dict[bool, int] = {}
+        for each in self.measures:
+            if each.subject in _SPECTRAL:
+                platform = each.subject is Subject.PLATFORM_FREQUENCY
+                highest[platform] = max(highest.get(platform, 0), int(each.name))
+        return tuple(Modes(count, platform) for platform, count in highest.items())
+
+    def __call__(self, shares: Array) -> list[Point | str]:
+        """Points of designs at shares (s, n) of the ranges with derivatives; in the place of one that fails, why."""
+        return self._each(np.asarray(shares, dtype=float), slopes=True)
+
+    def plain(self, shares: Array) -> list[Point | str]:
+        """The same without derivatives."""
+        return self._each(np.asarray(shares, dtype=float), slopes=False)
+
+    def _each(self, shares: Array, *, slopes: bool) -> list[Point | str]:
+        """All at once; where that fails, halves, until culprits stand alone."""
+        try:
+            found = self._batch(shares, slopes=slopes)
+        except (DesignError, np.linalg.LinAlgError) as error:
+            if len(shares) == 1:
+                return [str(error)]
+            half = len(shares) // 2
+            return [*self._each(shares[:half], slopes=slopes), *self._each(shares[half:], slopes=slopes)]
+        return [point if _finite(point) else "a measure has no finite value" for point in found]
+
+    def _design(self, shares: Array) -> Mechanism:
+        columns = [variable.at(shares[:, number]) for number, variable in enumerate(self.study.variables)]
+        return self._bare.described(np.stack(columns, axis=-1))
+
+    def _batch(self, shares: Array, *, slopes: bool) -> list[Point]:
+        designs, variables = shares.shape
+        checked(self._design(shares))
+        each = variables if slopes else 1
+        rows = np.repeat(shares, each, axis=0)
+        if slopes:
+            rows = rows + 1j * _STEP * np.tile(np.eye(variables), (designs, 1))
+        with np.errstate(all="ignore"):
+            stepped = self._design(rows)
+            bench = Bench(stepped, self._command)
+            modes = spectra(stepped, bench.model, self._modes, (designs, variables if slopes else 0)) if self._modes else []
+            columns: list[Sequence[Scalars | Numbered]] = []
+            for asked in self.measures:
+                if asked.subject in _SPECTRAL:
+                    columns.append([self._numbered(own, asked) for own in modes])
+                elif asked.subject in _DIFFERENCED:
+                    columns.append(self._differenced(asked, shares, slopes=slopes))
+                else:
+                    found = pieces(bench, asked)
+                    columns.append(_scalars(found.values, found.extreme, (designs, each), slopes=slopes))
+        return [Point(shares[design], tuple(column[design] for column in columns)) for design in range(designs)]
+
+    def _numbered(self, own: tuple[Spectrum, ...], asked: Measure) -> Numbered:
+        platform = asked.subject is Subject.PLATFORM_FREQUENCY
+        return Numbered(own[[modes.platform for modes in self._modes].index(platform)], int(asked.name))
+
+    def _differenced(self, asked: Measure, shares: Array, *, slopes: bool) -> list[Scalars]:
+        designs, variables = shares.shape
+        moves = np.zeros((1, variables))
+        if slopes:
+            moves = _APART * np.concatenate([moves, np.eye(variables), -np.eye(variables)])
+        rows = (shares[:, None] + moves[None]).reshape(-1, variables)
+        found = pieces(bench_of(self._design(rows)), asked)
+        values = np.broadcast_to(found.values, (len(rows), found.values.shape[-1])).reshape(designs, len(moves), -1)
+        ahead, back = values[:, 1 : variables + 1], values[:, variables + 1 :]
+        gradient = (ahead - back) / (2.0 * _APART) if slopes else np.zeros((designs, 0, values.shape[-1]))
+        return [Scalars(own[0], change.T, found.extreme) for own, change in zip(values, gradient, strict=True)]
+
+
+def _scalars(values: Array, extreme: Extreme, shape: tuple[int, int], *, slopes: bool) -> list[Scalars]:
+    """Pieces (s n, m) of stepped designs, design by design."""
+    designs, each = shape
+    spread = np.broadcast_to(values, (designs * each, values.shape[-1])).reshape(designs, each, -1)
+    keep = np.isfinite(spread).all(axis=(0, 1)) | ~np.isinf(np.real(spread)).all(axis=(0, 1))  # infinite everywhere: no piece
+    spread = spread[..., keep]
+    return [Scalars(np.real(own[0]), np.imag(own).T / _STEP if slopes else np.zeros((own.shape[-1], 0)), extreme) for own in spread]
+
+
+def _finite(point: Point) -> bool:
+    return bool(np.all(np.isfinite(point.values)) and np.all(np.isfinite(point.gradient)))

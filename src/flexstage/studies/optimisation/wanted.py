@@ -1,0 +1,57 @@
+"""What an optimisation is to find: objectives, how often it begins anew, and which requirements hold."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+
+from flexstage.analysis.requirements import Measure, Requirement, Sense, requirements
+from flexstage.studies.sweeps.definition import Study
+
+
+class Aim(Enum):
+    """Which way an objective is to go."""
+
+    MAXIMISE = "maximise"
+    MINIMISE = "minimise"
+
+    @property
+    def sense(self) -> Sense:
+        """Which side of a limit is better."""
+        return Sense.AT_LEAST if self is Aim.MAXIMISE else Sense.AT_MOST
+
+
+@dataclass(frozen=True)
+class Objective:
+    """A response by name, its measure, and which way it is to go."""
+
+    name: str
+    measure: Measure
+    aim: Aim
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """What the `[optimise]` section of a study's file says.
+
+    One objective, or two for a front of `points` designs. `starts`: how many designs the search begins from, the design as it stands first,
+    the others a Sobol sequence of this `seed`. `require`: the design's own `[require]` lines are limits too.
+    """
+
+    objectives: tuple[Objective, ...]
+    starts: int = 3
+    seed: int = 0
+    points: int = 9
+    require: bool = True
+
+
+def limits(study: Study, wanted: Wanted) -> tuple[Requirement, ...]:
+    """All limits: the study's, then the design's own requirements on measures that the study does not limit on that side.
+
+    >>> from flexstage.studies.optimisation.example import leaf_study
+    >>> [each.key for each in limits(*leaf_study())]
+    ['stroke.x', 'frequency.platform.1', 'safety']
+    """
+    own = requirements(study.design) if wanted.require else ()
+    said = {(each.key, each.point, each.sense) for each in study.limits}
+    return (*study.limits, *(each for each in own if (each.key, each.point, each.sense) not in said))

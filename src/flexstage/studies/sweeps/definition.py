@@ -1,0 +1,165 @@
+"""A study: the design it starts from, what is varied and what is asked."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, fields
+from enum import Enum
+
+import numpy as np
+
+import flexstage
+from flexstage.analysis.judge import measured
+from flexstage.analysis.requirements import Measure, Requirement, Verdict
+from flexstage.base.digest import digest
+from flexstage.base.finding import Finding
+from flexstage.base.number import Array, Number
+from flexstage.base.quantity import Quantity
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.studies.sweeps.numbers import Numbers
+from flexstage.studies.sweeps.plan import Plan, shares
+from flexstage.studies.sweeps.variable import Variable, varied_by
+
+
+@dataclass(frozen=True, eq=False)
+class Study:
+    """What a study's file says: `design` as it stands, `variables`, `responses` by name, `limits` on measures, the sampling `plan`.
+
+    `text` is the file's own, kept with the results.
+    """
+
+    name: str
+    design: Mechanism
+    variables: tuple[Variable, ...]
+    responses: Mapping[str, Measure]
+    limits: tuple[Requirement, ...]
+    plan: Plan
+    text: str = ""
+
+    @property
+    def names(self) -> tuple[tuple[str, str], ...]:
+        """Where the file says them, and the names of all columns of the results: variables, responses, what limits are on.
+
+        >>> from flexstage.studies.sweeps.example import neck_study
+        >>> neck_study().names
+        (('variables.neck', 'neck'), ('responses.tilt', 'tilt'))
+        """
+        variables = ((f"variables.{each.name}", each.name) for each in self.variables)
+        responses = ((f"responses.{name}", name) for name in self.responses)
+        limits = ((f"limits.{self.columns[name].key}", name) for name in self.columns if name not in self.responses)
+        return *variables, *responses, *limits
+
+    @property
+    def columns(self) -> Mapping[str, Measure]:
+        """What is computed of each design, by name: the responses, and the measures that limits are on."""
+        asked = {(each.key, each.point) for each in self.responses.values()}
+        further = [each for each in self.limits if (each.key, each.point) not in asked]
+        return {**self.responses, **{each.key if each.key not in self.responses else f"limit {each.key}": each for each in further}}
+
+    @property
+    def facts(self) -> dict[str, str]:
+        """What results depend on, item by item in words: two studies with the same facts have the same results.
+
+        >>> from flexstage.studies.sweeps.example import neck_study
+        >>> list(neck_study().facts)
+        ['version', 'design', 'plan', 'variables.neck', 'responses.tilt']
+        """
+        return {
+            "version": flexstage.__version__,
+            "design": digest(self.design, physics=True)[:16],
+            "plan": _told(self.plan),
+            **{f"variables.{each.name}": _told(each) for each in self.variables},
+            **{f"responses.{name}": f"{each.key} at {each.point}" for name, each in self.columns.items()},
+        }
+
+    def drawn(self, start: int, stop: int) -> Array:
+        """Values (n, d) of the variables in SI for designs from `start` to before `stop` of the plan.
+
+        >>> from flexstage.studies.sweeps.example import neck_study
+        >>> neck_study().drawn(1, 3).shape
+        (2, 1)
+        """
+        at = shares(self.plan, start, stop)
+        return np.stack([variable.at(at[:, number]) for number, variable in enumerate(self.variables)], axis=-1)
+
+    def described(self, values: Array) -> Mechanism:
+        """The design with `values` (..., d) of the variables.
+
+        >>> from flexstage.studies.sweeps.example import neck_study
+        >>> neck_study().described(np.array([0.0015])).parts["neck"].thickness
+        0.0015
+        """
+        return self.drawn_from(tuple(values[..., number] for number in range(len(self.variables))))
+
+    def drawn_from(self, columns: tuple[Number, ...]) -> Mechanism:
+        """The same of values (...) by variable, real or complex: nothing becomes complex that does not depend on one that is.
+
+        >>> from flexstage.studies.sweeps.example import neck_study
+        >>> neck_study().drawn_from((0.0015,)).parts["neck"].thickness
+        0.0015
+        """
+        return varied_by(self.design, self.variables, columns)
+
+    @property
+    def numbers(self) -> Numbers | None:
+        """The numbers of the description that designs differ in, where variables share them and a design is had by these more easily.
+
+        >>> from flexstage.studies.sweeps.example import neck_study
+        >>> neck_study().numbers  # what `drawn_from` makes of the variables will do
+        """
+        return None
+
+    def answered(self, mechanism: Mechanism, names: tuple[str, ...] | None = None) -> tuple[Array | str, ...]:
+        """What is asked of a design or a batch, column by column (...) or those of `names`; where a stage has none, the reason in words.
+
+        >>> from flexstage.studies.sweeps.example import neck_study
+        >>> round(float(neck_study().answered(neck_study().design)[0]))
+        106
+        """
+        columns = self.columns
+        return measured(mechanism, tuple(columns[name] for name in (columns if names is None else names)))
+
+    def kept(self, responses: Array, limits: Sequence[Requirement] | None = None) -> Array:
+        """Which designs (n,) keep all the study's limits, or those, given all columns' responses (n, r); those without values keep none.
+
+        >>> from flexstage.studies.sweeps.example import neck_study
+        >>> neck_study().kept(np.array([[100.0], [np.nan]])).tolist()
+        [True, False]
+        """
+        names = list(self.columns)
+        measured_by = {(each.key, each.point): names.index(name) for name, each in self.columns.items()}
+        verdicts = [
+            Verdict(each, responses[:, measured_by[each.key, each.point]]).passed for each in (self.limits if limits is None else limits)
+        ]
+        return np.all([np.all(np.isfinite(responses), axis=1), *verdicts], axis=0)
+
+
+def name_findings(study: Study) -> Iterator[Finding]:
+    """Names that two columns of the results would have, and names that are none.
+
+    >>> from dataclasses import replace
+    >>> from flexstage.studies.sweeps.example import neck_study
+    >>> print(*name_findings(replace(neck_study(), responses={"neck": neck_study().responses["tilt"]})))
+    responses.neck: the results have a column "neck" already, of variables.neck. Give every column a name of its own.
+    """
+    owners = {"design": "the number of a design"}
+    for where, name in study.names:
+        if not name.strip() or not name.isprintable():
+            yield Finding(where, "its name is empty, or has control characters or formats in it", "Write a name of letters and digits")
+        elif name in owners:
+            yield Finding(where, f'the results have a column "{name}" already, of {owners[name]}', "Give every column a name of its own")
+        owners[name] = where
+
+
+def _told(value: Plan | Variable) -> str:
+    """All fields that results depend on, in words; what is absent is left out."""
+    kept = [(each.name, getattr(value, each.name)) for each in fields(value) if each.repr and each.name != "name"]
+    return ", ".join(f"{name} {_word(item)}" for name, item in kept if item is not None and item is not False and item != ())
+
+
+def _word(item: object) -> str:
+    if isinstance(item, Quantity):
+        return f"{item.name} [{item.si}]"
+    if isinstance(item, tuple):
+        return " and ".join(_word(each) for each in item)
+    return str(item.value) if isinstance(item, Enum) else str(item)

@@ -1,0 +1,139 @@
+"""Designs of a study computed: a batch at once, failures found one by one."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.base.finding import DesignError, Finding, require
+from flexstage.base.number import Array
+from flexstage.mechanism.checks import checked
+from flexstage.studies.sweeps.definition import Study
+from flexstage.studies.sweeps.engine import Engine, engine_of
+from flexstage.studies.sweeps.loaded import falling
+
+_LONGEST_REASON = 400
+_MOST = 256
+"""Designs read at once: matrices of more no longer fit into a processor's cache."""
+
+Reasons = dict[int, str]
+"""Why designs fail, by row."""
+
+
+@dataclass(frozen=True, eq=False)
+class Piece:
+    """Designs from `start` on: variables (n, d) and responses (n, r) in SI; `failures` gives reasons by row, their responses are NaN.
+
+    `made` says by which versions of what: where these differ, so may the last digits.
+    """
+
+    start: int
+    variables: Array
+    responses: Array
+    failures: Mapping[int, str]
+    made: str = ""
+
+
+def piece(study: Study, start: int, stop: int, engine: Engine | None = None) -> Piece:
+    """Compute the designs from `start` to before `stop` of a study's plan; `engine` is made here unless it is at hand.
+
+    A design that cannot be read, or lacks a value, keeps its place: NaN and the reason.
+
+    >>> from flexstage.studies.sweeps.example import neck_study
+    >>> found = piece(neck_study(), 0, 2)
+    >>> found.responses.shape, dict(found.failures)
+    ((2, 1), {})
+    """
+    values = study.drawn(start, stop)
+    engine = engine_of(study) if engine is None else engine
+    with np.errstate(all="ignore"):
+        responses, failures = _computed(study, values, engine)
+    return Piece(start, values, responses, failures, engine.made)
+
+
+def nominal(study: Study) -> Array:
+    """Responses (r,) of the design as it stands. Raises `DesignError` for measures that this stage does not have.
+
+    >>> from flexstage.studies.sweeps.example import neck_study
+    >>> nominal(neck_study()).round(0).tolist()
+    [106.0]
+    """
+    found = study.answered(checked(study.design))
+    named = zip(study.columns, found, strict=True)
+    require(Finding(f"responses.{name}", value, "Ask for what this stage has") for name, value in named if isinstance(value, str))
+    return np.array([float(np.real(value)) for value in found if not isinstance(value, str)])
+
+
+def _computed(study: Study, values: Array, engine: Engine) -> tuple[Array, Reasons]:
+    """Responses (n, r) and failures. What the engine does not answer for sure is read design by design."""
+    columns = tuple(study.columns)
+    others = tuple(name for name in columns if name not in engine.modes)
+    result = np.full((len(values), len(columns)), np.nan)
+    failures = _halved(values, 0, lambda part: _refused(study, part))[1]
+    sound = _others(values, failures)
+    if engine.loaded:
+        failures |= {int(sound[row]): reason for row, reason in falling(study, values[sound]).items()}
+        sound = _others(values, failures)
+    found, reasons = _halved(values[sound], len(others), lambda part: _batch(study, part, others))
+    frequencies, sure = engine.answers(values[sound])
+    for names, part in ((others, found), (engine.modes, frequencies)):
+        result[np.ix_(sound, np.array([columns.index(name) for name in names], dtype=int))] = part
+    for place in np.flatnonzero(~sure):
+        result[sound[place]], reason = _halved(values[sound[[place]]], len(columns), lambda part: _batch(study, part, columns))
+        reasons |= {int(place): text for text in reason.values()}
+    failures |= {int(sound[place]): reason for place, reason in reasons.items()}
+    result[list(failures)] = np.nan
+    lost = np.flatnonzero(~np.all(np.isfinite(result), axis=-1))
+    return result, {int(row): failures.get(int(row)) or _unfinished(study, result[row]) for row in lost}
+
+
+def _others(values: Array, failures: Reasons) -> Array:
+    """Rows of the designs that have not failed."""
+    return np.array([row for row in range(len(values)) if row not in failures], dtype=int)
+
+
+def _halved(values: Array, width: int, batch: Callable[[Array], Array | str]) -> tuple[Array, Reasons]:
+    """What a batch gives (n, width), and failures; what fails as a batch is halved until the culprits stand alone.
+
+    Designs that are read (`width` responses) are halved before they are too many: their matrices would fill the memory.
+    """
+    found = batch(values) if width == 0 or len(values) <= _MOST else ""
+    if not isinstance(found, str):
+        return found, {}
+    if len(values) == 1:
+        return np.full((1, width), np.nan), {0: found[:_LONGEST_REASON]}
+    half = len(values) // 2
+    first, early = _halved(values[:half], width, batch)
+    second, late = _halved(values[half:], width, batch)
+    return np.concatenate([first, second]), {**early, **{row + half: reason for row, reason in late.items()}}
+
+
+def _refused(study: Study, values: Array) -> Array | str:
+    """Why a description of these designs cannot be read; nothing (n, 0) where it can. One alone is told without its place in a batch."""
+    try:
+        checked(study.described(values if len(values) > 1 else values[0]))
+    except DesignError as error:
+        return str(error)
+    return np.zeros((len(values), 0))
+
+
+def _batch(study: Study, values: Array, names: tuple[str, ...]) -> Array | str:
+    """Responses (n, r) of these designs by name, or why not."""
+    if not names or not len(values):
+        return np.zeros((len(values), len(names)))
+    try:
+        mechanism = study.described(values)
+        found = study.answered(mechanism) if len(names) == len(study.columns) else study.answered(mechanism, names)
+    except (DesignError, np.linalg.LinAlgError) as error:
+        return str(error)
+    reasons = [value for value in found if isinstance(value, str)]
+    if reasons:
+        return "; ".join(dict.fromkeys(reasons))
+    return np.stack([np.broadcast_to(np.real(value), len(values)) for value in found if not isinstance(value, str)], axis=-1)
+
+
+def _unfinished(study: Study, values: Array) -> str:
+    missing = [measure.key for measure, value in zip(study.columns.values(), values, strict=True) if not np.isfinite(value)]
+    return f"{', '.join(missing)}: no finite value"

@@ -1,0 +1,122 @@
+"""Designs of a study under their dead load: which do not hold, and how near to that the ranges come."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+
+from flexstage.analysis.stability import DOUBTFUL, stability
+from flexstage.analysis.standing import load_factors
+from flexstage.base.finding import DesignError, Finding, require
+from flexstage.base.number import Array, stack
+from flexstage.mechanism.checks import checked
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.models.lumped import lumped
+from flexstage.studies.sweeps.definition import Study
+
+_ENDS = 8
+"""Of more variables the first designs of the plan are looked at, not the ends of every range."""
+_FIRST = 16
+_AT_ONCE = 64
+_MARGIN = 2.0
+"""How far below what any end of the ranges has a design between them is reckoned with."""
+
+
+def loaded(study: Study) -> bool:
+    """Whether designs must be asked one by one if they hold: an end of the ranges has a load factor that is not far above what is told.
+
+    >>> from flexstage.studies.sweeps.example import neck_study
+    >>> loaded(neck_study())
+    False
+    """
+    return _least(study)[0] < _MARGIN * DOUBTFUL
+
+
+def falling(study: Study, values: Array) -> dict[int, str]:
+    """Why designs with `values` (n, d) of the variables do not hold, by row; those without an elastic model are told elsewhere.
+
+    >>> from flexstage.studies.sweeps.example import neck_study
+    >>> falling(neck_study(), np.array([[0.00154]]))
+    {}
+    """
+    factors = _factors(study, values)
+    return {
+        int(row): f"stage: the drawn position does not hold under weight, payloads and forces (load factor {factors[row]:.3g})"
+        for row in np.flatnonzero(factors < 1.0)
+    }
+
+
+def loaded_findings(study: Study) -> tuple[Finding, ...]:
+    """The least load factor that an end of the ranges has, where weight, payloads and forces change what is computed there.
+
+    >>> from flexstage.studies.sweeps.example import neck_study
+    >>> loaded_findings(neck_study())
+    ()
+    """
+    least, values = _least(study)
+    if least >= DOUBTFUL:
+        return ()
+    where = ", ".join(f"{each.name} {each.text(float(value))}" for each, value in zip(study.variables, values, strict=True))
+    told = f"computed stiffness is up to {100.0 / least:.2g} % too high" if least >= 1.0 else "designs below 1 do not hold: no results"
+    what = f"weight, payloads and forces soften designs: the load factor goes down to {least:.3g} ({where}); {told}"
+    return (Finding("variables", what, 'Add to [limits] for example buckling = "at least 20"'),)
+
+
+def require_holding(study: Study, values: Array) -> tuple[Finding, ...]:
+    """Cautions about the design with `values` (d,) under its dead load. Raises `DesignError` where it does not hold.
+
+    >>> from flexstage.studies.sweeps.example import neck_study
+    >>> require_holding(neck_study(), np.array([0.00154]))
+    ()
+    """
+    factors = load_factors(study.described(values))
+    if factors is None:
+        return ()
+    advice = 'Add to [limits] for example buckling = "at least 2"'
+    require(Finding("the best design", each.what, advice) for each in factors.refusals)
+    return tuple(Finding("the best design", each.what, each.advice) for each in factors.cautions)
+
+
+@lru_cache(maxsize=2)
+def _least(study: Study) -> tuple[float, Array]:
+    """The least load factor among the ends of every range, others as drawn, and the corner of the worse ends; and the values there."""
+    if not _bears(study.design):
+        return np.inf, np.zeros(len(study.variables))
+    probes = _probes(study)
+    factors = _factors(study, probes)
+    if len(study.variables) <= _ENDS:
+        pairs = factors[1:].reshape(-1, 2)
+        corner = np.where(pairs[:, 0] <= pairs[:, 1], *probes[1:].reshape(-1, 2, len(study.variables)).diagonal(axis1=0, axis2=2))[None]
+        probes, factors = np.concatenate([probes, corner]), np.concatenate([factors, _factors(study, corner)])
+    worst = int(np.argmin(factors))
+    return float(factors[worst]), probes[worst]
+
+
+def _probes(study: Study) -> Array:
+    """The design as drawn and the low and high end of each variable in turn; of many variables the first designs."""
+    if len(study.variables) > _ENDS:
+        return study.drawn(0, min(_FIRST, study.plan.designs))
+    drawn = np.array([np.clip(each.stated(study.design), each.low, each.high) for each in study.variables])
+    found = np.tile(drawn, (1 + 2 * len(drawn), 1))
+    for place, each in enumerate(study.variables):
+        found[1 + 2 * place, place], found[2 + 2 * place, place] = each.low, each.high
+    return found
+
+
+def _bears(design: Mechanism) -> bool:
+    """Whether there is any dead load: a study may vary it, so one that is stated as nothing counts only where it stays so."""
+    return bool(np.any(np.real(stack(design.gravity)) != 0.0)) or bool(design.forces)
+
+
+def _factors(study: Study, values: Array) -> Array:
+    """Load factors (n,) of the dead load; infinite where a design has no elastic model."""
+    if len(values) > _AT_ONCE:
+        return np.concatenate([_factors(study, values[start : start + _AT_ONCE]) for start in range(0, len(values), _AT_ONCE)])
+    try:
+        mechanism = checked(study.described(values))
+        return np.broadcast_to(np.real(stability(mechanism, lumped(mechanism)).dead), len(values))
+    except (DesignError, np.linalg.LinAlgError):
+        if len(values) == 1:
+            return np.full(1, np.inf)
+        return np.concatenate([_factors(study, values[[row]]) for row in range(len(values))])

@@ -1,0 +1,57 @@
+"""Reports of studies of many designs: one HTML file each that stands alone."""
+
+from __future__ import annotations
+
+import numpy as np
+
+import flexstage
+from flexstage.base.digest import digest
+from flexstage.show.figures.export import to_svg
+from flexstage.show.page import Block, Head, Picture, Section, page, section
+from flexstage.show.sections.caveats import caveat_section
+from flexstage.studies.sweeps.definition import Study
+from flexstage.studies.sweeps.effects import Effects
+from flexstage.studies.sweeps.figures import designs_figure, effects_figure
+from flexstage.studies.sweeps.interaction_figures import pairs_figure, strongest_figure
+from flexstage.studies.sweeps.loaded import loaded_findings
+from flexstage.studies.sweeps.store import Results
+from flexstage.studies.sweeps.tables import failure_table, pair_table, response_table, share_table, variable_table
+
+_STEEP = "All panels of a row have one scale: the steeper, the stronger. Means over designs, the other variables anywhere in their ranges."
+_MAP = "Shares of variance in percent: of variables alone on the diagonal, of what two do together beyond that below it."
+_STRONGEST = "The strongest pairs: where lines are not parallel, one variable decides what the other does. Above: share of variance."
+
+
+def sweep_report(study: Study, results: Results, found: Effects) -> str:
+    """A sweep as a page of HTML: what was varied, distributions, main effects, shares of variance, designs as lines."""
+    effects = designs = None
+    if found.used:
+        effects = Picture(to_svg(effects_figure(study, found), "effects", "mean responses over the variables"), _STEEP)
+        designs = Picture(to_svg(designs_figure(study, results), "designs", "designs over parallel axes"), _parallel(study, found))
+    sections: list[Section | None] = [
+        caveat_section(study.design, loaded_findings(study)),
+        section("What was varied", [variable_table(study, results)]),
+        section("Responses", [response_table(study, results, found), designs]),
+        section("Effects", [share_table(found), effects]),
+        section("Interactions", _interactions(study, found)),
+        section("Designs without values", [failure_table(results)] if results.failures else []),
+    ]
+    origin = (("design", study.design.name), ("physics", digest(study.design, physics=True)[:16]), ("flexstage", flexstage.__version__))
+    return page(Head(study.name, "A sweep of designs", origin), [each for each in sections if each is not None])
+
+
+def _parallel(study: Study, found: Effects) -> str:
+    """What the designs over parallel axes show."""
+    text = f"Each line is a design; colour by {found.responses[0]}, from dark where it is least to yellow where it is largest"
+    return f"{text}; grey ones do not keep the limits." if study.limits else f"{text}."
+
+
+def _interactions(study: Study, found: Effects) -> list[Block]:
+    """The pairs: table, map, and the strongest."""
+    if not np.any(np.isfinite(found.pairs)):
+        return []
+    shares = Picture(to_svg(pairs_figure(found), "pairs", "shares of variance of pairs of variables"), _MAP)
+    blocks: list[Block] = [pair_table(found), shares]
+    if found.strongest:
+        blocks.append(Picture(to_svg(strongest_figure(study, found), "strongest", "mean responses over pairs of variables"), _STRONGEST))
+    return blocks

@@ -1,0 +1,177 @@
+"""Variables: the numbers of a design that a study moves, and their ranges."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from flexstage.analysis.sensitivities import departure
+from flexstage.base.finding import Finding
+from flexstage.base.number import Array, Number
+from flexstage.base.quantity import Quantity
+from flexstage.base.unit import show
+from flexstage.cases.registry import Variant
+from flexstage.mechanism.address import get, set_value
+from flexstage.mechanism.grammar import node_of, numbers
+from flexstage.mechanism.locate import canonical
+from flexstage.mechanism.mechanism import Mechanism
+
+_STEP = 1e-20
+
+
+@dataclass(frozen=True)
+class Variable:
+    """One number that a study moves from `low` to `high` [SI of `quantity`], written to all its `addresses`.
+
+    `relative`: low and high are factors on what the design states at each address. `logarithmic`: equal steps are equal ratios. `levels`:
+    into how many values a grid divides the range, ends included. `step` [SI]: only its multiples can be made. With a `variant`, its
+    addresses are parameters of that case, from which the design is drawn anew.
+    """
+
+    name: str
+    addresses: tuple[str, ...]
+    quantity: Quantity
+    low: float
+    high: float
+    relative: bool = False
+    logarithmic: bool = False
+    levels: int | None = None
+    step: float | None = field(default=None, repr=False)
+    variant: Variant | None = None
+
+    def at(self, shares: Array) -> Array:
+        """Values (n,) at shares (n,) of the range: 0 is low, 1 is high.
+
+        >>> import numpy as np
+        >>> from flexstage.base.quantity import LENGTH
+        >>> Variable("t", ("parts.neck.thickness",), LENGTH, 1e-3, 4e-3, logarithmic=True).at(np.array([0.0, 0.5, 1.0])).round(9).tolist()
+        [0.001, 0.002, 0.004]
+        """
+        if self.logarithmic:
+            return self.low * (self.high / self.low) ** shares
+        return self.low + (self.high - self.low) * shares
+
+    def text(self, value: float) -> str:
+        """A value as a study's file has it: with its unit, or in percent of what the design states.
+
+        >>> from flexstage.base.quantity import RATIO
+        >>> Variable("t", ("parts.neck.thickness",), RATIO, 0.9, 1.1, relative=True).text(1.1)
+        '+10 %'
+        """
+        return f"{100.0 * (value - 1.0):+.4g} %" if self.relative else show(value, self.quantity, digits=6)
+
+    def stated(self, mechanism: Mechanism) -> float:
+        """The value that stands for the design as it is: 1 for a relative variable, else what the first address has.
+
+        >>> from flexstage.base.quantity import LENGTH
+        >>> from flexstage.cases.double_triangle import double_triangle
+        >>> Variable("t", ("parts.neck.thickness",), LENGTH, 1e-3, 4e-3).stated(double_triangle())
+        0.00154...
+        """
+        if self.relative:
+            return 1.0
+        first = self.addresses[0]
+        return float(get(mechanism, first) if self.variant is None else self.variant.value(first))
+
+
+def varied(mechanism: Mechanism, variables: Iterable[Variable], values: Array) -> Mechanism:
+    """The design with `values` (..., d) of the variables, in SI; with leading axes it is a batch.
+
+    Parameters of a case come first: the design is drawn from them. Then shared parts are written, then departures from them, whatever the
+    order of the variables.
+
+    >>> import numpy as np
+    >>> from flexstage.base.quantity import LENGTH
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> neck = Variable("neck", ("parts.neck.thickness",), LENGTH, 1e-3, 2e-3)
+    >>> varied(double_triangle(), [neck], np.array([[0.0015], [0.0016]])).parts["neck"].thickness.tolist()
+    [0.0015, 0.0016]
+    """
+    known = tuple(variables)
+    return varied_by(mechanism, known, tuple(values[..., number] for number in range(len(known))))
+
+
+def varied_by(mechanism: Mechanism, variables: tuple[Variable, ...], columns: tuple[Number, ...]) -> Mechanism:
+    """The same of values (...) by variable: those alone that are complex make the design complex.
+
+    >>> from flexstage.base.quantity import LENGTH
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> neck = Variable("neck", ("parts.neck.thickness",), LENGTH, 1e-3, 2e-3)
+    >>> varied_by(double_triangle(), (neck,), (0.0015,)).parts["neck"].thickness
+    0.0015
+    """
+    moves = [(address, *move) for move in zip(variables, columns, strict=True) for address in move[0].addresses]
+    start = result = _drawn(mechanism, [move for move in moves if move[1].variant is not None])
+    written = [move for move in moves if move[1].variant is None]
+    for address, variable, value in sorted(written, key=lambda move: departure(mechanism, move[0])):
+        wanted = get(start, address) * value if variable.relative else value
+        result = set_value(result, address, wanted)
+    return result
+
+
+def _drawn(mechanism: Mechanism, moves: list[tuple[str, Variable, Number]]) -> Mechanism:
+    """The design drawn from the parameters that vary; as it stands where none does."""
+    variant = next((variable.variant for _, variable, _ in moves), None)
+    if variant is None:
+        return mechanism
+    return variant.drawn({name: variant.value(name) * value if variable.relative else value for name, variable, value in moves})
+
+
+def variable_findings(mechanism: Mechanism, variables: Iterable[Variable]) -> Iterator[Finding]:
+    """Ranges that are empty or inverted, numbers that two variables move, parameters that move none.
+
+    >>> from flexstage.base.quantity import LENGTH
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> neck = Variable("neck", ("parts.neck.thickness",), LENGTH, 2e-3, 1e-3)
+    >>> [str(each) for each in variable_findings(double_triangle(), [neck])]
+    ['variables.neck: its range is empty: from 2 mm to 1 mm. Give from < to.']
+    """
+    owners: dict[str, str] = {}
+    for variable in variables:
+        where = f"variables.{variable.name}"
+        if not variable.low < variable.high:
+            what = f"its range is empty: from {variable.text(variable.low)} to {variable.text(variable.high)}"
+            yield Finding(where, what, "Give from < to")
+        elif variable.logarithmic and variable.low <= 0.0:
+            yield Finding(where, f"a logarithmic range cannot begin at {variable.low:g}", "Begin above 0, or leave out the logarithm")
+        if variable.levels is not None and variable.levels < 2:
+            yield Finding(where, f"it has {variable.levels} level", "Give 2 levels or more")
+        for address in variable.addresses:
+            full = canonical(mechanism, address) if variable.variant is None else f"parameter {address}"
+            if full in owners:
+                yield Finding(where, f"'{address}' is already moved by {owners[full]}", "Let one variable move it")
+            owners[full] = variable.name
+    yield from _parameter_findings(mechanism, tuple(variables))
+
+
+def _parameter_findings(mechanism: Mechanism, variables: tuple[Variable, ...]) -> Iterator[Finding]:
+    """Parameters that move no number of the design, or one that an address overwrites."""
+    overwritten = {
+        canonical(mechanism, address): (variable.name, address)
+        for variable in variables
+        if variable.variant is None and not variable.relative
+        for address in variable.addresses
+    }
+    for variable in variables:
+        if variable.variant is None:
+            continue
+        where = f"variables.{variable.name}"
+        for name in variable.addresses:
+            moved = _moved(variable.variant, name)
+            if not moved:
+                yield Finding(where, f"parameter {name} changes nothing of this design", "Vary another")
+            for address in sorted(moved & set(overwritten)):
+                other, text = overwritten[address]
+                what = f"parameter {name} moves {text}, which variable {other} sets too"
+                yield Finding(where, what, "Let one of them move it, or vary the address in percent of what the parameter makes it")
+
+
+def _moved(variant: Variant, name: str) -> frozenset[str]:
+    """Addresses of the numbers that depend on a parameter."""
+    value = variant.value(name)
+    stepped = variant.drawn({name: np.asarray(complex(value, abs(value) * _STEP or _STEP))})
+    return frozenset(
+        address for address, found, _ in numbers(node_of(Mechanism), stepped) if np.iscomplexobj(found) and np.imag(found) != 0.0
+    )

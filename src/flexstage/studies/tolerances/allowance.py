@@ -1,0 +1,136 @@
+"""How far dimensions may deviate, so that every line of the specification keeps its margin at the wanted yield."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.analysis.requirements import Sense
+from flexstage.base.number import Array
+from flexstage.studies.sweeps.store import Results
+from flexstage.studies.tolerances.definition import Tolerance
+from flexstage.studies.tolerances.distribution import Shape
+from flexstage.studies.tolerances.slopes import Slopes
+from flexstage.studies.tolerances.summary import Line, Summary, Yield, binomial, squares_alone
+
+_DRAWS = 20_000
+_NEGLIGIBLE = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class Allowance:
+    """Factors on the stated deviations that give each line at least the yield `wanted`, to first order.
+
+    `reach` (l,): how far a line's value moves towards its limit at that yield, `share` (m, l): each entry's share of its square.
+    `together`: all deviations so many times as wide (above one: there is room; 0: a line fails as drawn). `alone` (m,): one entry's, the
+    others as stated; `equal` (m,): all at once, each entry with the same share of the room. Infinite where nothing depends on an entry.
+    `binding` and `binds` (m,) name the lines that decide. `then`: what the sample's own copies, their changes scaled, say of the yield of
+    all lines with all deviations `together` times as wide.
+    """
+
+    wanted: float
+    lines: tuple[str, ...]
+    margin: Array
+    reach: Array
+    by_slope: Array
+    share: Array
+    together: float
+    binding: str
+    alone: Array
+    binds: tuple[str, ...]
+    equal: Array
+    then: Yield | None
+
+
+def allowance(study: Tolerance, results: Results, slope: Slopes, found: Summary) -> Allowance:
+    """What deviations the specification allows; raises nothing, without a specification all is allowed.
+
+    Responses are taken as linear in the deviations where derivatives and sample agree; else the sample's own quantile is taken, with the
+    copies that scatter in one entry alone for its shares. Either way changes grow as the deviations do: near enough for small ones.
+    """
+    names = tuple(study.columns)
+    columns = [names.index(line.column) for line in found.lines]
+    values = results.responses[results.designs < study.copies]
+    by_slope = np.array([bool(found.spread.trusted[column]) for column in columns], dtype=bool)
+    squares = squares_alone(study, results, slope.values)
+    reach, shares = [], []
+    for line, column, smooth in zip(found.lines, columns, by_slope, strict=True):
+        reach.append(_linear_reach(study, line, slope.gradient[column]) if smooth else _reach(study, line, values[:, column]))
+        parts = found.spread.by_slope[:, column] if smooth else squares[:, column]
+        shares.append(_normed(parts))
+    margin = np.array([line.margin for line in found.lines])
+    share = np.stack(shares, axis=-1) if shares else np.zeros((len(study.scatters), 0))
+    room = _room(margin, np.array(reach))
+    return _allowed(study, found, (margin, np.array(reach), by_slope, share, room), values[:, columns])
+
+
+def _allowed(study: Tolerance, found: Summary, parts: tuple[Array, Array, Array, Array, Array], values: Array) -> Allowance:
+    margin, reach, by_slope, share, room = parts
+    labels = tuple(line.column for line in found.lines)
+    left = room**2 - (1.0 - share)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        alone = np.where(share > _NEGLIGIBLE, np.sqrt(np.maximum(left, 0.0) / share), np.inf)
+        equal = np.where(share > _NEGLIGIBLE, room / np.sqrt(len(share) * share), np.inf)
+    together = float(np.min(room, initial=np.inf))
+    return Allowance(
+        wanted=study.wanted,
+        lines=labels,
+        margin=margin,
+        reach=reach,
+        by_slope=by_slope,
+        share=share,
+        together=together,
+        binding=labels[int(np.argmin(room))] if labels and np.isfinite(together) else "",
+        alone=np.min(alone, axis=1, initial=np.inf),
+        binds=tuple(labels[int(np.argmin(row))] if labels and np.isfinite(np.min(row)) else "" for row in alone),
+        equal=np.min(equal, axis=1, initial=np.inf),
+        then=_then(found.lines, together, values),
+    )
+
+
+def _room(margin: Array, reach: Array) -> Array:
+    """Margins over reaches; nought where a line fails as drawn, infinite where nothing moves it."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.where(margin <= 0.0, 0.0, np.where(reach > 0.0, margin / reach, np.inf))
+
+
+def _normed(parts: Array) -> Array:
+    parts = np.nan_to_num(parts)
+    whole = np.sum(parts)
+    return parts / whole if whole > 0.0 else np.zeros_like(parts)
+
+
+def _sign(line: Line) -> float:
+    return 1.0 if line.requirement.sense is Sense.AT_LEAST else -1.0
+
+
+def _reach(study: Tolerance, line: Line, values: Array) -> float:
+    """How far the wanted share of the sample's copies stay from the nominal value, towards the limit; failed copies are infinitely far."""
+    worse = np.where(np.isfinite(values), -_sign(line) * (values - line.nominal), np.inf)
+    return float(np.quantile(worse, study.wanted, method="higher"))
+
+
+def _linear_reach(study: Tolerance, line: Line, gradient: Array) -> float:
+    """The same of a response that is linear in the deviations: exact for normal ones, else by draws from their distributions."""
+    from scipy.special import ndtri
+
+    deviations = study.deviations
+    if all(each.distribution.shape is Shape.NORMAL and each.bounded is None for each in deviations):
+        size = np.array([each.deviation for each in deviations])
+        return float(ndtri(study.wanted) * np.linalg.norm(gradient * size))
+    at = np.random.default_rng(0).random((_DRAWS, len(deviations)))
+    worse = -_sign(line) * sum(
+        slope * each.at(at[:, number]) for number, (each, slope) in enumerate(zip(deviations, gradient, strict=True))
+    )
+    return float(np.quantile(worse, study.wanted))
+
+
+def _then(lines: tuple[Line, ...], factor: float, values: Array) -> Yield | None:
+    """The sample's yield with all changes so many times as large."""
+    if not lines or not np.isfinite(factor):
+        return None
+    sign = np.array([_sign(line) for line in lines])
+    nominal, margin = np.array([line.nominal for line in lines]), np.array([line.margin for line in lines])
+    spare = margin + factor * sign * (values - nominal)
+    return binomial(np.all(np.nan_to_num(spare, nan=-np.inf) >= -_NEGLIGIBLE * np.abs(nominal), axis=1))

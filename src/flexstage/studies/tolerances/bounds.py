@@ -1,0 +1,61 @@
+"""Numbers that scatter could take to where nothing can be made: a thickness below nought."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+import numpy as np
+
+from flexstage.base.finding import Finding
+from flexstage.base.unit import show
+from flexstage.mechanism.address import quantity_of
+from flexstage.mechanism.grammar import NumberNode
+from flexstage.mechanism.locate import locate
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.studies.tolerances.distribution import REACH
+from flexstage.studies.tolerances.scatter import Deviation, Target
+
+
+def bound_findings(design: Mechanism, reached: Iterable[Target], variables: tuple[Deviation, ...]) -> Iterator[Finding]:
+    """Numbers that deviations could take out of their bounds: five standard deviations of what is not truncated, all of what is bounded.
+
+    One finding an entry of `[scatter]`, about the number that it takes farthest.
+
+    >>> from flexstage.studies.tolerances.distribution import Distribution, Shape
+    >>> from flexstage.base.quantity import LENGTH
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> wide = Deviation("t", ("parts.leaf.thickness",), LENGTH, -1, 1, distribution=Distribution(Shape.NORMAL, 3e-4), scatter="t")
+    >>> [each.what for each in bound_findings(parallelogram(), [Target("parts.leaf.thickness", 1e-3, ((0, 1.0),))], (wide,))]
+    ['parts.leaf.thickness is 1 mm, and deviations reach 1.5 mm (5 standard deviations): it would be -0.5 mm, and is to be greater than 0']
+    """
+    told: set[tuple[str, ...]] = set()
+    for target in reached:
+        node = locate(design, target.address).node
+        if not isinstance(node, NumberNode) or node.bound is None:
+            continue
+        reach = _reach(target, variables)
+        bound = node.bound
+        if bound.low < target.nominal - reach and target.nominal + reach < bound.high:
+            continue
+        owners = tuple(dict.fromkeys(variables[number].scatter for number, _ in target.factors))
+        if owners in told:
+            continue
+        told.add(owners)
+        worst = target.nominal - reach if target.nominal - reach <= bound.low else target.nominal + reach
+        quantity = quantity_of(design, target.address)
+        is_, far, there = (show(value, quantity, digits=4) for value in (target.nominal, reach, worst))
+        how = "" if all(variables[number].bounded is not None for number, _ in target.factors) else f" ({REACH:g} standard deviations)"
+        what = f"{target.address} is {is_}, and deviations reach {far}{how}: it would be {there}, and is to be {bound.text()}"
+        yield Finding(f"scatter.{', '.join(owners)}", what, 'Give a smaller deviation, or say what is sorted out: within = "..."')
+
+
+def _reach(target: Target, variables: tuple[Deviation, ...]) -> float:
+    """How far deviations go together: bounded ones add up, of the others five standard deviations of their sum."""
+    bounded, spread = 0.0, 0.0
+    for number, factor in target.factors:
+        variable = variables[number]
+        if variable.bounded is not None:
+            bounded += abs(factor) * variable.bounded
+        else:
+            spread += (factor * variable.deviation) ** 2
+    return float(bounded + REACH * np.sqrt(spread))

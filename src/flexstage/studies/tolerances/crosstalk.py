@@ -1,0 +1,141 @@
+"""Crosstalk of a real stage that is commanded, and measured, through the mapping of the one on the drawing."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import cast
+
+import numpy as np
+
+from flexstage.analysis.judge import Bench
+from flexstage.analysis.requirements import Measure, Subject
+from flexstage.base.finding import refuse
+from flexstage.base.number import Array
+from flexstage.base.quantity import Quantity
+from flexstage.mechanism.mechanism import PLATFORM
+from flexstage.models.linear.static import static_gain
+from flexstage.parts.part import Restricted
+from flexstage.parts.piezo import Piezo
+from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS, transport
+
+OPEN, HELD = "open", "held"
+_TWIST = tuple(f"{PLATFORM}.{name}" for name in COMPONENTS)
+_SINGULAR = 1e9
+
+
+@dataclass(frozen=True, eq=False)
+class Command:
+    """How the drawn stage is commanded: nominal numbers that a controller knows.
+
+    `gains` (n, f): strokes for a unit of each of the `coordinates` of the platform at `point`, lost motion made up for, from R_a;
+    `strokes` (n,): full strokes of the stacks, to which a voltage is proportional; `reference` (3,): where the point is; `sensing` (6, g):
+    R_s^-1, pose from gauges there, absent where the gauges do not determine it.
+    """
+
+    point: str
+    coordinates: tuple[str, ...]
+    gains: Array
+    strokes: Array
+    reference: Array
+    sensing: Array | None
+    length: float
+
+
+@dataclass(frozen=True)
+class PoseMeasure(Measure):
+    """Motion of the platform along or about one axis per unit that was commanded along another."""
+
+
+def command(bench: Bench, point: str) -> Command:
+    """The command of a nominal design for motions of a point of the platform.
+
+    Raises `DesignError` for stages whose strokes do not determine the platform, and for points of other bodies.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.analysis.judge import bench_of
+    >>> command(bench_of(double_triangle()), "platform").gains.shape
+    (6, 6)
+    """
+    if point != PLATFORM and point not in bench.assembly.points:
+        raise refuse("tolerance.point", f'there is no point "{point}"', f"There are {', '.join((PLATFORM, *bench.assembly.points))}")
+    gains = bench.correction(point)
+    reference = bench.assembly.bodies[PLATFORM].reference + bench.arm(point)
+    return Command(
+        point,
+        gains.columns,
+        np.asarray(gains.values),
+        np.array([float(each) for each in _strokes(bench)]),
+        np.asarray(reference),
+        _sensed(bench, reference),
+        bench.kinematics.length,
+    )
+
+
+def _sensed(bench: Bench, reference: Array) -> Array | None:
+    rows = _gauges(bench, reference)
+    weights = np.array([1.0, 1.0, 1.0, *[bench.kinematics.length] * 3])
+    scaled = rows / weights
+    if len(rows) < len(COMPONENTS) or np.linalg.cond(scaled) > _SINGULAR:
+        return None
+    return np.linalg.pinv(scaled) / weights[:, None]
+
+
+def _gauges(bench: Bench, reference: Array) -> Array:
+    """Gauge readings per twist at the point (..., g, 6)."""
+    return bench.kinematics.sensing @ transport(bench.assembly.bodies[PLATFORM].reference - reference)
+
+
+def _strokes(bench: Bench) -> list[Array]:
+    parts = [bench.assembly.links[link].part for link in bench.assembly.actuators.values()]
+    return [np.asarray(cast("Piezo", part.part if isinstance(part, Restricted) else part).stroke) for part in parts]
+
+
+def pose_measures(asked: Command) -> Mapping[str, Measure]:
+    """What `poses` gives, by name: `open.x.rz` is the motion along x per command about z.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.analysis.judge import bench_of
+    >>> list(pose_measures(command(bench_of(parallelogram()), "platform")))[:2]
+    ['open.x.x', 'open.y.x']
+    """
+    pairs = [(OPEN, row, column) for row in COMPONENTS for column in asked.coordinates]
+    if asked.sensing is not None:
+        pairs += [(HELD, row, column) for row in COMPONENTS for column in COMPONENTS]
+    return {
+        f"{kind}.{row}.{column}": PoseMeasure(
+            f"{kind}.{row}.{column}", Subject.CROSSTALK, f"{row}.{column}", _quantity(row, column), asked.point
+        )
+        for kind, row, column in pairs
+    }
+
+
+def _quantity(row: str, column: str) -> Quantity:
+    units = tuple(TWIST_UNITS[COMPONENTS.index(name)] for name in (row, column))
+    si = "1" if units[0] == units[1] else "/".join(units)
+    return Quantity("pose per command", si, {"1": "1", "rad/m": "urad/um", "m/rad": "um/rad"}[si], "1")
+
+
+def poses(bench: Bench, asked: Command) -> tuple[Array, ...]:
+    """Motion per command (...) of a real stage, or a batch, entry by entry as `pose_measures` names them.
+
+    Open: the voltages that would move the drawn stage, x = X T (stroke / nominal stroke) C e_j, where C makes up for the drawn stage's
+    lost motion and T = dx/da is the real one's elastic gain. Held: a controller keeps the pose that it reads through the drawn R_s^-1, so
+    that the real one is x = (R_s^-1 R_s,real)^-1 e_j. Both at the drawn point. Of the drawn stage itself both are the identity (open, with
+    fewer than six motions: with its own parasitic motions).
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.analysis.judge import bench_of
+    >>> bench = bench_of(double_triangle())
+    >>> np.allclose(np.reshape(poses(bench, command(bench, "platform"))[:36], (6, 6)), np.eye(6))
+    True
+    """
+    real = bench.assembly.bodies[PLATFORM].reference
+    gain = transport(asked.reference - real) @ static_gain(bench.model, _TWIST, bench.kinematics.actuators).values
+    ratio = np.stack(np.broadcast_arrays(*_strokes(bench)), axis=-1) / asked.strokes
+    moved = gain @ (ratio[..., None] * asked.gains)
+    found = [moved[..., row, column] for row in range(len(COMPONENTS)) for column in range(len(asked.coordinates))]
+    if asked.sensing is not None:
+        held = np.linalg.inv(asked.sensing @ _gauges(bench, asked.reference))
+        found += [held[..., row, column] for row in range(len(COMPONENTS)) for column in range(len(COMPONENTS))]
+    return tuple(found)

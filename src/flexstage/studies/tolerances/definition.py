@@ -1,0 +1,177 @@
+"""A tolerance study: copies of a design that scatter, and the specification that they are to keep."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from itertools import pairwise
+
+import numpy as np
+
+from flexstage.analysis.judge import Bench, bench_of, measured_on
+from flexstage.analysis.requirements import Measure, Requirement
+from flexstage.base.number import Array
+from flexstage.mechanism.mechanism import PLATFORM, Mechanism
+from flexstage.studies.sweeps.definition import Study
+from flexstage.studies.sweeps.numbers import Numbers
+from flexstage.studies.sweeps.plan import Plan, Sampling, shares
+from flexstage.studies.tolerances.crosstalk import Command, PoseMeasure, command, pose_measures, poses
+from flexstage.studies.tolerances.scatter import Deviation, Scatter, Target, deviated, sums
+
+_MANY = 64
+"""How many copies for each number that scatters there must be for the engine of many designs to pay for its plan."""
+
+
+@dataclass(frozen=True)
+class Copies(Plan):
+    """A plan of `count` copies in which everything scatters, then of `alone` more for each entry of `[scatter]`, which then scatters alone.
+
+    Those are a Latin hypercube whatever the sampling: they are few. `groups` says how many variables each entry has, in order.
+    """
+
+    alone: int = 0
+    groups: tuple[int, ...] = ()
+
+    @property
+    def designs(self) -> int:
+        """Number of copies in all.
+
+        >>> from flexstage.studies.sweeps.plan import Sampling
+        >>> Copies(Sampling.SOBOL, 3, count=8, alone=2, groups=(1, 2)).designs
+        12
+        """
+        return self.count + self.alone * len(self.groups)
+
+    def parts(self, start: int, stop: int) -> list[tuple[Plan, int, int, tuple[bool, ...]]]:
+        """The stretches of a piece: a plan of its own for each, from and to which design of it, and which variables it moves.
+
+        >>> from flexstage.studies.sweeps.plan import Sampling
+        >>> [part[1:] for part in Copies(Sampling.SOBOL, 2, count=8, alone=4, groups=(1, 1)).parts(6, 13)]
+        [(6, 8, (True, True)), (0, 4, (True, False)), (0, 1, (False, True))]
+        """
+        found = []
+        edges = [0, self.count, *(self.count + self.alone * (number + 1) for number in range(len(self.groups)))]
+        owners = [number for number, size in enumerate(self.groups) for _ in range(size)]
+        for block, (low, high) in enumerate(pairwise(edges)):
+            first, last = max(start, low), min(stop, high)
+            if first < last:
+                sampling = self.sampling if block == 0 else Sampling.LATIN_HYPERCUBE
+                plan = Plan(sampling, self.dimensions, high - low, seed=self.seed + block)
+                moved = tuple(block in (0, owner + 1) for owner in owners)
+                found.append((plan, first - low, last - low, moved))
+        return found
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Tolerance(Study):
+    """A study of copies: `scatters` are the entries of `[scatter]`, whose variables are the study's; `limits` are the specification.
+
+    `targets` are the numbers they reach. `wanted` is the yield that each line of the specification is to have. `commanded`: what the
+    nominal stage is commanded by, to see crosstalk at its point; absent: crosstalk is not asked.
+    """
+
+    scatters: tuple[Scatter, ...]
+    targets: tuple[Target, ...]
+    wanted: float
+    commanded: Command | None = None
+
+    @property
+    def copies(self) -> int:
+        """How many copies scatter in everything."""
+        return self.plan.count
+
+    @property
+    def deviations(self) -> tuple[Deviation, ...]:
+        """The variables, as deviations."""
+        return tuple(one for each in self.scatters for one in each.variables())
+
+    @property
+    def owners(self) -> tuple[int, ...]:
+        """Which entry each variable belongs to."""
+        return tuple(number for number, each in enumerate(self.scatters) for _ in each.members)
+
+    @property
+    def lines(self) -> tuple[tuple[str, Requirement], ...]:
+        """The specification's lines, with the column that holds what each is about."""
+        return tuple((line_name(each), each) for each in self.limits)
+
+    @cached_property
+    def asked(self) -> Mapping[str, Measure]:
+        """What is measured of each copy, by name: the responses, and what the specification is about."""
+        return {**self.responses, **{name: each for name, each in self.lines if name not in self.responses}}
+
+    @property
+    def columns(self) -> Mapping[str, Measure]:
+        """All that is computed of each copy: what is measured, then poses per command where crosstalk is asked."""
+        return {**self.asked, **(pose_measures(self.commanded) if self.commanded is not None else {})}
+
+    @property
+    def facts(self) -> dict[str, str]:
+        """What results depend on, item by item in words."""
+        plain = {key: fact for key, fact in super().facts.items() if not key.startswith("variables.")}
+        point = {} if self.commanded is None else {"crosstalk": f"at {self.commanded.point}"}
+        return {**plain, **{f"scatter.{each.name}": repr(each) for each in self.scatters}, **point}
+
+    def drawn(self, start: int, stop: int) -> Array:
+        """Deviations (n, d) of copies from `start` to before `stop`; nought where an entry does not scatter."""
+        if not isinstance(self.plan, Copies):
+            return super().drawn(start, stop)
+        rows = []
+        for plan, first, last, moved in self.plan.parts(start, stop):
+            at = shares(plan, first, last)
+            rows.append(np.stack([self.variables[k].at(at[:, k]) * moved[k] for k in range(plan.dimensions)], axis=-1))
+        return np.concatenate(rows)
+
+    def described(self, values: Array) -> Mechanism:
+        """The design with deviations (..., d) added to its numbers."""
+        return deviated(self.design, self.targets, values)
+
+    @property
+    def numbers(self) -> Numbers | None:
+        """The numbers that copies differ in; `None` for so few copies that planning for them costs more than it saves."""
+        return sums(self.targets, len(self.variables)) if self.plan.designs >= _MANY * len(self.targets) else None
+
+    def answered(self, mechanism: Mechanism, names: tuple[str, ...] | None = None) -> tuple[Array | str, ...]:
+        """What is asked of a copy or a batch of them, column by column or those of `names`."""
+        columns = self.columns
+        found = self.read(bench_of(mechanism), tuple(columns[name] for name in (columns if names is None else names)))
+        return tuple("nothing is asked" if each is None else each for each in found)
+
+    def read(self, bench: Bench, wanted: tuple[Measure | None, ...]) -> tuple[Array | str | None, ...]:
+        """Those of the study's columns that are wanted, on a bench; the others are left out."""
+        asked = any(isinstance(each, PoseMeasure) for each in wanted)
+        found = {}
+        if self.commanded is not None and asked:
+            found = dict(zip(pose_measures(self.commanded), poses(bench, self.commanded), strict=True))
+        return tuple(
+            None if each is None else found[each.key] if isinstance(each, PoseMeasure) else measured_on(bench, each) for each in wanted
+        )
+
+    def scaled(self, factors: tuple[float, ...]) -> Tolerance:
+        """The same study with the deviations of each entry so many times as wide."""
+        scatters = tuple(
+            replace(each, distribution=each.distribution.times(factor)) for each, factor in zip(self.scatters, factors, strict=True)
+        )
+        return replace(self, scatters=scatters, variables=tuple(one for each in scatters for one in each.variables()))
+
+
+def line_name(line: Requirement) -> str:
+    """The column of what a line of the specification is about.
+
+    >>> from flexstage.analysis.requirements import requirements
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> [line_name(line) for line in requirements(parallelogram())]
+    ['stroke.x', 'frequency.platform.1', 'safety']
+    """
+    return line.key if line.point == PLATFORM else f"{line.key} at {line.point}"
+
+
+def commanded(design: Mechanism, point: str) -> Command:
+    """What the nominal design is commanded by at a point: raises `DesignError` where strokes do not determine its platform.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> commanded(parallelogram(), "platform").coordinates
+    ('x',)
+    """
+    return command(bench_of(design), point)

@@ -1,0 +1,27 @@
+"""A small tolerance study, for examples."""
+
+from __future__ import annotations
+
+from flexstage.studies.tolerances.definition import Tolerance
+from flexstage.studies.tolerances.file import loads_tolerance
+
+
+def leaf_study(copies: int = 64) -> Tolerance:
+    """The parallelogram with leaves that are cut too thick or too thin, both alike and each for itself, and its stiffness to move.
+
+    >>> leaf_study().plan.count
+    64
+    """
+    return loads_tolerance(
+        f"""
+format = "flexstage study 1"
+name = "leaves"
+case = "parallelogram"
+responses = {{ guide = "stiffness.x" }}
+limits = {{ "stiffness.x" = "at least 10 N/um" }}
+tolerance = {{ copies = {copies}, require = false, crosstalk = false }}
+[scatter]
+wire = {{ of = "parts.leaf.thickness", normal = "5 um" }}
+wear = {{ of = "links.left.thickness", uniform = "5 um" }}
+"""
+    )

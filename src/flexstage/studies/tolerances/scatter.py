@@ -1,0 +1,174 @@
+"""Scatter: what manufacture and material add to numbers of a design, common to all copies or each for itself."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from functools import reduce
+
+import numpy as np
+
+from flexstage.analysis.sensitivities import departure
+from flexstage.base.number import Array
+from flexstage.base.quantity import Quantity
+from flexstage.mechanism.address import get, set_value
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.studies.sweeps.numbers import Numbers
+from flexstage.studies.sweeps.variable import Variable
+from flexstage.studies.tolerances.distribution import NONE, REACH, Distribution
+
+
+@dataclass(frozen=True)
+class Scatter:
+    """One entry of a study's `[scatter]`: a `distribution` of what is added to numbers, in SI of `quantity`.
+
+    `members` are the addresses that deviate together, member by member: one for what is common to all, one a copy for what each copy has
+    for itself. `relative`: deviations are shares of what the design states. `source` is the user's own words: `of`.
+    """
+
+    name: str
+    source: tuple[str, ...]
+    quantity: Quantity
+    distribution: Distribution
+    members: tuple[tuple[str, ...], ...]
+    each: bool
+    relative: bool = False
+
+    def variables(self) -> tuple[Deviation, ...]:
+        """Its variables, one a member; where there are several, they are named after what they move."""
+        low, high = -self._reach, self._reach
+        several = len(self.members) > 1
+        names = [f"{self.name}.{self._label(member)}" if several else self.name for member in self.members]
+        return tuple(
+            Deviation(name, member, self.quantity, low, high, relative=self.relative, distribution=self.distribution, scatter=self.name)
+            for name, member in zip(names, self.members, strict=True)
+        )
+
+    @property
+    def _reach(self) -> float:
+        bounded = self.distribution.bounded
+        return REACH * self.distribution.size if bounded is None else bounded
+
+    def _label(self, member: tuple[str, ...]) -> str:
+        """What tells a member apart: the copy, or the component of what is common."""
+        return member[0] if self.each else member[0].rpartition(".")[2]
+
+
+@dataclass(frozen=True)
+class Deviation(Variable):
+    """What is added to numbers, drawn from a distribution about nought; `scatter` is the entry it belongs to.
+
+    `low` and `high` are its reach. `relative`: the values are shares of what the design states, 0.01 for one per cent.
+    """
+
+    distribution: Distribution = NONE
+    scatter: str = ""
+
+    def at(self, shares: Array) -> Array:
+        """Deviations at shares (n,) of the probability."""
+        return self.distribution.quantile(shares)
+
+    @property
+    def deviation(self) -> float:
+        """Standard deviation."""
+        return self.distribution.deviation
+
+    @property
+    def bounded(self) -> float | None:
+        """The largest deviation there is, if there is one."""
+        return self.distribution.bounded
+
+
+@dataclass(frozen=True)
+class Target:
+    """A number that scatter reaches: its `address`, what the design states, and by which factors the variables' values are added."""
+
+    address: str
+    nominal: float
+    factors: tuple[tuple[int, float], ...]
+
+
+def targets(design: Mechanism, variables: Iterable[Variable], shared: dict[str, str]) -> tuple[Target, ...]:
+    """All numbers that deviations reach, in an order in which they may be written.
+
+    `shared` names the shared part's number that an address of a single copy comes from. Where all copies deviate alike that is written
+    instead: the fewer parts differ, the less there is to compute.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.base.quantity import LENGTH
+    >>> both = {"links.left.thickness": "parts.leaf.thickness", "links.right.thickness": "parts.leaf.thickness"}
+    >>> [each.address for each in targets(parallelogram(), [Variable("t", tuple(both), LENGTH, -1e-5, 1e-5)], both)]
+    ['parts.leaf.thickness']
+    """
+    reached: dict[str, tuple[tuple[int, float], ...]] = {}
+    for number, variable in enumerate(variables):
+        for address in dict.fromkeys(variable.addresses):
+            factor = float(get(design, address)) if variable.relative else 1.0
+            reached[address] = (*reached.get(address, ()), (number, factor))
+    found = _gathered(design, reached, shared)
+    return tuple(sorted(found, key=lambda target: departure(design, target.address)))
+
+
+def _gathered(design: Mechanism, reached: dict[str, tuple[tuple[int, float], ...]], shared: dict[str, str]) -> list[Target]:
+    copies: dict[str, list[str]] = {}
+    for address, origin in shared.items():
+        copies.setdefault(origin, []).append(address)
+    alike = {
+        origin: members[0]
+        for origin, members in copies.items()
+        if len({reached.get(each) for each in members}) == 1
+        and members[0] in reached
+        and {float(get(design, each)) for each in members} == {float(get(design, origin))}
+    }
+    written = {origin: reached[first] for origin, first in alike.items()}
+    written |= {address: factors for address, factors in reached.items() if shared.get(address) not in alike}
+    return [Target(address, float(get(design, address)), factors) for address, factors in written.items()]
+
+
+def deviated(design: Mechanism, reached: tuple[Target, ...], values: Array) -> Mechanism:
+    """The design with deviations (..., d) added; with leading axes it is a batch.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> leaf = Target("parts.leaf.thickness", 1e-3, ((0, 1.0), (1, 1e-3)))
+    >>> float(deviated(parallelogram(), (leaf,), np.array([1e-5, 0.02])).parts["leaf"].thickness)
+    0.00103
+    """
+    plain = replace(design, tags={})
+    return reduce(lambda stage, target: set_value(stage, target.address, _value(target, values)), reached, plain)
+
+
+def _value(target: Target, values: Array) -> Array:
+    numbers, factors = (list(part) for part in zip(*target.factors, strict=True))
+    return np.asarray(target.nominal + values[..., numbers] @ np.array(factors))
+
+
+@dataclass(frozen=True, eq=False)
+class Sums(Numbers):
+    """Numbers that several deviations add to: `nominal` (P,) plus deviations (d,) by `matrix` (d, P)."""
+
+    nominal: Array
+    matrix: Array
+
+    def at(self, values: Array) -> Array:
+        """The numbers (n, P) of copies with deviations (n, d)."""
+        return self.nominal + values @ self.matrix
+
+    def ranges(self, low: Array, high: Array) -> tuple[Array, Array]:
+        """Least and largest numbers (P,) for deviations from `low` to `high` (d,), each wherever it likes."""
+        reach = np.maximum(np.abs(low), np.abs(high)) @ np.abs(self.matrix)
+        return self.nominal - reach, self.nominal + reach
+
+
+def sums(reached: tuple[Target, ...], count: int) -> Sums:
+    """The numbers of a description that `count` deviations add to.
+
+    >>> sums((Target("a", 1.0, ((0, 1.0), (1, 2.0))),), 2).at(np.array([[0.1, 0.2]])).round(9).tolist()
+    [[1.5]]
+    """
+    matrix = np.zeros((count, len(reached)))
+    for place, target in enumerate(reached):
+        for number, factor in target.factors:
+            matrix[number, place] = factor
+    nominal = np.array([target.nominal for target in reached])
+    nothing = np.zeros(0)
+    return Sums(tuple(target.address for target in reached), nothing, nothing, nominal, matrix)

@@ -1,0 +1,105 @@
+"""Exact derivatives of responses with respect to deviations, and whether there are any: the least of several equal things has none."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.analysis.judge import Bench, bench_of
+from flexstage.analysis.requirements import Measure, Subject
+from flexstage.analysis.sensitivities import projected
+from flexstage.base.number import Array
+from flexstage.models.linear.eigen import Eigen
+from flexstage.studies.tolerances.definition import Tolerance
+
+_STEP = 1e-20
+_CHUNK = 24
+_NEAR = 1e-3
+_DIRECTIONS = 8
+_EVEN = 0.01
+_GAP = 1e-6
+_FREQUENCIES = (Subject.FREQUENCY, Subject.PLATFORM_FREQUENCY)
+
+
+@dataclass(frozen=True, eq=False)
+class Slopes:
+    """Values (r,) of the design as it stands, derivatives (r, d) by the deviations in SI, and which responses are `smooth` (r,) there.
+
+    A response that is not (the lowest of two equal frequencies, the largest of three equal losses) changes to one side whatever deviates;
+    its derivatives are those of one of the equals, of equal frequencies those of their mean.
+    """
+
+    values: Array
+    gradient: Array
+    smooth: Array
+
+
+def slopes(study: Tolerance) -> Slopes:
+    """Derivatives of all columns of a study: by complex step, of frequencies d lambda = phi^T (dK - lambda dM) phi.
+
+    Smooth is what, a thousandth of the scatter away in eight random directions and their opposites, changes by opposite amounts, and by
+    what the derivatives say.
+
+    >>> from flexstage.studies.tolerances.example import leaf_study
+    >>> found = slopes(leaf_study())
+    >>> found.gradient.shape, bool(found.smooth.all())
+    ((2, 2), True)
+    """
+    size = np.array([each.deviation for each in study.deviations])
+    columns = tuple(study.columns.values())
+    bench = bench_of(study.design)
+    values = _numbers(study, np.zeros((1, len(size))))[0]
+    gradient = np.zeros((len(columns), len(size)))
+    modes = {row: _mode(bench, each) for row, each in enumerate(columns) if each.subject in _FREQUENCIES}
+    for start in range(0, len(size), _CHUNK):
+        chosen = np.arange(start, min(start + _CHUNK, len(size)))
+        step = np.zeros((len(chosen), len(size)), dtype=complex)
+        step[np.arange(len(chosen)), chosen] = 1j * _STEP
+        gradient[:, chosen] = _stepped(study, step, modes)
+    return Slopes(values, gradient, _smooth(study, (values, gradient), size))
+
+
+def _numbers(study: Tolerance, values: Array) -> Array:
+    """All columns (n, r) as real numbers; NaN where there is none."""
+    found = study.answered(study.described(values))
+    rows = [np.full(len(values), np.nan) if isinstance(each, str) else np.broadcast_to(np.real(each), len(values)) for each in found]
+    return np.stack(rows, axis=-1)
+
+
+def _mode(bench: Bench, asked: Measure) -> tuple[float, Eigen]:
+    """The frequency that is asked, and the modes that share it."""
+    modes = bench.modes
+    index = int(asked.name) - 1
+    place = modes.platform[index] if asked.subject is Subject.PLATFORM_FREQUENCY else index
+    frequency = modes.frequencies[place]
+    group = np.flatnonzero(np.abs(modes.frequencies - frequency) <= _GAP * frequency)
+    return float(frequency), Eigen((2.0 * np.pi * modes.frequencies[group]) ** 2, modes.shapes[:, group])
+
+
+def _stepped(study: Tolerance, step: Array, modes: dict[int, tuple[float, Eigen]]) -> Array:
+    """Derivatives (r, p) by the deviations of some steps."""
+    bench = bench_of(study.described(step))
+    others = [None if row in modes else each for row, each in enumerate(study.columns.values())]
+    found = np.zeros((len(others), len(step)))
+    for row, value in enumerate(study.read(bench, tuple(others))):
+        if value is not None and not isinstance(value, str):
+            found[row] = np.imag(np.broadcast_to(value, len(step))) / _STEP
+    for row, (frequency, group) in modes.items():
+        change = projected(bench.model.stiffness, group.shapes) - group.values.mean() * projected(bench.model.inertia, group.shapes)
+        mean = np.trace(change, axis1=-2, axis2=-1) / len(group.values)
+        found[row] = mean / (8.0 * np.pi**2 * frequency)
+    return found
+
+
+def _smooth(study: Tolerance, here: tuple[Array, Array], size: Array) -> Array:
+    """Which responses change by opposite amounts in opposite directions, as their derivatives say."""
+    values, gradient = here
+    way = np.random.default_rng(study.plan.seed).standard_normal((_DIRECTIONS, len(size))) * size * _NEAR
+    there = _numbers(study, np.concatenate([way, -way])) - values
+    odd, even = 0.5 * (there[:_DIRECTIONS] - there[_DIRECTIONS:]), 0.5 * (there[:_DIRECTIONS] + there[_DIRECTIONS:])
+    told = way @ gradient.T
+    scale = np.sqrt(np.mean(odd**2, axis=0))
+    noise = 1e-10 * np.abs(values) + 1e-300
+    wrong = np.sqrt(np.mean(even**2 + (odd - told) ** 2, axis=0))
+    return np.isfinite(wrong) & (wrong <= _EVEN * scale + noise)

@@ -1,0 +1,232 @@
+"""What a sample of copies says: distributions, the yield line by line and together, which scatter does it, crosstalk."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.analysis.requirements import Requirement, Sense, Verdict
+from flexstage.base.number import Array
+from flexstage.spatial.frame import COMPONENTS
+from flexstage.studies.sweeps.store import Results
+from flexstage.studies.tolerances.crosstalk import HELD, OPEN
+from flexstage.studies.tolerances.definition import Tolerance
+from flexstage.studies.tolerances.slopes import Slopes
+
+PERCENTILES = (1, 5, 50, 95, 99)
+CONFIDENCE = 0.95
+_ROUGH = 0.1
+_ERRORS = 4.0
+
+
+@dataclass(frozen=True, eq=False)
+class Spread:
+    """Distributions of r responses over the copies that have values; `nominal` is the design as it stands.
+
+    `percentiles` (5, r) are the 1st, 5th, 50th, 95th and 99th. `linear` (r,): the deviation that first-order propagation gives,
+    sqrt(sum (dy/dx s)^2), `trusted` where the response is smooth and the sample agrees to a tenth, or to four standard errors.
+    `by_slope` (m, r): shares of the variance by the m entries of `[scatter]`, from derivatives; `by_sample`: what each does alone, over the
+    sum of these, from copies in which it scatters alone. NaN where nothing varies.
+    """
+
+    names: tuple[str, ...]
+    nominal: Array
+    mean: Array
+    deviation: Array
+    percentiles: Array
+    linear: Array
+    trusted: Array
+    by_slope: Array
+    by_sample: Array
+
+
+@dataclass(frozen=True)
+class Yield:
+    """`kept` of `copies` keep a line, or all; `low` to `high` is the 95 % interval of Clopper and Pearson, exact for random copies.
+
+    Copies that failed keep nothing.
+    """
+
+    kept: int
+    copies: int
+    low: float
+    high: float
+
+    @property
+    def share(self) -> float:
+        """Share of the copies."""
+        return self.kept / self.copies
+
+
+@dataclass(frozen=True, eq=False)
+class Line:
+    """A line of the specification, the column it is about, its nominal value and its yield."""
+
+    requirement: Requirement
+    column: str
+    nominal: float
+    kept: Yield
+
+    @property
+    def margin(self) -> float:
+        """Distance of the nominal value to the limit on the good side, in SI."""
+        spare = self.nominal - self.requirement.limit
+        return spare if self.requirement.sense is Sense.AT_LEAST else -spare
+
+
+@dataclass(frozen=True, eq=False)
+class Crosstalk:
+    """Pose error per command (6, f) over the copies, rows the motion, columns the command; one taken off the diagonal.
+
+    `kind` is `open` (commanded by the nominal R_a) or `held` (kept on the pose that the nominal R_s^-1 shows). `nominal`, `mean`,
+    `deviation`, and of the sizes the 95th percentile `usual` and the `worst`; SI.
+    """
+
+    kind: str
+    point: str
+    coordinates: tuple[str, ...]
+    nominal: Array
+    mean: Array
+    deviation: Array
+    usual: Array
+    worst: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Summary:
+    """What a sample of copies says; `together` is absent without a specification."""
+
+    copies: int
+    failed: int
+    spread: Spread
+    lines: tuple[Line, ...]
+    together: Yield | None
+    crosstalk: tuple[Crosstalk, ...]
+
+
+def summary(study: Tolerance, results: Results, slope: Slopes) -> Summary:
+    """Distributions, yields, contributions and crosstalk of a study's copies.
+
+    >>> from flexstage.studies.tolerances.example import leaf_study
+    >>> from flexstage.studies.tolerances.slopes import slopes
+    >>> from flexstage.studies.sweeps.evaluate import piece
+    >>> study = leaf_study()
+    >>> found = piece(study, 0, study.plan.designs)
+    >>> count = study.plan.designs
+    >>> results = Results(np.arange(count), found.variables, found.responses, {}, ((), ()), ((), ()), count, {}, "")
+    >>> [line.kept.kept for line in summary(study, results, slopes(study)).lines]
+    [64]
+    """
+    values = results.responses[results.designs < study.copies]
+    sound = np.all(np.isfinite(values), axis=1)
+    lines = tuple(_line(study, values, slope, number) for number in range(len(study.lines)))
+    passed = [_passed(line.requirement, values[:, _column(study, line.column)]) for line in lines]
+    return Summary(
+        copies=len(values),
+        failed=int(np.sum(~sound)),
+        spread=_spread(study, results, slope, values[sound]),
+        lines=lines,
+        together=binomial(np.all(passed, axis=0)) if passed else None,
+        crosstalk=tuple(_crosstalk(study, values[sound], slope, kind) for kind in _kinds(study)),
+    )
+
+
+def binomial(passed: Array) -> Yield:
+    """The yield of copies that passed or not, with the interval of Clopper and Pearson (Biometrika 26 (1934) 404).
+
+    >>> found = binomial(np.array([True] * 9 + [False]))
+    >>> found.share, round(found.low, 4), round(found.high, 4)
+    (0.9, 0.555, 0.9975)
+    """
+    from scipy.special import betaincinv
+
+    kept, count, tail = int(np.sum(passed)), len(passed), 0.5 * (1.0 - CONFIDENCE)
+    low = float(betaincinv(kept, count - kept + 1, tail)) if kept else 0.0
+    return Yield(kept, count, low, float(betaincinv(kept + 1, count - kept, 1.0 - tail)) if kept < count else 1.0)
+
+
+def _column(study: Tolerance, name: str) -> int:
+    return list(study.columns).index(name)
+
+
+def _line(study: Tolerance, values: Array, slope: Slopes, number: int) -> Line:
+    name, requirement = study.lines[number]
+    column = _column(study, name)
+    return Line(requirement, name, float(slope.values[column]), binomial(_passed(requirement, values[:, column])))
+
+
+def _passed(requirement: Requirement, values: Array) -> Array:
+    return Verdict(requirement, values).passed
+
+
+def _spread(study: Tolerance, results: Results, slope: Slopes, values: Array) -> Spread:
+    size = np.array([each.deviation for each in study.deviations])
+    parts = (slope.gradient * size) ** 2
+    linear = np.sqrt(np.sum(parts, axis=1))
+    deviation = np.std(values, axis=0, ddof=1) if len(values) > 1 else np.full(len(linear), np.nan)
+    allowed = max(_ROUGH, _ERRORS / np.sqrt(2.0 * max(len(values), 1)))
+    owners = np.array(study.owners)
+    by_slope = np.stack([np.sum(parts[:, owners == number], axis=1) for number in range(len(study.scatters))])
+    alone = _alone(study, results, centre=None)
+    percentiles = np.percentile(values, PERCENTILES, axis=0) if len(values) else np.full((len(PERCENTILES), len(linear)), np.nan)
+    return Spread(
+        names=tuple(study.columns),
+        nominal=slope.values,
+        mean=np.mean(values, axis=0) if len(values) else np.full(len(linear), np.nan),
+        deviation=deviation,
+        percentiles=percentiles,
+        linear=linear,
+        trusted=slope.smooth & (np.abs(linear - deviation) <= allowed * np.maximum(deviation, 1e-300)),
+        by_slope=_over(by_slope, np.where(slope.smooth, linear**2, 0.0)),
+        by_sample=_over(alone, np.sum(alone, axis=0)),
+    )
+
+
+def _over(parts: Array, whole: Array) -> Array:
+    return np.divide(parts, whole, out=np.full(parts.shape, np.nan), where=np.isfinite(whole) & (whole > 0.0))
+
+
+def _alone(study: Tolerance, results: Results, centre: Array | None) -> Array:
+    """Variance (m, r), or mean square about a centre, of the copies in which one entry scatters alone; a single entry is the sample."""
+    count, alone = study.copies, getattr(study.plan, "alone", 0)
+    rows = []
+    for number in range(len(study.scatters)):
+        low, high = (count + number * alone, count + (number + 1) * alone) if alone else (0, count)
+        values = results.responses[(results.designs >= low) & (results.designs < high)]
+        values = values[np.all(np.isfinite(values), axis=1)]
+        middle = values.mean(axis=0) if centre is None and len(values) else centre
+        rows.append(np.mean((values - middle) ** 2, axis=0) if len(values) > 1 else np.full(results.responses.shape[1], np.nan))
+    return np.stack(rows)
+
+
+def squares_alone(study: Tolerance, results: Results, centre: Array) -> Array:
+    """Mean squares (m, r) about a centre (r,) of what each entry of `[scatter]` does alone."""
+    return _alone(study, results, centre)
+
+
+def _kinds(study: Tolerance) -> tuple[str, ...]:
+    if study.commanded is None:
+        return ()
+    return (OPEN,) if study.commanded.sensing is None else (OPEN, HELD)
+
+
+def _crosstalk(study: Tolerance, values: Array, slope: Slopes, kind: str) -> Crosstalk:
+    asked = study.commanded
+    coordinates = COMPONENTS if kind == HELD or asked is None else asked.coordinates
+    names = list(study.columns)
+    places = [[names.index(f"{kind}.{row}.{column}") for column in coordinates] for row in COMPONENTS]
+    own = np.array([[float(row == column) for column in coordinates] for row in COMPONENTS])
+    errors = values[:, np.array(places)] - own
+    empty = np.full(own.shape, np.nan)
+    found = len(errors) > 0
+    return Crosstalk(
+        kind=kind,
+        point=asked.point if asked is not None else "",
+        coordinates=tuple(coordinates),
+        nominal=slope.values[np.array(places)] - own,
+        mean=errors.mean(axis=0) if found else empty,
+        deviation=errors.std(axis=0) if found else empty,
+        usual=np.percentile(np.abs(errors), 95, axis=0) if found else empty,
+        worst=np.abs(errors).max(axis=0) if found else empty,
+    )

@@ -1,0 +1,216 @@
+"""Calibration: hinges' 6x6 in a design file's text. What is put in is known here, so that nothing needs finite elements."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import flexstage as fs
+from flexstage.analysis.cautions import defaults
+from flexstage.analysis.trust import Trust
+from flexstage.base.finding import DesignError
+from flexstage.cases.double_triangle import double_triangle
+from flexstage.cases.parallelogram import parallelogram
+from flexstage.mechanism.drawn import calibrated, drawn
+from flexstage.mechanism.expand import expand
+from flexstage.mechanism.restrict import isolate
+from flexstage.solid.calibration import with_matrices
+from flexstage.solid.document import row_body
+from flexstage.solid.fea.hinge import HingeSolid
+from flexstage.solid.fea.hinge_cache import HingeForm
+from flexstage.solid.fea.piece import span
+from flexstage.solid.fea.roots import Roots
+from flexstage.solid.hinges import distinct_hinges, solid_hinges
+from flexstage.solid.tables import verification_table
+from flexstage.solid.verification import Row, hinge_rows, verdict
+from flexstage.spatial.frame import transport
+from tests.models.solid_studies import softened
+
+
+def test_every_hinge_is_found_once() -> None:
+    found = distinct_hinges(double_triangle())
+    assert list(found) == ["neck-back", "neck-front", "foot_notch-back", "foot_notch-front", "lever_notch", "pole_neck"]
+    assert found["neck-back"].links == ("horizontal/back",)
+    assert found["pole_neck"].links == ("vertical/lower", "vertical/upper")
+
+
+def test_a_hinge_has_the_roots_that_its_link_has() -> None:
+    found = distinct_hinges(double_triangle())
+    roots = {name: (hinge.form.roots.first, hinge.form.roots.second) for name, hinge in found.items()}
+    assert roots["neck-back"] == (False, True)
+    assert roots["neck-front"] == (True, True)
+    assert roots["lever_notch"] == (True, False)  # from the lever to the ground
+    alone = distinct_hinges(isolate(double_triangle(), "B1"))
+    assert alone["neck-front"].form.roots == Roots(True, False)  # its output has no outline
+
+
+def test_a_copy_that_departs_is_a_hinge_of_its_own() -> None:
+    stage = replace(double_triangle(), changes={"B2/front.thickness": 1.55e-3})
+    assert "B2/front" in distinct_hinges(stage)
+
+
+@pytest.mark.parametrize("stage", [parallelogram(), double_triangle()])
+def test_a_file_calibrated_with_its_own_theory_is_read_alike(stage: fs.Mechanism) -> None:
+    after = fs.loads(fs.solid.calibrate(fs.dumps(stage), softened(1.0)).text)
+    first, second = (fs.statics(fs.lumped(each)).stiffness.values for each in (stage, after))
+    scale = np.sqrt(np.diag(first))
+    np.testing.assert_allclose(second / np.outer(scale, scale), first / np.outer(scale, scale), atol=1e-5)
+
+
+@pytest.mark.parametrize("stage", [parallelogram(), double_triangle()])
+def test_mass_stays(stage: fs.Mechanism) -> None:
+    after = fs.loads(fs.solid.calibrate(fs.dumps(stage), softened(1.0)).text)
+    masses = [np.abs(fs.lumped(each).base_inertia[:, :3].sum()) for each in (stage, after)]
+    assert masses[1] == pytest.approx(masses[0], rel=1e-6)
+    frequencies = [fs.modes(fs.lumped(each)).frequencies[:2] for each in (stage, after)]
+    np.testing.assert_allclose(frequencies[1], frequencies[0], rtol=2e-3)  # a given part has its mass at its centre
+
+
+@pytest.mark.parametrize("stage", [parallelogram(), double_triangle()])
+def test_calibrated_hinges_grow_and_lose_energy_as_the_drawn_ones(stage: fs.Mechanism) -> None:
+    materials = {name: replace(each, loss_factor=0.003, expansion=1e-5) for name, each in stage.materials.items()}
+    drawn_stage = replace(stage, materials=materials, damping=fs.StructuralDamping(), ground="none")
+    after = fs.loads(fs.solid.calibrate(fs.dumps(drawn_stage), softened(1.0)).text)
+    first, second = (fs.lumped(each) for each in (drawn_stage, after))
+    assert {name: part.loss_factor for name, part in second.stiffness.items()} == {
+        name: part.loss_factor for name, part in first.stiffness.items()
+    }
+    moved = [fs.drift(*each).of().values for each in ((drawn_stage, first), (after, second))]
+    np.testing.assert_allclose(moved[1], moved[0], atol=1e-4 * np.abs(moved[0]).max())  # six digits of the file, over lever arms
+    assert not [each for each in defaults(after) if "loss factor" in each.what]
+    bare = replace(
+        after, parts={name: replace(part, stands_for="") if isinstance(part, fs.Given) else part for name, part in after.parts.items()}
+    )
+    assert len([each for each in defaults(bare) if "loss factor" in each.what]) == len(calibrated(bare))
+
+
+def test_softer_hinges_are_read_softer() -> None:
+    stage = parallelogram()
+    after = fs.loads(fs.solid.calibrate(fs.dumps(stage), softened(1.2)).text)
+    neck = fs.compliance(after.parts["neck-front"], None)
+    np.testing.assert_allclose(np.diag(neck) / np.diag(fs.compliance(stage.parts["neck"], stage.materials["steel"])), 1.2, rtol=1e-5)
+    assert fs.statics(fs.lumped(after)).held.principal[1] < fs.statics(fs.lumped(stage)).held.principal[1]
+
+
+def rooted(forms: Mapping[str, HingeForm]) -> dict[str, HingeSolid]:
+    """Hinges of beam theory with a spring in series at the second end where that alone has a root: what turns end for end shows."""
+    found = softened(1.0)(forms)
+    for name, form in forms.items():
+        assert form.roots.second or not form.roots.first
+        if form.roots == Roots(False, True):
+            end = transport(np.array([-0.5 * span(form.part), 0.0, 0.0]))  # from the second end to the centre
+            more = found[name].compliance + 0.1 * end @ np.diag(np.diag(found[name].compliance)) @ end.T
+            found[name] = replace(found[name], compliance=more, stiffness=np.linalg.inv(more), whole=more)
+    return found
+
+
+def test_a_root_yields_at_its_own_end() -> None:
+    stage = double_triangle()
+    after = fs.loads(fs.solid.calibrate(fs.dumps(stage), rooted).text)
+    assert {link.part for link in after.units["horizontal"].links.values()} == {"neck-back", "stack_horizontal", "neck-front"}
+    links = expand(after).links
+    for name, side in (("back", -1.0), ("pivot", 1.0)):
+        copy = "B1" if name == "back" else "B4"
+        part = links[f"{copy}/{name}"].part
+        assert isinstance(part, fs.Given)
+        matrix = np.array(part.compliance)
+        centre = matrix[1, 5] / matrix[5, 5]  # where a moment turns without shifting, seen from the centre
+        assert centre == pytest.approx(side * 0.1 / 1.1 * 0.5 * span(expand(stage).links[f"{copy}/{name}"].part), rel=1e-6)
+
+
+def test_comments_stay_and_the_drawn_hinges_are_kept() -> None:
+    text = fs.dumps(parallelogram(), {"parts.neck": "The neck of the prototype.", "units.drive": "The drive."})
+    after = fs.solid.calibrate(text, softened(1.1)).text
+    assert "# The neck of the prototype." in after
+    assert "# The drive." in after
+    stage = fs.loads(after)
+    assert drawn(stage).parts["neck-front"] == parallelogram().parts["neck"]
+    assert set(calibrated(stage)) == {"leaf", "neck-back", "neck-front"}
+    assert stage.tags["parts.neck-front.compliance"].startswith("derived FEA")
+
+
+def test_tags_of_the_drawn_hinge_follow_it() -> None:
+    stage = double_triangle()
+    after = fs.loads(fs.solid.calibrate(fs.dumps(stage), softened(1.0)).text)
+    own = {key: tag for key, tag in stage.tags.items() if key.startswith("parts.neck.")}
+    assert own
+    assert {key.replace("parts.neck.", "parts.neck-drawn."): tag for key, tag in own.items()}.items() <= after.tags.items()
+
+
+def test_what_cannot_be_told_from_the_blocks_keeps_beam_theory() -> None:
+    found = fs.solid.calibrate(fs.dumps(parallelogram()), softened(1.1, stubs=0.95))
+    np.testing.assert_allclose(found.softer["leaf"], [0.1, 0.1, 0.1, 0.0, 0.1, 0.1], atol=1e-6)
+    assert "rx by beam theory" in found.parts["leaf"].source
+    rows = list(hinge_rows(parallelogram(), found.hinges))
+    assert not any(row.figure == "compliance rx" for row in rows)
+
+
+def test_refusals() -> None:
+    text = fs.dumps(parallelogram())
+    once = fs.solid.calibrate(text, softened(1.0)).text
+    with pytest.raises(DesignError, match="of FEA origin already"):
+        fs.solid.calibrate(once, softened(1.0))
+    with pytest.raises(DesignError, match="leaf: its 6x6 by FEA is known to 30 % only"):
+        fs.solid.calibrate(text, softened(1.0, error=0.3))
+    departing = replace(parallelogram(), changes={"B/front.thickness": 2.1e-3})
+    with pytest.raises(DesignError, match="B/front: departs from its part neck"):
+        fs.solid.calibrate(fs.dumps(departing), softened(1.0))
+
+
+def test_rows_that_calibrated_parts_touch_are_not_independent() -> None:
+    stage = fs.loads(fs.solid.calibrate(fs.dumps(parallelogram()), softened(1.1)).text)
+    rows = list(hinge_rows(stage, solid_hinges(stage, softened(1.1))))
+    assert {row.trust for row in rows} == {Trust.DEPENDENT}
+    assert max(abs(row.difference) for row in rows) < 1e-5
+    assert verdict(tuple(rows)).startswith("Not independent")
+
+
+@pytest.mark.parametrize("stage", [parallelogram(), double_triangle()])
+def test_with_matrices_is_what_the_file_says(stage: fs.Mechanism) -> None:
+    same = with_matrices(stage, solid_hinges(stage, softened(1.1)))
+    read = fs.loads(fs.solid.calibrate(fs.dumps(stage), softened(1.1)).text)
+    assert fs.digest(same, physics=True) == fs.digest(read, physics=True)
+
+
+@pytest.mark.parametrize(
+    ("theory", "calibrated_value", "error", "trust"),
+    [
+        (101.0, None, 0.001, Trust.THEORY),
+        (101.0, None, 0.015, Trust.EITHER),
+        (101.0, None, 0.2, Trust.UNCLEAR),
+        (110.0, None, 0.001, Trust.FEA),
+        (110.0, 101.0, 0.001, Trust.CALIBRATED),
+        (110.0, 108.0, 0.001, Trust.FEA),
+        (110.0, 101.0, 0.06, Trust.UNCLEAR),
+    ],
+)
+def test_trust(theory: float, calibrated_value: float | None, error: float, trust: Trust) -> None:
+    row = Row("stage", "mode 1", "Hz", theory, 100.0, error, calibrated=calibrated_value)
+    assert row.trust is trust
+    assert replace(row, calibration=("neck",)).trust is Trust.DEPENDENT
+
+
+def test_what_is_not_known_gets_no_verdict() -> None:
+    known = Row("stage", "mode 1", "Hz", 101.0, 100.0, 0.001)
+    without_error = replace(known, error=None, reason="FEA's error was not estimated")
+    without_partner = replace(known, figure="mode 2", theory=None, reason="theory has no mode like it")
+    assert {row.trust for row in (without_error, without_partner)} == {Trust.UNKNOWN}
+    for row in (without_error, without_partner):
+        said = verdict((row,))
+        assert said.startswith("No verdict.")
+        assert row.reason in said
+        assert "trust" not in said
+        body = row_body(row)
+        assert body["trust"] is None
+        assert body["reason"] == row.reason
+        assert body["fea_error"] is row.error
+        assert body["theory"] is row.theory
+        table = verification_table("stage", (row,))
+        assert "0 %" not in table.texts()[1]
+        assert any(row.reason in note for note in table.notes)
+    both = verdict((known, without_partner))
+    assert both.startswith("Lumped theory is up to 1 % off")
+    assert "No verdict on 1 of 2 figures. mode 2: theory has no mode like it." in both

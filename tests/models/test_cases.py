@@ -1,0 +1,143 @@
+"""Every shipped case: sound, readable both ways, elastic close to ideal, and the same in a batch."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from flexstage.analysis.lost_motion import lost_motion
+from flexstage.analysis.modes import modes
+from flexstage.analysis.response import transmissibility
+from flexstage.base.finding import DesignError
+from flexstage.cases.bridge import Bridge, bridge
+from flexstage.cases.hexapod import Hexapod, hexapod
+from flexstage.cases.parallelogram import Parallelogram, parallelogram
+from flexstage.cases.registry import CASES, case
+from flexstage.cases.tip_tilt import TipTilt, tip_tilt
+from flexstage.cases.xy_stage import XYStage, xy_stage
+from flexstage.mechanism.checks import check
+from flexstage.mechanism.store import dumps, loads
+from flexstage.models.ideal import ideal
+from flexstage.models.linear.eigen import eigen
+from flexstage.models.lumped import lumped
+
+EXPECTED = {
+    "double-triangle": (6, 6),
+    "double-triangle-a": (6, 6),
+    "double-triangle-refitted": (6, 6),
+    "parallelogram": (1, 1),
+    "xy-stage": (2, 2),
+    "xy-stage-floating": (2, 1),
+    "bridge": (1, 1),
+    "hexapod": (6, 6),
+    "tip-tilt": (3, 3),
+    "tip-tilt-four": (3, 4),
+}
+"""Mobility and number of actuators that each case is meant to have."""
+
+LOSS = {"bridge": 0.08, "double-triangle": 0.1, "double-triangle-a": 0.1, "double-triangle-refitted": 0.1}
+"""Lost motion beyond 2 %: an amplifier's output is soft against its guide."""
+
+every = pytest.mark.parametrize("name", CASES)
+
+
+@every
+def test_checks_find_nothing(name):
+    assert [str(finding) for finding in check(case(name))] == []
+
+
+@every
+def test_file_and_back(name):
+    assert loads(dumps(case(name))) == case(name)
+
+
+@every
+def test_mobility_and_actuators(name):
+    found = ideal(case(name))
+    assert (found.mobility, len(found.actuators)) == EXPECTED[name]
+    assert len(found.gauges) >= 1
+
+
+@every
+def test_elastic_reading_is_positive_definite(name):
+    model = lumped(case(name))
+    K, M = model.stiffness_matrix, model.inertia_matrix
+    scale = np.sqrt(np.diag(K))
+    assert np.linalg.eigvalsh(K / scale / scale[:, None])[0] > 1e-9
+    assert np.linalg.eigvalsh(M)[0] > -1e-12 * np.abs(M).max()
+    assert model.idle == ()
+
+
+@every
+def test_lost_motion_is_small(name):
+    kinematics = ideal(case(name))
+    if not kinematics.actuated:
+        return
+    found = lost_motion(kinematics, lumped(case(name)))
+    feasible = kinematics.actuation @ kinematics.inverse
+    assert np.max(np.abs(feasible - found.transfer.values)) < LOSS.get(name, 0.02)
+
+
+@every
+def test_parasitic_motion_is_listed_and_small(name):
+    """Below six freedoms, what the platform does besides its ideal motions: less than a tenth of a radian a metre times the arm."""
+    kinematics = ideal(case(name))
+    if not kinematics.actuated:
+        return
+    parasitic = lost_motion(kinematics, lumped(case(name))).parasitic.values
+    weight = np.array([1.0, 1.0, 1.0, *[kinematics.length] * 3])[:, None]
+    assert parasitic.shape == (6, len(kinematics.actuators))
+    assert np.max(np.abs(weight * parasitic)) < 0.02
+    if kinematics.mobility == 6:
+        assert np.max(np.abs(weight * parasitic)) < 1e-9
+
+
+@every
+def test_modes_meet_the_requirement(name):
+    """Unless it is the calculation set, whose massless units have no local modes to speak of."""
+    stage = case(name)
+    found = modes(lumped(stage), limit=stage.mode_limit)
+    lowest = float(stage.requirements["frequency.platform.1"].split()[2])
+    assert found.platform_frequencies[0] > lowest
+    assert np.all(np.diff(found.frequencies) >= 0.0)
+
+
+@every
+def test_floor_motion_is_followed_at_low_frequency(name):
+    found = transmissibility(lumped(case(name)), frequencies=np.array([0.01]))
+    np.testing.assert_allclose(found.values[0], np.eye(6), atol=1e-5)
+
+
+BATCHES = {
+    "parallelogram": lambda size: parallelogram(Parallelogram(spacing=0.05 * size)),
+    "xy-stage": lambda size: xy_stage(XYStage(edge=0.05 * size)),
+    "bridge": lambda size: bridge(Bridge(angle=0.1 * size)),
+    "hexapod": lambda size: hexapod(Hexapod(slope=0.8 * size, head_radius=0.055 * size)),
+    "tip-tilt": lambda size: tip_tilt(TipTilt(post_radius=0.02 * size)),
+}
+
+
+@pytest.mark.parametrize("name", BATCHES)
+def test_a_batch_is_a_loop(name):
+    sizes = np.array([0.9, 1.0, 1.1])
+    batch = BATCHES[name](sizes)
+    kinematics, values = ideal(batch), eigen(lumped(batch)).values
+    for number, size in enumerate(sizes):
+        single = BATCHES[name](float(size))
+        np.testing.assert_allclose(kinematics.actuation[number], ideal(single).actuation, atol=1e-12)
+        np.testing.assert_allclose(values[number], eigen(lumped(single)).values, rtol=1e-7)
+
+
+def test_a_misspelt_case_names_the_nearest():
+    with pytest.raises(DesignError, match=r"hexpod: there is no case of this name. .*hexapod"):
+        case("hexpod")
+
+
+def test_departures_of_one_copy_reach_one_strut():
+    stage = hexapod()
+    changed = replace(stage, changes={"A1/front.thickness": 2.5e-3})
+    before, after = lumped(stage).stiffness, lumped(changed).stiffness
+    different = [name for name in before if not np.allclose(before[name].law, after[name].law, rtol=1e-12)]
+    assert different == ["A1/front"]

@@ -1,0 +1,100 @@
+"""Hinges computed in processes of their own and kept: what is found is what was computed, and what is damaged is computed anew."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import fields, replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from flexstage.base.finding import DesignError, Finding
+from flexstage.base.progress import Step
+from flexstage.base.scale import mm
+from flexstage.cases.stock import STEEL
+from flexstage.parts.notch import Notch
+from flexstage.parts.profile import Filleted
+from flexstage.parts.rod import Rod
+from flexstage.solid.fea.cache import Cache
+from flexstage.solid.fea.estimate import Accuracy
+from flexstage.solid.fea.hinge import HingeSolid, hinge_compliance
+from flexstage.solid.fea.hinge_cache import HingeForm, HingePart, kept_hinges
+from flexstage.solid.fea.parts import Ways
+from flexstage.solid.fea.remote import Limits
+from flexstage.solid.fea.roots import Roots, own_roots
+
+ROD = Rod("steel", 8 * mm, 3 * mm)
+ROUGH = Accuracy(error=0.5, orders=(2, 2), meshes=1)
+HELD = Roots(False, False)
+
+
+def same(one: HingeSolid, other: HingeSolid) -> bool:
+    pairs = ((getattr(one, field.name), getattr(other, field.name)) for field in fields(one))
+    return all(np.array_equal(a, b) if isinstance(a, np.ndarray) else a == b for a, b in pairs)
+
+
+def formed(part: HingePart) -> HingeForm:
+    return HingeForm(part, STEEL, HELD if isinstance(part, Rod) else own_roots(part))
+
+
+def kept(part: HingePart, ways: Ways, notice: Callable[[Finding], None] | None = None) -> HingeSolid:
+    return kept_hinges({"prop": formed(part)}, ROUGH, ways, notice)["prop"]
+
+
+def test_kept_computed_and_plain_hinges_are_the_same(tmp_path: Path) -> None:
+    ways, notices = Ways(Cache(tmp_path)), list[Finding]()
+    computed = kept(ROD, ways, notices.append)
+    plain = hinge_compliance(ROD, STEEL, ROUGH, roots=HELD)
+    size = np.sqrt(np.diag(plain.compliance))
+    assert np.max(np.abs(computed.compliance - plain.compliance) / np.outer(size, size)) < 1e-9  # rounding of another process
+    assert computed.freedoms == plain.freedoms
+    (path,) = tmp_path.iterdir()
+    before = path.read_bytes()
+    assert same(kept(ROD, ways, notices.append), computed)
+    assert notices == []
+    path.write_bytes(before.replace(b"1", b"2", 1))
+    assert same(kept(ROD, ways, notices.append), computed)
+    assert path.read_bytes() == before
+    (notice,) = notices
+    assert "cannot be read (it does not have the checksum it states)" in notice.what
+
+
+def test_what_is_refused_there_is_refused_here() -> None:
+    bad = Notch("steel", 1 * mm, 6 * mm, Filleted(2 * mm, 3 * mm))
+    with pytest.raises(DesignError) as plain:
+        hinge_compliance(bad, STEEL, ROUGH)
+    with pytest.raises(DesignError) as caught:
+        kept(bad, Ways(None))
+    assert caught.value.findings == tuple(replace(each, where="prop") for each in plain.value.findings)
+
+
+def test_hinges_are_computed_side_by_side_each_once(tmp_path: Path) -> None:
+    steps: list[Step] = []
+    other = Rod("steel", 10 * mm, 3 * mm)
+    forms = {"short": formed(ROD), "long": formed(other), "alike": formed(ROD)}
+    ways = Ways(Cache(tmp_path), steps.append, Limits(workers=2))
+    found = kept_hinges(forms, ROUGH, ways)
+    assert list(found) == ["short", "long", "alike"]
+    assert found["alike"] is found["short"]
+    assert found["long"].compliance[0, 0] > 1.1 * found["short"].compliance[0, 0]
+    assert any("short: " in step.text and "long: " in step.text for step in steps)
+    assert not any("alike" in step.text for step in steps)
+    assert steps[-1].fraction == 1.0
+    assert len(list(tmp_path.iterdir())) == 2
+
+
+def test_a_hinge_that_is_done_is_kept_when_another_is_interrupted(tmp_path: Path) -> None:
+    def interrupted(_step: Step) -> None:
+        if list(tmp_path.glob("*.hinge")):
+            raise KeyboardInterrupt
+
+    forms = {"short": formed(ROD), "long": formed(Rod("steel", 10 * mm, 3 * mm))}
+    with pytest.raises(KeyboardInterrupt):
+        kept_hinges(forms, ROUGH, Ways(Cache(tmp_path), interrupted, Limits(workers=1)))
+    assert len(list(tmp_path.iterdir())) == 1
+
+
+def test_too_little_memory_is_told_by_name() -> None:
+    with pytest.raises(DesignError, match=r"prop: its coarsest mesh needs about .* GB at order 2, and 0\.001 GB are there"):
+        kept(ROD, Ways(None, limits=Limits(memory=1e6)))

@@ -1,0 +1,417 @@
+"""Bad files of tests: found, named, explained; what is left is used only when the user says so."""
+
+from __future__ import annotations
+
+import contextlib
+import re
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+import scipy.io
+
+from flexstage.base.finding import DesignError
+from flexstage.experiment.formats.read import read
+from flexstage.experiment.formats.write import Form, write
+from flexstage.experiment.health import examine
+from flexstage.experiment.identification.identify import identify
+from flexstage.experiment.options import Allow, Kind, Options
+from flexstage.experiment.record import Channel, Record, Responses, in_memory
+from tests.conftest import FULL
+from tests.roundtrip.records import awkward_responses
+
+RATE = 100.0
+VALUES = np.random.default_rng(5).standard_normal((400, 2))
+CHANNELS = (Channel("u1", "V"), Channel("S1", "um"))
+
+
+def refusal(path: Path, options: Options | None = None) -> str:
+    with pytest.raises(DesignError) as refused:
+        read(path, options or Options())
+    for finding in refused.value.findings:
+        assert str(path) in finding.where  # the file is named
+        assert finding.advice
+    return str(refused.value)
+
+
+def allowing(*allowed: Allow) -> Options:
+    return Options(allow=frozenset(allowed))
+
+
+def plain(path: Path, form: Form) -> Path:
+    write(path, in_memory(CHANNELS, RATE, VALUES), form)
+    return path
+
+
+def kept(path: Path, options: Options) -> np.ndarray:
+    found = read(path, options)
+    assert isinstance(found, Record)
+    return found.values
+
+
+# --- no file, no record ---
+
+
+def test_what_is_no_record_is_told(tmp_path: Path) -> None:
+    assert "there is no such file" in refusal(tmp_path / "none.uff")
+    assert "it is a folder" in refusal(tmp_path)
+    for content, told in {
+        b"": "it is empty",
+        b"PK\x03\x04...": "spreadsheets",
+        b"TDSm....": "TDMS",
+        b"one\ntwo\n": "no line of numbers",
+        b"\x00\x01\x02\x03": "neither text",
+        "time,u1\n0,1\n".encode("utf-16"): "UTF-16",
+    }.items():
+        path = tmp_path / "a.dat"
+        path.write_bytes(content)
+        assert told in refusal(path), content
+
+
+def test_arrays_that_are_no_record_are_listed(tmp_path: Path) -> None:
+    path = tmp_path / "a.mat"
+    scipy.io.savemat(path, {"stiffness": np.eye(3)})
+    assert "stiffness (3, 3)" in refusal(path)
+    with h5py.File(tmp_path / "a.h5", "w") as file:
+        file["stiffness"] = np.eye(3)
+    assert "stiffness (3, 3)" in refusal(tmp_path / "a.h5")
+
+
+def test_the_other_kind_is_not_given_for_the_one_asked(tmp_path: Path) -> None:
+    for form, suffix in ((Form.UFF, "uff"), (Form.MAT, "mat"), (Form.CSV, "csv")):
+        refusal(plain(tmp_path / f"a.{suffix}", form), Options(kind=Kind.RESPONSES))
+
+
+def test_channels_that_no_one_has_are_named_with_the_nearest(tmp_path: Path) -> None:
+    path = plain(tmp_path / "a.uff", Form.UFF)
+    told = refusal(path, Options(inputs=("u2",), outputs=("S*",), units=(("S7", "um"),)))
+    assert "inputs u2: no channel is called so. There are S1, u1" in told
+    assert "units S7" in told
+    assert "named as an input and as an output" in refusal(path, Options(inputs=("u1",), outputs=("u*",)))
+
+
+# --- files that break off ---
+
+
+@pytest.mark.parametrize(("form", "suffix"), [(Form.UFF, "uff"), (Form.UFF_ASCII, "uff"), (Form.CSV, "csv")])
+def test_a_file_that_breaks_off_is_used_only_when_allowed(form: Form, suffix: str, tmp_path: Path) -> None:
+    path = plain(tmp_path / f"a.{suffix}", form)
+    whole = path.read_bytes()
+    path.write_bytes(whole[: int(0.8 * len(whole))])
+    told = refusal(path)
+    assert "breaks off" in told
+    assert '"truncated"' in told
+    found = kept(path, allowing(Allow.TRUNCATED))
+    assert 150 < len(found) < 400
+    np.testing.assert_allclose(found, VALUES[: len(found)], rtol=1e-11)
+
+
+@pytest.mark.parametrize(
+    ("form", "suffix"),
+    [
+        (form, suffix)
+        for form, suffix in (
+            (Form.UFF, "uff"),
+            (Form.UFF_ASCII, "uff"),
+            (Form.MAT, "mat"),
+            (Form.MAT_73, "mat"),
+            (Form.HDF5, "h5"),
+            (Form.CSV, "csv"),
+        )
+    ],
+)
+def test_a_file_cut_anywhere_is_refused_or_whole(form: Form, suffix: str, tmp_path: Path) -> None:
+    # At every cut a reason or the right numbers: never another error, never numbers that were not measured.
+    path = plain(tmp_path / f"a.{suffix}", form)
+    whole = path.read_bytes()
+    for cut in np.linspace(0, len(whole) - 1, 97).astype(int):
+        path.write_bytes(whole[:cut])
+        for options in (Options(), allowing(Allow.TRUNCATED)):
+            try:
+                found = read(path, options)
+                assert isinstance(found, Record)
+                values = found.values
+            except DesignError:
+                continue
+            columns = [found.names.index(channel.name) for channel in CHANNELS if channel.name in found.names]
+            np.testing.assert_allclose(values[:, columns], VALUES[: len(values), : len(columns)], rtol=1e-11, err_msg=str(cut))
+
+
+@pytest.mark.parametrize("binary", [True, False])
+def test_a_universal_file_cut_between_two_functions_is_told(binary: bool, tmp_path: Path) -> None:
+    """The format counts no functions; what is written here does."""
+    path = tmp_path / "whole.uff"
+    plain(path, Form.UFF if binary else Form.UFF_ASCII)
+    ends = [found.end() for found in re.finditer(rb"    -1\n(?=    -1\n)", path.read_bytes())]
+    whole, count = path.read_bytes(), len(CHANNELS)
+    assert len(ends) == count - 1
+    path.write_bytes(whole[: ends[-1]])
+    told = refusal(path)
+    assert f"{count - 1} of the {count} functions that were written are there" in told
+    assert '"truncated"' in told
+
+
+def test_responses_without_their_coherence_are_told(tmp_path: Path) -> None:
+    """Some have theirs, so that the file may break off between a response and its coherence."""
+    path, outputs = tmp_path / "whole.uff", (Channel("S1", "um"), Channel("S2", "um"))
+    values = np.ones((20, 2, 1), dtype=complex)
+    write(path, Responses(np.arange(20.0), outputs, (Channel("u", "V"),), values, coherence=np.ones(values.shape)), Form.UFF)
+    text = path.read_bytes()
+    last = text.rindex(b"    58b")
+    path.write_bytes(text[: text.rindex(b"    -1\n", 0, last)].replace(b"function", b"whatever"))  # as another program would
+    told = refusal(path)
+    assert "all responses have their coherence but the last, of S2 to u" in told
+    assert '"incomplete"' in told
+
+
+def test_a_table_cut_within_its_last_number_is_told(tmp_path: Path) -> None:
+    # Every field is there and every line; only our own comment of how many samples there are, and the missing end of line, tell.
+    path = plain(tmp_path / "a.csv", Form.CSV)
+    path.write_bytes(path.read_bytes()[:-4])
+    assert "breaks off" in refusal(path)
+    np.testing.assert_array_equal(kept(path, allowing(Allow.TRUNCATED)), VALUES[:-1])
+
+
+def test_hdf_that_breaks_off_says_how_far_it_goes(tmp_path: Path) -> None:
+    path = plain(tmp_path / "a.h5", Form.HDF5)
+    path.write_bytes(path.read_bytes()[:3000])
+    assert "eof = 3000" in refusal(path)
+
+
+def test_a_binary_universal_file_changed_as_text_is_told(tmp_path: Path) -> None:
+    path = plain(tmp_path / "a.uff", Form.UFF)
+    path.write_bytes(path.read_bytes().replace(b"\n", b"\r\n"))
+    refusal(path)
+
+
+def test_a_head_that_cannot_be_read_is_told_with_its_line(tmp_path: Path) -> None:
+    path = plain(tmp_path / "a.uff", Form.UFF_ASCII)
+    text = path.read_text()
+    path.write_text(text.replace("         4       400         1", "         4       4x0         1", 1))
+    assert "function 1 (line 2): record 7, the form of the data, cannot be read" in refusal(path)
+    path.write_text(text.replace("         4       400         1", "         3       400         1", 1))
+    assert "data type is 3" in refusal(path)
+
+
+@pytest.mark.parametrize("form", [Form.UFF, Form.UFF_ASCII])
+@pytest.mark.parametrize("said", ["rate 100.0 Hz", "rate 0 Hz", "rate 1e999 Hz"])
+def test_the_step_in_the_head_counts_not_a_text_beside_it(form: Form, said: str, tmp_path: Path) -> None:
+    path = tmp_path / "a.uff"
+    write(path, in_memory(CHANNELS, 50.0, VALUES), form)
+    path.write_bytes(path.read_bytes().replace(b"rate 50.0 Hz".ljust(len(said)), said.encode().ljust(12)))
+    found = read(path)
+    assert isinstance(found, Record)
+    assert found.rate == 50.0
+
+
+def test_more_values_than_the_head_announces_are_told(tmp_path: Path) -> None:
+    path = plain(tmp_path / "a.uff", Form.UFF_ASCII)
+    path.write_text(path.read_text().replace("         4       400         1", "         4        40         1", 1))
+    assert "it has 400 values where its head announces 40" in refusal(path)
+
+
+# --- gaps, times ---
+
+
+def with_times(path: Path, times: np.ndarray) -> Path:
+    np.savetxt(path, np.column_stack([times, VALUES[: len(times)]]), header="time [s],u1 [V],S1 [um]", delimiter=",", comments="")
+    return path
+
+
+@pytest.mark.parametrize("suffix", ["csv", "mat", "h5"])
+def test_a_gap_divides_the_record(suffix: str, tmp_path: Path) -> None:
+    times = np.arange(400) / RATE
+    times[120:] += 0.5
+    path = tmp_path / f"a.{suffix}"
+    if suffix == "csv":
+        with_times(path, times)
+    elif suffix == "mat":
+        scipy.io.savemat(path, {"time": times, "u1": VALUES[:, 0], "S1": VALUES[:, 1]})
+    else:
+        with h5py.File(path, "w") as file:
+            for name, column in (("time", times), ("u1", VALUES[:, 0]), ("S1", VALUES[:, 1])):
+                file[name] = column
+    told = refusal(path)
+    assert "1 gap between samples, before 1.7 s" in told
+    assert "280 samples (2.8 s)" in told
+    found = read(path, Options(allow=frozenset({Allow.GAPS})))
+    assert isinstance(found, Record)
+    assert (found.rate, round(found.start, 9)) == (RATE, 1.7)
+    np.testing.assert_array_equal(found.select(["u1", "S1"]).values, VALUES[120:])
+
+
+def test_times_that_are_none_are_told(tmp_path: Path) -> None:
+    path = tmp_path / "a.csv"
+    assert "not evenly spaced" in refusal(with_times(path, np.cumsum(np.random.default_rng(0).exponential(0.01, 400))))
+    assert "do not rise" in refusal(with_times(path, np.round(np.arange(400) / 1e6, 3)))
+    broken = np.arange(400) / RATE
+    broken[7] = np.nan
+    assert "1 of 400 times are not numbers" in refusal(with_times(path, broken))
+    np.testing.assert_array_equal(kept(path, Options(rate=RATE)), VALUES)  # the rate that is stated holds
+
+
+def test_times_and_rate_that_disagree_are_told(tmp_path: Path) -> None:
+    path = tmp_path / "a.mat"
+    scipy.io.savemat(path, {"time": np.arange(400) / RATE, "fs": 128.0, "u1": VALUES[:, 0]})
+    assert "its times say 100 Hz, the file also states 128 Hz" in refusal(path)
+
+
+def test_arrays_of_different_lengths_are_told(tmp_path: Path) -> None:
+    path = tmp_path / "a.mat"
+    scipy.io.savemat(path, {"fs": RATE, "u1": VALUES[:, 0], "S1": VALUES[:399, 1]})
+    assert "u1 400, S1 399" in refusal(path)
+    assert kept(path, Options(only=("u1",))).shape == (400, 1)
+
+
+# --- CSV lines ---
+
+
+def lines_of(path: Path) -> list[str]:
+    return with_times(path, np.arange(400) / RATE).read_text().splitlines()
+
+
+def test_lines_that_cannot_be_read_are_named(tmp_path: Path) -> None:
+    path = tmp_path / "a.csv"
+    lines = lines_of(path)
+    lines[200] = lines[200].rpartition(",")[0] + ",OVERLOAD"
+    path.write_text("\n".join(lines))
+    found = read(path)
+    assert isinstance(found, Record)
+    with pytest.raises(DesignError, match=r"line 201, S1: \"OVERLOAD\" is not a number"):
+        _ = found.values
+    lines[200] = "1.99,1.0"
+    path.write_text("\n".join(lines))
+    with pytest.raises(DesignError, match=r"line 201: it has 2 of 3 fields"):
+        _ = kept(path, Options())
+
+
+@pytest.mark.parametrize("at", [2, 3, 6, 9, 200, 399, 400])
+@pytest.mark.parametrize(
+    "wrong", ["{},1,2,3", "{},1", "{},1;2", "{}", "time [s],u1 [V],S1 [um]", "", "{},1.0,1.2.3", "{},1_0,2", "{},1,2\x0c3"]
+)
+def test_one_row_that_is_none_is_named_wherever_it_stands(at: int, wrong: str, tmp_path: Path) -> None:
+    path, lines = tmp_path / "a.csv", lines_of(tmp_path / "a.csv")
+    lines[at] = wrong.format(lines[at].partition(",")[0])
+    path.write_text("\n".join([*lines, ""]))
+    if at == 400 and not wrong:
+        assert len(kept(path, Options())) == 399  # an empty line at the end is none
+        return
+    with pytest.raises(DesignError, match=rf"line {at + 1}\b"):
+        _ = kept(path, Options())
+
+
+@pytest.mark.parametrize("at", [2, 40, 399])
+def test_a_comma_among_points_is_no_number(at: int, tmp_path: Path) -> None:
+    path = tmp_path / "a.txt"
+    rows = [f"{np.sin(number):.4f} {np.cos(3 * number):.4f}" for number in range(400)]
+    rows[at] = "1,5 -0.1108"
+    path.write_text("\n".join(["% fs: 100 Hz", "% u1 S1", *rows, ""]))
+    with pytest.raises(DesignError, match=rf"line {at + 3}\b.*\b(not a|no) number"):
+        _ = kept(path, Options())
+
+
+def test_a_row_may_end_with_what_divides_it(tmp_path: Path) -> None:
+    path, lines = tmp_path / "a.csv", lines_of(tmp_path / "a.csv")
+    lines[200] += ","
+    path.write_text("\r\n".join(lines))
+    np.testing.assert_array_equal(kept(path, Options()), VALUES)
+
+
+def test_line_ends_of_old_are_refused(tmp_path: Path) -> None:
+    path = tmp_path / "a.csv"
+    path.write_text("\r".join(lines_of(path)), newline="")
+    assert "its lines end in carriage returns alone" in refusal(path)
+
+
+def test_steps_that_are_none_are_told(tmp_path: Path) -> None:
+    path = tmp_path / "a.csv"
+    path.write_text("time [s], u1 [V], S1 [um]\n1e-320, 1, 2\n2e-320, 2, 3\n3e-320, 1, 5\n")
+    assert "its usual step is 1e-320 s, which is none" in refusal(path)
+
+
+def test_missing_fields_are_no_numbers(tmp_path: Path) -> None:
+    path = tmp_path / "a.csv"
+    lines = lines_of(path)
+    lines[200] = lines[200].rpartition(",")[0] + ","
+    lines[201] = lines[201].rpartition(",")[0] + ",NaN"
+    path.write_text("\n".join(lines))
+    values = kept(path, Options())
+    assert np.isnan(values[199:201, 1]).all()
+    assert np.isfinite(np.delete(values, [199, 200], axis=0)).all()
+
+
+def test_a_table_without_header_or_time_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "a.csv"
+    np.savetxt(path, VALUES, delimiter=",")
+    assert "2 columns have no header" in refusal(path)
+    np.savetxt(path, VALUES, delimiter=",", header="u1 [V],S1 [um]", comments="")
+    assert "none of its columns is time" in refusal(path)
+    np.testing.assert_array_equal(kept(path, Options(rate=50.0)), VALUES)
+
+
+# --- responses ---
+
+
+def test_responses_that_are_no_numbers_are_told(tmp_path: Path) -> None:
+    path = tmp_path / "a.mat"
+    values = np.ones((50, 2), complex)
+    values[3, 1] = np.nan
+    scipy.io.savemat(path, {"f": np.arange(50.0), "H": values})
+    assert "y2: 1 of 50 responses are not numbers" in refusal(path)
+
+
+@pytest.mark.parametrize("at", [3, 40])
+@pytest.mark.parametrize("suffix", ["mat", "csv"])
+def test_a_frequency_that_stands_twice_is_told(at: int, suffix: str, tmp_path: Path) -> None:
+    path, lines = tmp_path / f"a.{suffix}", np.arange(50.0)
+    lines[at] = lines[at - 1]
+    if suffix == "mat":
+        scipy.io.savemat(path, {"f": lines, "H": np.ones((50, 2), complex)})
+    else:
+        np.savetxt(path, np.column_stack([lines, lines, lines]), header="f [Hz],H_re,H_im", delimiter=",")
+    assert f"its frequencies do not rise: {at - 1} Hz stands twice, lines {at} and {at + 1}" in refusal(path)
+
+
+def test_lines_of_stepped_sines_are_refused_by_their_name() -> None:
+    lines = np.concatenate([np.arange(1.0, 20.0), np.arange(20.0, 25.0, 0.1)])
+    stepped = Responses(lines, (Channel("S1", "um"),), (Channel("u", "V"),), np.ones((len(lines), 1, 1), complex))
+    with pytest.raises(DesignError, match=r"its lines lie unevenly, 0.1 to 1 Hz apart, as those of stepped or swept sines do"):
+        identify(stepped)
+
+
+# --- files damaged anywhere ---
+
+
+def damaged(whole: bytes, draw: np.random.Generator) -> bytes:
+    """Some bytes changed, left out, repeated or cut off, more often near the head."""
+    content = bytearray(whole)
+    for _ in range(draw.integers(1, 4)):
+        place = int(draw.integers(0, min(len(content), 1200) if draw.random() < 0.6 else len(content)))
+        length = int(draw.integers(1, 30))
+        change = draw.integers(0, 4)
+        if change == 0:
+            content[place] = int(draw.integers(0, 256))
+        elif change == 1:
+            content[place] = b"0123456789-+.,;: \n#eE"[int(draw.integers(0, 21))]
+        elif change == 2:
+            del content[place : place + length]
+        else:
+            content[place:place] = content[place : place + length]
+        content = content or bytearray(b"x")
+    return bytes(content)
+
+
+@pytest.mark.parametrize("form", list(Form))
+@pytest.mark.parametrize("kind", [Record, Responses])
+def test_a_file_damaged_anywhere_is_refused_or_read(form: Form, kind: type, tmp_path: Path) -> None:
+    path = tmp_path / {Form.MAT: "a.mat", Form.MAT_73: "a.mat", Form.HDF5: "a.h5", Form.CSV: "a.csv"}.get(form, "a.uff")
+    write(path, in_memory(CHANNELS, RATE, VALUES[:60]) if kind is Record else awkward_responses(), form)
+    whole, draw = path.read_bytes(), np.random.default_rng(list(Form).index(form))
+    for _ in range((1000 if FULL else 60) if form is not Form.MAT_73 else (60 if FULL else 10)):
+        path.write_bytes(damaged(whole, draw))
+        for options in (Options(), Options(allow=frozenset(Allow), rate=50.0)):
+            with contextlib.suppress(DesignError):
+                found = read(path, options)
+                if isinstance(found, Record):
+                    examine(found)

@@ -1,0 +1,229 @@
+"""The cache of superelements and what goes wrong with it: told, never fatal, never half-written; a reading that was stopped resumes."""
+
+from __future__ import annotations
+
+import errno
+import os
+import subprocess
+import sys
+import time
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import flexstage as fs
+from flexstage.base.finding import DesignError
+from flexstage.base.progress import Step
+from flexstage.base.scale import mm
+from flexstage.models.linear.model import LinearModel
+from flexstage.solid.fea import parts as parts_module
+from flexstage.solid.fea import store
+from flexstage.solid.fea.cache import Cache, find, folder_of, keep, key_of
+from flexstage.solid.fea.component import components
+from flexstage.solid.fea.model import model as solid
+from flexstage.solid.fea.model import model_with_parts
+from flexstage.solid.fea.parts import Ways, reduce_parts
+from flexstage.solid.fea.remote import Limits
+from flexstage.solid.fea.store import versions, written
+from tests.models.small_solids import COARSE, Bomb, propped
+from tests.roundtrip.test_superelements import superelement
+
+ELEMENT = superelement(0)
+
+
+def data(key: str) -> bytes:
+    return written(ELEMENT, key, versions())
+
+
+def names(folder: Path) -> list[str]:
+    """The files of a cache, marks of sound stages apart."""
+    return sorted(path.name for path in folder.iterdir() if path.suffix != ".sound")
+
+
+def same(one: LinearModel, other: LinearModel) -> bool:
+    pairs = zip(one.stiffness.values(), other.stiffness.values(), strict=True)
+    return one.coordinates == other.coordinates and all(np.array_equal(a.law, b.law) for a, b in pairs)
+
+
+def test_what_is_kept_is_found(tmp_path: Path) -> None:
+    cache = Cache(tmp_path / "deep" / "down")
+    assert find(cache, "key", "lever").element is None
+    assert keep(cache, "key", "lever", data("key")) == ()
+    found = find(cache, "key", "lever")
+    assert found.element is not None
+    assert found.notices == ()
+    assert np.array_equal(found.element.rigid, ELEMENT.rigid)
+    assert names(tmp_path / "deep" / "down") == [f"key-{versions().digest}.superelement"]
+
+
+def test_the_folder_is_that_asked_for(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("FLEXSTAGE_CACHE", str(tmp_path / "stated"))
+    assert folder_of(Cache(tmp_path)) == tmp_path
+    assert folder_of(Cache()) == tmp_path / "stated"
+    monkeypatch.delenv("FLEXSTAGE_CACHE")
+    monkeypatch.setattr("sys.platform", "linux")
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "xdg"))
+    assert folder_of(Cache()) == tmp_path / "xdg" / "flexstage"
+    monkeypatch.delenv("XDG_CACHE_HOME")
+    monkeypatch.setenv("HOME", str(tmp_path / "home"))
+    assert folder_of(Cache()) == tmp_path / "home" / ".cache" / "flexstage"
+
+
+def test_keys_are_of_content_and_reduction() -> None:
+    short, long = components(propped(6 * mm, 7 * mm))
+    assert key_of(short, COARSE) == key_of(replace(short, name="other", place=long.place), COARSE)
+    assert key_of(short, COARSE) != key_of(long, COARSE)
+    assert key_of(short, COARSE) != key_of(short, replace(COARSE, modes=3))
+    assert key_of(short, COARSE) != key_of(short, replace(COARSE, fineness=replace(COARSE.fineness, order=3)))
+    assert key_of(short, COARSE) != key_of(short, COARSE, np.eye(6))
+
+
+def test_a_damaged_file_is_told_and_replaced(tmp_path: Path) -> None:
+    cache = Cache(tmp_path)
+    keep(cache, "key", "lever", data("key"))
+    (path,) = tmp_path.iterdir()
+    path.write_bytes(path.read_bytes()[:-100])
+    found = find(cache, "key", "lever")
+    assert found.element is None
+    (notice,) = found.notices
+    assert notice.where == "lever"
+    assert str(path) in notice.what
+    assert "damaged" in notice.what
+    keep(cache, "key", "lever", data("key"))
+    assert find(cache, "key", "lever").element is not None
+
+
+def test_other_versions_are_told_and_stay(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    cache = Cache(tmp_path)
+    keep(cache, "key", "lever", data("key"))
+    newer = replace(versions(), flexstage="99.0")
+    monkeypatch.setattr("flexstage.solid.fea.cache.versions", lambda: newer)
+    found = find(cache, "key", "lever")
+    assert found.element is None
+    assert "of other versions only (1), here is flexstage 99.0" in found.notices[0].what
+    keep(cache, "key", "lever", written(ELEMENT, "key", newer))
+    monkeypatch.setattr(store, "versions", lambda: newer)
+    assert find(cache, "key", "lever").element is not None
+    assert len(names(tmp_path)) == 2
+
+
+def test_an_unwritable_folder_is_told(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("")
+    (notice,) = keep(Cache(tmp_path / "file"), "key", "lever", data("key"))
+    assert notice.where == "lever"
+    assert "could not be kept" in notice.what
+    assert "FLEXSTAGE_CACHE" in notice.advice
+
+
+def test_a_full_disk_is_told_and_nothing_is_half_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(_handle: int) -> None:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr(os, "fsync", full)
+    (notice,) = keep(Cache(tmp_path), "key", "lever", data("key"))
+    assert "No space left on device" in notice.what
+    assert names(tmp_path) == []
+
+
+@pytest.mark.skipif(sys.platform != "linux" or os.geteuid() != 0, reason="mounts a small disk, which only root may")
+def test_a_small_disk_that_is_full_is_told_and_nothing_is_half_written(tmp_path: Path) -> None:
+    size = len(data("key"))
+    command = ["mount", "-t", "tmpfs", "-o", f"size={max(4096, size // 8192 * 4096)}", "tmpfs", str(tmp_path)]
+    if subprocess.run(command, capture_output=True, check=False).returncode:
+        pytest.skip("this root may not mount")
+    try:
+        (notice,) = keep(Cache(tmp_path), "key", "lever", data("key"))
+        assert "No space left on device" in notice.what
+        assert names(tmp_path) == []
+    finally:
+        subprocess.run(["umount", str(tmp_path)], check=True)
+
+
+def test_an_interruption_while_writing_leaves_the_old_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def interrupted(_handle: int) -> None:
+        raise KeyboardInterrupt
+
+    cache = Cache(tmp_path)
+    keep(cache, "key", "lever", data("key"))
+    before = names(tmp_path)
+    monkeypatch.setattr(os, "fsync", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        keep(cache, "key", "lever", data("key"))
+    assert names(tmp_path) == before
+    assert find(cache, "key", "lever").element is not None
+
+
+def test_the_least_recently_used_go_first(tmp_path: Path) -> None:
+    size = len(data("a"))
+    cache = Cache(tmp_path, limit=2.5 * size)
+    for age, key in ((300.0, "a"), (200.0, "b")):
+        keep(cache, key, key, data(key))
+        then = time.time() - age
+        os.utime(tmp_path / f"{key}-{versions().digest}.superelement", (then, then))
+    assert find(cache, "a", "a").element is not None  # used now: b is the older one
+    keep(cache, "c", "c", data("c"))
+    assert [name[0] for name in names(tmp_path)] == ["a", "c"]
+
+
+def test_a_reading_that_was_stopped_resumes(tmp_path: Path) -> None:
+    stage = propped(6 * mm, 7 * mm, 6 * mm)
+    done: list[Step] = []
+
+    def stop(_step: Step) -> None:
+        if list(tmp_path.glob("*.superelement")):
+            raise KeyboardInterrupt
+
+    ways = Ways(Cache(tmp_path), stop, Limits(workers=1))
+    with pytest.raises(KeyboardInterrupt):
+        reduce_parts(components(stage), COARSE, ways)
+    assert len(names(tmp_path)) == 1
+    first = model_with_parts(stage, COARSE, cache=Cache(tmp_path), progress=done.append)
+    assert not any("prop 1" in step.text for step in done)
+    assert len(names(tmp_path)) == 2  # two of the three are equal
+    assert first.superelements[0] is first.superelements[2]
+    again = model_with_parts(stage, COARSE, cache=Cache(tmp_path), progress=lambda _step: pytest.fail("nothing is left to compute"))
+    assert same(first.model, again.model)
+    assert again.notices == ()
+
+
+def test_readings_are_complete_whatever_the_cache_is_like(tmp_path: Path) -> None:
+    stage = propped(6 * mm)
+    plain = solid(stage, COARSE, cache=None)
+    cache = Cache(tmp_path / "cache")
+    assert same(solid(stage, COARSE, cache=cache), plain)
+    (path,) = (tmp_path / "cache").glob("*.superelement")
+    path.write_bytes(b"damaged")
+    with pytest.warns(UserWarning, match="prop 1: its superelement .* is damaged"):
+        assert same(solid(stage, COARSE, cache=cache), plain)
+    assert same(solid(stage, COARSE, cache=cache), plain)
+
+
+def test_the_solver_is_needed_only_for_what_is_not_in_the_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def missing() -> None:
+        raise DesignError(())
+
+    stage = propped(6 * mm)
+    monkeypatch.setattr(parts_module, "require_solver", missing)
+    with pytest.raises(DesignError):
+        solid(stage, COARSE, cache=Cache(tmp_path))
+    monkeypatch.undo()
+    kept = solid(stage, COARSE, cache=Cache(tmp_path))
+    monkeypatch.setattr(parts_module, "require_solver", missing)
+    assert same(solid(stage, COARSE, cache=Cache(tmp_path)), kept)
+
+
+def test_the_others_are_kept_when_one_fails(tmp_path: Path) -> None:
+    good, bad = components(propped(6 * mm, 7 * mm))
+    with pytest.raises(DesignError, match="prop 2: its process failed"):
+        reduce_parts((good, replace(bad, place=Bomb(divmod, 1, 0))), COARSE, Ways(Cache(tmp_path)))
+    assert len(names(tmp_path)) == 1
+
+
+def test_a_pulled_rod_gives_its_length_over_young_and_area(tmp_path: Path) -> None:
+    """E A / L, but for the few percent that rigid end faces and few elements add."""
+    length, area = 40 * mm, np.pi * (4 * mm) ** 2 / 4
+    gain = fs.static_gain(fs.solid.model(propped(length), COARSE, cache=Cache(tmp_path)), ("platform.x",), ("platform.fx",))
+    young = propped(length).materials["steel"].young
+    assert gain.values.item() * young * area / length == pytest.approx(1.0, rel=0.05)

@@ -1,0 +1,300 @@
+"""Reductions in processes of their own: what crashes, hangs, fails or is interrupted there ends as a finding and leaves nothing behind."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from flexstage.base.finding import DesignError, Finding
+from flexstage.base.progress import Step
+from flexstage.base.scale import mm
+from flexstage.solid.fea.cad import cad
+from flexstage.solid.fea.memory import Counts, entries, freedoms, needed
+from flexstage.solid.fea.progress import Stage
+from flexstage.solid.fea.reducing import Reducing, fewest_elements
+from flexstage.solid.fea.remote import Limits, work_all
+from flexstage.solid.fea.store import read
+from flexstage.solid.fea.superelement import Superelement
+from flexstage.spatial.frame import Frame
+from tests.models.small_solids import COARSE, Bomb, job, mined, rod
+
+linux = pytest.mark.skipif(sys.platform != "linux", reason="looks at processes in /proc")
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
+    """An own folder for temporary files: empty again, and nobody working in it, after every reduction."""
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    yield tmp_path
+    assert not list(tmp_path.iterdir())
+    assert not working_in(tmp_path)
+
+
+def working_in(folder: Path) -> list[int]:
+    found = []
+    for process in Path("/proc").glob("[0-9]*"):
+        try:
+            words = (process / "cmdline").read_bytes().split(b"\0")
+        except OSError:
+            continue
+        if any(word.startswith(os.fsencode(folder)) for word in words) and b"flexstage.solid.fea.worker" in words:
+            found.append(int(process.name))
+    return found
+
+
+def until(holds: Callable[[], object]) -> None:
+    """Wait until something holds; the time limit of tests is elsewhere."""
+    while not holds():
+        time.sleep(0.05)
+
+
+FREE = Limits()
+
+
+def told(*jobs: Reducing, limits: Limits = FREE) -> tuple[Finding, ...]:
+    with pytest.raises(DesignError) as caught:
+        work_all(jobs, lambda _job, _data: None, limits)
+    return caught.value.findings
+
+
+def results(*jobs: Reducing, limits: Limits = FREE) -> dict[str, Superelement]:
+    found: dict[str, Superelement] = {}
+
+    def take(done: Reducing, data: bytes) -> None:
+        element = read(data, done.key)
+        assert isinstance(element, Superelement)
+        found[done.name] = element
+
+    work_all(jobs, take, limits)
+    return found
+
+
+def code(text: str) -> Bomb:
+    return Bomb(exec, text, {})
+
+
+FIRST_TIME = """
+import time, os, flexstage.solid.fea.mesh as mesh
+plain = mesh._attempted
+def attempted(drawing, order, sizes):
+    if sizes["grading"] == 0.6:  # the first attempt: the second grades more slowly
+        {what}
+    return plain(drawing, order, sizes)
+mesh._attempted = attempted
+"""
+
+
+def test_a_crash_is_a_finding_and_the_others_are_done(folder: Path) -> None:
+    done: list[str] = []
+    with pytest.raises(DesignError) as caught:
+        work_all([mined("lever", Bomb(ctypes.string_at, 0)), job(rod())], lambda each, _data: done.append(each.name), Limits())
+    (finding,) = caught.value.findings
+    assert finding.where == "lever"
+    assert finding.what == "its process crashed while starting (SIGSEGV)"
+    assert done == ["prop 1"]
+
+
+def test_a_hang_ends_at_the_time_limit(folder: Path) -> None:
+    (finding,) = told(mined("lever", Bomb(time.sleep, 1000.0)), limits=Limits(seconds=1.0))
+    assert finding.where == "lever"
+    assert finding.what == "it was still starting after the 1 s allowed"
+
+
+def test_an_error_is_told_with_its_last_line(folder: Path) -> None:
+    (finding,) = told(mined("lever", Bomb(divmod, 1, 0)))
+    assert finding.where == "lever"
+    assert "failed while starting (ZeroDivisionError: " in finding.what
+
+
+@pytest.mark.parametrize(("what", "limits"), [("os.abort()", Limits()), ("time.sleep(1000.0)", Limits(mesh_seconds=4.0))])
+def test_a_mesher_that_crashes_or_hangs_is_asked_again_otherwise(folder: Path, what: str, limits: Limits) -> None:
+    found = results(mined("lever", code(FIRST_TIME.format(what=what))), limits=limits)
+    assert found["lever"].elements > 0
+
+
+def test_a_mesher_that_always_crashes_is_given_up(folder: Path) -> None:
+    text = """
+import os, flexstage.solid.fea.mesh as mesh
+tries = []
+def attempted(*_):
+    tries.append(1)
+    return "no" if len(tries) < 7 else os.abort()
+mesh._attempted = attempted
+"""
+    (finding,) = told(mined("lever", code(text)))
+    assert finding.what == "its process crashed while meshing (SIGABRT)"
+    assert "sliver" in finding.advice
+
+
+def test_findings_of_the_drawing_come_back_as_they_are(folder: Path) -> None:
+    part = rod()
+    apart = replace(part, pieces=tuple(replace(piece, frame=Frame(np.eye(3), np.array([1.0, 0.0, 0.0]))) for piece in part.pieces))
+    with pytest.raises(DesignError) as caught:
+        cad(apart)
+    assert told(job(apart)) == caught.value.findings
+
+
+def test_reductions_repeat_bit_by_bit(folder: Path) -> None:
+    outcomes: list[bytes] = []
+    work_all([job(rod()), job(replace(rod(), name="again"))], lambda _job, data: outcomes.append(data), Limits())
+    assert outcomes[0] == outcomes[1]
+
+
+@linux
+def test_no_room_for_the_result_is_a_finding(folder: Path) -> None:
+    (finding,) = told(mined("lever", code("import os; os.symlink('/dev/full', 'result.part')")))
+    assert finding.what == f"no room is left in the folder for temporary files, {folder}"
+
+
+def test_too_little_memory_is_refused_with_what_would_fit(folder: Path) -> None:
+    (finding,) = told(
+        replace(job(rod()), reduction=replace(COARSE, fineness=replace(COARSE.fineness, order=5))), limits=Limits(memory=2.5e8)
+    )
+    assert finding.where == "prop 1"
+    assert "its reduction at order 5 needs about 0.596 GB (16,383 degrees of freedom)" in finding.what
+    assert finding.what.endswith("and 0.25 GB are there")
+    assert finding.advice.startswith("Ask for order 3, about 0.224 GB, or for larger elements, Fineness(neck=")
+
+
+def test_a_mesh_without_end_is_refused_before_it_is_made(folder: Path) -> None:
+    endless = replace(COARSE, fineness=replace(COARSE.fineness, neck=0.002))
+    seen: list[Step] = []
+    with pytest.raises(
+        DesignError, match=r"prop 1: its reduction at order 2 needs about .* GB .*, and 4 GB are there\. Ask for larger"
+    ) as caught:
+        work_all([replace(job(rod()), reduction=endless)], lambda _job, _data: None, Limits(memory=4e9), seen.append)
+    assert len(caught.value.findings) == 1
+    assert {step.text for step in seen} <= {"prop 1: starting", "done"}
+
+
+@pytest.mark.parametrize("neck", [pytest.param(0.5, marks=pytest.mark.full), 1.0, 2.5])
+def test_no_mesh_has_fewer_elements_than_expected(neck: float) -> None:
+    from flexstage.solid.fea.mesh import meshed
+
+    fineness = replace(COARSE.fineness, neck=neck)
+    assert fewest_elements(rod(), fineness) <= meshed(rod(), fineness).mesh.ne
+
+
+@linux
+def test_more_memory_than_allowed_is_not_given(folder: Path) -> None:
+    text = """
+import flexstage.solid.fea.mesh as mesh
+mesh._attempted = lambda *_: bytearray(int(4e9))
+"""
+    (finding,) = told(mined("lever", code(text)), limits=Limits(memory=1e9))
+    assert finding == Finding("lever", "it took more memory while meshing than it may", finding.advice)
+
+
+def test_what_does_not_fit_together_is_done_one_after_the_other(folder: Path) -> None:
+    alone = 1.5 * 2e8
+    running: list[set[str]] = []
+
+    def progress(step: Step) -> None:
+        assembled = {Stage.FACTORISING, Stage.REDUCING, Stage.PROJECTING}
+        running.append({part for part in step.text.split(", ") if any(part.endswith(stage.value) for stage in assembled)})
+
+    done: list[str] = []
+    jobs = [job(rod(size * mm)) for size in (6.0, 7.0)]
+    jobs = [replace(each, component=replace(each.component, name=name)) for each, name in zip(jobs, ("one", "two"), strict=True)]
+    work_all(jobs, lambda each, _data: done.append(each.name), Limits(memory=alone, workers=2), progress)
+    assert sorted(done) == ["one", "two"]
+    assert max(len(names) for names in running) == 1
+
+
+@pytest.mark.parametrize("order", [1, 2, 3, 4])
+def test_freedoms_and_entries_are_those_of_the_solver(order: int) -> None:
+    from flexstage.solid.fea.field import field, stiffness
+    from flexstage.solid.fea.mesh import meshed
+
+    mesh = meshed(rod(), COARSE.fineness)
+    space = field(mesh, (), order)
+    counts = Counts(mesh.mesh.nv, mesh.mesh.nedge, mesh.mesh.nface, mesh.mesh.ne)
+    assert freedoms(counts, order) == space.size
+    assert entries(counts, order) == stiffness(space).mat.nze
+    assert needed(counts, order, 8) < needed(counts, order + 1, 8)
+
+
+def test_progress_rises_from_stage_to_stage_to_the_end(folder: Path) -> None:
+    steps: list[Step] = []
+    work_all([job(rod())], lambda _job, _data: None, Limits(), steps.append)
+    fractions = [step.fraction for step in steps]
+    assert fractions == sorted(fractions)
+    assert fractions[0] < 0.05
+    assert fractions[-1] == 1.0
+    seen = list(dict.fromkeys(step.text.removeprefix("prop 1: ") for step in steps))
+    order = [*(stage.value for stage in Stage), "done"]
+    assert seen == [name for name in order if name in seen]
+    assert all(step.left is None or step.left >= 0.0 for step in steps)
+
+
+@linux
+def test_an_interruption_ends_everything(folder: Path) -> None:
+    def interrupt(step: Step) -> None:
+        if "starting" not in step.text:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        work_all([job(rod()), job(replace(rod(), name="other"))], lambda _job, _data: None, Limits(), interrupt)
+
+
+SCRIPT = """
+import signal
+signal.signal(signal.SIGINT, signal.default_int_handler)  # what a shell runs in the background ignores it, children too
+import sys
+sys.path.insert(0, {root!r})
+from flexstage.solid.fea.reducing import Reducing, fewest_elements
+from flexstage.solid.fea.remote import Limits, work_all
+from tests.models.small_solids import Bomb, job, mined, rod
+work_all([{job}], lambda each, data: print(each.name, len(data) > 1000), Limits())
+"""
+ROOT = str(Path(__file__).parents[2])
+
+
+def unguarded(folder: Path, what: str) -> tuple[Path, dict[str, str]]:
+    """A script without a guard, in a folder with modules that must not be taken for those of the libraries."""
+    (folder / "temporary").mkdir()
+    for name in ("numpy", "netgen", "pickle"):
+        (folder / f"{name}.py").write_text("raise RuntimeError('the wrong module')")
+    (folder / "script").mkdir()
+    path = folder / "script" / "script.py"
+    path.write_text(SCRIPT.format(root=ROOT, job=what))
+    return path, {**os.environ, "TMPDIR": str(folder / "temporary")}
+
+
+def test_a_bare_script_needs_no_guard_and_its_folder_is_not_searched(tmp_path: Path) -> None:
+    script, environment = unguarded(tmp_path, "job(rod())")
+    done = subprocess.run([sys.executable, str(script)], cwd=tmp_path, env=environment, capture_output=True, text=True, check=False)
+    assert done.stdout == "prop 1 True\n", done.stderr
+    assert not list((tmp_path / "temporary").iterdir())
+
+
+def test_code_without_a_file_works_as_in_a_notebook(tmp_path: Path) -> None:
+    script, environment = unguarded(tmp_path, "job(rod())")
+    code = script.read_text()
+    done = subprocess.run(
+        [sys.executable, "-P", "-"], cwd=tmp_path, input=code, env=environment, capture_output=True, text=True, check=False
+    )
+    assert done.stdout == "prop 1 True\n", done.stderr
+
+
+@linux
+@pytest.mark.parametrize("ending", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
+def test_the_child_ends_with_its_parent(tmp_path: Path, ending: signal.Signals) -> None:
+    script, environment = unguarded(tmp_path, "mined('lever', Bomb(eval, '__import__(\"time\").sleep(1000)'))")
+    with subprocess.Popen([sys.executable, str(script)], env=environment, stderr=subprocess.DEVNULL) as parent:
+        until(lambda: working_in(tmp_path / "temporary"))
+        parent.send_signal(ending)
+        assert parent.wait() != 0
+    until(lambda: not working_in(tmp_path / "temporary"))
+    assert not list((tmp_path / "temporary").iterdir())

@@ -1,0 +1,172 @@
+"""Studies of the solid reading: units alone, the stage, stress, resolution; against closed forms and the lumped reading."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import flexstage as fs
+from flexstage.analysis.complete import platform_modes
+from flexstage.analysis.pairing import RELIABLE, Moving, paired
+from flexstage.analysis.trust import Trust
+from flexstage.base.finding import DesignError
+from flexstage.mechanism.drawn import drawn
+from flexstage.models.linear.static import displacement
+from flexstage.solid.fea.fineness import Reduction
+from flexstage.solid.read import read_solid, solids
+from flexstage.solid.resolution import Resolution, Resolved, resolved
+from flexstage.solid.stage import solid_stage
+from flexstage.solid.stress import link_stress
+from flexstage.solid.surface import magnification, mode_surfaces, stress_surfaces
+from flexstage.solid.verification import stage_rows, verdict
+from tests.models.small_solids import COARSE, propped
+from tests.models.solid_studies import small, small_stage, small_unit
+
+
+def test_a_direct_unit_alone() -> None:
+    unit = small_unit()
+    theory = fs.units(small())["drive"]
+    assert 0.90 < unit.axial / theory.axial < 1.0  # beam theory of necks is too stiff, by 16 % along them
+    assert 0.85 < unit.lateral[0] / theory.lateral[0] < 1.0
+    assert unit.lateral[1] / unit.lateral[0] == pytest.approx(1.0, rel=1e-2)  # round all over; the mesh is not
+    assert unit.gain == pytest.approx(1.0, abs=1e-6)
+    assert unit.ideal_gain == pytest.approx(1.0, abs=1e-12)
+
+
+def test_outputs_are_linear_in_the_command() -> None:
+    unit = small_unit()
+    assert unit.strokes[-1] == pytest.approx(38e-6)
+    np.testing.assert_allclose(unit.outputs / unit.commands, unit.gain / unit.ideal_gain, rtol=1e-9)
+
+
+def test_a_stack_that_is_free_to_expand_stresses_nothing() -> None:
+    assert small_unit().stress.highest.max() < 1e3  # Pa, at 38 um
+
+
+def test_the_gain_is_that_of_a_unit_whose_guide_holds_it() -> None:
+    """The wrench of the guide does no work: the output moves along it only."""
+    unit = small_unit()
+    model = unit.read.model
+    rows = model.output_index(tuple(f"platform.{name}" for name in ("x", "y", "z", "rx", "ry", "rz")))
+    moved = model.output[rows] @ unit.motion
+    assert moved[0] == pytest.approx(unit.outputs[-1], rel=1e-9)
+    np.testing.assert_allclose(moved[1:], 0.0, atol=1e-9 * moved[0])
+
+
+def test_the_stage_is_near_the_lumped_one() -> None:
+    """Bodies are rigid or stubby: what is left between the readings is beam theory of hinges."""
+    stage = small_stage()
+    theory = fs.statics(fs.lumped(small()))
+    assert stage.statics.held.principal[1] / theory.held.principal[1] == pytest.approx(1.0, abs=0.08)
+    model = fs.lumped(small())
+    pairs = paired(Moving(stage.modes, stage.read.model), Moving(platform_modes(small(), model), model))
+    for index in stage.modes.platform[:2]:
+        assert stage.modes.frequencies[index] == pytest.approx(pairs[index].frequency, rel=0.08)
+        assert pairs[index].assurance > 0.99
+    shares = stage.blocks[list(stage.modes.platform[:2])]
+    assert ((shares > 0.0) & (shares < 0.1)).all()
+    assert (stage.flexible <= 0.0).all()
+
+
+def test_stress_of_a_pulled_rod() -> None:
+    """F/A in the middle; the faces that stay plane hold the contraction and concentrate some."""
+    read = read_solid(propped(20e-3), replace(COARSE, fineness=replace(COARSE.fineness, neck=0.7)), solids())
+    force = 100.0
+    load = read.model.input_matrix[:, read.model.input_index(("platform.fx",))] * force
+    found = link_stress(read, displacement(read.model, load), {})
+    mean = force / (np.pi * (4e-3) ** 2 / 4.0)
+    assert found is not None
+    assert found.names == ("prop 1",)
+    assert mean < found.highest[0] < 1.3 * mean
+    assert found.safety[0] == pytest.approx(found.yield_stress[0] / found.highest[0])
+    middle = stress_surfaces(read, displacement(read.model, load)[:, 0], {})[0]
+    along = np.abs(middle.places[:, 0] - middle.places[:, 0].mean()) < 4e-3
+    np.testing.assert_allclose(middle.values[along], mean, rtol=0.03)
+
+
+def test_the_worst_corner_is_over_all_strokes() -> None:
+    stage = small_stage()
+    assert stage.stress is not None
+    assert set(stage.stress.names) == {"left", "right", "B/base", "B/back", "B/tip", "B/front"}
+    nominal = fs.analyse(small()).workspace.stress
+    assert nominal is not None
+    at = nominal.links.index("left")
+    assert stage.stress.at("left") == pytest.approx(float(nominal.peak[at]), rel=0.5)
+
+
+def test_pictures_show_the_motion() -> None:
+    stage = small_stage()
+    shape = stage.modes.shapes[:, stage.modes.platform[0]]
+    factor, largest = magnification(stage.read, shape)
+    surfaces = mode_surfaces(stage.read, shape)
+    assert max(float(each.values.max()) for each in surfaces) == pytest.approx(1.0)
+    assert min(float(each.values.min()) for each in surfaces) < 1e-6  # held faces stand still
+    size = np.ptp(np.concatenate([each.places for each in surfaces]), axis=0).max()
+    assert factor * largest < 0.1 * size
+
+
+def test_resolution_rises_until_the_accuracy_is_met() -> None:
+    def work(way: Reduction) -> float:
+        return 1.0 + 0.1**way.fineness.order
+
+    assert resolved(work, lambda value: {"a": value}, Resolution(0.05)).order == 3
+    assert resolved(work, lambda value: {"a": value}, Resolution(0.001)).order == 4
+    assert resolved(work, lambda value: {"a": value}, Resolution(0.5, order=5)).order == 5
+
+
+def test_resolution_keeps_what_it_has_when_more_does_not_fit() -> None:
+    def work(way: Reduction) -> float:
+        if way.fineness.order > 3:
+            raise fs.DesignError([fs.Finding("lever", "needs 9 GB", "Ask for less")])
+        return float(way.fineness.order)
+
+    found = resolved(work, lambda value: {"a": value}, Resolution(0.001))
+    assert found.order == 3
+    assert "9 GB" in found.stopped
+    with pytest.raises(DesignError, match="9 GB"):
+        resolved(work, lambda value: {"a": value}, Resolution(order=4))
+
+
+def test_given_parts_are_drawn_as_what_they_stand_for() -> None:
+    stage = small()
+    unit = tuple(tuple(1e-7 * (row == column) for column in range(6)) for row in range(6))
+    stands = replace(stage, parts={**stage.parts, "old": stage.parts["leaf"], "leaf": fs.Given(unit, free=(), stands_for="old")})
+    assert drawn(stands).parts["leaf"] == stage.parts["leaf"]
+    lost = replace(stage, parts={**stage.parts, "leaf": fs.Given(unit, free=(), stands_for="gone")})
+    with pytest.raises(DesignError, match='no part "gone"'):
+        drawn(lost)
+
+
+def test_errors_that_were_not_estimated_are_unknown() -> None:
+    """Of a solid result without errors every row of the stage is without a verdict, not right to 0 %."""
+    rows = tuple(stage_rows(small(), small(), Resolved(small_stage(), {}, 2)))
+    assert len(rows) > 10
+    assert {row.trust for row in rows} == {Trust.UNKNOWN}
+    assert all(row.error is None and "error was not estimated" in row.reason for row in rows)
+    assert verdict(rows).startswith("No verdict.")
+
+
+def test_a_mode_without_a_partner_has_no_theory() -> None:
+    """Theory with a platform five times as heavy along one axis has none of some modes."""
+    other = replace(small(), bodies={"platform": replace(small().bodies["platform"], mass=0.9, centre=(0.03, 0.02, 0.0))})
+    errors = dict.fromkeys(small_stage().figures, 0.001)
+    rows = [row for row in stage_rows(other, other, Resolved(small_stage(), errors, 2)) if row.assurance is not None]
+    apart = [row for row in rows if row.assurance is not None and row.assurance < RELIABLE]
+    assert apart
+    for row in apart:
+        assert row.theory is None
+        assert row.trust is Trust.UNKNOWN
+        assert "is needed" in row.reason
+
+
+def test_a_stack_without_mass_between_the_ground_and_a_mass_is_a_spring() -> None:
+    """Nothing drawn but a stack that weighs nothing: no modes of its own, no hinge to be stressed, K/m along it."""
+    stack = fs.Piezo(stroke=50e-6, stiffness=50e6, length=50e-3, diameter=10e-3)
+    body = fs.Body(mass=1.0, centre=(25e-3, 0.0, 0.0), inertia=fs.Inertia(1e-3, 1e-3, 1e-3))
+    link = fs.Link(("ground", "platform"), "stack", (0.0, 0.0, 0.0), along=(1.0, 0.0, 0.0))
+    found = solid_stage(fs.Mechanism("push", parts={"stack": stack}, bodies={"platform": body}, links={"pzt": link}), COARSE, solids())
+    assert found.stress is None
+    along = found.modes.frequencies[found.modes.names.index("x")]
+    assert along == pytest.approx(np.sqrt(50e6) / (2.0 * np.pi), rel=0.02)

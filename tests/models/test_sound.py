@@ -1,0 +1,93 @@
+"""Readings of stages whose outlines do not form solids: refused by name before anything is meshed, whoever asks."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import flexstage as fs
+from flexstage.base.finding import DesignError
+from flexstage.base.scale import mm
+from flexstage.cases.registry import case
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.solid.fea import sound
+from flexstage.solid.fea.cache import Cache
+from flexstage.solid.fea.monolithic import monolithic
+from flexstage.solid.fea.sound import stage_findings
+from flexstage.solid.read import read_solid, solids
+from tests.models.small_solids import COARSE, propped
+
+Reads = Callable[[Mechanism], object]
+
+
+def gaping() -> Mechanism:
+    """The parallelogram with a leaf that ends 20 um short of its platform, and a lug far away from it."""
+    stage = case("parallelogram")
+    left = replace(stage.links["left"], at=tuple(np.add(stage.links["left"].at, (0.0, 2e-5, 0.0)).tolist()))
+    platform = stage.bodies["platform"]
+    far = fs.Block("steel", (20 * mm, 20 * mm, 20 * mm), at=(0.0, 0.0, 300 * mm))
+    bodies = {**stage.bodies, "platform": replace(platform, solids={**platform.solids, "far": far})}
+    return replace(stage, links={**stage.links, "left": left}, bodies=bodies)
+
+
+@pytest.mark.parametrize(
+    "reads",
+    [
+        lambda stage: fs.solid.model(stage, COARSE, cache=None),
+        lambda stage: fs.solid.model_with_parts(stage, COARSE, cache=None),
+        lambda stage: monolithic(stage, COARSE, cache=None),
+        lambda stage: read_solid(stage, COARSE, solids()),
+    ],
+    ids=["solid", "model_with_parts", "monolithic", "read_solid"],
+)
+def test_gaps_are_named_before_anything_is_meshed(reads: Reads, monkeypatch: pytest.MonkeyPatch) -> None:
+    for module in ("model", "monolithic"):
+        monkeypatch.setattr(f"flexstage.solid.fea.{module}.reduce_parts", lambda *_: pytest.fail("meshed all the same"))
+    monkeypatch.setattr("flexstage.solid.read.reduce_parts", lambda *_: pytest.fail("meshed all the same"))
+    with pytest.raises(DesignError) as caught:
+        reads(gaping())
+    assert [finding.where for finding in caught.value.findings] == ["left", "platform"]
+    assert "20 um away from platform" in caught.value.findings[0].what
+
+
+def test_a_sound_stage_is_checked_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    cache = Cache(tmp_path / "cache")
+    assert stage_findings(propped(6 * mm), cache) == ()
+    monkeypatch.setattr(sound, "contact_apart", lambda _: pytest.fail("checked again"))
+    assert stage_findings(propped(6 * mm), cache) == ()
+    assert stage_findings(replace(propped(6 * mm), name="renamed"), cache) == ()
+    with pytest.raises(pytest.fail.Exception):
+        stage_findings(propped(7 * mm), cache)
+    with pytest.raises(pytest.fail.Exception):
+        stage_findings(propped(6 * mm), None)
+
+
+def test_findings_are_never_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    found = (fs.Finding("leaf", "its end face is 20 um away from platform", "Move it"),)
+    monkeypatch.setattr(sound, "contact_apart", lambda _: found)
+    for _ in range(2):
+        assert stage_findings(propped(6 * mm), Cache(tmp_path)) == found
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_cache_that_cannot_be_written_is_no_failure(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "file").write_text("")
+    monkeypatch.setattr(sound, "contact_apart", lambda _: ())
+    assert stage_findings(propped(6 * mm), Cache(tmp_path / "file")) == ()
+
+
+def test_stages_with_imported_solids_are_checked_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Their files may have changed meanwhile."""
+    calls: list[Mechanism] = []
+    monkeypatch.setattr(sound, "contact_apart", lambda stage: calls.append(stage) or ())
+    size, inertia = (10 * mm, 10 * mm, 10 * mm), fs.Inertia(1e-6, 1e-6, 1e-6)
+    part = fs.Imported("steel", file="part.step", sha256="0" * 64, size=size, mass=0.1, centre=(0.0, 0.0, 0.0), inertia=inertia)
+    stage = propped(6 * mm)
+    body = replace(stage.bodies["platform"], mass=None, centre=None, inertia=None, solids={"part": part})
+    for _ in range(2):
+        stage_findings(replace(stage, bodies={"platform": body}), Cache(tmp_path))
+    assert len(calls) == 2

@@ -1,0 +1,305 @@
+"""Updating: known changes of a stage come back from tests of it, with deviations that hold, or as not identifiable."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from flexstage.base.finding import DesignError
+from flexstage.cases.double_triangle import double_triangle
+from flexstage.cases.parallelogram import parallelogram
+from flexstage.experiment.pipeline import identification, sound
+from flexstage.experiment.record import Channel
+from flexstage.experiment.updating.fit import Problem, fitted
+from flexstage.experiment.updating.free import Known, free
+from flexstage.experiment.updating.gains import _led_back, measured_gains
+from flexstage.experiment.updating.rows import ModeRow, begun, followed, frequency_slopes, gain_slopes, gains_of
+from flexstage.experiment.updating.tables import update_table
+from flexstage.experiment.updating.text import updated_text
+from flexstage.experiment.updating.update import Told, Updated, update
+from flexstage.experiment.virtual_rig.rig import rig
+from flexstage.experiment.virtual_rig.setup import Recorded, RigSetup, Sensing
+from flexstage.mechanism.address import get, set_value, tag_of
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.mechanism.store import dumps, loads
+from flexstage.models.lumped import lumped
+from tests.models.made_tests import Noise, made
+
+STAGE = double_triangle()
+NECK = "parts.neck.thickness"
+LEVER = "parts.lever_notch.thickness"
+FRONT = "vertical/front.thickness"
+EXACT = Noise(frequency=1e-7, response=0.0)
+
+
+def changed(**shares: float) -> Mechanism:
+    """The stage with its numbers (by last two names) multiplied."""
+    full = {"neck": NECK, "lever": LEVER, "front": FRONT, "density": "materials.steel.density", "stack": "parts.stack_vertical.stiffness"}
+    result = STAGE
+    for name, share in shares.items():
+        result = set_value(result, full[name], share * get(result, full[name]))
+    return result
+
+
+def errors(found: Updated, true: Mechanism) -> np.ndarray:
+    """Logarithms of true values over those found, by parameter."""
+    return np.log([get(true, name) for name in found.parameters] / found.after)
+
+
+# --- what the issue asks for ---------------------------------------------------------------------------------------------------------
+
+
+def test_a_neck_five_per_cent_thicker_is_found_to_half_a_per_cent() -> None:
+    found = update(STAGE, made(changed(neck=1.05)), ["neck.thickness"])
+    assert found.changes[0] == pytest.approx(0.05, abs=0.005)
+    assert found.deviations[0] < 0.005
+    assert found.verdicts == ("identified",)
+    assert found.chi_square < found.chi_square_before / 20.0
+    assert found.residuals[2].name == "mode 4 (yaw)"
+    assert abs(found.residuals[2].misfit) < 1.0 < abs(found.residuals[2].misfit_before)
+
+
+def test_a_neck_is_found_in_a_record_of_the_virtual_rig() -> None:
+    built = changed(neck=1.05)
+    test = rig(built, lumped(built), RigSetup(seconds=20.0, seed=5, sensing=Sensing(density=5e-9)))
+    found = update(STAGE, identification(sound([test])).found, [NECK])
+    assert found.changes[0] == pytest.approx(0.05, abs=0.005)
+    assert found.told == (Told.WELL,)
+
+
+def test_lever_and_front_hinge_are_not_identifiable_from_frequencies_and_say_so() -> None:
+    built = changed(lever=1.05, front=0.96)
+    found = update(STAGE, made(built), [LEVER, FRONT])
+    front = found.parameters.index(FRONT)
+    assert found.told[front] is Told.NOT
+    assert found.verdicts[front] == f"not identifiable from frequencies; only together with {LEVER}"
+    assert np.all(np.abs(errors(found, built)) < 1.96 * found.deviations)
+    assert found.correlations.values[0, 1] < -0.9
+    assert found.singular[1] < 0.01
+    assert found.singular[0] > 1.0
+
+
+def test_from_static_gains_they_are() -> None:
+    built = changed(lever=1.05, front=0.96)
+    found = update(STAGE, made(built), [LEVER, FRONT], Known(gain_error=1e-3))
+    lever, front = (found.parameters.index(name) for name in (LEVER, FRONT))
+    assert found.told[lever] is Told.WELL
+    assert found.told[front] is not Told.NOT
+    assert np.all(np.abs(errors(found, built)) < 1.96 * found.deviations)
+    assert found.deviations[lever] < 0.015
+    assert found.freedoms == 4 + 36
+
+
+def test_gains_from_a_record_in_volts() -> None:
+    built = changed(lever=1.05)
+    setup = RigSetup(seconds=20.0, seed=2, sensing=Sensing(density=1e-9), recorded=Recorded.VOLTAGE)
+    experiment = identification(sound([rig(built, lumped(built), setup)])).found
+    gauges = tuple(channel.name for channel in experiment.outputs)
+    gains = measured_gains(built, lumped(built), experiment, gauges)
+    theory = gains_of(begun(built, ()), gains)
+    np.testing.assert_allclose(gains.values, theory, atol=4.0 * float(np.max(gains.deviations)))
+    assert np.max(gains.deviations) < 0.01 * np.max(theory)
+    found = update(STAGE, experiment, [LEVER], Known(gain_error=1e-3))
+    assert abs(errors(found, built)[0]) < 1.96 * found.deviations[0]
+
+
+# --- deviations hold -----------------------------------------------------------------------------------------------------------------
+
+
+def test_errors_are_as_large_as_stated() -> None:
+    """Numbers drawn from their priors, frequencies with the stated errors: the whitened errors are normal."""
+    random = np.random.default_rng(7)
+    known, names = Known(prior=0.02, model_error=1e-3), ["neck", "density", "stack"]
+    total = 0.0
+    for seed in range(8):
+        built = changed(**dict(zip(names, np.exp(known.prior * random.standard_normal(3)), strict=True)))
+        found = update(STAGE, made(built, seed, Noise(model=1e-3)), [NECK, "steel.density", "stack_vertical.stiffness"], known)
+        error = errors(found, built)
+        total += float(error @ np.linalg.solve(found.covariance, error))
+    assert 9.9 < total < 45.6  # chi-square of 24 freedoms, 0.5 % to 99.5 %
+
+
+def test_chi_square_tells_of_what_is_not_modelled() -> None:
+    built = changed(density=1.2)
+    found = update(STAGE, made(built), [NECK], Known(prior=0.05))
+    assert found.probability < 1e-6
+    assert any("state a larger model error" in warning for warning in found.warnings)
+    assert update(STAGE, made(built), ["steel.density"]).probability > 0.01
+
+
+def test_more_prior_is_left_where_it_is_narrower() -> None:
+    experiment = made(changed(neck=1.05))
+    wide, narrow = (update(STAGE, experiment, [NECK], Known(priors={"neck.thickness": share})) for share in (0.1, 0.001))
+    assert wide.left[0] < 0.01
+    assert narrow.left[0] > 0.9
+    assert narrow.verdicts == ("not identifiable from frequencies",)
+    assert narrow.changes[0] < 0.01
+
+
+# --- repeated modes ------------------------------------------------------------------------------------------------------------------
+
+
+def test_three_copies_are_told_together_only() -> None:
+    """The mean of a repeated pair, a symmetric function, moves alike with all three copies."""
+    names = [f"B{number}/front.thickness" for number in (1, 2, 3)]
+    found = update(STAGE, made(changed(neck=1.02), noise=EXACT), names)
+    assert found.told == (Told.NOT,) * 3
+    assert np.ptp(found.changes) < 1e-6
+    assert found.singular[0] > 5.0
+    assert found.singular[1] < 1e-3
+
+
+def test_slopes_are_those_of_differences_also_through_a_split_pair() -> None:
+    stage = set_value(STAGE, "B1/front.thickness", 1.002 * get(STAGE, NECK))
+    names = (NECK, "B1/front.thickness", "materials.steel.density")
+    freed = free(stage, names)
+    here = begun(
+        freed.mechanism, (ModeRow("tilt", (0, 1), (), 0.0, 0.0), ModeRow("z", (2,), (), 0.0, 0.0), ModeRow("xy", (4, 5), (), 0.0, 0.0))
+    )
+    gains = measured_gains(STAGE, lumped(STAGE), made(STAGE, noise=EXACT), ("S1", "S4"))
+    exact, exact_gains = frequency_slopes(here, freed.names), gain_slopes(here, freed.names, gains)
+    step = 1e-5
+    for index, name in enumerate(freed.names):
+        ends = [followed(here, freed.moved(sign * step * np.eye(len(names))[index])) for sign in (1.0, -1.0)]
+        moved = np.log(ends[0].frequencies / ends[1].frequencies) / (2.0 * step)
+        np.testing.assert_allclose(exact[:, index] * get(freed.mechanism, name), moved, atol=1e-8)
+        moved_gains = (gains_of(ends[0], gains) - gains_of(ends[1], gains)) / (2.0 * step)
+        np.testing.assert_allclose(exact_gains[..., index] * get(freed.mechanism, name), moved_gains, atol=1e-7)
+
+
+def test_crossing_modes_stay_with_their_rows() -> None:
+    """Yaw, above z, is brought below it by a smaller radius of the units that hold it."""
+    rows = (ModeRow("z", (2,), (0,), 1.0, 0.0), ModeRow("yaw", (3,), (1,), 1.0, 0.0))
+    here, radius = begun(STAGE, rows), get(STAGE, "place.B1-B3.pattern.radius")
+    for share in np.linspace(0.98, 0.82, 9):
+        here = followed(here, set_value(STAGE, "place.B1-B3.pattern.radius", share * radius))
+    assert here.modes == ((3,), (2,))
+    assert here.frequencies[1] < here.frequencies[0]
+
+
+# --- the design file -----------------------------------------------------------------------------------------------------------------
+
+
+def test_the_new_file_keeps_comments_and_says_where_values_are_from() -> None:
+    text = dumps(STAGE, {"parts.neck": "As drawn."})
+    found = update(STAGE, made(changed(neck=1.05)), [NECK, "vertical/front.thickness"])
+    after = updated_text(text, found, "test 7.uff")
+    stage = loads(after)
+    assert "# As drawn." in after
+    for name, value in zip(found.parameters, found.after, strict=True):
+        assert get(stage, name) == pytest.approx(value, rel=1e-6)
+    assert tag_of(stage, NECK).startswith("derived update test 7.uff, +- 0.3")
+    assert tag_of(stage, "vertical/front.thickness").startswith("derived update test 7.uff, ")
+    assert tag_of(stage, "parts.neck.width") == tag_of(STAGE, "parts.neck.width")
+    back = set_value(stage, NECK, get(STAGE, NECK))
+    back = replace(back, changes={}, tags=STAGE.tags)
+    assert back == STAGE
+
+
+# --- bad input -----------------------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("names", "known", "said"),
+    [
+        ((), Known(), "no number is free"),
+        (("neck.thicknes",), Known(), "The nearest name is thickness"),
+        (("front.thickness",), Known(), "Write horizontal/front.thickness or vertical/front.thickness"),
+        (("horizontal/frnt.thickness",), Known(), "The nearest name is front"),
+        (("parts.neck",), Known(), "not a single number"),
+        (("platform.mass",), Known(), "the body's mass follows from its solids"),
+        (("horizontal/front.at.y",), Known(), "it is 0"),
+        (("neck.thickness", NECK), Known(), "named twice"),
+        (("steel.yield_stress",), Known(), "has no effect on the frequencies compared"),
+        (("steel.yield_stress",), Known(gain_error=1e-3), "has no effect on the frequencies and gains compared"),
+        ((NECK,), Known(prior=0.0), "0 is none"),
+        ((NECK,), Known(priors={"steel.density": 0.1}), "not among the free numbers"),
+        ((NECK, "neck.width", "steel.density", "steel.young", LEVER), Known(), "4 data"),
+    ],
+)
+def test_bad_questions_are_refused(names: Sequence[str], known: Known, said: str) -> None:
+    with pytest.raises(DesignError, match=said):
+        update(STAGE, made(STAGE), names, known)
+
+
+def test_tests_that_do_not_fit_are_refused() -> None:
+    experiment = made(STAGE)
+    other = tuple(replace(channel, name=f"gap {channel.name}") for channel in experiment.outputs)
+    with pytest.raises(DesignError, match="the stage has no output of this name"):
+        update(STAGE, replace(experiment, outputs=other), [NECK])
+    none = replace(experiment, frequencies=np.zeros(0), shapes=np.zeros((6, 0)), frequency_deviations=np.zeros(0))
+    with pytest.raises(DesignError, match="none of the 0 modes"):
+        update(STAGE, replace(none, damping=np.zeros(0), damping_deviations=np.zeros(0)), [NECK])
+
+
+def test_gains_need_units_actuators_and_low_lines() -> None:
+    experiment, known = made(STAGE), Known(gain_error=1e-3)
+    bare = tuple(Channel(channel.name, "", channel.role) for channel in experiment.inputs)
+    with pytest.raises(DesignError, match="leads to no stroke"):
+        update(STAGE, replace(experiment, inputs=bare), [LEVER], known)
+    named = tuple(replace(channel, name=f"u{channel.name}") for channel in experiment.inputs)
+    with pytest.raises(DesignError, match="no input of the record has the name of an actuator"):
+        update(STAGE, replace(experiment, inputs=named), [LEVER], known)
+    few = replace(experiment.responses, frequencies=100.0 + experiment.responses.frequencies)
+    with pytest.raises(DesignError, match="0 lines are below"):
+        update(STAGE, replace(experiment, responses=few), [LEVER], known)
+
+
+def test_a_search_without_end_is_refused() -> None:
+    uphill = Problem(lambda place, _: place, lambda place: 3.0 - place, lambda _: np.array([[-1.0]]))
+    with pytest.raises(DesignError, match="still move by"):
+        fitted(uphill, np.zeros(1), np.zeros(1))
+
+
+def test_steps_that_lead_up_are_halved() -> None:
+    """Theory 20 atan 4 u and data 0: from 1.5 a whole Gauss-Newton step leads to -9.4, and from there back; the end is 0."""
+    found = fitted(
+        Problem(lambda u, _: u, lambda u: -20.0 * np.arctan(4.0 * u), lambda u: np.diag(80.0 / (1.0 + 16.0 * u**2))),
+        np.array([1.5]),
+        np.array([1.5]),
+    )
+    assert found.parameters == pytest.approx([0.0], abs=1e-9)
+    assert found.cost == pytest.approx(0.0, abs=1e-12)
+
+
+def test_designs_that_cannot_be_read_shorten_the_step() -> None:
+    def state(place: np.ndarray, _: np.ndarray) -> np.ndarray:
+        if place[0] > 0.6:
+            raise DesignError([])
+        return place
+
+    steeper = Problem(state, lambda u: 100.0 * (1.75 - u - 5.0 * u**2), lambda u: 100.0 * (1.0 + 10.0 * u[:, None]))  # first step: to 1.75
+    assert fitted(steeper, np.zeros(1), np.zeros(1)).parameters[0] == pytest.approx(0.5, abs=1e-3)
+
+
+def test_gains_are_led_back_past_the_lowest_mode() -> None:
+    """A mode g/(1 - x^2), its neighbours' and lags' r + q x^2: at rest exactly g + r; a polynomial alone would not be."""
+    lines = np.linspace(0.02, 0.35, 60)
+    mode, rest, curve = (np.array([[0.9, -0.2]]), np.array([[0.1, 0.5]]), np.array([[0.05, -0.3]]))
+    values = mode / (1.0 - lines[:, None, None] ** 2) + rest + curve * lines[:, None, None] ** 2
+    found, deviations = _led_back(lines, values)
+    np.testing.assert_allclose(found, mode + rest, atol=1e-12)
+    assert np.max(deviations) < 1e-12
+
+
+def test_nothing_is_said_of_numbers_where_theory_and_test_contradict_each_other() -> None:
+    plain = made(STAGE)
+    names = {"B1": "B4", "B4": "B1"}
+    renamed = tuple(replace(channel, name=names.get(channel.name, channel.name)) for channel in plain.responses.inputs)
+    test = replace(plain, inputs=renamed, responses=replace(plain.responses, inputs=renamed))
+    found = update(STAGE, test, [NECK], Known(gain_error=0.02))
+    assert found.chi_square > 1e3
+    assert found.told == (Told.WITHHELD,)
+    assert found.verdicts[0].startswith("withheld: chi-square ")
+    assert update_table(found).texts()[1][-1] == found.verdicts[0]
+    assert any("look exchanged" in each for each in found.warnings)
+    assert "theory and test contradict each other" in updated_text(dumps(STAGE), found, "test.uff")
+
+
+def test_a_design_with_other_coordinates_is_no_step() -> None:
+    here = begun(STAGE, (ModeRow("z", (2,), (0,), 126.0, 1e-4),))
+    with pytest.raises(DesignError, match="its numbers moved so far that the model has"):
+        followed(here, parallelogram())

@@ -1,0 +1,51 @@
+"""Stages the presentation is tried on, each analysed and reported once a session."""
+
+from __future__ import annotations
+
+import functools
+from dataclasses import replace
+
+from flexstage.analysis.complete import Analysis, Reading, analyse
+from flexstage.cases.registry import CASES, case
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.show.report import report
+
+NAMES = tuple(CASES)
+HOSTILE = '<script>alert("1 & 2")</script>'
+
+
+def analysed(name: str, reading: Reading = Reading.LUMPED) -> Analysis:
+    return _analysed(name, reading)  # kept under both arguments, whether the second is given or not
+
+
+def reported(name: str, reading: Reading = Reading.LUMPED) -> str:
+    return _reported(name, reading)
+
+
+@functools.cache
+def _analysed(name: str, reading: Reading) -> Analysis:
+    return analyse(case(name), reading)
+
+
+@functools.cache
+def _reported(name: str, reading: Reading) -> str:
+    return report(_analysed(name, reading))
+
+
+def hostile() -> Mechanism:
+    """The parallelogram with markup in every text a user may write, and mathematics in the names of its copies."""
+    stage = case("parallelogram")
+    materials = {name: replace(material, source=HOSTILE) for name, material in stage.materials.items()}
+    renamed = {
+        "name": HOSTILE,
+        "materials": materials,
+        "tags": {"parts": f"stated {HOSTILE}"},
+        "sources": {HOSTILE: HOSTILE, "$x^{": "$\\alpha$"},
+    }
+    bodies = {f"<b>{name}" if name != "platform" else name: body for name, body in stage.bodies.items()}
+    links = {f"<i>$_{{{name}}}": replace(link, joins=tuple(_renamed(join) for join in link.joins)) for name, link in stage.links.items()}
+    return replace(stage, bodies=bodies, links=links, changes={}, requirements={}, **renamed)
+
+
+def _renamed(body: str) -> str:
+    return body if body in ("platform", "ground") else f"<b>{body}"

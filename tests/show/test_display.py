@@ -1,0 +1,92 @@
+"""Numbers and units for people: right factors, no silent alterations."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from flexstage.base import quantity as quantities
+from flexstage.base.quantity import Quantity
+from flexstage.base.unit import convert
+from flexstage.show.display import _LADDERS, NOISE, aligned, field_unit, number, quiet, shown, typeset, value_with_unit
+
+FIELDS = [value for value in vars(quantities).values() if isinstance(value, Quantity) and value.si != "mixed"]
+FINITE = st.floats(min_value=-1e12, max_value=1e12, allow_nan=False).filter(lambda value: value == 0.0 or abs(value) > 1e-12)
+
+
+@pytest.mark.parametrize("quantity", FIELDS, ids=lambda each: each.name)
+def test_fields_are_shown_in_their_unit(quantity: Quantity) -> None:
+    form = field_unit(quantity)
+    assert form.unit == quantity.shown
+    assert math.isclose(form.factor, float(convert(1.0, quantity)), rel_tol=1e-12)
+
+
+@pytest.mark.parametrize("si", _LADDERS)
+def test_display_units_have_the_size_they_are_given(si: str) -> None:
+    quantity = Quantity("tried", si, si, "")
+    for unit, factor in _LADDERS[si]:
+        assert math.isclose(factor, float(convert(1.0, quantity, unit)), rel_tol=1e-12), unit
+
+
+@pytest.mark.parametrize("si", _LADDERS)
+def test_ladders_ascend(si: str) -> None:
+    factors = [factor for _, factor in _LADDERS[si]]
+    assert factors == sorted(factors, reverse=True)
+
+
+@given(FINITE, st.integers(3, 8))
+def test_a_number_keeps_its_digits(value: float, digits: int) -> None:
+    back = float(number(value, digits))
+    assert math.isclose(back, value, rel_tol=0.51 * 10 ** (1 - digits)) or back == value == 0.0
+
+
+@given(st.lists(FINITE, min_size=1, max_size=6))
+def test_a_column_keeps_its_digits(values: list[float]) -> None:
+    texts = aligned(values)
+    largest = max(abs(value) for value in values)
+    for text, value in zip(texts, values, strict=True):
+        assert abs(float(text) - value) <= 0.51e-4 * max(abs(value), 0.1 * largest)
+
+
+@given(st.floats(min_value=1e-9, max_value=1e9), st.sampled_from(sorted(_LADDERS)))
+def test_a_value_is_shown_readably(value: float, si: str) -> None:
+    text = value_with_unit(value, si)
+    figure = float(text.split()[0])
+    form = shown(si, value)
+    assert math.isclose(figure, value * form.factor, rel_tol=1e-4)
+    smallest = _LADDERS[si][0][1]
+    if value * smallest >= 1.0:
+        assert figure >= 0.1
+    if len(_LADDERS[si]) > 2 and value < 1e3:
+        assert figure <= 1e9
+
+
+def test_noise_is_shown_as_zero_and_data_stay() -> None:
+    data = np.array([[1.0, 1e-14], [-3e-13, 1e-6]])
+    before = data.copy()
+    kept = quiet(data)
+    assert np.array_equal(data, before)
+    assert kept[0, 1] == 0.0
+    assert kept[1, 0] == 0.0
+    assert kept[0, 0] == 1.0
+    assert kept[1, 1] == 1e-6
+
+
+@given(st.floats(min_value=1e-3, max_value=1e3), st.floats(min_value=1e-3, max_value=1e3))
+def test_what_is_not_noise_is_never_altered(first: float, second: float) -> None:
+    data = np.diag([first, second]) + (100.0 * NOISE) * np.sqrt(first) * np.sqrt(second) * (1.0 - np.eye(2))
+    assert np.array_equal(quiet(data), data)
+
+
+def test_not_a_number_is_a_dash() -> None:
+    assert number(float("nan")) == "-"
+    assert np.isnan(quiet(np.array([[np.nan, 1.0]]))[0, 0])
+
+
+def test_typesetting_leaves_names_alone() -> None:
+    assert typeset("units.horizontal um5 put-on B1-B3") == "units.horizontal um5 put-on B1-B3"
+    assert typeset("x +-50 um at -3e-5 urad/N") == "x ±50 µm at −3·10⁻⁵ µrad/N"

@@ -1,0 +1,94 @@
+"""Figures: what is drawn is what was computed, and every file is sound."""
+
+from __future__ import annotations
+
+import re
+import xml.etree.ElementTree as ET
+
+import numpy as np
+import pytest
+
+from flexstage.analysis.statics import directional
+from flexstage.show.figures.budget import energy_figure, error_figure, loss_figure
+from flexstage.show.figures.directional import directional_figure
+from flexstage.show.figures.export import compact, to_png, to_svg
+from flexstage.show.figures.response import response_figure
+from flexstage.show.figures.spectrum import spectrum_figure
+from flexstage.show.figures.style import canvas, styled
+from flexstage.show.figures.workspace import workspace_figure
+from tests.show.stages import analysed
+
+
+def sound(figure: object, name: str) -> str:
+    text = to_svg(figure, name, "a & b")
+    ET.fromstring(text.replace("<svg ", '<svg xmlns="http://www.w3.org/2000/svg" ', 1))  # noqa: S314  our own text
+    assert "metadata" not in text
+    assert "DejaVu" not in text
+    assert len(text) < 60_000
+    return text
+
+
+@pytest.mark.parametrize("name", ["double-triangle", "xy-stage-floating", "tip-tilt-four"])
+def test_every_case_can_be_drawn(name: str) -> None:
+    analysis = analysed(name)
+    if analysis.statics is not None:
+        sound(directional_figure(analysis.statics), "a")
+    if analysis.lost_motion is not None:
+        sound(loss_figure(analysis.lost_motion), "b")
+        sound(energy_figure(analysis.lost_motion), "c")
+    if analysis.modes is not None:
+        sound(spectrum_figure(analysis.modes), "d")
+    if analysis.response is not None:
+        sound(response_figure(analysis.response, analysis.modes), "e")
+    if analysis.error_budget is not None:
+        sound(error_figure(analysis.error_budget), "f")
+    if analysis.workspace is not None and (figure := workspace_figure(analysis.workspace)) is not None:
+        sound(figure, "g")
+
+
+def test_bars_add_up_to_the_losses() -> None:
+    lost = analysed("double-triangle").lost_motion
+    assert lost is not None
+    axes = loss_figure(lost).axes[0]
+    ends = {}
+    for container in axes.containers:
+        for row, bar in enumerate(container):
+            ends[row] = ends.get(row, 0.0) + bar.get_width()
+    assert np.allclose([ends[row] for row in range(6)], 100.0 * np.diagonal(lost.loss.values), rtol=1e-12)
+
+
+def test_the_polar_plot_shows_principal_axes() -> None:
+    from dataclasses import replace
+
+    statics = analysed("double-triangle").statics
+    assert statics is not None
+    # The tensor that fits the paper's Table 1, A = 41.89, B = 0.10, C = 3.74 um at 100 N: stiffest across 44 degrees.
+    tensor = np.linalg.inv(np.array([[41.99, 3.74], [3.74, 41.79]]) * 1e-8)
+    figure = directional_figure(replace(statics, free=directional(tensor)))
+    labels = [text.get_text() for text in figure.axes[0].get_legend().get_texts()]
+    assert labels[1] == "others free: 2.621 along 134°, 2.191 across"
+
+
+def test_compaction_keeps_points_within_a_tenth() -> None:
+    points = np.random.default_rng(3).uniform(0.0, 400.0, (40, 2))
+    path = "M " + " L ".join(f"{x:.6f} {y:.6f}" for x, y in points) + " z"
+    short = compact(f'<svg width="1pt" viewBox="0 0 9 9"><path d="{path}"/></svg>', "n", "d")
+    found = re.search(r' d="M([^"]*)z"', short)
+    assert found is not None
+    numbers = [float(each) for each in re.findall(r"-?(?:\d+\.?\d*|\.\d+)", found[1])]
+    steps = np.array(numbers).reshape(-1, 2)
+    assert np.max(np.abs(np.cumsum(steps, axis=0) - points)) <= 0.05 + 1e-9
+    assert len(short) < 0.6 * len(path)
+
+
+def test_a_dollar_sign_is_a_dollar_sign() -> None:
+    with styled():
+        figure = canvas(1.0, 1.0)
+        figure.add_subplot().set_xlabel("$x^2$ & <b>")
+    assert "$x^2$ &amp; &lt;b&gt;" in to_svg(figure, "n", "d")
+
+
+def test_png_is_reproducible() -> None:
+    modes = analysed("parallelogram").modes
+    assert modes is not None
+    assert to_png(spectrum_figure(modes)) == to_png(spectrum_figure(modes))

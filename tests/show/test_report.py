@@ -1,0 +1,137 @@
+"""The report: one file that stands alone, escapes, repeats itself to the byte and stays small."""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import sys
+import xml.etree.ElementTree as ET
+from collections import Counter
+from html.parser import HTMLParser
+
+import pytest
+
+from flexstage.analysis.complete import Reading, analyse
+from flexstage.cases.registry import case
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.show.report import report
+from tests.show.stages import HOSTILE, NAMES, analysed, hostile, reported
+
+LARGEST = 1_000_000
+SVG = re.compile(r"<svg.*?</svg>", re.DOTALL)
+LOADS = re.compile(
+    r"""(?:src|href|data|action)\s*=\s*(?:["'](?!\#)|(?![\s"']))|@import|url\((?!["']?\#)|https?://|<(?:script|link|iframe|object|img)\b"""
+)
+VOID = {"meta", "br", "hr"}
+
+
+class Balance(HTMLParser):
+    """Checks that tags close in order, and collects identifiers."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.open: list[str] = []
+        self.names: list[str] = []
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.names += [value or "" for name, value in attrs if name == "id"]
+        if tag not in VOID:
+            self.open.append(tag)
+
+    def handle_startendtag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:  # noqa: ARG002  the parser's signature
+        self.names += [value or "" for name, value in attrs if name == "id"]
+
+    def handle_endtag(self, tag: str) -> None:
+        assert self.open.pop() == tag
+
+
+QUICK = ("double-triangle", "parallelogram", "xy-stage-floating")
+"""Six axes, one axis, and a stage that its strokes do not determine: the others' reports have no other sections. They are made in full."""
+
+
+@pytest.mark.parametrize(
+    ("name", "reading"),
+    [
+        *(pytest.param(name, Reading.LUMPED, marks=() if name in QUICK else pytest.mark.full) for name in NAMES),
+        pytest.param("double-triangle", Reading.IDEAL, marks=pytest.mark.full),
+        ("xy-stage-floating", Reading.IDEAL),
+    ],
+)
+def test_every_case_has_a_report_that_stands_alone(name: str, reading: Reading) -> None:
+    page = reported(name, reading)
+    assert LOADS.findall(page) == []
+    assert len(page.encode()) < LARGEST
+    found = Balance()
+    found.feed(page)
+    assert found.open == []
+    assert [name for name, count in Counter(found.names).items() if count > 1] == []
+    pictures = SVG.findall(page)
+    assert len(pictures) >= 5
+    for picture in pictures:
+        root = ET.fromstring(picture.replace("<svg ", '<svg xmlns="http://www.w3.org/2000/svg" ', 1))  # noqa: S314  our own text
+        assert root.attrib["aria-label"]
+
+
+@pytest.mark.full
+def test_mapped_reading_has_a_report() -> None:
+    page = reported("double-triangle", Reading.MAPPED)
+    assert "110.91" in page
+    assert "not stated" not in page
+
+
+def test_references_inside_the_page_lead_somewhere() -> None:
+    page = reported("double-triangle")
+    names = set(re.findall(r' id="([^"]+)"', page))
+    wanted = set(re.findall(r'href="#([^"]+)"', page)) | set(re.findall(r"url\(#([^)]+)\)", page))
+    assert wanted <= names
+
+
+def test_markup_of_users_is_text() -> None:
+    stage = hostile()
+    page = report(analyse(stage))
+    assert "<script" not in page
+    assert "&lt;script&gt;" in page
+    assert "<i>$" not in page
+    assert "&lt;i&gt;$_" in page
+    assert HOSTILE not in page
+
+
+def test_the_same_analysis_gives_the_same_bytes_and_leaves_settings_of_matplotlib_alone() -> None:
+    import matplotlib as mpl
+
+    before = dict(mpl.rcParams)
+    assert report(analysed("parallelogram")) == reported("parallelogram")
+    assert dict(mpl.rcParams) == before
+
+
+def test_another_process_gives_the_same_bytes() -> None:
+    code = (
+        "import sys; from flexstage.cases.registry import case; from flexstage.show.report import report; "
+        "from flexstage.analysis.complete import analyse; sys.stdout.buffer.write(report(analyse(case('parallelogram'))).encode())"
+    )
+    environment = {**os.environ, "PYTHONHASHSEED": "7"}
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, check=True, env=environment)
+    assert done.stdout.decode() == reported("parallelogram")
+
+
+def test_no_date_and_no_path_inside() -> None:
+    page = reported("double-triangle")
+    assert not re.search(r"\b20[12]\d-\d\d-\d\d\b", page)
+    assert os.getcwd() not in page  # noqa: PTH109
+
+
+def test_verdicts_come_first_and_failures_before_the_rest() -> None:
+    stage = case("parallelogram")
+    changed = {"stroke.x": "at least 10 um", "frequency.platform.1": "at least 5 kHz"}
+    page = report(analyse(_required(stage, changed)))
+    first = page[page.index("<h2>") : page.index("</h2>")]
+    assert first == "<h2>Requirements"
+    assert "1 of 2 requirements are met. Not met: frequency.platform.1." in page
+    assert page.index('<td class="strong">frequency.platform.1') < page.index('<td class="strong">stroke.x')
+
+
+def _required(stage: Mechanism, requirements: dict[str, str]) -> Mechanism:
+    from dataclasses import replace
+
+    return replace(stage, requirements=requirements)

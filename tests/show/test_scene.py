@@ -1,0 +1,183 @@
+"""The scene: depth order against ray casting, areas kept by cuts, hidden pieces hidden, motions rigid."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from flexstage.base.number import Array
+from flexstage.cases.double_triangle import SM_REF_A, double_triangle
+from flexstage.show.plan import plan_figure
+from flexstage.show.scene.facet import Facet, Kind, Paint, extruded, loft, rectangle
+from flexstage.show.scene.hidden import visible
+from flexstage.show.scene.inner import outer
+from flexstage.show.scene.order import farthest_first, partition
+from flexstage.show.scene.stage import displaced, largest_motion, scene
+from flexstage.show.scene.view import Side, ordered, unsplit, view
+from flexstage.spatial.rotation import exponential
+from tests.show.stages import NAMES, analysed
+
+UNIT = st.floats(-1.0, 1.0, allow_nan=False)
+VECTOR = st.tuples(UNIT, UNIT, UNIT).map(np.array)
+SIZES = st.tuples(*[st.floats(0.1, 0.6)] * 3)
+
+
+def box(centre: Array, size: tuple[float, float, float], turn: Array, name: str) -> list[Facet]:
+    rings = extruded(0.5 * size[0] * np.array([-1.0, 1.0]), [rectangle(size[1], size[2])] * 2)
+    return loft(rings @ exponential(turn).T + centre, Paint(Kind.BODY, (name, name), name))
+
+
+BOXES = st.lists(st.tuples(VECTOR, SIZES, VECTOR), min_size=1, max_size=5).map(
+    lambda items: [facet for number, item in enumerate(items) for facet in box(*item, str(number))]
+)
+
+
+def area(facet: Facet) -> float:
+    arms = facet.points - facet.points[0]
+    return 0.5 * float(np.linalg.norm(np.cross(arms[1:-1], arms[2:]).sum(axis=0)))
+
+
+def covers(facet: Facet, eye: Array, ray: Array) -> bool:
+    """Whether the line through `ray` along `eye` meets the inside of a facet, away from its edges."""
+    after = np.roll(facet.points, -1, axis=0)
+    sides = np.array([np.cross(b - a, ray - a) @ eye for a, b in zip(facet.points, after, strict=True)])
+    return bool(np.all(sides > 1e-6) or np.all(sides < -1e-6))
+
+
+def depth(facet: Facet, eye: Array, ray: Array) -> float:
+    return float((facet.points[0] - ray) @ facet.normal / (eye @ facet.normal))
+
+
+@settings(max_examples=60)
+@given(BOXES, VECTOR.filter(lambda eye: np.linalg.norm(eye) > 0.1), VECTOR)
+def test_depth_order_agrees_with_ray_casting(facets: list[Facet], eye: Array, ray: Array) -> None:
+    eye = eye / np.linalg.norm(eye)
+    pieces = list(farthest_first(partition(facets, 2.0), eye))
+    met = [piece for piece in pieces if abs(piece.normal @ eye) > 1e-3 and covers(piece, eye, ray)]
+    depths = [depth(piece, eye, ray) for piece in met]
+    assert all(later >= earlier - 1e-6 for earlier, later in pairwise(depths))
+
+
+@settings(max_examples=60)
+@given(BOXES)
+def test_cuts_keep_areas(facets: list[Facet]) -> None:
+    pieces = list(farthest_first(partition(facets, 2.0), np.array([0.0, 0.0, 1.0])))
+    for facet in facets:
+        own = [area(piece) for piece in pieces if piece is facet or piece.whole is facet]
+        assert sum(own) == pytest.approx(area(facet), rel=1e-9)
+
+
+@settings(max_examples=60)
+@given(BOXES)
+def test_solids_are_closed_and_face_outward(facets: list[Facet]) -> None:
+    for name in {facet.paint.name for facet in facets}:
+        own = [facet for facet in facets if facet.paint.name == name]
+        total = sum(area(facet) * facet.normal for facet in own)
+        assert np.linalg.norm(total) < 1e-9
+        volume = sum(area(facet) * float(facet.normal @ facet.points[0]) for facet in own) / 3.0
+        assert volume > 0.0
+
+
+def painted(polygons: list[Array], shown: list[bool]) -> Array:
+    """Index of the last polygon drawn at points of a raster that lies between that of `visible`."""
+    x, y = np.meshgrid(np.linspace(-0.93, 0.91, 71), np.linspace(-0.92, 0.94, 73))
+    result = np.full(x.shape, -1)
+    for index, polygon in enumerate(polygons):
+        if shown[index]:
+            inside = np.ones(x.shape, dtype=bool)
+            for a, b in zip(polygon, np.roll(polygon, -1, axis=0), strict=True):
+                inside &= (b[0] - a[0]) * (y - a[1]) - (b[1] - a[1]) * (x - a[0]) >= 0.0
+            result[inside] = index
+    return result
+
+
+def _box(name: str, low: tuple[float, float, float], high: tuple[float, float, float]) -> list[Facet]:
+    corners = 0.5 * (np.array(low) + high) + extruded(np.array([-0.5, 0.5]), [rectangle(1.0, 1.0)] * 2) * (np.array(high) - low)
+    return loft(corners, Paint(Kind.PLATFORM, ("platform", "platform"), name))
+
+
+def test_faces_between_outlines_of_a_body_are_left_out() -> None:
+    """Of a plate with a smaller lug below and a strip along a part of its side, twice the two contacts; the skin stays closed."""
+    plate, lug = _box("plate", (0, 0, 0), (6, 4, 1)), _box("lug", (1, 1, -2), (3, 2, 0))
+    strip, apart = _box("strip", (2, 4, 0), (7, 5, 1)), _box("apart", (0, 0, 2), (6, 4, 3))  # the strip stands over the plate's end
+    everything = plate + lug + strip + apart
+    skin = outer(everything)
+    assert sum(map(area, everything)) - sum(map(area, skin)) == pytest.approx(2.0 * (2.0 * 1.0 + 4.0 * 1.0))
+    flux = sum(float((f.points[0] @ f.normal) * area(f)) for f in skin) / 3.0
+    assert flux == pytest.approx(6 * 4 * 1 + 2 * 1 * 2 + 5 * 1 * 1 + 6 * 4 * 1)
+    assert outer(plate + apart) == plate + apart
+
+
+@settings(max_examples=60)
+@given(st.lists(st.tuples(UNIT, UNIT, st.floats(0.05, 0.8), st.floats(0.05, 0.8)), min_size=1, max_size=9))
+def test_hidden_pieces_do_not_show(items: list[tuple[float, float, float, float]]) -> None:
+    polygons = [np.array([x, y]) + rectangle(width, height) for x, y, width, height in items]
+    shown = visible(polygons, [True] * len(polygons))
+    whole, less = painted(polygons, [True] * len(polygons)), painted(polygons, shown)
+    # The raster decides within its pitch: what it drops may show by less than that, at an edge.
+    assert np.mean(whole != less) < 0.01
+
+
+def test_translucent_pieces_are_made_whole_only_where_nothing_stands_before_them() -> None:
+    plate = loft(np.array([0.0, 0.1])[:, None, None] * [0.0, 0.0, 1.0] + _square(1.0), Paint(Kind.PLATFORM, ("p", "p"), "p"))
+    below = loft(np.array([-1.0, -0.5])[:, None, None] * [0.0, 0.0, 1.0] + _square(0.2), Paint(Kind.BODY, ("b", "b"), "b"))
+    above = loft(np.array([0.5, 0.6])[:, None, None] * [0.0, 0.0, 1.0] + _square(0.2), Paint(Kind.BODY, ("a", "a"), "a"))
+    seen = view(Side.TOP)
+    for solids, last in ((below, "p"), (above, "a")):
+        order = farthest_first(partition([*plate, *solids], 2.0), seen.axes[2])
+        facing = [facet for facet in order if facet.normal[2] > 0.5]
+        assert unsplit(facing, seen)[-1].paint.name == last
+
+
+def _square(size: float) -> Array:
+    return np.column_stack([rectangle(size, size), np.zeros(4)])
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_stage_moved_as_one_keeps_its_shape(name: str) -> None:
+    still = scene(analysed(name).mechanism)
+    turn = np.array([0.2, -0.1, 0.3])
+    twists = {body: np.concatenate([np.cross(turn, reference), turn]) for body, reference in still.references.items()}
+    moving = [facet for facet in still.facets if set(facet.paint.carriers) <= set(twists)]
+    moved = displaced(moving, still, twists, 1e-3)
+    for before, after in zip(moving, moved, strict=True):
+        assert np.allclose(after.points - before.points, 1e-3 * np.cross(turn, before.points), atol=1e-15)
+    assert largest_motion(still, twists) > 0.0
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_every_link_body_and_gauge_is_seen(name: str) -> None:
+    from flexstage.mechanism.expand import expand
+
+    mechanism = analysed(name).mechanism
+    assembly = expand(mechanism)
+    names = {facet.paint.name for facet in scene(mechanism).facets}
+    assert set(assembly.links) <= names
+    assert set(assembly.gauges) <= names
+    assert {address for placed in assembly.bodies.values() for address in placed.solids} <= names
+    assert {label.text for label in scene(mechanism).labels} == {*assembly.actuators, *assembly.gauges}
+
+
+def test_massless_bodies_are_bars_between_their_joints() -> None:
+    names = {facet.paint.name for facet in scene(double_triangle(SM_REF_A)).facets if facet.paint.kind is Kind.BODY}
+    assert "B4/lever" in names
+    assert "B4/pole" in names
+
+
+@pytest.mark.parametrize("side", Side)
+def test_only_facets_that_face_the_viewer_are_drawn(side: Side) -> None:
+    seen = view(side)
+    assert np.allclose(seen.axes @ seen.axes.T, np.eye(3))
+    facets = ordered(scene(double_triangle()), seen)
+    assert facets
+    assert all(len(facet.points) == 2 or facet.normal @ seen.axes[2] > 0.0 for facet in facets)
+
+
+def test_the_plan_carries_its_dimensions() -> None:
+    mechanism = double_triangle()
+    texts = {text.get_text() for axes in plan_figure(mechanism, scene(mechanism)).axes for text in axes.texts}
+    assert {"R 85", "R 120", "R 130", "340.64", "90°", "−90°", "envelope 380 × 380", "clear opening 110 × 110", "B1", "S6"} <= texts

@@ -1,0 +1,178 @@
+"""Tables: every result has one, batches say so, and renderers agree."""
+
+from __future__ import annotations
+
+from dataclasses import fields
+
+import numpy as np
+import pytest
+
+from flexstage.analysis.complete import Analysis, Reading
+from flexstage.analysis.lost_motion import lost_motion
+from flexstage.analysis.modes import modes
+from flexstage.analysis.stability import Stability
+from flexstage.analysis.statics import statics
+from flexstage.analysis.workspace.buckling import Buckling, Ends
+from flexstage.analysis.workspace.workspace import Workspace
+from flexstage.cases.double_triangle import double_triangle
+from flexstage.cases.registry import case
+from flexstage.mechanism.address import set_value
+from flexstage.models.ideal import ideal
+from flexstage.models.lumped import lumped
+from flexstage.show.page import Abreast, Folded
+from flexstage.show.render import to_html, to_markdown, to_rich, to_text
+from flexstage.show.table import Mark, Table
+from flexstage.show.tables.description import value_tables
+from flexstage.show.tables.lost_motion import budget_table, loss_table
+from flexstage.show.tables.modes import mode_table
+from flexstage.show.tables.statics import principal_table, stiffness_table
+from flexstage.show.tables.strength import buckling_table
+from flexstage.show.tables.workspace import map_error_table, room_table
+from flexstage.spatial.frame import COMPONENTS
+from tests.show.stages import HOSTILE, NAMES, analysed, hostile, reported
+
+TITLES = {
+    "kinematics": "Actuator mapping R_a",
+    "statics": "Stiffness at platform",
+    "deflection": "Dead load, platform",
+    "units": "Units alone",
+    "lost_motion": "Lost motion",
+    "modes": "Modes",
+    "response": "Frequency responses",
+    "transmissibility": "ground.z",
+    "workspace": "Single-axis strokes",
+    "buckling": "Buckling",
+    "drift": "Thermal drift",
+    "error_budget": "Error budget, ideal mapping commanded",
+    "verdicts": "Requirements",
+}
+REACH = {
+    "command": "all at once",
+    "limits": "limited by",
+    "single": "Single-axis strokes",
+    "corrected": "corrected, both ways",
+    "corner": "Simultaneous strokes",
+    "polytope": "Reachable extents",
+    "drive": "Drive",
+    "map_error": "Error of the linear map",
+    "gauges": "Gauge ranges",
+    "resolution": "Pose resolution of the gauges",
+    "room": "Room",
+    "platform_lines": "Forces of the platform",
+    "stack_lines": "Stacks against the stage",
+    "stress": "Stress in the hinges",
+    "buckling": "Buckling",
+    "loads": "Axial forces of the stacks",
+}
+NOT_SHOWN = {"mechanism", "reading", "model", "missing"}
+
+
+def test_every_result_is_presented() -> None:
+    """A result that is added to the analysis fails here until the report shows it."""
+    assert {field.name for field in fields(Analysis)} - NOT_SHOWN == set(TITLES)
+    assert {field.name for field in fields(Workspace)} - NOT_SHOWN == set(REACH)
+    page = reported("double-triangle")
+    assert [title for title in (*TITLES.values(), *REACH.values()) if title not in page] == []
+
+
+def test_a_batch_shows_its_first_design_and_says_so() -> None:
+    stage = set_value(double_triangle(), "lever_notch.thickness", np.array([1.0e-3, 1.2e-3]))
+    kinematics, model = ideal(stage), lumped(stage)
+    single = lumped(double_triangle())
+    for batch, one in (
+        (stiffness_table(statics(model)), stiffness_table(statics(single))),
+        (mode_table(modes(model)), mode_table(modes(single))),
+    ):
+        # Of the modes those of the platform: repeated local ones may be told apart otherwise.
+        assert batch.texts()[:7] == one.texts()[:7]
+        assert any("first of 2 designs" in note for note in batch.notes)
+    alone = lost_motion(ideal(double_triangle()), single)
+    assert loss_table(lost_motion(kinematics, model)).texts() == loss_table(alone).texts()
+    assert principal_table(statics(model)).texts() == principal_table(statics(single)).texts()
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_budgets_add_up_in_print(name: str) -> None:
+    lost = analysed(name).lost_motion
+    if lost is None:
+        return
+    table = budget_table(lost)
+    for column, actuator in enumerate(lost.loss.rows, start=1):
+        shares = [float(row[column].text.rstrip(" %") or 0.0) for row in table.rows]
+        assert abs(sum(shares[:-1]) - shares[-1]) <= 2e-3 * max(1.0, abs(shares[-1])) * len(shares), actuator
+
+
+def test_every_value_of_a_description_is_listed_once() -> None:
+    stage = double_triangle()
+    names = [row[0].text for table in value_tables(stage) for row in table.rows]
+    assert len(names) == len(set(names))
+    listed = {row[0].text: row for table in value_tables(stage) for row in table.rows}
+    assert [cell.text for cell in listed["neck.thickness"]] == ["neck.thickness", "1.54", "mm", "stated", "paper 2.2"]
+    assert listed["steel.young"][3].text == "assumed"
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_renderers_show_the_same_cells(name: str) -> None:
+    loss = analysed(name).modes
+    if loss is None:
+        return
+    table = mode_table(loss)
+    text, markdown = to_text(table), to_markdown(table)
+    for row in table.rows:
+        for cell in row:
+            assert cell.text in text
+            assert cell.text.replace("_", "\\_") in markdown
+    assert to_rich(table).row_count == len(table.rows)
+
+
+def test_html_escapes_what_users_write() -> None:
+    shown = "".join(to_html(table) for table in value_tables(hostile()))
+    assert HOSTILE not in shown
+    assert "<script" not in shown
+    assert "&lt;script&gt;" in shown
+
+
+def test_ideal_reading_has_no_elastic_tables() -> None:
+    page = reported("double-triangle", Reading.IDEAL)
+    assert "Stiffness at platform" not in page
+    assert "the ideal reading has no elasticity" in page
+
+
+def test_groups_hold_tables() -> None:
+    # A page's blocks nest; tables in them must not be lost on the way.
+    from flexstage.show.page import Head, Section, page
+
+    table = Table("inner", (), ())
+    nested = Folded("outer", (Abreast((Abreast((table,)),)),))
+    assert "inner" in page(Head("t", "k", ()), [Section("s", (nested,))])
+
+
+@pytest.mark.parametrize(("name", "moved"), [("parallelogram", ["y"]), ("bridge", ["y"]), ("tip-tilt", [*COMPONENTS])])
+def test_rounding_noise_of_the_linear_map_is_shown_as_nothing(name: str, moved: list[str]) -> None:
+    """A planar stage errs in its plane; what finite kinematics leave of the other axes is rounding, 1e-21 m and less."""
+    found = analysed(name).workspace.map_error
+    rows = {row[0]: row[1:] for row in map_error_table(found).texts()[1:]}
+    assert [axis for axis in rows if rows[axis] != ["0", ""]] == moved
+    note = "0 stands for rounding noise"
+    assert any(note in text for text in map_error_table(found).notes) == (len(moved) < 6)
+
+
+def test_only_a_stated_opening_is_spoken_of() -> None:
+    for name in ("double-triangle", "parallelogram"):
+        reach = analysed(name).workspace
+        stated = case(name).opening is not None
+        assert any("clear opening" in note for note in room_table(reach.room).notes) == stated
+    assert {case(name).opening is None for name in ("double-triangle", "parallelogram")} == {True, False}
+
+
+STANDING = Stability(np.array(9.0), np.array(9.0), np.zeros(0), np.array(9.0), (), "")
+
+
+@pytest.mark.parametrize(
+    ("factor", "mark"),
+    [(0.999, Mark.FAIL), (np.nan, Mark.FAIL), (1.0, Mark.WARN), (1.499, Mark.WARN), (1.5, Mark.PLAIN), (20.0, Mark.PLAIN)],
+)
+def test_what_would_yield_is_marked_and_what_nearly_would(factor: float, mark: Mark) -> None:
+    """Below 1 a hinge yields and a column buckles; below 1.5 there is no margin to speak of."""
+    column = Buckling(("B1/rod",), np.array([factor * 100.0]), np.array([100.0]), np.array([0.01]), (Ends.GUIDED,), "", STANDING)
+    assert buckling_table(column).rows[-1][-1].mark is mark
