@@ -78,7 +78,7 @@ def test_what_does_not_meet_is_warned_of_in_step_and_refused_in_a_mesh(flexstage
 def test_bad_outputs_are_found_before_anything_is_drawn(
     flexstage: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, arguments: tuple[str, ...], said: str
 ) -> None:
-    monkeypatch.setattr("flexstage.apps.cli.exchange.stage_findings", lambda *_: pytest.fail("drawn all the same"))
+    monkeypatch.setattr("flexstage.solid.commands.exchange.stage_findings", lambda *_: pytest.fail("drawn all the same"))
     before = (tmp_path / "stage.toml").read_bytes()
     ended = flexstage("cad", "stage.toml", *arguments)
     assert ended.code == 2

@@ -1,7 +1,7 @@
 """The command line: `flexstage ...`. Translates requests; no physics. Nothing heavy is loaded before a command is called.
 
-`commands` is the table of all commands. Their modules take what they share from `present.command`, and know neither one another nor the
-table.
+`commands` is the table of all commands. Those of the wings stand in their wings. A command's module takes what commands share from
+`show.command`, and knows neither another command nor the table.
 """
 
 from __future__ import annotations
@@ -38,11 +38,11 @@ def run(arguments: Sequence[str]) -> int:
 
 def _run(arguments: list[str]) -> None:
     try:
-        from flexstage.apps.cli.commands import application  # where typer itself is missing, the doctor still runs
+        from flexstage.apps.cli.commands import MODELS, application  # where typer itself is missing, the doctor still runs
     except ModuleNotFoundError as error:
         if arguments[:1] != ["doctor"] or (error.name or "").startswith("flexstage"):
             raise
         from flexstage.apps.cli.installation import consult
 
         sys.exit(consult(mending="--mend" in arguments))
-    application()(arguments, prog_name="flexstage")
+    application()(arguments, prog_name="flexstage", obj=MODELS)

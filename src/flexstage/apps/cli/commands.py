@@ -11,6 +11,8 @@ import typer
 from typer.core import TyperCommand, TyperGroup
 from typer.main import get_command
 
+from flexstage.show.command.models import Models
+
 
 class Command(NamedTuple):
     """A command: its `name`, the `group` it stands in, one line of `help`, its function or `Typer` as module:name, and an `example`.
@@ -40,6 +42,10 @@ _DESCRIBE, _ANALYSE, _PROVE, _TEST, _CONTROL, _IMPROVE, _INSTALLATION = (
     "Installation",
 )
 _CLI = "flexstage.apps.cli"
+_SOLID = "flexstage.solid.commands"
+_EXPERIMENT = "flexstage.experiment.commands"
+_CONTROLLED = "flexstage.control.commands"
+_STUDIES = "flexstage.studies.commands"
 
 # fmt: off
 COMMANDS: tuple[Command, ...] = (
@@ -53,9 +59,9 @@ COMMANDS: tuple[Command, ...] = (
             "flexstage plan stage.toml -o plan.svg"),
     Command("catalogue", _DESCRIBE, "List the shipped materials, piezo stacks and gauges.", f"{_CLI}.describe:catalogue",
             "flexstage catalogue stacks"),
-    Command("import", _DESCRIBE, "State a STEP file as an outline.", f"{_CLI}.exchange:state",
+    Command("import", _DESCRIBE, "State a STEP file as an outline.", f"{_SOLID}.exchange:state",
             "flexstage import part.step stage.toml --material steel"),
-    Command("cad", _DESCRIBE, "Write a stage as solids.", f"{_CLI}.exchange:cad",
+    Command("cad", _DESCRIBE, "Write a stage as solids.", f"{_SOLID}.exchange:cad",
             "flexstage cad stage.toml -o stage.step"),
     Command("analyse", _ANALYSE, "Analyse a stage: everything at once.", f"{_CLI}.analyse:analyse",
             "flexstage analyse stage.toml --report report.html --set horizontal/front.thickness=1.4mm"),
@@ -77,29 +83,29 @@ COMMANDS: tuple[Command, ...] = (
             "flexstage sensitivities stage.toml --parameter parts.neck.thickness"),
     Command("budget", _ANALYSE, "Error budget in nm and nrad, one line an axis.", f"{_CLI}.accuracy:budget",
             "flexstage budget stage.toml --command z=150um --temperature 0.1K"),
-    Command("solid", _PROVE, "Read a stage as elastic solids, by finite elements.", f"{_CLI}.solid:solid",
+    Command("solid", _PROVE, "Read a stage as elastic solids, by finite elements.", f"{_SOLID}.solid:solid",
             "flexstage solid stage.toml --what unit --report units.html"),
-    Command("verify", _PROVE, "Compare theory with finite elements: which to trust?", f"{_CLI}.solid:verify",
+    Command("verify", _PROVE, "Compare theory with finite elements: which to trust?", f"{_SOLID}.solid:verify",
             "flexstage verify stage.toml --report verified.html"),
-    Command("calibrate", _PROVE, "Give hinges their 6x6 from finite elements.", f"{_CLI}.solid:calibrate",
+    Command("calibrate", _PROVE, "Give hinges their 6x6 from finite elements.", f"{_SOLID}.solid:calibrate",
             "flexstage calibrate stage.toml -o stage-calibrated.toml"),
-    Command("rig", _TEST, "Test a stage on a virtual rig; write the record.", f"{_CLI}.rig:rig",
+    Command("rig", _TEST, "Test a stage on a virtual rig; write the record.", f"{_EXPERIMENT}.rig:rig",
             "flexstage rig stage.toml --seconds 10 --noise 1um --drift 5nm -o record.uff"),
-    Command("identify", _TEST, "Find the modes in records of a test.", f"{_CLI}.identify:identify",
+    Command("identify", _TEST, "Find the modes in records of a test.", f"{_EXPERIMENT}.identify:identify",
             "flexstage identify record.uff --stage stage.toml --report modes.html"),
-    Command("compare", _TEST, "Theory, FEA and experiment side by side.", f"{_CLI}.compare:compare",
+    Command("compare", _TEST, "Theory, FEA and experiment side by side.", f"{_EXPERIMENT}.compare:compare",
             "flexstage compare stage.toml --record record.uff --report compared.html"),
-    Command("update", _TEST, "Bring a stage's numbers to agree with a test.", f"{_CLI}.update:update",
+    Command("update", _TEST, "Bring a stage's numbers to agree with a test.", f"{_EXPERIMENT}.update:update",
             'flexstage update stage.toml --record record.uff --free "neck.thickness, steel.density" -o updated.toml'),
-    Command("hysteresis", _TEST, "Identify the hysteresis of a stack.", f"{_CLI}.hysteresis:hysteresis",
+    Command("hysteresis", _TEST, "Identify the hysteresis of a stack.", f"{_CONTROLLED}.hysteresis:hysteresis",
             'flexstage hysteresis stack.csv --limits "0 V" "1000 V" -o stack.toml'),
-    Command("loop", _CONTROL, "Close the control loop of a stage.", f"{_CLI}.loop:loop",
+    Command("loop", _CONTROL, "Close the control loop of a stage.", f"{_CONTROLLED}.loop:loop",
             "flexstage loop stage.toml --floor VC-D --report loop.html"),
-    Command("sweep", _IMPROVE, "Compute many designs; show what varies with what.", f"{_CLI}.sweep:sweep",
+    Command("sweep", _IMPROVE, "Compute many designs; show what varies with what.", f"{_STUDIES}.sweep:sweep",
             "flexstage sweep study.toml -o results.h5 --report sweep.html"),
-    Command("optimise", _IMPROVE, "Find the best design within ranges and limits.", f"{_CLI}.optimise:optimise",
+    Command("optimise", _IMPROVE, "Find the best design within ranges and limits.", f"{_STUDIES}.optimise:optimise",
             "flexstage optimise study.toml -o better.toml --report optimum.html"),
-    Command("tolerance", _IMPROVE, "Scatter dimensions and materials: yield, allowances.", f"{_CLI}.tolerance:tolerance",
+    Command("tolerance", _IMPROVE, "Scatter dimensions and materials: yield, allowances.", f"{_STUDIES}.tolerance:tolerance",
             "flexstage tolerance study.toml --report tolerance.html"),
     Command("doctor", _INSTALLATION, "Examine the installation and mend it.", f"{_CLI}.about:doctor",
             "flexstage doctor --mend"),
@@ -107,6 +113,9 @@ COMMANDS: tuple[Command, ...] = (
             "flexstage version"),
 )
 # fmt: on
+
+MODELS = Models({"solid": f"{_SOLID}.modes:fea_modes"})
+"""Models that commands of other wings may ask for."""
 
 
 class LazyCommand(TyperCommand):

@@ -9,8 +9,7 @@ import typer
 
 from flexstage.analysis.complete import platform_modes
 from flexstage.experiment import comparison
-from flexstage.experiment.document import compare_body
-from flexstage.experiment.record_options import (
+from flexstage.experiment.commands.records import (
     Allow,
     Band,
     Inputs,
@@ -24,24 +23,20 @@ from flexstage.experiment.record_options import (
     identify_records,
     shapes_on,
 )
+from flexstage.experiment.document import compare_body
 from flexstage.experiment.report import compare_report
 from flexstage.experiment.sections import compare_tables
-from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.theory import Reading
 from flexstage.show.command.answer import answer
 from flexstage.show.command.design import elastic_model, open_design
+from flexstage.show.command.models import Models
 from flexstage.show.command.options import Changes, Design, Json, Report, Theory, text_option
 from flexstage.show.command.output import require_writable, save
-from flexstage.show.command.progress import progress_bar
-from flexstage.show.command.terminal import tell, warn
-from flexstage.solid.fea.cache import Cache
-from flexstage.solid.fea.parts import Ways
-from flexstage.solid.modes import FeaModes, fea_modes, kept_fea_modes
-from flexstage.solid.read import solids
-from flexstage.solid.resolution import DEFAULT
+from flexstage.show.command.terminal import warn
 
 
 def compare(  # noqa: PLR0913 (its options)
+    context: typer.Context,
     design: Design,
     *,
     record: Annotated[list[Path], text_option("--record", "RECORD", "File of the test. May be given several times.")],
@@ -72,21 +67,12 @@ def compare(  # noqa: PLR0913 (its options)
     model = elastic_model(mechanism, reading)
     highest = float(platform_modes(mechanism, model).platform_frequencies[-1])
     seen = identify_records(record, texts, model, highest)
-    found = comparison.compare(mechanism, seen.found, _fea(mechanism, computing=fea), reading=reading)
+    models: Models = context.obj
+    solid = models.modes("solid")(mechanism, computing=fea)
+    found = comparison.compare(mechanism, seen.found, solid, reading=reading)
     for caution in found.warnings[len(seen.found.warnings) :]:
         warn(caution)
     if report is not None:
         save(report, compare_report(found, seen, mechanism, shapes_on(mechanism, seen)), "--report")
     tables = compare_tables(found)[:-1]
     answer("compare", mechanism, lambda: compare_body(found), lambda: tables, reading=reading, json=json, beside=(report,))
-
-
-def _fea(mechanism: Mechanism, *, computing: bool) -> FeaModes | None:
-    """FEA from the cache, or computed if asked for; where there is none it is said how to get it."""
-    if computing:
-        with progress_bar() as shown:
-            return fea_modes(mechanism, DEFAULT, solids(Ways(Cache(), shown.step), lambda finding: warn(str(finding))))
-    found = kept_fea_modes(mechanism, Cache())
-    if found is None:
-        tell("not given: FEA: the cache does not hold this stage; --fea computes it")
-    return found

@@ -8,9 +8,7 @@ from typing import Annotated, TypeAlias
 
 import typer
 
-from flexstage.experiment.document import identify_body
-from flexstage.experiment.pipeline import Identification
-from flexstage.experiment.record_options import (
+from flexstage.experiment.commands.records import (
     Allow,
     Band,
     Inputs,
@@ -24,6 +22,8 @@ from flexstage.experiment.record_options import (
     identify_records,
     shapes_on,
 )
+from flexstage.experiment.document import identify_body
+from flexstage.experiment.pipeline import Identification
 from flexstage.experiment.report import identify_report
 from flexstage.experiment.tables import identified_table, measured_shape_table, peak_table, recorded_table
 from flexstage.models.theory import Reading

@@ -1,0 +1,1 @@
+"""Commands of the control wing, a module each."""
