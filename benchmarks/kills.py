@@ -3,7 +3,7 @@
     python benchmarks/kills.py --count 300 [--seed 1] [--start 0] [--only sweep,plan]
 
 Each kill follows from seed and number. Commands run in copies of this process, which has loaded everything, so that the moments fall into
-their work. A target is absent, as it was, or what an undisturbed run writes; processes of the command end within seconds of it; after
+their work. A target is absent, as it was, or what an undisturbed run writes; processes of the command end soon after it; after
 the next run the folder holds its targets alone, the folder for temporary files nothing, and the cache nothing half-written.
 """
 
@@ -45,7 +45,10 @@ from flexstage.parts.rod import Rod
 
 MARK = "FLEXSTAGE_KILLS"
 OLD = b"as it was"
-PATIENCE = 20.0
+PATIENCE = 100.0
+"""How long processes of a killed command may live on [s]: they end once they have loaded, which takes a busy machine a while."""
+PROBE = b"blat"
+"""What Python writes to a file, and removes, to see whether the folder for temporary files can be written to."""
 STUDY = """format = "flexstage study 1"
 case = "parallelogram"
 variables.t = { of = "parts.leaf.thickness", from = "0.7 mm", to = "1.3 mm" }
@@ -215,7 +218,8 @@ def kill(scene: Scene, workshop: Path, made: dict[str, bytes], chance: random.Ra
     wrong += [f"{name} is not there after the next run" for name in made if not _sound(folder / name, None, made[name], there=True)]
     wrong += [f"{each.name} is left" for each in folder.iterdir() if each.name not in inputs and each.name not in made]
     wrong += [f"{each.relative_to(workshop)} is left" for each in (workshop / ("cold" if scene.cold else "cache")).rglob("*.part")]
-    return wrong + [f"temporary/{each.name} is left" for each in (folder / "temporary").iterdir()], killed
+    left_over = (each for each in (folder / "temporary").iterdir() if each.is_dir() or each.read_bytes() not in {b"", PROBE})
+    return wrong + [f"temporary/{each.name} is left" for each in left_over], killed
 
 
 def _sound(path: Path, before: bytes | None, made: bytes, *, there: bool = False) -> bool:
