@@ -5,8 +5,9 @@ from __future__ import annotations
 import re
 
 from flexstage.analysis.requirements import Subject
-from flexstage.mechanism.grammar import TAGS, ChoiceNode, ListNode, RecordNode, TableNode, UnionNode, node_of
+from flexstage.mechanism.grammar import TAGS, ListNode, RecordNode, TableNode, UnionNode, node_of
 from flexstage.mechanism.mechanism import Mechanism
+from flexstage.mechanism.node import ChoiceNode
 from tests.hygiene.source import ROOT, expect_none
 
 PAGE = (ROOT / "docs" / "design-file.md").read_text(encoding="utf-8")
@@ -18,12 +19,12 @@ def _words(node, seen):
     if isinstance(node, RecordNode) and node.record not in seen:
         seen.add(node.record)
         for slot in node.fields.values():
-            if not (isinstance(slot.node, UnionNode) and slot.node.key is None):
+            if not (isinstance(slot.node, UnionNode) and slot.node.told_by is None):
                 yield slot.key
             yield from _words(slot.node, seen)
     elif isinstance(node, UnionNode):
-        if node.key is not None:
-            yield node.key
+        if node.told_by is not None:
+            yield node.told_by
         for name, option in node.options:
             yield name
             yield from _words(option, seen)

@@ -11,7 +11,7 @@ from flexstage.base.finding import DesignError
 from flexstage.cases.double_triangle import SM_REF_B
 from flexstage.cases.parameters import parameters
 from flexstage.cases.registry import CASES, Variant
-from flexstage.mechanism.grammar import node_of, numbers
+from flexstage.mechanism.grammar import node_of
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.batch.engine import planned, platform_modes
 from flexstage.models.batch.numbers import drawn_family
@@ -36,7 +36,7 @@ NECK = 'a = { parameter = "neck.thickness", from = "1 mm", to = "2 mm" }\n'
 
 
 def values_of(mechanism):
-    return {address: value for address, value, _ in numbers(node_of(Mechanism), mechanism)}
+    return {address: value for address, value, _ in node_of(Mechanism).numbers(mechanism)}
 
 
 @pytest.mark.parametrize("name", CASES)

@@ -10,24 +10,11 @@ from hypothesis import strategies as st
 
 from flexstage.base.number import Table
 from flexstage.mechanism.address import addresses
-from flexstage.mechanism.grammar import (
-    RESERVED,
-    ChoiceNode,
-    DirectionNode,
-    FlagNode,
-    ListNode,
-    MatrixNode,
-    Node,
-    NumberNode,
-    RecordNode,
-    TableNode,
-    TextNode,
-    UnionNode,
-    VectorNode,
-    entry,
-)
+from flexstage.mechanism.grammar import RESERVED, ListNode, RecordNode, TableNode, UnionNode
 from flexstage.mechanism.locate import locate
 from flexstage.mechanism.mechanism import Link, Mechanism, Placement, Unit
+from flexstage.mechanism.node import ChoiceNode, DirectionNode, FlagNode, MatrixNode, Node, NumberNode, RowNode, TextNode, VectorNode
+from flexstage.spatial.frame import COMPONENTS
 
 TEXT = """# A stage of one wire.
 format = "flexstage 1"   # always
@@ -78,7 +65,7 @@ def values(node: Node) -> st.SearchStrategy[Any]:
     if isinstance(node, DirectionNode):
         return DIRECTIONS
     if isinstance(node, MatrixNode):
-        return st.tuples(*(st.tuples(*(values(entry(row, column)) for column in range(6))) for row in range(6)))
+        return st.tuples(*(st.tuples(*(values(RowNode(row).child(None, name)) for name in COMPONENTS)) for row in range(6)))
     if isinstance(node, (TextNode, FlagNode)):
         return TEXTS if isinstance(node, TextNode) else st.booleans()
     if isinstance(node, ChoiceNode):

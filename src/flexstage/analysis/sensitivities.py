@@ -19,9 +19,9 @@ from flexstage.base.finding import Finding, nearest, require
 from flexstage.base.labelled import Matrix
 from flexstage.base.number import Array, Table
 from flexstage.mechanism.address import addresses, get, quantity_of, set_value
-from flexstage.mechanism.grammar import NumberNode
 from flexstage.mechanism.locate import locate
 from flexstage.mechanism.mechanism import Mechanism
+from flexstage.mechanism.node import NumberNode
 from flexstage.models.ideal import ideal
 from flexstage.models.linear.eigen import Eigen, eigen
 from flexstage.models.linear.model import Contributions, LinearModel

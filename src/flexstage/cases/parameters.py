@@ -17,7 +17,8 @@ from flexstage.base.number import Array, freeze
 from flexstage.base.quantity import Quantity
 from flexstage.base.unit import parse, show
 from flexstage.mechanism.checks.value import number_findings
-from flexstage.mechanism.grammar import ChoiceNode, NumberNode, WholeNode, node_of, numbers
+from flexstage.mechanism.grammar import node_of
+from flexstage.mechanism.node import ChoiceNode, NumberNode, WholeNode
 from flexstage.mechanism.path import complete, replaced
 
 Stated: TypeAlias = str | float | Array
@@ -65,7 +66,7 @@ def parameters(of: Any) -> dict[str, Parameter]:
     >>> [*parameters(Parallelogram())][-5:]
     ['size.x', 'size.y', 'size.z', 'spacing', 'push_offset']
     """
-    found = {name: Parameter(name, node, value) for name, value, node in numbers(node_of(type(of)), of)}
+    found = {name: Parameter(name, node, value) for name, value, node in node_of(type(of)).numbers(of)}
     for name, slot in node_of(type(of)).fields.items():
         if isinstance(slot.node, (WholeNode, ChoiceNode)):
             found[name] = Parameter(name, slot.node, getattr(of, name))

@@ -18,14 +18,11 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import Any
 
-import numpy as np
-
 from flexstage.base.finding import DesignError, refuse
 from flexstage.base.number import Table, freeze
-from flexstage.base.quantity import DIRECTION, Quantity
-from flexstage.base.unit import parse
+from flexstage.base.quantity import Quantity
 from flexstage.mechanism.expand import departed
-from flexstage.mechanism.grammar import DIRECTIONS, ChoiceNode, DirectionNode, NumberNode, TextNode, VectorNode, node_of, numbers
+from flexstage.mechanism.grammar import node_of
 from flexstage.mechanism.locate import Place, canonical, locate
 from flexstage.mechanism.mechanism import Link, Mechanism
 from flexstage.mechanism.misalignment import misalignment_of
@@ -66,7 +63,7 @@ def set_value(mechanism: Mechanism, address: str, value: Any) -> Mechanism:
     0.04
     """
     place = locate(mechanism, address)
-    fitting = _fitting(place, value, address)
+    fitting = place.node.fit(freeze(value), address)
     changed = mechanism
     for path in _with_mirror(place.path):
         changed = _written(changed, replace(place, path=path), fitting)
@@ -86,14 +83,14 @@ def assign(mechanism: Mechanism, assignment: str) -> Mechanism:
     if not equals:
         raise refuse(f'"{assignment}"', "an assignment needs an equals sign", 'Write for example "parts.neck.thickness=1.4 mm"')
     place, where = locate(mechanism, address), address.strip()
-    if not isinstance(place.node, (NumberNode, TextNode, ChoiceNode, DirectionNode)):
+    if not place.node.single:
         raise _several(mechanism, place, where)
-    return set_value(mechanism, where, value_from_text(text.strip(), place, where))
+    return set_value(mechanism, where, place.node.parse(text.strip(), where))
 
 
 def _several(mechanism: Mechanism, place: Place, where: str) -> DesignError:
     """That an assignment to what holds several values says which it means."""
-    inner = [name for name, _, _ in numbers(place.node, get(mechanism, where), "")]
+    inner = [name for name, _, _ in place.node.numbers(get(mechanism, where))]
     if not inner:
         return refuse(where, "it holds no number that can be set", "Set it in the design file")
     shown = ", ".join(inner[:_MOST_NAMES]) + (" and more" if len(inner) > _MOST_NAMES else "")
@@ -109,10 +106,10 @@ def addresses(mechanism: Mechanism) -> tuple[str, ...]:
     >>> addresses(Mechanism("", parts={"wire": Rod("steel", 0.03, 0.001)}))[:2]
     ('parts.wire.length', 'parts.wire.diameter')
     """
-    found = [address for address, _, _ in numbers(node_of(Mechanism), mechanism)]
+    found = [address for address, _, _ in node_of(Mechanism).numbers(mechanism)]
     for key, value in mechanism.changes.items():
         place = locate(mechanism, key)
-        found += [address for address, _, _ in numbers(place.node, value, place.address)]
+        found += [address for address, _, _ in place.node.numbers(value, place.address)]
     return tuple(dict.fromkeys(found))
 
 
@@ -123,14 +120,10 @@ def quantity_of(mechanism: Mechanism, address: str) -> Quantity:
     >>> quantity_of(Mechanism("", parts={"wire": Rod("steel", 0.03, 0.001)}), "wire.length").shown
     'mm'
     """
-    node = locate(mechanism, address).node
-    if isinstance(node, NumberNode):
-        return node.quantity
-    if isinstance(node, VectorNode):
-        return node.items[0].quantity
-    if isinstance(node, DirectionNode):
-        return DIRECTION
-    raise refuse(address, "this is not a number", "Address one of its numbers")
+    quantity = locate(mechanism, address).node.measures
+    if quantity is None:
+        raise refuse(address, "this is not a number", "Address one of its numbers")
+    return quantity
 
 
 def tag_of(mechanism: Mechanism, address: str) -> str:
@@ -155,29 +148,6 @@ def provenance(mechanism: Mechanism) -> Mapping[str, str]:
     """
     tags = _canonical_tags(mechanism)
     return Table({address: _tag(tags, address) for address in addresses(mechanism)})
-
-
-def value_from_text(text: str, place: Place, where: str) -> Any:
-    """Return the value that a text (`1.4 mm`, `x`, `steel`) means at a place; raises `DesignError` at `where`.
-
-    >>> from flexstage.parts.rod import Rod
-    >>> value_from_text("2 mm", locate(Mechanism("", parts={"wire": Rod("steel", 0.03, 0.001)}), "wire.diameter"), "wire.diameter")
-    0.002
-    """
-    node = place.node
-    if isinstance(node, NumberNode):
-        return parse(text, node.quantity, where=where)
-    if isinstance(node, TextNode):
-        return text
-    if isinstance(node, DirectionNode) and text in DIRECTIONS:
-        return DIRECTIONS[text]
-    if isinstance(node, ChoiceNode) and text in [choice.value for choice in node.choices]:
-        return node.choices(text)
-    if isinstance(node, ChoiceNode):
-        raise refuse(where, f'found "{text}"', f"It is one of {', '.join(choice.value for choice in node.choices)}")
-    if isinstance(node, DirectionNode):
-        raise refuse(where, f'found "{text}"', f"Write one of {', '.join(DIRECTIONS)}, or set its components")
-    raise refuse(where, "it has several values", "Set one of them, for example its x")
 
 
 def _departed(mechanism: Mechanism, place: Place) -> tuple[Link, Part]:
@@ -222,22 +192,6 @@ def _made(mechanism: Mechanism, owner: str) -> Iterator[tuple[str, tuple[str, ..
         place = locate(mechanism, key)
         if place.owners[-1:] == (owner,):
             yield key, place.path
-
-
-def _fitting(place: Place, value: Any, where: str) -> Any:
-    """The value as it is kept; raises `DesignError` if it is of another kind than what stands at the place."""
-    value = freeze(value)
-    if isinstance(place.node, NumberNode):
-        if isinstance(value, bool) or not isinstance(value, (int, float, complex, np.ndarray)):
-            raise refuse(where, f"found {value!r} where a number is expected", "Give a number or an array in SI units")
-        return float(value) if isinstance(value, int) else value
-    if isinstance(place.node, (VectorNode, DirectionNode)):
-        if not isinstance(value, tuple) or (isinstance(place.node, VectorNode) and len(value) != len(place.node.items)):
-            raise refuse(where, f"found {value!r} where components are expected", "Give one number for each component")
-        return tuple(float(item) if isinstance(item, int) else item for item in value)
-    if isinstance(place.node, TextNode) and not isinstance(value, str):
-        raise refuse(where, f"found {value!r} where a name is expected", "Give a text")
-    return value
 
 
 def _canonical_tags(mechanism: Mechanism) -> dict[str, str]:

@@ -1,33 +1,48 @@
 """The grammar of descriptions: what each class holds, read from its annotations.
 
-One tree of nodes per class; the file (reading, writing, schema), the addresses and the checks of numbers all walk it, so that a field is
-written once, in its class. Names that tell alternatives apart in a file (`kind = "notch"`) stand here too.
+One tree of nodes per class. What a file, an address or a check does with a kind of node stands in the node's class (here those that hold
+others, in `node` those of one value), so that a field is written once, in its class. Names that tell alternatives apart in a file
+(`kind = "notch"`) stand here too.
 """
 
 from __future__ import annotations
 
 import dataclasses
 import functools
-import itertools
 import types
 import typing
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from enum import Enum
-from typing import Annotated, Any, TypeAlias
+from typing import Annotated, Any
 
+from flexstage.base.digest import digest
+from flexstage.base.finding import nearest, refuse
 from flexstage.base.number import Table
-from flexstage.base.quantity import (
-    COMPLIANCE,
-    COMPLIANCE_MATRIX,
-    COUPLING,
-    DIRECTION,
-    RATIO,
-    ROTATIONAL_COMPLIANCE,
-    Bound,
-    Quantity,
-)
+from flexstage.base.quantity import COMPLIANCE_MATRIX, DIRECTION, Bound, Quantity
 from flexstage.mechanism.mechanism import Mechanism, ModalDamping, RayleighDamping, StructuralDamping
+from flexstage.mechanism.node import (
+    BAD,
+    ChoiceNode,
+    Definitions,
+    DirectionNode,
+    FlagNode,
+    MatrixNode,
+    Node,
+    NumberNode,
+    Reader,
+    TextNode,
+    VectorNode,
+    Wanted,
+    WholeNode,
+    Writer,
+    every,
+    is_row,
+    join,
+    kind,
+    meaning,
+    whole_text,
+)
 from flexstage.mechanism.pattern import Polar, Pose
 from flexstage.parts.body import Block, Cylinder, Imported
 from flexstage.parts.given import Given, Joint
@@ -38,22 +53,11 @@ from flexstage.parts.part import Restricted
 from flexstage.parts.piezo import Piezo
 from flexstage.parts.profile import Circular, Elliptic, Filleted, Straight
 from flexstage.parts.rod import Rod
-from flexstage.spatial.frame import COMPONENTS
 
 TAGS = "tags"
 LIKE = "like"
 RESERVED = (TAGS, LIKE)
 """Keys that may stand in any table of a file and are no field."""
-
-DIRECTIONS: Mapping[str, tuple[float, float, float]] = {
-    "x": (1.0, 0.0, 0.0),
-    "-x": (-1.0, 0.0, 0.0),
-    "y": (0.0, 1.0, 0.0),
-    "-y": (0.0, -1.0, 0.0),
-    "z": (0.0, 0.0, 1.0),
-    "-z": (0.0, 0.0, -1.0),
-}
-"""Directions that have a name in a file."""
 
 _ALTERNATIVES: dict[type, tuple[str | None, str]] = {
     Notch: ("kind", "notch"),
@@ -80,86 +84,115 @@ _ALTERNATIVES: dict[type, tuple[str | None, str]] = {
 TOLD_BY = "TOLD_BY"
 """Class attribute of alternatives that do not stand above: the key that tells them apart, or None, and their name in a file."""
 
+_ALWAYS = ("gravity",)
+_TAGS_SCHEMA: dict[str, Any] = {
+    "type": "object",
+    "description": "Provenance by field: stated, derived or assumed, then a source and a place in it.",
+    "additionalProperties": {"type": "string", "pattern": r"^(stated|derived|assumed)( |$)", "examples": ["stated paper 2.2"]},
+}
 _FILE_KEYS = {(Mechanism, "changes"): "change", (Mechanism, "requirements"): "require"}
 
 
 @dataclass(frozen=True)
-class NumberNode:
-    """A number of a quantity, within a bound."""
-
-    quantity: Quantity
-    bound: Bound | None = None
-
-
-@dataclass(frozen=True)
-class VectorNode:
-    """Numbers by component: x, y, z."""
-
-    items: tuple[NumberNode, ...]
-
-
-@dataclass(frozen=True)
-class DirectionNode:
-    """Three components of a direction, of any length."""
-
-
-@dataclass(frozen=True)
-class MatrixNode:
-    """A 6x6 compliance."""
-
-
-@dataclass(frozen=True)
-class RowNode:
-    """A row of a 6x6 compliance."""
-
-    row: int
-
-
-@dataclass(frozen=True)
-class WholeNode:
-    """A whole number without unit."""
-
-
-@dataclass(frozen=True)
-class FlagNode:
-    """Whether something is so: true or false."""
-
-
-@dataclass(frozen=True)
-class TextNode:
-    """A text: a name or a remark."""
-
-
-@dataclass(frozen=True)
-class ChoiceNode:
-    """One of the values of an enumeration."""
-
-    choices: type[Enum]
-
-
-@dataclass(frozen=True)
-class ListNode:
+class ListNode(Node):
     """Texts, choices, numbers or tables in a row, `length` of them (None: any number)."""
 
     item: Node
     length: int | None
 
+    @property
+    def example(self) -> str:
+        """A text as it may stand in a file."""
+        return f"[{', '.join([self.item.example] * (self.length or 1))}]"
+
+    def read(self, raw: Any, where: str, reader: Reader) -> Any:
+        """The items."""
+        if not is_row(self, raw, self.length, where, reader):
+            return BAD
+        return every([reader.read(self.item, part, where) for part in raw])
+
+    def write(self, value: Any, where: str, writer: Writer) -> list[Any]:
+        """The items."""
+        return [writer.write(self.item, item, where) for item in value]
+
+    def schema(self, definitions: Definitions) -> dict[str, Any]:
+        """An array."""
+        length = {} if self.length is None else {"minItems": self.length, "maxItems": self.length}
+        return {"type": "array", "items": self.item.schema(definitions), **length}
+
+    def wanted(self, value: Any) -> Wanted:
+        """A tuple of fitting items."""
+        fits = isinstance(value, tuple) and self.length in (None, len(value)) and all(self.item.wanted(item) is None for item in value)
+        return None if fits else ("a row of values", "Give a tuple")
+
+    def members(self, value: Any) -> Iterator[tuple[str, Node, Any]]:
+        """Its items by number, from 1 on."""
+        return ((str(number), self.item, item) for number, item in enumerate(value, start=1))
+
 
 @dataclass(frozen=True)
-class TableNode:
+class TableNode(Node):
     """Values by name."""
 
     item: Node
 
+    def read(self, raw: Any, where: str, reader: Reader) -> Any:
+        """A table of the values."""
+        if not _is_table(raw, where, reader):
+            return BAD
+        items = {name: reader.read(self.item, part, join(where, name)) for name, part in _untagged(raw, where, reader).items()}
+        return BAD if BAD in items.values() else Table(items)
+
+    def write(self, value: Any, where: str, writer: Writer) -> dict[str, Any]:
+        """A table."""
+        if TAGS in value:
+            raise refuse(f"{where}.{TAGS}", f'no entry may be named "{TAGS}"', "Rename it")
+        return {whole_text(name, where): writer.write(self.item, item, f"{where}.{name}") for name, item in value.items()}
+
+    def schema(self, definitions: Definitions) -> dict[str, Any]:
+        """An object of any keys."""
+        return {"type": "object", "properties": {TAGS: _TAGS_SCHEMA}, "additionalProperties": self.item.schema(definitions)}
+
+    def wanted(self, value: Any) -> Wanted:
+        """A mapping by names."""
+        return _wanted_mapping(value)
+
+    def members(self, value: Any) -> Iterator[tuple[str, Node, Any]]:
+        """Its values."""
+        return ((name, self.item, item) for name, item in value.items())
+
+    def child(self, value: Any, name: str) -> Node:
+        """A value."""
+        del value, name
+        return self.item
+
 
 @dataclass(frozen=True)
-class ChangesNode:
+class ChangesNode(Node):
     """Departures by address; the address decides what the value is."""
 
+    def read(self, raw: Any, where: str, reader: Reader) -> Any:
+        """The table as it stands."""
+        return Table(raw) if _is_table(raw, where, reader) else BAD
+
+    def schema(self, definitions: Definitions) -> dict[str, Any]:
+        """An object of any values."""
+        del definitions
+        return {"type": "object", "description": "Departures by address: unit/link.field of all copies, copy/link.field of one."}
+
+    def wanted(self, value: Any) -> Wanted:
+        """A mapping by addresses."""
+        return _wanted_mapping(value)
+
 
 @dataclass(frozen=True)
-class RecordNode:
-    """A description class with its fields."""
+class RecordNode(Node):
+    """A description class with its fields.
+
+    >>> from flexstage.parts.rod import Rod
+    >>> [address for address, _, _ in RecordNode(Rod).numbers(Rod("steel", length=0.03, diameter=0.001), "parts.wire")]
+    ['parts.wire.length', 'parts.wire.diameter']
+    """
 
     record: type
 
@@ -168,35 +201,179 @@ class RecordNode:
         """The fields by name."""
         return _slots(self.record)
 
+    def read(self, raw: Any, where: str, reader: Reader) -> Any:
+        """The record, of what stands in the table, what its `like` brings along, and defaults."""
+        if not _is_table(raw, where, reader):
+            return BAD
+        known_like = self._like_is_known(raw, where, reader)
+        raw = _untagged(self._expanded(raw, reader) if known_like else _without_like(raw), where, reader)
+        values: dict[str, Any] = {}
+        used: set[str] = set()
+        for name, slot in self.fields.items():
+            key, inner = slot.alternative(raw, where, reader)
+            if key in raw:
+                used.add(key)
+                values[name] = reader.read(inner, raw[key], join(where, key))
+            elif slot.required and not known_like:
+                values[name] = BAD
+            elif slot.required:
+                advice = f"Write for example {slot.keys[0]} = {slot.node.example}"
+                values[name] = reader.refuse(where or "file", f"it has no {' or '.join(slot.keys)}", advice)
+            else:
+                values[name] = slot.default
+        known = [key for slot in self.fields.values() for key in slot.keys]
+        for key in [key for key in raw if key not in used]:
+            reader.refuse(join(where, key), "this key is not known here", nearest(key, set(known) - used or known))
+        return BAD if BAD in values.values() else self.record(**values)
+
+    def _like_is_known(self, raw: dict[str, Any], where: str, reader: Reader) -> bool:
+        """Whether what `like` names is in the catalogue, if anything is; what an unknown entry would have brought is not missed besides."""
+        section = reader.catalogue.section(self.record)
+        if section is None or LIKE not in raw:
+            return True
+        name = raw[LIKE]
+        known = isinstance(name, str) and name in section.entries
+        if not known:
+            reader.refuse(join(where, LIKE), f"the catalogue has no {kind(name)}", nearest(kind(name), section.entries))
+        return known
+
+    def _expanded(self, raw: dict[str, Any], reader: Reader) -> dict[str, Any]:
+        """The table with what its `like` brings along, overridden by what stands in it."""
+        section = reader.catalogue.section(self.record)
+        if section is None or LIKE not in raw:
+            return raw
+        name = raw[LIKE]
+        shipped = section.entries[name]
+        tags = {key: tag for key, tag in shipped.get(TAGS, {}).items() if key not in raw}
+        reader.sources.update(reader.catalogue.sources_of(tags.values()))
+        own = raw.get(TAGS, {})
+        merged = {"source": f"{name} of the catalogue"} | dict(shipped) | raw | {TAGS: tags | own if isinstance(own, dict) else own}
+        return _without_like(merged)
+
+    def write(self, value: Any, where: str, writer: Writer) -> dict[str, Any]:
+        """A table of the fields that are not at their defaults."""
+        return dict(self._written(value, where, writer))
+
+    def _written(self, record: Any, where: str, writer: Writer) -> Iterator[tuple[str, Any]]:
+        for name, slot in self.fields.items():
+            value = getattr(record, name)
+            default = name not in _ALWAYS and not slot.required and digest(value) == digest(slot.default)
+            if not default and name != TAGS and not isinstance(slot.node, ChangesNode):
+                yield self.key(record, name), writer.write(slot.node, value, join(where, name))
+
+    def schema(self, definitions: Definitions, key: str | None = None, name: str | None = None) -> dict[str, Any]:
+        """A reference to the definition of a class, told apart by `key = name`."""
+        title = self.record.__name__
+        if title not in definitions.known:
+            definitions.known[title] = {}
+            definitions.known[title] = self.definition(definitions, key, name)
+        return {"$ref": f"#/$defs/{title}"}
+
+    def definition(self, definitions: Definitions, key: str | None = None, name: str | None = None) -> dict[str, Any]:
+        """The schema of the class in full."""
+        properties: dict[str, Any] = {key: {"const": name}} if key else {}
+        required = [key] if key else []
+        wrapped: list[dict[str, Any]] = []
+        for slot in self.fields.values():
+            properties |= {key: node.schema(definitions) for key, node in slot.alternatives}
+            if slot.wrapped is not None:
+                wrapped += [{"required": [option]} for option in slot.keys]
+            elif slot.required:
+                required.append(slot.key)
+        section = definitions.catalogue.section(self.record)
+        demand: dict[str, Any] = {"required": required}
+        if section is not None:
+            properties |= {LIKE: {"enum": list(section.entries), "description": "the entry of the catalogue to start from"}}
+            demand = {"anyOf": [{"required": required}, {"required": [LIKE]}]}
+        demand |= {"oneOf": wrapped} if wrapped else {}
+        shape = {"type": "object", "description": meaning(self.record), "properties": properties | {TAGS: _TAGS_SCHEMA}}
+        return shape | demand | {"additionalProperties": False}
+
+    def wanted(self, value: Any) -> Wanted:
+        """An instance of the class itself."""
+        return _wanted_one_of(value, [self.record])
+
+    def members(self, value: Any) -> Iterator[tuple[str, Node, Any]]:
+        """Its fields, but for optional ones that are absent."""
+        for name, slot in self.fields.items():
+            item = getattr(value, name)
+            if item is not None or not slot.optional:
+                yield name, slot.node, item
+
+    def child(self, value: Any, name: str) -> Node:
+        """A field."""
+        del value
+        return self.fields[name].node
+
+    def key(self, value: Any, name: str) -> str:
+        """The field's key, or the name of its alternative where that stands in the file."""
+        slot = self.fields[name]
+        return slot.key if slot.wrapped is None else slot.wrapped.name_of(getattr(value, name))
+
+    def field_called(self, value: Any, key: str) -> str:
+        """The field that a file calls by the name of what it holds: `polar` for `pattern`."""
+        found = (name for name, slot in self.fields.items() if slot.wrapped is not None and self.key(value, name) == key)
+        return next(found, key)
+
 
 @dataclass(frozen=True)
-class UnionNode:
-    """One of several classes: told apart by the value of `key`, or, without key, by which name stands in the table."""
+class UnionNode(Node):
+    """One of several classes: told apart by the value of the key `told_by`, or, where that is None, by which name stands in the table."""
 
-    key: str | None
+    told_by: str | None
     options: tuple[tuple[str, RecordNode], ...]
 
     def name_of(self, value: Any) -> str:
         """The name of a value's alternative."""
         return next(name for name, option in self.options if option.record is type(value))
 
+    def option(self, value: Any) -> RecordNode:
+        """The node of a value's alternative."""
+        return dict(self.options)[self.name_of(value)]
 
-Node: TypeAlias = (
-    NumberNode
-    | VectorNode
-    | DirectionNode
-    | MatrixNode
-    | RowNode
-    | WholeNode
-    | FlagNode
-    | TextNode
-    | ChoiceNode
-    | ListNode
-    | TableNode
-    | ChangesNode
-    | RecordNode
-    | UnionNode
-)
+    @property
+    def example(self) -> str:
+        """A text as it may stand in a file."""
+        return f'{{ {self.told_by} = "{self.options[0][0]}", ... }}' if self.told_by else self.shown
+
+    def read(self, raw: Any, where: str, reader: Reader) -> Any:
+        """The record of the alternative that is named."""
+        if not _is_table(raw, where, reader):
+            return BAD
+        options = dict(self.options)
+        key = self.told_by or ""
+        entry = reader.catalogue.section(*(option.record for option in options.values()))
+        name = raw.get(key, entry.kind if entry and LIKE in raw else None)
+        if name is None:
+            return reader.refuse(where, f"it has no {key}", f"Write {key} = one of {', '.join(options)}")
+        if not isinstance(name, str) or name not in options:
+            return reader.refuse(join(where, key), f"found {kind(name)}", nearest(kind(name), options))
+        return options[name].read({item: value for item, value in raw.items() if item != key}, where, reader)
+
+    def write(self, value: Any, where: str, writer: Writer) -> dict[str, Any]:
+        """A table that says its alternative."""
+        inner = self.option(value).write(value, where, writer)
+        return {self.told_by: self.name_of(value)} | inner if self.told_by else inner
+
+    def schema(self, definitions: Definitions) -> dict[str, Any]:
+        """One of the definitions."""
+        return {"oneOf": [option.schema(definitions, self.told_by, name) for name, option in self.options]}
+
+    def wanted(self, value: Any) -> Wanted:
+        """An instance of one of the classes."""
+        return _wanted_one_of(value, [option.record for _, option in self.options])
+
+    def members(self, value: Any) -> Iterator[tuple[str, Node, Any]]:
+        """Those of the alternative."""
+        return self.option(value).members(value)
+
+    def child(self, value: Any, name: str) -> Node:
+        """That of the alternative."""
+        return self.option(value).child(value, name)
+
+    def key(self, value: Any, name: str) -> str:
+        """That of the alternative."""
+        return self.option(value).key(value, name)
 
 
 @dataclass(frozen=True)
@@ -212,6 +389,59 @@ class Slot:
     def required(self) -> bool:
         """Whether it must be given."""
         return self.default is dataclasses.MISSING
+
+    @property
+    def wrapped(self) -> UnionNode | None:
+        """Alternatives whose names stand in the place of the key."""
+        return self.node if isinstance(self.node, UnionNode) and self.node.told_by is None else None
+
+    @property
+    def alternatives(self) -> tuple[tuple[str, Node], ...]:
+        """Keys that it may stand under, and what stands there."""
+        return ((self.key, self.node),) if self.wrapped is None else self.wrapped.options
+
+    @property
+    def keys(self) -> list[str]:
+        """Keys that it may stand under."""
+        return [key for key, _ in self.alternatives]
+
+    def alternative(self, raw: dict[str, Any], where: str, reader: Reader) -> tuple[str, Node]:
+        """The key under which the field stands in a table, and its node there."""
+        present = [(key, node) for key, node in self.alternatives if key in raw]
+        if len(present) > 1:
+            reader.refuse(where, f"it has both {' and '.join(key for key, _ in present)}", "Leave one of them")
+        return present[0] if present else (self.key, self.node)
+
+
+def _is_table(raw: Any, where: str, reader: Reader) -> bool:
+    fits = isinstance(raw, dict)
+    if not fits:
+        reader.refuse(where, f"found {kind(raw)} where a table is expected", "Write a table: [name] or { key = value }")
+    return fits
+
+
+def _untagged(raw: dict[str, Any], where: str, reader: Reader) -> dict[str, Any]:
+    """The table without its tags, which are noted by address."""
+    tags = raw.get(TAGS, {})
+    if not isinstance(tags, dict) or not all(isinstance(tag, str) for tag in tags.values()):
+        reader.refuse(join(where, TAGS), "these are no tags", 'Write for example tags = { thickness = "stated paper 2.2" }')
+    else:
+        reader.tags.update({join(where, key): tag for key, tag in tags.items()})
+    return {key: value for key, value in raw.items() if key != TAGS}
+
+
+def _without_like(raw: dict[str, Any]) -> dict[str, Any]:
+    return {key: value for key, value in raw.items() if key != LIKE}
+
+
+def _wanted_mapping(value: Any) -> Wanted:
+    fits = isinstance(value, Mapping) and all(isinstance(name, str) for name in value)
+    return None if fits else ("a mapping by name", "Give a dict with names as keys")
+
+
+def _wanted_one_of(value: Any, records: list[type]) -> Wanted:
+    names = " or ".join(record.__name__ for record in records)
+    return None if type(value) in records else (names, f"Give a {names}")
 
 
 def node_of(record: type) -> RecordNode:
@@ -291,68 +521,3 @@ def _tuple(items: tuple[Any, ...]) -> VectorNode | ListNode:
     if numbers:
         return ListNode(numbers[0], None) if Ellipsis in items else VectorNode(numbers)
     return ListNode(_named(items[0]), None if Ellipsis in items else len(items))
-
-
-def entry(row: int, column: int) -> NumberNode:
-    """The quantity of an entry of a 6x6 compliance.
-
-    >>> entry(0, 5).quantity.name, entry(3, 3).quantity.name
-    ('coupling compliance', 'rotational compliance')
-    """
-    rotations = (row > 2) + (column > 2)
-    return NumberNode((COMPLIANCE, COUPLING, ROTATIONAL_COMPLIANCE)[rotations])
-
-
-def child(node: Node, value: Any, name: str) -> Node:
-    """The node of the member of that name of a value (see `path.member`); `value` decides between alternatives.
-
-    >>> from flexstage.parts.profile import Circular
-    >>> child(UnionNode("shape", (("circular", RecordNode(Circular)),)), Circular(0.001), "radius").quantity.name
-    'length'
-    """
-    if isinstance(node, UnionNode):
-        node = dict(node.options)[node.name_of(value)]
-    if isinstance(node, RecordNode):
-        return node.fields[name].node
-    if isinstance(node, TableNode):
-        return node.item
-    if isinstance(node, VectorNode):
-        return node.items[COMPONENTS.index(name)]
-    if isinstance(node, DirectionNode):
-        return NumberNode(RATIO)
-    if isinstance(node, MatrixNode):
-        return RowNode(COMPONENTS.index(name))
-    if isinstance(node, RowNode):
-        return entry(node.row, COMPONENTS.index(name))
-    raise KeyError(name)
-
-
-def numbers(node: Node, value: Any, where: str = "") -> Iterator[tuple[str, Any, NumberNode]]:
-    """Yield the address, value and node of every number of a description; directions, absent values and changes are left out.
-
-    >>> from flexstage.parts.rod import Rod
-    >>> [address for address, _, _ in numbers(node_of(Rod), Rod("steel", length=0.03, diameter=0.001), "parts.wire")]
-    ['parts.wire.length', 'parts.wire.diameter']
-    """
-    if value is None:
-        return
-    if isinstance(node, NumberNode):
-        yield where, value, node
-    for name, inner, item in _members(node, value):
-        yield from numbers(inner, item, f"{where}.{name}" if where else name)
-
-
-def _members(node: Node, value: Any) -> Iterator[tuple[str, Node, Any]]:
-    if isinstance(node, UnionNode):
-        node = dict(node.options)[node.name_of(value)]
-    if isinstance(node, RecordNode):
-        yield from ((name, slot.node, getattr(value, name)) for name, slot in node.fields.items())
-    elif isinstance(node, TableNode):
-        yield from ((name, node.item, item) for name, item in value.items())
-    elif isinstance(node, VectorNode):
-        yield from zip(COMPONENTS, node.items, value, strict=False)
-    elif isinstance(node, ListNode):
-        yield from ((str(number), node.item, item) for number, item in enumerate(value, start=1))
-    elif isinstance(node, MatrixNode):
-        for row, column in itertools.combinations_with_replacement(range(6), 2):
-            yield f"{COMPONENTS[row]}.{COMPONENTS[column]}", entry(row, column), value[row][column]

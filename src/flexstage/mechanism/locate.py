@@ -7,9 +7,10 @@ from typing import Any
 
 from flexstage.base.finding import DesignError, nearest, refuse
 from flexstage.mechanism.expand import copy_names
-from flexstage.mechanism.grammar import DirectionNode, MatrixNode, Node, RecordNode, RowNode, UnionNode, VectorNode, child, node_of
+from flexstage.mechanism.grammar import RecordNode, node_of
 from flexstage.mechanism.mechanism import Link, Mechanism
 from flexstage.mechanism.misalignment import MISALIGNED, Misalignment
+from flexstage.mechanism.node import Node
 from flexstage.mechanism.path import completions, has_member, member
 from flexstage.spatial.frame import COMPONENTS
 
@@ -108,7 +109,7 @@ def _in_link(mechanism: Mechanism, address: str, tree: tuple[str, ...], owners: 
     if link.part not in mechanism.parts:
         raise refuse(address, f'there is no part "{link.part}"', nearest(link.part, mechanism.parts))
     parts = node_of(Mechanism).fields["parts"].node
-    start = Place(owners, (), child(parts, mechanism.parts, link.part))
+    start = Place(owners, (), parts.child(mechanism.parts, link.part))
     return _descend(mechanism.parts[link.part], address, start, steps)
 
 
@@ -119,7 +120,7 @@ def _descend(value: Any, address: str, start: Place, steps: tuple[str, ...]) -> 
         if isinstance(value, Link) and not has_member(value, step):
             return _in_link(mechanism, address, path, _owners(path), steps[number:])
         for name in _completed(value, address, node, step):
-            node, value = child(node, value, name), member(value, name)
+            node, value = node.child(value, name), member(value, name)
             path += (name,)
     return replace(start, path=path, node=node)
 
@@ -132,7 +133,7 @@ def _owners(tree: tuple[str, ...]) -> tuple[str, ...]:
 def _completed(value: Any, address: str, node: Node, step: str) -> tuple[str, ...]:
     if isinstance(value, tuple):
         return (_component(value, address, node, step),)
-    step = _field_of_alternative(value, node, step)
+    step = node.field_called(value, step)
     found = [path for path in completions(value, step) if path[0] not in _DOCUMENT]
     if len(found) == 1:
         return found[0]
@@ -143,17 +144,8 @@ def _completed(value: Any, address: str, node: Node, step: str) -> tuple[str, ..
     raise refuse(address, f'there is no "{step}"', nearest(step, _names(value)))
 
 
-def _field_of_alternative(value: Any, node: Node, step: str) -> str:
-    """The field that a file calls by the name of what it holds: `polar` for `pattern`."""
-    if isinstance(node, RecordNode):
-        for name, slot in node.fields.items():
-            if isinstance(slot.node, UnionNode) and slot.node.key is None and slot.node.name_of(getattr(value, name)) == step:
-                return name
-    return step
-
-
 def _component(value: Any, address: str, node: Node, step: str) -> str:
-    if not isinstance(node, (VectorNode, DirectionNode, MatrixNode, RowNode)) or not has_member(value, step):
+    if not node.components or not has_member(value, step):
         raise refuse(address, f'there is no component "{step}"', nearest(step, COMPONENTS[: len(value)]))
     return COMPONENTS[int(step)] if step in "012345" else step
 

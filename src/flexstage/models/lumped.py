@@ -19,7 +19,7 @@ from flexstage.beams.compliance import law
 from flexstage.beams.mass import mass
 from flexstage.mechanism.drawn import as_drawn
 from flexstage.mechanism.expand import Assembly, PlacedLink, expand
-from flexstage.mechanism.grammar import node_of, numbers
+from flexstage.mechanism.grammar import node_of
 from flexstage.mechanism.incidence import Layout, end_twists, layout, require_room, twist_at, with_ground
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.mechanism.moving_mass import moving_inertia
@@ -179,7 +179,7 @@ def _endless(assembly: Assembly, values: Mapping[str, Array], what: str) -> Iter
         link = assembly.links[name]
         if link.link.part not in told and not np.all(np.isfinite(np.real(first_design(value, 2)))):
             told.add(link.link.part)
-            found = numbers(node_of(type(link.part)), link.part)
+            found = node_of(type(link.part)).numbers(link.part)
             stated = ", ".join(f"{place} {float(np.ravel(np.real(number))[0]):.4g} {node.quantity.si}" for place, number, node in found)
             advice = "Mend the one that is out of all proportion"
             yield Finding(name, f"its {what} is beyond what can be computed, by the numbers of part {link.link.part}: {stated}", advice)

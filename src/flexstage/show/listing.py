@@ -10,8 +10,8 @@ from typing import Any
 from flexstage.base.finding import nearest, refuse
 from flexstage.cases.parameters import parameters
 from flexstage.cases.registry import CASES, shipped
+from flexstage.mechanism.catalogue import Catalogue, Section
 from flexstage.mechanism.grammar import TAGS
-from flexstage.mechanism.store.catalogue import Catalogue, Section
 from flexstage.parts.gauge import Gauge
 from flexstage.parts.material import Material
 from flexstage.parts.piezo import Piezo
@@ -47,7 +47,7 @@ def parameter_table(name: str) -> Table:
 def catalogue_tables(catalogue: Catalogue) -> tuple[Table, ...]:
     """Materials, stacks and gauges: every number as it would stand in a design file, with its source.
 
-    >>> from flexstage.mechanism.store.catalogue import catalogue_from
+    >>> from flexstage.mechanism.catalogue import catalogue_from
     >>> catalogue_tables(catalogue_from({"materials": {"steel": {"young": "200 GPa"}}}))[0].texts()[1]
     ['steel', '200 GPa']
     """
@@ -57,7 +57,7 @@ def catalogue_tables(catalogue: Catalogue) -> tuple[Table, ...]:
 def section_named(catalogue: Catalogue, name: str) -> Catalogue:
     """The catalogue with one section only: `materials`, `stacks` or `gauges`. Raises `DesignError` for another name.
 
-    >>> from flexstage.mechanism.store.catalogue import shipped
+    >>> from flexstage.mechanism.catalogue import shipped
     >>> [section.record.__name__ for section in section_named(shipped(), "gauges").sections]
     ['Gauge']
     """
@@ -69,7 +69,7 @@ def section_named(catalogue: Catalogue, name: str) -> Catalogue:
 def catalogue_body(catalogue: Catalogue) -> dict[str, Any]:
     """The catalogue as plain values: section, entry, and its values as they would stand in a design file; and the sources.
 
-    >>> from flexstage.mechanism.store.catalogue import catalogue_from
+    >>> from flexstage.mechanism.catalogue import catalogue_from
     >>> catalogue_body(catalogue_from({"materials": {"steel": {"young": "200 GPa"}}}))["materials"]
     {'steel': {'young': '200 GPa'}}
     """

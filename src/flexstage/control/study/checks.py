@@ -21,7 +21,7 @@ from flexstage.control.study.setup import (
     StepMotion,
 )
 from flexstage.mechanism.checks.value import number_findings
-from flexstage.mechanism.grammar import node_of, numbers
+from flexstage.mechanism.grammar import node_of
 
 _MOST_BITS = 32
 _HIGHEST_ORDER = 20
@@ -37,7 +37,7 @@ def setup_findings(setup: LoopSetup) -> Iterator[Finding]:
     >>> [str(each) for each in setup_findings(LoopSetup(gauges=Gauging(filter_order=4)))]
     ['gauges.filter_order: a filter of order 4 has no corner. Give filter_corner, or order 0.']
     """
-    for address, value, node in numbers(node_of(LoopSetup), setup):
+    for address, value, node in node_of(LoopSetup).numbers(setup):
         yield from number_findings(address, value, node)
     if setup.seed < 0:
         yield Finding("seed", f"it is {setup.seed}", "Give a whole number of 0 or more")

@@ -11,9 +11,9 @@ from flexstage.analysis.sensitivities import departure, not_numbers
 from flexstage.base.finding import DesignError, Finding, nearest, require
 from flexstage.base.number import Array, Table
 from flexstage.mechanism.address import get, quantity_of, set_value
-from flexstage.mechanism.grammar import NumberNode
 from flexstage.mechanism.locate import canonical, locate
 from flexstage.mechanism.mechanism import Mechanism
+from flexstage.mechanism.node import NumberNode
 
 
 @dataclass(frozen=True)

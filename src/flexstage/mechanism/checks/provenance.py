@@ -9,7 +9,6 @@ from typing import Any
 from flexstage.base.finding import DesignError, Finding, nearest
 from flexstage.base.number import Table
 from flexstage.mechanism.address import ASSUMED
-from flexstage.mechanism.checks.kind import wanted
 from flexstage.mechanism.locate import Place, locate
 from flexstage.mechanism.mechanism import Mechanism
 
@@ -46,7 +45,7 @@ def _departure(where: str, key: str, place: Place, value: Any) -> Iterator[Findi
     if not any(key.startswith(f"{owner}.") for owner in place.owners):
         advice = "Set that value itself; departures are written unit/link.field or copy/link.field"
         yield Finding(where, f"it addresses {place.address}, which is no departure of a link", advice)
-    elif expected := wanted(place.node, value):
+    elif expected := place.node.wanted(value):
         yield Finding(where, f"found {value!r} where {expected[0]} is expected", expected[1])
 
 

@@ -10,9 +10,10 @@ import numpy as np
 from flexstage.base.finding import Finding
 from flexstage.base.quantity import RATIO
 from flexstage.base.unit import parse, show
-from flexstage.mechanism.grammar import NumberNode, node_of, numbers
+from flexstage.mechanism.grammar import node_of
 from flexstage.mechanism.locate import locate
 from flexstage.mechanism.mechanism import Mechanism
+from flexstage.mechanism.node import NumberNode
 
 LARGEST = 1e40
 """Numbers beyond it, or nonzero below its reciprocal, in SI: their powers would leave the range of floats, and nothing is made so."""
@@ -49,9 +50,9 @@ def first_failing(failing: Any, *values: Any) -> tuple[str, tuple[Any, ...]]:
 
 
 def _all_numbers(mechanism: Mechanism) -> Iterator[tuple[str, Any, NumberNode]]:
-    yield from numbers(node_of(Mechanism), mechanism)
+    yield from node_of(Mechanism).numbers(mechanism)
     for key, value in mechanism.changes.items():
-        yield from numbers(locate(mechanism, key).node, value, f'change."{key}"')
+        yield from locate(mechanism, key).node.numbers(value, f'change."{key}"')
 
 
 def number_findings(where: str, value: Any, node: NumberNode) -> Iterator[Finding]:

@@ -9,10 +9,10 @@ from pathlib import Path
 
 from flexstage.base.finding import DesignError
 from flexstage.base.store import write
+from flexstage.mechanism.catalogue import shipped
 from flexstage.mechanism.checks import checked as _checked
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.store.anchor import anchored, beside, outline_text
-from flexstage.mechanism.store.catalogue import shipped
 from flexstage.mechanism.store.decode import mechanism_from
 from flexstage.mechanism.store.encode import tree_of
 from flexstage.mechanism.store.file import parse_toml, read_text

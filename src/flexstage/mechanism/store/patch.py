@@ -9,16 +9,16 @@ import tomlkit
 from tomlkit.exceptions import TOMLKitError
 
 from flexstage.base.finding import DesignError, refuse
-from flexstage.mechanism.address import set_value, value_from_text
-from flexstage.mechanism.grammar import TAGS, Node, RecordNode, UnionNode, child, node_of
+from flexstage.mechanism.address import set_value
+from flexstage.mechanism.catalogue import shipped
+from flexstage.mechanism.grammar import TAGS, node_of
 from flexstage.mechanism.locate import canonical, locate
 from flexstage.mechanism.mechanism import Mechanism
+from flexstage.mechanism.node import Node
 from flexstage.mechanism.path import member
-from flexstage.mechanism.store.catalogue import shipped
 from flexstage.mechanism.store.decode import mechanism_from
 from flexstage.mechanism.store.encode import plain
 from flexstage.mechanism.store.file import parse_toml
-from flexstage.spatial.frame import COMPONENTS
 
 
 def patch(text: str, values: Mapping[str, Any], *, where: str = "text") -> str:
@@ -36,7 +36,7 @@ def patch(text: str, values: Mapping[str, Any], *, where: str = "text") -> str:
     steps: list[_Step] = []
     for address, value in values.items():
         place = locate(mechanism, address)
-        kept = value_from_text(value, place, address) if isinstance(value, str) else value
+        kept = place.node.parse(value, address) if isinstance(value, str) else value
         steps.append((mechanism, set_value(mechanism, address, kept), address))
         mechanism = steps[-1][1]
     try:
@@ -96,25 +96,13 @@ def _set_at(document: Any, changed: Mechanism, path: tuple[str, ...]) -> None:
     node: Node = node_of(Mechanism)
     value: Any = changed
     for number, name in enumerate(path):
-        key = _key(node, value, name)
-        node, value = child(node, value, name), member(value, name)
+        key = node.key(value, name)
+        node, value = node.child(value, name), member(value, name)
         last = number == len(path) - 1
         if last or not _holds(table, key) or isinstance(table[key], str):
             table[key] = plain(node, value, ".".join(path))
             return
         table = table[key]
-
-
-def _key(node: Node, value: Any, name: str) -> Any:
-    """The key of a member in the file: that of its alternative for patterns, a number for components."""
-    if isinstance(value, tuple):
-        return COMPONENTS.index(name)
-    if isinstance(node, UnionNode):
-        node = dict(node.options)[node.name_of(value)]
-    if isinstance(node, RecordNode):
-        inner = node.fields[name].node
-        return inner.name_of(getattr(value, name)) if isinstance(inner, UnionNode) and inner.key is None else node.fields[name].key
-    return name
 
 
 def _holds(table: Any, key: Any) -> bool:

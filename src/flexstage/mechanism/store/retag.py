@@ -11,10 +11,10 @@ from tomlkit.items import InlineTable
 
 from flexstage.base.finding import refuse
 from flexstage.mechanism.address import tag_of
+from flexstage.mechanism.catalogue import shipped
 from flexstage.mechanism.grammar import TAGS
 from flexstage.mechanism.locate import locate
 from flexstage.mechanism.mechanism import Mechanism
-from flexstage.mechanism.store.catalogue import shipped
 from flexstage.mechanism.store.decode import mechanism_from
 from flexstage.mechanism.store.file import parse_toml
 

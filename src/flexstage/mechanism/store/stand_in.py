@@ -10,10 +10,10 @@ import tomlkit
 from tomlkit.exceptions import TOMLKitError
 
 from flexstage.base.finding import Finding, refuse, require
+from flexstage.mechanism.catalogue import shipped
 from flexstage.mechanism.checks import checked
-from flexstage.mechanism.grammar import TAGS, child, node_of
+from flexstage.mechanism.grammar import TAGS, node_of
 from flexstage.mechanism.mechanism import Mechanism
-from flexstage.mechanism.store.catalogue import shipped
 from flexstage.mechanism.store.decode import mechanism_from
 from flexstage.mechanism.store.encode import plain
 from flexstage.mechanism.store.file import parse_toml
@@ -90,7 +90,7 @@ def _clashes(mechanism: Mechanism, parts: Mapping[str, StandIn]) -> list[Finding
 
 
 def _stand_in(document: Any, name: str, part: StandIn, tag: str) -> None:
-    node: Any = child(child(node_of(Mechanism), Mechanism(""), "parts"), {name: part.given}, name)
+    node = node_of(Mechanism).fields["parts"].node.child(None, name)
     table = tomlkit.table()
     values = plain(node, part.given, f"parts.{name}")
     for key, value in values.items():

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from flexstage.base.unit import parse, show
-from flexstage.mechanism.grammar import node_of, numbers
+from flexstage.mechanism.grammar import node_of
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.path import replaced
 
@@ -18,7 +18,7 @@ def tidied(mechanism: Mechanism, digits: int = 12) -> Mechanism:
     0.00154
     """
     result = mechanism
-    for address, value, node in numbers(node_of(Mechanism), mechanism):
+    for address, value, node in node_of(Mechanism).numbers(mechanism):
         if isinstance(value, float):
             tidy = parse(show(value, node.quantity, digits=digits), node.quantity, where=address)
             result = result if tidy == value else replaced(result, tuple(address.split(".")), tidy)

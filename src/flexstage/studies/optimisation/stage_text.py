@@ -9,7 +9,7 @@ import numpy as np
 
 from flexstage.base.number import Array
 from flexstage.mechanism.address import get
-from flexstage.mechanism.grammar import node_of, numbers
+from flexstage.mechanism.grammar import node_of
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.store import dumps, patch
 from flexstage.mechanism.store.file import parse_toml, read_text
@@ -66,7 +66,7 @@ def _changed(study: Study, values: Array) -> Iterator[tuple[str, float]]:
     final = study.described(values)
     addresses = [address for each in study.variables if each.variant is None for address in each.addresses]
     if any(each.variant is not None for each in study.variables):
-        addresses += [address for address, _, _ in numbers(node_of(Mechanism), study.design)]
+        addresses += [address for address, _, _ in node_of(Mechanism).numbers(study.design)]
     for address in dict.fromkeys(addresses):
         before, after = get(study.design, address), get(final, address)
         if isinstance(before, float) and abs(after - before) > _SAME * abs(before):

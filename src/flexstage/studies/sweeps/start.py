@@ -10,8 +10,8 @@ from flexstage.base.finding import DesignError
 from flexstage.base.quantity import Quantity
 from flexstage.cases.parameters import Stated, parameter, with_parameters
 from flexstage.cases.registry import Variant, case, shipped
-from flexstage.mechanism.grammar import NumberNode
 from flexstage.mechanism.mechanism import Mechanism
+from flexstage.mechanism.node import NumberNode
 from flexstage.mechanism.store import load
 from flexstage.studies.sweeps.fields import Fields
 

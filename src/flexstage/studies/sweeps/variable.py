@@ -14,7 +14,7 @@ from flexstage.base.quantity import Quantity
 from flexstage.base.unit import show
 from flexstage.cases.registry import Variant
 from flexstage.mechanism.address import get, set_value
-from flexstage.mechanism.grammar import node_of, numbers
+from flexstage.mechanism.grammar import node_of
 from flexstage.mechanism.locate import canonical
 from flexstage.mechanism.mechanism import Mechanism
 
@@ -173,5 +173,5 @@ def _moved(variant: Variant, name: str) -> frozenset[str]:
     value = variant.value(name)
     stepped = variant.drawn({name: np.asarray(complex(value, abs(value) * _STEP or _STEP))})
     return frozenset(
-        address for address, found, _ in numbers(node_of(Mechanism), stepped) if np.iscomplexobj(found) and np.imag(found) != 0.0
+        address for address, found, _ in node_of(Mechanism).numbers(stepped) if np.iscomplexobj(found) and np.imag(found) != 0.0
     )

@@ -9,9 +9,9 @@ import numpy as np
 from flexstage.base.finding import Finding
 from flexstage.base.unit import show
 from flexstage.mechanism.address import quantity_of
-from flexstage.mechanism.grammar import NumberNode
 from flexstage.mechanism.locate import locate
 from flexstage.mechanism.mechanism import Mechanism
+from flexstage.mechanism.node import NumberNode
 from flexstage.studies.tolerances.distribution import REACH
 from flexstage.studies.tolerances.scatter import Deviation, Target
 

@@ -8,10 +8,10 @@ from dataclasses import dataclass
 from flexstage.base.finding import DesignError, nearest, refuse
 from flexstage.mechanism.address import get
 from flexstage.mechanism.expand import PlacedLink, copy_names, expand
-from flexstage.mechanism.grammar import NumberNode, VectorNode
 from flexstage.mechanism.locate import Place, locate, unit_of_copy
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.misalignment import MISALIGNED
+from flexstage.mechanism.node import NumberNode, VectorNode
 from flexstage.parts.leaf import Leaf
 from flexstage.parts.neck import Neck
 from flexstage.parts.notch import Notch

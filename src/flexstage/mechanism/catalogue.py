@@ -47,7 +47,7 @@ def shipped() -> Catalogue:
     >>> "SUS420" in shipped().section(Material).entries
     True
     """
-    text = resources.files("flexstage.mechanism.store").joinpath("catalogue.toml").read_text(encoding="utf-8")
+    text = resources.files("flexstage.mechanism").joinpath("catalogue.toml").read_text(encoding="utf-8")
     return catalogue_from(tomllib.loads(text))
 
 
