@@ -39,7 +39,11 @@ ROOT = Path(__file__).resolve().parents[1]
 # What is meant to differ: regular expression at BASE -> what it is in the working tree.
 WORDS: Mapping[str, str] = {}  # of command lines and of the files that they read, as r"--reading" -> "--model"
 TEXTS: Mapping[str, str] = {}  # of terminal, HTML and other text, as r"\breading\b" -> "model"
-PATHS: Mapping[str, str] = {}  # in JSON, MAT and HDF5, as r"^reading$" -> "model"
+PATHS: Mapping[str, str] = {  # in JSON, MAT and HDF5, as r"^reading$" -> "model"
+    r"^([a-z-]+\.)?method$": r"\1provenance",
+    r"^modes\.platform_modes": "modes.platform",
+    r"^(modes\.)?platform_shapes": r"\1twists",
+}
 RULES: tuple[Rule, ...] = ()  # numbers whose arithmetic or its order changed; searched() gives those of searches
 
 KERNEL = os.environ.get("OPENBLAS_CORETYPE", "Haswell")

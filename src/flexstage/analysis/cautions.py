@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
@@ -20,6 +20,7 @@ from flexstage.analysis.workspace.stroke import StrokeLimits, single_axis, strok
 from flexstage.base.finding import DesignError, Finding
 from flexstage.base.number import stack
 from flexstage.base.quantity import LENGTH
+from flexstage.base.record import INNER
 from flexstage.base.unit import show
 from flexstage.beams.mass import mass
 from flexstage.beams.validity import validity
@@ -43,7 +44,7 @@ from flexstage.parts.plausible import implausible
 class Default(Finding):
     """What was taken where the description leaves it open, and the kinds of results that are the same `without` it."""
 
-    without: frozenset[str] = frozenset()
+    without: Annotated[frozenset[str], INNER] = frozenset()
 
 
 _LEAST_FALL, _MOST_FALL = 0.16, 250.0

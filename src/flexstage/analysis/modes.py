@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
 from flexstage.base.labelled import Matrix
 from flexstage.base.number import Array, descending, first_design, foremost
+from flexstage.base.quantity import FREQUENCY
+from flexstage.base.record import INNER, VIEW
 from flexstage.models.batch.choice import NEGLIGIBLE
 from flexstage.models.linear.eigen import Eigen, eigen, sign_weights
 from flexstage.models.linear.model import LinearModel
-from flexstage.spatial.frame import COMPONENTS
+from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
 
 _PLATFORM = "platform"
 _IN_PLANE = [0, 1, 5]
@@ -21,7 +25,25 @@ _LOCAL_WINDOW = 1.5
 _REPEATED = 1e-6
 _ROUNDING = 1e3 * float(np.finfo(float).eps)
 _EQUAL = 1e-6
+_LISTED = 24
 _NUMBERED = re.compile(r"([^\d/]+)(0|[1-9]\d*)(|/.*| \(link\))")
+
+
+@dataclass(frozen=True, eq=False)
+class Mode:
+    """One mode: its share of kinetic energy in the platform, whether it is the `platform`'s own or a `local` one beside these.
+
+    `energy_share` is that of every body and link from one per cent, largest first.
+    """
+
+    number: int
+    frequency: Annotated[float, FREQUENCY]
+    name: str
+    platform_share: float
+    in_plane: bool
+    platform: bool
+    local: bool
+    energy_share: Mapping[str, float]
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,15 +60,46 @@ class Modes:
     shapes: Array
     platform_shapes: Array
     share: Array
-    bodies: tuple[str, ...]
+    bodies: Annotated[tuple[str, ...], INNER]
     energies: Array
-    names: tuple[str, ...]
-    in_plane: tuple[bool, ...]
+    names: Annotated[tuple[str, ...], INNER]
+    in_plane: Annotated[tuple[bool, ...], INNER]
     platform: tuple[int, ...]
     margin: float
-    limit: float
-    coordinates: tuple[str, ...]
+    limit: Annotated[float, FREQUENCY]
+    coordinates: Annotated[tuple[str, ...], INNER]
     provenance: str
+
+    @property
+    def modes(self) -> Annotated[tuple[Mode, ...], VIEW]:
+        """The listed modes one by one, ascending, of the first design."""
+        return tuple(self._mode(index) for index in range(self.listed))
+
+    def _mode(self, index: int) -> Mode:
+        frequency, share = (float(first_design(each, 1)[index]) for each in (self.frequencies, self.share))
+        energies = first_design(self.energies, 2)[:, index]
+        bodies = {self.bodies[place]: float(energies[place]) for place in descending(energies, 1e-6) if energies[place] >= 0.01}
+        platform, local = index in self.platform, index in self.local
+        return Mode(index + 1, frequency, self.names[index], share, self.in_plane[index], platform, local, bodies)
+
+    @property
+    def listed(self) -> Annotated[int, VIEW]:
+        """How many modes are listed: those below the limit, at least 24, and up to the last one of the platform or beside its own."""
+        below = int(np.sum(first_design(self.frequencies, 1) < self.limit)) if np.isfinite(self.limit) else 0
+        last = max((*self.local, *self.platform), default=-1) + 1
+        return min(len(self.names), max(below, last, _LISTED))
+
+    @property
+    def computed(self) -> Annotated[int, VIEW]:
+        """How many modes there are."""
+        return len(self.names)
+
+    @property
+    def twists(self) -> Annotated[Matrix, VIEW]:
+        """The platform's twist in each listed mode, mass-normalised."""
+        columns = tuple(str(number + 1) for number in range(self.listed))
+        units = tuple((f"{unit}/kg^0.5",) * self.listed for unit in TWIST_UNITS)
+        return Matrix(self.platform_shapes[..., : self.listed], COMPONENTS, columns, units)
 
     @property
     def platform_frequencies(self) -> Array:
@@ -54,7 +107,7 @@ class Modes:
         return self.frequencies[..., list(self.platform)]
 
     @property
-    def local(self) -> tuple[int, ...]:
+    def local(self) -> Annotated[tuple[int, ...], VIEW]:
         """Modes that are not the platform's, below 1.5 times its highest one."""
         if not self.platform:
             return ()

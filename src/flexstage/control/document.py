@@ -8,13 +8,13 @@ from typing import Any
 
 import numpy as np
 
+from flexstage.base.document import Document
 from flexstage.control.error_tables import settled_rms
 from flexstage.control.simulation.result import others
 from flexstage.control.stability_margins import ChannelMargins, Edge
 from flexstage.control.study.rest import RestErrors
 from flexstage.control.study.runs import Run
 from flexstage.control.study.study import LoopStudy
-from flexstage.show.documents.envelope import Document
 
 
 def loop_body(found: LoopStudy) -> Document:

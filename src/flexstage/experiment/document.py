@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from flexstage.base.document import Document
 from flexstage.experiment.record import Channel, Record, Responses
-from flexstage.show.documents.envelope import Document
 from flexstage.spatial.frame import COMPONENTS
 
 if TYPE_CHECKING:
@@ -36,7 +36,7 @@ def identify_body(seen: Identification, shapes: StageShapes | None = None) -> Do
         "band_hz": list(found.band),
         "spectra": _spectra(seen),
         "warnings": list(found.warnings),
-        "method": found.provenance,
+        "provenance": found.provenance,
     }
     if shapes is not None:
         result["platform"] = _platform(shapes)
@@ -139,7 +139,7 @@ def compare_body(found: Compared) -> Document:
         "sensors": list(found.sensors),
         "fea_order": None if found.fea is None else found.fea.order,
         "warnings": list(found.warnings),
-        "method": found.provenance,
+        "provenance": found.provenance,
     }
 
 

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from flexstage.analysis.trust import Trust
-from flexstage.show.documents.envelope import Document
-from flexstage.show.documents.results import modes_body, output_body, stiffness_body
+from flexstage.base.document import Document
+from flexstage.show.documents.results import output_body, stiffness_body
 
 if TYPE_CHECKING:
     from flexstage.solid.calibration import Calibration
@@ -96,13 +96,13 @@ def solid_stage_body(found: Resolved[SolidStage]) -> Document:
         "order": found.order,
         "errors": dict(found.errors),
         "stiffness": stiffness_body(stage.statics, None),
-        "modes": modes_body(stage.modes),
+        "modes": stage.modes,
         "bodies": {"strain_energy_share": stage.blocks[platform], "cost_in_frequency": stage.flexible[platform]},
         "stress": None if stage.stress is None else stress_body(stage.stress),
         "elements": stage.read.elements,
         "freedoms": stage.read.freedoms,
         "coordinates": len(stage.read.model.coordinates),
-        "method": stage.read.model.provenance,
+        "provenance": stage.read.model.provenance,
     }
 
 

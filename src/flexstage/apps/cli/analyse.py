@@ -11,6 +11,7 @@ import typer
 from flexstage.analysis import complete
 from flexstage.analysis.complete import Analysis
 from flexstage.analysis.difference import Comparison, difference, set_values
+from flexstage.base.document import Document, as_text
 from flexstage.models.theory import Reading
 from flexstage.show.command.answer import caveat_lines, show, tell_missing
 from flexstage.show.command.design import change, open_design
@@ -18,8 +19,8 @@ from flexstage.show.command.failure import MISSED
 from flexstage.show.command.options import Changes, Design, Json, Report, Theory, text_option
 from flexstage.show.command.output import STDOUT, save
 from flexstage.show.command.terminal import tell
-from flexstage.show.documents.envelope import Document, as_text, enveloped
 from flexstage.show.documents.whole import analysis_body, changes_body
+from flexstage.show.envelope import enveloped
 from flexstage.show.matlab import as_mat
 from flexstage.show.report import report as whole_report
 from flexstage.show.table import Table

@@ -25,7 +25,7 @@ from flexstage.show.command.answer import answer
 from flexstage.show.command.design import elastic_model, known_point, open_design
 from flexstage.show.command.options import Changes, Design, Json, Theory, text_option
 from flexstage.show.command.values import spectra
-from flexstage.show.documents.results import elastic_jacobian, lost_motion_body, mapping_body, modes_body, response_body, stiffness_body
+from flexstage.show.documents.results import elastic_jacobian, lost_motion_body, mapping_body, response_body, stiffness_body
 from flexstage.show.table import Table
 from flexstage.show.tables import kinematics as motion_tables
 from flexstage.show.tables import lost_motion as loss_tables
@@ -133,7 +133,7 @@ def modes(design: Design, *, reading: Theory = Reading.LUMPED, changes: Changes 
     mechanism = open_design(design, changes, [("--json", json)])
 
     found = platform_modes(mechanism, elastic_model(mechanism, reading))
-    answer("modes", mechanism, lambda: modes_body(found), lambda: [mode_table(found)], reading=reading, json=json)
+    answer("modes", mechanism, lambda: found, lambda: [mode_table(found)], reading=reading, json=json)
 
 
 def response(

@@ -12,6 +12,7 @@ import typer
 
 import flexstage
 from flexstage.analysis.cautions import caveats, reading_findings
+from flexstage.base.document import as_text
 from flexstage.base.finding import DesignError, Finding, require
 from flexstage.cases.registry import CASES
 from flexstage.cases.registry import case as shipped_case
@@ -24,8 +25,7 @@ from flexstage.show.command.design import change, open_design
 from flexstage.show.command.options import Changes, Design, Json, output_option, text_option, word_option
 from flexstage.show.command.output import STDOUT, announce, require_writable, write
 from flexstage.show.command.terminal import say
-from flexstage.show.documents.envelope import FORMAT, as_text
-from flexstage.show.documents.reach import check_document
+from flexstage.show.envelope import FORMAT, check_document
 from flexstage.show.figures.drawing import drawing, format_of
 from flexstage.show.listing import case_table, catalogue_body, catalogue_tables, parameter_table, section_named
 from flexstage.show.plan import plan_figure

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from flexstage.base.document import Document
 from flexstage.control.hysteresis.stack_test import StackTest
-from flexstage.show.documents.envelope import Document
 
 
 def hysteresis_body(test: StackTest) -> Document:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from flexstage.base.document import Document
 from flexstage.experiment.document import compare_body
 from flexstage.experiment.updating.update import Residual, Updated
-from flexstage.show.documents.envelope import Document
 
 
 def update_body(found: Updated) -> Document:
@@ -32,7 +32,7 @@ def update_body(found: Updated) -> Document:
         "steps": found.steps,
         "compared": compare_body(found.compared),
         "warnings": list(found.warnings),
-        "method": found.provenance,
+        "provenance": found.provenance,
     }
 
 

@@ -5,17 +5,19 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
+from typing import Any
 
 from rich.console import Console
 
 from flexstage.analysis.cautions import Caveats, caveats
+from flexstage.base.document import as_text
 from flexstage.base.finding import Finding
 from flexstage.base.text import printable
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.theory import Reading
 from flexstage.show.command.output import STDOUT, announce, write
 from flexstage.show.command.terminal import styled, tell, warn
-from flexstage.show.documents.envelope import Document, as_text, enveloped
+from flexstage.show.envelope import enveloped
 from flexstage.show.render import to_rich
 from flexstage.show.table import Table
 
@@ -25,7 +27,7 @@ _UNFOLDED = 1000
 def answer(
     kind: str,
     mechanism: Mechanism | None,
-    body: Callable[[], Document],
+    body: Callable[[], Any],
     tables: Callable[[], Iterable[Table | None]],
     *,
     json: str | None,

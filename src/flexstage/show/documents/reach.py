@@ -7,7 +7,6 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-import flexstage
 from flexstage.analysis.error_budget import ErrorBudget
 from flexstage.analysis.requirements import Verdict
 from flexstage.analysis.sensitivities import Sensitivities
@@ -22,11 +21,9 @@ from flexstage.analysis.workspace.room import Room
 from flexstage.analysis.workspace.strength import HingeStress
 from flexstage.analysis.workspace.stroke import SingleAxis, StrokeLimits, Utilisation
 from flexstage.analysis.workspace.workspace import Workspace
-from flexstage.base.finding import Finding
+from flexstage.base.document import Document
 from flexstage.base.labelled import Matrix
 from flexstage.base.number import Array, Number
-from flexstage.mechanism.mechanism import Mechanism
-from flexstage.show.documents.envelope import FORMAT, Document, enveloped, findings
 from flexstage.spatial.frame import COMPONENTS
 
 _Result = TypeVar("_Result")
@@ -127,7 +124,7 @@ def _room(room: Room) -> Document:
         "size_m": room.size,
         "table": room.table.to_json(),
         "intrusions": {item.name: {"depth_m": item.depth} for item in room.intrusions},
-        "findings": findings(room.findings),
+        "findings": list(room.findings),
     }
 
 
@@ -195,7 +192,7 @@ def budget_body(budget: ErrorBudget) -> Document:
         "corrected": budget.corrected.to_json(),
         "sums": budget.sums.to_json(),
         "missing": list(budget.missing),
-        "method": budget.provenance,
+        "provenance": budget.provenance,
     }
 
 
@@ -224,7 +221,7 @@ def sensitivities_body(found: Sensitivities) -> Document:
         "relative_loss": found.relative_loss.to_json(),
         "one_sided": list(found.one_sided),
         "missing": dict(found.missing),
-        "method": found.provenance,
+        "provenance": found.provenance,
     }
 
 
@@ -234,20 +231,6 @@ def _parameter(address: str, value: float, unit: str) -> Document:
 
 def _matrix(values: Array, names: tuple[tuple[str, ...], tuple[str, ...]], units: list[list[str]]) -> Document:
     return Matrix(values, *names, tuple(tuple(row) for row in units)).to_json()
-
-
-def check_document(mechanism: Mechanism | None, errors: Iterable[Finding] = ()) -> Document:
-    """The document of a check: whether the design is sound, and its findings; without the envelope's digest and caveats if it is not.
-
-    >>> check_document(None, [Finding("B4/pivot", "it is thin", "Thicken it")])["sound"]
-    False
-    """
-    told = findings(errors)
-    body: Document = {"sound": not told, "findings": told}
-    if mechanism is None:
-        return {"format": FORMAT, "kind": "check", "version": flexstage.__version__, **body, "cautions": [], "defaults": [], "warnings": []}
-    document = enveloped("check", mechanism, None, body)
-    return {**document, "warnings": document["cautions"]}
 
 
 def requirements_body(verdicts: Iterable[Verdict]) -> list[Document]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -10,20 +10,18 @@ import numpy as np
 from flexstage.analysis.deflection import Deflection
 from flexstage.analysis.drift import Drift
 from flexstage.analysis.lost_motion import LostMotion
-from flexstage.analysis.modes import Modes
 from flexstage.analysis.omitted import Omitted
 from flexstage.analysis.statics import DirectionalStiffness, Statics
 from flexstage.analysis.unit_output import UnitOutput
 from flexstage.analysis.units import UnitResult
+from flexstage.base.document import Document
 from flexstage.base.finding import DesignError
 from flexstage.base.labelled import Matrix, ratio_units
-from flexstage.base.number import Array, descending
 from flexstage.mechanism.mechanism import Damping, ModalDamping, RayleighDamping
 from flexstage.models.linear.frequency import Response
 from flexstage.models.linear.kinematics import Kinematics
 from flexstage.models.linear.model import LinearModel
 from flexstage.models.linear.static import static_gain
-from flexstage.show.documents.envelope import Document
 from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
 
 LISTED_MODES = 24
@@ -100,7 +98,7 @@ def stiffness_body(statics: Statics, deflection: Deflection | None = None) -> Do
         "compliance": statics.compliance.to_json(),
         **{key: None if key in missing else value for key, value in values.items()},
         "dead_load": None if deflection is None else {"point": deflection.point, "by_cause": deflection.by_cause.to_json()},
-        "method": statics.provenance,
+        "provenance": statics.provenance,
         **({"reasons": reasons} if reasons else {}),
     }
 
@@ -132,7 +130,7 @@ def lost_motion_body(lost: LostMotion) -> Document:
         "crosstalk": _crosstalk(lost),
         "energy": lost.energy.to_json(),
         "length_m": lost.length,
-        "method": lost.provenance,
+        "provenance": lost.provenance,
     }
 
 
@@ -156,57 +154,6 @@ def _crosstalk(lost: LostMotion) -> Document:
     return {row: {column: lost.transfer.at(row, column) for column in names if column != row} for row in names}
 
 
-def modes_body(modes: Modes) -> Document:
-    """Frequencies ascending, names, shares and shapes; all modes below the limit, at least the first 24; which are the platform's.
-
-    >>> from flexstage.analysis.modes import modes
-    >>> from flexstage.cases.double_triangle import double_triangle
-    >>> from flexstage.models.mapped import mapped
-    >>> [mode["name"] for mode in modes_body(modes(mapped(double_triangle())))["modes"]]
-    ['tilt', 'tilt', 'z', 'yaw', 'x', 'y']
-    """
-    listed = _listed(modes)
-    columns = tuple(str(number + 1) for number in range(listed))
-    units = tuple((f"{unit}/kg^0.5",) * listed for unit in TWIST_UNITS)
-    return {
-        "modes": list(_each_mode(modes, listed)),
-        "platform_modes": list(modes.platform),
-        "local": list(modes.local),
-        "margin": modes.margin,
-        "limit_hz": modes.limit if np.isfinite(modes.limit) else None,
-        "listed": listed,
-        "computed": len(modes.names),
-        "platform_shapes": Matrix(modes.platform_shapes[:, :listed], COMPONENTS, columns, units).to_json(),
-        "method": modes.provenance,
-    }
-
-
-def _listed(modes: Modes) -> int:
-    """How many modes are listed: those below the limit, at least the first 24, and every local mode."""
-    below = int(np.sum(modes.frequencies < modes.limit)) if np.isfinite(modes.limit) else 0
-    local = max((*modes.local, *modes.platform), default=-1) + 1
-    return min(len(modes.names), max(below, local, LISTED_MODES))
-
-
-def _each_mode(modes: Modes, count: int) -> Iterator[Document]:
-    for index in range(count):
-        yield {
-            "number": index + 1,
-            "frequency_hz": modes.frequencies[index],
-            "name": modes.names[index],
-            "platform_share": modes.share[index],
-            "in_plane": modes.in_plane[index],
-            "platform": index in modes.platform,
-            "local": index in modes.local,
-            "energy_share": _largest(modes.bodies, modes.energies[:, index]),
-        }
-
-
-def _largest(names: tuple[str, ...], shares: Array) -> Document:
-    """Kinetic-energy shares of one per cent and more, largest first."""
-    return {names[index]: shares[index] for index in descending(shares, 1e-6) if shares[index] >= 0.01}
-
-
 def response_body(response: Response, damping: Damping | None) -> Document:
     """A frequency response as {frequency_hz, rows, columns, unit, real, imaginary}, H_ij = output i over input j, and its damping.
 
@@ -215,7 +162,7 @@ def response_body(response: Response, damping: Damping | None) -> Document:
     >>> response_body(one, ModalDamping(0.01))["damping"]
     {'law': 'modal', 'ratio': 0.01}
     """
-    return {**response.to_json(), "damping": _damping(damping), "method": response.provenance}
+    return {**response.to_json(), "damping": _damping(damping), "provenance": response.provenance}
 
 
 def _damping(damping: Damping | None) -> Document | None:
@@ -323,5 +270,5 @@ def drift_body(drift: Drift) -> Document:
         "ground_source": drift.ground.source,
         "datum_m": drift.datum,
         "taken": dict(drift.taken),
-        "method": drift.provenance,
+        "provenance": drift.provenance,
     }

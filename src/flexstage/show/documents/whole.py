@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import Any
 
 from flexstage.analysis.complete import Analysis
 from flexstage.analysis.difference import Change
-from flexstage.show.documents.envelope import Document, plain
+from flexstage.base.document import Document, plain
 from flexstage.show.documents.reach import buckling_body, budget_body, requirements_body, workspace_body
 from flexstage.show.documents.results import (
     drift_body,
     lost_motion_body,
     mapping_body,
-    modes_body,
     response_body,
     stiffness_body,
     units_body,
@@ -32,11 +32,11 @@ def analysis_body(analysis: Analysis) -> Document:
     (True, 'the ideal reading has no elasticity')
     """
     damping = None if analysis.model is None else analysis.model.damping
-    found: dict[str, Document | None] = {
+    found: dict[str, Any] = {
         "mapping": mapping_body(analysis.kinematics),
         "stiffness": None if analysis.statics is None else stiffness_body(analysis.statics, analysis.deflection),
         "lost-motion": None if analysis.lost_motion is None else lost_motion_body(analysis.lost_motion),
-        "modes": None if analysis.modes is None else modes_body(analysis.modes),
+        "modes": analysis.modes,
         "response": None if analysis.response is None else response_body(analysis.response, damping),
         "transmissibility": None if analysis.transmissibility is None else response_body(analysis.transmissibility, damping),
         "workspace": None if analysis.workspace is None else workspace_body(analysis.workspace),

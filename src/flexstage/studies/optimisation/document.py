@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from flexstage.analysis.requirements import Requirement, Verdict
-from flexstage.show.documents.envelope import Document
+from flexstage.base.document import Document
 from flexstage.studies.optimisation.result import Front, Optimum, Start
 from flexstage.studies.optimisation.rounding import values_of
 from flexstage.studies.optimisation.values import Point

@@ -5,7 +5,7 @@ from __future__ import annotations
 from itertools import combinations
 from typing import Any
 
-from flexstage.show.documents.envelope import Document
+from flexstage.base.document import Document
 from flexstage.studies.sweeps.definition import Study
 from flexstage.studies.sweeps.effects import Effects
 from flexstage.studies.sweeps.store import Results

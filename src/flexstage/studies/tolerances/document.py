@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
+from flexstage.base.document import Document
 from flexstage.base.number import Array
-from flexstage.show.documents.envelope import Document
 from flexstage.spatial.frame import COMPONENTS
 from flexstage.studies.tolerances.run import Toleranced
 from flexstage.studies.tolerances.scatter import Scatter

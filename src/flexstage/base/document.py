@@ -1,0 +1,83 @@
+"""Documents: results as plain JSON values for machines (described in `docs/json.md`).
+
+Matrices are {rows, columns, unit, values}; a scalar's unit stands in its key (`frequency_hz`). Numbers that are not finite become null,
+with the reason under `reasons`.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping
+from dataclasses import is_dataclass
+from enum import Enum
+from typing import Any, TypeAlias
+
+import numpy as np
+
+from flexstage.base.record import walk
+
+Document: TypeAlias = dict[str, Any]
+
+
+def plain(result: Any) -> Document:
+    """A result, or a mapping with results in it, in plain values: what is null has its reason by path under `reasons`.
+
+    >>> plain({"gain": float("inf")})
+    {'gain': None, 'reasons': {'gain': 'infinite'}}
+    """
+    reasons = dict[str, str]()
+    whole = result if isinstance(result, Mapping) else walk(result)
+    values = _plain({key: value for key, value in whole.items() if key != "reasons"}, "", reasons)
+    reasons = dict(whole.get("reasons") or {}) | reasons
+    return {**values, **({"reasons": reasons} if reasons else {})}
+
+
+def as_text(result: Any) -> str:
+    """The document as JSON text: finite numbers only, every other one null with its reason under `reasons`.
+
+    >>> print(as_text({"gain": float("nan")}))
+    {
+     "gain": null,
+     "reasons": {
+      "gain": "not a number"
+     }
+    }
+    """
+    text = json.dumps(plain(result), indent=1, ensure_ascii=False, allow_nan=False)
+    return "\n".join(line if line.isprintable() else "".join(map(_escaped, line)) for line in text.split("\n"))
+
+
+def _escaped(letter: str) -> str:
+    """A letter as it stands in JSON; what is not printable as its escape, which means the same and steers no terminal."""
+    return letter if letter.isprintable() else json.dumps(letter)[1:-1]
+
+
+def _plain(value: Any, where: str, reasons: dict[str, str]) -> Any:
+    """Plain JSON values; what is not finite is noted in `reasons` under its path (`modes.3.frequency_hz`)."""
+    if isinstance(value, Mapping):
+        return {str(key): _plain(item, f"{where}.{key}" if where else str(key), reasons) for key, item in value.items()}
+    if isinstance(value, np.ndarray):
+        return _plain(value.tolist(), where, reasons)
+    if isinstance(value, (list, tuple)):
+        if all(type(item) is float and math.isfinite(item) for item in value):
+            return [item + 0.0 for item in value]  # responses are long
+        return [_plain(item, f"{where}.{number}", reasons) for number, item in enumerate(value)]
+    if isinstance(value, Enum):
+        return value.value
+    if isinstance(value, np.generic):
+        return _plain(value.item(), where, reasons)
+    if is_dataclass(value):
+        return _record(value, where, reasons)
+    if isinstance(value, float) and not math.isfinite(value):
+        reasons[where] = "not a number" if math.isnan(value) else "infinite"
+        return None
+    return value + 0.0 if isinstance(value, float) else value  # no -0.0
+
+
+def _record(value: Any, where: str, reasons: dict[str, str]) -> Any:
+    if hasattr(value, "to_json"):
+        return _plain(value.to_json(), where, reasons)
+    found = walk(value)
+    reasons |= {f"{where}.{key}": reason for key, reason in found.pop("reasons", {}).items()}
+    return _plain(found, where, reasons)

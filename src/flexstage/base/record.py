@@ -1,0 +1,187 @@
+"""Records: results whose annotated fields say what they hold; one walker reads them for documents, tables and their description.
+
+A field is told under its name, a number in its SI unit, which stands in the key: `natural: Annotated[Array, FREQUENCY]` is `natural_hz`.
+An array whose last axis has the names in a field beside it, `Annotated[Array, LENGTH, Along("actuators")]`, is told name by name. A
+property is told where its type is annotated: with a quantity, or as a `VIEW`. Bare arrays are for arithmetic and not told, neither is
+what is `INNER` nor a description. What a result does not have is None, and its `reasons` say why, by field.
+"""
+
+from __future__ import annotations
+
+import functools
+import inspect
+import re
+import types
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, fields, is_dataclass
+from enum import Enum
+from typing import Annotated, Any, Union, get_args, get_origin, get_type_hints
+
+import numpy as np
+
+from flexstage.base.digest import Description
+from flexstage.base.finding import DesignError
+from flexstage.base.labelled import Matrix
+from flexstage.base.number import Array
+from flexstage.base.quantity import Quantity
+
+
+class Told(Enum):
+    """Whether a field is told, where its type alone does not say."""
+
+    VIEW = True
+    INNER = False
+
+
+VIEW, INNER = Told.VIEW, Told.INNER
+
+
+@dataclass(frozen=True)
+class Along:
+    """The last axis of an array has the names in a field beside it."""
+
+    names: str
+
+
+@dataclass(frozen=True)
+class UnitOf:
+    """Numbers by name, of which each has the SI unit of its name."""
+
+    unit: Callable[[str], str]
+
+
+@dataclass(frozen=True)
+class Field:
+    """What is told of a result: its name, type, annotations, and the first line that explains it."""
+
+    name: str
+    type: Any
+    annotations: tuple[Any, ...]
+    meaning: str = ""
+
+    @property
+    def key(self) -> str:
+        """The name with the unit.
+
+        >>> from flexstage.base.quantity import STIFFNESS
+        >>> Field("axial", float, (STIFFNESS,)).key
+        'axial_n_per_m'
+        """
+        return keyed(self.name, self.unit)
+
+    @property
+    def unit(self) -> str:
+        """The SI unit, `1` of what has none."""
+        return next((each.si for each in self.annotations if isinstance(each, Quantity)), "1")
+
+    def of(self, record: Any) -> Any:
+        """Its value."""
+        value = getattr(record, self.name)
+        by_name = next((each for each in self.annotations if isinstance(each, UnitOf)), None)
+        return value if by_name is None or value is None else {keyed(name, by_name.unit(name)): each for name, each in value.items()}
+
+    @property
+    def along(self) -> str | None:
+        """The field with the names of its last axis."""
+        return next((each.names for each in self.annotations if isinstance(each, Along)), None)
+
+
+def keyed(name: str, unit: str) -> str:
+    """A name with a unit behind it.
+
+    >>> keyed("gain", "m/V"), keyed("gain", "1"), keyed("mass_factor", "1/s")
+    ('gain_m_per_v', 'gain', 'mass_factor_per_s')
+    """
+    if unit == "1":
+        return name
+    top, _, bottom = unit.replace(" ", "").replace("^", "").replace("(", "").replace(")", "").lower().partition("/")
+    return "_".join([name, *([top] if top != "1" else []), *(["per", bottom] if bottom else [])])
+
+
+@functools.cache
+def told_of(kind: type) -> tuple[Field, ...]:
+    """What is told of results of that class: fields, then properties."""
+    hints = get_type_hints(kind, include_extras=True)
+    own = [(each.name, hints[each.name], _explained(kind, each.name)) for each in fields(kind) if each.name != "reasons"]
+    own = [each for each in own if _is_told(*_opened(each[1]))]
+    views = [(name, hint, doc) for name, hint, doc in _properties(kind) if get_origin(hint) is Annotated]
+    return tuple(Field(name, *_opened(hint), doc) for name, hint, doc in (*own, *views))
+
+
+def _explained(kind: type, name: str) -> str:
+    """What the docstrings of a class and its bases say of a field, from its name to the end of the clause."""
+    texts = (" ".join((base.__doc__ or "").split()) for base in kind.__mro__)
+    found = (re.search(rf"`{name}`(?:,? `\w+`| and `\w+`)*(?: \([^)]*\))? ((?:[^.;`]|\.\w|`[^`]*`)+)", text) for text in texts)
+    return next((each[1].strip(" ,") for each in found if each), "")
+
+
+def _opened(hint: Any) -> tuple[Any, tuple[Any, ...]]:
+    """A type and its annotations."""
+    return get_args(hint)[0] if get_origin(hint) is Annotated else hint, getattr(hint, "__metadata__", ())
+
+
+def _is_told(kind: Any, annotations: tuple[Any, ...]) -> bool:
+    if annotations:
+        return INNER not in annotations
+    return not any(part == Array or (isinstance(part, type) and issubclass(part, Description)) for part in _parts(kind))
+
+
+def _parts(kind: Any) -> Iterator[Any]:
+    """A type and those that it is made of."""
+    yield kind
+    if kind != Array:
+        for part in get_args(kind):
+            yield from _parts(part)
+
+
+def _properties(kind: type) -> Iterator[tuple[str, Any, str]]:
+    for base in reversed(kind.__mro__):
+        for name, each in vars(base).items():
+            function = each.fget if isinstance(each, property) else each.func if isinstance(each, functools.cached_property) else None
+            if function is not None and name != "reasons":
+                yield name, get_type_hints(function, include_extras=True).get("return"), (inspect.getdoc(function) or "").split("\n")[0]
+
+
+def walk(record: Any) -> dict[str, Any]:
+    """What is told of a result, one level deep, and the `reasons` for what is absent."""
+    kinds, found, reasons = told_of(type(record)), dict[str, Any](), dict(getattr(record, "reasons", {}))
+    for each in kinds:
+        try:
+            value = None if each.name in reasons else each.of(record)
+        except DesignError as error:
+            value, reasons[each.name] = None, str(error)
+        if each.along is None:
+            found[each.key] = {name: {} for name in value or ()} if any(each.name == other.along for other in kinds) else value
+        elif value is not None:
+            items = np.moveaxis(value, -1, 0) if isinstance(value, np.ndarray) else value
+            for under, item in zip(found[each.along].values(), items, strict=True):
+                under[each.key] = item
+    keys = {each.name: each.key for each in kinds}
+    return found | ({"reasons": {keys.get(name, name): reason for name, reason in reasons.items()}} if reasons else {})
+
+
+def paths(kind: type, before: str = "") -> Iterator[tuple[str, str, str]]:
+    """Where everything that is told of results of that class stands in a document, what it is, and what the field says of itself."""
+    kinds = told_of(kind)
+    named = {each.along for each in kinds}
+    for each in kinds:
+        if each.name not in named:
+            under = "" if each.along is None else f"{each.along}.<name>."
+            yield from _field_paths(each, before + under + each.key)
+
+
+def _field_paths(each: Field, path: str) -> Iterator[tuple[str, str, str]]:
+    inner: Any = each.type
+    form = ""
+    if get_origin(inner) in (Union, types.UnionType):
+        inner = next(part for part in get_args(inner) if part is not type(None))
+    if get_origin(inner) is tuple and get_args(inner)[-1] is Ellipsis:
+        inner, form = get_args(inner)[0], "[]"
+    elif get_origin(inner) is Mapping:
+        inner, form = get_args(inner)[1], ".<name>"
+    if is_dataclass(inner) and isinstance(inner, type) and not hasattr(inner, "to_json"):
+        yield from paths(inner, f"{path}{form}.")
+        return
+    words: dict[Any, str] = {Matrix: "matrix", str: "text", bool: "true or false", int: "number", float: "number", Array: "numbers"}
+    word = f"number, {each.unit}" if each.unit != "1" else words.get(inner, "")
+    yield path + form, word, each.meaning
