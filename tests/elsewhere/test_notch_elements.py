@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from flexstage.beams.stress import concentration
+from flexstage.beams.profiled import concentration
 from flexstage.beams.validity import validity
 from flexstage.parts.notch import Notch
 from flexstage.parts.profile import Circular, Filleted

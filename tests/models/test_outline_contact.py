@@ -11,7 +11,6 @@ import pytest
 from flexstage.cases.registry import CASES, case
 from flexstage.mechanism.contact import contact_findings
 from flexstage.mechanism.mechanism import Link, Mechanism, Probe
-from flexstage.mechanism.outline import rise
 from flexstage.mechanism.pattern import Pose
 from flexstage.mechanism.pieces import SAGITTA, pieces
 from flexstage.parts.body import Block, Body, Cylinder, Solid
@@ -22,7 +21,7 @@ from flexstage.parts.material import Material
 from flexstage.parts.neck import Neck
 from flexstage.parts.notch import Notch
 from flexstage.parts.part import Part
-from flexstage.parts.profile import Circular, Elliptic, Filleted, length
+from flexstage.parts.profile import Circular, Elliptic, Filleted, length, rise
 from flexstage.parts.rod import Rod
 from flexstage.solid.fea.contact import contact_findings as cad_findings
 from flexstage.solid.fea.draw import drawn, moved

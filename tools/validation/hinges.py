@@ -9,7 +9,7 @@ import numpy as np
 import flexstage as fs
 from flexstage.base.number import Array
 from flexstage.beams import closed_forms
-from flexstage.beams.stress import concentration
+from flexstage.beams.profiled import concentration
 from flexstage.parts.part import Elastic
 from flexstage.spatial.frame import transport
 from tests.analytic import test_leaf_plate, test_notch_profiles, test_paros_weisbord, test_smith_toroid

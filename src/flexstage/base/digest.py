@@ -15,6 +15,7 @@ import numpy as np
 from flexstage.base.finding import refuse
 from flexstage.base.number import freeze
 from flexstage.base.quantity import Quantity
+from flexstage.base.register import origin
 
 DOCUMENT_ONLY = {"physics": False}
 """Field metadata: the field (a name, tags, sources) does not count in the physics digest."""
@@ -26,7 +27,7 @@ class Description:
     """Base of every frozen value that describes a stage: immutable, compared and hashed by content.
 
     Two digests exist: `digest(value)` covers the whole document; `digest(value, physics=True)` leaves out fields marked `DOCUMENT_ONLY`.
-    Floats are compared by their bits.
+    Floats are compared by their bits. Classes of other packages count with their package's version.
     """
 
     __slots__ = ()
@@ -97,7 +98,7 @@ def _own(value: Description, *, physics: bool) -> bytes:
     """The digest of one description, kept with it: a design varied in one number shares all other parts with the one it came from."""
     known: dict[bool, bytes] = value.__dict__.setdefault(_KEPT, {})
     if physics not in known:
-        pieces = [b"D" + type(value).__name__.encode()]
+        pieces = [b"D" + type(value).__name__.encode() + origin(type(value).__module__).encode()]
         for name, piece in _counted_fields(type(value), physics=physics):
             pieces.append(piece)
             _feed(pieces, getattr(value, name), physics=physics)

@@ -1,1 +1,20 @@
 """Compliance and mass of parts by beam theory."""
+
+from flexstage.base.register import Register
+from flexstage.beams.given import GIVEN
+from flexstage.beams.law import PartLaw
+from flexstage.beams.leaf import LEAF
+from flexstage.beams.neck import NECK
+from flexstage.beams.notch import NOTCH
+from flexstage.beams.piezo import PIEZO
+from flexstage.beams.rod import ROD
+from flexstage.parts.given import Given
+from flexstage.parts.leaf import Leaf
+from flexstage.parts.neck import Neck
+from flexstage.parts.notch import Notch
+from flexstage.parts.piezo import Piezo
+from flexstage.parts.rod import Rod
+
+_OWN = {Notch: NOTCH, Neck: NECK, Leaf: LEAF, Rod: ROD, Given: GIVEN, Piezo: PIEZO}
+LAWS: Register[PartLaw] = Register("flexstage.laws", {part.kind: law for part, law in _OWN.items()})
+"""The laws of parts by kind."""

@@ -12,24 +12,15 @@ from functools import lru_cache
 
 import numpy as np
 
-from flexstage.base.finding import refuse
+from flexstage.base.finding import DesignError, refuse
 from flexstage.base.number import Array
+from flexstage.beams import LAWS
 from flexstage.beams.beam import Beam
-from flexstage.beams.given import given_compliance
-from flexstage.beams.leaf import leaf_beam, leaf_diagonal
-from flexstage.beams.neck import neck_beam
-from flexstage.beams.notch import notch_beam
-from flexstage.beams.piezo import piezo_beam
-from flexstage.beams.rod import rod_beam
+from flexstage.beams.law import PartLaw
 from flexstage.parts.freedom import Freedom, others
-from flexstage.parts.given import Given, Joint
-from flexstage.parts.leaf import Leaf
+from flexstage.parts.given import Joint
 from flexstage.parts.material import Material
-from flexstage.parts.neck import Neck
-from flexstage.parts.notch import Notch
-from flexstage.parts.part import Elastic, Part, Restricted
-from flexstage.parts.piezo import Piezo
-from flexstage.parts.rod import Rod
+from flexstage.parts.part import Elastic, Part, Restricted, inner, material_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,22 +37,26 @@ def compliance(part: Elastic, material: Material | None) -> Array:
     `material` is needed by notches, necks, leaves and rods. Raises `DesignError` if it is missing.
 
     >>> steel = Material(young=200e9, poisson=0.3, density=7750.0)
+    >>> from flexstage.parts.rod import Rod
     >>> compliance(Rod("steel", length=0.1, diameter=0.002), steel).shape
     (6, 6)
     """
-    return given_compliance(part) if isinstance(part, Given) else _diagonal_matrix(_diagonal(part, material))
+    whole = _known(part).compliance
+    return _diagonal_matrix(_diagonal(part, material)) if whole is None else whole(part)
 
 
 def stiffness(part: Elastic, material: Material | None) -> Array:
     """Stiffness (..., 6, 6) of a part about its centre, the inverse of its compliance.
 
     >>> steel = Material(young=200e9, poisson=0.3, density=7750.0)
+    >>> from flexstage.parts.rod import Rod
     >>> rod = Rod("steel", length=0.1, diameter=0.002)
     >>> bool(np.allclose(stiffness(rod, steel) @ compliance(rod, steel), np.eye(6)))
     True
     """
-    if isinstance(part, Given):
-        return np.linalg.inv(given_compliance(part))
+    whole = _known(part).compliance
+    if whole is not None:
+        return np.linalg.inv(whole(part))
     return _diagonal_matrix(1.0 / _diagonal(part, material))
 
 
@@ -96,33 +91,47 @@ def locked(part: Part) -> tuple[Freedom, ...]:
     return others(part.elastic + part.free) if isinstance(part, Restricted) else ()
 
 
-def beam_of(part: Notch | Neck | Leaf | Rod | Piezo, material: Material | None) -> Beam:
-    """The part as a straight beam; raises `DesignError` where it needs a material and has none.
+def law_of(part: Part) -> PartLaw | None:
+    """What beam theory knows of a part's kind, that of a restricted part's own; `None` where nothing is known."""
+    return LAWS.get(inner(part).kind)
 
+
+def beam_of(part: Part, material: Material | None) -> Beam:
+    """The part as a straight beam; raises `DesignError` where it needs a material and has none, and where it is not known as a beam.
+
+    >>> from flexstage.parts.piezo import Piezo
     >>> beam_of(Piezo(stroke=1e-4, stiffness=1e7, length=0.1, diameter=0.01), None).section.is_round
     True
     """
-    if isinstance(part, Piezo):
-        return piezo_beam(part)
-    material = _required(part, material)
-    if isinstance(part, Notch):
-        return notch_beam(part, material)
-    if isinstance(part, Neck):
-        return neck_beam(part, material)
-    return leaf_beam(part, material) if isinstance(part, Leaf) else rod_beam(part, material)
+    known = _known(part)
+    if known.beam is None:
+        raise _unknown(part)
+    return known.beam(part, _required(part, material) if known.needs_material else material)
+
+
+def _known(part: Part) -> PartLaw:
+    known = law_of(part)
+    if known is None:
+        raise _unknown(part)
+    return known
+
+
+def _unknown(part: Part) -> DesignError:
+    what = "its law by beam theory is not known: nobody offers one for this kind"
+    advice = f'Install the package that does ({LAWS.group}), or state its 6x6 (kind = "given")'
+    return refuse(f"a part of kind {inner(part).kind}", what, advice)
 
 
 @lru_cache(maxsize=32)
-def _diagonal(part: Notch | Neck | Leaf | Rod | Piezo, material: Material | None) -> Array:
-    if isinstance(part, Leaf):
-        return leaf_diagonal(part, _required(part, material))
-    return beam_of(part, material).diagonal()
+def _diagonal(part: Elastic, material: Material | None) -> Array:
+    own = _known(part).diagonal
+    return beam_of(part, material).diagonal() if own is None else own(part, _required(part, material))
 
 
-def _required(part: Notch | Neck | Leaf | Rod, material: Material | None) -> Material:
+def _required(part: Part, material: Material | None) -> Material:
     if material is None:
-        kind = type(part).__name__.lower()
-        raise refuse(f"{kind} of {part.material}", "its stiffness was asked for without a material", f"pass the material {part.material}")
+        where = f"{inner(part).kind} of {material_of(part)}"
+        raise refuse(where, "its stiffness was asked for without a material", f"pass the material {material_of(part)}")
     return material
 
 

@@ -9,12 +9,11 @@ import numpy as np
 
 from flexstage.base.number import Array
 from flexstage.beams.beam import Beam
-from flexstage.beams.compliance import beam_of
-from flexstage.parts.given import Given, Joint
-from flexstage.parts.leaf import Leaf
+from flexstage.beams.compliance import beam_of, law_of
+from flexstage.parts.given import Joint
 from flexstage.parts.material import Material
-from flexstage.parts.part import Part, Restricted
-from flexstage.parts.rod import Rod
+from flexstage.parts.part import Part, inner
+from flexstage.parts.shape import Shaped
 
 ENDS = 12
 _SLENDER, _STOUT = (2, 3, 3), (0, 2, 2)
@@ -45,12 +44,11 @@ def geometric(part: Part, material: Material | None) -> Geometric:
     >>> round(float(found.per_force[0, 1, 1] * 0.06), 3)  # 6 N / (5 L) of the consistent matrix
     1.2
     """
-    inner = part.part if isinstance(part, Restricted) else part
-    return (
-        _of_point()
-        if isinstance(inner, (Given, Joint))
-        else _of_beam(beam_of(inner, material), _SLENDER if isinstance(inner, (Leaf, Rod)) else _STOUT)
-    )
+    own = inner(part)
+    known = law_of(own)
+    if isinstance(own, Joint) or (known is not None and known.beam is None):
+        return _of_point()
+    return _of_beam(beam_of(own, material), _SLENDER if isinstance(own, Shaped) and own.slender else _STOUT)
 
 
 def _of_point() -> Geometric:

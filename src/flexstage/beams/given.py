@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from flexstage.base.number import Array, stack
+from flexstage.beams.law import PartLaw
 from flexstage.parts.given import Given
 
 
@@ -26,3 +27,6 @@ def given_mass(part: Given) -> Array:
     pattern = np.zeros((12, 12))
     pattern[[0, 1, 2, 6, 7, 8], [0, 1, 2, 6, 7, 8]] = 0.5
     return np.asarray(part.mass)[..., None, None] * pattern
+
+
+GIVEN = PartLaw(compliance=given_compliance, mass=given_mass)

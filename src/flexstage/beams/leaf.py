@@ -6,6 +6,7 @@ import numpy as np
 
 from flexstage.base.number import Array, Number
 from flexstage.beams.beam import Beam, flexibility, inertia
+from flexstage.beams.law import PartLaw, Range, ratio
 from flexstage.beams.plate import moment_factor, shear_factor
 from flexstage.beams.quadrature import Stations, stations
 from flexstage.beams.section import Section, cowper_rectangle, rectangle
@@ -86,3 +87,11 @@ def _twisting(part: Leaf, points: Stations, section: Section, material: Material
     whole = 1.0 + np.exp(-2.0 * wavenumber * half)
     warping = np.asarray(material.young)[..., None] * section.warping
     return Twisting(free * (1.0 - (near + far) / whole), -free * warping * wavenumber * (near - far) / whole)
+
+
+def _ranges(part: Leaf) -> tuple[Range, ...]:
+    thin = Range("thickness over width", ratio(part.thickness, part.width), high=0.2)
+    return thin, Range("length over thickness", ratio(part.length, part.thickness), low=10.0)
+
+
+LEAF = PartLaw(leaf_beam, leaf_diagonal, concentration=lambda _: 1.0, ranges=_ranges, family=lambda _: "leaf")

@@ -9,10 +9,8 @@ import numpy as np
 
 from flexstage.base.number import Array
 from flexstage.beams.beam import Beam
-from flexstage.beams.compliance import Law, beam_of, law
-from flexstage.beams.given import given_mass
-from flexstage.parts.given import Given, Joint
-from flexstage.parts.leaf import Leaf
+from flexstage.beams.compliance import Law, beam_of, law, law_of
+from flexstage.parts.given import Joint
 from flexstage.parts.material import Material
 from flexstage.parts.part import Part, Restricted
 
@@ -33,8 +31,9 @@ def mass(part: Part, material: Material | None) -> Array:
     """
     if isinstance(part, (Joint, Restricted)):
         return np.zeros((12, 12))
-    if isinstance(part, Given):
-        return given_mass(part)
+    known = law_of(part)
+    if known is not None and known.mass is not None:
+        return known.mass(part)
     return consistent_mass(beam_of(part, material))
 
 
@@ -47,7 +46,8 @@ def law_and_mass(part: Part, material: Material | None) -> tuple[Law, Array]:
     >>> bool(np.all(law_and_mass(rod, steel)[0].stiffness == law(rod, steel).stiffness))
     True
     """
-    if isinstance(part, (Joint, Restricted, Given, Leaf)):
+    known = law_of(part)
+    if known is None or known.beam is None or known.diagonal is not None or isinstance(part, Restricted):
         return law(part, material), mass(part, material)
     beam = beam_of(part, material)
     return Law((1.0 / beam.diagonal())[..., None] * np.eye(6)), consistent_mass(beam)

@@ -6,10 +6,13 @@ import numpy as np
 
 from flexstage.base.number import Array, Number
 from flexstage.beams.beam import Beam, beam
+from flexstage.beams.law import PartLaw, Range
+from flexstage.beams.profiled import concentration, proportion
 from flexstage.beams.quadrature import stations
 from flexstage.beams.section import circle, cowper_circle, rectangle
 from flexstage.parts.material import Material
 from flexstage.parts.neck import Neck
+from flexstage.parts.profile import Circular, Straight
 
 
 def neck_beam(part: Neck, material: Material) -> Beam:
@@ -31,3 +34,16 @@ def neck_beam(part: Neck, material: Material) -> Beam:
 
 def _grown(size: Number, growth: Array) -> Array:
     return np.asarray(size)[..., None] + 2.0 * growth
+
+
+def _ranges(part: Neck) -> tuple[Range, ...]:
+    return (proportion(part.profile, part.thickness, "toroid" if part.width is None else "notch"),)
+
+
+def _family(part: Neck) -> str | None:
+    if isinstance(part.profile, Straight):
+        return "bar"
+    return "toroid" if part.width is None and isinstance(part.profile, Circular) else None
+
+
+NECK = PartLaw(neck_beam, concentration=lambda part: concentration(part.profile, part.thickness), ranges=_ranges, family=_family)

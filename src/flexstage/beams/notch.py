@@ -5,10 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from flexstage.beams.beam import Beam, beam
+from flexstage.beams.law import PartLaw, Range, ratio
+from flexstage.beams.profiled import concentration, proportion
 from flexstage.beams.quadrature import stations
 from flexstage.beams.section import rectangle
 from flexstage.parts.material import Material
 from flexstage.parts.notch import Notch
+from flexstage.parts.profile import Filleted, Straight
 
 
 def notch_beam(part: Notch, material: Material) -> Beam:
@@ -23,3 +26,14 @@ def notch_beam(part: Notch, material: Material) -> Beam:
     points = stations(part.profile, part.thickness)
     thickness = np.asarray(part.thickness)[..., None] + 2.0 * points.growth
     return beam(points, rectangle(thickness, np.asarray(part.width)[..., None]), material)
+
+
+def _ranges(part: Notch) -> tuple[Range, ...]:
+    return Range("width over thickness", ratio(part.width, part.thickness), low=1.0), proportion(part.profile, part.thickness, "notch")
+
+
+def _family(part: Notch) -> str:
+    return "bar" if isinstance(part.profile, Straight) else "fillet" if isinstance(part.profile, Filleted) else "notch"
+
+
+NOTCH = PartLaw(notch_beam, concentration=lambda part: concentration(part.profile, part.thickness), ranges=_ranges, family=_family)

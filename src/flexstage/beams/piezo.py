@@ -8,6 +8,7 @@ import numpy as np
 
 from flexstage.base.number import Number
 from flexstage.beams.beam import Beam, flexibility, inertia
+from flexstage.beams.law import PartLaw
 from flexstage.beams.quadrature import stations
 from flexstage.beams.section import circle, cowper_circle
 from flexstage.beams.torsion import free_twist
@@ -45,3 +46,6 @@ def effective_modulus(part: Piezo) -> Number:
     35.07
     """
     return part.stiffness * part.length / (0.25 * np.pi * part.diameter * part.diameter)
+
+
+PIEZO = PartLaw(lambda part, _: piezo_beam(part), needs_material=False)

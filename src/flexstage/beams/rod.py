@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from flexstage.beams.beam import Beam, beam
+from flexstage.beams.law import PartLaw, Range, ratio
 from flexstage.beams.quadrature import stations
 from flexstage.beams.section import circle, cowper_circle
 from flexstage.parts.material import Material
@@ -23,3 +24,10 @@ def rod_beam(part: Rod, material: Material) -> Beam:
     points = stations(Straight(part.length), part.diameter)
     factor = np.asarray(cowper_circle(material.poisson))[..., None]
     return beam(points, circle(np.asarray(part.diameter)[..., None] + points.growth, factor), material)
+
+
+def _ranges(part: Rod) -> tuple[Range, ...]:
+    return (Range("length over diameter", ratio(part.length, part.diameter), low=5.0),)
+
+
+ROD = PartLaw(rod_beam, concentration=lambda _: 1.0, ranges=_ranges, family=lambda _: "bar")

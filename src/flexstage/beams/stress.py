@@ -8,14 +8,9 @@ import numpy as np
 
 from flexstage.base.number import Array, Number, magnitude
 from flexstage.beams.beam import Beam
-from flexstage.beams.compliance import beam_of
-from flexstage.parts.leaf import Leaf
+from flexstage.beams.compliance import beam_of, law_of
 from flexstage.parts.material import Material
-from flexstage.parts.neck import Neck
-from flexstage.parts.notch import Notch
-from flexstage.parts.part import Part, Restricted
-from flexstage.parts.profile import Elliptic, Profile, Straight
-from flexstage.parts.rod import Rod
+from flexstage.parts.part import Part, inner
 
 _ODD = np.arange(1.0, 8.0, 2.0)
 
@@ -37,11 +32,13 @@ class Stress:
 def has_section(part: Part) -> bool:
     """Whether beam theory knows the part's section, so that `stress` has something to say of it.
 
+    >>> from flexstage.parts.notch import Notch
     >>> from flexstage.parts.profile import Circular
     >>> has_section(Notch("steel", thickness=0.001, width=0.01, profile=Circular(0.005)))
     True
     """
-    return isinstance(part.part if isinstance(part, Restricted) else part, (Notch, Neck, Leaf, Rod))
+    known = law_of(part)
+    return known is not None and known.concentration is not None
 
 
 def stress(part: Part, material: Material | None, wrench: Array) -> Stress | None:
@@ -53,41 +50,25 @@ def stress(part: Part, material: Material | None, wrench: Array) -> Stress | Non
     parts without a known section (piezo stacks have limits of load instead).
 
     >>> steel = Material(young=200e9, poisson=0.3, density=7750.0)
+    >>> from flexstage.parts.leaf import Leaf
     >>> leaf = Leaf("steel", length=0.05, thickness=0.001, width=0.01)
     >>> found = stress(leaf, steel, np.array([0.0, 1.0, 0.0, 0.0, 0.0, 0.0]))  # 1 N guided: M = F L/2 at both ends
     >>> round(float(found.nominal) / 1e6, 2), round(6 * 0.025 / (0.01 * 0.001**2) / 1e6, 2)
     (15.0, 15.0)
     """
-    inner = part.part if isinstance(part, Restricted) else part
-    if not isinstance(inner, (Notch, Neck, Leaf, Rod)):  # as has_section says
+    own = inner(part)
+    known = law_of(own)
+    if known is None or known.beam is None or known.concentration is None:  # as has_section says
         return None
-    beam = beam_of(inner, material)
+    beam = beam_of(own, material)
     position = np.stack([-beam.points.position, beam.points.position], axis=-2)
     load = np.moveaxis(np.asarray(wrench), -1, 0)[..., None, None]
     equivalent = np.sqrt(_normal(beam, position, load) ** 2 + 3.0 * _tangential(beam, load) ** 2)
     equivalent, position = (item.reshape(*item.shape[:-2], -1) for item in np.broadcast_arrays(equivalent, position))
     where = np.argmax(equivalent, axis=-1)[..., None]
     nominal = np.take_along_axis(equivalent, where, axis=-1)[..., 0]
-    factor = concentration(inner.profile, inner.thickness) if isinstance(inner, (Notch, Neck)) else 1.0
+    factor = known.concentration(own)
     return Stress(nominal, np.take_along_axis(position, where, axis=-1)[..., 0], np.asarray(factor))
-
-
-def concentration(profile: Profile, thickness: Number) -> Number:
-    """Stress concentration factor of a notch in bending, K_t = (1 + t/2R)^(9/20) (Smith, Flexures, 2000), R the radius at the throat.
-
-    R is a^2/c for an ellipse, the fillet's radius for a corner-filleted hinge; a straight hinge has 1 (its corners are not described).
-    Against plane-stress finite elements with full-height blocks, for t/2R up to 1 (tests/elsewhere): circular notch in bending +1 to +2 %,
-    in tension 0 to -13 %; fillets in bending +3 to +7 %, in tension -2 to -10 %.
-
-    >>> from flexstage.parts.profile import Circular
-    >>> round(float(concentration(Circular(0.005), 0.001)), 4)
-    1.0438
-    """
-    if isinstance(profile, Straight):
-        return 1.0
-    if isinstance(profile, Elliptic):
-        return (1.0 + thickness * profile.across / (2.0 * profile.along * profile.along)) ** 0.45
-    return (1.0 + thickness / (2.0 * profile.radius)) ** 0.45
 
 
 def _normal(beam: Beam, position: Array, load: Array) -> Array:

@@ -21,8 +21,9 @@ from flexstage.mechanism.expand import Assembly, expand
 from flexstage.mechanism.mechanism import GROUND, Mechanism
 from flexstage.mechanism.near import near_pairs
 from flexstage.mechanism.outline import Outline, outlines
-from flexstage.mechanism.pieces import SAGITTA, Form, form_of, is_flat, pieces, single
+from flexstage.mechanism.pieces import SAGITTA, Form, form_of, is_flat, pieces
 from flexstage.parts.body import Block, Cylinder, Imported
+from flexstage.parts.profile import single
 from flexstage.spatial.convex import Convex, distance, separation
 from flexstage.spatial.frame import Frame
 

@@ -13,15 +13,10 @@ from flexstage.mechanism.drawn import as_drawn
 from flexstage.mechanism.expand import Assembly, PlacedLink, expand
 from flexstage.mechanism.mechanism import GROUND, NOT_GROWING, Mechanism
 from flexstage.parts.body import Solid
-from flexstage.parts.given import Given, Joint
-from flexstage.parts.leaf import Leaf
 from flexstage.parts.mass import solid_properties
-from flexstage.parts.neck import Neck
-from flexstage.parts.notch import Notch
-from flexstage.parts.part import Part, Restricted, material_of
+from flexstage.parts.part import Part, inner, material_of
 from flexstage.parts.piezo import Piezo
-from flexstage.parts.profile import length
-from flexstage.parts.rod import Rod
+from flexstage.parts.shape import Shaped
 
 _STATED, _ASKED = "as stated", "as asked"
 
@@ -115,8 +110,8 @@ def coefficient(link: PlacedLink) -> Number:
     >>> coefficient(expand(double_triangle()).links["B1/pzt"])
     -3e-06
     """
-    inner = link.part.part if isinstance(link.part, Restricted) else link.part
-    holder = inner if isinstance(inner, Piezo) else link.material
+    part = inner(link.part)
+    holder = part if isinstance(part, Piezo) else link.material
     value = None if holder is None else holder.expansion
     return np.nan if value is None else value
 
@@ -124,18 +119,16 @@ def coefficient(link: PlacedLink) -> Number:
 def span(part: Part) -> Number:
     """Length of a part along its x axis [m], zero for given matrices and joints.
 
+    >>> from flexstage.parts.leaf import Leaf
     >>> span(Leaf("steel", length=0.05, thickness=0.001, width=0.01))
     0.05
     """
-    inner = part.part if isinstance(part, Restricted) else part
-    if isinstance(inner, (Leaf, Rod, Piezo)):
-        return inner.length
-    return length(inner.profile) if isinstance(inner, (Notch, Neck)) else 0.0
+    own = inner(part)
+    return own.span if isinstance(own, Shaped) else 0.0
 
 
 def _grows(link: PlacedLink) -> bool:
-    inner = link.part.part if isinstance(link.part, Restricted) else link.part
-    return not isinstance(inner, (Given, Joint))
+    return isinstance(inner(link.part), Shaped)
 
 
 def _body_material(mechanism: Mechanism, assembly: Assembly, name: str) -> tuple[str, str]:

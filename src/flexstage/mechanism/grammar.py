@@ -44,15 +44,10 @@ from flexstage.mechanism.node import (
     whole_text,
 )
 from flexstage.mechanism.pattern import Polar, Pose
+from flexstage.parts import PARTS
 from flexstage.parts.body import Block, Cylinder, Imported
-from flexstage.parts.given import Given, Joint
-from flexstage.parts.leaf import Leaf
-from flexstage.parts.neck import Neck
-from flexstage.parts.notch import Notch
-from flexstage.parts.part import Restricted
-from flexstage.parts.piezo import Piezo
 from flexstage.parts.profile import Circular, Elliptic, Filleted, Straight
-from flexstage.parts.rod import Rod
+from flexstage.parts.shape import Elastic
 
 TAGS = "tags"
 LIKE = "like"
@@ -60,14 +55,6 @@ RESERVED = (TAGS, LIKE)
 """Keys that may stand in any table of a file and are no field."""
 
 _ALTERNATIVES: dict[type, tuple[str | None, str]] = {
-    Notch: ("kind", "notch"),
-    Neck: ("kind", "neck"),
-    Leaf: ("kind", "leaf"),
-    Rod: ("kind", "rod"),
-    Given: ("kind", "given"),
-    Joint: ("kind", "joint"),
-    Piezo: ("kind", "piezo"),
-    Restricted: ("kind", "restricted"),
     Circular: ("shape", "circular"),
     Elliptic: ("shape", "elliptic"),
     Filleted: ("shape", "filleted"),
@@ -483,15 +470,21 @@ def _node(hint: Any) -> Node:
     origin = typing.get_origin(hint)
     if origin is Annotated:
         return _annotated(hint)
-    if origin in (types.UnionType, typing.Union):
-        options = typing.get_args(hint)
-        told = [_ALTERNATIVES.get(option) or getattr(option, TOLD_BY) for option in options]
+    if hint is Elastic or origin in (types.UnionType, typing.Union):
+        options = [each for option in typing.get_args(hint) or (hint,) for each in (PARTS.all.values() if option is Elastic else [option])]
+        told = [_told_by(option) for option in options]
         return UnionNode(told[0][0], tuple((name, RecordNode(option)) for (_, name), option in zip(told, options, strict=True)))
     if origin is tuple:
         return _tuple(typing.get_args(hint))
     if isinstance(origin, type) and issubclass(origin, Mapping):
         return TableNode(_node(typing.get_args(hint)[1]))
     return _named(hint)
+
+
+def _told_by(option: type) -> tuple[str | None, str]:
+    """The key that tells an alternative apart, and its name there; parts say their kind."""
+    told = _ALTERNATIVES.get(option) or getattr(option, TOLD_BY, None)
+    return told or ("kind", option.kind)  # type: ignore[attr-defined]
 
 
 def _named(hint: type) -> TextNode | WholeNode | FlagNode | ChoiceNode | RecordNode:

@@ -10,13 +10,8 @@ import numpy as np
 from flexstage.base.number import Array, Number, stack
 from flexstage.mechanism.expand import Assembly, PlacedLink, PlacedSolid
 from flexstage.parts.body import Block, Imported
-from flexstage.parts.leaf import Leaf
-from flexstage.parts.neck import Neck
-from flexstage.parts.notch import Notch
-from flexstage.parts.part import Part, Restricted
-from flexstage.parts.piezo import Piezo
-from flexstage.parts.profile import Circular, Elliptic, Filleted, Profile, length
-from flexstage.parts.rod import Rod
+from flexstage.parts.part import inner
+from flexstage.parts.shape import Shaped
 from flexstage.spatial.frame import Frame
 
 
@@ -74,35 +69,10 @@ def _solid(name: str, placed: PlacedSolid) -> Outline:
 
 
 def _part(link: PlacedLink) -> Iterator[Outline]:
-    part: Part = link.part.part if isinstance(link.part, Restricted) else link.part
-    if isinstance(part, Notch):
-        yield Outline(link.name, link.frame, stack((length(part.profile), part.thickness + 2.0 * rise(part.profile), part.width)))
-    elif isinstance(part, Leaf):
-        yield Outline(link.name, link.frame, stack((part.length, part.thickness, part.width)))
-    elif isinstance(part, (Rod, Piezo)):
-        yield Outline(link.name, link.frame, _cylinder(part.length, part.diameter), is_round=True)
-    elif isinstance(part, Neck):
-        yield _neck(link, part)
-
-
-def _neck(link: PlacedLink, part: Neck) -> Outline:
-    grown = 2.0 * rise(part.profile)
-    if part.width is None:
-        return Outline(link.name, link.frame, _cylinder(length(part.profile), part.thickness + grown), is_round=True)
-    return Outline(link.name, link.frame, stack((length(part.profile), part.thickness + grown, part.width + grown)))
-
-
-def rise(profile: Profile) -> Number:
-    """How far the profile's cuts rise above the neck at its ends, w(+-1) [m].
-
-    >>> rise(Circular(0.005))
-    0.005
-    """
-    if isinstance(profile, Circular):
-        return profile.radius
-    if isinstance(profile, Elliptic):
-        return profile.across
-    return profile.radius if isinstance(profile, Filleted) else 0.0
+    part = inner(link.part)
+    if isinstance(part, Shaped):
+        end = part.end
+        yield Outline(link.name, link.frame, stack((part.span, end.height, end.width)), is_round=end.is_round)
 
 
 def _cylinder(length_: Number, diameter: Number) -> Array:

@@ -11,41 +11,29 @@ from typing import TypeAlias
 
 import numpy as np
 
-from flexstage.base.number import Array, Number
+from flexstage.base.number import Array
 from flexstage.parts.body import Block, Cylinder, Imported
-from flexstage.parts.leaf import Leaf
-from flexstage.parts.neck import Neck
-from flexstage.parts.notch import Notch
-from flexstage.parts.part import Part, Restricted
-from flexstage.parts.piezo import Piezo
-from flexstage.parts.profile import Elliptic, Filleted, Profile, Straight, length
-from flexstage.parts.rod import Rod
+from flexstage.parts.part import Part, inner
+from flexstage.parts.profile import Elliptic, Filleted, Profile, Straight, length, single
+from flexstage.parts.shape import Profiled, Shaped
 from flexstage.spatial.convex import Convex, cuboid, frustum
 
 SAGITTA = 2e-5
 """How far a piece stays inside a round face at most [m]."""
 _MOST = 96
 
-Form: TypeAlias = Notch | Neck | Leaf | Rod | Piezo | Block | Cylinder | Imported
+Form: TypeAlias = Shaped | Block | Cylinder | Imported
 
 
 def form_of(part: Part) -> Form | None:
     """The form of a link's part; a given matrix and an ideal joint have none.
 
-    >>> form_of(Leaf("steel", 0.02, 0.001, 0.01)).length
+    >>> from flexstage.parts.leaf import Leaf
+    >>> form_of(Leaf("steel", 0.02, 0.001, 0.01)).span
     0.02
     """
-    inner = part.part if isinstance(part, Restricted) else part
-    return inner if isinstance(inner, (Notch, Neck, Leaf, Rod, Piezo)) else None
-
-
-def single(value: Number) -> float:
-    """A number of the first design.
-
-    >>> single(np.array([1.0, 2.0]))
-    1.0
-    """
-    return float(np.real(np.ravel(value)[0]))
+    own = inner(part)
+    return own if isinstance(own, Shaped) else None
 
 
 def is_flat(form: Form) -> bool:
@@ -54,9 +42,7 @@ def is_flat(form: Form) -> bool:
     >>> is_flat(Block("steel", (0.1, 0.1, 0.1)))
     True
     """
-    return isinstance(form, (Block, Leaf)) or (
-        isinstance(form, (Notch, Neck)) and isinstance(form.profile, Straight) and (isinstance(form, Notch) or form.width is not None)
-    )
+    return isinstance(form, Block) or (isinstance(form, Shaped) and form.is_prismatic and not form.throat.is_round)
 
 
 def pieces(form: Form, trim: float = 0.0) -> tuple[Convex, ...]:
@@ -71,12 +57,38 @@ def pieces(form: Form, trim: float = 0.0) -> tuple[Convex, ...]:
         return tuple(_frame(form))
     if isinstance(form, Cylinder):
         return tuple(_tube(single(form.length), single(form.diameter), 0.0 if form.bore is None else single(form.bore)))
-    if isinstance(form, (Rod, Piezo)):
-        return tuple(_tube(single(form.length) - 2.0 * trim, single(form.diameter), 0.0))
-    if isinstance(form, Leaf):
-        half = np.array([0.5 * single(form.length) - trim, 0.5 * single(form.thickness), 0.5 * single(form.width)])
-        return (cuboid(tuple(-half), tuple(half)),)
-    return tuple(_hinge(form, trim))
+    if isinstance(form, Profiled):
+        return tuple(_hinge(form, trim))
+    return tuple(_bar(form, trim) if form.is_prismatic else _lofted(form, trim))
+
+
+def _bar(form: Shaped, trim: float) -> Iterator[Convex]:
+    """A part of one section."""
+    throat = form.throat.first
+    if throat.is_round:
+        yield from _tube(single(form.span) - 2.0 * trim, single(throat.height), 0.0)
+        return
+    half = np.array([0.5 * single(form.span) - trim, 0.5 * throat.height, 0.5 * throat.width])
+    yield cuboid(tuple(-half), tuple(half))
+
+
+def _lofted(form: Shaped, trim: float) -> Iterator[Convex]:
+    """A part of varying section, straight between the stations of its silhouette."""
+    stations = form.silhouette
+    places = np.array([x for x, _ in stations])
+    sizes = np.array([(section.height, section.width) for _, section in stations])
+    count = _corners(0.5 * float(np.max(sizes)))
+    inside = np.clip(places, places[0] + trim, places[-1] - trim)
+    heights, widths = (np.interp(inside, places, sizes[:, axis]) for axis in (0, 1))
+    is_round = form.throat.is_round
+    shapes = [_circle(0.5 * y, count) if is_round else _rectangle(0.5 * y, 0.5 * z) for y, z in zip(heights, widths, strict=True)]
+    for (here, one), (there, other) in pairwise(zip(inside, shapes, strict=True)):
+        if there > here:
+            yield frustum((here, there), (one, other))
+
+
+def _rectangle(y: float, z: float) -> Array:
+    return np.array([[y, z], [-y, z], [-y, -z], [y, -z]])
 
 
 def _frame(form: Block) -> Iterator[Convex]:
@@ -117,27 +129,22 @@ def _tube(size: float, diameter: float, bore: float) -> Iterator[Convex]:
         yield frustum((-half, half), (sector, sector))
 
 
-def _hinge(form: Notch | Neck, trim: float) -> Iterator[Convex]:
+def _hinge(form: Profiled, trim: float) -> Iterator[Convex]:
     """Slabs between stations along the hinge; the height between two is the tangent's of its cuts, or the lower end's."""
-    thickness = 0.5 * single(form.thickness)
     section = _section(form)
     for (here, there), (low, high) in _slabs(form.profile, trim):
-        yield frustum((here, there), (section(thickness, low), section(thickness, high)))
+        yield frustum((here, there), (section(low), section(high)))
 
 
-def _section(form: Notch | Neck) -> Callable[[float, float], Array]:
-    """The cross-section by half thickness and rise of the cuts, as a polygon (y, z)."""
-    if isinstance(form, Neck) and form.width is None:
-        count = _corners(0.5 * single(form.thickness) + rise_at(form.profile, 1.0))
-        return lambda half, up: _circle(half + up, count)
-    width = 0.5 * single(form.width)  # type: ignore[arg-type]
-    grows = isinstance(form, Neck)
-
-    def rectangle(half: float, up: float) -> Array:
-        y, z = half + up, width + (up if grows else 0.0)
-        return np.array([[y, z], [-y, z], [-y, -z], [y, -z]])
-
-    return rectangle
+def _section(form: Profiled) -> Callable[[float], Array]:
+    """The cross-section by the rise of the cuts, as a polygon (y, z)."""
+    throat = form.throat
+    thickness, width = 0.5 * single(throat.height), 0.5 * single(throat.width)
+    if throat.is_round:
+        count = _corners(thickness + rise_at(form.profile, 1.0))
+        return lambda up: _circle(thickness + up, count)
+    grows = single(form.grown(1.0).width) > single(throat.width)
+    return lambda up: _rectangle(thickness + up, width + (up if grows else 0.0))
 
 
 def rise_at(profile: Profile, station: float) -> float:

@@ -18,9 +18,8 @@ from flexstage.mechanism.incidence import layout
 from flexstage.mechanism.mechanism import GROUND, Mechanism
 from flexstage.models.linear.kinematics import Kinematics
 from flexstage.parts.freedom import ALL
-from flexstage.parts.leaf import Leaf
-from flexstage.parts.part import Part, Restricted
-from flexstage.parts.rod import Rod
+from flexstage.parts.part import inner
+from flexstage.parts.shape import Shaped
 from flexstage.spatial.frame import COMPONENTS, cross_matrix
 from flexstage.spatial.rotation import exponential, logarithm, logarithm_rate
 
@@ -214,7 +213,9 @@ def _links(mechanism: Mechanism, kinematics: Kinematics, *, posed: bool) -> _Lin
     bodies = layout(assembly).bodies
     index = {name: number for number, name in enumerate((*bodies, GROUND))}
     placed = tuple(assembly.links.values())
-    beams = [number for number, link in enumerate(placed) if isinstance(_inner(link.part), (Leaf, Rod))]
+    parts = [inner(link.part) for link in placed]
+    beams = [number for number, part in enumerate(parts) if isinstance(part, Shaped) and part.slender]
+    slender = [part for part in parts if isinstance(part, Shaped) and part.slender]
     return _Links(
         bodies=bodies,
         first=[index[link.joins[0]] for link in placed],
@@ -225,8 +226,8 @@ def _links(mechanism: Mechanism, kinematics: Kinematics, *, posed: bool) -> _Lin
         locked=_locked(placed, kinematics),
         drives=[6 * list(assembly.links).index(name) for name in assembly.actuators.values()],
         beams=beams,
-        spans=_together([np.asarray(getattr(_inner(placed[number].part), "length", 0.0)) for number in beams], 0),
-        round=np.array([isinstance(_inner(placed[number].part), Rod) for number in beams], dtype=float),
+        spans=_together([np.asarray(part.span) for part in slender], 0),
+        round=np.array([part.throat.is_round for part in slender], dtype=float),
         posed=tuple(COMPONENTS.index(name) for name in kinematics.coordinates) if posed else (),
         length=kinematics.length,
     )
@@ -236,10 +237,6 @@ def _locked(placed: tuple[PlacedLink, ...], kinematics: Kinematics) -> list[int]
     return [
         6 * number + freedom.index for number, link in enumerate(placed) for freedom in ALL if freedom not in kinematics.free[link.name]
     ]
-
-
-def _inner(part: Part) -> Part:
-    return part.part if isinstance(part, Restricted) else part
 
 
 def _arm(assembly: Assembly, link: PlacedLink, body: str) -> Array:

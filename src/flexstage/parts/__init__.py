@@ -1,1 +1,13 @@
 """What a stage is made of: data, intended freedoms and profiles; no stiffness, no CAD."""
+
+from flexstage.base.register import Register
+from flexstage.parts.given import Given
+from flexstage.parts.leaf import Leaf
+from flexstage.parts.neck import Neck
+from flexstage.parts.notch import Notch
+from flexstage.parts.piezo import Piezo
+from flexstage.parts.rod import Rod
+from flexstage.parts.shape import Elastic
+
+PARTS: Register[type[Elastic]] = Register("flexstage.parts", {part.kind: part for part in (Notch, Neck, Leaf, Rod, Given, Piezo)})
+"""Kinds of parts that have a stiffness of their own."""

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from enum import Enum
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 from flexstage.base.digest import DOCUMENT_ONLY, Description
 from flexstage.base.number import Number
 from flexstage.base.quantity import COMPLIANCE_MATRIX, MASS, NOT_NEGATIVE
 from flexstage.parts.freedom import Freedom
+from flexstage.parts.shape import Elastic
 
 
 class Origin(Enum):
@@ -21,7 +22,7 @@ class Origin(Enum):
 
 
 @dataclass(frozen=True, eq=False)
-class Given(Description):
+class Given(Elastic):
     """A part known by its 6x6 compliance about its centre, in its link frame, SI: rows (x, y, z, rx, ry, rz).
 
     Entries are m/N, rad/N (= m/(N m)) and rad/(N m); the matrix is symmetric and positive definite. `free` states its intended freedoms.
@@ -29,6 +30,7 @@ class Given(Description):
     and drift and structural damping the material.
     """
 
+    kind: ClassVar[str] = "given"
     compliance: Annotated[tuple[tuple[Number, ...], ...], COMPLIANCE_MATRIX]
     free: tuple[Freedom, ...]
     mass: Annotated[Number, MASS, NOT_NEGATIVE] = 0.0
@@ -46,6 +48,7 @@ class Given(Description):
 class Joint(Description):
     """An ideal joint without elasticity or mass: the `free` freedoms are free, all others locked exactly. No freedom: a weld."""
 
+    kind: ClassVar[str] = "joint"
     free: tuple[Freedom, ...] = ()
 
     @property

@@ -2,22 +2,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Annotated
+from typing import Annotated, ClassVar
 
-from flexstage.base.digest import Description
 from flexstage.base.number import Number
 from flexstage.base.quantity import LENGTH, POSITIVE
 from flexstage.parts.freedom import Freedom
+from flexstage.parts.shape import Order, Section, Shaped
 
 
 @dataclass(frozen=True, eq=False)
-class Leaf(Description):
+class Leaf(Shaped):
     """A leaf spring: `length` along x, `thickness` along y, `width` along z.
 
     Intended freedoms: translation along y, bending about z, twist about x.
     """
 
+    kind: ClassVar[str] = "leaf"
+    slender: ClassVar[bool] = True
     material: str
     length: Annotated[Number, LENGTH, POSITIVE]
     thickness: Annotated[Number, LENGTH, POSITIVE]
@@ -27,3 +30,18 @@ class Leaf(Description):
     def intended(self) -> tuple[Freedom, ...]:
         """The freedoms the leaf is meant to have."""
         return (Freedom.Y, Freedom.RX, Freedom.RZ)
+
+    @property
+    def span(self) -> Number:
+        """Its length [m]."""
+        return self.length
+
+    @property
+    def throat(self) -> Section:
+        """Its one section."""
+        return Section(self.thickness, self.width)
+
+    @property
+    def orders(self) -> Iterator[Order]:
+        """It is thinner than wide."""
+        yield Order("thickness", self.thickness, self.width, "the width", "Exchange them, or turn the link's bends")

@@ -2,23 +2,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Annotated
+from typing import Annotated, ClassVar
 
-from flexstage.base.digest import Description
 from flexstage.base.number import Number
 from flexstage.base.quantity import LENGTH, POSITIVE
 from flexstage.parts.freedom import Freedom
 from flexstage.parts.profile import Profile
+from flexstage.parts.shape import Order, Profiled, Section
 
 
 @dataclass(frozen=True, eq=False)
-class Notch(Description):
+class Notch(Profiled):
     """A one-axis hinge: link frame x along the hinge, y across the thin neck (`thickness`), z along the `width`; it bends about z.
 
     Intended freedom: the rotation about z.
     """
 
+    kind: ClassVar[str] = "notch"
     material: str
     thickness: Annotated[Number, LENGTH, POSITIVE]
     width: Annotated[Number, LENGTH, POSITIVE]
@@ -28,3 +30,13 @@ class Notch(Description):
     def intended(self) -> tuple[Freedom, ...]:
         """The freedoms the hinge is meant to have."""
         return (Freedom.RZ,)
+
+    def grown(self, up: Number) -> Section:
+        """The section where the cuts have risen by `up` [m]: a notch is as wide everywhere."""
+        return Section(self.thickness + 2.0 * up, self.width)
+
+    @property
+    def orders(self) -> Iterator[Order]:
+        """It is thinner than wide."""
+        yield Order("thickness", self.thickness, self.width, "the width", "Exchange them, or turn the link's bends")
+        yield from super().orders

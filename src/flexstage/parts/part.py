@@ -3,18 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TypeAlias
+from typing import ClassVar, TypeAlias
 
 from flexstage.base.digest import Description
 from flexstage.parts.freedom import Freedom
-from flexstage.parts.given import Given, Joint
-from flexstage.parts.leaf import Leaf
-from flexstage.parts.neck import Neck
-from flexstage.parts.notch import Notch
+from flexstage.parts.given import Joint
 from flexstage.parts.piezo import Piezo
-from flexstage.parts.rod import Rod
-
-Elastic: TypeAlias = Notch | Neck | Leaf | Rod | Given | Piezo
+from flexstage.parts.shape import Elastic
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,6 +19,7 @@ class Restricted(Description):
     Its mass is left out. Used to connect readings: what the paper's equations know of a hinge.
     """
 
+    kind: ClassVar[str] = "restricted"
     part: Elastic
     elastic: tuple[Freedom, ...]
     free: tuple[Freedom, ...] = ()
@@ -38,13 +34,18 @@ class Restricted(Description):
 Part: TypeAlias = Elastic | Joint | Restricted
 
 
+def inner(part: Part) -> Elastic | Joint:
+    """The part itself, or what a restricted one restricts."""
+    return part.part if isinstance(part, Restricted) else part
+
+
 def is_actuator(part: Part) -> bool:
     """Whether the part has an imposed stroke.
 
     >>> is_actuator(Joint())
     False
     """
-    return isinstance(part.part if isinstance(part, Restricted) else part, Piezo)
+    return isinstance(inner(part), Piezo)
 
 
 def material_of(part: Part) -> str | None:
@@ -53,5 +54,4 @@ def material_of(part: Part) -> str | None:
     >>> material_of(Joint()) is None
     True
     """
-    inner = part.part if isinstance(part, Restricted) else part
-    return getattr(inner, "material", None)
+    return getattr(inner(part), "material", None)

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field
-from typing import Annotated
+from typing import Annotated, ClassVar
 
-from flexstage.base.digest import DOCUMENT_ONLY, Description
+from flexstage.base.digest import DOCUMENT_ONLY
 from flexstage.base.number import Number
 from flexstage.base.quantity import (
     BENDING_RIGIDITY,
@@ -23,10 +24,11 @@ from flexstage.base.quantity import (
     VOLTAGE,
 )
 from flexstage.parts.freedom import Freedom
+from flexstage.parts.shape import Order, Section, Shaped, circle
 
 
 @dataclass(frozen=True, eq=False)
-class Piezo(Description):
+class Piezo(Shaped):
     """A piezo stack along x: an axial spring with an imposed free stroke u (u > 0 expands), elsewhere the stiffness of its section.
 
     `stroke` is the full free stroke over the voltage range; `stiffness` the axial stiffness; `diameter` that of the ceramic. The
@@ -35,6 +37,7 @@ class Piezo(Description):
     preload.
     """
 
+    kind: ClassVar[str] = "piezo"
     stroke: Annotated[Number, DISPLACEMENT, POSITIVE]
     stiffness: Annotated[Number, STIFFNESS, POSITIVE]
     length: Annotated[Number, LENGTH, POSITIVE]
@@ -67,3 +70,21 @@ class Piezo(Description):
         2550.0
         """
         return self.stroke * self.stiffness
+
+    @property
+    def span(self) -> Number:
+        """Its length [m]."""
+        return self.length
+
+    @property
+    def throat(self) -> Section:
+        """That of its ceramic."""
+        return circle(self.diameter)
+
+    @property
+    def orders(self) -> Iterator[Order]:
+        """Its preload is within its load, its bias within its voltages."""
+        yield Order("preload", self.preload, self.maximum_load, "the maximum load", "Give a smaller preload", FORCE, strict=False)
+        yield Order("voltage_low", self.voltage_low, self.voltage_high, "voltage_high", "Exchange them", VOLTAGE)
+        advice = "Give a bias within the range of the stack"
+        yield Order("bias", self.bias, self.voltage_high, "voltage_high", advice, VOLTAGE, strict=False)

@@ -9,8 +9,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated, TypeAlias
 
+import numpy as np
+
 from flexstage.base.digest import Description
-from flexstage.base.number import Number
+from flexstage.base.number import Array, Number
 from flexstage.base.quantity import LENGTH, POSITIVE
 
 
@@ -44,6 +46,8 @@ class Straight(Description):
     length: Annotated[Number, LENGTH, POSITIVE]
 
 
+_ARC = np.deg2rad([0.0, 45.0, 90.0])
+
 Profile: TypeAlias = Circular | Elliptic | Filleted | Straight
 
 
@@ -58,3 +62,60 @@ def length(profile: Profile) -> Number:
     if isinstance(profile, Elliptic):
         return 2.0 * profile.along
     return profile.length
+
+
+def rise(profile: Profile) -> Number:
+    """How far the profile's cuts rise above the neck at its ends, w(+-1) [m].
+
+    >>> rise(Circular(0.005))
+    0.005
+    """
+    if isinstance(profile, Circular):
+        return profile.radius
+    if isinstance(profile, Elliptic):
+        return profile.across
+    return profile.radius if isinstance(profile, Filleted) else 0.0
+
+
+def closing(profile: Profile, thickness: Number) -> float:
+    """The angle [rad] at which the faces of a cut touch: it is as wide as the hinge is long, and as deep as the profile rises.
+
+    >>> round(closing(Circular(0.005), 0.0) / np.pi, 9), closing(Straight(0.005), 0.001)
+    (0.5, inf)
+    """
+    if isinstance(profile, Straight):
+        return np.inf
+    return 2.0 * float(np.arctan2(0.5 * single(length(profile)), single(rise(profile)) + 0.5 * single(thickness)))
+
+
+def stations_of(profile: Profile) -> tuple[Array, Array]:
+    """Stations x (s,) from end to end and the height w (s,) a profile adds on each side [m], of the first design.
+
+    >>> stations, heights = stations_of(Circular(0.005))
+    >>> float(stations[0]), heights.round(6).tolist()
+    (-0.005, [0.005, 0.001464, 0.0, 0.001464, 0.005])
+    """
+    half = 0.5 * single(length(profile))
+    if isinstance(profile, (Circular, Elliptic)):
+        across = single(rise(profile))
+        stations, heights = half * np.sin(_ARC), across * (1.0 - np.cos(_ARC))
+    elif isinstance(profile, Filleted):
+        radius = single(profile.radius)
+        stations, heights = half - radius + radius * np.sin(_ARC), radius * (1.0 - np.cos(_ARC))
+    else:
+        stations, heights = np.array([half]), np.array([0.0])
+    keep = stations > 0.0
+    middle = ([0.0], [0.0]) if isinstance(profile, (Circular, Elliptic)) else ([], [])
+    return (
+        np.concatenate([-stations[keep][::-1], middle[0], stations[keep]]),
+        np.concatenate([heights[keep][::-1], middle[1], heights[keep]]),
+    )
+
+
+def single(value: Number) -> float:
+    """A number of the first design.
+
+    >>> single(np.array([1.0, 2.0]))
+    1.0
+    """
+    return float(np.real(np.ravel(value)[0]))

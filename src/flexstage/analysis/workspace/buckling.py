@@ -15,13 +15,8 @@ from flexstage.base.number import Array, Number, foremost
 from flexstage.mechanism.expand import Assembly, PlacedLink, expand
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
 from flexstage.models.linear.model import LinearModel
-from flexstage.parts.leaf import Leaf
-from flexstage.parts.neck import Neck
-from flexstage.parts.notch import Notch
-from flexstage.parts.part import Part
 from flexstage.parts.piezo import Piezo
-from flexstage.parts.profile import length
-from flexstage.parts.rod import Rod
+from flexstage.parts.shape import Shaped
 
 _ROUNDING = 1e-9
 
@@ -111,7 +106,7 @@ def _joined(values: list[Number]) -> Array:
 
 
 def _is_column(link: PlacedLink) -> bool:
-    return isinstance(link.part, (Notch, Neck, Leaf, Rod, Piezo))
+    return isinstance(link.part, Shaped)
 
 
 def _column(assembly: Assembly, link: PlacedLink) -> tuple[Number, Number, Ends]:
@@ -121,24 +116,8 @@ def _column(assembly: Assembly, link: PlacedLink) -> tuple[Number, Number, Ends]
         return stack_rigidity(part), _strut_length(assembly, link, part), Ends.PINNED
     alone = any(body != GROUND and len(_links_at(assembly, body)) == 1 for body in link.joins)
     young = np.nan if link.material is None else link.material.young
-    return young * _least_second_moment(part), _span(part), Ends.FREE if alone else Ends.GUIDED
-
-
-def _span(part: Part) -> Number:
-    if isinstance(part, (Leaf, Rod)):
-        return part.length
-    return length(part.profile) if isinstance(part, (Notch, Neck)) else np.nan
-
-
-def _least_second_moment(part: Part) -> Number:
-    """Least second moment of area [m^4] of the thinnest section."""
-    if isinstance(part, Rod):
-        return np.pi * part.diameter**4 / 64.0
-    if isinstance(part, Neck) and part.width is None:
-        return np.pi * part.thickness**4 / 64.0
-    if isinstance(part, (Neck, Notch, Leaf)) and part.width is not None:
-        return part.thickness * part.width * np.minimum(part.thickness, part.width) ** 2 / 12.0
-    return np.nan
+    assert isinstance(part, Shaped)  # noqa: S101  _is_column has asked
+    return young * part.throat.second_moment, part.span, Ends.FREE if alone else Ends.GUIDED
 
 
 def stack_rigidity(piezo: Piezo) -> Number:

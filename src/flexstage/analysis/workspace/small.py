@@ -17,12 +17,9 @@ from flexstage.base.number import Array, Number
 from flexstage.mechanism.expand import PlacedLink, expand
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.models.linear.kinematics import Kinematics
-from flexstage.parts.leaf import Leaf
-from flexstage.parts.neck import Neck
-from flexstage.parts.notch import Notch
-from flexstage.parts.part import Part, Restricted
-from flexstage.parts.profile import Circular, Elliptic, Straight, length
-from flexstage.parts.rod import Rod
+from flexstage.parts.part import Part, inner
+from flexstage.parts.profile import single
+from flexstage.parts.shape import Shaped
 
 ERROR = 0.01
 """Relative error of second order that linear models may have."""
@@ -105,25 +102,12 @@ def _first(values: Array) -> Array:
     return np.real(values[(0,) * (values.ndim - 2)])
 
 
-def _one(value: Number) -> float:
-    return float(np.real(np.ravel(value)[0]))
-
-
-def _inner(part: Part) -> Part:
-    return part.part if isinstance(part, Restricted) else part
-
-
 def _span(link: PlacedLink) -> float:
-    part = _inner(link.part)
-    return _one(part.length) if isinstance(part, (Leaf, Rod)) else np.inf
+    """The length that a part bends over; infinite where it does so at a point."""
+    part = inner(link.part)
+    return single(part.span) if isinstance(part, Shaped) and part.slender else np.inf
 
 
 def _closing(part: Part) -> float:
-    """The angle [rad] at which the faces on both sides of a notch or neck touch: its cut is as wide as the hinge is long, and as deep."""
-    part = _inner(part)
-    if not isinstance(part, (Notch, Neck)) or isinstance(part.profile, Straight):
-        return np.inf
-    profile = part.profile
-    depth = profile.radius if not isinstance(profile, Elliptic) else profile.across
-    wide = 2.0 * profile.radius if isinstance(profile, Circular) else length(profile)
-    return 2.0 * float(np.arctan2(0.5 * _one(wide), _one(depth) + 0.5 * _one(part.thickness)))
+    own = inner(part)
+    return own.closing if isinstance(own, Shaped) else np.inf

@@ -11,7 +11,7 @@ import numpy as np
 
 from flexstage.base.finding import Finding
 from flexstage.base.number import Number, stack
-from flexstage.base.quantity import FORCE, LENGTH, VOLTAGE, Quantity
+from flexstage.base.quantity import LENGTH, Quantity
 from flexstage.base.unit import show
 from flexstage.mechanism.checks.value import first_failing
 from flexstage.mechanism.expand import departed
@@ -19,13 +19,9 @@ from flexstage.mechanism.locate import locate
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.parts.body import Body, Cylinder, Imported, Inertia, Solid
 from flexstage.parts.given import Given
-from flexstage.parts.leaf import Leaf
 from flexstage.parts.mass import tensor
-from flexstage.parts.neck import Neck
-from flexstage.parts.notch import Notch
 from flexstage.parts.part import Part, Restricted
-from flexstage.parts.piezo import Piezo
-from flexstage.parts.profile import Filleted
+from flexstage.parts.shape import Elastic
 
 _SLACK = 1e-9
 """Relative slack of comparisons that rounding may spoil: a thin plate has xx + yy = zz."""
@@ -70,17 +66,12 @@ def _part(where: str, part: Part) -> Iterator[Finding]:
         yield from _part(f"{where}.part", part.part)
         for freedom in set(part.elastic) & set(part.free):
             yield Finding(where, f"freedom {freedom.value} is both elastic and free", "Name it once")
-    if isinstance(part, (Notch, Leaf)):
-        below = _Order(f"{where}.thickness", LENGTH, "the width", "Exchange them, or turn the link's bends")
-        yield from below.strict(part.thickness, part.width)
-    if isinstance(part, (Notch, Neck)) and isinstance(part.profile, Filleted):
-        advice = "Two fillets take 2 r of the length: make it longer or the radius smaller"
-        half = _Order(f"{where}.profile.radius", LENGTH, "half the length", advice)
-        yield from half.loose(part.profile.radius, 0.5 * part.profile.length)
+        return
+    for order in part.orders if isinstance(part, Elastic) else ():
+        compared = _Order(f"{where}.{order.field}", order.quantity, order.other, order.advice)
+        yield from (compared.strict if order.strict else compared.loose)(order.small, order.large)
     if isinstance(part, Given):
         yield from _given(where, part)
-    if isinstance(part, Piezo):
-        yield from _piezo(where, part)
 
 
 @dataclass(frozen=True)
@@ -108,15 +99,6 @@ class _Order:
             at, values = first_failing(failing, small, large)
             low, high = (show(value, self.quantity, digits=6) for value in values)
             yield Finding(f"{self.where}{at}", f"found {low}, which is not {word} {self.other}, {high}", self.advice)
-
-
-def _piezo(where: str, part: Piezo) -> Iterator[Finding]:
-    load = _Order(f"{where}.preload", FORCE, "the maximum load", "Give a smaller preload")
-    yield from load.loose(part.preload, part.maximum_load)
-    volts = _Order(f"{where}.voltage_low", VOLTAGE, "voltage_high", "Exchange them")
-    yield from volts.strict(part.voltage_low, part.voltage_high)
-    bias = _Order(f"{where}.bias", VOLTAGE, "voltage_high", "Give a bias within the range of the stack")
-    yield from bias.loose(part.bias, part.voltage_high)
 
 
 def _given(where: str, part: Given) -> Iterator[Finding]:

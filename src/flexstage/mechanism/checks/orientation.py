@@ -14,10 +14,8 @@ from flexstage.mechanism.pattern import Pattern, Pose
 from flexstage.parts.body import Body, Cylinder
 from flexstage.parts.freedom import Freedom
 from flexstage.parts.given import Given, Joint
-from flexstage.parts.leaf import Leaf
-from flexstage.parts.neck import Neck
-from flexstage.parts.notch import Notch
 from flexstage.parts.part import Part, Restricted
+from flexstage.parts.shape import Shaped
 
 _TOLERANCE = np.deg2rad(0.1)
 """Directions written with three digits are perpendicular to this; frames are then made exactly so."""
@@ -65,7 +63,7 @@ def is_round(part: Part, free: tuple[Freedom, ...] | None = None) -> bool:
         return _even(part.free)
     if isinstance(part, Given):
         return _even(part.free) and _turns_into_itself(part)
-    return not isinstance(part, (Notch, Leaf)) and not (isinstance(part, Neck) and part.width is not None)
+    return not isinstance(part, Shaped) or part.throat.is_round
 
 
 def _even(freedoms: tuple[Freedom, ...]) -> bool:

@@ -6,17 +6,11 @@ import numpy as np
 
 from flexstage.base.number import Array, Number
 from flexstage.parts.body import Block, Cylinder, Imported, Solid
-from flexstage.parts.leaf import Leaf
-from flexstage.parts.neck import Neck
-from flexstage.parts.notch import Notch
-from flexstage.parts.part import Part, Restricted
-from flexstage.parts.piezo import Piezo
-from flexstage.parts.profile import Circular, Elliptic, Filleted, Profile, length
-from flexstage.parts.rod import Rod
+from flexstage.parts.part import Part, inner
+from flexstage.parts.shape import Profiled, Section, Shaped
 from flexstage.show.scene.facet import Facet, Paint, circle, extruded, loft, pierced, rectangle
 
-_ARC = np.deg2rad([0.0, 45.0, 90.0])
-_ROUND_NECK_SIDES = 8
+_ROUND_SIDES, _ROUND_NECK_SIDES = 12, 8
 
 
 def plain(value: Number | None, default: float = 0.0) -> float:
@@ -31,84 +25,47 @@ def plain(value: Number | None, default: float = 0.0) -> float:
 def part_length(part: Part) -> float:
     """Length of a part along its x axis [m]; 0 where it has none (given matrices, joints).
 
+    >>> from flexstage.parts.rod import Rod
     >>> part_length(Rod("steel", length=0.03, diameter=0.001))
     0.03
     """
-    inner = part.part if isinstance(part, Restricted) else part
-    if isinstance(inner, (Notch, Neck)):
-        return plain(length(inner.profile))
-    return plain(getattr(inner, "length", None))
+    own = inner(part)
+    return plain(own.span) if isinstance(own, Shaped) else 0.0
 
 
 def part_section(part: Part) -> tuple[float, float]:
     """Extents of a part's end section along its y and z axes [m]; 0 where it has none.
 
+    >>> from flexstage.parts.rod import Rod
     >>> part_section(Rod("steel", length=0.03, diameter=0.001))
     (0.001, 0.001)
     """
-    inner = part.part if isinstance(part, Restricted) else part
-    if isinstance(inner, (Notch, Neck)):
-        growth = 2.0 * float(silhouette(inner.profile)[1][0])
-        height = plain(inner.thickness) + growth
-        if isinstance(inner, Notch):
-            return height, plain(inner.width)
-        return height, height if inner.width is None else plain(inner.width) + growth
-    if isinstance(inner, Leaf):
-        return plain(inner.thickness), plain(inner.width)
-    return plain(getattr(inner, "diameter", None)), plain(getattr(inner, "diameter", None))
-
-
-def silhouette(profile: Profile) -> tuple[Array, Array]:
-    """Stations x (s,) from end to end and the height w (s,) a profile adds on each side [m].
-
-    >>> stations, heights = silhouette(Circular(0.005))
-    >>> float(stations[0]), heights.round(6).tolist()
-    (-0.005, [0.005, 0.001464, 0.0, 0.001464, 0.005])
-    """
-    half = 0.5 * plain(length(profile))
-    if isinstance(profile, (Circular, Elliptic)):
-        across = plain(profile.radius if isinstance(profile, Circular) else profile.across)
-        stations, heights = half * np.sin(_ARC), across * (1.0 - np.cos(_ARC))
-    elif isinstance(profile, Filleted):
-        radius = plain(profile.radius)
-        stations, heights = half - radius + radius * np.sin(_ARC), radius * (1.0 - np.cos(_ARC))
-    else:
-        stations, heights = np.array([half]), np.array([0.0])
-    keep = stations > 0.0
-    middle = ([0.0], [0.0]) if isinstance(profile, (Circular, Elliptic)) else ([], [])
-    return (
-        np.concatenate([-stations[keep][::-1], middle[0], stations[keep]]),
-        np.concatenate([heights[keep][::-1], middle[1], heights[keep]]),
-    )
+    own = inner(part)
+    if not isinstance(own, Shaped):
+        return 0.0, 0.0
+    end = own.silhouette[0][1]
+    return plain(end.height), plain(end.width)
 
 
 def part_facets(part: Part, paint: Paint, marker: float) -> list[Facet]:
     """Facets of a part in its link frame; a part without a shape of its own is a cube of edge `marker` [m].
 
     >>> from flexstage.show.scene.facet import Kind
+    >>> from flexstage.parts.rod import Rod
     >>> len(part_facets(Rod("steel", length=0.03, diameter=0.001), Paint(Kind.HINGE, ("a", "b")), 0.01))
     14
     """
-    inner = part.part if isinstance(part, Restricted) else part
-    ends = 0.5 * part_length(inner) * np.array([-1.0, 1.0])
-    if isinstance(inner, (Notch, Neck)):
-        return _hinge(inner, paint)
-    if isinstance(inner, Leaf):
-        return loft(extruded(ends, [rectangle(plain(inner.thickness), plain(inner.width))] * 2), paint)
-    if isinstance(inner, (Rod, Piezo)):
-        return loft(extruded(ends, [circle(plain(inner.diameter))] * 2), paint, round_section=True)
-    return loft(extruded(0.5 * marker * np.array([-1.0, 1.0]), [rectangle(marker, marker)] * 2), paint)
+    own = inner(part)
+    if not isinstance(own, Shaped):
+        return loft(extruded(0.5 * marker * np.array([-1.0, 1.0]), [rectangle(marker, marker)] * 2), paint)
+    stations, sections = zip(*own.silhouette, strict=True)
+    sides = _ROUND_NECK_SIDES if isinstance(own, Profiled) else _ROUND_SIDES
+    return loft(extruded(np.array(stations), [_ring(each, sides) for each in sections]), paint, round_section=own.throat.is_round)
 
 
-def _hinge(part: Notch | Neck, paint: Paint) -> list[Facet]:
-    stations, heights = silhouette(part.profile)
-    thickness = plain(part.thickness) + 2.0 * heights
-    if isinstance(part, Notch):
-        return loft(extruded(stations, [rectangle(each, plain(part.width)) for each in thickness]), paint)
-    if part.width is None:
-        return loft(extruded(stations, [circle(each, _ROUND_NECK_SIDES) for each in thickness]), paint, round_section=True)
-    width = plain(part.width) + 2.0 * heights
-    return loft(extruded(stations, [rectangle(*each) for each in zip(thickness, width, strict=True)]), paint)
+def _ring(section: Section, sides: int) -> Array:
+    height, width = plain(section.height), plain(section.width)
+    return circle(height, sides) if section.is_round else rectangle(height, width)
 
 
 def solid_facets(solid: Solid, paint: Paint) -> list[Facet]:
@@ -141,5 +98,5 @@ def _cylinder(solid: Cylinder, paint: Paint) -> list[Facet]:
     outer = extruded(ends, [circle(plain(solid.diameter), 24)] * 2)
     if solid.bore is None:
         return loft(outer, paint, round_section=True)
-    inner = extruded(ends, [circle(plain(solid.bore), 24)] * 2)
-    return pierced(outer, inner, paint, round_section=True)
+    core = extruded(ends, [circle(plain(solid.bore), 24)] * 2)
+    return pierced(outer, core, paint, round_section=True)

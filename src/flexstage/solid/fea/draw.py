@@ -14,12 +14,12 @@ from netgen import occ
 from scipy.spatial.transform import Rotation
 
 from flexstage.base.number import Array
-from flexstage.mechanism.outline import rise as cut_height
 from flexstage.parts.body import Block, Cylinder, Imported
 from flexstage.parts.leaf import Leaf
 from flexstage.parts.neck import Neck
 from flexstage.parts.notch import Notch
 from flexstage.parts.profile import Circular, Filleted, Profile, length
+from flexstage.parts.profile import rise as cut_height
 from flexstage.solid.fea.imported import imported_shape
 from flexstage.solid.fea.piece import Form
 from flexstage.spatial.frame import Frame
@@ -53,7 +53,7 @@ def drawn(form: Form) -> occ.Solid:
         return _neck(form)
     if isinstance(form, Leaf):
         return _box(form.length, form.thickness, form.width)
-    return _round(form.diameter, form.length)
+    return _round(form.throat.height, form.span)
 
 
 def moved(solid: occ.TopoDS_Shape, frame: Frame) -> occ.TopoDS_Shape:

@@ -15,11 +15,11 @@ import numpy as np
 
 from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.number import Array
-from flexstage.mechanism.outline import rise as cut_height
 from flexstage.parts.leaf import Leaf
 from flexstage.parts.material import Material
 from flexstage.parts.neck import Neck
 from flexstage.parts.profile import Filleted
+from flexstage.parts.profile import rise as cut_height
 from flexstage.parts.rod import Rod
 from flexstage.solid.fea.estimate import Accuracy, change, remaining
 from flexstage.solid.fea.field import Field, applied, factored, field, rigid, stiffness, times

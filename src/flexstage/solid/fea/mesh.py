@@ -14,8 +14,8 @@ from netgen.meshing import MeshingParameters
 from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.number import Array
 from flexstage.parts.neck import Neck
-from flexstage.parts.notch import Notch
-from flexstage.parts.profile import Circular, Elliptic, Straight
+from flexstage.parts.profile import Straight
+from flexstage.parts.shape import Shaped
 from flexstage.solid.fea.cad import Cad, cad, half_extents, region
 from flexstage.solid.fea.component import Component
 from flexstage.solid.fea.draw import MILLIMETRES
@@ -139,7 +139,7 @@ def _finished(pieces: tuple[Piece, ...], drawing: Cad, mesh: ngsolve.Mesh) -> Me
 
 def _curvature(component: Component) -> float:
     """Segments per radius: the arcs of hinges fold elements that are too coarse; stacks and discs do not."""
-    hinged = any(isinstance(piece.form, (Notch, Neck)) and not isinstance(piece.form.profile, Straight) for piece in component.pieces)
+    hinged = any(isinstance(piece.form, Shaped) and not piece.form.is_prismatic for piece in component.pieces)
     return _HINGE_CURVATURE if hinged else _ROUND_CURVATURE
 
 
@@ -147,16 +147,16 @@ def _thinner(pieces: tuple[Piece, ...], neck: float) -> MeshingParameters:
     """Smaller elements about the thinnest line of each hinge with an arc."""
     result = MeshingParameters()
     for piece in pieces:
-        if isinstance(piece.form, (Notch, Neck)) and isinstance(piece.form.profile, (Circular, Elliptic)):
+        if isinstance(piece.form, Shaped) and piece.form.has_arc:
             for point in _thin_points(piece.form, _THIN * neck) @ piece.frame.rotation.T + piece.frame.position:
                 x, y, z = (float(value) * MILLIMETRES for value in point)
                 result.RestrictH(x, y, z, h=_THIN * neck * thinnest(piece.form) * MILLIMETRES)
     return result
 
 
-def _thin_points(form: Notch | Neck, share: float) -> Array:
+def _thin_points(form: Shaped, share: float) -> Array:
     """Points (n, 3) on both faces of a hinge around its thinnest line, in its frame [m]."""
-    thickness, width = (float(np.real(value)) for value in (form.thickness, form.thickness if form.width is None else form.width))
+    thickness, width = (float(np.real(value)) for value in (form.throat.height, form.throat.width))
     step = share * thinnest(form)
     reach = _AROUND * np.sqrt(0.5 * span(form) * thickness)
     along, across = (np.linspace(-half, half, 1 + int(np.ceil(2.0 * half / step))) for half in (reach, 0.5 * width))

@@ -10,19 +10,14 @@ import numpy as np
 from flexstage.base.finding import Finding
 from flexstage.base.number import Number
 from flexstage.mechanism.expand import PlacedLink
-from flexstage.mechanism.outline import rise
 from flexstage.parts.body import Block, Cylinder, Imported
-from flexstage.parts.leaf import Leaf
 from flexstage.parts.material import Material
-from flexstage.parts.neck import Neck
-from flexstage.parts.notch import Notch
 from flexstage.parts.part import Part, Restricted
 from flexstage.parts.piezo import Piezo
-from flexstage.parts.profile import length
-from flexstage.parts.rod import Rod
+from flexstage.parts.shape import Shaped
 from flexstage.spatial.frame import Frame
 
-Form: TypeAlias = Notch | Neck | Leaf | Rod | Piezo | Block | Cylinder | Imported
+Form: TypeAlias = Shaped | Block | Cylinder | Imported
 """What can be drawn: given 6x6 parts and ideal joints have no shape."""
 
 
@@ -101,7 +96,7 @@ def drawable(link: PlacedLink) -> Form | Finding:
         return Finding(
             link.name, "some of its freedoms are locked or freed by a restriction", "A solid has all of them: read the unrestricted stage"
         )
-    if isinstance(part, (Notch, Neck, Leaf, Rod, Piezo)):
+    if isinstance(part, Shaped):
         return part
     return Finding(
         link.name, f"a part of kind {type(part).__name__.lower()} has no shape", "Give it a form that can be drawn, or join rigid bodies"
@@ -112,36 +107,29 @@ def span(form: Form) -> float:
     """Length of a link's form between its end faces [m].
 
     >>> from flexstage.parts.profile import Circular
+    >>> from flexstage.parts.notch import Notch
     >>> span(Notch("steel", 1e-3, 1e-2, Circular(5e-3)))
     0.01
     """
-    if isinstance(form, (Notch, Neck)):
-        return _single(length(form.profile))
     if isinstance(form, (Block, Imported)):
         return _single(form.size[0])
-    return _single(form.length)
+    return _single(form.span if isinstance(form, Shaped) else form.length)
 
 
 def end_area(form: Form) -> float:
     """Area of a link form's end faces [m^2].
 
     >>> from flexstage.parts.profile import Straight
+    >>> from flexstage.parts.neck import Neck
     >>> round(end_area(Neck("steel", 2e-3, Straight(1e-2), width=3e-3)) * 1e6, 9)
     6.0
     """
-    if isinstance(form, (Rod, Piezo)):
-        return 0.25 * np.pi * _single(form.diameter) ** 2
     if isinstance(form, (Block, Imported)):
         return _single(form.size[1]) * _single(form.size[2])
     if isinstance(form, Cylinder):
         return 0.25 * np.pi * (_single(form.diameter) ** 2 - (0.0 if form.bore is None else _single(form.bore) ** 2))
-    if isinstance(form, Leaf):
-        return _single(form.thickness) * _single(form.width)
-    grown = 2.0 * _single(rise(form.profile))
-    height = _single(form.thickness) + grown
-    if isinstance(form, Notch):
-        return height * _single(form.width)
-    return 0.25 * np.pi * height**2 if form.width is None else height * (_single(form.width) + grown)
+    end = form.end
+    return 0.25 * np.pi * _single(end.height) ** 2 if end.is_round else _single(end.height) * _single(end.width)
 
 
 def thinnest(form: Form) -> float:
@@ -157,10 +145,7 @@ def thinnest(form: Form) -> float:
     if isinstance(form, Cylinder):
         wall = _single(form.diameter) if form.bore is None else 0.5 * (_single(form.diameter) - _single(form.bore))
         return min(wall, _single(form.length))
-    if isinstance(form, (Rod, Piezo)):
-        return _single(form.diameter)
-    width = form.width if form.width is not None else form.thickness
-    return min(_single(form.thickness), _single(width))
+    return min(_single(form.throat.height), _single(form.throat.width))
 
 
 def _single(value: Number) -> float:

@@ -5,11 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from flexstage.mechanism.expand import Assembly, PlacedLink
-from flexstage.parts.leaf import Leaf
-from flexstage.parts.neck import Neck
-from flexstage.parts.notch import Notch
-from flexstage.parts.profile import Circular, Elliptic, Filleted
-from flexstage.parts.rod import Rod
+from flexstage.parts.shape import Shaped
 from flexstage.solid.fea.component import is_elastic
 
 
@@ -30,13 +26,14 @@ class Roots:
         return Roots(self.second, self.first)
 
 
-def own_roots(part: Notch | Neck | Leaf | Rod) -> Roots:
+def own_roots(part: Shaped) -> Roots:
     """The roots of a hinge by itself: profiles that rise grow on the blocks they rise to, prismatic hinges stand between rigid faces.
 
+    >>> from flexstage.parts.leaf import Leaf
     >>> own_roots(Leaf("steel", length=0.01, thickness=1e-3, width=5e-3))
     Roots(first=False, second=False)
     """
-    rises = isinstance(part, (Notch, Neck)) and isinstance(part.profile, (Circular, Elliptic, Filleted))
+    rises = not part.is_prismatic
     return Roots(rises, rises)
 
 

@@ -17,11 +17,11 @@ import numpy as np
 from netgen import occ
 
 from flexstage.base.number import Number
-from flexstage.mechanism.outline import rise as cut_height
 from flexstage.parts.leaf import Leaf
 from flexstage.parts.neck import Neck
 from flexstage.parts.notch import Notch
 from flexstage.parts.profile import Elliptic, Filleted, Profile, Straight, length
+from flexstage.parts.profile import rise as cut_height
 from flexstage.parts.rod import Rod
 from flexstage.solid.fea.draw import MILLIMETRES
 

@@ -1,0 +1,178 @@
+"""What a part is asked for: its kind, its freedoms and, if it has a shape, its geometry.
+
+Outlines, pictures, contact, columns and finite elements ask the part; none of them knows its class. A new kind of part derives from
+`Shaped`, or from `Profiled` where cuts thin it towards its middle.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from flexstage.base.digest import Description
+from flexstage.base.number import Number
+from flexstage.base.quantity import LENGTH, Quantity
+from flexstage.parts.freedom import Freedom
+from flexstage.parts.profile import Circular, Elliptic, Filleted, Profile, Straight, closing, length, rise, single, stations_of
+
+
+@dataclass(frozen=True, eq=False)
+class Section:
+    """A cross-section: `height` along y and `width` along z [m]; of a round one both are its diameter."""
+
+    height: Number
+    width: Number
+    is_round: bool = False
+
+    @property
+    def second_moment(self) -> Number:
+        """Least second moment of area [m^4].
+
+        >>> round(Section(1e-3, 12e-3).second_moment * 1e12, 9)
+        1.0
+        """
+        if self.is_round:
+            return np.pi * self.height**4 / 64.0
+        return self.height * self.width * np.minimum(self.height, self.width) ** 2 / 12.0
+
+    @property
+    def first(self) -> Section:
+        """That of the first design, in floats."""
+        return Section(single(self.height), single(self.width), self.is_round)
+
+
+def circle(diameter: Number) -> Section:
+    """A round section."""
+    return Section(diameter, diameter, is_round=True)
+
+
+@dataclass(frozen=True, eq=False)
+class Order:
+    """That the number in a `field`, the `small` one, is below the `large` one (`other` names it), or, if not `strict`, at most as large."""
+
+    field: str
+    small: Number | None
+    large: Number | None
+    other: str
+    advice: str
+    quantity: Quantity = LENGTH
+    strict: bool = True
+
+
+class Elastic(Description):
+    """A part with a stiffness of its own, of a `kind` by which files know it. `parts.PARTS` lists the kinds."""
+
+    kind: ClassVar[str]
+
+    @property
+    def intended(self) -> tuple[Freedom, ...]:
+        """The freedoms the part is meant to have."""
+        raise NotImplementedError
+
+    @property
+    def orders(self) -> Iterator[Order]:
+        """Which of its numbers must be below which others."""
+        yield from ()
+
+
+class Shaped(Elastic):
+    """A part with a shape: x along it, its centre at the origin, alike on both sides of its three planes.
+
+    A kind states its `span` and its `throat`. All else follows for one section from end to end; `Profiled` parts have more. `slender`
+    parts bend along their whole length, so that their ends may shift sideways.
+    """
+
+    slender: ClassVar[bool] = False
+
+    @property
+    def span(self) -> Number:
+        """Length from end to end [m]."""
+        raise NotImplementedError
+
+    @property
+    def throat(self) -> Section:
+        """The thinnest section."""
+        raise NotImplementedError
+
+    @property
+    def end(self) -> Section:
+        """The section at both ends."""
+        return self.throat
+
+    @property
+    def is_prismatic(self) -> bool:
+        """Whether the section is the same from end to end."""
+        return True
+
+    @property
+    def has_arc(self) -> bool:
+        """Whether it is thinnest on a line alone, not over a length."""
+        return False
+
+    @property
+    def closing(self) -> float:
+        """The angle [rad] at which the faces of its cut touch, of the first design; infinite where it has none."""
+        return np.inf
+
+    @property
+    def silhouette(self) -> tuple[tuple[float, Section], ...]:
+        """Stations x [m] from end to end, at least two, and the sections there, of the first design: what it looks like."""
+        half = 0.5 * single(self.span)
+        ends = ((-half, self.end.first), (half, self.end.first))
+        return ends if self.is_prismatic else (ends[0], (0.0, self.throat.first), ends[1])
+
+
+class Profiled(Shaped):
+    """A part whose `throat` grows by a `profile` of cuts on both sides of its height, and of its width too where it says so (`grown`)."""
+
+    thickness: Number
+    profile: Profile
+
+    def grown(self, up: Number) -> Section:
+        """The section where the cuts have risen by `up` [m]."""
+        raise NotImplementedError
+
+    @property
+    def span(self) -> Number:
+        """Length between the ends of its arcs [m]."""
+        return length(self.profile)
+
+    @property
+    def throat(self) -> Section:
+        """The section in its middle."""
+        return self.grown(0.0)
+
+    @property
+    def end(self) -> Section:
+        """The section where the cuts end."""
+        return self.grown(rise(self.profile))
+
+    @property
+    def is_prismatic(self) -> bool:
+        """Whether its profile is straight."""
+        return isinstance(self.profile, Straight)
+
+    @property
+    def has_arc(self) -> bool:
+        """Whether its profile is an arc."""
+        return isinstance(self.profile, (Circular, Elliptic))
+
+    @property
+    def closing(self) -> float:
+        """The angle [rad] at which the faces of its cuts touch: a cut is as wide as the hinge is long, and as deep."""
+        return closing(self.profile, self.thickness)
+
+    @property
+    def silhouette(self) -> tuple[tuple[float, Section], ...]:
+        """Stations x [m] from end to end, more of them on arcs, and the sections there."""
+        return tuple((float(x), self.grown(float(up)).first) for x, up in zip(*stations_of(self.profile), strict=True))
+
+    @property
+    def orders(self) -> Iterator[Order]:
+        """Two fillets fit into its length."""
+        if isinstance(self.profile, Filleted):
+            advice = "Two fillets take 2 r of the length: make it longer or the radius smaller"
+            yield Order("profile.radius", self.profile.radius, 0.5 * self.profile.length, "half the length", advice, strict=False)
