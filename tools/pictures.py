@@ -35,9 +35,10 @@ from flexstage.control.sections import diagram_of, shares_of
 from flexstage.control.study.choices import Compensation, Criterion
 from flexstage.control.study.setup import Floor, Gauging, LoopSetup, RasterMotion, Shaking
 from flexstage.control.study.study import LoopStudy, loop_study
-from flexstage.experiment import Identified, NoiseDrive, RigSetup, Search, Sensing
+from flexstage.experiment import NoiseDrive, RigSetup, Search, Sensing
 from flexstage.experiment.comparison_figures import compare_figure
 from flexstage.experiment.figures import stabilisation_figure
+from flexstage.experiment.identification.identified import Identified
 from flexstage.mechanism.address import get, set_value
 from flexstage.show.figures.budget import loss_figure
 from flexstage.show.figures.directional import directional_figure

@@ -2,49 +2,23 @@ from flexstage import control as control, experiment as experiment, solid as sol
 from flexstage.analysis.budget import (
     budget as budget,
 )
-from flexstage.analysis.cautions import (
-    Caveats as Caveats,
-    caveats as caveats,
-)
 from flexstage.analysis.complete import (
-    Analysis as Analysis,
     Reading as Reading,
     analyse as analyse,
 )
 from flexstage.analysis.deflection import (
-    Deflection as Deflection,
     deflection as deflection,
 )
-from flexstage.analysis.difference import (
-    difference as difference,
-)
 from flexstage.analysis.drift import (
-    Drift as Drift,
     drift as drift,
 )
-from flexstage.analysis.error_budget import (
-    ErrorBudget as ErrorBudget,
-    error_budget as error_budget,
-)
-from flexstage.analysis.judge import (
-    judge as judge,
-)
 from flexstage.analysis.lost_motion import (
-    LostMotion as LostMotion,
     lost_motion as lost_motion,
 )
 from flexstage.analysis.modes import (
-    Modes as Modes,
-    modal_assurance as modal_assurance,
     modes as modes,
-    subspace_angle as subspace_angle,
-)
-from flexstage.analysis.omitted import (
-    Omitted as Omitted,
-    omitted as omitted,
 )
 from flexstage.analysis.random_response import (
-    RandomResponse as RandomResponse,
     Spectrum as Spectrum,
     random_response as random_response,
 )
@@ -53,41 +27,16 @@ from flexstage.analysis.response import (
     transmissibility as transmissibility,
 )
 from flexstage.analysis.sensitivities import (
-    Sensitivities as Sensitivities,
     sensitivities as sensitivities,
 )
-from flexstage.analysis.solid_modes import (
-    FeaModes as FeaModes,
-)
-from flexstage.analysis.standing import (
-    standing as standing,
-)
 from flexstage.analysis.statics import (
-    Statics as Statics,
-    equivalent_stiffness as equivalent_stiffness,
     statics as statics,
 )
-from flexstage.analysis.units import (
-    UnitResult as UnitResult,
-    units as units,
-)
 from flexstage.analysis.workspace.workspace import (
-    Workspace as Workspace,
     workspace as workspace,
-)
-from flexstage.base.digest import (
-    digest as digest,
 )
 from flexstage.base.finding import (
     DesignError as DesignError,
-    Finding as Finding,
-)
-from flexstage.base.labelled import (
-    Matrix as Matrix,
-)
-from flexstage.base.number import (
-    Number as Number,
-    Table as Table,
 )
 from flexstage.base.scale import (
     GPa as GPa,
@@ -116,34 +65,14 @@ from flexstage.base.scale import (
     um as um,
     urad as urad,
 )
-from flexstage.beams.compliance import (
-    compliance as compliance,
-    stiffness as stiffness,
-)
-from flexstage.beams.stress import (
-    stress as stress,
-)
 from flexstage.beams.validity import (
     validity as validity,
-)
-from flexstage.cases.double_triangle import (
-    double_triangle as double_triangle,
 )
 from flexstage.cases.registry import (
     case as case,
 )
-from flexstage.mechanism.address import (
-    addresses as addresses,
-    assign as assign,
-    get as get,
-    set_value as set_value,
-)
 from flexstage.mechanism.checks import (
     check as check,
-    checked as checked,
-)
-from flexstage.mechanism.expand import (
-    expand as expand,
 )
 from flexstage.mechanism.mechanism import (
     Force as Force,
@@ -162,45 +91,23 @@ from flexstage.mechanism.pattern import (
     Polar as Polar,
     Pose as Pose,
 )
-from flexstage.mechanism.restrict import (
-    isolate as isolate,
-    restrict as restrict,
-)
 from flexstage.mechanism.store import (
     dump as dump,
     dumps as dumps,
     load as load,
     loads as loads,
-    patch as patch,
-    schema as schema,
 )
 from flexstage.models.finite import (
-    FiniteMotion as FiniteMotion,
-    FinitePose as FinitePose,
     forward_kinematics as forward_kinematics,
     inverse_kinematics as inverse_kinematics,
 )
 from flexstage.models.ideal import (
     ideal as ideal,
 )
-from flexstage.models.linear.frequency import (
-    Response as Response,
-)
-from flexstage.models.linear.kinematics import (
-    Kinematics as Kinematics,
-)
 from flexstage.models.linear.model import (
     LinearModel as LinearModel,
 )
-from flexstage.models.linear.state_space import (
-    StateSpace as StateSpace,
-    state_space as state_space,
-)
-from flexstage.models.linear.static import (
-    static_gain as static_gain,
-)
 from flexstage.models.lumped import (
-    Masses as Masses,
     lumped as lumped,
 )
 from flexstage.models.mapped import (
@@ -224,7 +131,6 @@ from flexstage.parts.gauge import (
 from flexstage.parts.given import (
     Given as Given,
     Joint as Joint,
-    Origin as Origin,
 )
 from flexstage.parts.leaf import (
     Leaf as Leaf,
@@ -237,9 +143,6 @@ from flexstage.parts.neck import (
 )
 from flexstage.parts.notch import (
     Notch as Notch,
-)
-from flexstage.parts.part import (
-    Restricted as Restricted,
 )
 from flexstage.parts.piezo import (
     Piezo as Piezo,

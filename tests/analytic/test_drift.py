@@ -9,6 +9,7 @@ import pytest
 
 import flexstage as fs
 from flexstage.analysis.drift import drift
+from flexstage.analysis.judge import judge
 from flexstage.mechanism.expansion import Ground, expansion, ground_of
 from flexstage.models.lumped import lumped
 from flexstage.show.tables.errors import drift_table
@@ -143,7 +144,7 @@ def test_a_ground_of_several_materials_is_asked_for(order):
     assert found.drift is None
     assert 'ground = "aluminium"' in found.missing["drift"]
     required = replace(stage, requirements={"drift.x": "at most 1 um/K"})
-    assert any("ground" in str(verdict) for verdict in fs.judge(required))
+    assert any("ground" in str(verdict) for verdict in judge(required))
 
 
 @pytest.mark.parametrize("order", [1, -1])

@@ -10,9 +10,11 @@ import pytest
 import flexstage as fs
 from flexstage.analysis.stability import Stability, stability
 from flexstage.analysis.workspace.stroke import StrokeLimits
+from flexstage.beams.compliance import compliance
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.models.lumped import lumped
 from flexstage.parts.freedom import Freedom
+from flexstage.parts.part import Restricted
 
 Z = (0.0, 0.0, 1.0)
 STEEL = fs.Material(young=200e9, poisson=0.0, density=1e-3)
@@ -97,7 +99,7 @@ def pendulum(height: float) -> fs.Mechanism:
 def test_a_body_standing_on_a_notch_falls_where_its_weight_beats_the_hinge():
     """c_theta = m g h, the hinge turning about its middle; its own length of 4 mm on 0.5 m is felt as 1 %."""
     stage = pendulum(0.5)
-    hinge = fs.compliance(stage.parts["hinge"], STEEL)[5, 5]
+    hinge = compliance(stage.parts["hinge"], STEEL)[5, 5]
     assert of(stage).dead == pytest.approx(1.0 / hinge / (9.80665 * 0.5), rel=0.01)
 
 
@@ -105,7 +107,7 @@ def test_a_hanging_body_is_stiffened():
     """A pendulum's m g h over the hinge's stiffness; nothing gives way."""
     stage = pendulum(-0.5)
     found = of(stage)
-    hinge = fs.compliance(stage.parts["hinge"], STEEL)[5, 5]
+    hinge = compliance(stage.parts["hinge"], STEEL)[5, 5]
     assert np.isinf(found.dead)
     assert found.stiffens == pytest.approx(9.80665 * 0.5 * hinge, rel=0.01)
 
@@ -146,7 +148,7 @@ def test_strokes_through_locked_parts_press_as_through_stiff_ones():
     stage = fs.Mechanism(
         "pressed",
         materials={"steel": STEEL},
-        parts={"rod": rod, "pzt": fs.Restricted(piezo, (Freedom.X,))},
+        parts={"rod": rod, "pzt": Restricted(piezo, (Freedom.X,))},
         bodies={"platform": fs.Body(reference=(0.0, 0.0, 0.0))},
         links={
             "pzt": fs.Link(("ground", "platform"), "pzt", (0.0, 0.0, -0.01), Z),
@@ -180,7 +182,7 @@ def test_a_squeezed_body_turns_about_the_line_of_its_forces_for_nothing():
         forces={name: fs.Force("platform", (x, 0.0, 0.0), (-np.sign(x), 0.0, 0.0)) for name, x in (("a", -0.1), ("b", 0.1))},
         gravity=(0.0, 0.0, 0.0),
     )
-    others = 1.0 / np.diag(fs.compliance(hinge, STEEL))[3:5]
+    others = 1.0 / np.diag(compliance(hinge, STEEL))[3:5]
     assert of(stage).dead == pytest.approx(np.min(others) / (2.0 * 0.1), rel=1e-3)
 
 

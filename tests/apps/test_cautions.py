@@ -12,6 +12,7 @@ import pytest
 
 import flexstage as fs
 from flexstage.analysis.cautions import caveats, defaults
+from flexstage.analysis.standing import standing
 from flexstage.apps.cli.commands import COMMANDS
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.control.hysteresis.example import example_record
@@ -112,10 +113,10 @@ def test_a_stage_that_its_weight_topples_has_no_elastic_results(flexstage: Comma
 def test_a_model_in_python_is_refused_alike(tmp_path: Path) -> None:
     leaves(tmp_path, 10.0)
     with pytest.raises(fs.DesignError, match="does not hold"):
-        fs.standing(fs.load(tmp_path / "stage.toml"))
+        standing(fs.load(tmp_path / "stage.toml"))
     leaves(tmp_path, 2.5)
     stage = fs.load(tmp_path / "stage.toml")
-    np.testing.assert_array_equal(fs.standing(stage).stiffness_matrix, fs.lumped(stage).stiffness_matrix)
+    np.testing.assert_array_equal(standing(stage).stiffness_matrix, fs.lumped(stage).stiffness_matrix)
 
 
 def test_verdicts_that_the_weight_may_turn_are_withheld(flexstage: Command, tmp_path: Path) -> None:

@@ -17,6 +17,7 @@ import pytest
 import flexstage as fs
 from flexstage.base.progress import Step
 from flexstage.cases.bridge import bridge
+from flexstage.mechanism.restrict import restrict
 from flexstage.parts.freedom import Freedom
 from flexstage.show.command.progress import progress_bar
 from flexstage.solid import resolution
@@ -114,7 +115,7 @@ def test_every_key_is_documented(command: Command, words: tuple[str, ...]) -> No
 
 
 def test_what_has_no_shape_is_named(command: Command, tmp_path: Path) -> None:
-    stage = fs.restrict(small(), {"leaf": ((Freedom.X,), ())})
+    stage = restrict(small(), {"leaf": ((Freedom.X,), ())})
     fs.dump(stage, tmp_path / "restricted.toml")
     for words in (("solid", "restricted.toml"), ("verify", "restricted.toml")):
         ended = command(*words)

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import ast
 import importlib
+import inspect
 import pkgutil
+import re
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -72,6 +75,23 @@ def test_unknown_names_are_refused() -> None:
         _ = flexstage.nonsense
 
 
+def takers() -> list[tuple[Callable[..., object], str]]:
+    """Public functions with each of their parameters that is a model."""
+    functions = [value for package, name in EVERY if inspect.isfunction(value := getattr(NAMESPACES[package], name))]
+    model = re.compile(r"(LinearModel|Kinematics)( \| None)?")
+    told = [(each, parameter) for each in functions for parameter in inspect.signature(each).parameters.values()]
+    return [(each, parameter.name) for each, parameter in told if model.fullmatch(str(parameter.annotation))]
+
+
+def test_a_description_in_the_place_of_a_model_is_refused_with_the_call_that_was_meant() -> None:
+    stage = flexstage.case("parallelogram")
+    assert len(takers()) >= 15
+    for function, name in takers():
+        arguments = dict.fromkeys(inspect.signature(function).parameters) | {name: stage}
+        with pytest.raises(TypeError, match=rf"{function.__name__} takes a model, not a description: {function.__name__}\("):
+            function(**arguments)
+
+
 def test_import_loads_nothing_heavy() -> None:
     assert not (HEAVY | SOLVER) & loaded_by("import flexstage")
 
@@ -92,4 +112,4 @@ def test_help_loads_nothing_heavy() -> None:
 
 
 def test_other_readings_load_no_solver() -> None:
-    assert not SOLVER & loaded_by("import flexstage as fs; fs.modes(fs.lumped(fs.double_triangle()))")
+    assert not SOLVER & loaded_by("import flexstage as fs; fs.modes(fs.lumped(fs.case('double-triangle')))")

@@ -9,6 +9,7 @@ from hypothesis import given
 
 import flexstage as fs
 from flexstage.models.linear.eigen import eigen
+from flexstage.parts.part import Restricted
 from tests.conftest import examples
 from tests.laws.shared import ideal, lumped
 from tests.laws.strategies import actuated_platforms
@@ -29,7 +30,7 @@ def test_shares_add_up_on_random_stages(stage: fs.Mechanism) -> None:
 
 def imposed(stage: fs.Mechanism) -> fs.Mechanism:
     """The stage with stacks that nothing stretches: their strokes are imposed."""
-    parts = {name: fs.Restricted(part, ()) if isinstance(part, fs.Piezo) else part for name, part in stage.parts.items()}
+    parts = {name: Restricted(part, ()) if isinstance(part, fs.Piezo) else part for name, part in stage.parts.items()}
     return replace(stage, parts=parts)
 
 
@@ -45,7 +46,7 @@ def test_shares_add_up_with_imposed_strokes(stage: fs.Mechanism) -> None:
 def test_imposed_strokes_are_the_limit_of_stiff_stacks(stage: fs.Mechanism) -> None:
     """Static gains of platform and gauges, and their response, tend to those of stacks locked along their axes."""
     stiff = {
-        name: fs.Restricted(replace(part, stiffness=1e7 * part.stiffness), (fs.Freedom.X,)) if isinstance(part, fs.Piezo) else part
+        name: Restricted(replace(part, stiffness=1e7 * part.stiffness), (fs.Freedom.X,)) if isinstance(part, fs.Piezo) else part
         for name, part in stage.parts.items()
     }
     limit, model = fs.lumped(imposed(stage)), fs.lumped(replace(stage, parts=stiff))

@@ -8,7 +8,7 @@ import pytest
 import flexstage as fs
 from flexstage.analysis.judge import measured
 from flexstage.base.finding import DesignError
-from flexstage.cases.double_triangle import SM_REF_B
+from flexstage.cases.double_triangle import SM_REF_B, double_triangle
 from flexstage.cases.parameters import parameters
 from flexstage.cases.registry import CASES, Variant
 from flexstage.mechanism.grammar import node_of
@@ -53,7 +53,7 @@ def test_a_batch_of_parameters_is_its_stages_one_by_one(name):
 def test_parameters_are_those_of_the_case_function():
     drawn = CASES["double-triangle"].build({"short_arm": "25 mm", "neck.length": 0.013})
     changed = replace(SM_REF_B, short_arm=0.025, neck=replace(SM_REF_B.neck, profile=fs.Straight(0.013)))
-    assert replace(drawn, tags={}) == replace(fs.double_triangle(changed), tags={})
+    assert replace(drawn, tags={}) == replace(double_triangle(changed), tags={})
     assert "parts.neck.profile.length" not in drawn.tags
     assert "parts.neck.thickness" in drawn.tags
 

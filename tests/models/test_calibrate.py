@@ -11,7 +11,9 @@ import pytest
 import flexstage as fs
 from flexstage.analysis.cautions import defaults
 from flexstage.analysis.trust import Trust
+from flexstage.base.digest import digest
 from flexstage.base.finding import DesignError
+from flexstage.beams.compliance import compliance
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.cases.parallelogram import parallelogram
 from flexstage.mechanism.drawn import calibrated, drawn
@@ -90,8 +92,8 @@ def test_calibrated_hinges_grow_and_lose_energy_as_the_drawn_ones(stage: fs.Mech
 def test_softer_hinges_are_read_softer() -> None:
     stage = parallelogram()
     after = fs.loads(fs.solid.calibrate(fs.dumps(stage), softened(1.2)).text)
-    neck = fs.compliance(after.parts["neck-front"], None)
-    np.testing.assert_allclose(np.diag(neck) / np.diag(fs.compliance(stage.parts["neck"], stage.materials["steel"])), 1.2, rtol=1e-5)
+    neck = compliance(after.parts["neck-front"], None)
+    np.testing.assert_allclose(np.diag(neck) / np.diag(compliance(stage.parts["neck"], stage.materials["steel"])), 1.2, rtol=1e-5)
     assert fs.statics(fs.lumped(after)).held.principal[1] < fs.statics(fs.lumped(stage)).held.principal[1]
 
 
@@ -172,7 +174,7 @@ def test_rows_that_calibrated_parts_touch_are_not_independent() -> None:
 def test_with_matrices_is_what_the_file_says(stage: fs.Mechanism) -> None:
     same = with_matrices(stage, solid_hinges(stage, softened(1.1)))
     read = fs.loads(fs.solid.calibrate(fs.dumps(stage), softened(1.1)).text)
-    assert fs.digest(same, physics=True) == fs.digest(read, physics=True)
+    assert digest(same, physics=True) == digest(read, physics=True)
 
 
 @pytest.mark.parametrize(

@@ -18,6 +18,7 @@ from flexstage.base.finding import DesignError
 from flexstage.base.progress import Step
 from flexstage.base.scale import mm
 from flexstage.models.linear.model import LinearModel
+from flexstage.models.linear.static import static_gain
 from flexstage.solid.fea import parts as parts_module
 from flexstage.solid.fea import store
 from flexstage.solid.fea.cache import Cache, find, folder_of, keep, key_of
@@ -224,6 +225,6 @@ def test_the_others_are_kept_when_one_fails(tmp_path: Path) -> None:
 def test_a_pulled_rod_gives_its_length_over_young_and_area(tmp_path: Path) -> None:
     """E A / L, but for the few percent that rigid end faces and few elements add."""
     length, area = 40 * mm, np.pi * (4 * mm) ** 2 / 4
-    gain = fs.static_gain(fs.solid.model(propped(length), COARSE, cache=Cache(tmp_path)), ("platform.x",), ("platform.fx",))
+    gain = static_gain(fs.solid.model(propped(length), COARSE, cache=Cache(tmp_path)), ("platform.x",), ("platform.fx",))
     young = propped(length).materials["steel"].young
     assert gain.values.item() * young * area / length == pytest.approx(1.0, rel=0.05)

@@ -11,7 +11,8 @@ import flexstage as fs
 from flexstage.analysis.complete import platform_modes
 from flexstage.analysis.pairing import RELIABLE, Moving, paired
 from flexstage.analysis.trust import Trust
-from flexstage.base.finding import DesignError
+from flexstage.analysis.units import units
+from flexstage.base.finding import DesignError, Finding
 from flexstage.mechanism.drawn import drawn
 from flexstage.models.linear.static import displacement
 from flexstage.solid.fea.fineness import Reduction
@@ -27,7 +28,7 @@ from tests.models.solid_studies import small, small_stage, small_unit
 
 def test_a_direct_unit_alone() -> None:
     unit = small_unit()
-    theory = fs.units(small())["drive"]
+    theory = units(small())["drive"]
     assert 0.90 < unit.axial / theory.axial < 1.0  # beam theory of necks is too stiff, by 16 % along them
     assert 0.85 < unit.lateral[0] / theory.lateral[0] < 1.0
     assert unit.lateral[1] / unit.lateral[0] == pytest.approx(1.0, rel=1e-2)  # round all over; the mesh is not
@@ -119,7 +120,7 @@ def test_resolution_rises_until_the_accuracy_is_met() -> None:
 def test_resolution_keeps_what_it_has_when_more_does_not_fit() -> None:
     def work(way: Reduction) -> float:
         if way.fineness.order > 3:
-            raise fs.DesignError([fs.Finding("lever", "needs 9 GB", "Ask for less")])
+            raise fs.DesignError([Finding("lever", "needs 9 GB", "Ask for less")])
         return float(way.fineness.order)
 
     found = resolved(work, lambda value: {"a": value}, Resolution(0.001))

@@ -10,12 +10,13 @@ import numpy as np
 import pytest
 
 import flexstage as fs
-from flexstage.base.finding import DesignError
+from flexstage.base.finding import DesignError, Finding
 from flexstage.base.scale import mm
 from flexstage.cases.registry import case
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.solid.fea import sound
 from flexstage.solid.fea.cache import Cache
+from flexstage.solid.fea.model import model_with_parts
 from flexstage.solid.fea.monolithic import monolithic
 from flexstage.solid.fea.sound import stage_findings
 from flexstage.solid.read import read_solid, solids
@@ -38,7 +39,7 @@ def gaping() -> Mechanism:
     "reads",
     [
         lambda stage: fs.solid.model(stage, COARSE, cache=None),
-        lambda stage: fs.solid.model_with_parts(stage, COARSE, cache=None),
+        lambda stage: model_with_parts(stage, COARSE, cache=None),
         lambda stage: monolithic(stage, COARSE, cache=None),
         lambda stage: read_solid(stage, COARSE, solids()),
     ],
@@ -67,7 +68,7 @@ def test_a_sound_stage_is_checked_once(tmp_path: Path, monkeypatch: pytest.Monke
 
 
 def test_findings_are_never_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    found = (fs.Finding("leaf", "its end face is 20 um away from platform", "Move it"),)
+    found = (Finding("leaf", "its end face is 20 um away from platform", "Move it"),)
     monkeypatch.setattr(sound, "contact_apart", lambda _: found)
     for _ in range(2):
         assert stage_findings(propped(6 * mm), Cache(tmp_path)) == found

@@ -12,6 +12,7 @@ from flexstage.analysis.omitted import Restrictions, omitted
 from flexstage.beams.compliance import compliance
 from flexstage.cases.double_triangle import EQUATION_3, SM_REF_A, SM_REF_B, TABLE_2_FEA, DoubleTriangle, double_triangle
 from flexstage.mechanism.expand import expand
+from flexstage.mechanism.restrict import isolate, restrict
 from flexstage.models.linear.static import static_gain
 from flexstage.models.mapped import LeverStiffness, lever_stiffness
 
@@ -27,8 +28,8 @@ def _springs(parameters: DoubleTriangle) -> LeverStiffness:
 
 
 def _unit(parameters: DoubleTriangle, known: Restrictions) -> fs.LinearModel:
-    unit = fs.isolate(double_triangle(parameters), "B4", guide=UP)
-    return fs.lumped(fs.restrict(unit, {name: kept for name, kept in known.items() if name in unit.parts}))
+    unit = isolate(double_triangle(parameters), "B4", guide=UP)
+    return fs.lumped(restrict(unit, {name: kept for name, kept in known.items() if name in unit.parts}))
 
 
 @BOTH
@@ -45,8 +46,8 @@ def test_load_term_of_equation_11(parameters: DoubleTriangle) -> None:
 
 @BOTH
 def test_loss_is_eps_over_one_plus_eps(parameters: DoubleTriangle) -> None:
-    unit = fs.isolate(double_triangle(parameters), "B4", guide=UP)
-    restricted = fs.restrict(unit, EQUATION_3)
+    unit = isolate(double_triangle(parameters), "B4", guide=UP)
+    restricted = restrict(unit, EQUATION_3)
     result = fs.lost_motion(fs.ideal(restricted), fs.lumped(restricted))
     softness = _springs(parameters).softness
     assert result.loss.at("B4", "B4") == pytest.approx(softness / (1.0 + softness), rel=1e-9)
@@ -72,7 +73,7 @@ def test_fea_column_of_table_2_with_front_and_pole_bending(parameters: DoubleTri
 @BOTH
 @pytest.mark.parametrize("channel", [("platform.z", "B4"), ("platform.z", "platform.fz")])
 def test_omitted_freedoms_explain_the_full_gain(parameters: DoubleTriangle, channel: tuple[str, str]) -> None:
-    unit = fs.isolate(double_triangle(parameters), "B4", guide=UP)
+    unit = isolate(double_triangle(parameters), "B4", guide=UP)
     assert omitted(unit, EQUATION_3, channel).unexplained < 1e-3
 
 
@@ -83,7 +84,7 @@ def test_the_pivots_own_springs_soften_the_load_term(neck_along: tuple[float, fl
     vertical = stage.units["vertical"]
     links = {**vertical.links, "pivot": replace(vertical.links["pivot"], along=neck_along)}
     turned = replace(stage, units={**stage.units, "vertical": replace(vertical, links=links)})
-    costs = omitted(fs.isolate(turned, "B4", guide=UP), EQUATION_3, ("platform.z", "platform.fz"))
+    costs = omitted(isolate(turned, "B4", guide=UP), EQUATION_3, ("platform.z", "platform.fz"))
     own = compliance(stage.parts["lever_notch"], stage.materials["steel"]).diagonal()
     pushed, lifted = (own[0], own[1]) if neck_along == fs.X else (own[1], own[0])
     assert (9.0 * pushed + lifted) / costs.simple == pytest.approx(share, abs=0.001)

@@ -7,6 +7,8 @@ import pytest
 
 import flexstage as fs
 from flexstage.cases.double_triangle import EQUATION_18, SM_REF_A, SM_REF_B, DoubleTriangle, double_triangle
+from flexstage.mechanism.restrict import restrict
+from flexstage.models.lumped import Masses
 
 BOTH = pytest.mark.parametrize("parameters", [SM_REF_A, SM_REF_B])
 
@@ -14,7 +16,7 @@ BOTH = pytest.mark.parametrize("parameters", [SM_REF_A, SM_REF_B])
 @BOTH
 def test_mapped_is_lumped_restricted_with_massless_units(parameters: DoubleTriangle) -> None:
     stage = double_triangle(parameters)
-    restricted = fs.lumped(fs.restrict(stage, EQUATION_18), fs.Masses.PLATFORM)
+    restricted = fs.lumped(restrict(stage, EQUATION_18), Masses.PLATFORM)
     simple = fs.mapped(stage)
     np.testing.assert_allclose(fs.modes(restricted).frequencies, fs.modes(simple).frequencies, rtol=1e-4)
     ours, theirs = fs.statics(restricted).stiffness.values, fs.statics(simple).stiffness.values

@@ -8,6 +8,7 @@ import pytest
 import flexstage as fs
 from flexstage.cases.double_triangle import SM_REF_A, SM_REF_B, DoubleTriangle, double_triangle
 from flexstage.mechanism.expand import expand
+from flexstage.mechanism.restrict import isolate
 from flexstage.models.mapped import lever_stiffness, unit_stiffness
 
 THIRD = 1.0 / 3.0
@@ -117,6 +118,6 @@ def test_springs_of_the_vertical_unit(
 def test_unit_stiffness_of_the_horizontal_unit(parameters: DoubleTriangle) -> None:
     stage = double_triangle(parameters)
     assert unit_stiffness(stage, expand(stage))["B1"] == pytest.approx(10.300e6, rel=5e-5)
-    alone = fs.statics(fs.lumped(fs.isolate(stage, "B1"))).stiffness.values
+    alone = fs.statics(fs.lumped(isolate(stage, "B1"))).stiffness.values
     assert alone[0, 0] == pytest.approx(10.300e6, rel=5e-5)
     assert alone[1, 1] == pytest.approx(0.00120e6, abs=0.000005e6)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-import flexstage as fs
+from flexstage.analysis.units import units
 from flexstage.cases.double_triangle import SM_REF_A, SM_REF_B, DoubleTriangle, double_triangle
 
 BOTH = pytest.mark.parametrize("parameters", [SM_REF_A, SM_REF_B])
@@ -12,7 +12,7 @@ BOTH = pytest.mark.parametrize("parameters", [SM_REF_A, SM_REF_B])
 
 @BOTH
 def test_horizontal_unit(parameters: DoubleTriangle) -> None:
-    unit = fs.units(double_triangle(parameters))["horizontal"]
+    unit = units(double_triangle(parameters))["horizontal"]
     assert unit.axial == pytest.approx(10.300e6, rel=5e-5)
     assert unit.lateral[1] == pytest.approx(0.00120e6, abs=5.0)
     assert unit.series == pytest.approx(unit.axial, rel=1e-12)
@@ -21,7 +21,7 @@ def test_horizontal_unit(parameters: DoubleTriangle) -> None:
 
 @BOTH
 def test_vertical_unit(parameters: DoubleTriangle) -> None:
-    unit = fs.units(double_triangle(parameters))["vertical"]
+    unit = units(double_triangle(parameters))["vertical"]
     assert unit.ideal_gain == pytest.approx(3.0, rel=1e-12)
     assert unit.lever is not None
     assert unit.lever.gain == pytest.approx(3.0 * 0.975, abs=5e-4)
@@ -31,5 +31,5 @@ def test_vertical_unit(parameters: DoubleTriangle) -> None:
 
 def test_a_softer_plane_of_the_rectangular_neck() -> None:
     """SM-REF-B's neck is thin vertically: 0.00056 N/um out of plane (reference value)."""
-    unit = fs.units(double_triangle(SM_REF_B))["horizontal"]
+    unit = units(double_triangle(SM_REF_B))["horizontal"]
     assert unit.lateral[0] == pytest.approx(0.00056e6, abs=5.0)

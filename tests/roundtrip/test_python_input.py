@@ -10,6 +10,7 @@ import pytest
 
 import flexstage as fs
 from flexstage.mechanism.address import set_value
+from flexstage.parts.part import Restricted
 
 STAGE = fs.case("parallelogram")
 
@@ -95,7 +96,7 @@ def test_a_stage_without_sections_or_freedoms_is_told():
     found = fs.analyse(stage)
     assert found.workspace.stress is None
     assert "no link has a section" in found.workspace.missing["stress"]
-    locked = replace(stage, parts={"stack": fs.Restricted(stack, ())})
+    locked = replace(stage, parts={"stack": Restricted(stack, ())})
     assert fs.ideal(locked).mapping.values[0, 0] == 1.0
     with pytest.raises(fs.DesignError, match="every freedom is locked, by pzt"):
         fs.lumped(locked)

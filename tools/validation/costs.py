@@ -7,6 +7,7 @@ import numpy as np
 import flexstage as fs
 from flexstage.analysis.omitted import Omitted, omitted
 from flexstage.cases.double_triangle import EQUATION_3, EQUATION_18
+from flexstage.mechanism.restrict import restrict
 from flexstage.models.lumped import Masses
 from tools.validation.row import Row, Section, Tolerance, table
 from tools.validation.stages import Known, known
@@ -85,7 +86,7 @@ def _frequencies(case: Known) -> Section:
 
 
 def _lumped(case: Known, simple: tuple[str, ...]) -> fs.LinearModel:
-    return fs.lumped(fs.restrict(case.stage, {name: EQUATION_18[name] for name in simple}), Masses.PLATFORM)
+    return fs.lumped(restrict(case.stage, {name: EQUATION_18[name] for name in simple}), Masses.PLATFORM)
 
 
 def _six(model: fs.LinearModel) -> np.ndarray:

@@ -149,7 +149,7 @@ independently of this code from the paper's equations; source "derived" means th
 
 _COSTS = """\
 A simpler theory leaves out elasticity that is there. Each omission has a price, computed here one freedom and one part at a time:
-`fs.omitted`, `fs.units`, `fs.restrict`."""
+`omitted` and `units` of `flexstage.analysis`, `restrict` of `flexstage.mechanism`."""
 
 _HINGES = """\
 Single hinges and small assemblies. The finite elements were computed independently of this project and converged below 0.01 % (plane Q9,

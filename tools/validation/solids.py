@@ -9,11 +9,13 @@ import numpy as np
 
 import flexstage as fs
 from flexstage.analysis.complete import platform_modes
+from flexstage.analysis.modes import Modes
 from flexstage.analysis.pairing import Moving, Pair, paired
 from flexstage.cases.registry import case
 from flexstage.mechanism.restrict import isolate
 from flexstage.solid.calibration import with_matrices
 from flexstage.solid.fea.fineness import Fineness, Reduction
+from flexstage.solid.units import SolidUnit
 from flexstage.solid.verification import units_matched
 from tests.paper.test_lost_motion import COMMANDS, FEA, THEORY
 from tools.validation.row import Row, Scale, Section, Tolerance, relative, table
@@ -29,7 +31,7 @@ def sections() -> list[Section]:
     return [_units(stage, units), _refitted(), _table_2(units["vertical"]), _stage(stage)]
 
 
-def _units(stage: fs.Mechanism, units: dict[str, fs.solid.SolidUnit]) -> Section:
+def _units(stage: fs.Mechanism, units: dict[str, SolidUnit]) -> Section:
     better = units_matched(stage)
     axial, loss = _axial(stage), units["vertical"].loss
     bare = _rigid(stage)
@@ -75,7 +77,7 @@ def _refitted() -> Section:
     return Section("Units refitted to FEA", text, rows)
 
 
-def _table_2(unit: fs.solid.SolidUnit) -> Section:
+def _table_2(unit: SolidUnit) -> Section:
     commands, columns = COMMANDS[1:], (THEORY[1:], FEA[1:])
     outputs = np.interp(commands, 1e6 * unit.commands, 1e6 * unit.outputs)
     rows = [
@@ -115,7 +117,7 @@ def _stage(stage: fs.Mechanism) -> Section:
     return Section("The whole stage", text, rows, (table(heads, lines),))
 
 
-def _modes(fea: fs.Modes, theory: dict[int, Pair], calibrated: dict[int, Pair]) -> Iterator[tuple[str, ...]]:
+def _modes(fea: Modes, theory: dict[int, Pair], calibrated: dict[int, Pair]) -> Iterator[tuple[str, ...]]:
     for number, index in enumerate(fea.platform):
         value, first, second = float(fea.frequencies[index]), theory[index], calibrated[index]
         found = (f"{each:.2f}" for each in (value, first.frequency, second.frequency))

@@ -8,10 +8,14 @@ from dataclasses import dataclass, replace
 
 import flexstage as fs
 from flexstage.analysis.omitted import Restrictions
+from flexstage.analysis.units import UnitResult
+from flexstage.analysis.units import units as units_of
 from flexstage.base.number import Array
 from flexstage.beams.compliance import compliance
 from flexstage.cases.double_triangle import SM_REF_A, SM_REF_B, DoubleTriangle, double_triangle
 from flexstage.mechanism.expand import expand
+from flexstage.mechanism.restrict import isolate, restrict
+from flexstage.models.linear.kinematics import Kinematics
 from flexstage.models.linear.static import static_gain
 from flexstage.models.mapped import LeverStiffness, lever_stiffness
 
@@ -27,14 +31,14 @@ class Known:
     stage: fs.Mechanism
 
     @functools.cached_property
-    def ideal(self) -> fs.Kinematics:
+    def ideal(self) -> Kinematics:
         """Its kinematics."""
         return fs.ideal(self.stage)
 
     @functools.cached_property
-    def units(self) -> Mapping[str, fs.UnitResult]:
+    def units(self) -> Mapping[str, UnitResult]:
         """Each unit alone."""
-        return fs.units(self.stage)
+        return units_of(self.stage)
 
     @functools.cached_property
     def lever(self) -> LeverStiffness:
@@ -49,11 +53,11 @@ class Known:
     def restricted(self, known: Restrictions) -> fs.LinearModel:
         """One vertical unit, guided upwards, restricted to what a theory knows."""
         unit = self.vertical()
-        return fs.lumped(fs.restrict(unit, {name: kept for name, kept in known.items() if name in unit.parts}))
+        return fs.lumped(restrict(unit, {name: kept for name, kept in known.items() if name in unit.parts}))
 
     def vertical(self) -> fs.Mechanism:
         """One vertical unit alone, its output guided upwards."""
-        return fs.isolate(self.stage, "B4", guide=UP)
+        return isolate(self.stage, "B4", guide=UP)
 
 
 def gain(model: fs.LinearModel) -> float:

@@ -10,6 +10,7 @@ from flexstage.analysis.workspace.load import dead_loads
 from flexstage.base.labelled import Matrix
 from flexstage.base.number import Array
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
+from flexstage.models.linear.arguments import takes_models
 from flexstage.models.linear.model import LinearModel
 from flexstage.models.linear.static import displacement
 from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
@@ -32,6 +33,7 @@ class Deflection:
         return np.sum(self.by_cause.values, axis=-1)
 
 
+@takes_models
 def deflection(mechanism: Mechanism, model: LinearModel, *, point: str = PLATFORM) -> Deflection:
     """Deflection at a point of the platform under gravity and stated forces: q = K^-1 f, strokes held, small displacements.
 

@@ -19,6 +19,7 @@ from flexstage.mechanism.expand import Assembly, PlacedLink, expand
 from flexstage.mechanism.expansion import Expansion, Ground, expansion
 from flexstage.mechanism.incidence import deformation, layout
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
+from flexstage.models.linear.arguments import takes_models
 from flexstage.models.linear.model import LinearModel
 from flexstage.models.linear.static import displacement
 from flexstage.parts.given import Joint
@@ -80,6 +81,7 @@ class _Thermal:
         return np.asarray(more)[..., None, None] * _grown(arm, link.frame.position - arm - self.datum)
 
 
+@takes_models
 def drift(mechanism: Mechanism, model: LinearModel, *, ground: str | None = None, datum: Vector = (0.0, 0.0, 0.0)) -> Drift:
     """Thermal drift of a stage: free growth of all bodies and parts, elastically redistributed by the model's links, strokes held.
 

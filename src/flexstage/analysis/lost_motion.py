@@ -9,6 +9,7 @@ import numpy as np
 
 from flexstage.base.labelled import Matrix, ratio_units
 from flexstage.base.number import Array
+from flexstage.models.linear.arguments import takes_models
 from flexstage.models.linear.kinematics import Kinematics
 from flexstage.models.linear.model import LinearModel
 from flexstage.models.linear.static import displacement, part_deformation, static_gain
@@ -61,6 +62,7 @@ class LostMotion:
         return Shares({name: share.values[..., index, index] for name, share in self.budget.items()})
 
 
+@takes_models
 def lost_motion(kinematics: Kinematics, model: LinearModel) -> LostMotion:
     """Compare an elastic model with the ideal kinematics of the same stage.
 

@@ -14,6 +14,7 @@ from flexstage.base.number import Array, descending, first_design, foremost
 from flexstage.base.quantity import FREQUENCY
 from flexstage.base.record import INNER, VIEW
 from flexstage.models.batch.choice import NEGLIGIBLE
+from flexstage.models.linear.arguments import takes_models
 from flexstage.models.linear.eigen import Eigen, eigen, sign_weights
 from flexstage.models.linear.model import LinearModel
 from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
@@ -118,6 +119,7 @@ class Modes:
         )
 
 
+@takes_models
 def modes(model: LinearModel, *, limit: float = np.inf, count: int = 6, cluster: float = _REPEATED) -> Modes:
     """Modes of the undamped model (Eq. 28 of Shin & Moon).
 

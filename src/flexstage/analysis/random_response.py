@@ -13,6 +13,7 @@ from flexstage.analysis.modes import averaged, repeated
 from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array
 from flexstage.mechanism.mechanism import Damping
+from flexstage.models.linear.arguments import takes_models
 from flexstage.models.linear.damping import damping_law, modal_ratios
 from flexstage.models.linear.eigen import eigen
 from flexstage.models.linear.frequency import transfer
@@ -91,6 +92,7 @@ class RandomResponse:
         }
 
 
+@takes_models
 def random_response(
     model: LinearModel,
     outputs: Iterable[str],

@@ -10,6 +10,7 @@ from flexstage.analysis.modes import averaged, repeated
 from flexstage.base.finding import refuse
 from flexstage.base.number import Array, distinct, first_design
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Damping
+from flexstage.models.linear.arguments import takes_models
 from flexstage.models.linear.damping import damping_law, modal_ratios
 from flexstage.models.linear.eigen import eigen
 from flexstage.models.linear.frequency import Response, transfer
@@ -20,6 +21,7 @@ _MODES_SHOWN = 12
 _ANGLES = np.linspace(-1.45, 1.45, 25)
 
 
+@takes_models
 def response(
     model: LinearModel, outputs: Iterable[str], inputs: Iterable[str], frequencies: Array | None = None, *, damping: Damping | None = None
 ) -> Response:
@@ -42,6 +44,7 @@ def response(
     return Response(grid, chosen.outputs, chosen.inputs, transfer(model, chosen, grid, law), model.provenance)
 
 
+@takes_models
 def transmissibility(
     model: LinearModel, outputs: Iterable[str] = (PLATFORM,), frequencies: Array | None = None, *, damping: Damping | None = None
 ) -> Response:

@@ -8,6 +8,7 @@ import numpy as np
 
 from flexstage.base.labelled import Matrix, ratio_units
 from flexstage.base.number import Array, Number, first_design
+from flexstage.models.linear.arguments import takes_models
 from flexstage.models.linear.model import LinearModel
 from flexstage.models.linear.static import displacement
 from flexstage.models.linear.undetermined import require_unmoved
@@ -54,6 +55,7 @@ class Statics:
     provenance: str
 
 
+@takes_models
 def statics(model: LinearModel, *, load_point: str = "platform", read_point: str = "platform") -> Statics:
     """Platform compliance and stiffness with load and read-out points chosen by name (`platform` is its reference point).
 

@@ -1,6 +1,5 @@
 from flexstage.control.closed import (
     Cut as Cut,
-    Loop as Loop,
     loop as loop,
 )
 from flexstage.control.controllers.decentralised import (
@@ -26,7 +25,6 @@ from flexstage.control.controllers.resonant import (
 from flexstage.control.electronics import (
     AmplifierSettings as AmplifierSettings,
     GaugeSettings as GaugeSettings,
-    Hardware as Hardware,
     hardware as hardware,
 )
 from flexstage.control.exchange import (
@@ -39,53 +37,31 @@ from flexstage.control.export.files import (
     write_plant as write_plant,
 )
 from flexstage.control.hysteresis.bouc_wen import (
-    BoucWen as BoucWen,
     bouc_wen as bouc_wen,
 )
 from flexstage.control.hysteresis.creep import (
-    Creep as Creep,
     LogCreep as LogCreep,
     exponentials as exponentials,
-)
-from flexstage.control.hysteresis.creep_record import (
-    identify_creep as identify_creep,
-)
-from flexstage.control.hysteresis.envelope import (
-    Envelope as Envelope,
-)
-from flexstage.control.hysteresis.identify import (
-    identify_hysteresis as identify_hysteresis,
 )
 from flexstage.control.hysteresis.inverse import (
     hysteresis_inverse as hysteresis_inverse,
 )
-from flexstage.control.hysteresis.prandtl_ishlinskii import (
-    PrandtlIshlinskii as PrandtlIshlinskii,
-)
 from flexstage.control.hysteresis.preisach import (
-    Preisach as Preisach,
     preisach as preisach,
 )
 from flexstage.control.hysteresis.stack import (
-    StackHysteresis as StackHysteresis,
     dump_hysteresis as dump_hysteresis,
     load_hysteresis as load_hysteresis,
     stack_hysteresis as stack_hysteresis,
 )
 from flexstage.control.hysteresis.stack_test import (
-    Channels as Channels,
-    StackTest as StackTest,
     stack_test as stack_test,
 )
 from flexstage.control.noise import (
     noise_budget as noise_budget,
 )
 from flexstage.control.plants import (
-    Plant as Plant,
     plant as plant,
-)
-from flexstage.control.reduction import (
-    reduced as reduced,
 )
 from flexstage.control.report import (
     loop_report as loop_report,
@@ -104,10 +80,7 @@ from flexstage.control.stability import (
     verdict as verdict,
 )
 from flexstage.control.stability_margins import (
-    bandwidths as bandwidths,
-    crosstalk as crosstalk,
     margins as margins,
-    peaks as peaks,
 )
 from flexstage.control.study.choices import (
     Axes as Axes,
@@ -120,9 +93,6 @@ from flexstage.control.study.choices import (
 )
 from flexstage.control.study.file import (
     load_setup as load_setup,
-)
-from flexstage.control.study.floor import (
-    criterion_spectrum as criterion_spectrum,
 )
 from flexstage.control.study.setup import (
     Amplifying as Amplifying,
@@ -141,7 +111,6 @@ from flexstage.control.study.setup import (
     StepMotion as StepMotion,
 )
 from flexstage.control.study.study import (
-    LoopStudy as LoopStudy,
     loop_study as loop_study,
 )
 from flexstage.control.system import (

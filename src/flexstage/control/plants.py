@@ -13,6 +13,7 @@ from flexstage.control.electronics import Hardware, Sensor
 from flexstage.control.sampling import ramped, sampled
 from flexstage.control.system import System, connected, from_state_space, lag, picked, renamed, static
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Damping
+from flexstage.models.linear.arguments import takes_models
 from flexstage.models.linear.damping import damping_law
 from flexstage.models.linear.eigen import eigen
 from flexstage.models.linear.kinematics import Kinematics
@@ -56,6 +57,7 @@ class Plant:
         return self.coordinates.gauges
 
 
+@takes_models
 def plant(
     model: LinearModel,
     kinematics: Kinematics,

@@ -3,21 +3,17 @@
 from flexstage.base.lazy import lazily
 
 HOMES = {
-    "record": "Channel InMemory Record Responses Role in_memory",
+    "record": "Channel Record Role in_memory",
     "options": "Allow Kind Options",
-    "unit": "in_si responses_in_si",
     "formats.read": "read_record",
     "formats.write": "Form write_record",
-    "health": "Needs examine usable",
-    "cross_spectra": "Segments Spectra Window spectra",
-    "transfer": "h1 h2 multiple_coherence ordinary_coherence spectral_ratio",
+    "health": "Needs examine",
+    "cross_spectra": "Segments spectra",
+    "transfer": "h1 h2",
     "identification.identify": "Search identify",
-    "identification.identified": "Identified",
-    "comparison": "Compared compare",
-    "updating.update": "Told Updated update",
+    "comparison": "compare",
+    "updating.update": "update",
     "updating.free": "Known",
-    "updating.text": "updated_text",
-    "shapes_on_stage": "StageShapes stage_shapes",
     "virtual_rig.rig": "rig",
     "virtual_rig.setup": "Amplifier AntiAlias NoiseDrive Recorded RigSetup Sensing Tap",
 }

@@ -16,6 +16,7 @@ from flexstage.base.number import Array
 from flexstage.mechanism.expand import Assembly, PlacedLink, expand
 from flexstage.mechanism.incidence import layout
 from flexstage.mechanism.mechanism import GROUND, Mechanism
+from flexstage.models.linear.arguments import takes_models
 from flexstage.models.linear.kinematics import Kinematics
 from flexstage.parts.freedom import ALL
 from flexstage.parts.part import inner
@@ -120,6 +121,7 @@ class _Relative:
     vector: Array
 
 
+@takes_models
 def forward_kinematics(mechanism: Mechanism, kinematics: Kinematics, strokes: Array) -> FiniteMotion:
     """Pose of the platform for strokes (..., n) [m] in the order of `kinematics.actuators`, from the drawn position.
 
@@ -138,6 +140,7 @@ def forward_kinematics(mechanism: Mechanism, kinematics: Kinematics, strokes: Ar
     return _solved(mechanism, kinematics, strokes, None)
 
 
+@takes_models
 def inverse_kinematics(mechanism: Mechanism, kinematics: Kinematics, pose: FinitePose) -> FiniteMotion:
     """Strokes that bring the platform's reference point to `pose`, of which the components named in `kinematics.coordinates` count.
 

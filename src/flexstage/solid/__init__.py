@@ -4,16 +4,16 @@ from flexstage.base.lazy import lazily
 
 HOMES = {
     "fea.cache": "Cache",
-    "fea.fineness": "Fineness Hold Reduction",
+    "fea.fineness": "Fineness Reduction",
     "fea.estimate": "Accuracy",
-    "fea.hinge": "HingeSolid hinge_compliance",
-    "fea.model": "SolidModel model model_with_parts",
-    "resolution": "Resolution Resolved",
-    "hinges": "SolidHinge solid_hinges",
-    "units": "SolidUnit solid_units",
-    "stage": "SolidStage solid_stage",
-    "verification": "Verification verify",
-    "modes": "fea_modes kept_fea_modes",
-    "calibration": "Calibration calibrate",
+    "fea.hinge": "hinge_compliance",
+    "fea.model": "model",
+    "resolution": "Resolution",
+    "hinges": "solid_hinges",
+    "units": "solid_units",
+    "stage": "solid_stage",
+    "verification": "verify",
+    "modes": "fea_modes",
+    "calibration": "calibrate",
 }
 __getattr__, __dir__ = lazily(__name__, HOMES)

@@ -3,16 +3,14 @@
 from flexstage.base.lazy import lazily
 
 HOMES = {
-    "sweeps.effects": "Effects effects",
+    "sweeps.effects": "effects",
     "sweeps.file": "load_study",
     "sweeps.run": "Run sweep",
-    "sweeps.store": "Results read_results",
-    "optimisation.wanted": "Aim Objective Wanted",
+    "sweeps.store": "read_results",
     "optimisation.file": "load_wanted",
     "optimisation.optimum": "optimise",
     "optimisation.front": "pareto_front",
-    "optimisation.result": "Front Optimum",
     "tolerances.file": "load_tolerance",
-    "tolerances.run": "Toleranced tolerance",
+    "tolerances.run": "tolerance",
 }
 __getattr__, __dir__ = lazily(__name__, HOMES)

@@ -7,17 +7,7 @@ from flexstage.studies.optimisation.front import (
 from flexstage.studies.optimisation.optimum import (
     optimise as optimise,
 )
-from flexstage.studies.optimisation.result import (
-    Front as Front,
-    Optimum as Optimum,
-)
-from flexstage.studies.optimisation.wanted import (
-    Aim as Aim,
-    Objective as Objective,
-    Wanted as Wanted,
-)
 from flexstage.studies.sweeps.effects import (
-    Effects as Effects,
     effects as effects,
 )
 from flexstage.studies.sweeps.file import (
@@ -28,14 +18,12 @@ from flexstage.studies.sweeps.run import (
     sweep as sweep,
 )
 from flexstage.studies.sweeps.store import (
-    Results as Results,
     read_results as read_results,
 )
 from flexstage.studies.tolerances.file import (
     load_tolerance as load_tolerance,
 )
 from flexstage.studies.tolerances.run import (
-    Toleranced as Toleranced,
     tolerance as tolerance,
 )
 

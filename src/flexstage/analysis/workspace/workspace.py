@@ -21,6 +21,7 @@ from flexstage.base.number import Number, Table
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.ideal import ideal
+from flexstage.models.linear.arguments import takes_models
 from flexstage.models.linear.kinematics import Kinematics
 from flexstage.models.linear.model import LinearModel
 
@@ -56,6 +57,7 @@ class Workspace:
     missing: Mapping[str, str]
 
 
+@takes_models
 def workspace(
     mechanism: Mechanism,
     kinematics: Kinematics,

@@ -13,12 +13,14 @@ from flexstage.experiment.virtual_rig.plan import Plan, planned
 from flexstage.experiment.virtual_rig.samples import Simulated
 from flexstage.experiment.virtual_rig.setup import Recorded, RigSetup
 from flexstage.mechanism.mechanism import Damping, Mechanism
+from flexstage.models.linear.arguments import takes_models
 from flexstage.models.linear.damping import damping_law
 from flexstage.models.linear.model import LinearModel
 
 _MICROMETRE = 1e6
 
 
+@takes_models
 def rig(mechanism: Mechanism, model: LinearModel, setup: RigSetup, *, damping: Damping | None = None, tell: Tell | None = None) -> Record:
     """The record of a virtual test: strokes or voltages in, gauges out, by name and with units.
 
