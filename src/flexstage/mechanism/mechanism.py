@@ -7,7 +7,6 @@ from dataclasses import dataclass, field
 from typing import Annotated, Any, TypeAlias
 
 from flexstage.base.digest import DOCUMENT_ONLY, Description
-from flexstage.base.finding import DesignError, Finding
 from flexstage.base.number import Number, Table, Vector
 from flexstage.base.quantity import (
     ACCELERATION,
@@ -163,21 +162,3 @@ class Mechanism(Description):
     requirements: Mapping[str, str] = field(default_factory=lambda: Table({}), metadata=DOCUMENT_ONLY)
     tags: Mapping[str, str] = field(default_factory=lambda: Table({}), metadata=DOCUMENT_ONLY)
     sources: Mapping[str, str] = field(default_factory=lambda: Table({}), metadata=DOCUMENT_ONLY)
-
-    def __getattr__(self, name: str) -> Any:
-        """What only a model has: whoever asks for it was given the description in its place."""
-        if name.startswith("_"):
-            raise AttributeError(name)
-        raise UnreadError(name)
-
-
-class UnreadError(DesignError, AttributeError):
-    """A description was given where a model is expected, or asked for what it does not hold."""
-
-    def __init__(self, name: str) -> None:
-        advice = "Where a model is expected, read the description first, for example fs.modes(fs.lumped(stage))"
-        super().__init__([Finding("stage", f"a description holds no {name}", advice)])
-        self.asked = name
-
-    def __reduce__(self) -> tuple[type[UnreadError], tuple[str]]:  # type: ignore[override]
-        return type(self), (self.asked,)
