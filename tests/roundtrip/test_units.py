@@ -4,17 +4,15 @@ from __future__ import annotations
 
 import math
 import struct
-from fractions import Fraction
-from typing import Any
+import subprocess
+import sys
 
 import numpy as np
-import pint
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from flexstage.base import dimension, quantity
-from flexstage.base.dimension import Dimension, dimension_of
+from flexstage.base import quantity
 from flexstage.base.finding import DesignError
 from flexstage.base.quantity import (
     ANGLE,
@@ -121,20 +119,6 @@ def test_arrays_convert_and_show_their_range() -> None:
     assert show(values, LENGTH) == "1 mm to 2 mm (3 values)"
 
 
-def test_names_and_prefixes_are_those_of_pint() -> None:
-    """Exact sizes and powers; pint counts memory in bits."""
-    registry: Any = pint.UnitRegistry(non_int_type=Fraction)
-    bases = {"meter": "m", "kilogram": "kg", "second": "s", "kelvin": "K", "radian": "rad", "ampere": "A", "bit": "B"}
-    for name in (*dimension._units(), *(f"{prefix}meter" for prefix in dimension._prefixes())):
-        known = registry.Quantity(Fraction(1), name).to_base_units()
-        expected = Dimension(known.magnitude / (8 if name in ("B", "byte") else 1))
-        for root, power in known.unit_items():
-            expected = expected.times(dimension_of(bases[root]), Fraction(power))
-        assert dimension_of(name) == expected, name
-
-
-def test_a_symbol_has_no_plural_and_no_unit_two_prefixes() -> None:
-    assert dimension_of("millimeters") == dimension_of("mm")
-    for name in ("kgs", "kkg", "umm", "Kg", "kmeterss"):
-        with pytest.raises(ValueError, match="is not a known unit"):
-            dimension_of(name)
+def test_importing_the_package_and_this_module_leaves_pint_alone() -> None:
+    code = "import sys, flexstage, flexstage.base.unit; sys.exit('pint' in sys.modules)"
+    subprocess.run([sys.executable, "-c", code], check=True)
