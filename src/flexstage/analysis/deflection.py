@@ -8,6 +8,7 @@ import numpy as np
 
 from flexstage.analysis.workspace.load import dead_loads
 from flexstage.base.labelled import Matrix
+from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.models.linear.arguments import takes_models
@@ -17,7 +18,7 @@ from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
 
 
 @dataclass(frozen=True, eq=False)
-class Deflection:
+class Deflection(InNotebook):
     """Twist (..., 6, causes) of the platform's reference, or of a named point, by cause: own weight, each payload, each stated force.
 
     Under a controlled stage the gauges see it and the strokes take it back; in open loop it is Eq. 11's load term.

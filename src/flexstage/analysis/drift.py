@@ -13,6 +13,7 @@ import numpy as np
 
 from flexstage.base.finding import refuse
 from flexstage.base.labelled import Matrix, ratio_units
+from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, Vector, stack
 from flexstage.beams.compliance import law
 from flexstage.mechanism.expand import Assembly, PlacedLink, expand
@@ -32,7 +33,7 @@ _FITS = 1e-7
 
 
 @dataclass(frozen=True, eq=False)
-class Drift:
+class Drift(InNotebook):
     """Motion and forces per unit of a temperature field: uniform [per K], linear along x, y and z [per K/m].
 
     `motion` (platform and named points, six components each), `gauges` the readings, `forces` (six an elastic link). `ground` is the

@@ -12,6 +12,7 @@ from flexstage.analysis.workspace.gauging import PoseResolution
 from flexstage.analysis.workspace.map_error import MapError
 from flexstage.base.finding import Finding, nearest, require
 from flexstage.base.labelled import Matrix
+from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, Number, stack
 from flexstage.mechanism.expansion import Ground
 from flexstage.models.linear.kinematics import Kinematics
@@ -38,7 +39,7 @@ class Evidence:
 
 
 @dataclass(frozen=True, eq=False)
-class ErrorBudget:
+class ErrorBudget(InNotebook):
     """Largest errors by axis (rows) and source (columns) [m, rad], commanded by the ideal mapping, and with the lost-motion gains.
 
     `missing` names sources that could not be counted (no gauge noise stated): they are NaN and left out of the sums. `ground` is what drift

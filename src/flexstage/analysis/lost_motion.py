@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexstage.base.labelled import Matrix, ratio_units
+from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
 from flexstage.models.linear.arguments import takes_models
 from flexstage.models.linear.kinematics import Kinematics
@@ -38,7 +39,7 @@ class Shares(dict[str, Array]):
 
 
 @dataclass(frozen=True, eq=False)
-class LostMotion:
+class LostMotion(InNotebook):
     """Lost motion of a stage with n strokes and f ideal motions.
 
     `gain` T = dx/da elastic (..., 6, n); `transfer` R_a V^+ T (..., n, n), its diagonal the gain of each actuator; `loss` Lambda = I -

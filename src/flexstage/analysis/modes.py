@@ -10,6 +10,7 @@ from typing import Annotated
 import numpy as np
 
 from flexstage.base.labelled import Matrix
+from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, descending, first_design, foremost
 from flexstage.base.quantity import FREQUENCY
 from flexstage.base.record import INNER, VIEW
@@ -48,7 +49,7 @@ class Mode:
 
 
 @dataclass(frozen=True, eq=False)
-class Modes:
+class Modes(InNotebook):
     """Undamped modes of a stage, ascending.
 
     `frequencies` (..., k) [Hz]; `shapes` (..., n, k) mass-normalised; `platform_shapes` (..., 6, k) the platform's twist; `share` (..., k)

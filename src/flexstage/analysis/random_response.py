@@ -11,6 +11,7 @@ import numpy as np
 
 from flexstage.analysis.modes import averaged, repeated
 from flexstage.base.finding import Finding, require
+from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
 from flexstage.mechanism.mechanism import Damping
 from flexstage.models.linear.arguments import takes_models
@@ -60,7 +61,7 @@ class Spectrum:
 
 
 @dataclass(frozen=True, eq=False)
-class RandomResponse:
+class RandomResponse(InNotebook):
     """One-sided densities (..., f, p) of outputs [unit^2/Hz] and their rms values (..., p) [unit] over the band, with each input's share.
 
     `shares` (..., p, m) are the mean squares from each input (inputs are uncorrelated, so they add up to rms^2). `method` states how the

@@ -17,6 +17,7 @@ from flexstage.analysis.modes import clusters
 from flexstage.analysis.standing import standing
 from flexstage.base.finding import Finding, nearest, require
 from flexstage.base.labelled import Matrix
+from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, Table
 from flexstage.mechanism.address import addresses, get, quantity_of, set_value
 from flexstage.mechanism.locate import locate
@@ -32,7 +33,7 @@ _CHUNK = 24
 
 
 @dataclass(frozen=True, eq=False)
-class Sensitivities:
+class Sensitivities(InNotebook):
     """Derivatives of modes and gains with respect to P parameters at one design.
 
     `frequency` (P, k) [Hz per SI unit of the parameter]: for the modes of a cluster it is the derivative of the cluster's mean. `clusters`

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexstage.base.labelled import Matrix, ratio_units
+from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, Number, first_design
 from flexstage.models.linear.arguments import takes_models
 from flexstage.models.linear.model import LinearModel
@@ -37,7 +38,7 @@ class DirectionalStiffness:
 
 
 @dataclass(frozen=True, eq=False)
-class Statics:
+class Statics(InNotebook):
     """Static behaviour of the platform at a point.
 
     `compliance` (..., 6, 6) from a wrench at `load_point` to the twist at `read_point`; `stiffness` its inverse; `held` the in-plane tensor

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
 
 _ROUNDING = 1e-15
@@ -14,7 +15,7 @@ _ROUNDING = 1e-15
 
 
 @dataclass(frozen=True, eq=False)
-class Matrix:
+class Matrix(InNotebook):
     """A matrix (..., rows, columns) with names on both axes; `unit` is one text, or a text for every entry."""
 
     values: Array
@@ -93,14 +94,6 @@ class Matrix:
         if all(len(set(line)) <= 1 for line in self.unit):
             return [""] * across, [line[0] if line else "" for line in self.unit], blank
         return [""] * across, [""] * down, [list(line) for line in self.unit]
-
-    def _repr_html_(self) -> str:
-        head = "".join(f"<th>{column}</th>" for column in self.columns)
-        body = "".join(
-            f"<tr><th>{row}</th>{''.join(f'<td>{value:.6g}</td>' for value in line)}</tr>"
-            for row, line in zip(self.rows, self.values, strict=True)
-        )
-        return f"<table><tr><th></th>{head}</tr>{body}</table>"
 
 
 def _with(text: str, unit: str, form: str = "{} [{}]") -> str:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import Annotated, Any, TypeAlias
 
 from flexstage.base.digest import DOCUMENT_ONLY, Description
+from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Number, Table, Vector
 from flexstage.base.quantity import (
     ACCELERATION,
@@ -130,7 +131,7 @@ class Opening(Description):
 
 
 @dataclass(frozen=True, eq=False)
-class Mechanism(Description):
+class Mechanism(InNotebook, Description):
     """A stage: one description for all readings.
 
     A graph of rigid `bodies` and elastic `links`, drawn directly or in `units` placed by pattern (`place`), with `gauges`. Body `ground` is

@@ -1,75 +1,76 @@
-"""Results in notebooks: `%load_ext flexstage.show.notebook` shows them as the tables of a report."""
+"""Values in notebooks: a stage as its picture, results and matrices as the tables of a report."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from typing import Any
 
+from flexstage.analysis.deflection import Deflection
 from flexstage.analysis.drift import Drift
 from flexstage.analysis.error_budget import ErrorBudget
 from flexstage.analysis.lost_motion import LostMotion
 from flexstage.analysis.modes import Modes
+from flexstage.analysis.random_response import RandomResponse
+from flexstage.analysis.sensitivities import Sensitivities
 from flexstage.analysis.statics import Statics
 from flexstage.analysis.workspace.workspace import Workspace
+from flexstage.base.digest import digest
+from flexstage.base.finding import DesignError
 from flexstage.base.labelled import Matrix
+from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.linear.frequency import Response
 from flexstage.models.linear.kinematics import Kinematics
-from flexstage.show.render import to_html
+from flexstage.show import render
+from flexstage.show.figures.export import to_svg
+from flexstage.show.scene.pictures import stage_picture
+from flexstage.show.scene.stage import scene
 from flexstage.show.table import Table, matrix_table
+from flexstage.show.tables.deflection import deflection_table
 from flexstage.show.tables.errors import drift_table, error_budget_tables
 from flexstage.show.tables.kinematics import mapping_table, mobility_table
 from flexstage.show.tables.lost_motion import budget_table, loss_table
 from flexstage.show.tables.modes import mode_table
+from flexstage.show.tables.random_response import random_table
 from flexstage.show.tables.response import response_table
+from flexstage.show.tables.sensitivities import frequency_sensitivity_table, loss_sensitivity_table
 from flexstage.show.tables.statics import principal_table, stiffness_table
 from flexstage.show.tables.workspace import stroke_table
 
-
-def _kinematics(result: Kinematics) -> tuple[Table, ...]:
-    return (mobility_table(result), *([mapping_table(result)] if result.actuated else []))
-
-
-_TABLES: Mapping[type, Callable[[Any], tuple[Table, ...]]] = {
-    Kinematics: _kinematics,
+_TABLES: Mapping[type, Callable[[Any], tuple[Table | None, ...]]] = {
+    Matrix: lambda result: (matrix_table("", result),),
+    Kinematics: lambda result: (mobility_table(result), mapping_table(result) if result.actuated else None),
     Statics: lambda result: (stiffness_table(result), principal_table(result)),
     LostMotion: lambda result: (loss_table(result), budget_table(result)),
     Modes: lambda result: (mode_table(result),),
+    Deflection: lambda result: (deflection_table(result),),
     Response: lambda result: (response_table(result),),
+    RandomResponse: lambda result: (random_table(result),),
     Workspace: lambda result: (stroke_table(result),),
     Drift: lambda result: (drift_table(result),),
     ErrorBudget: error_budget_tables,
-    Matrix: lambda result: (matrix_table("", result),),
+    Sensitivities: lambda result: (frequency_sensitivity_table(result), loss_sensitivity_table(result)),
 }
 
 
-def tables_of(result: Any) -> tuple[Table, ...]:
-    """The tables that sum a result up; none for values of other types.
+def to_html(value: Any) -> str | None:
+    """A stage's picture, or the tables that sum a result up; None for values of other types.
+
+    A stage that cannot be drawn is told with what is wrong with it.
 
     >>> import flexstage as fs
-    >>> from flexstage.cases.double_triangle import double_triangle
-    >>> [table.title for table in tables_of(fs.ideal(double_triangle()))]
-    ['Mobility', 'Actuator mapping R_a']
+    >>> stage = fs.case("parallelogram")
+    >>> to_html(stage)[:13], to_html(fs.ideal(stage)).count("<table>"), to_html(7)
+    ('<svg viewBox=', 2, None)
     """
-    return _TABLES[type(result)](result) if type(result) in _TABLES else ()
+    if isinstance(value, Mechanism):
+        return _picture(value)
+    tables = _TABLES.get(type(value))
+    return "".join(render.to_html(table) for table in tables(value) if table is not None) if tables else None
 
 
-def load_ipython_extension(ipython: Any) -> None:
-    """Register the tables with a notebook's HTML formatter (called by `%load_ext`).
-
-    >>> class Formatter(dict):
-    ...     def for_type(self, kind, function):
-    ...         self[kind.__name__] = function
-    >>> class Shell:
-    ...     class display_formatter:
-    ...         formatters = {"text/html": Formatter()}
-    >>> load_ipython_extension(Shell)
-    >>> "Modes" in Shell.display_formatter.formatters["text/html"]
-    True
-    """
-    formatter = ipython.display_formatter.formatters["text/html"]
-    for kind in _TABLES:
-        formatter.for_type(kind, _html)
-
-
-def _html(result: Any) -> str:
-    return "".join(to_html(table) for table in tables_of(result))
+def _picture(mechanism: Mechanism) -> str:
+    try:
+        figure = stage_picture(scene(mechanism))
+    except DesignError as error:
+        return "".join(f"<p>{render.escaped(str(finding))}</p>" for finding in error.findings)
+    return to_svg(figure, f"stage{digest(mechanism)[:12]}", f"{mechanism.name} from above its corner")

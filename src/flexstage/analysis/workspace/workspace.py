@@ -17,6 +17,7 @@ from flexstage.analysis.workspace.polytope import Polytope, reachable
 from flexstage.analysis.workspace.room import Room, room
 from flexstage.analysis.workspace.strength import HingeStress, hinge_stress
 from flexstage.analysis.workspace.stroke import SingleAxis, StrokeLimits, Utilisation, single_axis, stroke_limits, utilisation
+from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Number, Table
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
@@ -30,7 +31,7 @@ _HINGELESS = "this reading knows no single hinges: use the lumped one"
 
 
 @dataclass(frozen=True, eq=False)
-class Workspace:
+class Workspace(InNotebook):
     """The workspace of one design; `None` where reading or stage do not give a result, and `missing` says why, by field name.
 
     `single` are ideal strokes, `corrected` those with lost motion corrected by command. `corner` is what the box `command` of motions (half

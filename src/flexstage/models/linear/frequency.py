@@ -10,6 +10,7 @@ import numpy as np
 
 from flexstage.base.labelled import Matrix, ratio_units
 from flexstage.base.memory import require_memory
+from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
 from flexstage.mechanism.mechanism import Damping, RayleighDamping, StructuralDamping
 from flexstage.models.linear.damping import modal_ratios, structural_stiffness
@@ -21,7 +22,7 @@ _CHUNK = 4_000_000
 
 
 @dataclass(frozen=True, eq=False)
-class Response:
+class Response(InNotebook):
     """A frequency response: complex `values` (..., f, p, m), H_ij = output i over input j, for e^{+j omega t}.
 
     `frequencies` (f,) in Hz; `outputs` and `inputs` carry names and units; an entry's unit is output unit / input unit. Batch axes lead.

@@ -9,6 +9,7 @@ import numpy as np
 
 from flexstage.base.finding import Finding, joined, refuse
 from flexstage.base.labelled import Matrix, ratio_units
+from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
 from flexstage.models.linear.blockage import Blockage
 from flexstage.parts.freedom import Freedom
@@ -31,7 +32,7 @@ class Redundant:
 
 
 @dataclass(frozen=True, eq=False)
-class Kinematics:
+class Kinematics(InNotebook):
     """Ideal kinematics of a stage with n strokes, g gauges and f ideal motions of its platform.
 
     The platform's twist is x = V xi at its reference point; xi are the platform coordinates named `coordinates` (all six for f = 6).

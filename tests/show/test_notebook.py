@@ -1,0 +1,55 @@
+"""Notebooks: a stage shows its picture, results and matrices their tables, none of which is loaded before it is shown."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+import flexstage as fs
+from flexstage.base.labelled import Matrix
+from flexstage.base.notebook import InNotebook
+from flexstage.show import notebook
+
+STAGE = fs.case("parallelogram")
+MODEL, KINEMATICS = fs.lumped(STAGE), fs.ideal(STAGE)
+
+
+def test_matrices_show_units_and_hide_rounding_noise() -> None:
+    page = Matrix(np.array([[2e6, 1e-7], [0.0, 3e6]]), ("fx", "fy"), ("x", "y"), (("N/m", "N/m"),) * 2)._repr_html_() or ""
+    assert "µm" in page
+    assert "[N]" in page
+    assert "1e-1" not in page
+    assert "rounding noise" in page
+
+
+@pytest.mark.parametrize(
+    "result",
+    [KINEMATICS, KINEMATICS.mapping, fs.statics(MODEL), fs.modes(MODEL), fs.lost_motion(KINEMATICS, MODEL), fs.drift(STAGE, MODEL)],
+    ids=lambda result: type(result).__name__,
+)
+def test_results_show_their_tables(result: InNotebook) -> None:
+    assert "<table>" in (result._repr_html_() or "")
+
+
+def test_every_value_that_asks_is_known() -> None:
+    asking = {each for each in InNotebook.__subclasses__() if each.__module__.startswith("flexstage.")}
+    assert asking == {*notebook._TABLES, fs.Mechanism}
+
+
+def test_a_stage_shows_its_picture() -> None:
+    assert (STAGE._repr_html_() or "").startswith("<svg ")
+
+
+def test_a_stage_that_cannot_be_drawn_says_why() -> None:
+    broken = fs.Mechanism("x", links={"a": fs.Link(("ground", "b"), "missing", (0.0, 0.0, 0.0), along=fs.X)})
+    page = broken._repr_html_() or ""
+    assert page.startswith("<p>")
+    assert "missing" in page
+
+
+def test_figures_are_loaded_when_something_is_shown() -> None:
+    code = "import flexstage as fs, sys; fs.modes(fs.lumped(fs.case('parallelogram'))); assert 'flexstage.show.notebook' not in sys.modules"
+    subprocess.run([sys.executable, "-c", code], check=True)
