@@ -27,6 +27,9 @@ from tests.apps.test_documents import ENVELOPE, page_section
 from tests.models.small_solids import propped
 from tests.models.solid_studies import COARSE, small, small_unit
 
+ROUGH = ("--accuracy", "5 %", "--order", "3")
+"""One accuracy and order for all: every hinge is computed once."""
+
 
 @pytest.fixture
 def command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfdbinary: Any) -> Command:
@@ -38,7 +41,7 @@ def command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfdbinary: Any) -
 
 
 def test_hinges(command: Command) -> None:
-    found = command("solid", "stage.toml", "--what", "hinge", "--accuracy", "5 %", "--json", "-").document
+    found = command("solid", "stage.toml", "--what", "hinge", *ROUGH, "--json", "-").document
     assert found["kind"] == "solid"
     assert set(found["hinges"]) == {"leaf", "neck-back", "neck-front"}
     back, front = (found["hinges"][f"neck-{end}"] for end in ("back", "front"))
@@ -77,7 +80,7 @@ def test_the_stage(command: Command, tmp_path: Path, monkeypatch: pytest.MonkeyP
 
 def test_verification(command: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(resolution, "changes", lambda *_: {"mode 1": 0.3})
-    ended = command("verify", "stage.toml", "--accuracy", "5 %", "--order", "3", "--json", "v.json", "--report", "v.html")
+    ended = command("verify", "stage.toml", *ROUGH, "--json", "v.json", "--report", "v.html")
     assert ended.code == 0, ended.err
     told = told_everywhere(ended, tmp_path / "v.json", tmp_path / "v.html")
     assert told.count("30 % at order 3; 5 % was asked") == 2, "units and stage"
@@ -87,12 +90,12 @@ def test_verification(command: Command, tmp_path: Path, monkeypatch: pytest.Monk
 
 
 def test_calibration_is_told_from_theory(command: Command, tmp_path: Path) -> None:
-    ended = command("calibrate", "stage.toml", "-o", "calibrated.toml", "--accuracy", "5 %")
+    ended = command("calibrate", "stage.toml", "-o", "calibrated.toml", *ROUGH)
     assert ended.code == 0, ended.err
     assert "Compliance by FEA over beam theory" in ended.out
     assert "# As drawn." in (tmp_path / "calibrated.toml").read_text(encoding="utf-8")
     assert command("modes", "calibrated.toml").code == 0
-    rows = command("verify", "calibrated.toml", "--accuracy", "5 %", "--json", "-").document["rows"]
+    rows = command("verify", "calibrated.toml", *ROUGH, "--json", "-").document["rows"]
     assert {row["trust"] for row in rows} == {"not independent"}
     axial = next(row for row in rows if row["figure"] == "axial stiffness")
     assert axial["calibration"] == ["neck-back", "neck-front"]
@@ -109,7 +112,7 @@ def test_calibration_is_told_from_theory(command: Command, tmp_path: Path) -> No
     ],
 )
 def test_every_key_is_documented(command: Command, words: tuple[str, ...]) -> None:
-    document = command(*words, "--accuracy", "5 %", "--json", "-").document
+    document = command(*words, *ROUGH, "--json", "-").document
     section = page_section(words[0])
     assert [key for key in document if key not in ENVELOPE and f"`{key}`" not in section] == []
 
