@@ -107,14 +107,14 @@ def test_sweep_shows_and_writes(study_file, tmp_path, flexstage):
         ('"frequency.1"', '"frequncy.1"', 'there is no measure called "frequncy.1"'),
         ('"frequency.1"', '"safety.B"', "there is no measure"),
         ("latin hypercube", "latin", "latin hypercube"),
-        ("seed = 3", "sed = 3", "nothing of this name is known here"),
+        ("seed = 3", "sed = 3", "this key is not known here"),
         ('"10 %"', '"80 GPa"', "one end is relative"),
         ('case = "parallelogram"', 'design = "none.toml"', "there is no such file"),
         ("responses.f", "responses.young", 'responses.young: the results have a column "young" already, of variables.young'),
         ("young = {", "design = {", 'variables.design: the results have a column "design" already, of the number of a design'),
         ("young = {", '"a\\u0000b" = {', "variables.a\\x00b: its name is empty, or has control characters"),
         ("young = {", '"a\\u202eb" = {', "variables.a\\u202eb: its name is empty, or has control characters"),
-        ("flexstage study 1", "flexstage 1", "Begin the file with"),
+        ("flexstage study 1", "flexstage 1", "The first line of such a file is"),
     ],
 )
 def test_bad_studies_are_told(study_file, tmp_path, flexstage, old, new, message):

@@ -67,8 +67,8 @@ def test_without_a_specification_there_is_no_yield(study_file, tmp_path, flexsta
         ("copies = 40", "copies = 1", "Give a whole number of 2 or more"),
         ("seed = 2", 'sampling = "grid"', 'found "grid"'),
         ("seed = 2", 'point = "edge"', 'there is no point "edge"'),
-        ("seed = 2", 'yield = "101 %"', "Give a share between 50 % and 100 %"),
-        ("[scatter]", "[scater]", "scater: nothing of this name is known here"),
+        ("seed = 2", 'yield = "101 %"', "which is not greater than 0.5 and less than 1"),
+        ("[scatter]", "[scater]", "scater: this key is not known here"),
     ],
 )
 def test_bad_studies_are_told(study_file, tmp_path, flexstage, old, new, message):

@@ -292,7 +292,7 @@ BAD = {
     'w = { of = "leaf.thickness", normal = "1 mrad" }': "mrad",
     'w = { of = "materials.steel.young", normal = "1 %", each = true }': "materials.steel.young is one number, and has no copies",
     'w = { of = ["leaf.thickness", "materials.steel.young"], normal = "1 %" }': "they are of different quantities",
-    'w = { of = "leaf.thickness", normal = "1 um", evry = true }': "nothing of this name is known here",
+    'w = { of = "leaf.thickness", normal = "1 um", evry = true }': "this key is not known here",
     'w = { of = "stacks.stroke", normal = "1 %" }': "the design has none of this kind",
     'w = { of = "links.l0.at.z", normal = "1 um", within = "3 %" }': "one is relative (%), the other not",
 }

@@ -54,6 +54,14 @@ class Bound:
             words.append(f"{'less than' if self.open_high else 'at most'} {self.high:g}")
         return " and ".join(words)
 
+    def whole(self) -> str:
+        """Say which whole numbers lie in it.
+
+        >>> Bound(low=2.0).whole(), Bound(low=2.0, high=9.0).whole()
+        ('2 or more', '2 to 9')
+        """
+        return f"{self.low:g} or more" if self.high == float("inf") else f"{self.low:g} to {self.high:g}"
+
 
 POSITIVE = Bound(low=0.0, open_low=True)
 NOT_NEGATIVE = Bound(low=0.0)

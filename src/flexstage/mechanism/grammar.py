@@ -71,6 +71,9 @@ _ALTERNATIVES: dict[type, tuple[str | None, str]] = {
 TOLD_BY = "TOLD_BY"
 """Class attribute of alternatives that do not stand above: the key that tells them apart, or None, and their name in a file."""
 
+KEY = "key"
+"""Metadata of a field that a file calls otherwise, because its word is one of Python's own."""
+
 _ALWAYS = ("gravity",)
 _TAGS_SCHEMA: dict[str, Any] = {
     "type": "object",
@@ -138,7 +141,7 @@ class TableNode(Node):
 
     def schema(self, definitions: Definitions) -> dict[str, Any]:
         """An object of any keys."""
-        return {"type": "object", "properties": {TAGS: _TAGS_SCHEMA}, "additionalProperties": self.item.schema(definitions)}
+        return {"type": "object", "properties": _tags_of(definitions), "additionalProperties": self.item.schema(definitions)}
 
     def wanted(self, value: Any) -> Wanted:
         """A mapping by names."""
@@ -155,8 +158,10 @@ class TableNode(Node):
 
 
 @dataclass(frozen=True)
-class ChangesNode(Node):
-    """Departures by address; the address decides what the value is."""
+class OpenNode(Node):
+    """Values by name, which stay as they stand: the name decides what each is. `said` is their meaning in a schema."""
+
+    said: str
 
     def read(self, raw: Any, where: str, reader: Reader) -> Any:
         """The table as it stands."""
@@ -165,11 +170,14 @@ class ChangesNode(Node):
     def schema(self, definitions: Definitions) -> dict[str, Any]:
         """An object of any values."""
         del definitions
-        return {"type": "object", "description": "Departures by address: unit/link.field of all copies, copy/link.field of one."}
+        return {"type": "object", "description": self.said}
 
     def wanted(self, value: Any) -> Wanted:
-        """A mapping by addresses."""
+        """A mapping by names."""
         return _wanted_mapping(value)
+
+
+CHANGES = OpenNode("Departures by address: unit/link.field of all copies, copy/link.field of one.")
 
 
 @dataclass(frozen=True)
@@ -245,7 +253,7 @@ class RecordNode(Node):
         for name, slot in self.fields.items():
             value = getattr(record, name)
             default = name not in _ALWAYS and not slot.required and digest(value) == digest(slot.default)
-            if not default and name != TAGS and not isinstance(slot.node, ChangesNode):
+            if not default and name != TAGS and slot.node is not CHANGES:
                 yield self.key(record, name), writer.write(slot.node, value, join(where, name))
 
     def schema(self, definitions: Definitions, key: str | None = None, name: str | None = None) -> dict[str, Any]:
@@ -273,7 +281,7 @@ class RecordNode(Node):
             properties |= {LIKE: {"enum": list(section.entries), "description": "the entry of the catalogue to start from"}}
             demand = {"anyOf": [{"required": required}, {"required": [LIKE]}]}
         demand |= {"oneOf": wrapped} if wrapped else {}
-        shape = {"type": "object", "description": meaning(self.record), "properties": properties | {TAGS: _TAGS_SCHEMA}}
+        shape = {"type": "object", "description": meaning(self.record), "properties": properties | _tags_of(definitions)}
         return shape | demand | {"additionalProperties": False}
 
     def wanted(self, value: Any) -> Wanted:
@@ -409,12 +417,18 @@ def _is_table(raw: Any, where: str, reader: Reader) -> bool:
 
 def _untagged(raw: dict[str, Any], where: str, reader: Reader) -> dict[str, Any]:
     """The table without its tags, which are noted by address."""
+    if not reader.tagged:
+        return raw
     tags = raw.get(TAGS, {})
     if not isinstance(tags, dict) or not all(isinstance(tag, str) for tag in tags.values()):
         reader.refuse(join(where, TAGS), "these are no tags", 'Write for example tags = { thickness = "stated paper 2.2" }')
     else:
         reader.tags.update({join(where, key): tag for key, tag in tags.items()})
     return {key: value for key, value in raw.items() if key != TAGS}
+
+
+def _tags_of(definitions: Definitions) -> dict[str, Any]:
+    return {TAGS: _TAGS_SCHEMA} if definitions.tagged else {}
 
 
 def _without_like(raw: dict[str, Any]) -> dict[str, Any]:
@@ -449,10 +463,10 @@ def _slots(record: type) -> Mapping[str, Slot]:
 
 def _slot(record: type, field: dataclasses.Field[Any], hint: Any) -> Slot:
     inner, optional = _without_none(hint)
-    key = _FILE_KEYS.get((record, field.name), field.name)
-    node = ChangesNode() if (record, field.name) == (Mechanism, "changes") else _node(inner)
+    key = field.metadata.get(KEY) or _FILE_KEYS.get((record, field.name), field.name)
+    node = CHANGES if (record, field.name) == (Mechanism, "changes") else _node(inner)
     default = field.default if field.default_factory is dataclasses.MISSING else field.default_factory()
-    if default is dataclasses.MISSING and isinstance(node, TableNode):
+    if default is dataclasses.MISSING and isinstance(node, (TableNode, OpenNode)):
         default = Table({})
     return Slot(key, node, optional, default)
 
@@ -497,6 +511,11 @@ def _named(hint: type) -> TextNode | WholeNode | FlagNode | ChoiceNode | RecordN
 
 def _annotated(hint: Any) -> Node:
     inner, *extras = typing.get_args(hint)
+    node = next((extra for extra in extras if isinstance(extra, Node)), None)
+    if node is not None:
+        return node
+    if inner is int:
+        return WholeNode(extras[0])
     quantity = next(extra for extra in extras if isinstance(extra, Quantity))
     bound = next((extra for extra in extras if isinstance(extra, Bound)), None)
     if quantity is DIRECTION:

@@ -54,9 +54,13 @@ class EnoughError(Exception):
 
 @dataclass
 class Reader:
-    """Gathers what reading finds: findings, tags by address, and sources that catalogue entries bring along."""
+    """Gathers what reading finds: findings, tags by address, and sources that catalogue entries bring along.
+
+    `tagged`: tables may have tags; otherwise that is a name as any other.
+    """
 
     catalogue: Catalogue
+    tagged: bool = True
     findings: list[Finding] = field(default_factory=list)
     tags: dict[str, str] = field(default_factory=dict)
     sources: dict[str, str] = field(default_factory=dict)
@@ -97,9 +101,13 @@ class Writer:
 
 @dataclass
 class Definitions:
-    """The schemas of classes by name, which others refer to, and the catalogue that `like` may name entries of."""
+    """The schemas of classes by name, which others refer to, and the catalogue that `like` may name entries of.
+
+    `tagged`: tables may have tags.
+    """
 
     catalogue: Catalogue
+    tagged: bool = True
     known: dict[str, Any] = field(default_factory=dict)
 
 
@@ -207,6 +215,10 @@ class NumberNode(Node):
     def read(self, raw: Any, where: str, reader: Reader) -> float:
         """The number in SI."""
         del reader
+        return self.si(raw, where)
+
+    def si(self, raw: Any, where: str) -> float:
+        """The number in SI of what a file has; raises `DesignError` at `where` if that is none."""
         example = f'Write for example "{self.quantity.example}"'
         if isinstance(raw, str):
             return parse(raw, self.quantity, where=where)
@@ -452,7 +464,7 @@ class WholeNode(Node):
         if not isinstance(raw, int) or isinstance(raw, bool) or abs(raw) >= 2**63:
             return reader.refuse(where, f"found {kind(raw)} where a whole number is expected", "Write it without quotes")
         if self.bound is not None and not self.bound.low <= raw <= self.bound.high:
-            return reader.refuse(where, f"found {kind(raw)}, which is not {self.bound.text()}", f"Give a whole number {self.bound.text()}")
+            return reader.refuse(where, f"found {kind(raw)}", f"Give a whole number of {self.bound.whole()}")
         return raw
 
     def write(self, value: Any, where: str, writer: Writer) -> Any:
@@ -541,17 +553,19 @@ class ChoiceNode(Node):
     """One of the values of an enumeration."""
 
     choices: type[Enum]
+    only: tuple[Enum, ...] = ()
+    """Those that may stand here, if not all."""
     single: ClassVar[bool] = True
-
-    @property
-    def example(self) -> str:
-        """A text as it may stand in a file."""
-        return f'"{next(iter(self.choices)).value}"'
 
     @property
     def words(self) -> dict[str, Enum]:
         """The choices by what a file calls them."""
-        return {str(choice.value): choice for choice in self.choices}
+        return {str(choice.value): choice for choice in self.only or self.choices}
+
+    @property
+    def example(self) -> str:
+        """A text as it may stand in a file."""
+        return f'"{next(iter(self.words))}"'
 
     def read(self, raw: Any, where: str, reader: Reader) -> Any:
         """The choice of that name."""
@@ -567,7 +581,7 @@ class ChoiceNode(Node):
     def schema(self, definitions: Definitions) -> dict[str, Any]:
         """One of the names."""
         del definitions
-        return {"enum": [choice.value for choice in self.choices], "description": meaning(self.choices)}
+        return {"enum": list(self.words), "description": meaning(self.choices)}
 
     def wanted(self, value: Any) -> Wanted:
         """A member of the enumeration."""
@@ -578,6 +592,45 @@ class ChoiceNode(Node):
         if text not in self.words:
             raise refuse(where, f'found "{text}"', f"It is one of {', '.join(self.words)}")
         return self.words[text]
+
+
+@dataclass(frozen=True)
+class AmountNode(Node):
+    """A number with its unit, or in percent; of which quantity, something else in the file decides, and who reads that reads the number."""
+
+    shown: ClassVar[str] = '"1.4 mm"'
+
+    def read(self, raw: Any, where: str, reader: Reader) -> Any:
+        """The text or the number as it stands."""
+        if isinstance(raw, str) or is_bare(raw):
+            return raw
+        return reader.refuse(where, f"found {kind(raw)} where a number with its unit is expected", f"Write for example {self.shown}")
+
+    def schema(self, definitions: Definitions) -> dict[str, Any]:
+        """A text with a unit, or a number."""
+        del definitions
+        return {"anyOf": [{"type": "number"}, {"type": "string", "pattern": _WITH_UNIT}], "description": "with its unit, or in percent"}
+
+
+@dataclass(frozen=True)
+class TextsNode(Node):
+    """A text, or several of them in a list."""
+
+    shown: ClassVar[str] = '["a name", "another"]'
+
+    def read(self, raw: Any, where: str, reader: Reader) -> Any:
+        """The texts as a tuple."""
+        texts = [raw] if isinstance(raw, str) else raw
+        if not isinstance(texts, list) or not texts:
+            return reader.refuse(
+                where, f"found {kind(raw)} where a text is expected, or several", "Write it in quotes, several in brackets"
+            )
+        return every([reader.read(TextNode(), text, where) for text in texts])
+
+    def schema(self, definitions: Definitions) -> dict[str, Any]:
+        """A string or an array of them."""
+        del definitions
+        return {"oneOf": [{"type": "string"}, {"type": "array", "items": {"type": "string"}, "minItems": 1}]}
 
 
 # --- what kinds of nodes have in common ---

@@ -10,7 +10,7 @@ from flexstage.base.number import Table
 from flexstage.mechanism.catalogue import Catalogue
 from flexstage.mechanism.checks import copy_findings
 from flexstage.mechanism.checks.value import number_findings
-from flexstage.mechanism.grammar import TAGS, ChangesNode, node_of
+from flexstage.mechanism.grammar import CHANGES, TAGS, node_of
 from flexstage.mechanism.locate import locate
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.node import BAD, MOST_FINDINGS, EnoughError, Reader, kind, short
@@ -37,16 +37,16 @@ def mechanism_from(raw: dict[str, Any], catalogue: Catalogue) -> Mechanism:
     return mechanism
 
 
-def record_from(record: type[_Record], raw: dict[str, Any], form: str) -> _Record:
+def record_from(record: type[_Record], raw: dict[str, Any], form: str, *, tagged: bool = True) -> _Record:
     """Return the record that a tree means whose `format` is to be `form`; raises `DesignError` with everything that is wrong with it.
 
-    Its fields are annotated as those of descriptions are.
+    Its fields are annotated as those of descriptions are. `tagged`: its tables may have tags, which are not kept.
 
     >>> from flexstage.parts.rod import Rod
     >>> record_from(Rod, {"format": "rod 1", "material": "steel", "length": "3 mm", "diameter": "1 mm"}, "rod 1").length
     0.003
     """
-    reader = Reader(Catalogue((), {}))
+    reader = Reader(Catalogue((), {}), tagged)
     _check_format(reader, raw, form)
     value: Any = BAD
     try:
@@ -75,7 +75,7 @@ def _mechanism(reader: Reader, raw: dict[str, Any]) -> Any:
     if faults := tuple(copy_findings(mechanism)):
         return reader.note(faults)
     changes = raw.get("change", {})
-    values = _changes(reader, mechanism, changes) if isinstance(changes, dict) else reader.read(ChangesNode(), changes, "change")
+    values = _changes(reader, mechanism, changes) if isinstance(changes, dict) else reader.read(CHANGES, changes, "change")
     sources = reader.sources | dict(mechanism.sources)
     return replace(mechanism, changes=values, tags=Table(reader.tags), sources=Table(sources))
 

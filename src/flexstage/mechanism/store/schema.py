@@ -20,14 +20,14 @@ def schema() -> dict[str, Any]:
     return schema_of(Mechanism, FORMAT, "flexstage design")
 
 
-def schema_of(record: type, form: str, title: str) -> dict[str, Any]:
-    """Return the JSON Schema of a file that holds one record and says `format = form`.
+def schema_of(record: type, form: str, title: str, *, tagged: bool = True) -> dict[str, Any]:
+    """Return the JSON Schema of a file that holds one record and says `format = form`; `tagged`: its tables may have tags.
 
     >>> from flexstage.parts.rod import Rod
     >>> schema_of(Rod, "rod 1", "rod")["properties"]["format"]
     {'const': 'rod 1'}
     """
-    definitions = Definitions(shipped())
+    definitions = Definitions(shipped(), tagged)
     root = node_of(record).definition(definitions)
     properties = {"format": {"const": form}, **root.pop("properties")}
     return {

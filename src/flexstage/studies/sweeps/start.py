@@ -6,64 +6,59 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from flexstage.base.finding import DesignError
+from flexstage.base.finding import DesignError, Finding, refuse, require
 from flexstage.base.quantity import Quantity
 from flexstage.cases.parameters import Stated, parameter, with_parameters
 from flexstage.cases.registry import Variant, case, shipped
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.node import NumberNode
 from flexstage.mechanism.store import load
-from flexstage.studies.sweeps.fields import Fields
-
-_NONE = (Mechanism(""), None)
+from flexstage.studies.form import StudyFile, VariedTable
 
 
-def start(fields: Fields, folder: Path) -> tuple[Mechanism, Variant | None]:
+def start(file: StudyFile, folder: Path) -> tuple[Mechanism, Variant | None]:
     """The design that a study's file names, and the case that it is drawn from: `None` for a design file, looked for in `folder`.
 
-    >>> found = []
-    >>> tree = {"case": "hexapod", "parameters": {"slope": "50 deg"}}
-    >>> start(Fields(tree, "", found), Path())[1].stated[0][0], found
-    ('slope', [])
+    Raises `DesignError` where there is none.
+
+    >>> from flexstage.studies.form import study_file
+    >>> text = 'format = "flexstage study 1"' + chr(10) + 'case = "hexapod"' + chr(10) + 'parameters.slope = "50 deg"'
+    >>> start(study_file(text, "here"), Path())[1].stated[0][0]
+    'slope'
     """
-    path, name = fields.text("design"), fields.text("case")
-    table = fields.table("parameters")
-    if bool(path) == bool(name):
-        found = "both a design file and a case are named" if path else "no design is named"
-        fields.note("design", found, 'Write design = "stage.toml", or case = "double-triangle"')
-        return _NONE
-    if path and table.tree:
-        fields.note("parameters", "a design file has numbers, no parameters", "Leave them out, or start from a case")
-    try:
-        return (load(folder / path), None) if path else _drawn(name, table)
-    except DesignError as error:
-        fields.findings.extend(error.findings)
-        return _NONE
+    findings: list[Finding] = []
+    if bool(file.design) == bool(file.case):
+        found = "both a design file and a case are named" if file.design else "no design is named"
+        findings.append(Finding("design", found, 'Write design = "stage.toml", or case = "double-triangle"'))
+    if file.design and file.parameters:
+        findings.append(Finding("parameters", "a design file has numbers, no parameters", "Leave them out, or start from a case"))
+    require(findings)
+    return (load(folder / file.design), None) if file.design else _drawn(file.case or "", file.parameters)
 
 
-def _drawn(name: str, table: Fields) -> tuple[Mechanism, Variant | None]:
+def _drawn(name: str, table: Mapping[str, Any]) -> tuple[Mechanism, Variant]:
     """The case with the parameters that the table states."""
     own, stated = shipped(name).parameters, _stated(name, table)
-    if table.findings:
-        return _NONE
-    changed = with_parameters(own, stated, table.where)
+    changed = with_parameters(own, stated)
     names = (parameter(own, each).name for each in stated)
     return case(name, stated), Variant(name, tuple((each, parameter(changed, each).value) for each in names))
 
 
-def _stated(name: str, table: Fields) -> dict[str, Stated]:
+def _stated(name: str, table: Mapping[str, Any]) -> dict[str, Stated]:
     """What the table states: numbers of a quantity with their units."""
     found: dict[str, Stated] = {}
-    for key, value in _leaves(table.tree):
+    findings: list[Finding] = []
+    for key, value in _leaves(table):
         try:
-            known = parameter(shipped(name).parameters, key, table.at(key))
+            known = parameter(shipped(name).parameters, key, f"parameters.{key}")
             number = isinstance(known.node, NumberNode) and known.node.quantity.si != "1"
             if number and not isinstance(value, str):
-                table.note(key, f"found {value!r} without a unit", f'Write for example "{known.text}"')
+                findings.append(Finding(f"parameters.{key}", f"found {value!r} without a unit", f'Write for example "{known.text}"'))
             else:
                 found[key] = value
         except DesignError as error:
-            table.findings.extend(error.findings)
+            findings += error.findings
+    require(findings)
     return found
 
 
@@ -76,44 +71,44 @@ def _leaves(tree: Mapping[str, Any], above: str = "") -> Iterator[tuple[str, Any
             yield f"{above}{key}", value
 
 
-def parameters_varied(table: Fields, variant: Variant | None) -> tuple[tuple[str, ...], Quantity | None]:
-    """The parameters that a variable's table names, by full name, and their quantity; `None` after a finding.
+def parameters_varied(table: VariedTable, where: str, variant: Variant | None) -> tuple[tuple[str, ...], Quantity]:
+    """The parameters that a variable's table at `where` names, by full name, and their quantity. Raises `DesignError` with all findings.
 
-    >>> found = []
-    >>> names, quantity = parameters_varied(Fields({"parameter": "neck.radius"}, "variables.r", found), Variant("hexapod"))
+    >>> names, quantity = parameters_varied(VariedTable("1 mm", "2 mm", parameter=("neck.radius",)), "variables.r", Variant("hexapod"))
     >>> names, quantity.name
     (('neck.profile.radius',), 'length')
     """
-    asked = table.text_or_texts("parameter")
-    if "of" in table.tree:
-        table.text_or_texts("of")
-        table.note("of", "both an address and a parameter are named", "Name one of them")
+    if table.of is not None:
+        raise refuse(f"{where}.of", "both an address and a parameter are named", "Name one of them")
     if variant is None:
-        table.note("parameter", "a design file has no parameters", 'Give the address of a number: of = "parts.neck.thickness"')
-        return asked, None
+        advice = 'Give the address of a number: of = "parts.neck.thickness"'
+        raise refuse(f"{where}.parameter", "a design file has no parameters", advice)
     names: list[str] = []
     found: list[Quantity] = []
-    for each in asked:
+    findings: list[Finding] = []
+    for each in table.parameter or ():
         try:
-            known = parameter(variant.parameters, each, table.at("parameter"))
+            known = parameter(variant.parameters, each, f"{where}.parameter")
         except DesignError as error:
-            table.findings.extend(error.findings)
+            findings += error.findings
             continue
         names.append(known.name)
         if known.quantity is None:
-            table.note("parameter", f"{known.name} is no number that can vary: {known.kind}", "State it in [parameters]")
+            what = f"{known.name} is no number that can vary: {known.kind}"
+            findings.append(Finding(f"{where}.parameter", what, "State it in [parameters]"))
         else:
             found.append(known.quantity)
-    return tuple(names), one_quantity(table, "parameter", found) if len(found) == len(asked) else None
+    require(findings)
+    return tuple(names), one_quantity(f"{where}.parameter", found)
 
 
-def one_quantity(table: Fields, key: str, found: list[Quantity]) -> Quantity | None:
-    """The quantity that all have; a finding where they have several, and `None` where there is none.
+def one_quantity(where: str, found: list[Quantity]) -> Quantity:
+    """The quantity that all have; raises `DesignError` where they have several.
 
-    >>> one_quantity(Fields({}, "variables.a", []), "of", []) is None
-    True
+    >>> from flexstage.base.quantity import ANGLE, LENGTH
+    >>> one_quantity("variables.a.of", [LENGTH, LENGTH]).name
+    'length'
     """
     if len({each.si for each in found}) > 1:
-        table.note(key, f"they are of different quantities: {', '.join(each.name for each in found)}", "Use two variables")
-        return None
-    return found[0] if found else None
+        raise refuse(where, f"they are of different quantities: {', '.join(each.name for each in found)}", "Use two variables")
+    return found[0]

@@ -1,0 +1,176 @@
+"""The form of a study's file: what each section may hold. The fields alone make its reader and its schema."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Annotated, Any
+
+from flexstage.base.finding import DesignError, Finding
+from flexstage.base.quantity import RATIO, Bound, Quantity
+from flexstage.mechanism.grammar import KEY, OpenNode
+from flexstage.mechanism.mechanism import PLATFORM
+from flexstage.mechanism.node import AmountNode, ChoiceNode, NumberNode, TextsNode
+from flexstage.mechanism.store.decode import record_from
+from flexstage.mechanism.store.file import parse_toml
+from flexstage.mechanism.store.schema import schema_of
+from flexstage.studies.sweeps.plan import Sampling
+
+FORMAT = "flexstage study 1"
+COPIES_BY = (Sampling.MONTE_CARLO, Sampling.LATIN_HYPERCUBE, Sampling.SOBOL)
+
+Amount = Annotated[str | float, AmountNode()]
+Texts = Annotated[tuple[str, ...], TextsNode()]
+Parameters = Annotated[Mapping[str, Any], OpenNode("Parameters of the case that differ from its own, by name.")]
+
+_ONE, _TWO, _THREE = Bound(low=1.0), Bound(low=2.0), Bound(low=3.0)
+_SEED = Bound(low=0.0)
+_YIELD = Bound(low=0.5, high=1.0, open_low=True, open_high=True)
+
+
+@dataclass(frozen=True)
+class VariedTable:
+    """What a study varies: `of`, an address or several that move together (absent: the name), or `parameter`, one of the case or several.
+
+    It moves between `from` and `to`, with units or in percent of what the design states. `logarithmic`: equal steps are equal ratios.
+    `levels`: how many values a grid takes. `step`: only its multiples can be made.
+    """
+
+    low: Amount = field(metadata={KEY: "from"})
+    high: Amount = field(metadata={KEY: "to"})
+    of: Texts | None = None
+    parameter: Texts | None = None
+    logarithmic: bool = False
+    levels: Annotated[int, _TWO] | None = None
+    step: Amount | None = None
+
+
+@dataclass(frozen=True)
+class SweepTable:
+    """How designs are drawn: `sampling`, how many `designs` (1024, of a grid what its levels make), the `seed` of everything random.
+
+    `pairs`: Saltelli's plan with indices of second order.
+    """
+
+    sampling: Sampling = Sampling.SOBOL
+    designs: Annotated[int, _ONE] | None = None
+    seed: Annotated[int, _SEED] = 0
+    pairs: bool = False
+
+
+@dataclass(frozen=True)
+class OptimiseTable:
+    """What is best: responses to `maximise` or `minimise`, two in all at most, of which a front is drawn of `pareto_points` designs.
+
+    The search begins from so many `starts`, drawn by `seed`. Without `require` the design's own requirements are no limits.
+    """
+
+    maximise: Texts | None = None
+    minimise: Texts | None = None
+    starts: Annotated[int, _ONE] = 3
+    seed: Annotated[int, _SEED] = 0
+    pareto_points: Annotated[int, _THREE] = 9
+    require: bool = True
+
+
+@dataclass(frozen=True)
+class ScatterTable:
+    """What deviates: `of`, an address, a kind or several (absent: the name), by a standard deviation `normal` or a half width `uniform`.
+
+    Both with their unit or in percent of what the design states. `within`: what of a normal one lies beyond is sorted out. `each`: every
+    copy for itself.
+    """
+
+    of: Texts | None = None
+    normal: Amount | None = None
+    uniform: Amount | None = None
+    within: Amount | None = None
+    each: bool = False
+
+
+@dataclass(frozen=True)
+class ToleranceTable:
+    """How many `copies` are drawn, by which `sampling` and `seed`, and the `yield` that each line of the specification shall have.
+
+    Without `require` the design's own requirements are no part of it. `crosstalk` of the platform at a `point` (absent: where the stage
+    has any).
+    """
+
+    copies: Annotated[int, _TWO] = 1024
+    seed: Annotated[int, _SEED] = 0
+    sampling: Annotated[Sampling, ChoiceNode(Sampling, COPIES_BY)] = COPIES_BY[0]
+    wanted: Annotated[float, RATIO, _YIELD] = field(default=0.99, metadata={KEY: "yield"})
+    require: bool = True
+    crosstalk: bool | None = None
+    point: str = PLATFORM
+
+
+@dataclass(frozen=True, kw_only=True)
+class StudyFile:
+    """A study: the `design` file or the shipped `case` it starts from, with its `parameters`; what is asked, and what limits it.
+
+    `responses` are measures by name, `limits` say at least or at most by measure. `variables` and `sweep` belong to a sweep, `variables`
+    and `optimise` to an optimisation, `scatter` and `tolerance` to a study of copies.
+    """
+
+    name: str = "study"
+    design: str | None = None
+    case: str | None = None
+    parameters: Parameters
+    variables: Mapping[str, VariedTable]
+    responses: Mapping[str, str]
+    limits: Mapping[str, str]
+    scatter: Mapping[str, ScatterTable]
+    sweep: SweepTable = field(default_factory=SweepTable)
+    optimise: OptimiseTable = field(default_factory=OptimiseTable)
+    tolerance: ToleranceTable = field(default_factory=ToleranceTable)
+
+
+def study_file(text: str, where: str) -> StudyFile:
+    """What a study's file says. Raises `DesignError` with all that is no study's file in it.
+
+    >>> study_file('format = "flexstage study 1"' + chr(10) + 'case = "parallelogram"', "here").sweep.seed
+    0
+    """
+    raw = parse_toml(text, where)
+    try:
+        return record_from(StudyFile, raw, FORMAT, tagged=False)
+    except DesignError as error:
+        raise DesignError(placed(error.findings, where)) from None
+
+
+def study_schema() -> dict[str, Any]:
+    """The JSON Schema of a study's file, for editors.
+
+    >>> study_schema()["$defs"]["VariedTable"]["required"]
+    ['from', 'to']
+    """
+    return schema_of(StudyFile, FORMAT, "flexstage study", tagged=False)
+
+
+def is_share(raw: str | float) -> bool:
+    """Whether an amount is in percent of what the design states.
+
+    >>> is_share("-10 %"), is_share("1.4 mm")
+    (True, False)
+    """
+    return isinstance(raw, str) and raw.strip().endswith("%")
+
+
+def amount(raw: str | float, quantity: Quantity, where: str) -> float:
+    """An amount in SI; raises `DesignError` at `where` where it is none of that quantity.
+
+    >>> from flexstage.base.quantity import LENGTH
+    >>> amount("1.5 mm", LENGTH, "variables.neck.from")
+    0.0015
+    """
+    return NumberNode(quantity).si(raw, where)
+
+
+def placed(findings: Iterable[Finding], where: str) -> Iterator[Finding]:
+    """Findings with the file they are about.
+
+    >>> [str(each) for each in placed([Finding("limits", "none", "Add one")], "study.toml")]
+    ['study.toml: limits: none. Add one.']
+    """
+    return (Finding(f"{where}: {each.where}", each.what, each.advice) for each in findings)
