@@ -123,10 +123,10 @@ def test_groups_of_commands_are_lazy_too(monkeypatch: pytest.MonkeyPatch, capsys
 
 def test_a_new_design_is_sound_and_commented(flexstage: Command, tmp_path: Path) -> None:
     assert flexstage("new", "other.toml", "--case", "hexapod").code == 0
-    assert (tmp_path / "other.toml").read_text().startswith("# hexapod: six axes")
+    assert (tmp_path / "other.toml").read_text().startswith("#:schema ./flexstage.schema.json\n# hexapod: six axes")
     assert flexstage("check", "other.toml").code == 0
     assert flexstage("new", "other.toml", "--force").code == 0
-    assert (tmp_path / "other.toml").read_text().startswith("# double-triangle:")
+    assert (tmp_path / "other.toml").read_text().startswith("#:schema ./flexstage.schema.json\n# double-triangle:")
 
 
 def test_missed_requirements_change_the_exit_code_only_if_strict(flexstage: Command, tmp_path: Path) -> None:

@@ -7,15 +7,25 @@ import re
 import tomllib
 from typing import Any
 
+import numpy as np
 import pytest
 from hypothesis import given
 
 from flexstage.base import quantity
+from flexstage.base.finding import DesignError
 from flexstage.base.quantity import Quantity
 from flexstage.base.unit import parse
 from flexstage.cases.registry import CASES
+from flexstage.control.hysteresis.creep import LogCreep
+from flexstage.control.hysteresis.envelope import Envelope
+from flexstage.control.hysteresis.prandtl_ishlinskii import PrandtlIshlinskii
+from flexstage.control.hysteresis.stack import dumps_hysteresis, hysteresis_schema, stack_hysteresis
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.store import dumps, schema
+from flexstage.studies.form import study_schema
+from flexstage.studies.optimisation.file import load_wanted
+from flexstage.studies.sweeps.file import loads_study
+from flexstage.studies.tolerances.file import loads_tolerance
 from tests.conftest import examples
 from tests.roundtrip.designs import TEXT, mechanisms
 
@@ -153,3 +163,67 @@ def examples(rule: Any) -> list[tuple[str, Any]]:
         return []
     own = [(rule["description"].partition(",")[0], rule["examples"][0])] if "examples" in rule and "description" in rule else []
     return own + [found for item in rule.values() for found in examples(item)]
+
+
+STUDY = """format = "flexstage study 1"
+name = "leaves"
+case = "parallelogram"
+parameters = { spacing = "52 mm" }
+responses = { f = "frequency.platform.1", m = "mass" }
+limits = { mass = "at most 14 kg" }
+sweep = { sampling = "latin hypercube", designs = 8, seed = 3, pairs = false }
+optimise = { maximise = ["f"], minimise = "m", starts = 2, pareto_points = 5, require = false }
+tolerance = { copies = 64, sampling = "sobol", yield = "90 %", require = false, crosstalk = false, point = "platform" }
+[variables]
+young = { of = "materials.aluminium.young", from = "-10 %", to = "10 %", logarithmic = true }
+leaf = { of = ["parts.leaf.width"], from = "40 mm", to = "0.06 m", levels = 3, step = "1 mm" }
+[scatter]
+wire = { of = "parts.leaf.thickness", normal = "5 um", within = "9 um", each = false }
+wear = { of = "links.left.thickness", uniform = "5 um" }
+"""
+"""Every key that a study's file may have."""
+
+
+def test_a_study_fits_and_is_read() -> None:
+    assert fits(STUDY, study_schema())
+    assert loads_study(STUDY).variables[1].step == pytest.approx(1e-3)
+    assert len(load_wanted(loads_study(STUDY)).objectives) == 2
+    assert [each.name for each in loads_tolerance(STUDY).scatters] == ["wire", "wear"]
+    keys = {key for table in study_schema()["$defs"].values() for key in table["properties"]} | set(study_schema()["properties"])
+    assert {key for key in keys if not re.search(rf"\b{key}\b", STUDY)} == {"design", "parameter"}
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("flexstage study 1", "flexstage 1"),
+        ('name = "leaves"', "name = 1"),
+        ('"mass"', "3"),
+        ("seed = 3", "sed = 3"),
+        ("designs = 8", "designs = 0"),
+        ("pairs = false", 'pairs = "no"'),
+        ('"latin hypercube"', '"latin"'),
+        ('"sobol"', '"grid"'),
+        ('["f"]', "[]"),
+        ('"90 %"', "1.5"),
+        (', from = "-10 %"', ""),
+        ("levels = 3", "levels = 1"),
+        ('"1 mm"', '["1 mm"]'),
+        ("[scatter]", "[scater]"),
+    ],
+)
+def test_mistakes_in_a_study_are_refused_by_all_commands(old: str, new: str) -> None:
+    text = STUDY.replace(old, new, 1)
+    assert old in STUDY
+    assert not fits(text, study_schema())
+    for read in (loads_study, loads_tolerance):
+        with pytest.raises(DesignError):
+            read(text)
+
+
+def test_a_hysteresis_file_fits() -> None:
+    envelope = Envelope(np.array([0.0, 50.0, 100.0]), np.array([0.0, 40.0, 100.0]))
+    model = PrandtlIshlinskii([0.0, 50.0], [1e-7, 2e-8], envelope)
+    text = dumps_hysteresis(stack_hysteresis(model, creep=LogCreep(0.02), volts=(0.0, 100.0), rms=0.01, source="test"))
+    assert fits(text, hysteresis_schema())
+    assert not fits(text.replace("thresholds", "threshold"), hysteresis_schema())

@@ -16,6 +16,7 @@ from flexstage.base.document import as_text
 from flexstage.base.finding import DesignError, Finding, require
 from flexstage.cases.registry import CASES
 from flexstage.cases.registry import case as shipped_case
+from flexstage.control.hysteresis.stack import hysteresis_schema
 from flexstage.control.study.file import setup_schema
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.store import dumps, load, shipped
@@ -31,8 +32,11 @@ from flexstage.show.listing import case_table, catalogue_body, catalogue_tables,
 from flexstage.show.plan import plan_figure
 from flexstage.show.scene.stage import scene
 from flexstage.show.tables.description import composition_table
+from flexstage.studies.form import study_schema
 
 DEFAULT_CASE = "double-triangle"
+SCHEMA_FILE = "flexstage.schema.json"
+"""Where the first line of a new design file tells editors to look for the schema: beside it, as `flexstage schema > FILE` writes it."""
 
 
 def new(
@@ -60,7 +64,8 @@ def new(
     require_writable([(str(target), target)])
     if target.exists() and not force:
         require([Finding(str(target), "the file exists already", "Choose another name, or overwrite it with --force")])
-    write(target, dumps(mechanism, {"": _heading(case, CASES[case].summary, str(target), stated)}), str(target))
+    text = dumps(mechanism, {"": _heading(case, CASES[case].summary, str(target), stated)})
+    write(target, f"#:schema ./{SCHEMA_FILE}\n{text}", str(target))
     announce(f"Wrote {target} ({case}: {CASES[case].summary}). Next: flexstage analyse {target}")
 
 
@@ -80,6 +85,7 @@ def _heading(case: str, summary: str, target: str, stated: Mapping[str, str]) ->
         f"{case}: {summary}.\n"
         + "".join(f"Parameter {name} = {value}.\n" for name, value in stated.items())
         + f"flexstage check {target}     flexstage analyse {target} --report report.html\n"
+        f"flexstage schema > {Path(target).with_name(SCHEMA_FILE)}     lets an editor check this file while you type.\n"
         "Every physical value carries a unit. tags say where a value comes from: stated, derived or assumed (untagged), and the source."
     )
 
@@ -116,15 +122,20 @@ class File(Enum):
     """Files that have a schema."""
 
     DESIGN = "design"
+    STUDY = "study"
     LOOP = "loop"
+    HYSTERESIS = "hysteresis"
+
+
+_SCHEMAS = {File.DESIGN: design_schema, File.STUDY: study_schema, File.LOOP: setup_schema, File.HYSTERESIS: hysteresis_schema}
 
 
 def schema(
     *,
-    of: Annotated[File, word_option("--of", File, "Design files, or set-up files of loops.")] = File.DESIGN,
+    of: Annotated[File, word_option("--of", File, "Which file: a design, a study, a loop's set-up or a stack's hysteresis.")] = File.DESIGN,
 ) -> None:
     """Print the JSON Schema of a kind of file, for editors."""
-    say(as_json(design_schema() if of is File.DESIGN else setup_schema(), indent=1, ensure_ascii=False))
+    say(as_json(_SCHEMAS[of](), indent=1, ensure_ascii=False))
 
 
 def plan(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
 
@@ -20,6 +20,7 @@ from flexstage.mechanism.store.decode import record_from
 from flexstage.mechanism.store.encode import plain
 from flexstage.mechanism.store.file import parse_toml, read_text
 from flexstage.mechanism.store.lines import placed
+from flexstage.mechanism.store.schema import schema_of
 from flexstage.mechanism.store.toml import text_of
 
 FORMAT = "flexstage hysteresis 1"
@@ -163,6 +164,15 @@ def loads_hysteresis(text: str, *, where: str = "text") -> StackHysteresis:
     except DesignError as error:
         raise DesignError(placed(error.findings, text, where)) from None
     return stack
+
+
+def hysteresis_schema() -> dict[str, Any]:
+    """The JSON Schema of a hysteresis file, for editors.
+
+    >>> hysteresis_schema()["required"]
+    ['format', 'thresholds', 'weights']
+    """
+    return schema_of(StackHysteresis, FORMAT, "flexstage hysteresis")
 
 
 def dump_hysteresis(stack: StackHysteresis, path: str | os.PathLike[str]) -> Path:
