@@ -25,7 +25,7 @@ from tests.hygiene.source import ROOT
 _SHELLS = ("sh", "bash", "console", "shell")
 _PROGRAM = re.compile(r"(\.venv/bin/)?flexstage( |$)")
 _FOR_A_SHELL = re.compile(r"[|<>;&$]")
-_UNCHECKED = ("", "text", "json", "html", "matlab", "make")
+_UNCHECKED = ("", "text", "diff", "json", "html", "matlab", "make")
 
 
 class Runner:

@@ -11,7 +11,7 @@ from flexstage.analysis.deflection import deflection
 from flexstage.analysis.drift import Drift, drift
 from flexstage.analysis.lost_motion import LostMotion, lost_motion
 from flexstage.analysis.modes import Modes, modes
-from flexstage.analysis.requirements import Measure, Requirement, Sense, Subject, Verdict, direction_of, requirements
+from flexstage.analysis.requirements import Measure, Requirement, Sense, Subject, Verdict, direction_of, offered, requirements
 from flexstage.analysis.stability import Stability, stability
 from flexstage.analysis.standing import standing, under_load
 from flexstage.analysis.statics import statics
@@ -426,4 +426,5 @@ _MEASURES: Mapping[Subject, Callable[[Bench, Measure], Array]] = {
     Subject.OWN_GAUGE_RANGE: _gauge_range,
     Subject.LOAD: _load,
     Subject.OWN_LOAD: _load,
+    Subject.OFFERED: lambda bench, asked: offered(asked.name).value(bench),
 }

@@ -9,6 +9,7 @@ from enum import Enum
 
 import numpy as np
 
+from flexstage.analysis.offered import MEASURES, OfferedMeasure
 from flexstage.base.finding import DesignError, Finding, nearest, refuse
 from flexstage.base.number import Array
 from flexstage.base.quantity import (
@@ -77,6 +78,7 @@ class Subject(Enum):
     OWN_GAUGE_RANGE = "gauge.range.<gauge>"
     LOAD = "load"
     OWN_LOAD = "load.<actuator>"
+    OFFERED = "<offered>"
 
 
 @dataclass(frozen=True)
@@ -126,6 +128,7 @@ KINDS: Mapping[Subject, Kind] = {
     Subject.LOAD: Kind("share of its maximum load, or of what may pull it, that the most loaded stack bears at the worst corner", RATIO),
     Subject.OWN_LOAD: Kind("largest compression of the stack at the worst corner of the strokes, dead load included", FORCE),
 }
+"""Of all subjects but `OFFERED`, whose measures say it themselves."""
 
 
 @dataclass(frozen=True)
@@ -219,7 +222,24 @@ def _names(assembly: Assembly) -> dict[str, tuple[str, ...]]:
         "n": tuple(str(number) for number in range(1, 7)),
         "actuator": tuple(assembly.actuators),
         "gauge": tuple(assembly.gauges),
+        "offered": tuple(MEASURES),
     }
+
+
+def kind_of(subject: Subject, name: str = "") -> Kind:
+    """What a subject means; of a measure that another package offers, what it says itself."""
+    if subject is not Subject.OFFERED:
+        return KINDS[subject]
+    found = offered(name)
+    return Kind(found.meaning, found.quantity)
+
+
+def offered(name: str) -> OfferedMeasure:
+    """A measure that an installed package offers; raises `DesignError` where none does."""
+    found = MEASURES.get(name)
+    if found is None:
+        raise refuse(name, "no installed package offers this measure", "Install the one that does")
+    return found
 
 
 def _spelt(form: str, names: Mapping[str, tuple[str, ...]]) -> Iterator[str]:
@@ -296,7 +316,7 @@ def direction_of(name: str, where: str = "direction") -> Array:
 def _placed(where: str, asked: tuple[Subject, str], point: str | None, points: tuple[str, ...]) -> tuple[str, Quantity]:
     """The point a measure is taken at, and its quantity: that about an axis for rotations."""
     subject, name = asked
-    kind = KINDS[subject]
+    kind = kind_of(subject, name)
     if point and not kind.pointed:
         raise refuse(where, f"is not asked at a point, found at {point}", f'Leave out "at {point}"')
     point = point or PLATFORM
@@ -315,4 +335,5 @@ def _subject(key: str, names: Mapping[str, tuple[str, ...]], where: str) -> tupl
         if placeholder and key.startswith(stem) and (name in names[placeholder] or _free(placeholder, name, where)):
             return subject, name
     known = [spelt for subject in Subject for spelt in _spelt(subject.value, names)]
-    raise refuse(where, f'there is no measure called "{key}"', nearest(key, known))
+    advice = f"{nearest(key, known)}. A measure that another package offers is known where that package is installed"
+    raise refuse(where, f'there is no measure called "{key}"', advice)

@@ -43,6 +43,10 @@ class Register(Generic[Entry]):
             raise refuse(f"{self.group}: {kind}", f"it is offered by {who}", "Uninstall all of these packages but one")
         return self.own[kind] if kind in self.own else _loaded(offers[0]) if offers else None
 
+    def offer(self, kind: str) -> str:
+        """Name and version of the package that offers a kind; empty for the floor's own."""
+        return ", ".join(_named(offer) for offer in _offered(self.group) if offer.name == kind)
+
     @property
     def all(self) -> dict[str, Entry]:
         """Every entry by kind."""

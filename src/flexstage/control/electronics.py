@@ -13,7 +13,7 @@ from flexstage.base.finding import Finding, nearest, require
 from flexstage.base.number import Table
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
-from flexstage.parts.gauge import Gauge
+from flexstage.parts.gauge import DisplacementGauge
 from flexstage.parts.piezo import Piezo
 
 
@@ -185,7 +185,7 @@ def _gain(piezo: Piezo) -> float:
     return float(piezo.stroke / (piezo.voltage_high - piezo.voltage_low))
 
 
-def _sensor(setting: GaugeSettings, gauge: Gauge) -> Sensor:
+def _sensor(setting: GaugeSettings, gauge: DisplacementGauge) -> Sensor:
     return Sensor(
         bandwidth=_first(setting.bandwidth, gauge.bandwidth, np.inf),
         noise_density=setting.noise_density if setting.noise_density is not None else _number(gauge.noise_density),

@@ -17,7 +17,7 @@ from flexstage.mechanism.misalignment import MISALIGNED, misaligned
 from flexstage.mechanism.path import complete, replaced
 from flexstage.mechanism.pattern import Facing, Pattern, Polar
 from flexstage.parts.body import Body, Solid, owner_of, solid_frame
-from flexstage.parts.gauge import Gauge, Positive
+from flexstage.parts.gauge import DisplacementGauge, Positive
 from flexstage.parts.mass import MassProperties, combined, drawn_solids, mass_properties, united, within
 from flexstage.parts.material import Material
 from flexstage.parts.part import Part, is_actuator, material_of
@@ -74,7 +74,7 @@ class PlacedGauge:
     """A gauge of the expanded stage: measuring point and direction in the stage's frame, sign of its reading along that direction."""
 
     name: str
-    gauge: Gauge
+    gauge: DisplacementGauge
     body: str
     base: str
     frame: Frame

@@ -44,8 +44,9 @@ from flexstage.mechanism.node import (
     whole_text,
 )
 from flexstage.mechanism.pattern import Polar, Pose
-from flexstage.parts import PARTS
+from flexstage.parts import GAUGES, PARTS
 from flexstage.parts.body import Block, Cylinder, Imported
+from flexstage.parts.gauge import DisplacementGauge, Gauge
 from flexstage.parts.profile import Circular, Elliptic, Filleted, Straight
 from flexstage.parts.shape import Elastic
 
@@ -80,6 +81,8 @@ _TAGS_SCHEMA: dict[str, Any] = {
     "description": "Provenance by field: stated, derived or assumed, then a source and a place in it.",
     "additionalProperties": {"type": "string", "pattern": r"^(stated|derived|assumed)( |$)", "examples": ["stated paper 2.2"]},
 }
+_KIND = "kind"
+_ELSEWHERE = "A kind that another package offers is known where that package is installed"
 _FILE_KEYS = {(Mechanism, "changes"): "change", (Mechanism, "requirements"): "require"}
 
 
@@ -317,6 +320,8 @@ class UnionNode(Node):
 
     told_by: str | None
     options: tuple[tuple[str, RecordNode], ...]
+    usual: str | None = None
+    """The alternative of a table that names none."""
 
     def name_of(self, value: Any) -> str:
         """The name of a value's alternative."""
@@ -338,21 +343,24 @@ class UnionNode(Node):
         options = dict(self.options)
         key = self.told_by or ""
         entry = reader.catalogue.section(*(option.record for option in options.values()))
-        name = raw.get(key, entry.kind if entry and LIKE in raw else None)
+        name = raw.get(key, self.usual or (entry.kind if entry and LIKE in raw else None))
         if name is None:
             return reader.refuse(where, f"it has no {key}", f"Write {key} = one of {', '.join(options)}")
         if not isinstance(name, str) or name not in options:
-            return reader.refuse(join(where, key), f"found {kind(name)}", nearest(kind(name), options))
+            advice = nearest(kind(name), options)
+            return reader.refuse(join(where, key), f"found {kind(name)}", f"{advice}. {_ELSEWHERE}" if key == _KIND else advice)
         return options[name].read({item: value for item, value in raw.items() if item != key}, where, reader)
 
     def write(self, value: Any, where: str, writer: Writer) -> dict[str, Any]:
         """A table that says its alternative."""
         inner = self.option(value).write(value, where, writer)
-        return {self.told_by: self.name_of(value)} | inner if self.told_by else inner
+        name = self.name_of(value)
+        return {self.told_by: name} | inner if self.told_by and name != self.usual else inner
 
     def schema(self, definitions: Definitions) -> dict[str, Any]:
         """One of the definitions."""
-        return {"oneOf": [option.schema(definitions, self.told_by, name) for name, option in self.options]}
+        schemas = [option.schema(definitions, None if name == self.usual else self.told_by, name) for name, option in self.options]
+        return {"oneOf": schemas} if len(schemas) > 1 else schemas[0]
 
     def wanted(self, value: Any) -> Wanted:
         """An instance of one of the classes."""
@@ -484,6 +492,9 @@ def _node(hint: Any) -> Node:
     origin = typing.get_origin(hint)
     if origin is Annotated:
         return _annotated(hint)
+    if hint is DisplacementGauge:
+        kinds = {name: RecordNode(option) for name, option in GAUGES.all.items()}
+        return UnionNode(_KIND, tuple(kinds.items()), Gauge.kind)
     if hint is Elastic or origin in (types.UnionType, typing.Union):
         options = [each for option in typing.get_args(hint) or (hint,) for each in (PARTS.all.values() if option is Elastic else [option])]
         told = [_told_by(option) for option in options]
@@ -498,7 +509,7 @@ def _node(hint: Any) -> Node:
 def _told_by(option: type) -> tuple[str | None, str]:
     """The key that tells an alternative apart, and its name there; parts say their kind."""
     told = _ALTERNATIVES.get(option) or getattr(option, TOLD_BY, None)
-    return told or ("kind", option.kind)  # type: ignore[attr-defined]
+    return told or (_KIND, option.kind)  # type: ignore[attr-defined]
 
 
 def _named(hint: type) -> TextNode | WholeNode | FlagNode | ChoiceNode | RecordNode:

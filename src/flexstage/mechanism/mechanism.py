@@ -25,7 +25,7 @@ from flexstage.base.quantity import (
 from flexstage.mechanism.pattern import Pattern
 from flexstage.parts.body import Body, Payload
 from flexstage.parts.freedom import Freedom
-from flexstage.parts.gauge import Gauge, Positive
+from flexstage.parts.gauge import DisplacementGauge, Positive
 from flexstage.parts.material import Material
 from flexstage.parts.part import Part
 
@@ -147,7 +147,7 @@ class Mechanism(InNotebook, Description):
     links: Mapping[str, Link] = _empty()
     units: Mapping[str, Unit] = _empty()
     place: Mapping[str, Placement] = _empty()
-    sensors: Mapping[str, Gauge] = _empty()
+    sensors: Mapping[str, DisplacementGauge] = _empty()
     gauges: Mapping[str, Probe] = _empty()
     payloads: Mapping[str, Payload] = _empty()
     forces: Mapping[str, Force] = _empty()

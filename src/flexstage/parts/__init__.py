@@ -1,6 +1,7 @@
 """What a stage is made of: data, intended freedoms and profiles; no stiffness, no CAD."""
 
 from flexstage.base.register import Register
+from flexstage.parts.gauge import DisplacementGauge, Gauge
 from flexstage.parts.given import Given
 from flexstage.parts.leaf import Leaf
 from flexstage.parts.neck import Neck
@@ -11,3 +12,6 @@ from flexstage.parts.shape import Elastic
 
 PARTS: Register[type[Elastic]] = Register("flexstage.parts", {part.kind: part for part in (Notch, Neck, Leaf, Rod, Given, Piezo)})
 """Kinds of parts that have a stiffness of their own."""
+
+GAUGES: Register[type[DisplacementGauge]] = Register("flexstage.gauges", {Gauge.kind: Gauge})
+"""Kinds of gauges; one that states no kind is a `Gauge`."""

@@ -23,7 +23,9 @@ from flexstage.parts.leaf import Leaf
 from flexstage.parts.material import Material
 from flexstage.parts.neck import Neck
 from flexstage.parts.notch import Notch
+from flexstage.parts.piezo import Piezo
 from flexstage.parts.rod import Rod
+from flexstage.parts.shape import Shaped
 from flexstage.solid.fea.estimate import Accuracy
 from flexstage.solid.fea.hinge_cache import HingeForm, HingePart, kept_hinges
 from flexstage.solid.fea.parts import Ways
@@ -136,6 +138,13 @@ def distinct_hinges(mechanism: Mechanism) -> dict[str, DrawnHinge]:
             found.setdefault(key, []).append(link)
     alike = list(found.values())
     return {_called(shape, links, alike): _hinge(links, roots_of(assembly, links[0])) for links in alike}
+
+
+def unknown_hinges(mechanism: Mechanism) -> dict[str, str]:
+    """Why parts that are drawn have no 6x6 as a solid by themselves, by part: how their kind is held between blocks is not known."""
+    parts = {link.link.part: link.part for link in expand(drawn(mechanism)).links.values()}
+    odd = {name: part for name, part in parts.items() if isinstance(part, Shaped) and not isinstance(part, (Notch, Neck, Leaf, Rod, Piezo))}
+    return {name: f"the 6x6 of a part of kind {part.kind} as a solid by itself is not known" for name, part in odd.items()}
 
 
 def _called(shape: Mechanism, links: list[PlacedLink], everything: list[list[PlacedLink]]) -> str:

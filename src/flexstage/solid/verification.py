@@ -22,7 +22,7 @@ from flexstage.models.linear.model import LinearModel
 from flexstage.models.lumped import lumped
 from flexstage.models.mapped import mapped
 from flexstage.solid.calibration import with_matrices
-from flexstage.solid.hinges import STANDARD_HINGES, Hinges, SolidHinge, solid_hinges
+from flexstage.solid.hinges import STANDARD_HINGES, Hinges, SolidHinge, distinct_hinges, solid_hinges, unknown_hinges
 from flexstage.solid.read import STANDARD_SOLIDS, Solids
 from flexstage.solid.resolution import DEFAULT, Resolution, Resolved, resolved
 from flexstage.solid.stage import SolidStage, solid_stage, stiffness_figures
@@ -116,9 +116,9 @@ def verify(
 
     Theory is the description as it stands; FEA the shapes it draws. Raises `DesignError` where the stage cannot be read as a solid.
     """
-    missing: dict[str, str] = {}
+    missing = {f"hinge {name}": why for name, why in unknown_hinges(mechanism).items()}
     stage = stage_solid(mechanism, asked, reduce)
-    found = solid_hinges(mechanism, compute)
+    found = solid_hinges(mechanism, compute) if not missing or distinct_hinges(mechanism) else {}
     matched = with_matrices(mechanism, found)
     try:
         alone = units_solid(mechanism, asked, reduce) if driven_units(mechanism) else None

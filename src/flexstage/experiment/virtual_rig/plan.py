@@ -13,7 +13,7 @@ from flexstage.experiment.virtual_rig.setup import RigSetup
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.linear.model import LinearModel
-from flexstage.parts.gauge import Gauge
+from flexstage.parts.gauge import DisplacementGauge
 from flexstage.parts.piezo import Piezo
 
 _DEFAULT_SHARE = 0.01
@@ -149,5 +149,5 @@ def _of_gauges(asked: float | None, stated: list[Number | None], otherwise: floa
     return np.array([asked if asked is not None else otherwise if value is None else float(np.real(value)) for value in stated])
 
 
-def _ranges(gauges: list[Gauge]) -> Array:
+def _ranges(gauges: list[DisplacementGauge]) -> Array:
     return np.array([float(np.real(gauge.range)) for gauge in gauges])

@@ -6,20 +6,26 @@ stopped short by 3 % of their radius: a face tangent to another leaves a wedge o
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from itertools import pairwise
+from typing import Any, TypeAlias
 
 import numpy as np
 from netgen import occ
 from scipy.spatial.transform import Rotation
 
+from flexstage.base.finding import refuse
 from flexstage.base.number import Array
+from flexstage.base.register import Register
 from flexstage.parts.body import Block, Cylinder, Imported
 from flexstage.parts.leaf import Leaf
 from flexstage.parts.neck import Neck
 from flexstage.parts.notch import Notch
+from flexstage.parts.piezo import Piezo
 from flexstage.parts.profile import Circular, Filleted, Profile, length
 from flexstage.parts.profile import rise as cut_height
+from flexstage.parts.rod import Rod
+from flexstage.parts.shape import Shaped
 from flexstage.solid.fea.imported import imported_shape
 from flexstage.solid.fea.piece import Form
 from flexstage.spatial.frame import Frame
@@ -32,6 +38,7 @@ SHORTENED = 0.03
 _STATIONS = 33
 
 Curve = list[occ.TopoDS_Shape]
+Draw: TypeAlias = Callable[[Any], occ.Solid]
 
 
 def drawn(form: Form) -> occ.Solid:
@@ -47,13 +54,11 @@ def drawn(form: Form) -> occ.Solid:
         return _tube(form)
     if isinstance(form, Imported):
         return imported_shape(form)
-    if isinstance(form, Notch):
-        return _extruded(form.thickness, form.profile, form.width)
-    if isinstance(form, Neck):
-        return _neck(form)
-    if isinstance(form, Leaf):
-        return _box(form.length, form.thickness, form.width)
-    return _round(form.throat.height, form.span)
+    draw = SHAPES.get(form.kind)
+    if draw is None:
+        what = "its shape as a solid is not known: nobody offers one for this kind"
+        raise refuse(f"a part of kind {form.kind}", what, f"Install the package that does ({SHAPES.group})")
+    return draw(form)
 
 
 def moved(solid: occ.TopoDS_Shape, frame: Frame) -> occ.TopoDS_Shape:
@@ -182,3 +187,14 @@ def _spline(at: Callable[[float], tuple[float, float]], largest: float) -> occ.T
 
 def _polyline(points: list[tuple[float, float]]) -> Curve:
     return [occ.Segment(occ.Pnt(*a, 0), occ.Pnt(*b, 0)) for a, b in pairwise(points)]
+
+
+_OWN: Mapping[type[Shaped], Draw] = {
+    Notch: lambda form: _extruded(form.thickness, form.profile, form.width),
+    Neck: _neck,
+    Leaf: lambda form: _box(form.length, form.thickness, form.width),
+    Rod: lambda form: _round(form.diameter, form.length),
+    Piezo: lambda form: _round(form.diameter, form.length),
+}
+SHAPES: Register[Draw] = Register("flexstage.shapes", {part.kind: draw for part, draw in _OWN.items()})
+"""What draws a part as a CAD solid at the origin, in millimetres, by its kind."""

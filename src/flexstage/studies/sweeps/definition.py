@@ -10,7 +10,8 @@ import numpy as np
 
 import flexstage
 from flexstage.analysis.judge import measured
-from flexstage.analysis.requirements import Measure, Requirement, Verdict
+from flexstage.analysis.offered import MEASURES
+from flexstage.analysis.requirements import Measure, Requirement, Subject, Verdict
 from flexstage.base.digest import digest
 from flexstage.base.finding import Finding
 from flexstage.base.number import Array, Number
@@ -69,7 +70,7 @@ class Study:
             "design": digest(self.design, physics=True)[:16],
             "plan": _told(self.plan),
             **{f"variables.{each.name}": _told(each) for each in self.variables},
-            **{f"responses.{name}": f"{each.key} at {each.point}" for name, each in self.columns.items()},
+            **{f"responses.{name}": f"{each.key} at {each.point}{_offer(each)}" for name, each in self.columns.items()},
         }
 
     def drawn(self, start: int, stop: int) -> Array:
@@ -132,6 +133,11 @@ class Study:
             Verdict(each, responses[:, measured_by[each.key, each.point]]).passed for each in (self.limits if limits is None else limits)
         ]
         return np.all([np.all(np.isfinite(responses), axis=1), *verdicts], axis=0)
+
+
+def _offer(asked: Measure) -> str:
+    """The package and version that offers a measure, if one does."""
+    return f", of {MEASURES.offer(asked.name)}" if asked.subject is Subject.OFFERED else ""
 
 
 def name_findings(study: Study) -> Iterator[Finding]:

@@ -7,7 +7,7 @@ from itertools import combinations
 
 import numpy as np
 
-from flexstage.analysis.requirements import KINDS, Verdict
+from flexstage.analysis.requirements import Verdict, kind_of
 from flexstage.show.display import NO_VALUE, NOISE, number, value_with_unit
 from flexstage.show.table import Cell, Column, Mark, Table, build
 from flexstage.studies.sweeps.definition import Study
@@ -57,7 +57,7 @@ def response_table(study: Study, results: Results, found: Effects) -> Table:
         rows.append(
             (
                 Cell(name, Mark.STRONG),
-                f"{measure.key} at {measure.point}" if KINDS[measure.subject].pointed else measure.key,
+                f"{measure.key} at {measure.point}" if kind_of(measure.subject, measure.name).pointed else measure.key,
                 *cells,
                 _met(study, results, name),
             )

@@ -1,0 +1,114 @@
+"""A package from outside with a hinge, a gauge and a measure: commands know what it offers where it is installed, and only there."""
+
+import json
+import math
+import os
+import shutil
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import pytest
+
+from tests.outside_package.stage import design
+
+PACKAGE = Path(__file__).parents[1] / "outside_package"
+STUDY = """
+format = "flexstage study 1"
+design = "s.toml"
+responses = { sag = "sag", f = "frequency.1" }
+sweep = { sampling = "grid" }
+[variables]
+thickness = { of = "parts.leaf.thickness", from = "0.8 mm", to = "1 mm", levels = 5 }
+"""
+
+
+def installed(folder, version="1.0"):
+    """A folder that the package is installed in, as an installer leaves it."""
+    project = tomllib.loads((PACKAGE / "pyproject.toml").read_text())["project"]
+    shutil.copytree(PACKAGE / "tapered_leaf", folder / "tapered_leaf")
+    told = folder / f"tapered_leaf-{version}.dist-info"
+    told.mkdir()
+    (told / "METADATA").write_text(f"Metadata-Version: 2.1\nName: {project['name']}\nVersion: {version}\n")
+    lines = [
+        f"[{group}]\n" + "".join(f"{name} = {value}\n" for name, value in own.items()) for group, own in project["entry-points"].items()
+    ]
+    (told / "entry_points.txt").write_text("\n".join(lines))
+    return folder
+
+
+def flexstage(work, *arguments, path=None, ok=0):
+    """The command in a process of its own; stdout and stderr."""
+    known = os.pathsep.join(str(each) for each in (path, os.environ.get("PYTHONPATH")) if each)
+    surroundings = {**os.environ, "PYTHONPATH": known, "FLEXSTAGE_CACHE": str(work / "cache")}
+    run = [sys.executable, "-m", "flexstage", *arguments]
+    ended = subprocess.run(run, cwd=work, env=surroundings, capture_output=True, text=True, timeout=300, check=False)
+    assert ended.returncode == ok, ended.stdout + ended.stderr
+    return ended.stdout + ended.stderr
+
+
+@pytest.fixture(scope="module")
+def work(tmp_path_factory):
+    """A folder with the design and a study of it."""
+    folder = tmp_path_factory.mktemp("outside")
+    (folder / "s.toml").write_text(design())
+    (folder / "study.toml").write_text(STUDY)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def package(tmp_path_factory):
+    """The package, installed."""
+    return installed(tmp_path_factory.mktemp("site"))
+
+
+def test_without_the_package_the_kind_is_refused_with_what_to_do(work):
+    told = flexstage(work, "check", "s.toml", ok=2)
+    assert "parts.leaf.kind" in told
+    assert "sensors.probe.kind" in told
+    assert "known where that package is installed" in told
+
+
+def test_check_analyse_and_schema_know_it(work, package):
+    flexstage(work, "check", "s.toml", path=package)
+    flexstage(work, "analyse", "s.toml", "--json", "analyse.json", "--report", "analyse.html", path=package)
+    assert "sag" in (work / "analyse.json").read_text()
+    known = json.loads(flexstage(work, "schema", path=package))["$defs"]
+    assert known["Taper"]["properties"]["kind"] == {"const": "taper"}
+    assert known["Encoder"]["properties"]["kind"] == {"const": "encoder"}
+
+
+def test_a_sweep_in_two_processes_asks_its_law_and_its_measure(work, package):
+    for workers in ("1", "2"):
+        flexstage(work, "sweep", "study.toml", "-o", f"{workers}.h5", "--workers", workers, "--json", f"{workers}.json", path=package)
+    one, two = (json.loads((work / f"{workers}.json").read_text())["responses"] for workers in ("1", "2"))
+    assert one == two
+    sag, frequency = one
+    assert sag["largest"] == pytest.approx(9.80665 / (2.0 * math.pi * frequency["least"]) ** 2, rel=1e-12)
+    assert sag["least"] < sag["largest"]  # by its law: a thicker waist is stiffer
+
+
+def test_verify_draws_its_shape(work, package):
+    """Beam theory and finite elements of the tapered leaf agree on the softest mode, as they do of a leaf, to 2 %."""
+    told = flexstage(work, "verify", "s.toml", "--order", "2", "--json", "verify.json", path=package)
+    assert "Not compared: hinge leaf" in told
+    rows = json.loads((work / "verify.json").read_text())["rows"]
+    softest = next(row for row in rows if row["figure"].startswith("platform mode 1 "))
+    assert softest["fea"] == pytest.approx(softest["theory"], rel=0.02)
+
+
+def test_the_page_shows_what_the_package_offers():
+    offers = (PACKAGE / "pyproject.toml").read_text().partition("[project.entry-points")
+    assert "".join(offers[1:]).strip() in (PACKAGE.parents[1] / "docs" / "contributing.md").read_text()
+
+
+def test_another_version_has_other_digests(work, package, tmp_path):
+    newer = installed(tmp_path / "site", version="2.0")
+    ask = "from flexstage import load; from flexstage.base.digest import digest; print(digest(load('s.toml').parts['leaf'], physics=True))"
+    told = [
+        subprocess.run([sys.executable, "-c", ask], cwd=work, env={**os.environ, "PYTHONPATH": str(path)}, capture_output=True, check=True)
+        for path in (package, newer, package)
+    ]
+    first, second, again = (each.stdout for each in told)
+    assert first == again != second

@@ -1,0 +1,34 @@
+"""The shipped parallelogram, with the tapered leaf, the encoder and a line about the sag."""
+
+from flexstage.cases.registry import case
+from flexstage.mechanism.store import dumps
+
+LEAF = """kind = "leaf"
+material = "aluminium"
+length = "25 mm"
+thickness = "1 mm"
+"""
+TAPER = """kind = "taper"
+material = "aluminium"
+length = "25 mm"
+thickness = "0.9 mm"
+end_thickness = "1.2 mm"
+"""
+ENCODER = """[sensors.probe]
+kind = "encoder"
+travel = "200 um"
+period = "20 nm"
+steps = 1000
+bandwidth = "3000 Hz"
+"""
+LINE = '"stroke.x" = "at least 18 um"\n'
+
+
+def design():
+    """Its design file."""
+    text = dumps(case("parallelogram"))
+    before, _, after = text.partition("[sensors.probe]\n")
+    assert LEAF in before
+    assert LINE in after
+    after = after[after.index("\n\n") :].replace(LINE, f'{LINE}sag = "at most 0.1 mm"\n')
+    return before.replace(LEAF, TAPER) + ENCODER + after

@@ -1,0 +1,1 @@
+"""A package that adds to flexstage a hinge, a gauge and a measure."""

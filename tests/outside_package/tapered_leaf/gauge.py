@@ -1,0 +1,36 @@
+"""An encoder: a scale that is read in steps."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated, ClassVar
+
+from flexstage.base.number import Number
+from flexstage.base.quantity import DISPLACEMENT, FREQUENCY, POSITIVE, RATIO
+from flexstage.parts.gauge import DisplacementGauge
+
+
+@dataclass(frozen=True, eq=False)
+class Encoder(DisplacementGauge):
+    """An encoder over `travel`, its scale of a `period` divided into `steps`."""
+
+    kind: ClassVar[str] = "encoder"
+    travel: Annotated[Number, DISPLACEMENT, POSITIVE]
+    period: Annotated[Number, DISPLACEMENT, POSITIVE]
+    steps: Annotated[Number, RATIO, POSITIVE]
+    bandwidth: Annotated[Number, FREQUENCY, POSITIVE] | None = None
+
+    @property
+    def range(self) -> Number:
+        """All of its travel."""
+        return self.travel
+
+    @property
+    def resolution(self) -> Number:
+        """One step."""
+        return self.period / self.steps
+
+    @property
+    def noise_density(self) -> Number | None:
+        """Not known."""
+        return None
