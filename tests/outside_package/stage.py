@@ -22,6 +22,24 @@ steps = 1000
 bandwidth = "3000 Hz"
 """
 LINE = '"stroke.x" = "at least 18 um"\n'
+SMALL = """format = "flexstage 1"
+name = "block on two tapered leaves"
+[materials.aluminium]
+like = "7075-T6"
+[parts.leaf]
+kind = "taper"
+material = "aluminium"
+length = "25 mm"
+thickness = "2 mm"
+end_thickness = "3 mm"
+width = "10 mm"
+[bodies.platform]
+solids = { block = { shape = "block", material = "aluminium", size = ["60 mm", "30 mm", "10 mm"] } }
+[links]
+left = { joins = ["ground", "platform"], part = "leaf", at = ["-25 mm", "27.5 mm", "0 mm"], along = "-y", bends = "z" }
+right = { joins = ["ground", "platform"], part = "leaf", at = ["25 mm", "27.5 mm", "0 mm"], along = "-y", bends = "z" }
+"""
+"""A block on two tapered leaves: a small solid."""
 
 
 def design():
