@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import ast
+import re
+from importlib import import_module
 from pathlib import Path
 
 from sphinx.application import Sphinx
@@ -34,8 +36,77 @@ FLOORS += ["beams", "mechanism", "parts", "spatial", "base"]
 
 
 def setup(app: Sphinx) -> None:
-    """Write the map of the house from the modules' first lines before pages are read."""
-    app.connect("builder-inited", lambda app: Path(app.srcdir, "map.md").write_text(house_map(), encoding="utf-8"))
+    """Write the pages that are made from the code before pages are read: the map of the house, and the reference."""
+    app.connect("builder-inited", write_pages)
+    app.connect("autodoc-process-docstring", plain)
+
+
+def write_pages(app: Sphinx) -> None:
+    """The map, and a page of the reference for each chapter."""
+    pages = {"map": house_map(), "api/index": contents()} | {f"api/{each}": chapter(each) for each in CHAPTERS}
+    for name, text in pages.items():
+        path = Path(app.srcdir, f"{name}.md")
+        path.parent.mkdir(exist_ok=True)
+        if not path.exists() or path.read_text(encoding="utf-8") != text:
+            path.write_text(text, encoding="utf-8")
+
+
+def names(part: str) -> dict[str, str]:
+    """The public names of a wing or floor and how they are written in a program."""
+    if part in flexstage.WINGS:
+        homes, space = getattr(flexstage, part).HOMES.values(), f"flexstage.{part}"
+    else:
+        homes, space = (each for home, each in flexstage.HOMES.items() if home.split(".")[0] == part), "flexstage"
+    return {name: f"{space}.{name}" for each in homes for name in each.split()}
+
+
+CHAPTERS = [each for each in (*reversed(FLOORS[5:]), *reversed(FLOORS[:5])) if names(each)]
+
+
+def contents() -> str:
+    """The first page of the reference."""
+    return f"""# Reference
+
+`import flexstage as fs`: what describes a stage, models it and analyses it stands in `fs` itself, the rest in `fs.solid`,
+`fs.experiment`, `fs.control` and `fs.studies`. Chapters go up the floors. Types of results, and steps of others' work, are imported from
+their modules ([map](../map.md)).
+
+```{{toctree}}
+:maxdepth: 1
+
+{chr(10).join(CHAPTERS)}
+```
+"""
+
+
+def chapter(part: str) -> str:
+    """The reference of a floor or wing: units as a list, all else with its docstring."""
+    found = {name: getattr(import_module(path.rpartition(".")[0]), name) for name, path in names(part).items()}
+    constants = [name for name, value in found.items() if not callable(value)]
+    first = (import_module(f"flexstage.{part}").__doc__ or "").partition("\n")[0]
+    lines = [f"# {'fs.' if part in flexstage.WINGS else ''}{part}", "", first, ""]
+    if constants:
+        lines += ["Units and directions, numbers in SI to multiply with: " + ", ".join(f"`fs.{name}`" for name in constants) + ".", ""]
+    for name, value in found.items():
+        if name not in constants:
+            lines += [f"## {name}", "", "```{eval-rst}", f".. auto{kind(value)}:: {names(part)[name]}", "```", ""]
+    return "\n".join(lines)
+
+
+def kind(value: object) -> str:
+    """What autodoc calls it."""
+    return ("exception" if issubclass(value, Exception) else "class") if isinstance(value, type) else "function"
+
+
+def plain(_app: Sphinx, _what: str, _name: str, _object: object, _options: object, lines: list[str]) -> None:
+    """Docstrings are plain text: signs that mean something to Sphinx stand for themselves, names in backticks are code."""
+    lines[:] = [line if line.lstrip().startswith((">>>", "...")) else literal(line) for line in lines]
+
+
+def literal(line: str) -> str:
+    """A line of plain text as reStructuredText."""
+    indent, parts = line[: len(line) - len(line.lstrip())], line.lstrip().split("`")
+    return indent + "".join(f"``{part}``" if odd % 2 else re.sub(r"([\\*|_])", r"\\\1", part) for odd, part in enumerate(parts))
 
 
 def house_map() -> str:
