@@ -9,7 +9,7 @@ import importlib
 import re
 from pathlib import Path
 
-from flexstage.base.record import paths
+from flexstage.base.record import explanation, paths
 
 PAGE = Path(__file__).resolve().parents[1] / "docs" / "json.md"
 _LIST = re.compile(r"(<!-- fields of (\S+)\.(\w+)(?: in (\S+))? -->\n)(?:\|.*\n)*")
@@ -21,9 +21,10 @@ def written(page: str) -> str:
 
 
 def _list(module: str, name: str, within: str | None) -> str:
-    before = f"{within}." if within else ""
-    rows = [f"| `{path}` | {word} | {meaning} |" for path, word, meaning in paths(getattr(importlib.import_module(module), name), before)]
-    return "\n".join(["| Path | Value | Meaning |", "|---|---|---|", *rows, ""])
+    kind = getattr(importlib.import_module(module), name)
+    rows = [(f"`{path}`", word, meaning) for path, word, meaning in paths(kind, f"{within}." if within else "")]
+    lines = [" | ".join(text.replace("|", "\\|") for text in row) for row in [("", "", explanation(kind)), *rows]]
+    return "\n".join(["| Path | Value | Meaning |", "|---|---|---|", *(f"| {line} |" for line in lines), ""])
 
 
 if __name__ == "__main__":

@@ -133,11 +133,11 @@ def test_finite_strokes_leave_what_is_of_second_order():
     poses = 50e-6 * np.array([[1.0, 0.0, 0.0, 0.0, 0.0, 4.0], [0.0, 1.0, 0.5, 3.0, -3.0, 0.0]])
     moved = forward_kinematics(stage, kinematics, given.strokes(poses)).pose
     left = finite_error(given, kinematics, lost.gain, poses, moved.vector)
-    curved = moved.vector - given.strokes(poses) @ kinematics.jacobian.T
+    curved = moved.vector - given.strokes(poses) @ kinematics.jacobian.values.T
     np.testing.assert_allclose(left, -curved, atol=1e-9 * 50e-6)
     wanted = FinitePose(poses[:, :3], poses[:, 3:])
     strokes = finite_strokes(given, kinematics, inverse_kinematics(stage, kinematics, wanted).strokes)
-    reached = forward_kinematics(stage, kinematics, strokes).pose.vector + strokes @ (lost.gain.values - kinematics.jacobian).T
+    reached = forward_kinematics(stage, kinematics, strokes).pose.vector + strokes @ (lost.gain.values - kinematics.jacobian.values).T
     assert np.max(np.abs(poses - reached)[:, :3]) < 0.1 * np.max(np.abs(left)[:, :3])
     without = poses - (poses @ kinematics.actuation.T) @ lost.gain.values.T
     assert np.max(np.abs(left)) < 0.1 * np.max(np.abs(without))

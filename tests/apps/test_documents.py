@@ -19,7 +19,7 @@ from flexstage.cases.registry import CASES
 from flexstage.mechanism.store import load
 from flexstage.models.ideal import ideal
 from flexstage.models.lumped import lumped
-from flexstage.show.envelope import FORMAT
+from flexstage.show.document import FORMAT
 from tests.apps.command import Command, design_in
 from tests.hygiene.source import ROOT
 from tools.json_page import PAGE, written
@@ -80,9 +80,9 @@ def test_mapping_is_that_of_the_paper(flexstage: Command) -> None:
 def test_stiffness_and_compliance_are_inverse(flexstage: Command) -> None:
     document = flexstage("stiffness", "stage.toml", "--reading", "mapped", "--json", "-").document
     assert np.array(document["compliance"]["values"]) @ np.array(document["stiffness"]["values"]) == pytest.approx(np.eye(6), abs=1e-9)
-    assert document["in_plane_tensor"]["values"] == pytest.approx(np.diag([15.4499e6] * 2), rel=1e-5, abs=1.0)
-    assert document["in_plane_tensor"]["unit"] == "N/m"
-    assert document["centre_of_stiffness_m"] == pytest.approx([0.0, 0.0, -0.025], abs=1e-9)
+    assert document["held"]["tensor"]["values"] == pytest.approx(np.diag([15.4499e6] * 2), rel=1e-5, abs=1.0)
+    assert document["held"]["tensor"]["unit"] == "N/m"
+    assert document["centre_m"] == pytest.approx([0.0, 0.0, -0.025], abs=1e-9)
 
 
 def test_mapped_modes_are_those_of_equation_28(flexstage: Command) -> None:
@@ -123,7 +123,7 @@ def test_response_tends_to_the_static_gain(flexstage: Command) -> None:
         "response", "stage.toml", "--input", "B4", "--output", "platform.z", "--band", "1 mHz", "10 mHz", "--json", "-"
     ).document
     assert (document["rows"], document["columns"], document["unit"]) == (["platform.z"], ["B4"], [["1"]])
-    gain = flexstage("lost-motion", "stage.toml", "--json", "-").document["gain_matrix"]
+    gain = flexstage("lost-motion", "stage.toml", "--json", "-").document["gain"]
     assert document["real"][0][0][0] == pytest.approx(gain["values"][2][3], rel=1e-6)
     assert document["damping"] == {"law": "modal", "ratio": 0.01}
 

@@ -58,8 +58,8 @@ def test_units(command: Command, tmp_path: Path) -> None:
     ended = command("solid", "stage.toml", "--what", "unit", "--json", "-", "--report", "units.html")
     assert ended.code == 0, ended.err
     unit = ended.document["units"]["drive"]
-    assert unit["axial_stiffness_n_per_m"] == pytest.approx(small_unit().axial)
-    assert unit["command_m"][-1] == pytest.approx(38e-6)
+    assert unit["axial_n_per_m"] == pytest.approx(small_unit().axial)
+    assert unit["commands_m"][-1] == pytest.approx(38e-6)
     page = (tmp_path / "units.html").read_text(encoding="utf-8")
     assert "Units alone as solids" in page
     assert "Output of the drive unit by command" in page

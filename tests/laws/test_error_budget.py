@@ -42,7 +42,7 @@ def test_every_corner_lies_within_the_budget(name):
     found = budget(stage, command)
     strokes = command_strokes(kinematics, command)
     gain = static_gain(model, tuple(f"platform.{part}" for part in COMPONENTS), kinematics.actuators).values
-    asked = strokes @ kinematics.jacobian.T
+    asked = strokes @ kinematics.jacobian.values.T
     errors = np.abs(strokes @ gain.T - asked)
     bound = found.ideal.values[:, 0] + found.ideal.values[:, 1]
     assert np.all(errors <= bound * (1.0 + 1e-9) + 1e-18)
@@ -69,7 +69,7 @@ def test_linear_map_is_the_worst_of_the_corners(name):
     stage = case(name)
     kinematics, command = ideal(stage), commanded(stage)
     strokes = command_strokes(kinematics, command)
-    errors = [forward_kinematics(stage, kinematics, single).pose.vector - kinematics.jacobian @ single for single in strokes]
+    errors = [forward_kinematics(stage, kinematics, single).pose.vector - kinematics.jacobian.values @ single for single in strokes]
     found = budget(stage, command).ideal.values[:, SOURCES.index("linear map")]
     np.testing.assert_allclose(found, np.max(np.abs(errors), axis=0), rtol=1e-6, atol=1e-15)
 

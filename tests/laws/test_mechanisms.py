@@ -194,8 +194,8 @@ def test_moving_an_ideal_stage_changes_only_frames(mechanism, move):
     assert there.mobility == here.mobility
     assert len(there.redundant) == len(here.redundant)
     assert len(there.idle) == len(here.idle)
-    near(there.jacobian, carry @ here.jacobian, 1e-9)
-    near(there.sensing @ there.jacobian, here.sensing @ here.jacobian, 1e-9)
+    near(there.jacobian.values, carry @ here.jacobian.values, 1e-9)
+    near(there.sensing @ there.jacobian.values, here.sensing @ here.jacobian.values, 1e-9)
     if here.mobility == 6:
         near(there.mapping.values, here.mapping.values @ carry.T, 1e-9)
 
@@ -284,7 +284,7 @@ def test_ideal_is_lumped_with_ideal_joints(mechanism):
     kinematics, model = ideal(mechanism), lumped(jointed(mechanism))
     feasible = kinematics.actuation @ kinematics.inverse
     gain = static_gain(model, TWIST, kinematics.actuators).values @ feasible
-    near(gain * METRE[:, None], kinematics.jacobian @ feasible * METRE[:, None], 1e-8)
+    near(gain * METRE[:, None], kinematics.jacobian.values @ feasible * METRE[:, None], 1e-8)
 
 
 def towards_ideal(mechanism, step):
@@ -305,7 +305,7 @@ def test_ideal_is_the_limit_of_lumped(mechanism):
     """Stacks as they are, hinges stiffer and softer: the distance d = c s/(1 + c s) falls with the step s, ever more in proportion."""
     kinematics = ideal(mechanism)
     feasible = kinematics.actuation @ kinematics.inverse
-    expected = kinematics.jacobian @ feasible * METRE[:, None]
+    expected = kinematics.jacobian.values @ feasible * METRE[:, None]
     distances = []
     for step in (1e-3, 1e-4):
         gain = static_gain(lumped(towards_ideal(mechanism, step)), TWIST, kinematics.actuators).values @ feasible * METRE[:, None]

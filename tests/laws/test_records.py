@@ -96,15 +96,20 @@ def test_paths_are_those_of_the_document() -> None:
     assert [path for path, _, _ in paths(Sample)] == [
         "actuators.<name>.strokes_m",
         "gain",
+        "lines[]",
         "lines[].size_hz",
+        "named.<name>",
         "named.<name>.size_hz",
         "command.<name>",
         "matrix",
+        "absent",
         "absent.size_hz",
         "view",
         "refused_hz",
     ]
-    assert {path: (word, meaning) for path, word, meaning in paths(Sample)}["lines[].size_hz"] == ("number, Hz", "of it")
+    found = {path: rest for path, *rest in paths(Sample)}
+    assert found["lines[]"] == ["", "One line: `size` of it."]
+    assert (found["lines[].size_hz"], found["view"]) == (["number, Hz", ""], ["number", "What is seen."])
 
 
 def test_names_and_values_along_them_are_of_one_length() -> None:

@@ -64,7 +64,7 @@ REACH = {
     "buckling": "Buckling",
     "loads": "Axial forces of the stacks",
 }
-NOT_SHOWN = {"mechanism", "reading", "model", "missing"}
+NOT_SHOWN = {"mechanism", "reading", "model", "missing", "reasons"}
 
 
 def test_every_result_is_presented() -> None:

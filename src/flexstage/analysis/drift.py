@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
@@ -15,6 +16,7 @@ from flexstage.base.finding import refuse
 from flexstage.base.labelled import Matrix, ratio_units
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, Vector, stack
+from flexstage.base.quantity import LENGTH
 from flexstage.beams.compliance import law
 from flexstage.mechanism.expand import Assembly, PlacedLink, expand
 from flexstage.mechanism.expansion import Expansion, Ground, expansion
@@ -45,7 +47,7 @@ class Drift(InNotebook):
     gauges: Matrix
     forces: Matrix
     ground: Ground
-    datum: Array
+    datum: Annotated[Array, LENGTH]
     taken: Mapping[str, str]
     provenance: str
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
@@ -14,9 +15,11 @@ from flexstage.base.finding import Finding, nearest, require
 from flexstage.base.labelled import Matrix
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, Number, stack
+from flexstage.base.quantity import TEMPERATURE
+from flexstage.base.record import VIEW
 from flexstage.mechanism.expansion import Ground
 from flexstage.models.linear.kinematics import Kinematics
-from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS, transport
+from flexstage.spatial.frame import COMPONENTS, MOTION, TWIST_UNITS, transport
 
 SOURCES = ("lost motion", "crosstalk", "linear map", "gauge noise", "quantisation", "drift")
 
@@ -48,15 +51,15 @@ class ErrorBudget(InNotebook):
 
     ideal: Matrix
     corrected: Matrix
-    command: Mapping[str, Number]
-    temperature: Number
+    command: Annotated[Mapping[str, Number], MOTION]
+    temperature: Annotated[Number, TEMPERATURE]
     missing: tuple[str, ...]
     provenance: str
     ground: Ground | None = None
     coverage: float = 3.0
 
     @property
-    def sums(self) -> Matrix:
+    def sums(self) -> Annotated[Matrix, VIEW]:
         """Rows are the axes; columns the linear and root-sum-square sums of both commands."""
         columns = [
             function(matrix.values)
@@ -136,7 +139,7 @@ def _commanded(evidence: Evidence, columns: list[int], carry: Array) -> tuple[Ar
     kinematics, lost = evidence.kinematics, evidence.lost_motion
     strokes = kinematics.mapping.values[..., columns]
     own = np.eye(strokes.shape[-2]) * lost.loss.values
-    loss = kinematics.jacobian @ (own @ strokes)
+    loss = kinematics.jacobian.values @ (own @ strokes)
     total = kinematics.motion[..., columns] - lost.gain.values @ strokes
     left = kinematics.motion[..., columns] - lost.gain.values @ lost.correction.values[..., columns]
     return carry @ loss, carry @ (total - loss), carry @ left

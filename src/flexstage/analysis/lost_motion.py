@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Annotated, Any
 
 import numpy as np
 
 from flexstage.base.labelled import Matrix, ratio_units
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
+from flexstage.base.quantity import LENGTH, RATIO
+from flexstage.base.record import INNER, VIEW
 from flexstage.models.linear.arguments import takes_models
 from flexstage.models.linear.kinematics import Kinematics
 from flexstage.models.linear.model import LinearModel
@@ -39,6 +42,24 @@ class Shares(dict[str, Array]):
 
 
 @dataclass(frozen=True, eq=False)
+class ActuatorLoss:
+    """An actuator's own `gain` (1 is ideal) and `loss`; `budget` its shares by link and axis, which add up to it, and by link alone."""
+
+    gain: Annotated[Array, RATIO]
+    loss: Annotated[Array, RATIO]
+    budget: Annotated[Mapping[str, Array], RATIO]
+
+    @property
+    def budget_by_link(self) -> Annotated[Mapping[str, Array], RATIO]:
+        """Shares of the loss by link."""
+        links: dict[str, Any] = {}
+        for key, share in self.budget.items():
+            link = key.rpartition(".")[0] or key
+            links[link] = links.get(link, 0.0) + share
+        return links
+
+
+@dataclass(frozen=True, eq=False)
 class LostMotion(InNotebook):
     """Lost motion of a stage with n strokes and f ideal motions.
 
@@ -51,11 +72,16 @@ class LostMotion(InNotebook):
     transfer: Matrix
     loss: Matrix
     parasitic: Matrix
-    budget: Mapping[str, Matrix]
+    budget: Annotated[Mapping[str, Matrix], INNER]
     correction: Matrix
     energy: Matrix
-    length: float
+    length: Annotated[float, LENGTH]
     provenance: str
+
+    @property
+    def actuators(self) -> Annotated[Mapping[str, ActuatorLoss], VIEW]:
+        """What each actuator loses itself."""
+        return {name: ActuatorLoss(self.transfer.at(name, name), self.loss.at(name, name), self.of(name)) for name in self.loss.rows}
 
     def of(self, actuator: str) -> Shares:
         """Budget of an actuator's own loss by part: shares that add up to the loss."""

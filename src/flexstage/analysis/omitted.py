@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Annotated
 
+from flexstage.base.quantity import RATIO
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
 from flexstage.mechanism.restrict import restrict
 from flexstage.models.linear.static import static_gain
@@ -30,12 +32,12 @@ class Omitted:
     changes: Mapping[str, float]
 
     @property
-    def interaction(self) -> float:
+    def interaction(self) -> Annotated[float, RATIO]:
         """The part of the difference that single freedoms do not explain."""
         return self.full - self.simple - sum(self.changes.values())
 
     @property
-    def unexplained(self) -> float:
+    def unexplained(self) -> Annotated[float, RATIO]:
         """The interaction relative to the full response."""
         return abs(self.interaction / self.full)
 

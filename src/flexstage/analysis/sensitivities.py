@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
+from typing import Annotated
 
 import numpy as np
 
@@ -19,6 +20,8 @@ from flexstage.base.finding import Finding, nearest, require
 from flexstage.base.labelled import Matrix
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, Table
+from flexstage.base.quantity import FREQUENCY
+from flexstage.base.record import VIEW, Along, Called
 from flexstage.mechanism.address import addresses, get, quantity_of, set_value
 from flexstage.mechanism.locate import locate
 from flexstage.mechanism.mechanism import Mechanism
@@ -43,12 +46,12 @@ class Sensitivities(InNotebook):
     """
 
     parameters: tuple[str, ...]
-    units: tuple[str, ...]
-    values: Array
-    frequencies: Array
+    units: Annotated[tuple[str, ...], Along("parameters"), Called("unit")]
+    values: Annotated[Array, Along("parameters"), Called("value")]
+    frequencies: Annotated[Array, FREQUENCY]
     frequency: Array
     clusters: tuple[tuple[int, ...], ...]
-    one_sided: tuple[Array, ...]
+    one_sided: Annotated[tuple[Array, ...], VIEW]
     actuators: tuple[str, ...]
     gain: Array
     loss: Array
@@ -56,14 +59,35 @@ class Sensitivities(InNotebook):
     provenance: str
 
     @property
-    def relative_frequency(self) -> Matrix:
-        """Relative change of each frequency per relative change of each parameter (P, k)."""
-        values = self.frequency * self.values[:, None] / self.frequencies
-        modes = tuple(f"mode {index + 1}" for index in range(values.shape[1]))
-        return Matrix(values, self.parameters, modes, "1")
+    def frequency_slopes(self) -> Annotated[Matrix, VIEW]:
+        """Change of each frequency per unit of each parameter; of the modes of a cluster, that of their mean."""
+        return self._slopes(self.frequency, self._modes, "Hz")
 
     @property
-    def relative_loss(self) -> Matrix:
+    def gain_slopes(self) -> Annotated[Matrix, VIEW]:
+        """Change of each actuator's gain per unit of each parameter."""
+        return self._slopes(self.gain, self.actuators, "1")
+
+    @property
+    def loss_slopes(self) -> Annotated[Matrix, VIEW]:
+        """Change of each actuator's loss per unit of each parameter."""
+        return self._slopes(self.loss, self.actuators, "1")
+
+    def _slopes(self, values: Array, columns: tuple[str, ...], top: str) -> Matrix:
+        units = (top if unit == "1" else f"{top}/{unit}" for unit in self.units)
+        return Matrix(values, self.parameters, columns, tuple((unit,) * len(columns) for unit in units))
+
+    @property
+    def _modes(self) -> tuple[str, ...]:
+        return tuple(f"mode {index + 1}" for index in range(len(self.frequencies)))
+
+    @property
+    def relative_frequency(self) -> Annotated[Matrix, VIEW]:
+        """Relative change of each frequency per relative change of each parameter (P, k)."""
+        return Matrix(self.frequency * self.values[:, None] / self.frequencies, self.parameters, self._modes, "1")
+
+    @property
+    def relative_loss(self) -> Annotated[Matrix, VIEW]:
         """Change of each actuator's loss per relative change of each parameter (P, n)."""
         return Matrix(self.loss * self.values[:, None], self.parameters, self.actuators, "1")
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import TypeAlias
+from typing import Annotated, TypeAlias
 
 import numpy as np
 from scipy.linalg import cholesky, eigh, solve_triangular
@@ -18,6 +18,7 @@ from flexstage.analysis.workspace.load import dead_loads
 from flexstage.analysis.workspace.stroke import StrokeLimits
 from flexstage.base.finding import DesignError, Finding
 from flexstage.base.number import Array, stack
+from flexstage.base.quantity import LENGTH, RATIO
 from flexstage.beams.compliance import locked as locked_by
 from flexstage.beams.geometric import ENDS, Geometric, geometric
 from flexstage.beams.mass import mass
@@ -45,10 +46,10 @@ class Stability:
     much the dead load stiffens at most, as a share of the stiffness. `moving` names the bodies that move most as the dead load gives way.
     """
 
-    dead: Array
-    worst: Array
-    strokes: Array
-    stiffens: Array
+    dead: Annotated[Array, RATIO]
+    worst: Annotated[Array, RATIO]
+    strokes: Annotated[Array, LENGTH]
+    stiffens: Annotated[Array, RATIO]
     moving: tuple[str, ...]
     provenance: str
 

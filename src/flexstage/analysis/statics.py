@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
 from flexstage.base.labelled import Matrix, ratio_units
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, Number, first_design
+from flexstage.base.quantity import ANGLE, LENGTH, STIFFNESS
 from flexstage.models.linear.arguments import takes_models
 from flexstage.models.linear.model import LinearModel
 from flexstage.models.linear.static import displacement
@@ -17,6 +20,7 @@ from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNIT
 
 _SINGULAR = 1e-11
 _ALIKE = 1e-9
+_LOCKED = "this reading locks freedoms of the platform: its stiffness is infinite along them"
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,8 +31,8 @@ class DirectionalStiffness:
     """
 
     tensor: Matrix
-    principal: Array
-    angle: Array
+    principal: Annotated[Array, STIFFNESS]
+    angle: Annotated[Array, ANGLE]
 
     def along(self, angle: Number) -> Array:
         """Stiffness along directions at `angle` [rad] from x: force over displacement in the same direction, 1 / (n^T K^-1 n)."""
@@ -52,8 +56,14 @@ class Statics(InNotebook):
     stiffness: Matrix
     held: DirectionalStiffness
     free: DirectionalStiffness
-    centre: Array
+    centre: Annotated[Array, LENGTH]
     provenance: str
+
+    @property
+    def reasons(self) -> Mapping[str, str]:
+        """Why there is no stiffness, where there is none."""
+        locked = (("stiffness", "held", "centre"), self.stiffness), (("free",), self.free.tensor)
+        return {name: _LOCKED for names, matrix in locked if np.isnan(matrix.values).any() for name in names}
 
 
 @takes_models

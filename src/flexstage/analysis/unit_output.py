@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Annotated
 
 import numpy as np
 
 from flexstage.base.labelled import Matrix
 from flexstage.base.number import Array
+from flexstage.base.quantity import RATIO, STIFFNESS
 
 
 @dataclass(frozen=True, eq=False)
@@ -22,13 +24,13 @@ class UnitOutput:
 
     unit: str
     copy: str
-    direction: Array
+    direction: Annotated[Array, RATIO]
     stiffness: Matrix
     gain: float
     ideal_gain: float
 
     @cached_property
-    def axial(self) -> float:
+    def axial(self) -> Annotated[float, STIFFNESS]:
         """Stiffness along the direction, all else held [N/m]: n^T K n.
 
         >>> values = np.diag([10.0, 2.0, 3.0, 1.0, 1.0, 1.0])
@@ -40,7 +42,7 @@ class UnitOutput:
         return float(self.direction @ self._translations @ self.direction)
 
     @cached_property
-    def lateral(self) -> tuple[float, float]:
+    def lateral(self) -> Annotated[tuple[float, float], STIFFNESS]:
         """Stiffness across the direction, all else held [N/m], softest and stiffest: eigenvalues of K in the plane across."""
         across = np.linalg.svd(self.direction[None, :])[2][1:]
         softest, stiffest = np.linalg.eigvalsh(across @ self._translations @ across.T)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
@@ -12,6 +13,7 @@ from flexstage.analysis.statics import statics
 from flexstage.analysis.unit_output import UnitOutput
 from flexstage.base.finding import DesignError
 from flexstage.base.number import Array, Vector
+from flexstage.base.quantity import COMPLIANCE, STIFFNESS
 from flexstage.mechanism.expand import copies, expand
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.restrict import isolate
@@ -34,8 +36,8 @@ class UnitResult(UnitOutput):
     """
 
     loss: float
-    load_compliance: float
-    series: float | None
+    load_compliance: Annotated[float, COMPLIANCE]
+    series: Annotated[float | None, STIFFNESS]
     lever: LeverStiffness | None
     omitted: Omitted | None
 
@@ -98,7 +100,7 @@ def unit_alone(mechanism: Mechanism, copy: str, unit: str, direction: Array) -> 
     model, kinematics = lumped(guided), ideal(guided)
     gain = direction @ static_gain(model, _DISPLACEMENTS, (copy,)).values[:, 0]
     load = direction @ static_gain(model, _DISPLACEMENTS, _FORCES).values @ direction
-    ideal_gain = direction @ kinematics.jacobian[:3, 0]
+    ideal_gain = direction @ kinematics.jacobian.values[:3, 0]
     lever = _lever(mechanism, copy)
     channel = (_DISPLACEMENTS[int(np.argmax(np.abs(direction)))], copy)
     return UnitResult(

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import functools
 import inspect
-import re
 import types
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, fields, is_dataclass
@@ -51,6 +50,13 @@ class UnitOf:
 
 
 @dataclass(frozen=True)
+class Called:
+    """The key where the field has a symbol that is no name in Python, as R_a."""
+
+    key: str
+
+
+@dataclass(frozen=True)
 class Field:
     """What is told of a result: its name, type, annotations, and the first line that explains it."""
 
@@ -67,7 +73,8 @@ class Field:
         >>> Field("axial", float, (STIFFNESS,)).key
         'axial_n_per_m'
         """
-        return keyed(self.name, self.unit)
+        called = next((each.key for each in self.annotations if isinstance(each, Called)), self.name)
+        return keyed(called, self.unit)
 
     @property
     def unit(self) -> str:
@@ -102,17 +109,9 @@ def keyed(name: str, unit: str) -> str:
 def told_of(kind: type) -> tuple[Field, ...]:
     """What is told of results of that class: fields, then properties."""
     hints = get_type_hints(kind, include_extras=True)
-    own = [(each.name, hints[each.name], _explained(kind, each.name)) for each in fields(kind) if each.name != "reasons"]
-    own = [each for each in own if _is_told(*_opened(each[1]))]
+    own = [(each.name, hints[each.name], "") for each in fields(kind) if each.name != "reasons" and _is_told(*_opened(hints[each.name]))]
     views = [(name, hint, doc) for name, hint, doc in _properties(kind) if get_origin(hint) is Annotated]
     return tuple(Field(name, *_opened(hint), doc) for name, hint, doc in (*own, *views))
-
-
-def _explained(kind: type, name: str) -> str:
-    """What the docstrings of a class and its bases say of a field, from its name to the end of the clause."""
-    texts = (" ".join((base.__doc__ or "").split()) for base in kind.__mro__)
-    found = (re.search(rf"`{name}`(?:,? `\w+`| and `\w+`)*(?: \([^)]*\))? ((?:[^.;`]|\.\w|`[^`]*`)+)", text) for text in texts)
-    return next((each[1].strip(" ,") for each in found if each), "")
 
 
 def _opened(hint: Any) -> tuple[Any, tuple[Any, ...]]:
@@ -161,7 +160,10 @@ def walk(record: Any) -> dict[str, Any]:
 
 
 def paths(kind: type, before: str = "") -> Iterator[tuple[str, str, str]]:
-    """Where everything that is told of results of that class stands in a document, what it is, and what the field says of itself."""
+    """Where everything that is told of results of that class stands in a document, what it is, and what it says of itself.
+
+    A result within the result says itself what its fields mean.
+    """
     kinds = told_of(kind)
     named = {each.along for each in kinds}
     for each in kinds:
@@ -176,12 +178,18 @@ def _field_paths(each: Field, path: str) -> Iterator[tuple[str, str, str]]:
     if get_origin(inner) in (Union, types.UnionType):
         inner = next(part for part in get_args(inner) if part is not type(None))
     if get_origin(inner) is tuple and get_args(inner)[-1] is Ellipsis:
-        inner, form = get_args(inner)[0], "[]"
+        inner, form = get_args(inner)[0], "[]" if each.along is None else ""
     elif get_origin(inner) is Mapping:
         inner, form = get_args(inner)[1], ".<name>"
     if is_dataclass(inner) and isinstance(inner, type) and not hasattr(inner, "to_json"):
+        yield path + form, "", f"{each.meaning} {explanation(inner)}".strip()
         yield from paths(inner, f"{path}{form}.")
         return
     words: dict[Any, str] = {Matrix: "matrix", str: "text", bool: "true or false", int: "number", float: "number", Array: "numbers"}
     word = f"number, {each.unit}" if each.unit != "1" else words.get(inner, "")
     yield path + form, word, each.meaning
+
+
+def explanation(kind: type) -> str:
+    """The docstring of a class as one line."""
+    return " ".join((inspect.getdoc(kind) or "").split())

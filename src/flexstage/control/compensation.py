@@ -148,7 +148,7 @@ def finite_error(given: Compensation, kinematics: Kinematics, plant: Matrix, pos
     True
     """
     strokes = given.strokes(poses)
-    beyond = np.asarray(ideal) - strokes @ kinematics.jacobian.T
+    beyond = np.asarray(ideal) - strokes @ kinematics.jacobian.values.T
     return np.asarray(poses) - (strokes @ plant.values.T + beyond) @ kinematics.projection.T
 
 

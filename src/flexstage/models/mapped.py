@@ -8,12 +8,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
 from flexstage.base.digest import digest
 from flexstage.base.finding import DesignError, Finding, refuse, require
 from flexstage.base.number import Array, Number
+from flexstage.base.quantity import COMPLIANCE, LENGTH, RATIO, ROTATIONAL_STIFFNESS, STIFFNESS
 from flexstage.beams.compliance import compliance
 from flexstage.mechanism.expand import Assembly, PlacedLink, copies, expand
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
@@ -36,11 +38,11 @@ class LeverStiffness:
     `drive` K_1 (stack and its hinges), `pivot` K_theta2, `pole` K_3, `short_arm` r_1, `long_arm` r_2.
     """
 
-    drive: Number
-    pivot: Number
-    pole: Number
-    short_arm: Number
-    long_arm: Number
+    drive: Annotated[Number, STIFFNESS]
+    pivot: Annotated[Number, ROTATIONAL_STIFFNESS]
+    pole: Annotated[Number, STIFFNESS]
+    short_arm: Annotated[Number, LENGTH]
+    long_arm: Annotated[Number, LENGTH]
 
     @property
     def softness(self) -> Number:
@@ -48,12 +50,12 @@ class LeverStiffness:
         return self.pivot / (self.short_arm**2 * self.drive)
 
     @property
-    def gain(self) -> Number:
+    def gain(self) -> Annotated[Number, RATIO]:
         """Eq. 11's first term: output per stroke, (r_2 / r_1) / (1 + eps)."""
         return self.long_arm / self.short_arm / (1.0 + self.softness)
 
     @property
-    def tip_compliance(self) -> Number:
+    def tip_compliance(self) -> Annotated[Number, COMPLIANCE]:
         """Eq. 11's load term: r_2^2 / (K_theta2 + r_1^2 K_1) + 1 / K_3 [m/N]."""
         return self.long_arm**2 / (self.pivot + self.short_arm**2 * self.drive) + 1.0 / self.pole
 

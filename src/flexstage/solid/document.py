@@ -5,18 +5,15 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from flexstage.analysis.trust import Trust
 from flexstage.base.document import Document
-from flexstage.show.documents.results import output_body, stiffness_body
+from flexstage.show.document import stiffness_body
 
 if TYPE_CHECKING:
     from flexstage.solid.calibration import Calibration
     from flexstage.solid.hinges import SolidHinge
     from flexstage.solid.resolution import Resolved
     from flexstage.solid.stage import SolidStage
-    from flexstage.solid.stress import LinkStress
     from flexstage.solid.units import SolidUnit
     from flexstage.solid.verification import Row, Verification
 
@@ -45,47 +42,8 @@ def hinges_body(found: Mapping[str, SolidHinge]) -> Document:
 
 
 def solid_units_body(found: Resolved[dict[str, SolidUnit]]) -> Document:
-    """Every distinct unit alone: K_a, K_l, gain, loss, outputs by command, stress at the full stroke.
-
-    >>> from flexstage.solid.resolution import Resolved
-    >>> solid_units_body(Resolved({}, {}, 3))["order"]
-    3
-    """
-    return {"order": found.order, "errors": dict(found.errors), "units": {name: _unit(unit) for name, unit in found.result.items()}}
-
-
-def _unit(unit: SolidUnit) -> Document:
-    return {
-        **output_body(unit),
-        "loss": unit.loss,
-        "load_compliance_m_per_n": unit.load_compliance,
-        "stroke_m": unit.strokes,
-        "command_m": unit.commands,
-        "output_m": unit.outputs,
-        "stress": None if unit.stress is None else stress_body(unit.stress),
-        "stiffness": unit.stiffness.to_json(),
-        "elements": unit.read.elements,
-        "freedoms": unit.read.freedoms,
-    }
-
-
-def stress_body(stress: LinkStress) -> Document:
-    """The highest von Mises stress of every link and body, and what is left to yield.
-
-    >>> from flexstage.solid.stress import LinkStress
-    >>> found = stress_body(LinkStress(("pivot",), np.array([1e8]), np.array([0]), np.array([4e8])))
-    >>> found["pivot"]["safety"]
-    4.0
-    """
-    rows = zip(stress.names, stress.highest, stress.yield_stress, stress.safety, strict=True)
-    return {
-        name: {
-            "von_mises_pa": float(highest),
-            "yield_pa": None if np.isnan(limit) else float(limit),
-            "safety": None if np.isnan(limit) or highest == 0.0 else float(safety),
-        }
-        for name, highest, limit, safety in rows
-    }
+    """Every distinct unit alone: K_a, K_l, gain, loss, outputs by command, stress at the full stroke."""
+    return {"order": found.order, "errors": dict(found.errors), "units": found.result}
 
 
 def solid_stage_body(found: Resolved[SolidStage]) -> Document:
@@ -98,7 +56,7 @@ def solid_stage_body(found: Resolved[SolidStage]) -> Document:
         "stiffness": stiffness_body(stage.statics, None),
         "modes": stage.modes,
         "bodies": {"strain_energy_share": stage.blocks[platform], "cost_in_frequency": stage.flexible[platform]},
-        "stress": None if stage.stress is None else stress_body(stage.stress),
+        "stress": stage.stress,
         "elements": stage.read.elements,
         "freedoms": stage.read.freedoms,
         "coordinates": len(stage.read.model.coordinates),

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
 from flexstage.base.number import Array
+from flexstage.base.quantity import PRESSURE, RATIO
+from flexstage.base.record import Along
 from flexstage.mechanism.expand import Assembly, expand
 from flexstage.parts.material import Material
 from flexstage.parts.piezo import Piezo
@@ -25,12 +28,12 @@ class LinkStress:
     """
 
     names: tuple[str, ...]
-    highest: Array
+    highest: Annotated[Array, PRESSURE, Along("names")]
     case: Array
-    yield_stress: Array
+    yield_stress: Annotated[Array, PRESSURE, Along("names")]
 
     @property
-    def safety(self) -> Array:
+    def safety(self) -> Annotated[Array, RATIO, Along("names")]:
         """Yield over highest stress (L,)."""
         return self.yield_stress / self.highest
 

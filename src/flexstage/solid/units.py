@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
@@ -11,6 +12,8 @@ from flexstage.analysis.unit_output import UnitOutput
 from flexstage.analysis.units import as_vector, driven_units
 from flexstage.base.finding import refuse
 from flexstage.base.number import Array
+from flexstage.base.quantity import COMPLIANCE, LENGTH, RATIO
+from flexstage.base.record import INNER, VIEW
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.restrict import isolate
@@ -34,28 +37,38 @@ class SolidUnit(UnitOutput):
     linear; `stress` at every link at the full stroke. `motion` (N,) are the coordinates of `read` at the full stroke, for pictures.
     """
 
-    strokes: Array
+    strokes: Annotated[Array, LENGTH]
     stress: LinkStress | None
     motion: Array
-    read: SolidRead
+    read: Annotated[SolidRead, INNER]
 
     @property
-    def loss(self) -> float:
+    def elements(self) -> Annotated[int, VIEW]:
+        """Number of elements."""
+        return self.read.elements
+
+    @property
+    def freedoms(self) -> Annotated[int, VIEW]:
+        """Number of freedoms before reduction."""
+        return self.read.freedoms
+
+    @property
+    def loss(self) -> Annotated[float, RATIO]:
         """Share of the ideal output that is lost."""
         return 1.0 - self.gain / self.ideal_gain
 
     @property
-    def load_compliance(self) -> float:
+    def load_compliance(self) -> Annotated[float, COMPLIANCE]:
         """Give of the guided output under a force along it [m/N]."""
         return 1.0 / self.axial
 
     @property
-    def commands(self) -> Array:
+    def commands(self) -> Annotated[Array, LENGTH]:
         """Ideal outputs (k,) [m] of the strokes: what was commanded."""
         return self.ideal_gain * self.strokes
 
     @property
-    def outputs(self) -> Array:
+    def outputs(self) -> Annotated[Array, LENGTH]:
         """Outputs (k,) [m] of the strokes."""
         return self.gain * self.strokes
 
@@ -100,7 +113,7 @@ def _unit(mechanism: Mechanism, names: tuple[str, str], direction: Array, how: t
         direction=direction,
         stiffness=stiffness,
         gain=gain,
-        ideal_gain=float(direction @ ideal(isolate(mechanism, copy, guide=as_vector(direction))).jacobian[:3, 0]),
+        ideal_gain=float(direction @ ideal(isolate(mechanism, copy, guide=as_vector(direction))).jacobian.values[:3, 0]),
         strokes=full * np.arange(1, _STEPS + 1) / _STEPS,
         stress=link_stress(read, motion[:, None], {copy: np.array([full])}),
         motion=motion,

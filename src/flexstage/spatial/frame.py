@@ -11,11 +11,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexstage.base.number import Array, Number, Vector, stack
+from flexstage.base.record import UnitOf
 
 COMPONENTS = ("x", "y", "z", "rx", "ry", "rz")
 FORCES = ("fx", "fy", "fz", "mx", "my", "mz")
 TWIST_UNITS = ("m", "m", "m", "rad", "rad", "rad")
 WRENCH_UNITS = ("N", "N", "N", "N m", "N m", "N m")
+
+MOTION = UnitOf(lambda name: TWIST_UNITS[COMPONENTS.index(name)])
+"""Annotates motions by coordinate: x in m, rz in rad."""
 
 _UNIT = np.eye(6)
 _NEXT, _AFTER_NEXT = [1, 2, 0], [2, 0, 1]

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
 from flexstage.analysis.workspace.stroke import StrokeLimits, stacks
 from flexstage.base.labelled import Matrix, ratio_units
 from flexstage.base.number import Array, Number, magnitude, stack
+from flexstage.base.quantity import FORCE, LENGTH, STIFFNESS
+from flexstage.base.record import VIEW, Along
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.models.linear.model import LinearModel
@@ -25,12 +28,12 @@ class StackLine:
     """
 
     actuators: tuple[str, ...]
-    free: Array
-    blocking: Array
-    stiffness: Array
-    against: Array
-    travel: Array
-    force: Array
+    free: Annotated[Array, LENGTH, Along("actuators")]
+    blocking: Annotated[Array, FORCE, Along("actuators")]
+    stiffness: Annotated[Array, STIFFNESS, Along("actuators")]
+    against: Annotated[Array, STIFFNESS, Along("actuators")]
+    travel: Annotated[Array, LENGTH, Along("actuators")]
+    force: Annotated[Array, FORCE, Along("actuators")]
     provenance: str
 
 
@@ -53,7 +56,7 @@ class PlatformLine:
         return self.blocking / (self.stiffness + stiffness)
 
     @property
-    def table(self) -> Matrix:
+    def table(self) -> Annotated[Matrix, VIEW]:
         """Rows are the coordinates, columns travel, stiffness and blocking."""
         moves = [TWIST_UNITS[COMPONENTS.index(name)] for name in self.coordinates]
         loads = [WRENCH_UNITS[COMPONENTS.index(name)] for name in self.coordinates]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import Enum
+from typing import Annotated
 
 import numpy as np
 
@@ -12,6 +13,8 @@ from flexstage.analysis.workspace.stroke import StrokeLimits
 from flexstage.analysis.workspace.wrench import corner_wrenches
 from flexstage.base.labelled import Matrix
 from flexstage.base.number import Array, Number, foremost
+from flexstage.base.quantity import RATIO
+from flexstage.base.record import VIEW, Along
 from flexstage.mechanism.expand import Assembly, PlacedLink, expand
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
 from flexstage.models.linear.model import LinearModel
@@ -44,7 +47,7 @@ class Buckling:
     critical: Array
     compression: Array
     length: Array
-    ends: tuple[Ends, ...]
+    ends: Annotated[tuple[Ends, ...], Along("links")]
     provenance: str
     stage: Stability
 
@@ -55,18 +58,20 @@ class Buckling:
         return np.where(pressed, self.critical / np.where(pressed, self.compression, 1.0), np.inf)
 
     @property
-    def least(self) -> Array:
+    def least(self) -> Annotated[Array, RATIO]:
         """The load factor of the whole stage over the worst strokes (...)."""
         return self.stage.worst
 
     @property
-    def weakest(self) -> str:
-        """The link with the least factor of its own on the first design."""
+    def weakest(self) -> Annotated[str | None, VIEW]:
+        """The link with the least factor of its own on the first design; None without columns."""
+        if not self.links:
+            return None
         first = self.factor.reshape(-1, len(self.links))[0]
         return self.links[int(foremost(1.0 / first))]
 
     @property
-    def table(self) -> Matrix:
+    def table(self) -> Annotated[Matrix, VIEW]:
         """Rows are the links, columns compression, critical load and load factor."""
         values = np.stack([self.compression, self.critical, self.factor], axis=-1)
         return Matrix(values, self.links, ("compression", "critical", "factor"), (("N", "N", "1"),) * len(self.links))

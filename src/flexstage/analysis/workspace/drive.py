@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
 from flexstage.analysis.workspace.stroke import stacks
 from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array, Number, stack
+from flexstage.base.quantity import CAPACITANCE, PIEZO_GAIN, VOLTAGE
+from flexstage.base.record import Along
 from flexstage.mechanism.mechanism import Mechanism
 
 
@@ -20,11 +23,11 @@ class Drive:
     """
 
     actuators: tuple[str, ...]
-    gain: Array
-    low: Array
-    high: Array
-    bias: Array
-    capacitance: Array
+    gain: Annotated[Array, PIEZO_GAIN, Along("actuators")]
+    low: Annotated[Array, VOLTAGE, Along("actuators")]
+    high: Annotated[Array, VOLTAGE, Along("actuators")]
+    bias: Annotated[Array, VOLTAGE, Along("actuators")]
+    capacitance: Annotated[Array, CAPACITANCE, Along("actuators")]
 
     def volts(self, strokes: Array) -> Array:
         """Voltages (..., n) [V] for strokes (..., n) [m] counted from the bias."""

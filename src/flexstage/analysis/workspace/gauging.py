@@ -4,16 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
 from flexstage.base.finding import refuse
 from flexstage.base.labelled import Matrix
 from flexstage.base.number import Array, Number, magnitude, stack
+from flexstage.base.record import VIEW, Along
 from flexstage.mechanism.expand import Assembly, expand
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
 from flexstage.models.linear.kinematics import Kinematics
-from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
+from flexstage.spatial.frame import COMPONENTS, MOTION, TWIST_UNITS
 
 _ANGLES = 720
 _LEVEL = 1e-9
@@ -30,7 +32,7 @@ class GaugeRange:
     """
 
     gauges: tuple[str, ...]
-    command: Mapping[str, Number]
+    command: Annotated[Mapping[str, Number], MOTION]
     swing: Array
     limit: Array
     radius: Array
@@ -39,12 +41,12 @@ class GaugeRange:
     provenance: str
 
     @property
-    def fits(self) -> Array:
+    def fits(self) -> Annotated[Array, Along("gauges")]:
         """Whether each gauge's range holds the corner (..., g)."""
         return self.swing <= self.limit * (1.0 + 1e-12)
 
     @property
-    def table(self) -> Matrix:
+    def table(self) -> Annotated[Matrix, VIEW]:
         """Rows are the gauges."""
         columns = ("swing", "limit", "radius", "largest_here", "largest_anywhere")
         values = np.stack([getattr(self, name) for name in columns], axis=-1)
@@ -69,7 +71,7 @@ class PoseResolution:
     provenance: str
 
     @property
-    def table(self) -> Matrix:
+    def table(self) -> Annotated[Matrix, VIEW]:
         """Rows are the six components of the platform's motion."""
         units = tuple((unit,) * 3 for unit in TWIST_UNITS)
         return Matrix(np.stack([self.worst, self.rms, self.noise], axis=-1), COMPONENTS, ("worst", "rms", "noise"), units)

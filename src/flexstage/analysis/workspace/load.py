@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
@@ -11,6 +12,8 @@ from flexstage.analysis.workspace.stroke import StrokeLimits, stacks
 from flexstage.base.finding import Finding, refuse
 from flexstage.base.labelled import Matrix, ratio_units
 from flexstage.base.number import Array, Number, stack
+from flexstage.base.quantity import FORCE, RATIO
+from flexstage.base.record import Along
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Force, Mechanism
 from flexstage.models.linear.model import LinearModel
@@ -20,6 +23,17 @@ from flexstage.spatial.frame import COMPONENTS, FORCES, WRENCH_UNITS, transport
 
 OWN_WEIGHT = "own weight"
 _ROUNDING = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class LoadRange:
+    """`least` and `largest` compression of each stack over the strokes; `usage` of its maximum load, `pull` over what holds it."""
+
+    actuators: tuple[str, ...]
+    least: Annotated[Array, FORCE, Along("actuators")]
+    largest: Annotated[Array, FORCE, Along("actuators")]
+    usage: Annotated[Array, RATIO, Along("actuators")]
+    pull: Annotated[Array, RATIO, Along("actuators")]
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,14 +49,14 @@ class LoadShare:
     loads: Matrix
     share: Matrix
     stroke: Matrix
-    maximum: Array
-    preload: Array
-    tensile: Array
+    maximum: Annotated[Array, FORCE, Along("actuators")]
+    preload: Annotated[Array, FORCE, Along("actuators")]
+    tensile: Annotated[Array, FORCE, Along("actuators")]
     reference: Array
     provenance: str
 
     @property
-    def compression(self) -> Array:
+    def compression(self) -> Annotated[Array, FORCE, Along("actuators")]:
         """Compression (..., n) [N] under gravity and all forces, strokes at rest, preload not counted."""
         return np.sum(self.loads.values, axis=-1)
 
@@ -70,6 +84,11 @@ class LoadShare:
         tension = np.maximum(0.0, -compression)
         safe = np.where(allowed > 0.0, allowed, 1.0)
         return np.where(tension <= 0.0, 0.0, np.where(allowed > 0.0, tension / safe, np.inf))
+
+    def over(self, limits: StrokeLimits) -> LoadRange:
+        """What the stacks bear over the box of strokes, dead load included."""
+        least, largest = self.range(limits)
+        return LoadRange(self.actuators, least, largest, self.usage(largest), self.pull(least))
 
     def use(self, limits: StrokeLimits) -> Array:
         """Share of its limits that each stack bears over the box of strokes (..., n): of the maximum load, or of what pulls it."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
@@ -11,6 +12,8 @@ from flexstage.analysis.workspace.stroke import StrokeLimits, beside
 from flexstage.base.finding import refuse
 from flexstage.base.labelled import Matrix
 from flexstage.base.number import Array, foremost
+from flexstage.base.quantity import LENGTH
+from flexstage.base.record import VIEW
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.finite import design_shape, forward_kinematics
@@ -33,11 +36,16 @@ class MapError:
     errors: Array
     worst: Array
     worst_strokes: Array
-    residual: Array
+    residual: Annotated[Array, LENGTH]
     provenance: str
 
     @property
-    def table(self) -> Matrix:
+    def points(self) -> Annotated[int, VIEW]:
+        """How many combinations of strokes were tried."""
+        return len(self.strokes)
+
+    @property
+    def table(self) -> Annotated[Matrix, VIEW]:
         """Rows are the six components; columns the worst error and the strokes at which it occurs."""
         values = np.concatenate([self.worst[..., None], self.worst_strokes], axis=-1)
         units = tuple((unit, *("m",) * len(self.actuators)) for unit in TWIST_UNITS)
@@ -80,7 +88,7 @@ def map_error_at(mechanism: Mechanism, kinematics: Kinematics, strokes: Array) -
     if strokes.shape[-1] != count:
         raise refuse("linear map error", f"{strokes.shape[-1]} strokes are given for {count} actuators", "Give one stroke an actuator")
     moved = forward_kinematics(mechanism, kinematics, strokes)
-    linear = (kinematics.jacobian @ strokes[..., None])[..., 0]
+    linear = (kinematics.jacobian.values @ strokes[..., None])[..., 0]
     rounding = _ROUNDING * np.repeat([_reach(mechanism), 1.0], 3)
     errors = moved.pose.vector - linear
     errors = np.where(np.abs(errors) > rounding, errors, 0.0)

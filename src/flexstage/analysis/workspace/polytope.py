@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import combinations
+from typing import Annotated
 
 import numpy as np
 
@@ -11,6 +12,8 @@ from flexstage.analysis.workspace.stroke import StrokeLimits
 from flexstage.base.finding import refuse
 from flexstage.base.labelled import Matrix
 from flexstage.base.number import Array
+from flexstage.base.quantity import RATIO
+from flexstage.base.record import VIEW
 from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
 
 _MOST_VERTEX_CANDIDATES = 20_000
@@ -28,7 +31,7 @@ class Polytope:
     normals: Array
     offsets: Array
     vertices: Array
-    volume: Array
+    volume: Annotated[Array, RATIO]
     volume_unit: str
     provenance: str
 
@@ -38,7 +41,14 @@ class Polytope:
         return np.all(used <= self.offsets + _TOLERANCE * np.abs(self.offsets), axis=-1)
 
     @property
-    def extent(self) -> Matrix:
+    def poses(self) -> Annotated[Matrix, VIEW]:
+        """The vertices, of one design."""
+        known = self.vertices[~np.isnan(self.vertices).any(axis=-1)]
+        units = tuple(TWIST_UNITS[COMPONENTS.index(name)] for name in self.coordinates)
+        return Matrix(known, tuple(str(number + 1) for number in range(len(known))), self.coordinates, (units,) * len(known))
+
+    @property
+    def extent(self) -> Annotated[Matrix, VIEW]:
         """The least and largest value of each coordinate when the others are free to follow (rows: coordinates)."""
         values = np.stack([np.nanmin(self.vertices, axis=-2), np.nanmax(self.vertices, axis=-2)], axis=-1)
         units = tuple((TWIST_UNITS[COMPONENTS.index(name)],) * 2 for name in self.coordinates)

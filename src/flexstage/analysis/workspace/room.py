@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import Annotated
 
 import numpy as np
 
@@ -12,6 +13,7 @@ from flexstage.base.finding import Finding
 from flexstage.base.labelled import Matrix
 from flexstage.base.number import Array, stack
 from flexstage.base.quantity import LENGTH
+from flexstage.base.record import VIEW
 from flexstage.base.unit import show
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
@@ -26,7 +28,7 @@ class Intrusion:
     """An outline that enters the opening, and by how much it would have to move in plan (...) [m] to leave it."""
 
     name: str
-    depth: Array
+    depth: Annotated[Array, LENGTH]
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,12 +47,12 @@ class Room:
     opening: Array | None = None
 
     @property
-    def size(self) -> Array:
+    def size(self) -> Annotated[Array, LENGTH]:
         """Edges of the bounding box (..., 3) [m]."""
         return self.high - self.low
 
     @property
-    def table(self) -> Matrix:
+    def table(self) -> Annotated[Matrix, VIEW]:
         """Rows are the axes; columns low, high, size (and envelope)."""
         columns = [self.low, self.high, self.size]
         names = ["low", "high", "size"]
@@ -59,7 +61,7 @@ class Room:
         return Matrix(np.stack(columns, axis=-1), _AXES, tuple(names), "m")
 
     @property
-    def findings(self) -> tuple[Finding, ...]:
+    def findings(self) -> Annotated[tuple[Finding, ...], VIEW]:
         """What does not fit: outlines in the opening, edges beyond the envelope."""
         return (*self._blocked(), *self._beyond())
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields, is_dataclass, replace
-from typing import Any, TypeAlias
+from typing import Annotated, Any, TypeAlias
 
 import numpy as np
 
@@ -12,6 +12,8 @@ from flexstage.analysis.workspace.wrench import corner_wrenches
 from flexstage.base.finding import refuse
 from flexstage.base.labelled import Matrix
 from flexstage.base.number import Array, foremost
+from flexstage.base.quantity import RATIO
+from flexstage.base.record import VIEW
 from flexstage.beams.stress import has_section, stress
 from flexstage.mechanism.expand import PlacedLink, expand
 from flexstage.mechanism.mechanism import Mechanism
@@ -43,24 +45,29 @@ class HingeStress:
         return np.where(loaded | np.isnan(self.yield_stress), self.yield_stress / np.where(loaded, self.peak, 1.0), np.inf)
 
     @property
-    def least(self) -> Array:
+    def least(self) -> Annotated[Array, RATIO]:
         """The least safety factor of the stage (...); NaN where any hinge's yield stress is unknown."""
         return np.min(self.safety, axis=-1)
 
     @property
-    def weakest(self) -> str:
+    def weakest(self) -> Annotated[str, VIEW]:
         """The link with the least safety factor among those that are known, on the first design."""
         first = np.nan_to_num(self.safety.reshape(-1, len(self.links))[0], nan=np.inf)
         return self.links[int(foremost(1.0 / first))]
 
     @property
-    def unknown(self) -> tuple[str, ...]:
+    def unknown(self) -> Annotated[tuple[str, ...], VIEW]:
         """Links whose material states no yield stress."""
         gone = np.isnan(np.atleast_2d(self.yield_stress)).reshape(-1, len(self.links)).any(axis=0)
         return tuple(link for link, missing in zip(self.links, np.asarray(gone), strict=True) if missing)
 
     @property
-    def table(self) -> Matrix:
+    def worst_strokes(self) -> Annotated[Matrix, VIEW]:
+        """The strokes at which each link is stressed most."""
+        return Matrix(self.strokes, self.links, self.actuators, "m")
+
+    @property
+    def table(self) -> Annotated[Matrix, VIEW]:
         """Rows are the links, columns nominal, peak, yield and safety."""
         values = np.stack(np.broadcast_arrays(self.nominal, self.peak, self.yield_stress, self.safety), axis=-1)
         return Matrix(values, self.links, ("nominal", "peak", "yield", "safety"), (("Pa", "Pa", "Pa", "1"),) * len(self.links))

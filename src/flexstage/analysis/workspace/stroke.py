@@ -4,19 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
 from flexstage.base.finding import Finding, nearest, refuse, require
 from flexstage.base.labelled import Matrix
 from flexstage.base.number import Array, Number, magnitude, stack
+from flexstage.base.quantity import LENGTH, RATIO
+from flexstage.base.record import VIEW, Along
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.incidence import layout, twist_at
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.models.linear.kinematics import Kinematics
 from flexstage.parts.part import Restricted
 from flexstage.parts.piezo import Piezo
-from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS, Frame
+from flexstage.spatial.frame import COMPONENTS, MOTION, TWIST_UNITS, Frame
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,9 +30,9 @@ class StrokeLimits:
     """
 
     actuators: tuple[str, ...]
-    low: Array
-    high: Array
-    zero: Array | None = None
+    low: Annotated[Array, LENGTH, Along("actuators")]
+    high: Annotated[Array, LENGTH, Along("actuators")]
+    zero: Annotated[Array | None, LENGTH, Along("actuators")] = None
 
     @property
     def full(self) -> Array:
@@ -66,7 +69,7 @@ class SingleAxis:
     coordinates: tuple[str, ...]
     low: Array
     high: Array
-    limiting: tuple[str, ...]
+    limiting: Annotated[tuple[str, ...], Along("coordinates")]
     at: str
     provenance: str
 
@@ -76,7 +79,7 @@ class SingleAxis:
         return np.minimum(-self.low, self.high)
 
     @property
-    def table(self) -> Matrix:
+    def table(self) -> Annotated[Matrix, VIEW]:
         """Rows are the coordinates, columns low, high, symmetric and full."""
         values = np.stack([self.low, self.high, self.symmetric, self.high - self.low], axis=-1)
         units = tuple((_unit(name),) * 4 for name in self.coordinates)
@@ -91,23 +94,23 @@ class Utilisation:
     """
 
     actuators: tuple[str, ...]
-    command: Mapping[str, Number]
-    demand: Array
-    available: Array
+    command: Annotated[Mapping[str, Number], MOTION]
+    demand: Annotated[Array, LENGTH, Along("actuators")]
+    available: Annotated[Array, LENGTH, Along("actuators")]
     provenance: str
 
     @property
-    def ratio(self) -> Array:
+    def ratio(self) -> Annotated[Array, RATIO, Along("actuators")]:
         """Demand over what is available (..., n); above 1 the corner cannot be reached."""
         return self.demand / self.available
 
     @property
-    def reachable(self) -> Array:
+    def reachable(self) -> Annotated[Array, VIEW]:
         """Whether every corner of the box can be reached (...)."""
         return np.max(self.ratio, axis=-1) <= 1.0
 
     @property
-    def scale(self) -> Array:
+    def scale(self) -> Annotated[Array, RATIO]:
         """Factor (...) by which the whole box could grow (below 1: must shrink) to use the strokes fully."""
         return 1.0 / np.max(self.ratio, axis=-1)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Annotated
 
 from flexstage.analysis.attempt import Attempts
 from flexstage.analysis.lost_motion import LostMotion
@@ -11,7 +12,7 @@ from flexstage.analysis.workspace.blocking import PlatformLine, StackLine, platf
 from flexstage.analysis.workspace.buckling import Buckling, buckling
 from flexstage.analysis.workspace.drive import Drive, drive
 from flexstage.analysis.workspace.gauging import GaugeRange, PoseResolution, gauge_range, pose_resolution
-from flexstage.analysis.workspace.load import LoadShare, load_share
+from flexstage.analysis.workspace.load import LoadRange, LoadShare, load_share
 from flexstage.analysis.workspace.map_error import MapError, linear_map_error
 from flexstage.analysis.workspace.polytope import Polytope, reachable
 from flexstage.analysis.workspace.room import Room, room
@@ -19,12 +20,14 @@ from flexstage.analysis.workspace.strength import HingeStress, hinge_stress
 from flexstage.analysis.workspace.stroke import SingleAxis, StrokeLimits, Utilisation, single_axis, stroke_limits, utilisation
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Number, Table
+from flexstage.base.record import VIEW
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.ideal import ideal
 from flexstage.models.linear.arguments import takes_models
 from flexstage.models.linear.kinematics import Kinematics
 from flexstage.models.linear.model import LinearModel
+from flexstage.spatial.frame import MOTION
 
 _RIGID = "the ideal reading has no elasticity"
 _HINGELESS = "this reading knows no single hinges: use the lumped one"
@@ -32,14 +35,14 @@ _HINGELESS = "this reading knows no single hinges: use the lumped one"
 
 @dataclass(frozen=True, eq=False)
 class Workspace(InNotebook):
-    """The workspace of one design; `None` where reading or stage do not give a result, and `missing` says why, by field name.
+    """The workspace of one design; `None` where reading or stage do not give a result, and `reasons` say why, by field name.
 
     `single` are ideal strokes, `corrected` those with lost motion corrected by command. `corner` is what the box `command` of motions (half
     widths by coordinate, all at once) asks of the actuators, `gauges` what it asks of the gauges. Stress, buckling and loads count from the
     stage relaxed without voltage, over all strokes and under dead load.
     """
 
-    command: Mapping[str, Number]
+    command: Annotated[Mapping[str, Number], MOTION]
     limits: StrokeLimits
     single: SingleAxis
     corrected: SingleAxis | None
@@ -55,7 +58,12 @@ class Workspace(InNotebook):
     stress: HingeStress | None
     buckling: Buckling | None
     loads: LoadShare | None
-    missing: Mapping[str, str]
+    reasons: Mapping[str, str]
+
+    @property
+    def bearing(self) -> Annotated[LoadRange | None, VIEW]:
+        """What the stacks bear over all strokes, from no voltage."""
+        return None if self.loads is None else self.loads.over(self.limits.from_zero)
 
 
 @takes_models
@@ -103,7 +111,7 @@ def workspace(
         stress=attempt.given("stress", hinged, _HINGELESS, lambda known: hinge_stress(mechanism, known, unloaded)),
         buckling=attempt.given("buckling", hinged, _HINGELESS, lambda known: buckling(mechanism, known, unloaded)),
         loads=attempt.given("loads", hinged, _HINGELESS, lambda known: load_share(mechanism, known)),
-        missing=Table(attempt.missing),
+        reasons=Table(attempt.missing),
     )
 
 

@@ -22,8 +22,6 @@ from flexstage.show.command.answer import answer, tell_missing
 from flexstage.show.command.design import open_design
 from flexstage.show.command.options import Changes, Design, Json, Theory, text_option
 from flexstage.show.command.values import motions
-from flexstage.show.documents.reach import budget_body, sensitivities_body, workspace_body
-from flexstage.show.documents.results import drift_body
 from flexstage.show.table import Table
 from flexstage.show.tables import workspace as tables
 from flexstage.show.tables.errors import drift_table, error_budget_tables, gauge_drift_table
@@ -53,7 +51,7 @@ def workspace(
     lost = None if model is None or not kinematics.actuated else lost_motion(kinematics, model)
     asked = motions(command or ()) or required_command(mechanism)
     found = study.workspace(mechanism, kinematics, model, lost=lost, command=asked)
-    answer("workspace", mechanism, lambda: workspace_body(found), lambda: _workspace_tables(found), reading=reading, json=json)
+    answer("workspace", mechanism, lambda: found, lambda: _workspace_tables(found), reading=reading, json=json)
 
 
 def _workspace_tables(workspace: study.Workspace) -> Iterator[Table | None]:
@@ -91,7 +89,7 @@ def drift(
     answer(
         "drift",
         mechanism,
-        lambda: drift_body(found),
+        lambda: found,
         lambda: [drift_table(found), gauge_drift_table(found)],
         reading=Reading.LUMPED,
         json=json,
@@ -118,7 +116,7 @@ def sensitivities(
     answer(
         "sensitivities",
         mechanism,
-        lambda: sensitivities_body(found),
+        lambda: found,
         lambda: [frequency_sensitivity_table(found), loss_sensitivity_table(found)],
         reading=Reading.LUMPED,
         json=json,
@@ -143,4 +141,4 @@ def budget(
 
     asked = motions(command or ()) or required_command(mechanism) or study.all_strokes(mechanism)
     found = budgeting.budget(mechanism, asked, at=at, temperature=parse(temperature, TEMPERATURE, where="--temperature"))
-    answer("budget", mechanism, lambda: budget_body(found), lambda: error_budget_tables(found), reading=Reading.LUMPED, json=json)
+    answer("budget", mechanism, lambda: found, lambda: error_budget_tables(found), reading=Reading.LUMPED, json=json)

@@ -19,8 +19,7 @@ from flexstage.show.command.failure import MISSED
 from flexstage.show.command.options import Changes, Design, Json, Report, Theory, text_option
 from flexstage.show.command.output import STDOUT, save
 from flexstage.show.command.terminal import tell
-from flexstage.show.documents.whole import analysis_body, changes_body
-from flexstage.show.envelope import enveloped
+from flexstage.show.document import analysis_body, changes_body, enveloped
 from flexstage.show.matlab import as_mat
 from flexstage.show.report import report as whole_report
 from flexstage.show.table import Table

@@ -16,16 +16,18 @@ from flexstage.analysis.random_response import random_response
 from flexstage.analysis.statics import Statics, statics
 from flexstage.base.finding import refuse
 from flexstage.base.quantity import FREQUENCY
+from flexstage.base.record import walk
 from flexstage.base.unit import parse
 from flexstage.models.ideal import ideal
 from flexstage.models.linear.damping import damping_law
 from flexstage.models.linear.kinematics import Kinematics
+from flexstage.models.linear.static import static_gain
 from flexstage.models.theory import Reading
 from flexstage.show.command.answer import answer
 from flexstage.show.command.design import elastic_model, known_point, open_design
 from flexstage.show.command.options import Changes, Design, Json, Theory, text_option
 from flexstage.show.command.values import spectra
-from flexstage.show.documents.results import elastic_jacobian, lost_motion_body, mapping_body, response_body, stiffness_body
+from flexstage.show.document import response_body, stiffness_body
 from flexstage.show.table import Table
 from flexstage.show.tables import kinematics as motion_tables
 from flexstage.show.tables import lost_motion as loss_tables
@@ -34,6 +36,7 @@ from flexstage.show.tables.deflection import deflection_table
 from flexstage.show.tables.modes import mode_table
 from flexstage.show.tables.random_response import random_table
 from flexstage.show.tables.response import response_table
+from flexstage.spatial.frame import COMPONENTS
 
 
 def mapping(design: Design, *, reading: Theory = Reading.IDEAL, changes: Changes = None, json: Json = None) -> None:
@@ -46,10 +49,11 @@ def mapping(design: Design, *, reading: Theory = Reading.IDEAL, changes: Changes
     mechanism = open_design(design, changes, [("--json", json)])
 
     kinematics, model = ideal(mechanism), read(mechanism, reading)
+    twist = tuple(f"platform.{name}" for name in COMPONENTS)
     answer(
         "mapping",
         mechanism,
-        lambda: mapping_body(kinematics) | ({} if model is None else {"elastic_jacobian": elastic_jacobian(kinematics, model)}),
+        lambda: walk(kinematics) | ({} if model is None else {"elastic_jacobian": static_gain(model, twist, kinematics.actuators)}),
         lambda: _mapping_tables(kinematics),
         reading=reading,
         json=json,
@@ -112,7 +116,7 @@ def lost_motion(design: Design, *, reading: Theory = Reading.LUMPED, changes: Ch
     mechanism = open_design(design, changes, [("--json", json)])
 
     found = losses.lost_motion(ideal(mechanism), elastic_model(mechanism, reading))
-    answer("lost-motion", mechanism, lambda: lost_motion_body(found), lambda: _loss_tables(found), reading=reading, json=json)
+    answer("lost-motion", mechanism, lambda: found, lambda: _loss_tables(found), reading=reading, json=json)
 
 
 def _loss_tables(found: LostMotion) -> Iterator[Table | None]:

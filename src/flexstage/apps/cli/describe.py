@@ -26,7 +26,7 @@ from flexstage.show.command.design import change, open_design
 from flexstage.show.command.options import Changes, Design, Json, output_option, text_option, word_option
 from flexstage.show.command.output import STDOUT, announce, require_writable, write
 from flexstage.show.command.terminal import say
-from flexstage.show.envelope import FORMAT, check_document
+from flexstage.show.document import FORMAT, check_document
 from flexstage.show.figures.drawing import drawing, format_of
 from flexstage.show.listing import case_table, catalogue_body, catalogue_tables, parameter_table, section_named
 from flexstage.show.plan import plan_figure

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import Annotated
 
 import numpy as np
 
@@ -11,6 +12,8 @@ from flexstage.base.finding import Finding, joined, refuse
 from flexstage.base.labelled import Matrix, ratio_units
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
+from flexstage.base.quantity import LENGTH
+from flexstage.base.record import INNER, VIEW, Called
 from flexstage.models.linear.blockage import Blockage
 from flexstage.parts.freedom import Freedom
 from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
@@ -48,23 +51,23 @@ class Kinematics(InNotebook):
     actuation: Array
     sensing: Array
     motion: Array
-    body_coordinates: tuple[str, ...]
+    body_coordinates: Annotated[tuple[str, ...], INNER]
     bodies: Array
     strains: Mapping[str, Array]
     free: Mapping[str, tuple[Freedom, ...]]
     idle: tuple[Idle, ...]
     redundant: tuple[Redundant, ...]
-    length: float
+    length: Annotated[float, LENGTH]
     provenance: str
-    blocked: Mapping[str, Blockage] = field(default_factory=dict)
+    blocked: Annotated[Mapping[str, Blockage], INNER] = field(default_factory=dict)
 
     @property
-    def mobility(self) -> int:
+    def mobility(self) -> Annotated[int, VIEW]:
         """Number of ideal motions of the platform when the strokes are free."""
         return len(self.coordinates)
 
     @property
-    def actuated(self) -> bool:
+    def actuated(self) -> Annotated[bool, VIEW]:
         """Whether the strokes determine the platform: R_a has full column rank (on the first design)."""
         actuation = np.real(self.actuation[(0,) * (self.actuation.ndim - 2)])
         scaled = actuation * _scales(self.coordinates, 1.0 / self.length)
@@ -78,14 +81,22 @@ class Kinematics(InNotebook):
         return tuple(name for name, largest in zip(self.actuators, size, strict=True) if largest < 1e-9)
 
     @property
-    def mapping(self) -> Matrix:
+    def mapping(self) -> Annotated[Matrix, Called("R_a")]:
         """R_a = da/dxi (Eq. 13 of Shin & Moon; da/dx for six freedoms). Raises `DesignError` where the stage is under-actuated."""
         self._require_actuated()
-        units = tuple(TWIST_UNITS[COMPONENTS.index(name)] for name in self.coordinates)
-        return Matrix(self.actuation, self.actuators, self.coordinates, ratio_units(("m",) * len(self.actuators), units))
+        return Matrix(self.actuation, self.actuators, self.coordinates, ratio_units(("m",) * len(self.actuators), self._units))
 
     @property
-    def gauge_mapping(self) -> Matrix:
+    def motions(self) -> Annotated[Matrix, VIEW]:
+        """V, the platform's twist in each ideal motion."""
+        return Matrix(self.motion, COMPONENTS, self.coordinates, ratio_units(TWIST_UNITS, self._units))
+
+    @property
+    def _units(self) -> tuple[str, ...]:
+        return tuple(TWIST_UNITS[COMPONENTS.index(name)] for name in self.coordinates)
+
+    @property
+    def gauge_mapping(self) -> Annotated[Matrix, Called("R_s")]:
         """R_s = ds/dx (Eq. 14 of Shin & Moon)."""
         return Matrix(self.sensing, self.gauges, COMPONENTS, ratio_units(("m",) * len(self.gauges), TWIST_UNITS))
 
@@ -99,9 +110,9 @@ class Kinematics(InNotebook):
         return np.linalg.solve(transposed @ self.actuation, transposed)
 
     @property
-    def jacobian(self) -> Array:
+    def jacobian(self) -> Annotated[Matrix, VIEW]:
         """J = dx/da (..., 6, n): the ideal platform twist per stroke, V R_a^-1."""
-        return self.motion @ self.inverse
+        return Matrix(self.motion @ self.inverse, COMPONENTS, self.actuators, ratio_units(TWIST_UNITS, ("m",) * len(self.actuators)))
 
     @property
     def projection(self) -> Array:

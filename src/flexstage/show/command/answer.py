@@ -17,7 +17,7 @@ from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.theory import Reading
 from flexstage.show.command.output import STDOUT, announce, write
 from flexstage.show.command.terminal import styled, tell, warn
-from flexstage.show.envelope import enveloped
+from flexstage.show.document import enveloped
 from flexstage.show.render import to_rich
 from flexstage.show.table import Table
 

@@ -78,7 +78,7 @@ def limit_section(analysis: Analysis) -> Section | None:
 def _missing_table(analysis: Analysis) -> Table | None:
     gone = dict(analysis.missing)
     if analysis.workspace is not None:
-        gone |= {f"workspace: {name}": reason for name, reason in analysis.workspace.missing.items()}
+        gone |= {f"workspace: {name}": reason for name, reason in analysis.workspace.reasons.items()}
     rows = [(Cell(name.replace("_", " "), Mark.STRONG), reason) for name, reason in gone.items()]
     return build("Not given, and why", ["result", "reason"], rows) if rows else None
 

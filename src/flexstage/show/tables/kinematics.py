@@ -83,8 +83,7 @@ def jacobian_table(kinematics: Kinematics) -> Table:
     >>> jacobian_table(ideal(double_triangle())).texts()[3][-1]
     '1'
     """
-    units = ratio_units(TWIST_UNITS, ("m",) * len(kinematics.actuators))
-    return matrix_table("Platform motion per stroke, J = V R_a^-1", Matrix(kinematics.jacobian, COMPONENTS, kinematics.actuators, units))
+    return matrix_table("Platform motion per stroke, J = V R_a^-1", kinematics.jacobian)
 
 
 def motion_table(kinematics: Kinematics) -> Table | None:

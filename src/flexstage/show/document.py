@@ -1,0 +1,137 @@
+"""Documents of commands: the envelope, which results stand in it together, and what is worded by hand. Results describe themselves."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+import flexstage
+from flexstage.analysis.cautions import Caveats, caveats
+from flexstage.analysis.complete import Analysis
+from flexstage.analysis.deflection import Deflection
+from flexstage.analysis.difference import Change
+from flexstage.analysis.requirements import Verdict
+from flexstage.analysis.statics import Statics
+from flexstage.base.digest import digest
+from flexstage.base.document import Document, plain
+from flexstage.base.finding import Finding
+from flexstage.base.record import walk
+from flexstage.mechanism.mechanism import Damping, Mechanism, ModalDamping, RayleighDamping, StructuralDamping
+from flexstage.models.linear.frequency import Response
+from flexstage.models.theory import Reading
+
+FORMAT = "flexstage result 2"
+_UNLUMPED = "deflection under dead load needs the lumped reading"
+_KEYS = {"statics": "stiffness", "lost_motion": "lost-motion", "error_budget": "budget"}
+"""Fields of an analysis whose document has the name of their command."""
+
+
+def enveloped(kind: str, mechanism: Mechanism | None, reading: Reading | None, body: Any, more: Iterable[Finding] = ()) -> Document:
+    """A document: what it is, of which description (absent: of a record alone), by which reading and version, caveats, then its `body`.
+
+    `body` is a result, or a mapping with results in it. `more` are cautions of the result's own.
+
+    >>> enveloped("mapping", Mechanism("stage"), None, {"mobility": 6})["name"]
+    'stage'
+    """
+    known = Caveats() if mechanism is None else caveats(mechanism)
+    return {
+        "format": FORMAT,
+        "kind": kind,
+        "version": flexstage.__version__,
+        "name": None if mechanism is None else mechanism.name,
+        "reading": None if reading is None else reading.value,
+        "physics_digest": None if mechanism is None else digest(mechanism, physics=True),
+        "cautions": [*known.cautions, *more],
+        "defaults": list(known.defaults),
+        **(body if isinstance(body, Mapping) else walk(body)),
+    }
+
+
+def check_document(mechanism: Mechanism | None, errors: Iterable[Finding] = ()) -> Document:
+    """The document of a check: whether the design is sound, and its findings; without the envelope's digest and caveats if it is not.
+
+    >>> check_document(None, [Finding("B4/pivot", "it is thin", "Thicken it")])["sound"]
+    False
+    """
+    found = list(errors)
+    body: Document = {"sound": not found, "findings": found}
+    if mechanism is None:
+        return {"format": FORMAT, "kind": "check", "version": flexstage.__version__, **body, "cautions": [], "defaults": [], "warnings": []}
+    document = enveloped("check", mechanism, None, body)
+    return {**document, "warnings": document["cautions"]}
+
+
+def analysis_body(analysis: Analysis) -> Document:
+    """Requirements first, then every analysis under its command's name; null with a reason where the reading or the stage gives none.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.analysis.complete import Reading, analyse
+    >>> body = analysis_body(analyse(double_triangle(), Reading.IDEAL))
+    >>> body["modes"] is None, body["reasons"]["modes"]
+    (True, 'the ideal reading has no elasticity')
+    """
+    damping = None if analysis.model is None else analysis.model.damping
+    found: dict[str, Any] = {
+        "mapping": analysis.kinematics,
+        "stiffness": None if analysis.statics is None else stiffness_body(analysis.statics, analysis.deflection),
+        "lost-motion": analysis.lost_motion,
+        "modes": analysis.modes,
+        "response": None if analysis.response is None else response_body(analysis.response, damping),
+        "transmissibility": None if analysis.transmissibility is None else response_body(analysis.transmissibility, damping),
+        "workspace": analysis.workspace,
+        "buckling": analysis.buckling,
+        "drift": analysis.drift,
+        "budget": analysis.error_budget,
+        "units": analysis.units,
+    }
+    reasons = {_KEYS.get(name, name): reason for name, reason in analysis.missing.items() if name != "deflection"}  # see stiffness
+    documents = {name: None if document is None else plain(document) for name, document in found.items()}
+    return {"requirements": requirements_body(analysis.verdicts), **documents, **({"reasons": reasons} if reasons else {})}
+
+
+def stiffness_body(statics: Statics, deflection: Deflection | None = None) -> Document:
+    """Statics of the platform, and its deflection under dead load."""
+    body = walk(statics)
+    reasons = body.pop("reasons", {}) | ({} if deflection is not None else {"dead_load": _UNLUMPED})
+    return {**body, "dead_load": deflection, **({"reasons": reasons} if reasons else {})}
+
+
+def response_body(response: Response, damping: Damping | None) -> Document:
+    """A frequency response as {frequency_hz, rows, columns, unit, real, imaginary}, H_ij = output i over input j, and its damping."""
+    laws: dict[type, str] = {ModalDamping: "modal", RayleighDamping: "rayleigh", StructuralDamping: "structural"}
+    law = None if damping is None else {"law": laws[type(damping)], **walk(damping)}
+    return {**response.to_json(), "damping": law, "provenance": response.provenance}
+
+
+def requirements_body(verdicts: Iterable[Verdict]) -> list[Document]:
+    """Verdicts on the design's requirements: limit and value in SI, relative margin, whether it is met."""
+    return [_verdict(verdict) for verdict in verdicts]
+
+
+def _verdict(verdict: Verdict) -> Document:
+    asked = verdict.requirement
+    return {
+        "key": asked.key,
+        "text": asked.text,
+        "passed": bool(verdict.passed),
+        "value": verdict.value,
+        "limit": asked.limit,
+        "unit": asked.quantity.si,
+        "sense": asked.sense.value,
+        "point": asked.point,
+        "margin": None if verdict.value is None else verdict.margin,
+        **({"reason": verdict.reason} if verdict.reason else {}),
+    }
+
+
+def changes_body(changes: Iterable[Change]) -> list[Document]:
+    """Changes as {name, unit, old, new, relative}, SI.
+
+    >>> changes_body([Change("platform mode 1", "Hz", 100.0, 90.0)])[0]["old"]
+    100.0
+    """
+    return [
+        {"name": each.name, "unit": each.unit, "old": each.old, "new": each.new, "relative": each.relative if each.old else None}
+        for each in changes
+    ]
