@@ -10,9 +10,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from flexstage.base import quantity as quantities
+from flexstage.base.labelled import NOISE, quiet
 from flexstage.base.quantity import Quantity
 from flexstage.base.unit import convert
-from flexstage.show.display import _LADDERS, NOISE, aligned, field_unit, number, quiet, shown, typeset, value_with_unit
+from flexstage.show.display import _LADDERS, aligned, field_unit, number, shown, typeset, value_with_unit
 
 FIELDS = [value for value in vars(quantities).values() if isinstance(value, Quantity) and value.si != "mixed"]
 FINITE = st.floats(min_value=-1e12, max_value=1e12, allow_nan=False).filter(lambda value: value == 0.0 or abs(value) > 1e-12)

@@ -8,7 +8,7 @@ from typing import Annotated, Any
 
 import numpy as np
 
-from flexstage.base.labelled import Matrix, ratio_units
+from flexstage.base.labelled import NOISE, Matrix, ratio_units
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
 from flexstage.base.quantity import LENGTH, RATIO
@@ -21,7 +21,6 @@ from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
 
 _PLATFORM_TWIST = tuple(f"platform.{name}" for name in COMPONENTS)
 INTERNAL = "internal stress"
-_NOISE = 1e-9
 
 
 class Shares(dict[str, Array]):
@@ -36,7 +35,7 @@ class Shares(dict[str, Array]):
         """
         first = {name: float(np.ravel(np.real(share))[0]) for name, share in self.items()}
         ranked = sorted(first, key=lambda name: -abs(first[name]))
-        shown = [name for name in ranked if abs(first[name]) > _NOISE * abs(first[ranked[0]])]
+        shown = [name for name in ranked if abs(first[name]) > NOISE * abs(first[ranked[0]])]
         width = max(map(len, shown), default=0)
         return "\n".join(f"{name:{width}}  {first[name]:.4g}" for name in shown)
 

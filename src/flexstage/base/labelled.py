@@ -10,8 +10,9 @@ import numpy as np
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
 
-_ROUNDING = 1e-15
-"""Of the largest entry: what is smaller is printed as 0."""
+NOISE = 1e-9
+NOISE_RULE = "0 stands for rounding noise: below 1e-9 of the geometric mean of the largest entries (SI) in the row and the column."
+"""The rule by which rounding noise is shown as 0; tables that use it say so."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,8 +74,7 @@ class Matrix(InNotebook):
             x  rx [m/rad]
         B1  1      -0.025
         """
-        first = self.values[(0,) * (self.values.ndim - 2)]
-        first = np.where(np.abs(first) < _ROUNDING * np.max(np.abs(first), initial=0.0), 0.0, first)
+        first = quiet(self.values[(0,) * (self.values.ndim - 2)])
         columns, rows, cells = self._units()
         lines = [["", *(_with(name, unit) for name, unit in zip(self.columns, columns, strict=True))]]
         for name, unit, values, own in zip(self.rows, rows, first, cells, strict=True):
@@ -98,6 +98,21 @@ class Matrix(InNotebook):
 
 def _with(text: str, unit: str, form: str = "{} [{}]") -> str:
     return text if unit in ("", "1") else form.format(text, unit)
+
+
+def quiet(values: Array, against: Array | None = None) -> Array:
+    """A copy of a matrix (rows, columns) in which rounding noise is 0 (`NOISE_RULE`); the argument is not changed.
+
+    `against` is the matrix of the same shape whose rows and columns set the scale (absent: the matrix itself).
+
+    >>> quiet(np.array([[1.0, 1e-15], [1e-15, 2.0]])).tolist()
+    [[1.0, 0.0], [0.0, 2.0]]
+    """
+    if not np.size(values):
+        return np.array(values)
+    sizes = np.nan_to_num(np.abs(values if against is None else against), nan=0.0, posinf=0.0)
+    scale = np.sqrt(sizes.max(axis=1, keepdims=True) * sizes.max(axis=0, keepdims=True))
+    return np.where(np.abs(values) < NOISE * scale, 0.0, values)
 
 
 def ratio_units(rows: tuple[str, ...], columns: tuple[str, ...]) -> tuple[tuple[str, ...], ...]:

@@ -1,7 +1,6 @@
 """Display units and numbers: how an SI value is shown to people. Documents for machines stay in SI and never pass here.
 
-A unit's preferred display form is left only where the numbers would become unreadable (all below 0.1, or above 100 000). Noise of
-rounding is shown as 0; the rule is `NOISE_RULE`, and tables that use it say so.
+A unit's preferred display form is left only where the numbers would become unreadable (all below 0.1, or above 100 000).
 """
 
 from __future__ import annotations
@@ -11,13 +10,8 @@ import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-import numpy as np
-
-from flexstage.base.number import Array
 from flexstage.base.quantity import Quantity
 
-NOISE = 1e-9
-NOISE_RULE = "0 stands for rounding noise: below 1e-9 of the geometric mean of the largest entries (SI) in the row and the column."
 DIGITS = 5
 NO_VALUE = "-"
 
@@ -178,21 +172,6 @@ def aligned(values: Iterable[float], digits: int = DIGITS) -> list[str]:
 
 def _decimals(text: str) -> int:
     return len(text.partition(".")[2])
-
-
-def quiet(values: Array, against: Array | None = None) -> Array:
-    """A copy of a matrix (rows, columns) in which rounding noise is 0 (`NOISE_RULE`); the argument is not changed.
-
-    `against` is the matrix of the same shape whose rows and columns set the scale (absent: the matrix itself).
-
-    >>> quiet(np.array([[1.0, 1e-15], [1e-15, 2.0]])).tolist()
-    [[1.0, 0.0], [0.0, 2.0]]
-    """
-    if not np.size(values):
-        return np.array(values)
-    sizes = np.nan_to_num(np.abs(values if against is None else against), nan=0.0, posinf=0.0)
-    scale = np.sqrt(sizes.max(axis=1, keepdims=True) * sizes.max(axis=0, keepdims=True))
-    return np.where(np.abs(values) < NOISE * scale, 0.0, values)
 
 
 def percent(share: float, digits: int = 4) -> str:

@@ -9,9 +9,9 @@ from typing import TypeAlias
 
 import numpy as np
 
-from flexstage.base.labelled import Matrix, ratio_units
+from flexstage.base.labelled import NOISE, NOISE_RULE, Matrix, quiet, ratio_units
 from flexstage.base.number import Array
-from flexstage.show.display import NO_VALUE, NOISE, NOISE_RULE, Shown, aligned, number, preferred, quiet, value_with_unit
+from flexstage.show.display import NO_VALUE, Shown, aligned, number, preferred, value_with_unit
 
 
 class Mark(Enum):

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from flexstage.analysis.trust import Trust
-from flexstage.show.display import NO_VALUE, NOISE, aligned, number, percent, preferred, value_with_unit
+from flexstage.base.labelled import NOISE
+from flexstage.show.display import NO_VALUE, aligned, number, percent, preferred, value_with_unit
 from flexstage.show.table import Cell, Column, Mark, Table, build, matrix_table
 
 if TYPE_CHECKING:

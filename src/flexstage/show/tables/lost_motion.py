@@ -7,8 +7,8 @@ from collections.abc import Iterable, Mapping
 import numpy as np
 
 from flexstage.analysis.lost_motion import LostMotion
-from flexstage.base.labelled import Matrix
-from flexstage.show.display import NOISE, number, percent
+from flexstage.base.labelled import NOISE, Matrix
+from flexstage.show.display import number, percent
 from flexstage.show.table import Cell, Column, Mark, Table, build, first_design, matrix_table
 
 ELSEWHERE = "other units"

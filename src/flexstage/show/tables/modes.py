@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from flexstage.analysis.modes import Modes
-from flexstage.show.display import NOISE, aligned, percent
+from flexstage.base.labelled import NOISE
+from flexstage.show.display import aligned, percent
 from flexstage.show.table import Cell, Column, Mark, Table, batch_note, build, first_design
 
 _FURTHER = 3

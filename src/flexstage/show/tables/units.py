@@ -6,7 +6,8 @@ from collections.abc import Mapping
 
 from flexstage.analysis.omitted import Omitted
 from flexstage.analysis.units import UnitResult
-from flexstage.show.display import NO_VALUE, NOISE, number, percent, value_with_unit
+from flexstage.base.labelled import NOISE
+from flexstage.show.display import NO_VALUE, number, percent, value_with_unit
 from flexstage.show.scene.primitives import plain
 from flexstage.show.table import Cell, Column, Mark, Table, build
 

@@ -13,9 +13,9 @@ from flexstage.analysis.workspace.polytope import Polytope
 from flexstage.analysis.workspace.room import Room
 from flexstage.analysis.workspace.stroke import Utilisation
 from flexstage.analysis.workspace.workspace import Workspace
-from flexstage.base.labelled import Matrix
+from flexstage.base.labelled import NOISE, Matrix
 from flexstage.base.number import Array, Number
-from flexstage.show.display import NO_VALUE, NOISE, Shown, number, percent, shown, value_with_unit
+from flexstage.show.display import NO_VALUE, Shown, number, percent, shown, value_with_unit
 from flexstage.show.table import Cell, Column, Mark, Table, build, figures, first_design
 from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
 

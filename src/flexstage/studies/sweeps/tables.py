@@ -8,7 +8,8 @@ from itertools import combinations
 import numpy as np
 
 from flexstage.analysis.requirements import Verdict, kind_of
-from flexstage.show.display import NO_VALUE, NOISE, number, value_with_unit
+from flexstage.base.labelled import NOISE
+from flexstage.show.display import NO_VALUE, number, value_with_unit
 from flexstage.show.table import Cell, Column, Mark, Table, build
 from flexstage.studies.sweeps.definition import Study
 from flexstage.studies.sweeps.effects import Effects
