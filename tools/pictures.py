@@ -43,9 +43,11 @@ from flexstage.mechanism.address import get, set_value
 from flexstage.show.figures.budget import loss_figure
 from flexstage.show.figures.directional import directional_figure
 from flexstage.show.figures.export import to_png, to_svg
+from flexstage.show.figures.response import response_figure
 from flexstage.show.figures.style import FULL, INK, PAPER, SERIES, canvas, styled
 from flexstage.show.plan import plan_figure
 from flexstage.show.scene.facet import Facet, Kind
+from flexstage.show.scene.pictures import stage_picture
 from flexstage.show.scene.stage import Scene, displaced, largest_motion, scene
 from flexstage.show.scene.view import Side, draw, ordered, outline, triad, view, write
 from flexstage.solid.fea.fineness import Fineness, Reduction
@@ -105,6 +107,18 @@ def _framed(axes: Any, facets: list[Facet], side: Side) -> None:
     axes.set_ylim(flat[:, 1].min() - gap, flat[:, 1].max() + gap)
     axes.set_aspect("equal")
     axes.set_axis_off()
+
+
+def guide() -> Any:
+    """The parallelogram of the page on theory."""
+    return stage_picture(scene(fs.case("parallelogram")))
+
+
+def sine() -> Any:
+    """The response of the parallelogram's platform to its stack."""
+    model = fs.lumped(fs.case("parallelogram"))
+    frequencies = np.geomspace(10.0, 4000.0, 800)
+    return response_figure(fs.response(model, ["platform.x"], ["B"], frequencies, damping=fs.ModalDamping(0.01)), fs.modes(model))
 
 
 def modes() -> Any:
@@ -318,6 +332,11 @@ def loop_noise() -> Any:
 
 DRAWN: Mapping[str, tuple[Callable[[], Any], str]] = {
     "stage": (stage, "the double-triangular stage from above the corner, from above, from the front and from the right"),
+    "guide": (guide, "a platform on two straight flexures, pushed by one stack"),
+    "sine": (
+        sine,
+        "response of the platform to the stack over frequency: level, a peak at 1674 Hz, then falling",
+    ),
     "plan": (plan, "dimensioned plan of the double-triangular stage"),
     "polar": (polar, "stiffness of the double-triangular stage in the plane by direction: circles"),
     "budget": (budget, "lost motion of the six actuators by hinge"),

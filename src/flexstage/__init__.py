@@ -9,7 +9,7 @@ from importlib import import_module
 
 from flexstage.base.lazy import lazily
 
-__version__ = "0.1.0"
+__version__ = "0.2.0"
 
 WINGS = ("solid", "experiment", "control", "studies")
 HOMES = {

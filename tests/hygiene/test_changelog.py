@@ -8,7 +8,7 @@ import flexstage
 from tests.hygiene.source import ROOT, expect_none
 
 KINDS = {"Added", "Changed", "Deprecated", "Removed", "Fixed", "Security", "Numbers changed"}
-RELEASE = re.compile(r"\[Unreleased\]|\[(\d+\.\d+\.\d+)\] - \d{4}-\d{2}-\d{2}")
+RELEASE = re.compile(r"\[Unreleased\]|\[(\d+\.\d+\.\d+)\] - (?:unreleased|\d{4}-\d{2}-\d{2})")
 
 
 def headings(level: int) -> list[str]:
@@ -23,7 +23,7 @@ def test_title() -> None:
 def test_releases_have_a_version_and_a_date() -> None:
     releases = headings(2)
     expect_none((release for release in releases if not RELEASE.fullmatch(release)), "write [1.2.3] - 2026-01-31")
-    assert releases[0] == "[Unreleased]"
+    assert not any(release.endswith("unreleased") for release in releases[1:])
 
 
 def test_releases_descend() -> None:
@@ -39,3 +39,15 @@ def test_the_package_is_not_behind() -> None:
     released = [found[1] for release in headings(2) if (found := RELEASE.fullmatch(release)) and found[1]]
     current = tuple(map(int, flexstage.__version__.split(".")[:3]))
     assert all(tuple(map(int, version.split("."))) <= current for version in released)
+
+
+def test_the_citation_names_the_version() -> None:
+    cited = re.search(r"^version: (.*)$", (ROOT / "CITATION.cff").read_text(encoding="utf-8"), re.MULTILINE)
+    assert cited
+    assert cited[1] == flexstage.__version__
+
+
+def test_readme_has_no_links_that_an_index_page_breaks() -> None:
+    # The index shows it without the files beside it.
+    links = re.findall(r"\]\((?!https://|#)[^)]*\)", (ROOT / "README.md").read_text(encoding="utf-8"))
+    expect_none(links, "name the file in backticks, or give the whole address")

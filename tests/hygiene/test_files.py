@@ -5,9 +5,12 @@ from __future__ import annotations
 import re
 import subprocess
 import sys
+import venv
 import zipfile
 from collections.abc import Iterator
 from pathlib import Path
+
+import pytest
 
 from tests.hygiene.source import ROOT, SRC, expect_none, modules, tracked
 
@@ -65,12 +68,35 @@ def test_no_file_is_large() -> None:
     expect_none(large, "keep data small, or make it when it is needed")
 
 
+def build_wheel(folder: Path) -> Path:
+    command = [sys.executable, "-m", "hatchling", "build", "-t", "wheel", "-d", str(folder)]
+    subprocess.run(command, cwd=ROOT, capture_output=True, check=True)
+    (wheel,) = folder.glob("*.whl")
+    return wheel
+
+
 def test_the_wheel_holds_the_whole_package(tmp_path: Path) -> None:
     # Files that git ignores are left out of a wheel silently, unless pyproject.toml lists them as artifacts.
-    command = [sys.executable, "-m", "hatchling", "build", "-t", "wheel", "-d", str(tmp_path)]
-    subprocess.run(command, cwd=ROOT, capture_output=True, check=True)
-    (wheel,) = tmp_path.glob("*.whl")
+    wheel = build_wheel(tmp_path)
     packed = set(zipfile.ZipFile(wheel).namelist())
     here = {path.relative_to(SRC.parent).as_posix() for path in SRC.rglob("*") if path.is_file() and "__pycache__" not in path.parts}
     expect_none(here - packed, "list it under [tool.hatch.build] artifacts")
     assert "flexstage/apps/pinned.txt" in packed
+
+
+@pytest.mark.full
+def test_the_wheel_works_in_a_fresh_environment(tmp_path: Path) -> None:
+    """Installed with what it requires from the package index; its small twin is the comparison of the wheel with the source."""
+    wheel, folder = build_wheel(tmp_path), tmp_path / "fresh"
+    venv.create(folder, with_pip=True)
+    scripts = folder / ("Scripts" if sys.platform == "win32" else "bin")
+    for command in (
+        ["python", "-m", "pip", "install", "-q", str(wheel)],
+        ["flexstage", "--version"],
+        ["flexstage", "new", "stage.toml"],
+        ["flexstage", "check", "stage.toml"],
+        ["flexstage", "analyse", "stage.toml", "--report", "stage.html"],
+    ):
+        done = subprocess.run([scripts / command[0], *command[1:]], cwd=tmp_path, capture_output=True, text=True, check=False)
+        assert done.returncode == 0, f"{command}: {done.stdout}{done.stderr}"
+    assert (tmp_path / "stage.html").stat().st_size > 100_000
