@@ -156,7 +156,6 @@ class TableNode(Node):
 
     def child(self, value: Any, name: str) -> Node:
         """A value."""
-        del value, name
         return self.item
 
 
@@ -172,7 +171,6 @@ class OpenNode(Node):
 
     def schema(self, definitions: Definitions) -> dict[str, Any]:
         """An object of any values."""
-        del definitions
         return {"type": "object", "description": self.said}
 
     def wanted(self, value: Any) -> Wanted:
@@ -300,7 +298,6 @@ class RecordNode(Node):
 
     def child(self, value: Any, name: str) -> Node:
         """A field."""
-        del value
         return self.fields[name].node
 
     def key(self, value: Any, name: str) -> str:

@@ -148,32 +148,26 @@ class Node:
 
     def members(self, value: Any) -> Iterator[tuple[str, Node, Any]]:
         """Name, node and value of what a value holds; absent values are left out."""
-        del value
         return iter(())
 
     def child(self, value: Any, name: str) -> Node:
         """The node of the member of that name (see `path.member`); `value` decides between alternatives."""
-        del value
         raise KeyError(name)
 
     def key(self, value: Any, name: str) -> Any:
         """What a member is called in a file."""
-        del value
         return COMPONENTS.index(name) if self.components else name
 
     def field_called(self, value: Any, key: str) -> str:
         """The field that a file calls so by what it holds (`polar` for `pattern`); otherwise the key itself."""
-        del value
         return key
 
     def parse(self, text: str, where: str) -> Any:
         """The value that the text of an assignment means (`1.4 mm`, `x`, `steel`); raises `DesignError` at `where`."""
-        del text
         raise refuse(where, "it has several values", "Set one of them, for example its x")
 
     def fit(self, value: Any, where: str) -> Any:
         """A frozen value as it is kept; raises `DesignError` at `where` if it is of another kind."""
-        del where
         return value
 
     def check(self, value: Any, where: str) -> Iterator[Finding]:
@@ -214,7 +208,6 @@ class NumberNode(Node):
 
     def read(self, raw: Any, where: str, reader: Reader) -> float:
         """The number in SI."""
-        del reader
         return self.si(raw, where)
 
     def si(self, raw: Any, where: str) -> float:
@@ -230,13 +223,11 @@ class NumberNode(Node):
 
     def write(self, value: Any, where: str, writer: Writer) -> Any:
         """The shortest text that is read back to the same bits; a ratio as it is."""
-        del writer
         require_single(value, where)
         return value if self.quantity is RATIO else show(value, self.quantity)
 
     def schema(self, definitions: Definitions) -> dict[str, Any]:
         """A text whose unit the example shows."""
-        del definitions
         said = f", {self.bound.text()}" if self.bound and self.bound.text() else ""
         text = {"type": "string", "pattern": _WITH_UNIT}
         told = {"description": f"{self.quantity.name}{said}", "examples": [self.quantity.example]}
@@ -305,7 +296,6 @@ class VectorNode(Node):
 
     def child(self, value: Any, name: str) -> Node:
         """A component."""
-        del value
         return self.items[COMPONENTS.index(name)]
 
     def fit(self, value: Any, where: str) -> Any:
@@ -337,14 +327,12 @@ class DirectionNode(Node):
 
     def write(self, value: Any, where: str, writer: Writer) -> Any:
         """Its name, or its components."""
-        del writer
         for item in value:
             require_single(item, where)
         return next((name for name, direction in DIRECTIONS.items() if repr(direction) == repr(value)), list(value))
 
     def schema(self, definitions: Definitions) -> dict[str, Any]:
         """A name or three numbers."""
-        del definitions
         return {"oneOf": [{"enum": list(DIRECTIONS)}, row_schema([{"type": "number"}] * 3)]}
 
     def wanted(self, value: Any) -> Wanted:
@@ -353,7 +341,6 @@ class DirectionNode(Node):
 
     def child(self, value: Any, name: str) -> Node:
         """A component."""
-        del value, name
         return NumberNode(RATIO)
 
     def parse(self, text: str, where: str) -> Any:
@@ -408,7 +395,6 @@ class RowNode(Node):
         >>> RowNode(0).child(None, "rz").quantity.name, RowNode(3).child(None, "rx").quantity.name
         ('coupling compliance', 'rotational compliance')
         """
-        del value
         rotations = (self.row > 2) + (COMPONENTS.index(name) > 2)
         return NumberNode((COMPLIANCE, COUPLING, ROTATIONAL_COMPLIANCE)[rotations])
 
@@ -448,7 +434,6 @@ class MatrixNode(Node):
 
     def child(self, value: Any, name: str) -> Node:
         """A row."""
-        del value
         return RowNode(COMPONENTS.index(name))
 
 
@@ -469,12 +454,10 @@ class WholeNode(Node):
 
     def write(self, value: Any, where: str, writer: Writer) -> Any:
         """The number."""
-        del where, writer
         return value
 
     def schema(self, definitions: Definitions) -> dict[str, Any]:
         """An integer."""
-        del definitions
         return {"type": "integer", **_limits(self.bound)}
 
     def wanted(self, value: Any) -> Wanted:
@@ -494,12 +477,10 @@ class FlagNode(Node):
 
     def write(self, value: Any, where: str, writer: Writer) -> bool:
         """True or false."""
-        del where, writer
         return bool(value)
 
     def schema(self, definitions: Definitions) -> dict[str, Any]:
         """A boolean."""
-        del definitions
         return {"type": "boolean"}
 
     def wanted(self, value: Any) -> Wanted:
@@ -520,12 +501,10 @@ class TextNode(Node):
 
     def write(self, value: Any, where: str, writer: Writer) -> str:
         """The text."""
-        del writer
         return whole_text(value, where)
 
     def schema(self, definitions: Definitions) -> dict[str, Any]:
         """A string."""
-        del definitions
         return {"type": "string"}
 
     def wanted(self, value: Any) -> Wanted:
@@ -538,7 +517,6 @@ class TextNode(Node):
 
     def parse(self, text: str, where: str) -> str:
         """The text itself."""
-        del where
         return text
 
     def fit(self, value: Any, where: str) -> Any:
@@ -575,12 +553,10 @@ class ChoiceNode(Node):
 
     def write(self, value: Any, where: str, writer: Writer) -> Any:
         """Its name."""
-        del where, writer
         return value.value
 
     def schema(self, definitions: Definitions) -> dict[str, Any]:
         """One of the names."""
-        del definitions
         return {"enum": list(self.words), "description": meaning(self.choices)}
 
     def wanted(self, value: Any) -> Wanted:
@@ -608,7 +584,6 @@ class AmountNode(Node):
 
     def schema(self, definitions: Definitions) -> dict[str, Any]:
         """A text with a unit, or a number."""
-        del definitions
         return {"anyOf": [{"type": "number"}, {"type": "string", "pattern": _WITH_UNIT}], "description": "with its unit, or in percent"}
 
 
@@ -629,7 +604,6 @@ class TextsNode(Node):
 
     def schema(self, definitions: Definitions) -> dict[str, Any]:
         """A string or an array of them."""
-        del definitions
         return {"oneOf": [{"type": "string"}, {"type": "array", "items": {"type": "string"}, "minItems": 1}]}
 
 
