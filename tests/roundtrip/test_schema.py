@@ -221,6 +221,13 @@ def test_mistakes_in_a_study_are_refused_by_all_commands(old: str, new: str) -> 
             read(text)
 
 
+def test_a_study_may_name_anything_as_it_likes() -> None:
+    """A study has no tags: the word is a name as any other."""
+    text = STUDY.replace("young = {", "tags = {")
+    assert fits(text, study_schema())
+    assert [each.name for each in loads_study(text).variables] == ["tags", "leaf"]
+
+
 def test_a_hysteresis_file_fits() -> None:
     envelope = Envelope(np.array([0.0, 50.0, 100.0]), np.array([0.0, 40.0, 100.0]))
     model = PrandtlIshlinskii([0.0, 50.0], [1e-7, 2e-8], envelope)
