@@ -38,7 +38,10 @@ ROOT = Path(__file__).resolve().parents[1]
 
 # What is meant to differ: regular expression at BASE -> what it is in the working tree.
 WORDS: Mapping[str, str] = {}  # of command lines and of the files that they read, as r"--reading" -> "--model"
-TEXTS: Mapping[str, str] = {}  # of terminal, HTML and other text, as r"\breading\b" -> "model"
+TEXTS: Mapping[str, str] = {  # of terminal, HTML and other text, as r"\breading\b" -> "model"
+    r"^(# [a-z0-9-]+: .*\.)$": "#:schema ./flexstage.schema.json\n\\1",
+    r"^(# flexstage check \S+ .*)$": "\\1\n# flexstage schema > flexstage.schema.json lets an editor check this file while you type.",
+}
 PATHS: Mapping[str, str] = {  # in JSON, MAT and HDF5, as r"^reading$" -> "model"
     r"^([a-z-]+\.)?method$": r"\1provenance",
     r"^modes\.platform_modes": "modes.platform",

@@ -247,7 +247,7 @@ def _top(path: str, other: Document) -> str:
 
 def compared_texts(old: Sequence[str], new: Sequence[str], meant: Meant) -> Iterator[Finding]:
     """Two texts, by what was put for what; five differences are told of each."""
-    old = [respelled(line, meant.texts) for line in old]
+    old = [part for line in old for part in respelled(line, meant.texts).split("\n")]
     if old == new:
         yield EQUAL, ""
         return
