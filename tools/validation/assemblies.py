@@ -86,7 +86,7 @@ def _bridge() -> Section:
         tenth = Tolerance(0.1 * (1.0 / math.tan(math.radians(angle)) - float(value)))
         rows.append(Row(f"{angle:g} deg, our leaf", "the same", value, amplification(angle * fs.deg, slender=False), "1", tenth))
     rigid = fs.ideal(bridge(Bridge(angle=6 * fs.deg)))
-    rows.append(Row("6 deg, ideal", "cot(angle)", "9.5144", float(np.abs(rigid.jacobian[1, 0]))))
+    rows.append(Row("6 deg, ideal", "cot(angle)", "9.5144", float(np.abs(rigid.jacobian.values[1, 0]))))
     text = (
         "E = 70 GPa, leaves 5 x 0.5 x 10 mm, bars of 20 mm. The closed form is Euler-Bernoulli; our leaf has shear and plate action "
         "besides, which may change what the bridge loses against the ideal by a tenth."

@@ -85,6 +85,7 @@ class Shaped(Elastic):
     parts bend along their whole length, so that their ends may shift sideways.
     """
 
+    material: str
     slender: ClassVar[bool] = False
 
     @property
