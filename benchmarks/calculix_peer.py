@@ -1,4 +1,4 @@
-"""A hinge solved by the solid reading and by CalculiX: three static loads and six frequencies, time and peak memory of whole processes.
+"""A hinge solved by the solid model and by CalculiX: three static loads and six frequencies, time and peak memory of whole processes.
 
 First on one mesh with elements of order two, then ours of order three on a coarser mesh, all held against order four. Each run is a process
 of its own on one thread, reading its mesh from a file: ours pays for Python's imports, CalculiX for text. Differences from the reference

@@ -51,8 +51,8 @@ def main() -> None:
     matrix = matrix + matrix.T
     steps = {
         "description": double_triangle,
-        "ideal reading": lambda: ideal(double_triangle()),
-        "lumped reading": lambda: lumped(double_triangle()),
+        "ideal model": lambda: ideal(double_triangle()),
+        "lumped model": lambda: lumped(double_triangle()),
         "modes": lambda: modes(model),
         "lost motion": lambda: lost_motion(ideal(double_triangle()), model),
         "contact of outlines": lambda: contact_findings.__wrapped__(double_triangle()),

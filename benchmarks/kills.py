@@ -93,10 +93,10 @@ SCENES = (
     Scene("optimise", "optimise study.toml -o o.toml --json o.json", "o.toml o.json"),
     Scene("front", "optimise front.toml --report o.html --json o.json", "o.html o.json"),
     Scene("tolerance", "tolerance study.toml -o t.h5 --workers 1 --json t.json", "t.h5 t.json", "--resume", fresh=True),
-    Scene("rig uff", "rig stage.toml --seconds 2 --reading mapped -o w.uff", "w.uff"),
-    Scene("rig hdf5", "rig stage.toml --seconds 2 --reading mapped -o w.h5", "w.h5"),
-    Scene("rig mat", "rig stage.toml --seconds 2 --reading mapped -o w.mat", "w.mat"),
-    Scene("rig csv", "rig stage.toml --seconds 2 --reading mapped -o w.csv", "w.csv"),
+    Scene("rig uff", "rig stage.toml --seconds 2 --model mapped -o w.uff", "w.uff"),
+    Scene("rig hdf5", "rig stage.toml --seconds 2 --model mapped -o w.h5", "w.h5"),
+    Scene("rig mat", "rig stage.toml --seconds 2 --model mapped -o w.mat", "w.mat"),
+    Scene("rig csv", "rig stage.toml --seconds 2 --model mapped -o w.csv", "w.csv"),
     Scene("identify", "identify record.uff --report i.html --json i.json", "i.html i.json"),
     Scene("update", "update stage.toml --record record.uff --free leaf.thickness -o u.toml --json u.json", "u.toml u.json"),
     Scene("plan", "plan stage.toml -o p.svg", "p.svg"),
@@ -144,7 +144,7 @@ def prepared(folder: Path, scenes: Sequence[Scene]) -> dict[str, dict[str, bytes
     write(folder / "stack.csv", example_record())
     made = {}
     for name, record in (("stage", "record"), ("rods", "rods")):
-        ended(folder, f"rig {name}.toml --seconds 2 --reading mapped -o {record}.uff")
+        ended(folder, f"rig {name}.toml --seconds 2 --model mapped -o {record}.uff")
     read = set(folder.iterdir())
     for scene in scenes:
         ended(folder, scene.words)

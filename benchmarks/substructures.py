@@ -31,7 +31,7 @@ COUNT = 6
 
 @dataclass(frozen=True, eq=False)
 class Run:
-    """Seconds of the reading alone, peak memory of its processes together [MB], and the platform's frequencies [Hz]."""
+    """Seconds of the model alone, peak memory of its processes together [MB], and the platform's frequencies [Hz]."""
 
     seconds: float
     memory: float
@@ -39,14 +39,14 @@ class Run:
 
 
 def run(how: str, folder: Path) -> Run:
-    """One reading in a process of its own."""
+    """One model in a process of its own."""
     peak = 0.0
     with subprocess.Popen([sys.executable, str(Path(__file__).resolve()), how, str(folder)]) as process:
         while process.poll() is None:
             peak = max(peak, sum(_memory(each) for each in _tree(process.pid)))
             time.sleep(PERIOD)
     if process.returncode:
-        raise RuntimeError(f"the {how} reading ended with {process.returncode}")
+        raise RuntimeError(f"the {how} model ended with {process.returncode}")
     with np.load(folder / f"{how}.npz") as stored:
         return Run(float(stored["seconds"]), peak, stored["frequencies"])
 
@@ -71,7 +71,7 @@ def _memory(process: int) -> float:
 
 
 def child(how: str, folder: Path) -> None:
-    """What the process of one reading does."""
+    """What the process of one model does."""
     from flexstage.analysis.modes import modes
     from flexstage.cases.double_triangle import double_triangle
     from flexstage.solid.fea.cache import Cache

@@ -37,12 +37,16 @@ ROOT = Path(__file__).resolve().parents[1]
 
 
 # What is meant to differ: regular expression at BASE -> what it is in the working tree.
-WORDS: Mapping[str, str] = {}  # of command lines and of the files that they read, as r"--reading" -> "--model"
-TEXTS: Mapping[str, str] = {  # of terminal, HTML and other text, as r"\breading\b" -> "model"
+WORDS: Mapping[str, str] = {r"--reading": "--model", r"^reading = ": "model = "}  # of command lines and of the files that they read
+TEXTS: Mapping[str, str] = {  # of terminal, HTML and other text
+    r"(?<!gauge's )\breading\b": "model",
+    r"(for all|What|connect) readings": r"\1 models",
+    "The theories a stage can be read by": "Models of theory",
     r"^(# [a-z0-9-]+: .*\.)$": "#:schema ./flexstage.schema.json\n\\1",
     r"^(# flexstage check \S+ .*)$": "\\1\n# flexstage schema > flexstage.schema.json lets an editor check this file while you type.",
 }
-PATHS: Mapping[str, str] = {  # in JSON, MAT and HDF5, as r"^reading$" -> "model"
+PATHS: Mapping[str, str] = {  # in JSON, MAT and HDF5
+    r"\breading$": "model",
     r"^([a-z-]+\.)?method$": r"\1provenance",
     r"^modes\.platform_modes": "modes.platform",
     r"^(lost-motion\.)?gain_matrix": r"\1gain",

@@ -59,7 +59,7 @@ def set_up(wanted: str) -> None:
         pip("--require-hashes", "-r", str(ROOT / "requirements" / f"{lock}.txt"))
     pip("--no-deps", "--no-build-isolation", "-e", str(ROOT))
     if said := quadmath.provide(site_packages()):
-        print(f"NGSolve, the solver of the solid reading, may not load: {said}. Everything else works.", file=sys.stderr)
+        print(f"NGSolve, the solver of the solid model, may not load: {said}. Everything else works.", file=sys.stderr)
     present = sorted(installed())
     for covered in COVERS[wanted]:
         stamp_path(covered).write_text(json.dumps({"digest": digest(covered), "root": str(ROOT), "installed": present}, indent=1))

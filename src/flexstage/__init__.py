@@ -46,7 +46,7 @@ HOMES = {
     "analysis.drift": "drift",
     "analysis.sensitivities": "sensitivities",
     "analysis.workspace.workspace": "workspace",
-    "analysis.complete": "Reading analyse",
+    "analysis.complete": "Model analyse",
     "analysis.budget": "budget",
     "show.report": "report",
 }

@@ -3,7 +3,7 @@ from flexstage.analysis.budget import (
     budget as budget,
 )
 from flexstage.analysis.complete import (
-    Reading as Reading,
+    Model as Model,
     analyse as analyse,
 )
 from flexstage.analysis.deflection import (

@@ -82,8 +82,8 @@ def _scale(kinematics) -> np.ndarray:
     return length[:, None] / length
 
 
-def test_what_gains_by_another_reading_leave():
-    """Gains by the mapped reading on the lumped stage, and the other way round: the numbers of a static solve made here."""
+def test_what_gains_by_another_model_leave():
+    """Gains by the mapped model on the lumped stage, and the other way round: the numbers of a static solve made here."""
     stage = double_triangle()
     kinematics, plants = ideal(stage), {"mapped": mapped(stage), "lumped": lumped(stage)}
     losts = {name: lost_motion(kinematics, model) for name, model in plants.items()}
@@ -95,7 +95,7 @@ def test_what_gains_by_another_reading_leave():
         np.testing.assert_allclose(found.error.values * scale, solved * scale, atol=1e-12)
         assert found.largest == pytest.approx(np.max(np.abs(solved * scale)), abs=1e-12)
         left[gains, on] = found.largest
-    # the mapped reading loses nothing: its gains are R_a, and leave on the lumped stage all that is lost
+    # the mapped model loses nothing: its gains are R_a, and leave on the lumped stage all that is lost
     assert left["mapped", "lumped"] == pytest.approx(static_error(uncompensated(kinematics), kinematics, losts["lumped"].gain).largest)
     assert left["lumped", "lumped"] < 1e-9 < left["mapped", "lumped"]
     assert left["lumped", "mapped"] > 1e-3

@@ -128,7 +128,7 @@ def test_integrators_stop_where_the_actuator_stops(law):
 
 
 def test_modal_loops_decouple_a_stage_of_massless_units():
-    """Every loop an oscillator of static gain 1, and nothing crosses, by the mapped reading."""
+    """Every loop an oscillator of static gain 1, and nothing crosses, by the mapped model."""
     stage = double_triangle()
     model, kinematics = mapped(stage), ideal(stage)
     found = modes(model)

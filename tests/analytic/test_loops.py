@@ -222,11 +222,11 @@ def test_every_stage_closes(name):
     assert np.allclose(estimated.transfer(np.zeros(1))[0], np.eye(len(own)), atol=1e-7)
 
 
-@pytest.mark.parametrize("reading", [lumped, mapped])
-def test_plants_keep_static_gains(reading):
-    """Whatever modes are kept, the stage under strokes at rest is the one of the reading."""
+@pytest.mark.parametrize("theory", [lumped, mapped])
+def test_plants_keep_static_gains(theory):
+    """Whatever modes are kept, the stage under strokes at rest is the one of the whole model."""
     stage = double_triangle()
-    model = reading(stage)
+    model = theory(stage)
     for modes in (6, None):
         one = plant(model, ideal(stage), hardware(stage, rate=10e3), modes=modes)
         outputs = [*(f"gap.{name}" for name in one.gauges), "relative.x", "platform.x"]

@@ -33,7 +33,7 @@ from flexstage.models.mapped import mapped
 
 @pytest.fixture(scope="module")
 def oscillator():
-    """The one-axis stage by the mapped reading: a single mode of 1 %, static gain 1, continuous."""
+    """The one-axis stage by the mapped model: a single mode of 1 %, static gain 1, continuous."""
     stage = parallelogram()
     return plant(mapped(stage), ideal(stage), Hardware())
 

@@ -176,10 +176,10 @@ def test_bad_options_are_refused(flexstage: Command, arguments: tuple[str, ...],
     ("arguments", "said"),
     [
         (
-            ("analyse", "stage.toml", "--reading", "solid"),
-            '--reading: "solid" is none of ideal, mapped, lumped. Solids have commands of their own: flexstage solid, flexstage verify.',
+            ("analyse", "stage.toml", "--model", "solid"),
+            '--model: "solid" is none of ideal, mapped, lumped. Solids have commands of their own: flexstage solid, flexstage verify.',
         ),
-        (("modes", "stage.toml", "--reading", "lumpd"), '--reading: "lumpd" is none of ideal, mapped, lumped.'),
+        (("modes", "stage.toml", "--model", "lumpd"), '--model: "lumpd" is none of ideal, mapped, lumped.'),
         (("solid", "stage.toml", "--what", "hinges"), '--what: "hinges" is none of hinge, unit, stage.'),
     ],
 )
@@ -190,9 +190,16 @@ def test_words_that_are_no_choice_are_told_in_one_line(flexstage: Command, argum
     assert ended.err == f"error: {said}\n"
 
 
-@pytest.mark.parametrize("reading", ["ideal", "mapped", "lumped"])
-def test_words_that_are_a_choice_are_taken(flexstage: Command, reading: str) -> None:
-    assert flexstage("mapping", "stage.toml", "--reading", reading, "--json", "-").document["reading"] == reading
+@pytest.mark.parametrize("model", ["ideal", "mapped", "lumped"])
+def test_words_that_are_a_choice_are_taken(flexstage: Command, model: str) -> None:
+    assert flexstage("mapping", "stage.toml", "--model", model, "--json", "-").document["model"] == model
+
+
+@pytest.mark.parametrize("words", [("--reading", "mapped"), ("--reading=mapped",)])
+def test_an_option_by_its_old_name_is_refused_with_the_new_one(flexstage: Command, words: tuple[str, ...]) -> None:
+    ended = flexstage("modes", "stage.toml", *words)
+    assert (ended.code, ended.out) == (2, "")
+    assert "--reading: this option is not known. It is called --model." in ended.err
 
 
 @pytest.mark.parametrize("arguments", [("analyze", "stage.toml"), ("modes",), ("new",), ("plan", "stage.toml")])

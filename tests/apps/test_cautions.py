@@ -173,7 +173,7 @@ def reported(flexstage: Command, tmp_path: Path) -> Command:
 @pytest.mark.parametrize(("words", "expected"), REPORTED.items())
 def test_every_report_tells_the_cautions_of_the_document(reported: Command, tmp_path: Path, words: str, expected: str) -> None:
     if "record" in words:
-        assert reported(*["rig", "stage.toml", "--seconds", "2", "--reading", "mapped", "-o", "record.uff"]).code == 0
+        assert reported(*["rig", "stage.toml", "--seconds", "2", "--model", "mapped", "-o", "record.uff"]).code == 0
     write(tmp_path / "stack.csv", example_record())
     beyond = ("--limits", "0 V", "1500 V") if "stack" in words else ("--set", "envelope.x=1 mm") if "stage.toml" in words else ()
     ended = reported(*words.split(), *beyond, "--json", "out.json", "--report", "out.html")
@@ -211,7 +211,7 @@ def test_every_command_with_a_report_is_looked_at() -> None:
 
 def test_without_stiffness_nothing_is_met(flexstage: Command, tmp_path: Path) -> None:
     leaves(tmp_path, 10.0)
-    frequency, buckling = flexstage("analyse", "stage.toml", "--reading", "ideal", "--json", "-").document["requirements"]
+    frequency, buckling = flexstage("analyse", "stage.toml", "--model", "ideal", "--json", "-").document["requirements"]
     assert "does not hold" in frequency["reason"]
     assert not frequency["passed"]
     assert not buckling["passed"]

@@ -1,4 +1,4 @@
-"""JSON documents of every command, for every reading: valid, complete, in agreement with the library and with one another."""
+"""JSON documents of every command, for every model: valid, complete, in agreement with the library and with one another."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ from tests.apps.command import Command, design_in
 from tests.hygiene.source import ROOT
 from tools.json_page import PAGE, written
 
-READINGS = ("ideal", "mapped", "lumped")
-WITH_READING = ("mapping", "stiffness", "lost-motion", "modes", "response", "workspace", "analyse")
+MODELS = ("ideal", "mapped", "lumped")
+WITH_MODEL = ("mapping", "stiffness", "lost-motion", "modes", "response", "workspace", "analyse")
 LUMPED_ONLY = ("drift", "sensitivities", "budget")
 WITHOUT_ELASTICITY = {"mapping", "workspace", "analyse"}
 
@@ -38,19 +38,19 @@ def matrices(value: Any) -> list[dict[str, Any]]:
     return [found for item in value for found in matrices(item)] if isinstance(value, list) else []
 
 
-@pytest.mark.parametrize("reading", READINGS)
-@pytest.mark.parametrize("name", WITH_READING)
-def test_every_command_gives_a_document_for_every_reading(flexstage: Command, name: str, reading: str) -> None:
-    ended = flexstage(name, "stage.toml", "--reading", reading, "--json", "-")
-    if reading == "ideal" and name not in WITHOUT_ELASTICITY:
+@pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize("name", WITH_MODEL)
+def test_every_command_gives_a_document_for_every_model(flexstage: Command, name: str, model: str) -> None:
+    ended = flexstage(name, "stage.toml", "--model", model, "--json", "-")
+    if model == "ideal" and name not in WITHOUT_ELASTICITY:
         assert ended.code == 2
         assert ended.out == ""
-        assert "--reading ideal" in ended.err
+        assert "--model ideal" in ended.err
         return
     assert ended.code == 0, ended.err
     document = ended.document
     assert document["format"] == FORMAT
-    assert (document["kind"], document["reading"], document["name"]) == (name, reading, "double triangle")
+    assert (document["kind"], document["model"], document["name"]) == (name, model, "double triangle")
     assert document["physics_digest"] == digest(load("stage.toml"), physics=True)
     assert matrices(document) or name == "response"
     for matrix in matrices(document):
@@ -63,7 +63,7 @@ def test_every_command_gives_a_document_for_every_reading(flexstage: Command, na
 def test_commands_of_the_lumped_reading_give_a_document(flexstage: Command, name: str) -> None:
     arguments = ["--parameter", "parts.neck.thickness"] if name == "sensitivities" else []
     document = flexstage(name, "stage.toml", *arguments, "--json", "-").document
-    assert (document["kind"], document["reading"]) == (name, "lumped")
+    assert (document["kind"], document["model"]) == (name, "lumped")
 
 
 def test_mapping_is_that_of_the_paper(flexstage: Command) -> None:
@@ -78,7 +78,7 @@ def test_mapping_is_that_of_the_paper(flexstage: Command) -> None:
 
 
 def test_stiffness_and_compliance_are_inverse(flexstage: Command) -> None:
-    document = flexstage("stiffness", "stage.toml", "--reading", "mapped", "--json", "-").document
+    document = flexstage("stiffness", "stage.toml", "--model", "mapped", "--json", "-").document
     assert np.array(document["compliance"]["values"]) @ np.array(document["stiffness"]["values"]) == pytest.approx(np.eye(6), abs=1e-9)
     assert document["held"]["tensor"]["values"] == pytest.approx(np.diag([15.4499e6] * 2), rel=1e-5, abs=1.0)
     assert document["held"]["tensor"]["unit"] == "N/m"
@@ -86,7 +86,7 @@ def test_stiffness_and_compliance_are_inverse(flexstage: Command) -> None:
 
 
 def test_mapped_modes_are_those_of_equation_28(flexstage: Command) -> None:
-    document = flexstage("modes", "stage.toml", "--reading", "mapped", "--json", "-").document
+    document = flexstage("modes", "stage.toml", "--model", "mapped", "--json", "-").document
     frequencies = [mode["frequency_hz"] for mode in document["modes"]]
     assert frequencies == pytest.approx([110.910, 110.910, 135.148, 145.505, 176.690, 176.690], rel=1e-5)
     assert [mode["in_plane"] for mode in document["modes"]] == [False, False, False, True, True, True]
@@ -151,13 +151,13 @@ def test_analyse_nests_the_documents_of_the_commands(flexstage: Command) -> None
         alone = flexstage(name, "stage.toml", "--json", "-").document
         common = {key: value for key, value in alone.items() if key in whole[name]}
         assert whole[name] == common, name
-        assert set(alone) - set(common) <= {"format", "kind", "version", "name", "reading", "physics_digest", "cautions", "defaults"}
+        assert set(alone) - set(common) <= {"format", "kind", "version", "name", "model", "physics_digest", "cautions", "defaults"}
     assert [line["passed"] for line in whole["requirements"]] == [True] * 8
     assert list(whole).index("requirements") < list(whole).index("mapping")
 
 
 def test_what_a_reading_does_not_give_is_null_with_a_reason(flexstage: Command) -> None:
-    document = flexstage("analyse", "stage.toml", "--reading", "ideal", "--json", "-").document
+    document = flexstage("analyse", "stage.toml", "--model", "ideal", "--json", "-").document
     for name in ("stiffness", "lost-motion", "modes", "response", "transmissibility", "drift", "budget"):
         assert document[name] is None
         assert document["reasons"][name]
@@ -194,7 +194,7 @@ def test_changes_are_told_old_new_and_relative(flexstage: Command) -> None:
     assert document["physics_digest"] != digest(double_triangle(), physics=True)
 
 
-ENVELOPE = {"format", "kind", "version", "name", "reading", "physics_digest", "cautions", "defaults", "method", "provenance", "reasons"}
+ENVELOPE = {"format", "kind", "version", "name", "model", "physics_digest", "cautions", "defaults", "method", "provenance", "reasons"}
 
 
 def page_section(kind: str) -> str:
@@ -203,10 +203,10 @@ def page_section(kind: str) -> str:
     return text.partition(f"\n## {kind}\n")[2].partition("\n## ")[0]
 
 
-@pytest.mark.parametrize("name", [*WITH_READING, *LUMPED_ONLY, "check", "catalogue"])
+@pytest.mark.parametrize("name", [*WITH_MODEL, *LUMPED_ONLY, "check", "catalogue"])
 def test_every_key_is_documented(flexstage: Command, name: str) -> None:
     extra = {"analyse": ["--set", "parts.neck.thickness=1.5mm"], "sensitivities": ["--parameter", "parts.neck.thickness"]}
-    extra |= {"mapping": ["--reading", "lumped"]}
+    extra |= {"mapping": ["--model", "lumped"]}
     design = [] if name == "catalogue" else ["stage.toml"]
     document = flexstage(name, *design, *extra.get(name, []), "--json", "-").document
     section = page_section(name)

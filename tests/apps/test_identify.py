@@ -40,7 +40,7 @@ def test_identify_gives_a_document(recorded: Command) -> None:
     ended = recorded("identify", "record.uff", "--stage", "stage.toml", "--json", "-")
     assert ended.code == 0, ended.err
     document = ended.document
-    assert (document["kind"], document["name"], document["reading"]) == ("identify", "double triangle", None)
+    assert (document["kind"], document["name"], document["model"]) == ("identify", "double triangle", None)
     assert document["physics_digest"] == digest(load("stage.toml"), physics=True)
     assert [each["kind"] for each in document["test"]] == ["record"]
     known = platform_modes(double_triangle(), lumped(double_triangle())).platform_frequencies
@@ -113,7 +113,7 @@ def test_compare_gives_a_document(recorded: Command) -> None:
     ended = recorded("compare", "stage.toml", "--record", "record.uff", "--json", "-")
     assert ended.code == 0, ended.err
     document = ended.document
-    assert (document["kind"], document["reading"]) == ("compare", "lumped")
+    assert (document["kind"], document["model"]) == ("compare", "lumped")
     assert [mode["name"] for mode in document["modes"]] == ["tilt", "tilt", "z", "yaw", "x", "y"]
     for mode in document["modes"]:
         assert abs(mode["theory_over_experiment"]) < 5e-4
@@ -123,12 +123,12 @@ def test_compare_gives_a_document(recorded: Command) -> None:
     assert "--fea" in ended.err
 
 
-def test_compare_takes_changes_and_readings(recorded: Command) -> None:
+def test_compare_takes_changes_and_models(recorded: Command) -> None:
     softer = recorded("compare", "stage.toml", "--record", "record.uff", "--set", "horizontal/front.thickness=1.4mm", "--json", "-")
     assert softer.document["modes"][3]["theory_over_experiment"] < -0.002
-    mapped = recorded("compare", "stage.toml", "--record", "record.uff", "--reading", "mapped", "--json", "-")
-    assert mapped.document["reading"] == "mapped"
-    assert recorded("compare", "stage.toml", "--record", "record.uff", "--reading", "ideal").code == 2
+    mapped = recorded("compare", "stage.toml", "--record", "record.uff", "--model", "mapped", "--json", "-")
+    assert mapped.document["model"] == "mapped"
+    assert recorded("compare", "stage.toml", "--record", "record.uff", "--model", "ideal").code == 2
 
 
 def test_records_of_single_actuators_are_put_together(flexstage: Command, tmp_path: Path) -> None:

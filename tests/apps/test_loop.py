@@ -82,7 +82,7 @@ def test_options_go_before_the_set_up_file(guide: Command, tmp_path: Path) -> No
 
 def test_every_option_is_heard(guide: Command) -> None:
     said = {
-        "--reading": "mapped",
+        "--model": "mapped",
         "--delay": "30 us",
         "--controller": "pid",
         "--coordinates": "actuator",
@@ -99,7 +99,7 @@ def test_every_option_is_heard(guide: Command) -> None:
     ended = guide("loop", "stage.toml", *words, "--amplifier", "3 kHz", "--amplifier", "0.3 A", "--json", "-", "--seconds", "0.1")
     assert ended.code == 0, ended.err
     setup = ended.document["setup"]
-    assert (setup["reading"], setup["delay"], setup["compensate"], setup["seed"]) == ("mapped", 3e-5, ["reference"], 5)
+    assert (setup["model"], setup["delay"], setup["compensate"], setup["seed"]) == ("mapped", 3e-5, ["reference"], 5)
     assert (setup["controller"]["kind"], setup["controller"]["coordinates"]) == ("pid", "actuator")
     assert (setup["controller"]["bandwidth"], setup["controller"]["sensitivity"]) == (60.0, 1.9)
     assert setup["floor"]["x"]["criterion"] == "VC-C"
@@ -270,7 +270,7 @@ BAD: tuple[tuple[tuple[str, ...], tuple[str, ...]], ...] = (
     (("--compensate", "hysteresis"), ("compensate", "the stacks have none")),
     (("--hysteresis", "nowhere.toml"), ("nowhere.toml", "no such file")),
     (("--hysteresis", "80 %"), ("hysteresis.width", "at most 0.5")),
-    (("--reading", "ideal"), ("rigid bodies have no stiffness",)),
+    (("--model", "ideal"), ("rigid bodies have no stiffness",)),
     (("--controller", "none", "--bandwidth", "5 Hz"), ("there is no loop to be tuned",)),
     (("--controller", "pidd"), ("--controller", "pi, pid, resonant, lqg, none")),
     (("--sensitivity", "0.9"), ("controller.sensitivity", "greater than 1")),
@@ -291,6 +291,13 @@ def test_bad_input_is_named_and_nothing_written(guide: Command, tmp_path: Path, 
     assert "Traceback" not in ended.err
     assert sorted(tmp_path.iterdir()) == before
     assert not ended.out
+
+
+def test_a_key_by_its_old_name_is_refused_with_the_new_one(guide: Command, tmp_path: Path) -> None:
+    (tmp_path / "loop.toml").write_text(f'format = "{FORMAT}"\nreading = "mapped"\n')
+    ended = guide("loop", "stage.toml", "--setup", "loop.toml")
+    assert (ended.code, ended.out) == (2, "")
+    assert "loop.toml: line 2: reading: this key is not known here. It is called model." in ended.err
 
 
 def test_an_unstable_loop_is_refused_with_what_makes_it_so(guide: Command, tmp_path: Path) -> None:

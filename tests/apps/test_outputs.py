@@ -86,7 +86,7 @@ def test_stdout_holds_one_output_only(flexstage: Command) -> None:
     ended = flexstage("analyse", "stage.toml", "--json", "-", "--report", "-")
     assert ended.code == 2
     assert "stdout is the output of --json too" in ended.err
-    page = flexstage("analyse", "stage.toml", "--reading", "ideal", "--report", "-")
+    page = flexstage("analyse", "stage.toml", "--model", "ideal", "--report", "-")
     assert page.out.startswith("<!doctype html>")
     assert page.out.rstrip().endswith("</html>")
 
@@ -173,7 +173,7 @@ def test_mat_holds_what_the_library_computes(flexstage: Command, tmp_path: Path)
 
 
 def test_state_space_in_mat_has_the_natural_frequencies_and_the_static_gain(flexstage: Command, tmp_path: Path) -> None:
-    flexstage("analyse", "stage.toml", "--mat", "out.mat", "--reading", "mapped")
+    flexstage("analyse", "stage.toml", "--mat", "out.mat", "--model", "mapped")
     found = loadmat(tmp_path / "out.mat", simplify_cells=True)
     space = found["state_space"]
     poles = np.abs(np.linalg.eigvals(space["A"])) / (2.0 * np.pi)
@@ -190,9 +190,9 @@ def test_plan_is_drawn_in_every_format(flexstage: Command, tmp_path: Path) -> No
         assert (tmp_path / f"plan.{ending}").read_bytes().startswith(start)
 
 
-@pytest.mark.parametrize("reading", ["ideal", *(pytest.param(name, marks=pytest.mark.full) for name in ("mapped", "lumped"))])
-def test_reports_stand_alone(flexstage: Command, tmp_path: Path, reading: str) -> None:
-    assert flexstage("analyse", "stage.toml", "--reading", reading, "--report", "report.html", "--json", "-").code == 0
+@pytest.mark.parametrize("model", ["ideal", *(pytest.param(name, marks=pytest.mark.full) for name in ("mapped", "lumped"))])
+def test_reports_stand_alone(flexstage: Command, tmp_path: Path, model: str) -> None:
+    assert flexstage("analyse", "stage.toml", "--model", model, "--report", "report.html", "--json", "-").code == 0
     text = (tmp_path / "report.html").read_text(encoding="utf-8")
     assert text.startswith("<!doctype html>")
     assert text.rstrip().endswith("</html>")
@@ -202,39 +202,39 @@ def test_reports_stand_alone(flexstage: Command, tmp_path: Path, reading: str) -
 
 @pytest.mark.parametrize("name", ["parallelogram", "tip-tilt-four", "xy-stage-floating"])
 def test_stages_with_locked_or_free_motions_are_reported(flexstage: Command, tmp_path: Path, name: str) -> None:
-    # By the mapped reading their platform has fewer than six freedoms: no stiffness matrix, no curve of it.
+    # By the mapped model their platform has fewer than six freedoms: no stiffness matrix, no curve of it.
     design_in(tmp_path, name)
-    reading = "lumped" if name == "xy-stage-floating" else "mapped"
-    ended = flexstage("analyse", "stage.toml", "--reading", reading, "--report", "report.html")
+    model = "lumped" if name == "xy-stage-floating" else "mapped"
+    ended = flexstage("analyse", "stage.toml", "--model", model, "--report", "report.html")
     assert ended.code == 0, ended.err
     assert (tmp_path / "report.html").read_text(encoding="utf-8").rstrip().endswith("</html>")
 
 
 WITHOUT = ["damping", "gauges", "require", "mode_limit", "opening", "place"]
 TOLD_APART = ["gauges", "place"]
-"""What the readings themselves do without in different ways; of the others the lumped reading alone is tried in the quick tests."""
+"""What the models themselves do without in different ways; of the others the lumped model alone is tried in the quick tests."""
 
 
 @pytest.mark.parametrize(
-    ("key", "reading"),
+    ("key", "model"),
     [
-        pytest.param(key, reading, marks=() if key in TOLD_APART or reading == "lumped" else pytest.mark.full)
+        pytest.param(key, model, marks=() if key in TOLD_APART or model == "lumped" else pytest.mark.full)
         for key in WITHOUT
-        for reading in ("ideal", "mapped", "lumped")
+        for model in ("ideal", "mapped", "lumped")
     ],
 )
-def test_stages_that_lack_something_are_analysed_as_far_as_they_go(flexstage: Command, tmp_path: Path, key: str, reading: str) -> None:
+def test_stages_that_lack_something_are_analysed_as_far_as_they_go(flexstage: Command, tmp_path: Path, key: str, model: str) -> None:
     design = design_in(tmp_path, "parallelogram")
     document = tomlkit.parse(design.read_text())
     document.pop(key, None)
     design.write_text(tomlkit.dumps(document))
-    ended = flexstage("analyse", "stage.toml", "--reading", reading, "--report", "report.html", "--mat", "out.mat", "--json", "out.json")
-    if (key, reading) == ("place", "mapped"):
+    ended = flexstage("analyse", "stage.toml", "--model", model, "--report", "report.html", "--mat", "out.mat", "--json", "out.json")
+    if (key, model) == ("place", "mapped"):
         assert ended.code == 2  # without strokes there is no unit whose stiffness could be taken
         return
     assert ended.code == 0, ended.err
     found = json.loads((tmp_path / "out.json").read_text())
-    if key == "damping" and reading != "ideal":
+    if key == "damping" and model != "ideal":
         assert found["response"] is None
         assert "damping" in found["reasons"]["response"]
     if key == "gauges":

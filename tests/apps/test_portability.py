@@ -36,7 +36,7 @@ COMMANDS = (
     "check stage.toml",
     "analyse stage.toml --report a.html --json a.json",
     "modes stage.toml",
-    "rig stage.toml --seconds 2 --reading mapped -o record.h5",
+    "rig stage.toml --seconds 2 --model mapped -o record.h5",
     "sweep study.toml -o s.h5 --workers 1",
     "identify record.h5",
     "loop stage.toml",

@@ -14,7 +14,7 @@ from flexstage.experiment.record import Record
 from flexstage.experiment.virtual_rig.samples import Simulated
 from tests.apps.command import Command
 
-SHORT = ("rig", "stage.toml", "--seconds", "2", "--reading", "mapped")
+SHORT = ("rig", "stage.toml", "--seconds", "2", "--model", "mapped")
 
 
 def record(path: Path) -> Record:
@@ -70,7 +70,7 @@ def test_every_option_is_heard(flexstage: Command, tmp_path: Path) -> None:
 
 
 def test_the_table_gives_the_rms_to_expect(flexstage: Command, tmp_path: Path) -> None:
-    ended = flexstage("rig", "stage.toml", "--seconds", "60", "--reading", "mapped", "-o", "record.h5")
+    ended = flexstage("rig", "stage.toml", "--seconds", "60", "--model", "mapped", "-o", "record.h5")
     (line,) = (line.split() for line in ended.out.splitlines() if line.split()[:1] == ["S4"])
     assert line[1:3] == ["output", "um"]
     found = np.std(record(tmp_path / "record.h5").select(["S4"]).values)
@@ -92,7 +92,7 @@ def test_the_table_gives_the_rms_to_expect(flexstage: Command, tmp_path: Path) -
         (("--band", "100 Hz", "50 Hz"), ("band", "100 Hz to 50 Hz")),
         (("--gauge-noise", "1 nm"), ("--gauge-noise", "noise density")),
         (("--drift", "2"), ("--drift", "without a unit")),
-        (("--reading", "ideal"), ("--reading ideal", "no modes")),
+        (("--model", "ideal"), ("--model ideal", "no modes")),
         (("--tap", "both"), ("--tap", "monitor, command")),
         (("-o", "record.xyz"), ("record.xyz", ".uff")),
         (("-o", "nowhere/record.uff"), ("no folder nowhere",)),
@@ -128,7 +128,7 @@ def test_an_interrupted_test_leaves_nothing(flexstage: Command, tmp_path: Path, 
 
     (tmp_path / name).write_text("old")
     monkeypatch.setattr(Simulated, "_computed", interrupted)
-    ended = flexstage("rig", "stage.toml", "--seconds", "60", "--reading", "mapped", "-o", name)
+    ended = flexstage("rig", "stage.toml", "--seconds", "60", "--model", "mapped", "-o", name)
     assert ended.code == 2
     assert ended.err.startswith("Interrupted; nothing was written.")
     assert (tmp_path / name).read_text() == "old"

@@ -180,7 +180,7 @@ main()
 """
 
 
-@pytest.mark.full  # its twins: the reading that was stopped, of the cache; the interruptions of processes, and of the command above
+@pytest.mark.full  # its twins: the run that was stopped, of the cache; the interruptions of processes, and of the command above
 @pytest.mark.skipif(sys.platform != "linux", reason="sends the signal of a keyboard")
 def test_an_interruption_ends_with_code_two_and_the_same_command_resumes(tmp_path: Path) -> None:
     drawn = propped(6e-3, 7e-3)

@@ -83,7 +83,7 @@ def test_exit_codes_do_not_depend_on_stderr(flexstage: Command, tmp_path: Path, 
     flexstage("version")  # in the folder of the design
     for arguments, code in (
         (("modes", "stage.toml", "--json", "out.json"), 0),
-        (("analyse", "stage.toml", "--reading", "ideal", "--require", "stroke.x = at least 1 m", "--strict"), 2),
+        (("analyse", "stage.toml", "--model", "ideal", "--require", "stroke.x = at least 1 m", "--strict"), 2),
         (("check", "nowhere.toml"), 2),
     ):
         with stream(2, how):
@@ -98,7 +98,7 @@ def test_files_appear_only_with_what_stdout_takes(flexstage: Command, tmp_path: 
     flexstage("version")
     with stream(1, how):
         assert run(arguments) == 2
-        assert run(("analyse", "stage.toml", "--reading", "ideal", "--json", "-", "--mat", "out.mat")) == 2
+        assert run(("analyse", "stage.toml", "--model", "ideal", "--json", "-", "--mat", "out.mat")) == 2
     assert [each.name for each in tmp_path.iterdir()] == ["stage.toml"]
 
 
@@ -177,8 +177,8 @@ def test_nothing_steers_the_terminal(flexstage: Command, tmp_path: Path) -> None
     assert design.read_text() != text
     for arguments in (
         ("check", "stage.toml"),
-        ("analyse", "stage.toml", "--reading", "ideal"),
-        ("analyse", "stage.toml", "--reading", "ideal", "--json", "-"),
+        ("analyse", "stage.toml", "--model", "ideal"),
+        ("analyse", "stage.toml", "--model", "ideal", "--json", "-"),
         ("modes", f"no{STEERING}where.toml"),
         (f"mo{STEERING}des",),
         ("modes", f"--no{STEERING}option"),
@@ -188,5 +188,5 @@ def test_nothing_steers_the_terminal(flexstage: Command, tmp_path: Path) -> None
     ):
         ended = flexstage(*arguments)
         assert not set(STEERING) & set(ended.out + ended.err), arguments
-    assert flexstage("analyse", "stage.toml", "--reading", "ideal", "--json", "-").document["name"].endswith(STEERING)
+    assert flexstage("analyse", "stage.toml", "--model", "ideal", "--json", "-").document["name"].endswith(STEERING)
     assert (tmp_path / f"o{STEERING}.json").exists()

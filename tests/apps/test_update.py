@@ -34,7 +34,7 @@ def test_update_writes_a_new_file_and_a_document(recorded: Command, tmp_path: Pa
     assert "Wrote updated.toml" in ended.err
     assert (tmp_path / "stage.toml").read_bytes() == before
     document = ended.document
-    assert (document["kind"], document["reading"]) == ("update", "lumped")
+    assert (document["kind"], document["model"]) == ("update", "lumped")
     neck = next(each for each in document["parameters"] if each["address"] == "parts.neck.thickness")
     assert neck["change"] == pytest.approx(0.05, abs=0.005)
     assert neck["interval"][0] < 1.617e-3 < neck["interval"][1]

@@ -47,5 +47,5 @@ def test_continued_lines_are_one_command():
 
 
 def test_pages_and_blocks_are_found():
-    assert {"README.md", "docs/readings.md", "docs/decisions/0001-currency.md"} <= set(pages())
+    assert {"README.md", "docs/models.md", "docs/decisions/0001-currency.md"} <= set(pages())
     assert [block.language for block in blocks("README.md")].count("python") == 1

@@ -1,4 +1,4 @@
-"""The solid reading's elements against CalculiX, an independent finite-element code: the same meshes, the same order, solved there.
+"""The solid model's elements against CalculiX, an independent finite-element code: the same meshes, the same order, solved there.
 
 `ccx` runs where it is on the PATH ("run"); what it printed once is compared everywhere, on the meshes stored with it ("stored"). Elements
 of order two are the same polynomials in both codes, so static answers agree to the seven digits that are printed, curved or not.
@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 
-pytest.importorskip("ngsolve", reason="the solid reading needs flexstage[solid]")
+pytest.importorskip("ngsolve", reason="the solid model needs flexstage[solid]")
 
 from flexstage.solid.fea.mesh import Meshed
 from tests.elsewhere.calculix.deck import deck, printed_solution, program, run

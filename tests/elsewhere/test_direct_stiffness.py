@@ -1,4 +1,4 @@
-"""The whole lumped reading against a second, plain assembly of the same description (`direct_stiffness`), on random stages, to 1e-12."""
+"""The whole lumped model against a second, plain assembly of the same description (`direct_stiffness`), on random stages, to 1e-12."""
 
 from __future__ import annotations
 

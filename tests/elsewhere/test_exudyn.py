@@ -1,4 +1,4 @@
-"""Lumped reading against Exudyn, an independent multibody code: the same stage, assembled, linearised and solved there.
+"""Lumped model against Exudyn, an independent multibody code: the same stage, assembled, linearised and solved there.
 
 The numbers are made at test time by the pinned version of Exudyn; `exudyn_model` says what is shared and what is not.
 """

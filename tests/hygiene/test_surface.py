@@ -19,7 +19,7 @@ import flexstage
 PACKAGE = Path(flexstage.__file__).parent
 HEAVY = {"numpy", "scipy", "pydantic", "pint", "matplotlib", "pandas", "xarray"}
 SOLVER = {"ngsolve", "netgen", "pyngcore", "ngsolve_openblas", "meshio", "pygltflib"}
-"""What only the solid reading needs: neither loaded nor required by anything else."""
+"""What only the solid model needs: neither loaded nor required by anything else."""
 
 
 NAMESPACES = {"": flexstage} | {f".{wing}": getattr(flexstage, wing) for wing in flexstage.WINGS}
@@ -111,5 +111,5 @@ def test_help_loads_nothing_heavy() -> None:
     assert not (HEAVY | SOLVER) & loaded_by(code)
 
 
-def test_other_readings_load_no_solver() -> None:
+def test_other_models_load_no_solver() -> None:
     assert not SOLVER & loaded_by("import flexstage as fs; fs.modes(fs.lumped(fs.case('double-triangle')))")

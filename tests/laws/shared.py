@@ -14,7 +14,7 @@ from flexstage.models import lumped as _lumped
 from tests.conftest import FULL
 
 _KEPT = 800
-"""Readings kept at a time: of the stages that laws share, and of what they were last turned into."""
+"""Models kept at a time: of the stages that laws share, and of what they were last turned into."""
 
 ideal = lru_cache(maxsize=_KEPT)(_ideal.ideal)
 lumped = lru_cache(maxsize=_KEPT)(_lumped.lumped)

@@ -148,7 +148,7 @@ def _ears(draw):
 def mechanisms(draw):
     """Any connected graph of up to seven bodies and elastic links, with closed loops and dangling bodies, one to eight stacks.
 
-    For elastic readings: the ideal reading of such a graph may find strokes without effect.
+    For elastic models: the ideal model of such a graph may find strokes without effect.
     """
     names, pairs = draw(_ears())
     hinges = {f"hinge{number + 1}": draw(passive_parts) for number in range(draw(st.integers(1, 3)))}

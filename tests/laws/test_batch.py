@@ -1,4 +1,4 @@
-"""The batched engine against the readings one design at a time: on random graphs, with repeated modes, massless bodies and bad designs."""
+"""The batched engine against the models one design at a time: on random graphs, with repeated modes, massless bodies and bad designs."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ def check_matrices(mechanism: Mechanism) -> None:
 
 @given(mechanisms.fresh())
 @examples(15, 600)
-def test_blocks_are_the_matrices_of_the_lumped_reading(mechanism: Mechanism) -> None:
+def test_blocks_are_the_matrices_of_the_lumped_model(mechanism: Mechanism) -> None:
     check_matrices(mechanism)
 
 

@@ -20,7 +20,7 @@ from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import PLATFORM, ModalDamping, Probe
 from flexstage.mechanism.pattern import Pose
 from flexstage.mechanism.restrict import restrict
-from flexstage.models import lumped as readings
+from flexstage.models import lumped as models
 from flexstage.models.linear.eigen import eigen
 from flexstage.models.linear.port import ports
 from flexstage.models.linear.state_space import state_space
@@ -157,6 +157,6 @@ def test_gauges_on_struts_that_spin_freely_are_refused_by_name(mechanism, where)
 def test_idle_motions_that_only_rounding_moves_have_no_inertia() -> None:
     """Massless struts turned by 120 degrees: what of their spin reaches the platform is rounding, and must not become a mode."""
     simple = {name: EQUATION_18[name] for name in EQUATION_18 if name != "stack_horizontal"}
-    model = readings.lumped(restrict(double_triangle(), simple), readings.Masses.PLATFORM)
+    model = models.lumped(restrict(double_triangle(), simple), models.Masses.PLATFORM)
     assert np.all(np.isfinite(modes(model).platform_frequencies))
     assert np.linalg.eigvalsh(model.stiffness_matrix)[0] > 0.0

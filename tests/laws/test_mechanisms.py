@@ -271,7 +271,7 @@ def test_stress_resultants_balance(mechanism):
 
 
 def jointed(mechanism):
-    """Hinges become ideal joints, stacks keep their axial spring: what the ideal reading knows."""
+    """Hinges become ideal joints, stacks keep their axial spring: what the ideal model knows."""
     parts = {
         name: Restricted(part, (Freedom.X,)) if isinstance(part, Piezo) else Joint(part.intended) for name, part in mechanism.parts.items()
     }
@@ -280,7 +280,7 @@ def jointed(mechanism):
 
 @given(actuated_platforms())
 def test_ideal_is_lumped_with_ideal_joints(mechanism):
-    """With rigid ideal joints nothing is lost: strokes the platform can follow move it as the ideal reading says."""
+    """With rigid ideal joints nothing is lost: strokes the platform can follow move it as the ideal model says."""
     kinematics, model = ideal(mechanism), lumped(jointed(mechanism))
     feasible = kinematics.actuation @ kinematics.inverse
     gain = static_gain(model, TWIST, kinematics.actuators).values @ feasible

@@ -128,7 +128,7 @@ def test_bad_parameters_of_cases_are_told_all_at_once():
 
 
 def test_many_designs_are_drawn_from_parameters_with_derivatives():
-    """The engine's frequencies are those of the lumped reading, its derivatives those of finite differences."""
+    """The engine's frequencies are those of the lumped model, its derivatives those of finite differences."""
     study = loads_study(STUDY.replace('responses.mass = "mass"', 'responses.f = "frequency.platform.1"'))
     values = study.drawn(0, 1)
     names = tuple(each.name for each in study.variables)

@@ -71,5 +71,5 @@ def floating() -> Mechanism:
 
 @cache
 def read_floating() -> SolidModel:
-    """The solid reading of `floating`."""
+    """The solid model of `floating`."""
     return model_with_parts(floating(), COARSE, cache=None)

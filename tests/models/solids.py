@@ -14,6 +14,6 @@ COARSE = Reduction(Fineness(grading=0.6, order=2))  # at 0.8 elements of order t
 
 @cache
 def read(name: str) -> tuple[Mechanism, SolidModel]:
-    """A shipped case and its coarse solid reading (order two), from no cache."""
+    """A shipped case and its coarse solid model (order two), from no cache."""
     stage = case(name)
     return stage, model_with_parts(stage, COARSE, cache=None)

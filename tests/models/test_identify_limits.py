@@ -101,7 +101,7 @@ def test_nothing_that_moves_shows_no_mode() -> None:
 @pytest.mark.parametrize("resolution", [None, 0.0])
 @pytest.mark.parametrize("seed", range(SEEDS))
 def test_one_actuator_of_a_stage_with_a_gauge_it_does_not_move(resolution: float | None, seed: int) -> None:
-    """By the mapped reading B1 does not move S4 at all: it reads 0 under the gauge's steps, and rounding without them."""
+    """By the mapped model B1 does not move S4 at all: it reads 0 under the gauge's steps, and rounding without them."""
     mechanism = fs.case("double-triangle")
     model = fs.mapped(mechanism)
     setup = RigSetup(

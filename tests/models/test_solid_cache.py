@@ -1,4 +1,4 @@
-"""The cache of superelements and what goes wrong with it: told, never fatal, never half-written; a reading that was stopped resumes."""
+"""The cache of superelements and what goes wrong with it: told, never fatal, never half-written; a run that was stopped resumes."""
 
 from __future__ import annotations
 

@@ -47,7 +47,7 @@ def test_in_plane_stiffness_is_eq_2s_not_table_1s(stage):
 
 
 def test_first_six_modes_are_the_platforms_out_of_plane_first(stage):
-    """Order of Fig. 10: tilt twice, z, yaw, x and y; every one below the lumped reading's, by less than 10 %."""
+    """Order of Fig. 10: tilt twice, z, yaw, x and y; every one below the lumped model's, by less than 10 %."""
     theory, fea = (modes(model, cluster=5e-3) for model in stage)
     assert fea.names[:6] == ("tilt", "tilt", "z", "yaw", *fea.names[4:6])
     assert set(fea.names[4:6]) == {"x", "y"}

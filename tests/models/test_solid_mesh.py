@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-pytest.importorskip("ngsolve", reason="the solid reading needs flexstage[solid]")
+pytest.importorskip("ngsolve", reason="the solid model needs flexstage[solid]")
 
 import ngsolve
 

@@ -1,4 +1,4 @@
-"""Laws of stages read as solids, and what they share with the other readings."""
+"""Laws of stages read as solids, and what they share with the other models."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ METRE = np.array([1.0, 1.0, 1.0, 0.1, 0.1, 0.1])
 
 @pytest.fixture(scope="module")
 def guide():
-    """The parallelogram guide and its solid reading."""
+    """The parallelogram guide and its solid model."""
     return read("parallelogram")
 
 
@@ -35,7 +35,7 @@ def compliance(model):
     return static_gain(model, TWIST, WRENCH).values * METRE[:, None] * METRE
 
 
-def test_same_names_as_the_lumped_reading(guide):
+def test_same_names_as_the_lumped_model(guide):
     stage, solid = guide
     other = lumped(stage)
     assert [channel.name for channel in solid.model.inputs] == [channel.name for channel in other.inputs]

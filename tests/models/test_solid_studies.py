@@ -1,4 +1,4 @@
-"""Studies of the solid reading: units alone, the stage, stress, resolution; against closed forms and the lumped reading."""
+"""Studies of the solid model: units alone, the stage, stress, resolution; against closed forms and the lumped model."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def test_the_gain_is_that_of_a_unit_whose_guide_holds_it() -> None:
 
 
 def test_the_stage_is_near_the_lumped_one() -> None:
-    """Bodies are rigid or stubby: what is left between the readings is beam theory of hinges."""
+    """Bodies are rigid or stubby: what is left between the models is beam theory of hinges."""
     stage = small_stage()
     theory = fs.statics(fs.lumped(small()))
     assert stage.statics.held.principal[1] / theory.held.principal[1] == pytest.approx(1.0, abs=0.08)

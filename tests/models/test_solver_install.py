@@ -1,4 +1,4 @@
-"""What is told when the solver of the solid reading is missing, of another version, or does not load."""
+"""What is told when the solver of the solid model is missing, of another version, or does not load."""
 
 from __future__ import annotations
 

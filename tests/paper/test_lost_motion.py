@@ -1,4 +1,4 @@
-"""Eq. 11 and Table 2 of the paper, from the lumped reading of one vertical unit restricted to what the equations know."""
+"""Eq. 11 and Table 2 of the paper, from the lumped model of one vertical unit restricted to what the equations know."""
 
 from __future__ import annotations
 

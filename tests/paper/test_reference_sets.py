@@ -1,4 +1,4 @@
-"""SM-REF-A and SM-REF-B: mappings, stiffness and frequencies of the mapped reading (reference values to five digits)."""
+"""SM-REF-A and SM-REF-B: mappings, stiffness and frequencies of the mapped model (reference values to five digits)."""
 
 from __future__ import annotations
 

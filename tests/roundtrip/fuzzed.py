@@ -82,7 +82,7 @@ wear = { of = "links.left.thickness", uniform = "5 um" }
 """
 _ALL = frozenset(Allow)
 SETUP = """format = "flexstage loop 1"
-reading = "lumped"
+model = "lumped"
 rate = "10 kHz"
 delay = "100 us"
 modes = 20

@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 from dataclasses import replace
 
-from flexstage.analysis.complete import Analysis, Reading, analyse
+from flexstage.analysis.complete import Analysis, Model, analyse
 from flexstage.cases.registry import CASES, case
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.show.report import report
@@ -14,22 +14,22 @@ NAMES = tuple(CASES)
 HOSTILE = '<script>alert("1 & 2")</script>'
 
 
-def analysed(name: str, reading: Reading = Reading.LUMPED) -> Analysis:
-    return _analysed(name, reading)  # kept under both arguments, whether the second is given or not
+def analysed(name: str, model: Model = Model.LUMPED) -> Analysis:
+    return _analysed(name, model)  # kept under both arguments, whether the second is given or not
 
 
-def reported(name: str, reading: Reading = Reading.LUMPED) -> str:
-    return _reported(name, reading)
-
-
-@functools.cache
-def _analysed(name: str, reading: Reading) -> Analysis:
-    return analyse(case(name), reading)
+def reported(name: str, model: Model = Model.LUMPED) -> str:
+    return _reported(name, model)
 
 
 @functools.cache
-def _reported(name: str, reading: Reading) -> str:
-    return report(_analysed(name, reading))
+def _analysed(name: str, model: Model) -> Analysis:
+    return analyse(case(name), model)
+
+
+@functools.cache
+def _reported(name: str, model: Model) -> str:
+    return report(_analysed(name, model))
 
 
 def hostile() -> Mechanism:

@@ -12,7 +12,7 @@ from html.parser import HTMLParser
 
 import pytest
 
-from flexstage.analysis.complete import Reading, analyse
+from flexstage.analysis.complete import Model, analyse
 from flexstage.cases.registry import case
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.show.report import report
@@ -51,15 +51,15 @@ QUICK = ("double-triangle", "parallelogram", "xy-stage-floating")
 
 
 @pytest.mark.parametrize(
-    ("name", "reading"),
+    ("name", "model"),
     [
-        *(pytest.param(name, Reading.LUMPED, marks=() if name in QUICK else pytest.mark.full) for name in NAMES),
-        pytest.param("double-triangle", Reading.IDEAL, marks=pytest.mark.full),
-        ("xy-stage-floating", Reading.IDEAL),
+        *(pytest.param(name, Model.LUMPED, marks=() if name in QUICK else pytest.mark.full) for name in NAMES),
+        pytest.param("double-triangle", Model.IDEAL, marks=pytest.mark.full),
+        ("xy-stage-floating", Model.IDEAL),
     ],
 )
-def test_every_case_has_a_report_that_stands_alone(name: str, reading: Reading) -> None:
-    page = reported(name, reading)
+def test_every_case_has_a_report_that_stands_alone(name: str, model: Model) -> None:
+    page = reported(name, model)
     assert LOADS.findall(page) == []
     assert len(page.encode()) < LARGEST
     found = Balance()
@@ -75,7 +75,7 @@ def test_every_case_has_a_report_that_stands_alone(name: str, reading: Reading) 
 
 @pytest.mark.full
 def test_mapped_reading_has_a_report() -> None:
-    page = reported("double-triangle", Reading.MAPPED)
+    page = reported("double-triangle", Model.MAPPED)
     assert "110.91" in page
     assert "not stated" not in page
 

@@ -7,7 +7,7 @@ from dataclasses import fields
 import numpy as np
 import pytest
 
-from flexstage.analysis.complete import Analysis, Reading
+from flexstage.analysis.complete import Analysis, Model
 from flexstage.analysis.lost_motion import lost_motion
 from flexstage.analysis.modes import modes
 from flexstage.analysis.stability import Stability
@@ -64,7 +64,7 @@ REACH = {
     "buckling": "Buckling",
     "loads": "Axial forces of the stacks",
 }
-NOT_SHOWN = {"mechanism", "reading", "model", "missing", "reasons"}
+NOT_SHOWN = {"mechanism", "model", "linear", "missing", "reasons"}
 
 
 def test_every_result_is_presented() -> None:
@@ -133,9 +133,9 @@ def test_html_escapes_what_users_write() -> None:
 
 
 def test_ideal_reading_has_no_elastic_tables() -> None:
-    page = reported("double-triangle", Reading.IDEAL)
+    page = reported("double-triangle", Model.IDEAL)
     assert "Stiffness at platform" not in page
-    assert "the ideal reading has no elasticity" in page
+    assert "the ideal model has no elasticity" in page
 
 
 def test_groups_hold_tables() -> None:

@@ -49,7 +49,7 @@ def _pivot() -> Section:
     )
     text = (
         "Rotational stiffness of a cross-axis pivot without load, K = 8 (EI/L)(3 lambda^2 - 3 lambda + 1), from two leaves and the "
-        "lumped reading (t/L = 1e-4, nu = 0). The load term and the shift of the centre are nonlinear: no reading here knows them."
+        "lumped model (t/L = 1e-4, nu = 0). The load term and the shift of the centre are nonlinear: no model here knows them."
     )
     return Section("Cross-axis pivot", text, rows)
 

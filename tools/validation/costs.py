@@ -58,8 +58,8 @@ def _units() -> Section:
             lines.append((letter, name, f"{1e-6 * unit.axial:.4f}", lateral, series, *gains))
     heads = ("set", "unit", "K_a [N/um]", "K_l, soft to stiff [N/um]", "K_h or K_v [N/um]", "ideal gain", "gain", "loss")
     text = (
-        "By the lumped reading, the output free of rotation: K_a along its direction and K_l across. K_h or K_v is the unit in actuator "
-        "coordinates, as the mapped reading takes it. A lever's K_a is at its output; its gain is that of the guided unit."
+        "By the lumped model, the output free of rotation: K_a along its direction and K_l across. K_h or K_v is the unit in actuator "
+        "coordinates, as the mapped model takes it. A lever's K_a is at its output; its gain is that of the guided unit."
     )
     return Section("Each unit alone", text, (), (table(heads, lines),))
 
@@ -76,10 +76,10 @@ def _frequencies(case: Known) -> Section:
     lines = [(step, *(f"{value:.3f}" for value in values), *_change(values, mapped)) for step, values in steps.items()]
     restricted = steps["lumped, restricted to Eq. 18, massless units"]
     worst = float(np.max(np.abs(restricted / mapped - 1.0)))
-    rows = (Row("restricted lumped against mapped, worst of six", "mapped reading", "0", worst, "1", Tolerance(1e-4)),)
-    heads = ("reading", *(f"{number} [Hz]" for number in range(1, 7)), "change against mapped")
+    rows = (Row("restricted lumped against mapped, worst of six", "mapped model", "0", worst, "1", Tolerance(1e-4)),)
+    heads = ("model", *(f"{number} [Hz]" for number in range(1, 7)), "change against mapped")
     text = (
-        f"Set {case.letter}: from the mapped reading to the full lumped one. Each part alone is given its whole 6x6, the others staying "
+        f"Set {case.letter}: from the mapped model to the full lumped one. Each part alone is given its whole 6x6, the others staying "
         "as Eq. 18 has them; then all; then the bodies and links of the units get their masses."
     )
     return Section(f"Frequencies part by part, set {case.letter}", text, rows, (table(heads, lines),))

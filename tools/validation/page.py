@@ -115,7 +115,7 @@ that is recorded agrees."""
 
 _ABSENT = """\
 * What the paper does not print: R_a and R_s, masses, radii, damping, the values of its Figs. 11 and 12.
-* Large deflections (elastica, beam constraint model), the load term and centre shift of cross-axis pivots: every elastic reading is linear.
+* Large deflections (elastica, beam constraint model), the load term and centre shift of cross-axis pivots: every elastic model is linear.
 * 3-D finite elements of other stages than the paper's: they are compared in `tests/models`."""
 
 _TREE = """\
@@ -135,7 +135,7 @@ validation/solids
 
 _SOLIDS = "solids"
 _SOLID_TEXT = (
-    "Three-dimensional finite elements of order three against the paper's figures, and against the lumped reading whose hinges have their "
+    "Three-dimensional finite elements of order three against the paper's figures, and against the lumped model whose hinges have their "
     "6x6 from finite elements. `make check-all` computes this page; it takes some minutes unless the parts are in the cache."
 )
 _PAPER = """\
@@ -165,4 +165,4 @@ The same stages in codes that others wrote. What is shared and what is not stand
 _LAWS = """\
 What must hold for *every* stage is tried on random parts, models and mechanisms (Hypothesis). Each law is a test; the number beside it is
 that of the random examples it is tried on, the same ones in every run. The last section is no law but a second author: the lumped
-reading written again, plainly, and compared matrix by matrix."""
+model written again, plainly, and compared matrix by matrix."""

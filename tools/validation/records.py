@@ -52,7 +52,7 @@ def _rig() -> Section:
     known = fs.modes(model, limit=1000.0)
     found = fs.experiment.compare(stage, fs.experiment.identify(fs.experiment.rig(stage, model, _SETUP), Search(band=(80.0, 220.0))))
     rows = tuple(
-        Row(f"{row.name}, frequency", "lumped reading", f"{theory:.4f}", row.experiment.frequency, "Hz", relative(5e-4))
+        Row(f"{row.name}, frequency", "lumped model", f"{theory:.4f}", row.experiment.frequency, "Hz", relative(5e-4))
         for row, theory in zip(found.rows, known.platform_frequencies, strict=True)
         if row.experiment is not None
     )

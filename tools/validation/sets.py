@@ -106,7 +106,7 @@ def _stage(case: Known) -> Section:
         Row(f"frequency {number}, {name}", f"Eq. 28, set {case.letter}", value, float(ours), "Hz", relative(1e-5))
         for number, (value, ours, name) in enumerate(zip(FREQUENCIES[case.letter], modes.frequencies, modes.names, strict=True), start=1)
     ]
-    text = "Ideal and mapped reading (Eqs. 13, 14, 17-28). The order, out of plane first, is that of the paper's Fig. 10."
+    text = "Ideal and mapped model (Eqs. 13, 14, 17-28). The order, out of plane first, is that of the paper's Fig. 10."
     return Section(f"Set {case.letter}: mappings, stiffness, frequencies", text, tuple(rows))
 
 

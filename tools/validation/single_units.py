@@ -37,7 +37,7 @@ def _units() -> Section:
         Row("0.042 deg", "paper 2.1", "733.04", 0.042 * fs.deg / fs.urad, "urad"),
         Row("0.014 deg", "paper 2.1", "244.35", 0.014 * fs.deg / fs.urad, "urad"),
     ]
-    text = "Each unit alone, by the lumped reading; its output free of rotation."
+    text = "Each unit alone, by the lumped model; its output free of rotation."
     return Section("Strokes and single units", text, tuple(rows))
 
 
@@ -65,7 +65,7 @@ def _equation_11() -> Section:
     eps = float(known("B").lever.softness)
     rows.append(Row("eps = K_theta2 / (r_1^2 K_1), set B", "derived from Table 2: 1/39", "0.02564", eps, "1", Tolerance(5e-5)))
     text = (
-        "The lumped reading of one vertical unit, restricted to the freedoms that Eq. 3 knows (`EQUATION_3`), against the closed form "
+        "The lumped model of one vertical unit, restricted to the freedoms that Eq. 3 knows (`EQUATION_3`), against the closed form "
         "with the springs of its own hinges: reference and ours share the springs, not the mechanics."
     )
     return Section("Equation 11", text, tuple(rows))
@@ -89,6 +89,6 @@ def _table_2() -> Section:
     ]
     text = (
         "Theory column: what Eq. 3 knows. FEA column: the same with the bending of the front and pole hinges freed (`TABLE_2_FEA`). "
-        "The full 6x6 reading is off by a little more; what each freedom costs is on the page [costs](costs.md)."
+        "The full 6x6 model is off by a little more; what each freedom costs is on the page [costs](costs.md)."
     )
     return Section("Table 2", text, tuple(rows))

@@ -21,7 +21,7 @@ from tests.paper.test_lost_motion import COMMANDS, FEA, THEORY
 from tools.validation.row import Row, Scale, Section, Tolerance, relative, table
 
 THIRD = Reduction(Fineness(order=3))
-_CALIBRATED = "lumped reading with calibrated hinges"
+_CALIBRATED = "lumped model with calibrated hinges"
 
 
 def sections() -> list[Section]:
@@ -48,8 +48,8 @@ def _units(stage: fs.Mechanism, units: dict[str, SolidUnit]) -> Section:
     )
     text = (
         "Each unit alone, its output kept plane; the horizontal one at order four. Geometry fitted by beam theory comes out softer as a "
-        "solid: 1 to 3 % are expected. The lumped reading with the 6x6 of the hinges, each with the roots it has there, differs by what "
-        "the blocks yield besides: without outlines in the units they are rigid in both readings."
+        "solid: 1 to 3 % are expected. The lumped model with the 6x6 of the hinges, each with the roots it has there, differs by what "
+        "the blocks yield besides: without outlines in the units they are rigid in both models."
     )
     return Section("Units alone", text, rows)
 
@@ -111,7 +111,7 @@ def _stage(stage: fs.Mechanism) -> Section:
     lines = list(_modes(fea, theory, calibrated))
     heads = ("mode", "shape", "solid [Hz]", "lumped [Hz]", "calibrated [Hz]", "MAC", "lumped over solid", "calibrated over solid")
     text = (
-        "By substructures. Calibrated hinges leave what no reading with rigid bodies sees: the elasticity of blocks, levers and poles, in "
+        "By substructures. Calibrated hinges leave what no model with rigid bodies sees: the elasticity of blocks, levers and poles, in "
         "the last column."
     )
     return Section("The whole stage", text, rows, (table(heads, lines),))

@@ -31,7 +31,7 @@ def _agreement() -> Section:
     ]
     text = (
         "Ours is what a push test on the platform's centre of mass measures, free to tilt: less than Eq. 2, because the inner units "
-        "push 25 mm below it. Eq. 2 and Table 1 contradict each other, and no reading comes near Table 1: "
+        "push 25 mm below it. Eq. 2 and Table 1 contradict each other, and no model comes near Table 1: "
         "[recorded](../disagreements.md), never fitted."
     )
     return Section("Table 1 against Equation 2", text, tuple(rows))

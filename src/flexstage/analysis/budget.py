@@ -1,4 +1,4 @@
-"""The error budget of a stage, composed from its readings."""
+"""The error budget of a stage, composed from its results."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def budget(
 ) -> ErrorBudget:
     """Error budget at a point of the platform over a box of commands (half widths by coordinate [m, rad]) and a temperature change [K].
 
-    Lost motion and drift (strokes held) by the lumped reading. `drifted` absent: the ground as the description has it (`ground_of`).
+    Lost motion and drift (strokes held) by the lumped model. `drifted` absent: the ground as the description has it (`ground_of`).
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> found = budget(double_triangle(), {"x": 50e-6}, temperature=0.1)

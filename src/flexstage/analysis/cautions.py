@@ -296,7 +296,7 @@ def _pulled(mechanism: Mechanism) -> tuple[Finding, ...]:
 
 
 def _blockages(mechanism: Mechanism) -> tuple[Finding, ...]:
-    """Strokes that cannot move, or a platform that cannot; nothing where the ideal reading is refused, which tells why."""
+    """Strokes that cannot move, or a platform that cannot; nothing where the ideal model is refused, which tells why."""
     try:
         found = ideal(mechanism)
     except DesignError:
@@ -307,11 +307,11 @@ def _blockages(mechanism: Mechanism) -> tuple[Finding, ...]:
     return (Finding(PLATFORM, what, "Free the freedoms of links that it is to move by"),)
 
 
-def reading_findings(mechanism: Mechanism) -> tuple[Finding, ...]:
-    """What keeps a sound description from being read: actuators without a path, a mechanism that gives way, unreadable requirements.
+def model_findings(mechanism: Mechanism) -> tuple[Finding, ...]:
+    """What keeps models from a sound description: actuators without a path, a mechanism that gives way, unreadable requirements.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> reading_findings(double_triangle())
+    >>> model_findings(double_triangle())
     ()
     """
     found: list[Finding] = []

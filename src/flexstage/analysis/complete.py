@@ -1,4 +1,4 @@
-"""The complete analysis of a stage: every analysis of one reading, as one value for reports and applications."""
+"""The complete analysis of a stage: every analysis of one model, as one value for reports and applications."""
 
 from __future__ import annotations
 
@@ -30,29 +30,29 @@ from flexstage.models.linear.frequency import Response
 from flexstage.models.linear.kinematics import Kinematics
 from flexstage.models.linear.model import LinearModel
 from flexstage.models.mapped import mapped
-from flexstage.models.theory import Reading
+from flexstage.models.theory import Model
 
-__all__ = ["Analysis", "Reading", "analyse", "platform_modes", "read", "required_command"]
+__all__ = ["Analysis", "Model", "analyse", "platform_modes", "read", "required_command"]
 
-_RIGID = "the ideal reading has no elasticity"
-_UNLUMPED = "this needs the lumped reading"
+_RIGID = "the ideal model has no elasticity"
+_UNLUMPED = "this needs the lumped model"
 _DRIFTLESS = "the error budget needs the drift"
 
 
 @dataclass(frozen=True, eq=False)
 class Analysis:
-    """All results of one reading of a stage; `None` where a reading or a stage does not give them, and `missing` says why, by field name.
+    """All results of one model of a stage; `None` where a model or a stage does not give them, and `missing` says why, by field name.
 
     `response` is that of the platform's twist and all gauges to the strokes, `transmissibility` that of the platform to the ground.
     `deflection` under dead load, `buckling` under it and all strokes, drift, error budget, `units` (each distinct unit alone) and the
-    `verdicts` on the requirements are those of the lumped reading; all but the verdicts are missing for the others. The error budget is
+    `verdicts` on the requirements are those of the lumped model; all but the verdicts are missing for the others. The error budget is
     that of the required strokes, or of all single-axis strokes at once, and of one kelvin.
     """
 
     mechanism: Mechanism
-    reading: Reading
+    model: Model
     kinematics: Kinematics
-    model: LinearModel | None
+    linear: LinearModel | None
     statics: Statics | None
     deflection: Deflection | None
     buckling: Buckling | None
@@ -68,54 +68,54 @@ class Analysis:
     missing: Mapping[str, str]
 
 
-def read(mechanism: Mechanism, reading: Reading) -> LinearModel | None:
-    """The linear model of an elastic reading; `None` for the ideal one. Refused where the drawn position does not hold its dead load.
+def read(mechanism: Mechanism, model: Model) -> LinearModel | None:
+    """The linear model of a stage; `None` for the ideal one. Refused where the drawn position does not hold its dead load.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> len(read(double_triangle(), Reading.MAPPED).coordinates)
+    >>> len(read(double_triangle(), Model.MAPPED).coordinates)
     6
     """
-    if reading is Reading.IDEAL:
+    if model is Model.IDEAL:
         return None
-    if reading is Reading.LUMPED:
+    if model is Model.LUMPED:
         return standing(mechanism)
-    model = mapped(mechanism)
+    linear = mapped(mechanism)
     require_standing(mechanism)
-    return model
+    return linear
 
 
-def analyse(mechanism: Mechanism, reading: Reading = Reading.LUMPED) -> Analysis:
-    """Every analysis of one reading.
+def analyse(mechanism: Mechanism, model: Model = Model.LUMPED) -> Analysis:
+    """Every analysis of one model.
 
     What a stage cannot give (an under-actuated one has no lost motion) is `None`, its reason in `missing`. Raises `DesignError` where
-    the reading itself is refused.
+    the model itself is refused.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> round(float(analyse(double_triangle(), Reading.MAPPED).modes.frequencies[0]), 2)
+    >>> round(float(analyse(double_triangle(), Model.MAPPED).modes.frequencies[0]), 2)
     110.91
     """
     verdicts = judge(mechanism)
     kinematics = ideal(mechanism)
-    model = read(mechanism, reading)
+    linear = read(mechanism, model)
     attempt = Attempts()
-    lost = attempt.given("lost_motion", model, _RIGID, lambda known: lost_motion(kinematics, known))
+    lost = attempt.given("lost_motion", linear, _RIGID, lambda known: lost_motion(kinematics, known))
     seen = (PLATFORM, *kinematics.gauges)
     command = required_command(mechanism)
-    reach = attempt.of("workspace", lambda: workspace(mechanism, kinematics, model, lost=lost, command=command))
-    hinged = model if reading is Reading.LUMPED else None
+    reach = attempt.of("workspace", lambda: workspace(mechanism, kinematics, linear, lost=lost, command=command))
+    hinged = linear if model is Model.LUMPED else None
     drifted = attempt.given("drift", hinged, _UNLUMPED, lambda known: drift(mechanism, known))
     return Analysis(
         mechanism=mechanism,
-        reading=reading,
-        kinematics=kinematics,
         model=model,
-        statics=attempt.given("statics", model, _RIGID, statics),
+        kinematics=kinematics,
+        linear=linear,
+        statics=attempt.given("statics", linear, _RIGID, statics),
         deflection=attempt.given("deflection", hinged, _UNLUMPED, lambda known: deflection(mechanism, known)),
         buckling=attempt.given("buckling", hinged, _UNLUMPED, lambda known: _buckling(mechanism, known, reach)),
         lost_motion=lost,
-        modes=attempt.given("modes", model, _RIGID, lambda known: platform_modes(mechanism, known)),
-        response=attempt.given("response", model, _RIGID, lambda known: response(known, seen, kinematics.actuators)),
-        transmissibility=attempt.given("transmissibility", model, _RIGID, transmissibility),
+        modes=attempt.given("modes", linear, _RIGID, lambda known: platform_modes(mechanism, known)),
+        response=attempt.given("response", linear, _RIGID, lambda known: response(known, seen, kinematics.actuators)),
+        transmissibility=attempt.given("transmissibility", linear, _RIGID, transmissibility),
         workspace=reach,
         drift=drifted,
         error_budget=attempt.given("error_budget", drifted, _DRIFTLESS, lambda known: _errors(mechanism, command, reach, known)),

@@ -74,8 +74,8 @@ def difference(before: Analysis, after: Analysis) -> tuple[Change, ...]:
     """Every key figure of two analyses, old against new.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> from flexstage.analysis.complete import Reading, analyse
-    >>> one = analyse(double_triangle(), Reading.MAPPED)
+    >>> from flexstage.analysis.complete import Model, analyse
+    >>> one = analyse(double_triangle(), Model.MAPPED)
     >>> {change.relative for change in difference(one, one) if change.old} == {0.0}
     True
     """
@@ -94,8 +94,8 @@ def key_figures(analysis: Analysis) -> tuple[KeyFigure, ...]:
     Names are those of requirements.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> from flexstage.analysis.complete import Reading, analyse
-    >>> [figure.name for figure in key_figures(analyse(double_triangle(), Reading.MAPPED))][8:10]
+    >>> from flexstage.analysis.complete import Model, analyse
+    >>> [figure.name for figure in key_figures(analyse(double_triangle(), Model.MAPPED))][8:10]
     ['frequency.platform.2', 'frequency.platform.3']
     """
     found = (*_required(analysis), *_frequencies(analysis), *_stiffness(analysis), *_losses(analysis), *_reach(analysis))

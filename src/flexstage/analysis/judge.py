@@ -40,7 +40,7 @@ from flexstage.spatial.frame import COMPONENTS, transport
 
 
 def judge(mechanism: Mechanism) -> tuple[Verdict, ...]:
-    """Judge every `[require]` line of a description by the lumped reading.
+    """Judge every `[require]` line of a description by the lumped model.
 
     What the stage cannot answer (a safety factor without yield stress) is a failed verdict with its reason. Raises `DesignError` for lines
     that cannot be read.
@@ -55,7 +55,7 @@ def judge(mechanism: Mechanism) -> tuple[Verdict, ...]:
 
 
 def measured(mechanism: Mechanism, measures: tuple[Measure, ...]) -> tuple[Array | str, ...]:
-    """Values (...) in SI of measures by the lumped reading, for one design or a batch; where a stage has none, the reason in words.
+    """Values (...) in SI of measures by the lumped model, for one design or a batch; where a stage has none, the reason in words.
 
     What asks for all required strokes at once (corner, gauge.range) takes those of the description's `[require]` lines.
 
@@ -142,7 +142,7 @@ def _loaded_doubt(bench: Bench, drawn: Verdict) -> str:
 
 
 class Bench:
-    """Readings and results of one stage, each worked out when first asked for. `command`: the required strokes as a box."""
+    """Models and results of one stage, each worked out when first asked for. `command`: the required strokes as a box."""
 
     def __init__(self, mechanism: Mechanism, command: Mapping[str, float]) -> None:
         self.mechanism = mechanism
@@ -162,12 +162,12 @@ class Bench:
 
     @cached_property
     def kinematics(self) -> Kinematics:
-        """The ideal reading."""
+        """The ideal model."""
         return ideal(self.mechanism)
 
     @cached_property
     def model(self) -> LinearModel:
-        """The lumped reading, of a stage that stands under its dead load."""
+        """The lumped model, of a stage that stands under its dead load."""
         return standing(self.mechanism)
 
     @cached_property

@@ -1,6 +1,6 @@
 """Exact sensitivities of frequencies and gains to every number of a description.
 
-Derivatives of K, M and the gains are taken by complex step through the readings' own formulas, one batch axis a parameter; eigenvalue
+Derivatives of K, M and the gains are taken by complex step through the models' own formulas, one batch axis a parameter; eigenvalue
 derivatives are analytic, d lambda = phi^T (dK - lambda dM) phi.
 """
 

@@ -43,7 +43,7 @@ def _under_load(mechanism: Mechanism) -> tuple[LinearModel, Stability | None]:
 
 
 def require_standing(mechanism: Mechanism) -> None:
-    """Refuse elastic results of a stage whose drawn position does not hold; where the lumped reading has no answer, nothing is said.
+    """Refuse elastic results of a stage whose drawn position does not hold; where the lumped model has no answer, nothing is said.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> require_standing(parallelogram())

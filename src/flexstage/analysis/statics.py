@@ -20,7 +20,7 @@ from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNIT
 
 _SINGULAR = 1e-11
 _ALIKE = 1e-9
-_LOCKED = "this reading locks freedoms of the platform: its stiffness is infinite along them"
+_LOCKED = "this model locks freedoms of the platform: its stiffness is infinite along them"
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,7 +71,7 @@ def statics(model: LinearModel, *, load_point: str = "platform", read_point: str
     """Platform compliance and stiffness with load and read-out points chosen by name (`platform` is its reference point).
 
     C = C_read K^-1 C_load^T, strokes held. Small displacements. Where the model leaves the platform fewer than six freedoms (the mapped
-    reading of a guide), the stiffness is infinite along the others: then it and the tensors that need it are NaN (first design decides).
+    model of a guide), the stiffness is infinite along the others: then it and the tensors that need it are NaN (first design decides).
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped

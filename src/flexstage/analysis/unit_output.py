@@ -1,4 +1,4 @@
-"""One unit alone and its output: what is said of it by whichever reading."""
+"""One unit alone and its output: what is said of it by whichever model."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ class UnitOutput:
 
     @property
     def figures(self) -> Mapping[str, float]:
-        """What readings are compared by, SI."""
+        """What models are compared by, SI."""
         return {
             "axial stiffness": self.axial,
             "softest lateral stiffness": self.lateral[0],

@@ -28,10 +28,10 @@ _FORCES = ("platform.fx", "platform.fy", "platform.fz")
 
 @dataclass(frozen=True, eq=False)
 class UnitResult(UnitOutput):
-    """One unit alone by the lumped reading.
+    """One unit alone by the lumped model.
 
     With its output guided along the direction: `loss` and `load_compliance` [m/N]. `series` is its stiffness in actuator coordinates for
-    the mapped reading (`None` where that reading refuses). For a lever unit, `lever` are its springs and `omitted` says what Eq. 3
+    the mapped model (`None` where that model refuses). For a lever unit, `lever` are its springs and `omitted` says what Eq. 3
     leaves out of its gain, freedom by freedom.
     """
 

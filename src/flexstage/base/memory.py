@@ -32,7 +32,7 @@ def gigabytes(size: float) -> str:
 
 
 def available() -> float:
-    """Memory a reading may plan with [bytes]: 90 % of what the machine, its control group and the limits on processes leave.
+    """Memory a computation may plan with [bytes]: 90 % of what the machine, its control group and the limits on processes leave.
 
     >>> available() > 0.0
     True

@@ -203,7 +203,7 @@ SM_REF_B_REFITTED = replace(
     lever_notch=replace(SM_REF_B.lever_notch, width=47.5 * mm),
     fit="refit",
 )
-"""SM-REF-B with the neck's length and the lever notch's width fitted by the solid reading instead of beam theory.
+"""SM-REF-B with the neck's length and the lever notch's width fitted by the solid model instead of beam theory.
 
 So that a unit alone, as a solid, has the paper's K_a,h = 10.30 N/um and the 581.3 um of 600 um of Table 2's FEA.
 """

@@ -19,7 +19,7 @@ class Compensation:
     """What a pose is commanded by: strokes a = `gains` xi + `offset`.
 
     `gains` (n, f) are strokes by coordinate, R_a or those that correct lost motion; `offset` (n,) [m] the strokes that hold up loads.
-    `provenance` says by which reading.
+    `provenance` says by which model.
     """
 
     gains: Matrix
@@ -88,7 +88,7 @@ class StaticError:
 
 
 def static_error(given: Compensation, kinematics: Kinematics, plant: Matrix, deflection: Array | None = None) -> StaticError:
-    """The error at rest of a compensation on a plant by any reading.
+    """The error at rest of a compensation on a plant by any model.
 
     E = I - V^+ T G for the plant's `plant` = T (6, n), the platform's twist per stroke (`lost_motion(...).gain`, or `static_gain` of any
     model); with G = R_a it is R_a^+ Lambda R_a, what the lost-motion analysis predicts. `deflection` (6,) is the plant's under the loads,

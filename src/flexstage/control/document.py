@@ -131,7 +131,7 @@ def _bandwidths(found: LoopStudy) -> Document | None:
 
 
 def _rest(found: RestErrors) -> Document:
-    kinds = {"ideal_map": found.bare, "lost_motion_gains": found.corrected, f"{found.other_reading.value}_gains": found.other}
+    kinds = {"ideal_map": found.bare, "lost_motion_gains": found.corrected, f"{found.other_model.value}_gains": found.other}
     return {
         **{
             name: None if each is None else {"error": each.error.to_json(), "parasitic": each.parasitic.to_json(), "largest": each.largest}

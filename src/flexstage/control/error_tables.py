@@ -42,7 +42,7 @@ def _rest_notes(found: RestErrors) -> Iterator[str]:
     )
     if found.other is not None:
         yield (
-            f"With the gains of the {found.other_reading.value} reading the largest error is {percent(found.other.largest, 3)}, by R_a "
+            f"With the gains of the {found.other_model.value} model the largest error is {percent(found.other.largest, 3)}, by R_a "
             f"{percent(found.bare.largest, 3)}, rotations as lengths."
         )
     if np.any(np.abs(found.load) > 0.0):

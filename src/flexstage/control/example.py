@@ -31,7 +31,7 @@ def integral(given: Plant, gain: float) -> System:
 
 
 def integral_loop(gain: float = 100.0, given: Hardware | None = None) -> Loop:
-    """The shipped parallelogram by the lumped reading with three modes, at 10 kHz and half a sample of delay, under integral control.
+    """The shipped parallelogram by the lumped model with three modes, at 10 kHz and half a sample of delay, under integral control.
 
     >>> integral_loop().system.growth < 0.0
     True

@@ -1,4 +1,4 @@
-"""The plant of a loop: a stage by any reading between its amplifiers' inputs and its gauges' filtered readings."""
+"""The plant of a loop: a stage by any model between its amplifiers' inputs and its gauges' filtered readings."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ def plant(
     points: tuple[str, ...] = (),
     damping: Damping | None = None,
 ) -> Plant:
-    """The plant by a reading of a stage, `kinematics` telling what its loop's coordinates are.
+    """The plant by a model of a stage, `kinematics` telling what its loop's coordinates are.
 
     `modes` is how many to keep; absent, all below half the sampling rate (what samples can tell apart), and all of a continuous loop; never
     fewer than the loop has coordinates, and never one of a pair without the other (frequencies within 0.1 %). What the others add

@@ -15,7 +15,7 @@ def loop_report(found: LoopStudy) -> str:
     mechanism = found.settled.mechanism
     origin = (
         ("physics", digest(mechanism, physics=True)[:16]),
-        ("reading", found.setup.reading.value),
+        ("model", found.setup.model.value),
         ("rate", f"{found.settled.rate:g} Hz"),
         ("flexstage", flexstage.__version__),
     )

@@ -62,7 +62,7 @@ def diagram_of(found: LoopStudy) -> Diagram:
     """The block diagram of a loop, in the words of its set-up."""
     setup, plant = found.setup, found.settled.plant
     rate = f"{number(1e-3 * found.settled.rate, 4)} kHz"
-    stage = Box("stage", f"{setup.reading.value}\n{modes_told(len(plant.frequencies))}")
+    stage = Box("stage", f"{setup.model.value}\n{modes_told(len(plant.frequencies))}")
     back = (
         Box("gauges", f"{len(plant.gauges)}"),
         *_filters(found),

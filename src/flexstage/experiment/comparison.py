@@ -19,7 +19,7 @@ from flexstage.experiment.shapes_on_stage import si_factor, si_shapes
 from flexstage.experiment.updating.gains import is_length, metres
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.linear.model import LinearModel
-from flexstage.models.theory import Reading
+from flexstage.models.theory import Model
 
 _REPEATED = 0.01
 _FAR, _FARTHEST = 0.3, np.log(1.6)
@@ -117,7 +117,7 @@ class Compared:
     repeated: tuple[RepeatedModes, ...]
     further: tuple[FurtherMode, ...]
     sensors: tuple[str, ...]
-    reading: Reading
+    model: Model
     experiment: Identified
     fea: FeaModes | None
     warnings: tuple[str, ...]
@@ -125,7 +125,7 @@ class Compared:
     misnamed: tuple[str, ...] = ()
 
 
-def compare(mechanism: Mechanism, experiment: Identified, fea: FeaModes | None = None, *, reading: Reading = Reading.LUMPED) -> Compared:
+def compare(mechanism: Mechanism, experiment: Identified, fea: FeaModes | None = None, *, model: Model = Model.LUMPED) -> Compared:
     """Compare the platform's modes by theory, by FEA where given, and as identified in a test.
 
     Shapes are compared at the record's outputs that are outputs of the stage too, by modal assurance (Allemang & Brown 1982), measured
@@ -142,14 +142,14 @@ def compare(mechanism: Mechanism, experiment: Identified, fea: FeaModes | None =
         ...
     flexstage.base.finding.DesignError: y: the stage has no output of this name, ...
     """
-    model = read(mechanism, reading)
-    require([] if model is not None else [Finding("reading", "rigid bodies have no modes", "Compare with lumped or mapped")])
-    assert model is not None  # noqa: S101  refused above
-    theory = platform_modes(mechanism, model)
-    sensors = shared_sensors(model, experiment)
+    linear = read(mechanism, model)
+    require([] if linear is not None else [Finding("model", "rigid bodies have no modes", "Compare with lumped or mapped")])
+    assert linear is not None  # noqa: S101  refused above
+    theory = platform_modes(mechanism, linear)
+    sensors = shared_sensors(linear, experiment)
     candidates = _candidates(theory, experiment)
-    seen = _weighted(si_shapes(experiment, sensors), model, sensors)
-    own = _sensed(model, theory, candidates, sensors)
+    seen = _weighted(si_shapes(experiment, sensors), linear, sensors)
+    own = _sensed(linear, theory, candidates, sensors)
     groups = _groups(theory, candidates)
     frequencies = first_design(theory.frequencies, 1)[list(candidates)]
     pairs, likeness = _pairs(frequencies, experiment, groups, (own, seen))
@@ -159,16 +159,16 @@ def compare(mechanism: Mechanism, experiment: Identified, fea: FeaModes | None =
         return sum(float(alike[place, index]) for place, index in found.items()) / max(1, shapes.shape[1])
 
     misnamed = shape_doubts(sensors, seen, score, _scales(frequencies, experiment, groups, (own, seen)))
-    misnamed = misnamed or gain_doubts(_residues(mechanism, (model, theory), experiment, sensors, _matched(groups, candidates, pairs)))
+    misnamed = misnamed or gain_doubts(_residues(mechanism, (linear, theory), experiment, sensors, _matched(groups, candidates, pairs)))
     rows = _rows(theory, experiment, pairs, likeness)
-    rows = rows if fea is None else _with_fea(rows, theory, fea, model)
+    rows = rows if fea is None else _with_fea(rows, theory, fea, linear)
     repeated = tuple(_repeated(group, pairs, own, seen) for group in groups if len(group) > 1 and group[-1] < len(rows))
     return Compared(
         rows=rows,
         repeated=repeated,
         further=tuple(_further(theory, candidates, experiment, (pairs, likeness))),
         sensors=sensors,
-        reading=reading,
+        model=model,
         experiment=experiment,
         fea=fea,
         warnings=(*experiment.warnings, *(f"{each}." for each in misnamed), *_cautions(rows, repeated, sensors)),

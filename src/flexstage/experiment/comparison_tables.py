@@ -17,7 +17,7 @@ def compare_table(found: Compared) -> Table:
     """Platform modes by theory, FEA where there is one, and experiment: frequencies, differences, modal assurance."""
     with_fea = found.fea is not None
     rows = [_line(row, with_fea=with_fea) for row in found.rows]
-    heads = ["mode", "name", Column(f"theory ({found.reading.value})", "Hz")]
+    heads = ["mode", "name", Column(f"theory ({found.model.value})", "Hz")]
     heads += [Column("FEA", "Hz"), Column("FEA's error")] if with_fea else []
     heads += [Column("experiment", "Hz"), Column("95 % interval", "Hz"), Column("widened"), Column("theory off")]
     heads += [Column("FEA off")] if with_fea else []

@@ -46,7 +46,7 @@ def _sections(seen: Identification, mechanism: Mechanism | None, shapes: StageSh
 def _page(kind: str, mechanism: Mechanism | None, seen: Identification, sections: list[Section | None]) -> str:
     sources = [seen.test.source] if isinstance(seen.test, Responses) else [each.source for each in seen.test]
     named = ", ".join(each for each in sources if each) or "record"
-    origin = [("record", named), ("reading", "measured"), ("flexstage", flexstage.__version__)]
+    origin = [("record", named), ("model", "measured"), ("flexstage", flexstage.__version__)]
     if mechanism is not None:
         origin.insert(1, ("physics", digest(mechanism, physics=True)[:16]))
     title = (mechanism.name if mechanism is not None else "") or named

@@ -161,7 +161,7 @@ class _Same:
 
 @lru_cache(maxsize=2)
 def _expanded(key: _Same) -> Assembly:
-    """The assembly, kept for the next reading or analysis of the same description: each of them asks for it."""
+    """The assembly, kept for the next model or analysis of the same description: each of them asks for it."""
     mechanism = key.mechanism
     require(_unknown_names(mechanism))
     placed = tuple(copies(mechanism))

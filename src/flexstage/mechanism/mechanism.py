@@ -61,7 +61,7 @@ class Unit(Description):
     """A sub-assembly drawn once in its own frame and placed by pattern: its `bodies` and `links`.
 
     Links may also join bodies of the stage (`ground`, `platform`, ...). `stiffness` states the unit's own stiffness in actuator coordinates
-    for the mapped reading (absent: computed where the unit is a direct or a lever unit).
+    for the mapped model (absent: computed where the unit is a direct or a lever unit).
     """
 
     bodies: Mapping[str, Body]
@@ -132,7 +132,7 @@ class Opening(Description):
 
 @dataclass(frozen=True, eq=False)
 class Mechanism(InNotebook, Description):
-    """A stage: one description for all readings.
+    """A stage: one description for all models.
 
     A graph of rigid `bodies` and elastic `links`, drawn directly or in `units` placed by pattern (`place`), with `gauges`. Body `ground` is
     implied, body `platform` is the moving part. `changes` are departures of link parts from the shared part, by address

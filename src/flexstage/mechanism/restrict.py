@@ -1,4 +1,4 @@
-"""Description transforms that connect the readings: restrict parts to some freedoms, take one unit alone."""
+"""Description transforms that connect the models: restrict parts to some freedoms, take one unit alone."""
 
 from __future__ import annotations
 

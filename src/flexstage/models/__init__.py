@@ -1,1 +1,1 @@
-"""Readings: pure functions from a description to a model."""
+"""Models: pure functions from a description to a model."""

@@ -1,4 +1,4 @@
-"""Finite motion of the ideal reading: inverse (pose to strokes) and forward (strokes to pose) kinematics on SE(3).
+"""Finite motion of the ideal model: inverse (pose to strokes) and forward (strokes to pose) kinematics on SE(3).
 
 Unknowns are the poses of all bodies. Every link's locked components of the relative pose vanish, an actuator's axial translation equals its
 stroke. Closed loops and any topology; idle freedoms follow steps of least norm, redundant constraints are met by least squares.

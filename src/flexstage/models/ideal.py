@@ -1,4 +1,4 @@
-"""Ideal reading: rigid bodies, hinges free about their intended freedoms and locked in all others.
+"""Ideal model: rigid bodies, hinges free about their intended freedoms and locked in all others.
 
 Unknowns are the twists of all bodies and the strokes; every link's locked deformations vanish. From the motions that are left follow
 R_a = da/dx and R_s = ds/dx (Eqs. 13 and 14 of Shin & Moon), the platform's mobility, idle freedoms and redundant constraints.
@@ -88,7 +88,7 @@ def ideal(mechanism: Mechanism) -> Kinematics:
         idle=_idle(graph, idle[:size]),
         redundant=_redundant(graph),
         length=graph.length,
-        provenance=f"ideal reading of {digest(mechanism, physics=True)[:16]}",
+        provenance=f"ideal model of {digest(mechanism, physics=True)[:16]}",
     )
     return replace(found, blocked=_blocked(graph, found.immobile)) if found.immobile else found
 

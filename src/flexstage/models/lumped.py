@@ -1,4 +1,4 @@
-"""Lumped reading: rigid bodies of six freedoms each, joined by 6x6 links.
+"""Lumped model: rigid bodies of six freedoms each, joined by 6x6 links.
 
 K = sum H^T k H with H the relative twist at each link; M from bodies and parts; strokes are imposed deformations of the stacks.
 """
@@ -123,7 +123,7 @@ def lumped(mechanism: Mechanism, masses: Masses = Masses.ALL) -> LinearModel:
         base_inertia=_project(carried, basis),
         damping=mechanism.damping,
         idle=() if idle is None else idle.names,
-        provenance=f"lumped reading of {digest(mechanism, physics=True)[:16]}",
+        provenance=f"lumped model of {digest(mechanism, physics=True)[:16]}",
         inertial=None if kept.driven is None else _project(_momentum(inertia, kept.driven), basis),
         idle_output=None if idle is None else output @ idle.motions,
         idle_inertia=None if idle is None else _idle_inertia(stage, inertia, idle, carried),
@@ -237,7 +237,7 @@ def _kept(stage: _Stage, inertia: Mapping[str, Contribution]) -> _Kept:
         driven = _driven(stage, solution, rows)
     if not independent:
         what = f"every freedom is locked, by {', '.join(stage.freedoms)}: strokes move the platform, and nothing is elastic"
-        raise refuse("stage", what, "Give a link stiffness in some freedom; the ideal reading tells how strokes move it as it is")
+        raise refuse("stage", what, "Give a link stiffness in some freedom; the ideal model tells how strokes move it as it is")
     loose = _loose(stage, basis)
     if loose.shape[1] == 0:
         return _Kept(basis, driven, tuple(names[index] for index in independent), None)

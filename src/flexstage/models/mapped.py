@@ -1,4 +1,4 @@
-"""Mapped reading: the paper's axial-spring model (Eqs. 17-28 of Shin & Moon).
+"""Mapped model: the paper's axial-spring model (Eqs. 17-28 of Shin & Moon).
 
 K = R_a^T diag(K_i) R_a with each unit's own stiffness in actuator coordinates, M of the platform alone. Units are massless, hinges have no
 bending stiffness.
@@ -113,7 +113,7 @@ def _model(mechanism: Mechanism, kinematics: Kinematics, springs: Mapping[str, N
         base_inertia=transposed @ mass,
         damping=mechanism.damping,
         idle=(),
-        provenance=f"mapped reading of {digest(mechanism, physics=True)[:16]}",
+        provenance=f"mapped model of {digest(mechanism, physics=True)[:16]}",
     )
 
 
@@ -140,7 +140,7 @@ def unit_stiffness(mechanism: Mechanism, assembly: Assembly) -> dict[str, Number
             result[name] = stated if stated is not None else computed_stiffness(assembly, drive)
         except DesignError as error:
             key = f"State units.{unit_of[copy]}.stiffness" if copy else "Draw the actuator in a unit, whose stiffness can be stated"
-            findings += [Finding(item.where, item.what, f"{key}, or use the lumped reading") for item in error.findings]
+            findings += [Finding(item.where, item.what, f"{key}, or use the lumped model") for item in error.findings]
     require(findings)
     return result
 

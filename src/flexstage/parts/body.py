@@ -59,8 +59,8 @@ class Inertia(Description):
 class Imported(Description):
     """A solid drawn elsewhere: the STEP `file`, its origin at `at`, its x axis along `along`, its z axis along `up`.
 
-    What readings with rigid bodies need is stated, in the file's own axes: the sides (`size`) and the `middle` of the box around the solid,
-    its `mass`, `centre` of mass and `inertia` about that. The solid reading holds them to the file (0.1 %). `sha256`, the digest of the
+    What models with rigid bodies need is stated, in the file's own axes: the sides (`size`) and the `middle` of the box around the solid,
+    its `mass`, `centre` of mass and `inertia` about that. The solid model holds them to the file (0.1 %). `sha256`, the digest of the
     file's bytes, says which version of it is meant and stands for it in caches. `wall` is the thinnest wall, for the mesh (absent: the
     shortest side). A relative path is looked for from the design file.
     """

@@ -26,7 +26,7 @@ class Given(Elastic):
     """A part known by its 6x6 compliance about its centre, in its link frame, SI: rows (x, y, z, rx, ry, rz).
 
     Entries are m/N, rad/N (= m/(N m)) and rad/(N m); the matrix is symmetric and positive definite. `free` states its intended freedoms.
-    `stands_for` names the drawn part that the matrix was computed from, so that the solid reading knows the shape,
+    `stands_for` names the drawn part that the matrix was computed from, so that the solid model knows the shape,
     and drift and structural damping the material.
     """
 

@@ -16,7 +16,7 @@ from flexstage.parts.shape import Elastic
 class Restricted(Description):
     """A part of which only the `elastic` freedoms keep their compliance; the `free` ones lose all stiffness, the rest is locked.
 
-    Its mass is left out. Used to connect readings: what the paper's equations know of a hinge.
+    Its mass is left out. Used to connect models: what the paper's equations know of a hinge.
     """
 
     kind: ClassVar[str] = "restricted"

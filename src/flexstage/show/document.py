@@ -18,16 +18,16 @@ from flexstage.base.finding import Finding
 from flexstage.base.record import walk
 from flexstage.mechanism.mechanism import Damping, Mechanism, ModalDamping, RayleighDamping, StructuralDamping
 from flexstage.models.linear.frequency import Response
-from flexstage.models.theory import Reading
+from flexstage.models.theory import Model
 
 FORMAT = "flexstage result 2"
-_UNLUMPED = "deflection under dead load needs the lumped reading"
+_UNLUMPED = "deflection under dead load needs the lumped model"
 _KEYS = {"statics": "stiffness", "lost_motion": "lost-motion", "error_budget": "budget"}
 """Fields of an analysis whose document has the name of their command."""
 
 
-def enveloped(kind: str, mechanism: Mechanism | None, reading: Reading | None, body: Any, more: Iterable[Finding] = ()) -> Document:
-    """A document: what it is, of which description (absent: of a record alone), by which reading and version, caveats, then its `body`.
+def enveloped(kind: str, mechanism: Mechanism | None, model: Model | None, body: Any, more: Iterable[Finding] = ()) -> Document:
+    """A document: what it is, of which description (absent: of a record alone), by which model and version, caveats, then its `body`.
 
     `body` is a result, or a mapping with results in it. `more` are cautions of the result's own.
 
@@ -40,7 +40,7 @@ def enveloped(kind: str, mechanism: Mechanism | None, reading: Reading | None, b
         "kind": kind,
         "version": flexstage.__version__,
         "name": None if mechanism is None else mechanism.name,
-        "reading": None if reading is None else reading.value,
+        "model": None if model is None else model.value,
         "physics_digest": None if mechanism is None else digest(mechanism, physics=True),
         "cautions": [*known.cautions, *more],
         "defaults": list(known.defaults),
@@ -63,15 +63,15 @@ def check_document(mechanism: Mechanism | None, errors: Iterable[Finding] = ()) 
 
 
 def analysis_body(analysis: Analysis) -> Document:
-    """Requirements first, then every analysis under its command's name; null with a reason where the reading or the stage gives none.
+    """Requirements first, then every analysis under its command's name; null with a reason where the model or the stage gives none.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> from flexstage.analysis.complete import Reading, analyse
-    >>> body = analysis_body(analyse(double_triangle(), Reading.IDEAL))
+    >>> from flexstage.analysis.complete import Model, analyse
+    >>> body = analysis_body(analyse(double_triangle(), Model.IDEAL))
     >>> body["modes"] is None, body["reasons"]["modes"]
-    (True, 'the ideal reading has no elasticity')
+    (True, 'the ideal model has no elasticity')
     """
-    damping = None if analysis.model is None else analysis.model.damping
+    damping = None if analysis.linear is None else analysis.linear.damping
     found: dict[str, Any] = {
         "mapping": analysis.kinematics,
         "stiffness": None if analysis.statics is None else stiffness_body(analysis.statics, analysis.deflection),

@@ -23,8 +23,8 @@ def as_mat(analysis: Analysis) -> bytes:
     """The MATLAB v5 file of an analysis (see `mat_variables`).
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> from flexstage.analysis.complete import Reading, analyse
-    >>> as_mat(analyse(double_triangle(), Reading.IDEAL))[:10]
+    >>> from flexstage.analysis.complete import Model, analyse
+    >>> as_mat(analyse(double_triangle(), Model.IDEAL))[:10]
     b'MATLAB 5.0'
     """
     from scipy.io import savemat
@@ -35,20 +35,20 @@ def as_mat(analysis: Analysis) -> bytes:
 
 
 def mat_variables(analysis: Analysis) -> dict[str, Any]:
-    """Variables of the MATLAB file: R_a, R_s, and of elastic readings K, M, B, C, D, frequencies and state space.
+    """Variables of the MATLAB file: R_a, R_s, and of elastic models K, M, B, C, D, frequencies and state space.
 
-    M q'' + K q = B u, y = C q + D u. What a reading or a stage does not have is left out, and `notes` says why. SI units; names and
+    M q'' + K q = B u, y = C q + D u. What a model or a stage does not have is left out, and `notes` says why. SI units; names and
     units of rows and columns in cell arrays.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> from flexstage.analysis.complete import Reading, analyse
-    >>> mat_variables(analyse(double_triangle(), Reading.IDEAL))["R_a"].shape
+    >>> from flexstage.analysis.complete import Model, analyse
+    >>> mat_variables(analyse(double_triangle(), Model.IDEAL))["R_a"].shape
     (6, 6)
     """
     kinematics, notes = analysis.kinematics, []
     variables: dict[str, Any] = {
         "name": printable(analysis.mechanism.name),
-        "reading": analysis.reading.value,
+        "model": analysis.model.value,
         "flexstage_version": flexstage.__version__,
         "physics_digest": digest(analysis.mechanism, physics=True),
         **_labelled("R_s", kinematics.gauge_mapping),
@@ -57,10 +57,10 @@ def mat_variables(analysis: Analysis) -> dict[str, Any]:
         variables |= _labelled("R_a", kinematics.mapping)
     else:
         notes.append("R_a: the strokes do not determine the platform")
-    if analysis.model is None:
-        notes.append("K, M, B, C, D: the ideal reading has no elasticity")
+    if analysis.linear is None:
+        notes.append("K, M, B, C, D: the ideal model has no elasticity")
     else:
-        variables |= _model(analysis.model) | _state_space(analysis.model, notes)
+        variables |= _model(analysis.linear) | _state_space(analysis.linear, notes)
     if analysis.modes is not None:
         variables |= {
             "frequencies_hz": analysis.modes.frequencies,

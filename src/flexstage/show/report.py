@@ -22,12 +22,12 @@ def report(analysis: Analysis, compared: Comparison | None = None) -> str:
     """The analysis of a stage as a self-contained HTML page: verdicts first, pictures inline, nothing loaded from anywhere, no date.
 
     With `compared`, the values that were set and what that did stand after the verdicts, as old, new and change.
-    Results that the reading or the stage does not give are left out, with the reasons under "Limits". One design; of a
+    Results that the model or the stage does not give are left out, with the reasons under "Limits". One design; of a
     batch the first is shown.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> from flexstage.analysis.complete import Reading, analyse
-    >>> report(analyse(double_triangle(), Reading.IDEAL))[:15]
+    >>> from flexstage.analysis.complete import Model, analyse
+    >>> report(analyse(double_triangle(), Model.IDEAL))[:15]
     '<!doctype html>'
     """
     mechanism = analysis.mechanism
@@ -56,7 +56,7 @@ def report(analysis: Analysis, compared: Comparison | None = None) -> str:
 
 def _head(analysis: Analysis) -> Head:
     origin = (
-        ("reading", analysis.reading.value),
+        ("model", analysis.model.value),
         ("physics", digest(analysis.mechanism, physics=True)[:16]),
         ("document", digest(analysis.mechanism)[:16]),
         ("flexstage", flexstage.__version__),

@@ -1,4 +1,4 @@
-"""Calibration: hinges of beam theory replaced by their 6x6 from finite elements, so that the lumped reading has FEA's accuracy."""
+"""Calibration: hinges of beam theory replaced by their 6x6 from finite elements, so that the lumped model has FEA's accuracy."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Bodies of documents of the solid reading: hinges, units, stage, verification."""
+"""Bodies of documents of the solid model: hinges, units, stage, verification."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """The 6x6 of every distinct hinge of a stage, as a solid by itself, with the roots it has in the stage.
 
-The roots are part of a hinge: what a block yields where a hinge grows out of it no reading with rigid bodies has anywhere else. A part that
+The roots are part of a hinge: what a block yields where a hinge grows out of it no model with rigid bodies has anywhere else. A part that
 is used with different roots is as many hinges.
 """
 

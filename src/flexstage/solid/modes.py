@@ -23,7 +23,7 @@ _AT_ORDER_TWO = 0.25
 
 
 def fea_modes(mechanism: Mechanism, asked: Resolution = DEFAULT, reduce: Solids = STANDARD_SOLIDS) -> FeaModes:
-    """The modes of a stage as a solid, to the accuracy asked. Raises `DesignError` as the solid reading does."""
+    """The modes of a stage as a solid, to the accuracy asked. Raises `DesignError` as the solid model does."""
 
     def work(way: Reduction) -> FeaModes:
         model = read_solid(mechanism, way, reduce).model
@@ -48,7 +48,7 @@ def kept_fea_modes(mechanism: Mechanism, cache: Cache) -> FeaModes | None:
             if found is not None:
                 before = _kept(mechanism, cache, coarser(at_order(order)))
                 return found if before is None else FeaModes(found.modes, found.model, order, _errors(before, found))
-    except DesignError:  # parts without a shape: there is no solid reading of this stage
+    except DesignError:  # parts without a shape: there is no solid model of this stage
         return None
     return None
 
@@ -62,7 +62,7 @@ def _kept(mechanism: Mechanism, cache: Cache, reduction: Reduction) -> FeaModes 
             return None
         parts = (*parts, (part, element))
     order = reduction.fineness.order
-    said = f"solid reading of {digest(shape, physics=True)[:16]}, order {order}, {reduction.modes} modes a component"
+    said = f"solid model of {digest(shape, physics=True)[:16]}, order {order}, {reduction.modes} modes a component"
     model = linear_model(shape, expand(shape), parts, said)
     return FeaModes(platform_modes(mechanism, model), model, order) if parts else None
 

@@ -91,7 +91,7 @@ def read_solid(mechanism: Mechanism, reduction: Reduction, reduce: Solids) -> So
     shape = drawn(mechanism)
     assembly = expand(shape)
     parts = reduce(shape, reduction)
-    said = f"solid reading of {digest(shape, physics=True)[:16]}, order {reduction.fineness.order}, {reduction.modes} modes a component"
+    said = f"solid model of {digest(shape, physics=True)[:16]}, order {reduction.fineness.order}, {reduction.modes} modes a component"
     return SolidRead(shape, linear_model(shape, assembly, parts, said), placed_parts(assembly, parts))
 
 

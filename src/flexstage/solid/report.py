@@ -1,4 +1,4 @@
-"""The report of the solid reading: one HTML file that stands alone."""
+"""The report of the solid model: one HTML file that stands alone."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from flexstage.show.sections.caveats import caveat_section
 
 
 def solid_report(mechanism: Mechanism, sections: Iterable[Section | None], cautions: tuple[Finding, ...] = ()) -> str:
-    """Sections of the solid reading as a page of HTML, after cautions about the description and `cautions` about the result.
+    """Sections of the solid model as a page of HTML, after cautions about the description and `cautions` about the result.
 
     Sections that are absent are left out.
 
@@ -21,7 +21,7 @@ def solid_report(mechanism: Mechanism, sections: Iterable[Section | None], cauti
     '<!doctype html>'
     """
     origin = (
-        ("reading", "solid"),
+        ("model", "solid"),
         ("physics", digest(mechanism, physics=True)[:16]),
         ("document", digest(mechanism)[:16]),
         ("flexstage", flexstage.__version__),

@@ -1,4 +1,4 @@
-"""Sections of the solid reading: hinges, units and stage by finite elements, theory beside them, and pictures of deformed solids."""
+"""Sections of the solid model: hinges, units and stage by finite elements, theory beside them, and pictures of deformed solids."""
 
 from __future__ import annotations
 

@@ -30,11 +30,11 @@ _BODY = " (body)"
 
 @dataclass(frozen=True, eq=False)
 class SolidStage:
-    """A stage by the solid reading.
+    """A stage by the solid model.
 
-    `statics` and `modes` as of any reading; `stress` at every link and body, the highest over all corners of the strokes counted from zero,
+    `statics` and `modes` as of any model; `stress` at every link and body, the highest over all corners of the strokes counted from zero,
     dead load included (`None` where a stage has no strokes or too many corners). `worst` (N,) are the coordinates at the corner of the
-    weakest link. `blocks` (k,) is the share of strain energy that the bodies, which other readings take as rigid, hold in each mode.
+    weakest link. `blocks` (k,) is the share of strain energy that the bodies, which other models take as rigid, hold in each mode.
     """
 
     statics: Statics
@@ -57,7 +57,7 @@ class SolidStage:
 
 
 def stiffness_figures(found: Statics) -> dict[str, float]:
-    """The platform's stiffness as readings are compared by it: principal values in plane, and along and about the other axes [SI].
+    """The platform's stiffness as models are compared by it: principal values in plane, and along and about the other axes [SI].
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped
@@ -131,7 +131,7 @@ def block_energy(model: LinearModel, shapes: Array) -> Array:
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.lumped import lumped
     >>> model = lumped(double_triangle())
-    >>> block_energy(model, np.eye(len(model.coordinates))[:, :1]).tolist()  # the lumped reading's are rigid
+    >>> block_energy(model, np.eye(len(model.coordinates))[:, :1]).tolist()  # the lumped model's are rigid
     [0.0]
     """
     bodies = sum((_energy(item, shapes) for name, item in model.stiffness.items() if name.endswith(_BODY)), np.zeros(shapes.shape[1]))

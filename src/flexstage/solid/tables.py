@@ -1,4 +1,4 @@
-"""Tables of the solid reading: hinges, units and the stage by finite elements, and theory beside them."""
+"""Tables of the solid model: hinges, units and the stage by finite elements, and theory beside them."""
 
 from __future__ import annotations
 
@@ -149,7 +149,7 @@ def stress_table(title: str, stress: LinkStress | None, listed: int = _LISTED) -
 
 
 def block_table(stage: SolidStage) -> Table:
-    """What the elasticity of the bodies, rigid in all other readings, takes from each platform mode."""
+    """What the elasticity of the bodies, rigid in all other models, takes from each platform mode."""
     rows = [
         (
             Cell(f"{number + 1}", Mark.STRONG),
@@ -225,7 +225,7 @@ def verdict_table_of(found: Verification) -> Table:
     """For every group, in words, which theory to trust."""
     rows = [(Cell(name, Mark.STRONG), text) for name, text in found.verdicts.items()]
     notes = [
-        "Theory: beam theory for hinges, the lumped reading for units and stage.",
+        "Theory: beam theory for hinges, the lumped model for units and stage.",
         "Calibrated: the same with the 6x6 of its hinges from FEA, and so not independent of it.",
         "FEA's error is estimated from two resolutions: it is no bound.",
         *(f"Not compared: {name}: {reason}" for name, reason in found.missing.items()),

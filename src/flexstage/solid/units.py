@@ -31,7 +31,7 @@ _STEPS = 5
 
 @dataclass(frozen=True, eq=False)
 class SolidUnit(UnitOutput):
-    """One unit alone by the solid reading.
+    """One unit alone by the solid model.
 
     With its output guided along the direction and not loaded: `strokes` (k,) [m] up to the stack's full one with `outputs` (k,) [m],
     linear; `stress` at every link at the full stroke. `motion` (N,) are the coordinates of `read` at the full stroke, for pictures.

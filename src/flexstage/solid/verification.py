@@ -36,8 +36,8 @@ _CLOSE = 0.02
 class Row:
     """One number by theory and by FEA, SI.
 
-    `theory` is the lumped reading's (for hinges beam theory's), `mapped` the paper's axial springs where they give it, `calibrated` the
-    lumped reading with the hinges' FEA 6x6; `error` the relative error estimated of FEA. `calibration` names the parts of FEA origin that
+    `theory` is the lumped model's (for hinges beam theory's), `mapped` the paper's axial springs where they give it, `calibrated` the
+    lumped model with the hinges' FEA 6x6; `error` the relative error estimated of FEA. `calibration` names the parts of FEA origin that
     the theory contains. `assurance` is the modal assurance of paired modes. Absent is unknown, and `reason` says why: without `theory` and
     `error` there is no verdict.
     """
@@ -231,8 +231,8 @@ def _touched(mechanism: Mechanism, unit: str | None) -> tuple[str, ...]:
 def stage_rows(mechanism: Mechanism, matched: Mechanism, found: Resolved[SolidStage]) -> Iterator[Row]:
     """Stiffness of the platform by direction, and its modes, paired by shape."""
     touched = _touched(mechanism, None)
-    readings = {"theory": lumped(mechanism), "calibrated": lumped(matched), "mapped": _mapped(mechanism)}
-    known = {name: model for name, model in readings.items() if model is not None}
+    theories = {"theory": lumped(mechanism), "calibrated": lumped(matched), "mapped": _mapped(mechanism)}
+    known = {name: model for name, model in theories.items() if model is not None}
     fea = found.result
     tables = {name: stiffness_figures(statics(model)) for name, model in known.items()}
     for figure, value in stiffness_figures(fea.statics).items():
@@ -290,7 +290,7 @@ def verdict(rows: tuple[Row, ...]) -> str:
     """In words, what the rows of one group say about which theory to trust.
 
     >>> verdict((Row("stage", "mode 1", "Hz", 105.0, 100.0, 0.001, calibrated=100.5),))
-    'Lumped theory is up to 5 % off (mode 1); with calibrated hinges 0.5 %: calibrate, then trust the lumped reading.'
+    'Lumped theory is up to 5 % off (mode 1); with calibrated hinges 0.5 %: calibrate, then trust the lumped model.'
     """
     open_rows = [row for row in rows if row.difference is None or (row.error is None and not row.calibration)]
     judged = [row for row in rows if row not in open_rows]
@@ -325,8 +325,8 @@ def _judged(rows: tuple[Row, ...]) -> str:
         return f"{name} is {off}, FEA's own error {_percent(least)}: trust FEA, or calibrate."
     after = f"with calibrated hinges {_percent(max(better))}"
     if all(row.trust is not Trust.FEA for row in rows):
-        return f"{name} is {off}; {after}: calibrate, then trust the lumped reading."
-    return f"{name} is {off}; {after}: the rest is the elasticity of bodies and joints, which only the solid reading knows. Trust FEA."
+        return f"{name} is {off}; {after}: calibrate, then trust the lumped model."
+    return f"{name} is {off}; {after}: the rest is the elasticity of bodies and joints, which only the solid model knows. Trust FEA."
 
 
 def _away(row: Row) -> float:

@@ -1,4 +1,4 @@
-"""A problem solved by the solid reading's own forms and factorisation.
+"""A problem solved by the solid model's own forms and factorisation.
 
 CalculiX 2.20 integrates the mass of a C3D10 by the four points of its stiffness, which are exact for quadratics only; products of two
 quadratic shape functions are quartic. Ours are integrated exactly: so far are the two codes' frequencies apart, and no further.

@@ -29,13 +29,13 @@ from flexstage.models.linear.kinematics import Kinematics
 from flexstage.models.linear.model import LinearModel
 from flexstage.spatial.frame import MOTION
 
-_RIGID = "the ideal reading has no elasticity"
-_HINGELESS = "this reading knows no single hinges: use the lumped one"
+_RIGID = "the ideal model has no elasticity"
+_HINGELESS = "this model knows no single hinges: use the lumped one"
 
 
 @dataclass(frozen=True, eq=False)
 class Workspace(InNotebook):
-    """The workspace of one design; `None` where reading or stage do not give a result, and `reasons` say why, by field name.
+    """The workspace of one design; `None` where model or stage do not give a result, and `reasons` say why, by field name.
 
     `single` are ideal strokes, `corrected` those with lost motion corrected by command. `corner` is what the box `command` of motions (half
     widths by coordinate, all at once) asks of the actuators, `gauges` what it asks of the gauges. Stress, buckling and loads count from the
@@ -75,7 +75,7 @@ def workspace(
     lost: LostMotion | None = None,
     command: Mapping[str, Number] | None = None,
 ) -> Workspace:
-    """Everything about the workspace that a reading gives. One design; `command` absent: all single-axis strokes at once.
+    """Everything about the workspace that a model gives. One design; `command` absent: all single-axis strokes at once.
 
     Raises `DesignError` where the strokes do not determine the platform.
 

@@ -17,10 +17,10 @@ from flexstage.analysis.workspace import workspace as study
 from flexstage.base.quantity import TEMPERATURE
 from flexstage.base.unit import parse
 from flexstage.models.ideal import ideal
-from flexstage.models.theory import Reading
+from flexstage.models.theory import Model
 from flexstage.show.command.answer import answer, tell_missing
 from flexstage.show.command.design import open_design
-from flexstage.show.command.options import Changes, Design, Json, Theory, text_option
+from flexstage.show.command.options import Changes, Design, Json, ModelName, text_option
 from flexstage.show.command.values import motions
 from flexstage.show.table import Table
 from flexstage.show.tables import workspace as tables
@@ -39,7 +39,7 @@ Commands: TypeAlias = Annotated[
 
 
 def workspace(
-    design: Design, *, reading: Theory = Reading.LUMPED, command: Commands = None, changes: Changes = None, json: Json = None
+    design: Design, *, model: ModelName = Model.LUMPED, command: Commands = None, changes: Changes = None, json: Json = None
 ) -> None:
     """What the stage reaches and bears.
 
@@ -47,11 +47,11 @@ def workspace(
     """
     mechanism = open_design(design, changes, [("--json", json)])
 
-    kinematics, model = ideal(mechanism), read(mechanism, reading)
-    lost = None if model is None or not kinematics.actuated else lost_motion(kinematics, model)
+    kinematics, linear = ideal(mechanism), read(mechanism, model)
+    lost = None if linear is None or not kinematics.actuated else lost_motion(kinematics, linear)
     asked = motions(command or ()) or required_command(mechanism)
-    found = study.workspace(mechanism, kinematics, model, lost=lost, command=asked)
-    answer("workspace", mechanism, lambda: found, lambda: _workspace_tables(found), reading=reading, json=json)
+    found = study.workspace(mechanism, kinematics, linear, lost=lost, command=asked)
+    answer("workspace", mechanism, lambda: found, lambda: _workspace_tables(found), model=model, json=json)
 
 
 def _workspace_tables(workspace: study.Workspace) -> Iterator[Table | None]:
@@ -81,7 +81,7 @@ def drift(
 ) -> None:
     """Thermal drift of platform, named points and gauges.
 
-    Per kelvin and per kelvin per metre, by the lumped reading.
+    Per kelvin and per kelvin per metre, by the lumped model.
     """
     mechanism = open_design(design, changes, [("--json", json)])
 
@@ -91,7 +91,7 @@ def drift(
         mechanism,
         lambda: found,
         lambda: [drift_table(found), gauge_drift_table(found)],
-        reading=Reading.LUMPED,
+        model=Model.LUMPED,
         json=json,
     )
 
@@ -108,7 +108,7 @@ def sensitivities(
 ) -> None:
     """Exact derivatives with respect to every number.
 
-    Of frequencies, gains and losses, by the lumped reading; of frequencies alone where the strokes do not determine the platform.
+    Of frequencies, gains and losses, by the lumped model; of frequencies alone where the strokes do not determine the platform.
     """
     mechanism = open_design(design, changes, [("--json", json)])
 
@@ -118,7 +118,7 @@ def sensitivities(
         mechanism,
         lambda: found,
         lambda: [frequency_sensitivity_table(found), loss_sensitivity_table(found)],
-        reading=Reading.LUMPED,
+        model=Model.LUMPED,
         json=json,
     )
     tell_missing(found.missing)
@@ -135,10 +135,10 @@ def budget(
 ) -> None:
     """Error budget in nm and nrad, one line an axis.
 
-    Lost motion, crosstalk, linear map, gauge noise, quantisation and drift, by the lumped reading.
+    Lost motion, crosstalk, linear map, gauge noise, quantisation and drift, by the lumped model.
     """
     mechanism = open_design(design, changes, [("--json", json)])
 
     asked = motions(command or ()) or required_command(mechanism) or study.all_strokes(mechanism)
     found = budgeting.budget(mechanism, asked, at=at, temperature=parse(temperature, TEMPERATURE, where="--temperature"))
-    answer("budget", mechanism, lambda: found, lambda: error_budget_tables(found), reading=Reading.LUMPED, json=json)
+    answer("budget", mechanism, lambda: found, lambda: error_budget_tables(found), model=Model.LUMPED, json=json)

@@ -12,11 +12,11 @@ from flexstage.analysis import complete
 from flexstage.analysis.complete import Analysis
 from flexstage.analysis.difference import Comparison, difference, set_values
 from flexstage.base.document import Document, as_text
-from flexstage.models.theory import Reading
+from flexstage.models.theory import Model
 from flexstage.show.command.answer import caveat_lines, show, tell_missing
 from flexstage.show.command.design import change, open_design
 from flexstage.show.command.failure import MISSED
-from flexstage.show.command.options import Changes, Design, Json, Report, Theory, text_option
+from flexstage.show.command.options import Changes, Design, Json, ModelName, Report, text_option
 from flexstage.show.command.output import STDOUT, save
 from flexstage.show.command.terminal import tell
 from flexstage.show.document import analysis_body, changes_body, enveloped
@@ -33,7 +33,7 @@ from flexstage.show.tables.units import omitted_table, unit_table
 def analyse(
     design: Design,
     *,
-    reading: Theory = Reading.LUMPED,
+    model: ModelName = Model.LUMPED,
     report: Report = None,
     changes: Changes = None,
     json: Json = None,
@@ -46,7 +46,7 @@ def analyse(
 
     With --set, the key figures are shown as old, new and change, in the report too.
     """
-    analysis, compared = _worked_out(design, reading, changes or [], [("--json", json), ("--report", report), ("--mat", mat)])
+    analysis, compared = _worked_out(design, model, changes or [], [("--json", json), ("--report", report), ("--mat", mat)])
     if mat is not None:
         save(mat, as_mat(analysis), "--mat")
     if report is not None:
@@ -63,15 +63,15 @@ def analyse(
 
 
 def _worked_out(
-    design: Path, reading: Reading, changes: list[str], outputs: list[tuple[str, str | Path | None]]
+    design: Path, model: Model, changes: list[str], outputs: list[tuple[str, str | Path | None]]
 ) -> tuple[Analysis, Comparison | None]:
     """The analysis of the design with its changes, and their effect if there are any."""
     stated = open_design(design, (), outputs)
-    analysis = complete.analyse(change(stated, changes), reading)
+    analysis = complete.analyse(change(stated, changes), model)
     if not changes:
         return analysis, None
     addresses = tuple(each.partition("=")[0].strip() for each in changes)
-    return analysis, Comparison(stated, addresses, difference(complete.analyse(stated, reading), analysis))
+    return analysis, Comparison(stated, addresses, difference(complete.analyse(stated, model), analysis))
 
 
 def _json_text(analysis: Analysis, compared: Comparison | None) -> str:
@@ -79,7 +79,7 @@ def _json_text(analysis: Analysis, compared: Comparison | None) -> str:
     if compared is not None:
         values = set_values(compared.stated, analysis.mechanism, compared.addresses)
         body = {"changes": {"set": changes_body(values), "figures": changes_body(compared.figures)}, **body}
-    return as_text(enveloped("analyse", analysis.mechanism, analysis.reading, body)) + "\n"
+    return as_text(enveloped("analyse", analysis.mechanism, analysis.model, body)) + "\n"
 
 
 def _tables(analysis: Analysis, compared: Comparison | None) -> Iterator[Table | str | None]:

@@ -22,10 +22,10 @@ from flexstage.models.ideal import ideal
 from flexstage.models.linear.damping import damping_law
 from flexstage.models.linear.kinematics import Kinematics
 from flexstage.models.linear.static import static_gain
-from flexstage.models.theory import Reading
+from flexstage.models.theory import Model
 from flexstage.show.command.answer import answer
 from flexstage.show.command.design import elastic_model, known_point, open_design
-from flexstage.show.command.options import Changes, Design, Json, Theory, text_option
+from flexstage.show.command.options import Changes, Design, Json, ModelName, text_option
 from flexstage.show.command.values import spectra
 from flexstage.show.document import response_body, stiffness_body
 from flexstage.show.table import Table
@@ -39,23 +39,23 @@ from flexstage.show.tables.response import response_table
 from flexstage.spatial.frame import COMPONENTS
 
 
-def mapping(design: Design, *, reading: Theory = Reading.IDEAL, changes: Changes = None, json: Json = None) -> None:
+def mapping(design: Design, *, model: ModelName = Model.IDEAL, changes: Changes = None, json: Json = None) -> None:
     """Mappings R_a and R_s, mobility, redundancy.
 
     R_a: strokes per platform motion. R_s: gauge readings per platform motion.
 
-    With an elastic reading, the elastic motion per stroke T too.
+    With an elastic model, the elastic motion per stroke T too.
     """
     mechanism = open_design(design, changes, [("--json", json)])
 
-    kinematics, model = ideal(mechanism), read(mechanism, reading)
+    kinematics, linear = ideal(mechanism), read(mechanism, model)
     twist = tuple(f"platform.{name}" for name in COMPONENTS)
     answer(
         "mapping",
         mechanism,
-        lambda: walk(kinematics) | ({} if model is None else {"elastic_jacobian": static_gain(model, twist, kinematics.actuators)}),
+        lambda: walk(kinematics) | ({} if linear is None else {"elastic_jacobian": static_gain(linear, twist, kinematics.actuators)}),
         lambda: _mapping_tables(kinematics),
-        reading=reading,
+        model=model,
         json=json,
     )
 
@@ -74,7 +74,7 @@ def _mapping_tables(kinematics: Kinematics) -> Iterator[Table | None]:
 def stiffness(
     design: Design,
     *,
-    reading: Theory = Reading.LUMPED,
+    model: ModelName = Model.LUMPED,
     at: Annotated[str, typer.Option(metavar="POINT", help="Point whose motion is read: platform, or a named point.")] = "platform",
     load_at: Annotated[str, typer.Option(metavar="POINT", help="Point that is loaded. Default: the one that is read.")] = "",
     changes: Changes = None,
@@ -86,15 +86,15 @@ def stiffness(
     """
     mechanism = open_design(design, changes, [("--json", json)])
 
-    model = elastic_model(mechanism, reading)
-    found = statics(model, load_point=known_point(model, load_at or at), read_point=known_point(model, at))
-    sagging = deflection(mechanism, model, point=at) if reading is Reading.LUMPED else None
+    linear = elastic_model(mechanism, model)
+    found = statics(linear, load_point=known_point(linear, load_at or at), read_point=known_point(linear, at))
+    sagging = deflection(mechanism, linear, point=at) if model is Model.LUMPED else None
     answer(
         "stiffness",
         mechanism,
         lambda: stiffness_body(found, sagging),
         lambda: _stiffness_tables(found, sagging),
-        reading=reading,
+        model=model,
         json=json,
     )
 
@@ -108,15 +108,15 @@ def _stiffness_tables(found: Statics, sagging: Deflection | None) -> Iterator[Ta
     yield None if sagging is None else deflection_table(sagging)
 
 
-def lost_motion(design: Design, *, reading: Theory = Reading.LUMPED, changes: Changes = None, json: Json = None) -> None:
+def lost_motion(design: Design, *, model: ModelName = Model.LUMPED, changes: Changes = None, json: Json = None) -> None:
     """Gain, loss and its budget by part, crosstalk, correction.
 
     What elasticity takes from the ideal motion, what it stirs besides, and the gains that make up for it.
     """
     mechanism = open_design(design, changes, [("--json", json)])
 
-    found = losses.lost_motion(ideal(mechanism), elastic_model(mechanism, reading))
-    answer("lost-motion", mechanism, lambda: found, lambda: _loss_tables(found), reading=reading, json=json)
+    found = losses.lost_motion(ideal(mechanism), elastic_model(mechanism, model))
+    answer("lost-motion", mechanism, lambda: found, lambda: _loss_tables(found), model=model, json=json)
 
 
 def _loss_tables(found: LostMotion) -> Iterator[Table | None]:
@@ -129,21 +129,21 @@ def _loss_tables(found: LostMotion) -> Iterator[Table | None]:
     yield loss_tables.energy_table(found)
 
 
-def modes(design: Design, *, reading: Theory = Reading.LUMPED, changes: Changes = None, json: Json = None) -> None:
+def modes(design: Design, *, model: ModelName = Model.LUMPED, changes: Changes = None, json: Json = None) -> None:
     """Natural frequencies, names and shapes.
 
     Which modes are the platform's, which are local, and by what margin.
     """
     mechanism = open_design(design, changes, [("--json", json)])
 
-    found = platform_modes(mechanism, elastic_model(mechanism, reading))
-    answer("modes", mechanism, lambda: found, lambda: [mode_table(found)], reading=reading, json=json)
+    found = platform_modes(mechanism, elastic_model(mechanism, model))
+    answer("modes", mechanism, lambda: found, lambda: [mode_table(found)], model=model, json=json)
 
 
 def response(
     design: Design,
     *,
-    reading: Theory = Reading.LUMPED,
+    model: ModelName = Model.LUMPED,
     inputs: Annotated[
         list[str] | None,
         text_option("--input", "NAME", "Stroke (B1), force (platform.fx), ground motion (ground); several times."),
@@ -171,19 +171,19 @@ def response(
     """
     mechanism = open_design(design, changes, [("--json", json)])
 
-    model = elastic_model(mechanism, reading)
-    law = damping_law(model)
-    grid = responses.default_frequencies(model, _hertz(band), damping=law)
-    chosen = outputs or ["platform", *(channel.name for channel in model.outputs if "." not in channel.name)]
-    found = responses.response(model, chosen, inputs or model.strokes, grid, damping=law)
+    linear = elastic_model(mechanism, model)
+    law = damping_law(linear)
+    grid = responses.default_frequencies(linear, _hertz(band), damping=law)
+    chosen = outputs or ["platform", *(channel.name for channel in linear.outputs if "." not in channel.name)]
+    found = responses.response(linear, chosen, inputs or linear.strokes, grid, damping=law)
     limits = (float(grid[0]), float(grid[-1]))
-    shaken = random_response(model, chosen, spectra(model, noise), limits, damping=law) if noise else None
+    shaken = random_response(linear, chosen, spectra(linear, noise), limits, damping=law) if noise else None
     answer(
         "response",
         mechanism,
         lambda: response_body(found, law) | ({} if shaken is None else {"random": shaken.to_json()}),
         lambda: [response_table(found), None if shaken is None else random_table(shaken)],
-        reading=reading,
+        model=model,
         json=json,
     )
 

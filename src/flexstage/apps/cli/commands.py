@@ -11,6 +11,7 @@ import typer
 from typer.core import TyperCommand, TyperGroup
 from typer.main import get_command
 
+from flexstage.base.finding import Finding, require
 from flexstage.show.command.models import Models
 
 
@@ -68,11 +69,11 @@ COMMANDS: tuple[Command, ...] = (
     Command("mapping", _ANALYSE, "Mappings R_a and R_s, mobility, redundancy.", f"{_CLI}.analyses:mapping",
             "flexstage mapping stage.toml --json -"),
     Command("stiffness", _ANALYSE, "Compliance and stiffness of the platform.", f"{_CLI}.analyses:stiffness",
-            "flexstage stiffness stage.toml --reading mapped"),
+            "flexstage stiffness stage.toml --model mapped"),
     Command("lost-motion", _ANALYSE, "Gain, loss and its budget by part, crosstalk, correction.", f"{_CLI}.analyses:lost_motion",
             "flexstage lost-motion stage.toml --set vertical/pivot.thickness=0.9mm"),
     Command("modes", _ANALYSE, "Natural frequencies, names and shapes.", f"{_CLI}.analyses:modes",
-            "flexstage modes stage.toml --reading mapped --json modes.json"),
+            "flexstage modes stage.toml --model mapped --json modes.json"),
     Command("response", _ANALYSE, "Frequency response of outputs to inputs.", f"{_CLI}.analyses:response",
             'flexstage response stage.toml --input ground.z --output platform.z --band "1 Hz" "1 kHz"'),
     Command("workspace", _ANALYSE, "What the stage reaches and bears.", f"{_CLI}.accuracy:workspace",
@@ -117,6 +118,9 @@ COMMANDS: tuple[Command, ...] = (
 MODELS = Models({"solid": f"{_SOLID}.modes:fea_modes"})
 """Models that commands of other wings may ask for."""
 
+_RENAMED = {"--reading": "--model"}
+"""Options by the name they had before."""
+
 
 class LazyCommand(TyperCommand):
     """Stands for a command in the help and in completion until it is called."""
@@ -139,8 +143,15 @@ class GroupedCommands(TyperGroup):
 
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:
         """Name, command and the rest of the arguments."""
-        name, command, rest = super().resolve_command(ctx, args)
-        return name, cast("LazyCommand", command).load() if command else None, rest
+        name, found, rest = super().resolve_command(ctx, args)
+        command = cast("LazyCommand", found).load() if found else None
+        known = {option for each in getattr(command, "params", ()) for option in each.opts}
+        require(
+            Finding(old, "this option is not known", f"It is called {new}")
+            for old, new in _RENAMED.items()
+            if new in known and any(word.partition("=")[0] == old for word in rest)
+        )
+        return name, command, rest
 
     def format_commands(self, ctx: Any, formatter: Any) -> None:  # noqa: ARG002 (the framework gives it)
         """Write a section a purpose; all columns are alike."""

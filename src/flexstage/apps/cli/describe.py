@@ -11,7 +11,7 @@ from typing import Annotated
 import typer
 
 import flexstage
-from flexstage.analysis.cautions import caveats, reading_findings
+from flexstage.analysis.cautions import caveats, model_findings
 from flexstage.base.document import as_text
 from flexstage.base.finding import DesignError, Finding, require
 from flexstage.cases.registry import CASES
@@ -100,7 +100,7 @@ def check(design: Design, *, changes: Changes = None, json: Json = None) -> None
     require_writable([("--json", json)], design)
     try:
         mechanism = change(load(design), changes or ())
-        require(reading_findings(mechanism))
+        require(model_findings(mechanism))
     except DesignError as error:
         if json is not None:
             write(json, as_text(check_document(None, error.findings)) + "\n", "--json")

@@ -34,7 +34,7 @@ from flexstage.control.study.file import example as commented_example
 from flexstage.control.study.file import load_setup
 from flexstage.control.study.runs import driven_machine
 from flexstage.control.study.study import LoopStudy, loop_study
-from flexstage.models.theory import Reading
+from flexstage.models.theory import Model
 from flexstage.show.command.answer import answer
 from flexstage.show.command.design import open_design
 from flexstage.show.command.options import Changes, Design, Json, Report, text_option, word_option
@@ -107,8 +107,8 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
         text_option("--amplifier", "VALUE", "Bandwidth (500Hz) or output resistance (50ohm); largest current (0.2A). Default: ideal."),
     ] = None,
     seed: Annotated[int | None, text_option("--seed", "NUMBER", "Seed of all random numbers. Default: 0.")] = None,
-    reading: Annotated[
-        Reading | None, word_option("--reading", Reading, "Theory to read the plant by. Default: lumped.", show_default=False)
+    model: Annotated[
+        Model | None, word_option("--model", Model, "Model of the stage as the plant. Default: lumped.", show_default=False)
     ] = None,
     changes: Changes = None,
     json: Json = None,
@@ -133,7 +133,7 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
     values = Values()
     given = values.attempt(lambda: forms.LoopSetup() if setup is None else load_setup(setup)) or forms.LoopSetup()
     options = {
-        "reading": reading,
+        "model": model,
         "rate": values.value("--rate", rate, FREQUENCY),
         "delay": values.value("--delay", delay, TIME),
         "seconds": seconds,
@@ -174,7 +174,7 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
         mechanism,
         lambda: loop_body(found),
         lambda: _tables(found),
-        reading=asked.reading,
+        model=asked.model,
         json=json,
         cautions=found.cautions,
         beside=(report,),

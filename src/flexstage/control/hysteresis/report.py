@@ -30,5 +30,5 @@ def hysteresis_report(test: StackTest) -> str:
         section("Model", [plays_table(test)]),
     ]
     named = test.source or "record"
-    origin = (("record", named), ("reading", "measured"), ("flexstage", flexstage.__version__))
+    origin = (("record", named), ("model", "measured"), ("flexstage", flexstage.__version__))
     return page(Head(named, "Hysteresis of a stack", origin), [each for each in sections if each is not None])

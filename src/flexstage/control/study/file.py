@@ -8,7 +8,7 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
-from flexstage.base.finding import DesignError
+from flexstage.base.finding import DesignError, Finding
 from flexstage.control.study.setup import FileMotion, LoopSetup
 from flexstage.mechanism.store.decode import record_from
 from flexstage.mechanism.store.file import parse_toml, read_text
@@ -16,6 +16,7 @@ from flexstage.mechanism.store.lines import placed
 from flexstage.mechanism.store.schema import schema_of
 
 FORMAT = "flexstage loop 1"
+_RENAMED = {"reading": "model"}
 
 
 def load_setup(path: str | os.PathLike[str]) -> LoopSetup:
@@ -48,7 +49,12 @@ def loads_setup(text: str, *, where: str = "text") -> LoopSetup:
     try:
         return record_from(LoopSetup, raw, FORMAT)
     except DesignError as error:
-        raise DesignError(placed(error.findings, text, where)) from None
+        raise DesignError(placed(map(_renamed, error.findings), text, where)) from None
+
+
+def _renamed(finding: Finding) -> Finding:
+    """A finding on a key by its name of before says the name of now."""
+    return replace(finding, advice=f"It is called {_RENAMED[finding.where]}") if finding.where in _RENAMED else finding
 
 
 def setup_schema() -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""Errors at rest in open loop: by the ideal map alone, with gains that correct lost motion, by gains of another reading."""
+"""Errors at rest in open loop: by the ideal map alone, with gains that correct lost motion, by gains of another model."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from flexstage.base.finding import DesignError
 from flexstage.base.number import Array, first_design
 from flexstage.control.compensation import StaticError, compensated, static_error, uncompensated
 from flexstage.control.study.settle import Settled
-from flexstage.models.theory import Reading
+from flexstage.models.theory import Model
 
 
 @dataclass(frozen=True, eq=False)
 class RestErrors:
-    """Errors at rest of the stage by its reading: commanded by R_a (`bare`), and by the gains of the same reading (`corrected`).
+    """Errors at rest of the stage by its model: commanded by R_a (`bare`), and by the gains of the same model (`corrected`).
 
-    `other` is what gains of the `other_reading` leave on it (`None` where that reading does not have the stage). `load` (6,) is the twist
+    `other` is what gains of the `other_model` leave on it (`None` where that model does not have the stage). `load` (6,) is the twist
     of the platform under all its loads, strokes held, `carried` (6,) what of it no stroke takes back, `strokes` (n,) [m] those that take
     back the rest.
     """
@@ -28,7 +28,7 @@ class RestErrors:
     bare: StaticError
     corrected: StaticError
     other: StaticError | None
-    other_reading: Reading
+    other_model: Model
     load: Array
     carried: Array
     strokes: Array
@@ -49,22 +49,22 @@ def rest_errors(given: Settled, lost: LostMotion) -> RestErrors:
     kinematics = given.kinematics
     load = np.real(first_design(deflection(given.mechanism, given.model).total, 1))
     carrying = compensated(lost, kinematics, load)
-    other, reading = _other(given)
+    other, model = _other(given)
     return RestErrors(
         bare=static_error(uncompensated(kinematics), kinematics, lost.gain, load),
         corrected=static_error(compensated(lost, kinematics), kinematics, lost.gain, load),
         other=None if other is None else static_error(compensated(other, kinematics), kinematics, lost.gain, load),
-        other_reading=reading,
+        other_model=model,
         load=load,
         carried=static_error(carrying, kinematics, lost.gain, load).offset,
         strokes=carrying.offset,
     )
 
 
-def _other(given: Settled) -> tuple[LostMotion | None, Reading]:
-    reading = Reading.MAPPED if given.setup.reading is Reading.LUMPED else Reading.LUMPED
+def _other(given: Settled) -> tuple[LostMotion | None, Model]:
+    other = Model.MAPPED if given.setup.model is Model.LUMPED else Model.LUMPED
     try:
-        model = read(given.mechanism, reading)
-        return (None if model is None else lost_motion(given.kinematics, model)), reading
+        linear = read(given.mechanism, other)
+        return (None if linear is None else lost_motion(given.kinematics, linear)), other
     except DesignError:
-        return None, reading
+        return None, other

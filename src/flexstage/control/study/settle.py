@@ -32,7 +32,7 @@ _FELT = 0.01
 
 @dataclass(frozen=True, eq=False)
 class Settled:
-    """What a set-up means for a stage: its kinematics, its model by the set-up's reading, the plant, the floor's spectra by input.
+    """What a set-up means for a stage: its kinematics, its linear model by the set-up's model, the plant, the floor's spectra by input.
 
     `plant` has the modes that its loop feels, or as many as the set-up says; `whole` all below half the sampling rate.
     `highest` [Hz] is that of the platform's modes, of as many as the loop has coordinates.
@@ -62,7 +62,7 @@ def settled(mechanism: Mechanism, setup: LoopSetup) -> Settled:
     """Settle a set-up for a stage.
 
     Raises `DesignError` with all findings: of the set-up itself, gauges that do not tell the pose, actuators that cannot make it, stacks
-    that do not state what amplifiers need, sampling too slow for the platform's modes, a reading without stiffness.
+    that do not state what amplifiers need, sampling too slow for the platform's modes, a model without stiffness.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> found = settled(double_triangle(), LoopSetup())
@@ -70,9 +70,9 @@ def settled(mechanism: Mechanism, setup: LoopSetup) -> Settled:
     (10000.0, ('x', 'y', 'z', 'rx', 'ry', 'rz'), 173.1)
     """
     require(setup_findings(setup))
-    kinematics, model = ideal(mechanism), read(mechanism, setup.reading)
+    kinematics, model = ideal(mechanism), read(mechanism, setup.model)
     if model is None:
-        raise refuse("reading", "rigid bodies have no stiffness and no modes", "Take lumped or mapped")
+        raise refuse("model", "rigid bodies have no stiffness and no modes", "Take lumped or mapped")
     highest = highest_moved(mechanism, model, len(kinematics.coordinates))
     rate = setup.rate if setup.rate is not None else usual_rate(highest)
     delay = setup.delay if setup.delay is not None else 1.0 / rate

@@ -30,7 +30,7 @@ from flexstage.base.quantity import (
     Bound,
 )
 from flexstage.control.study.choices import Axes, Axis, Compensation, ControllerKind, Criterion, Notching, StackKind
-from flexstage.models.theory import Reading
+from flexstage.models.theory import Model
 
 _PEAK = Bound(low=1.0, open_low=True)
 _SHARE = Bound(low=0.0, high=0.5, open_low=True)
@@ -218,7 +218,7 @@ Commanded: TypeAlias = StepMotion | RasterMotion | SpiralMotion | SineMotion | F
 
 @dataclass(frozen=True)
 class LoopSetup:
-    """A loop: by which `reading` the stage is the plant, sampled at `rate`, its outputs `delay` late, and all that belongs to it.
+    """A loop: by which `model` the stage is the plant, sampled at `rate`, its outputs `delay` late, and all that belongs to it.
 
     Without a rate it is 10 kHz, or for faster stages ten times the highest platform mode; without a delay it is one sample. `modes` is
     how many are kept, lowest first (absent: those that the loop feels), the others' compliance stays. The simulation lasts `seconds`
@@ -228,7 +228,7 @@ class LoopSetup:
     'pi'
     """
 
-    reading: Reading = Reading.LUMPED
+    model: Model = Model.LUMPED
     rate: Annotated[float, FREQUENCY, POSITIVE] | None = None
     delay: Annotated[float, TIME, NOT_NEGATIVE] | None = None
     modes: int | None = None

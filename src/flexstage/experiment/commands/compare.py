@@ -26,11 +26,11 @@ from flexstage.experiment.commands.records import (
 from flexstage.experiment.document import compare_body
 from flexstage.experiment.report import compare_report
 from flexstage.experiment.sections import compare_tables
-from flexstage.models.theory import Reading
+from flexstage.models.theory import Model
 from flexstage.show.command.answer import answer
 from flexstage.show.command.design import elastic_model, open_design
 from flexstage.show.command.models import Models
-from flexstage.show.command.options import Changes, Design, Json, Report, Theory, text_option
+from flexstage.show.command.options import Changes, Design, Json, ModelName, Report, text_option
 from flexstage.show.command.output import require_writable, save
 from flexstage.show.command.terminal import warn
 
@@ -40,7 +40,7 @@ def compare(  # noqa: PLR0913 (its options)
     design: Design,
     *,
     record: Annotated[list[Path], text_option("--record", "RECORD", "File of the test. May be given several times.")],
-    reading: Theory = Reading.LUMPED,
+    model: ModelName = Model.LUMPED,
     fea: Annotated[bool, typer.Option("--fea", help="Compute finite elements where the cache does not have them.")] = False,
     inputs: Inputs = None,
     outputs: Outputs = None,
@@ -64,15 +64,15 @@ def compare(  # noqa: PLR0913 (its options)
     texts = RecordTexts(inputs, outputs, only, units, rate, kind, allow, band, resolution)
     require_writable([("--json", json), ("--report", report)], design, record)
     mechanism = open_design(design, changes)
-    model = elastic_model(mechanism, reading)
-    highest = float(platform_modes(mechanism, model).platform_frequencies[-1])
-    seen = identify_records(record, texts, model, highest)
+    linear = elastic_model(mechanism, model)
+    highest = float(platform_modes(mechanism, linear).platform_frequencies[-1])
+    seen = identify_records(record, texts, linear, highest)
     models: Models = context.obj
     solid = models.modes("solid")(mechanism, computing=fea)
-    found = comparison.compare(mechanism, seen.found, solid, reading=reading)
+    found = comparison.compare(mechanism, seen.found, solid, model=model)
     for caution in found.warnings[len(seen.found.warnings) :]:
         warn(caution)
     if report is not None:
         save(report, compare_report(found, seen, mechanism, shapes_on(mechanism, seen)), "--report")
     tables = compare_tables(found)[:-1]
-    answer("compare", mechanism, lambda: compare_body(found), lambda: tables, reading=reading, json=json, beside=(report,))
+    answer("compare", mechanism, lambda: compare_body(found), lambda: tables, model=model, json=json, beside=(report,))

@@ -26,7 +26,7 @@ from flexstage.experiment.document import identify_body
 from flexstage.experiment.pipeline import Identification
 from flexstage.experiment.report import identify_report
 from flexstage.experiment.tables import identified_table, measured_shape_table, peak_table, recorded_table
-from flexstage.models.theory import Reading
+from flexstage.models.theory import Model
 from flexstage.show.command.answer import answer
 from flexstage.show.command.design import elastic_model, open_design
 from flexstage.show.command.options import Json, Report, text_option
@@ -66,7 +66,7 @@ def identify(  # noqa: PLR0913 (its options)
     texts = RecordTexts(inputs, outputs, only, units, rate, kind, allow, band, resolution)
     require_writable([("--json", json), ("--report", report)], stage, records)
     mechanism = None if stage is None else open_design(stage)
-    seen = identify_records(records, texts, None if mechanism is None else elastic_model(mechanism, Reading.LUMPED))
+    seen = identify_records(records, texts, None if mechanism is None else elastic_model(mechanism, Model.LUMPED))
     shapes = None if mechanism is None else shapes_on(mechanism, seen)
     if report is not None:
         save(report, identify_report(seen, mechanism, shapes), "--report")

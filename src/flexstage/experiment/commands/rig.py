@@ -13,10 +13,10 @@ from flexstage.experiment.formats.write import write
 from flexstage.experiment.virtual_rig.rig import as_record, simulated
 from flexstage.experiment.virtual_rig.setup import Amplifier, AntiAlias, NoiseDrive, Recorded, RigSetup, Sensing, Tap
 from flexstage.experiment.virtual_rig.tables import rig_table
-from flexstage.models.theory import Reading
+from flexstage.models.theory import Model
 from flexstage.show.command.answer import caveat_lines, show
 from flexstage.show.command.design import elastic_model, open_design
-from flexstage.show.command.options import Changes, Design, Theory, output_option, text_option, word_option
+from flexstage.show.command.options import Changes, Design, ModelName, output_option, text_option, word_option
 from flexstage.show.command.output import announce
 from flexstage.show.command.progress import progress_bar
 from flexstage.show.command.values import Values, first_fit
@@ -60,7 +60,7 @@ def rig(  # noqa: PLR0913  a test has that many knobs
         Tap, word_option("--tap", Tap, "Record inputs behind the amplifier and filtered as the gauges are, or as commanded.")
     ] = Tap.MONITOR,
     inputs: Annotated[Recorded, word_option("--inputs", Recorded, "Inputs as strokes in um or volts.")] = Recorded.STROKE,
-    reading: Theory = Reading.LUMPED,
+    model: ModelName = Model.LUMPED,
     changes: Changes = None,
 ) -> None:
     """Test a stage on a virtual rig; write the record.
@@ -87,9 +87,9 @@ def rig(  # noqa: PLR0913  a test has that many knobs
         recorded=inputs,
     )
     require(values.findings)
-    model = elastic_model(mechanism, reading)
+    linear = elastic_model(mechanism, model)
     with progress_bar() as shown:
-        test = simulated(mechanism, model, setup, tell=lambda share: shown.share("testing", share))
+        test = simulated(mechanism, linear, setup, tell=lambda share: shown.share("testing", share))
         write(output, as_record(test))
     show((*caveat_lines("rig", mechanism), rig_table(test)))
     announce(f"Wrote {output}")

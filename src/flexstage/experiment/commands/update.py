@@ -35,7 +35,7 @@ from flexstage.experiment.updating.text import updated_text
 from flexstage.experiment.virtual_rig.plan import highest_mode
 from flexstage.mechanism.store import loads
 from flexstage.mechanism.store.file import read_text
-from flexstage.models.theory import Reading
+from flexstage.models.theory import Model
 from flexstage.show.command.answer import answer
 from flexstage.show.command.options import Design, Json, output_option, text_option
 from flexstage.show.command.output import require_writable, save
@@ -94,7 +94,7 @@ def update(  # noqa: PLR0913 (its options)
     for caution in found.warnings[len(seen.found.warnings) :]:
         warn(caution)
     body, tables = lambda: update_body(found), lambda: update_tables(found)
-    answer("update", mechanism, body, tables, reading=Reading.LUMPED, json=json, beside=(output,))
+    answer("update", mechanism, body, tables, model=Model.LUMPED, json=json, beside=(output,))
 
 
 def _known(priors: Sequence[str], model_error: str, gain_error: str, *, gain: bool) -> Known:

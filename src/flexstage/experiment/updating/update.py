@@ -179,7 +179,7 @@ class Updated:
 
 
 def update(mechanism: Mechanism, experiment: Identified, names: Sequence[str], known: Known = DEFAULT) -> Updated:
-    """The values of the numbers at `names` that make the lumped reading agree best with a test, given what is known before.
+    """The values of the numbers at `names` that make the lumped model agree best with a test, given what is known before.
 
     Bayesian least squares in the logarithms x = ln(p/p0) (Tarantola 2005, ch. 3; Friswell & Mottershead 1995, ch. 8): minimise
     sum ((d - g(x))/sigma)^2 + sum (x/sigma_p)^2 by Gauss-Newton, derivatives exact by complex step; posterior covariance

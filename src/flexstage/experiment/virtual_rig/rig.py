@@ -1,4 +1,4 @@
-"""The virtual test rig: any elastic reading of a stage as the plant, and a record of it as a test would give."""
+"""The virtual test rig: any elastic model of a stage as the plant, and a record of it as a test would give."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _MICROMETRE = 1e6
 def rig(mechanism: Mechanism, model: LinearModel, setup: RigSetup, *, damping: Damping | None = None, tell: Tell | None = None) -> Record:
     """The record of a virtual test: strokes or voltages in, gauges out, by name and with units.
 
-    `model` is any elastic reading of the mechanism (lumped, mapped, solid); `damping` instead of the model's own. Each driven actuator has
+    `model` is any elastic model of the mechanism (lumped, mapped, solid); `damping` instead of the model's own. Each driven actuator has
     band-limited Gaussian noise, through the amplifier 1/(1 + j f/f_a); gauges read the stage's motion through their own lag, with noise,
     through the anti-alias filter, with drift, in steps. The test has run for long when the record begins. Strokes are free strokes around
     the bias. The stage is taken as linear; its continuous response to the noise is exact, structural damping taken as equivalent modal

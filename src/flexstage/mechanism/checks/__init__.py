@@ -1,7 +1,7 @@
 """Checks of a description: everything that is wrong with it, told so that it can be mended.
 
 `check` asks, `checked` throws. Checks are vectorised: of a batch they name the first failing index. What needs the elastic model (a
-mechanism that gives way) is found by the readings.
+mechanism that gives way) is found by the models.
 """
 
 from __future__ import annotations

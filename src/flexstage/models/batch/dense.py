@@ -10,7 +10,7 @@ from flexstage.base.number import Array
 from flexstage.models.linear.eigen import solve
 
 _SINGULAR = 1e-11
-"""Least eigenvalue of K scaled to a unit diagonal; below it `readings.lumped` finds a motion without stiffness."""
+"""Least eigenvalue of K scaled to a unit diagonal; below it `models.lumped` finds a motion without stiffness."""
 
 
 @dataclass(frozen=True, eq=False)

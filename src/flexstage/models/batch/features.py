@@ -1,6 +1,6 @@
 """What a lumped stage is made of, in few numbers: laws of its distinct parts, places of its links, inertias of its bodies.
 
-The same numbers as `readings.lumped` takes from a description, but before they are put into matrices: twenty-seven links of a stage may
+The same numbers as `models.lumped` takes from a description, but before they are put into matrices: twenty-seven links of a stage may
 share six parts. Numbers without batch axes hold for every design.
 """
 

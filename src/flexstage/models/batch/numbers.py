@@ -1,6 +1,6 @@
 """From the numbers that vary between designs to features, and their exact derivatives.
 
-A derivative is a complex step through the readings' own formulas. Two variables that no feature shares are stepped together: a feature that
+A derivative is a complex step through the models' own formulas. Two variables that no feature shares are stepped together: a feature that
 comes out complex knows whose step that is, as the type of an array says what it was made of.
 """
 

@@ -1,1 +1,1 @@
-"""The currency of all readings: kinematics and linear models, with their static, eigen and frequency solves."""
+"""The currency of all models: kinematics and linear models, with their static, eigen and frequency solves."""

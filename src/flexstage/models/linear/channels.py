@@ -1,4 +1,4 @@
-"""Inputs and outputs of a stage, by name and in order, as every elastic reading gives them: so their answers can be compared by name.
+"""Inputs and outputs of a stage, by name and in order, as every elastic model gives them: so their answers can be compared by name.
 
 Inputs: strokes; wrenches on the platform and the named points. Outputs: twists of the platform, the points and all other bodies; readings
 of the gauges; stress resultants of every link, at its centre in its frame.
@@ -28,7 +28,7 @@ class Place:
 
 @dataclass(frozen=True, eq=False)
 class Motions:
-    """How a reading's coordinates move the bodies: the twist (..., 6, n) of each at its reference point, and of one `at` a frame."""
+    """How a model's coordinates move the bodies: the twist (..., 6, n) of each at its reference point, and of one `at` a frame."""
 
     bodies: Mapping[str, Array]
     at: Callable[[str, Frame], Array]

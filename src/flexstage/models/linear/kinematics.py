@@ -1,4 +1,4 @@
-"""Kinematics: what an ideal reading ends in."""
+"""Kinematics: what an ideal model ends in."""
 
 from __future__ import annotations
 

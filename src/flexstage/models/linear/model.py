@@ -1,4 +1,4 @@
-"""LinearModel: what every elastic reading ends in."""
+"""LinearModel: what every elastic model ends in."""
 
 from __future__ import annotations
 

@@ -14,7 +14,7 @@ from flexstage.base.document import as_text
 from flexstage.base.finding import Finding
 from flexstage.base.text import printable
 from flexstage.mechanism.mechanism import Mechanism
-from flexstage.models.theory import Reading
+from flexstage.models.theory import Model
 from flexstage.show.command.output import STDOUT, announce, write
 from flexstage.show.command.terminal import styled, tell, warn
 from flexstage.show.document import enveloped
@@ -31,7 +31,7 @@ def answer(
     tables: Callable[[], Iterable[Table | None]],
     *,
     json: str | None,
-    reading: Reading | None = None,
+    model: Model | None = None,
     cautions: tuple[Finding, ...] = (),
     beside: tuple[Path | None, ...] = (),
 ) -> None:
@@ -42,7 +42,7 @@ def answer(
     and cautions go to stderr.
     """
     if json is not None:
-        write(json, as_text(enveloped(kind, mechanism, reading, body(), cautions)) + "\n", "--json")
+        write(json, as_text(enveloped(kind, mechanism, model, body(), cautions)) + "\n", "--json")
         if json == STDOUT:
             return
         announce(f"Wrote {json}")

@@ -12,7 +12,7 @@ from flexstage.mechanism.checks import checked
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.store import load
 from flexstage.models.linear.model import LinearModel
-from flexstage.models.theory import Reading
+from flexstage.models.theory import Model
 from flexstage.show.command.output import require_writable
 from flexstage.spatial.frame import COMPONENTS
 
@@ -45,12 +45,12 @@ def _where(text: str, inner: str) -> str:
     return f"--set {text}" if inner in said else f"--set {text}: {inner}"
 
 
-def elastic_model(mechanism: Mechanism, reading: Reading) -> LinearModel:
-    """The linear model of a reading; the ideal one is refused."""
-    model = read(mechanism, reading)
-    if model is None:
-        raise refuse("--reading ideal", "rigid bodies have no stiffness, no lost motion and no modes", "Use --reading lumped or mapped")
-    return model
+def elastic_model(mechanism: Mechanism, model: Model) -> LinearModel:
+    """The linear model of a stage; the ideal model is refused."""
+    linear = read(mechanism, model)
+    if linear is None:
+        raise refuse("--model ideal", "rigid bodies have no stiffness, no lost motion and no modes", "Use --model lumped or mapped")
+    return linear
 
 
 def known_point(model: LinearModel, name: str) -> str:

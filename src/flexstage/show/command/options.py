@@ -10,7 +10,7 @@ from typing import Annotated, Any, TypeAlias, TypeVar
 
 import typer
 
-from flexstage.models.theory import Reading
+from flexstage.models.theory import Model
 from flexstage.show.command.failure import BAD_INPUT
 from flexstage.show.command.terminal import tell
 
@@ -57,12 +57,12 @@ def _reader(option: str, kind: type[_Kind], otherwise: Mapping[str, str]) -> Cal
 
 Design: TypeAlias = Annotated[Path, typer.Argument(help="Design file (TOML).", metavar="STAGE.TOML", show_default=False)]
 
-Theory: TypeAlias = Annotated[
-    Reading,
+ModelName: TypeAlias = Annotated[
+    Model,
     word_option(
-        "--reading",
-        Reading,
-        "Theory to read the stage by: rigid bodies, the paper's axial springs, or lumped 6x6 hinges.",
+        "--model",
+        Model,
+        "Model of the stage: rigid bodies, the paper's axial springs, or lumped 6x6 hinges.",
         otherwise={"solid": "Solids have commands of their own: flexstage solid, flexstage verify"},
     ),
 ]

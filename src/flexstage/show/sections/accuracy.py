@@ -13,8 +13,8 @@ def drift_section(analysis: Analysis) -> Section | None:
     """Motion per kelvin; `None` without drift.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> from flexstage.analysis.complete import Reading, analyse
-    >>> drift_section(analyse(double_triangle(), Reading.IDEAL)) is None
+    >>> from flexstage.analysis.complete import Model, analyse
+    >>> drift_section(analyse(double_triangle(), Model.IDEAL)) is None
     True
     """
     drift = analysis.drift
@@ -32,8 +32,8 @@ def error_section(analysis: Analysis) -> Section | None:
     """Every source of pose error on one line an axis; `None` without it.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> from flexstage.analysis.complete import Reading, analyse
-    >>> error_section(analyse(double_triangle(), Reading.IDEAL)) is None
+    >>> from flexstage.analysis.complete import Model, analyse
+    >>> error_section(analyse(double_triangle(), Model.IDEAL)) is None
     True
     """
     budget = analysis.error_budget

@@ -29,15 +29,15 @@ _REACH = 0.07
 
 
 def mode_section(analysis: Analysis, seen: Scene) -> Section | None:
-    """Modes with pictures of the platform's shapes; `None` for the ideal reading.
+    """Modes with pictures of the platform's shapes; `None` for the ideal model.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.show.scene.stage import scene
-    >>> from flexstage.analysis.complete import Reading, analyse
-    >>> mode_section(analyse(double_triangle(), Reading.IDEAL), scene(double_triangle())) is None
+    >>> from flexstage.analysis.complete import Model, analyse
+    >>> mode_section(analyse(double_triangle(), Model.IDEAL), scene(double_triangle())) is None
     True
     """
-    modes, model = analysis.modes, analysis.model
+    modes, model = analysis.modes, analysis.linear
     if modes is None or model is None or not modes.names:
         return None
     text = (
@@ -91,8 +91,8 @@ def response_section(analysis: Analysis) -> Section | None:
     """Frequency responses to the strokes and to the ground; `None` where neither is known.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> from flexstage.analysis.complete import Reading, analyse
-    >>> response_section(analyse(double_triangle(), Reading.IDEAL)) is None
+    >>> from flexstage.analysis.complete import Model, analyse
+    >>> response_section(analyse(double_triangle(), Model.IDEAL)) is None
     True
     """
     response, ground = analysis.response, analysis.transmissibility

@@ -36,8 +36,8 @@ def kinematics_section(analysis: Analysis) -> Section | None:
     """Mobility, mappings, idle freedoms and redundant constraints.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> from flexstage.analysis.complete import Reading, analyse
-    >>> kinematics_section(analyse(double_triangle(), Reading.IDEAL)).title
+    >>> from flexstage.analysis.complete import Model, analyse
+    >>> kinematics_section(analyse(double_triangle(), Model.IDEAL)).title
     'Kinematics'
     """
     kinematics = analysis.kinematics
@@ -66,11 +66,11 @@ def _mappings(kinematics: Kinematics) -> list[Block]:
 
 
 def stiffness_section(analysis: Analysis) -> Section | None:
-    """Stiffness and compliance of the platform, and by direction; `None` for the ideal reading.
+    """Stiffness and compliance of the platform, and by direction; `None` for the ideal model.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> from flexstage.analysis.complete import Reading, analyse
-    >>> stiffness_section(analyse(double_triangle(), Reading.IDEAL)) is None
+    >>> from flexstage.analysis.complete import Model, analyse
+    >>> stiffness_section(analyse(double_triangle(), Model.IDEAL)) is None
     True
     """
     statics = analysis.statics
@@ -100,8 +100,8 @@ def lost_motion_section(analysis: Analysis) -> Section | None:
     """Gains, losses, their budget by part and the corrected mapping; `None` where there are none.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> from flexstage.analysis.complete import Reading, analyse
-    >>> lost_motion_section(analyse(double_triangle(), Reading.IDEAL)) is None
+    >>> from flexstage.analysis.complete import Model, analyse
+    >>> lost_motion_section(analyse(double_triangle(), Model.IDEAL)) is None
     True
     """
     lost = analysis.lost_motion

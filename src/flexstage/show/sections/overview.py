@@ -22,14 +22,14 @@ def requirement_section(analysis: Analysis) -> Section | None:
     """Verdicts first, those that fail before the others; `None` without requirements.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> from flexstage.analysis.complete import Reading, analyse
-    >>> requirement_section(analyse(double_triangle(), Reading.IDEAL)).blocks[0].text
+    >>> from flexstage.analysis.complete import Model, analyse
+    >>> requirement_section(analyse(double_triangle(), Model.IDEAL)).blocks[0].text
     'All 8 requirements are met; the least margin is 6.01 %, for frequency.platform.1.'
     """
     verdicts = analysis.verdicts
     if not verdicts:
         return None
-    note = "Judged by the lumped reading, whichever reading the rest of this report uses."
+    note = "Judged by the lumped model, whichever model the rest of this report uses."
     return section("Requirements", [Prose(_verdict_text(verdicts)), _verdict_table(verdicts), Prose(note)])
 
 
@@ -37,8 +37,8 @@ def change_section(analysis: Analysis, compared: Comparison | None) -> Section |
     """The values that were set, and the key figures before and after; `None` where nothing was set.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> from flexstage.analysis.complete import Reading, analyse
-    >>> change_section(analyse(double_triangle(), Reading.IDEAL), None) is None
+    >>> from flexstage.analysis.complete import Model, analyse
+    >>> change_section(analyse(double_triangle(), Model.IDEAL), None) is None
     True
     """
     if compared is None:
@@ -88,8 +88,8 @@ def summary_section(analysis: Analysis) -> Section | None:
     """The stage in a few numbers and sentences.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> from flexstage.analysis.complete import Reading, analyse
-    >>> [fact.name for fact in summary_section(analyse(double_triangle(), Reading.IDEAL)).blocks[0].items]
+    >>> from flexstage.analysis.complete import Model, analyse
+    >>> [fact.name for fact in summary_section(analyse(double_triangle(), Model.IDEAL)).blocks[0].items]
     ['Freedoms', 'Stroke along x']
     """
     return section("Summary", [Facts(tuple(_facts(analysis))), *(Prose(text) for text in _sentences(analysis))])
@@ -182,7 +182,7 @@ def _loss_sentence(analysis: Analysis) -> str:
     own = np.abs(np.diagonal(loss))
     others = np.abs(loss - np.diag(np.diagonal(loss)))
     if max(own.max(), others.max(initial=0.0)) < _SILENT:
-        return "In this reading the actuators lose no motion: its springs lie in line with the strokes."
+        return "In this model the actuators lose no motion: its springs lie in line with the strokes."
     range_text = f"{percent(float(own.min()), 3)} to {percent(float(own.max()), 3)}" if np.ptp(own) > 1e-4 else percent(float(own.max()), 3)
     taken = f"Elasticity takes {range_text} of the actuators' strokes"
     stirred = float(others.max(initial=0.0))

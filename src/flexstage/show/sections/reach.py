@@ -24,8 +24,8 @@ def workspace_section(analysis: Analysis) -> Section | None:
     """What the platform reaches and what that asks of actuators and gauges; `None` where strokes do not determine the platform.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> from flexstage.analysis.complete import Reading, analyse
-    >>> workspace_section(analyse(double_triangle(), Reading.IDEAL)).title
+    >>> from flexstage.analysis.complete import Model, analyse
+    >>> workspace_section(analyse(double_triangle(), Model.IDEAL)).title
     'Workspace'
     """
     reach = analysis.workspace
@@ -56,8 +56,8 @@ def strength_section(analysis: Analysis) -> Section | None:
     """Forces, stress, buckling, loads and room; `None` where none is known.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> from flexstage.analysis.complete import Reading, analyse
-    >>> strength_section(analyse(double_triangle(), Reading.IDEAL)).title
+    >>> from flexstage.analysis.complete import Model, analyse
+    >>> strength_section(analyse(double_triangle(), Model.IDEAL)).title
     'Forces, strength and room'
     """
     reach = analysis.workspace

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from flexstage.analysis.cautions import part_cautions
-from flexstage.analysis.complete import Analysis, Reading
+from flexstage.analysis.complete import Analysis, Model
 from flexstage.beams.validity import validity
 from flexstage.mechanism.mechanism import Mechanism, StructuralDamping
 from flexstage.parts.neck import Neck
@@ -16,15 +16,15 @@ from flexstage.show.tables.description import provenance_table, requirement_line
 from flexstage.spatial.frame import COMPONENTS
 
 _LIMITS = {
-    Reading.IDEAL: (
-        "Ideal reading: rigid bodies and perfect hinges, small motions about the drawn position. It knows no stiffness, load or mode."
+    Model.IDEAL: (
+        "Ideal model: rigid bodies and perfect hinges, small motions about the drawn position. It knows no stiffness, load or mode."
     ),
-    Reading.MAPPED: (
-        "Mapped reading, as in the paper: springs along the strokes under a rigid platform, massless units, no bending of hinges. It has "
+    Model.MAPPED: (
+        "Mapped model, as in the paper: springs along the strokes under a rigid platform, massless units, no bending of hinges. It has "
         "no lost motion, no local modes and no crosstalk."
     ),
-    Reading.LUMPED: (
-        "Lumped reading: rigid bodies joined by 6x6 beam-theory hinges, small displacements, frequencies below the first resonance of the "
+    Model.LUMPED: (
+        "Lumped model: rigid bodies joined by 6x6 beam-theory hinges, small displacements, frequencies below the first resonance of the "
         "parts themselves. The bodies' own elasticity is left out: a real plate or lever makes the stage softer."
     ),
 }
@@ -60,18 +60,18 @@ def description_section(mechanism: Mechanism) -> Section | None:
 
 
 def limit_section(analysis: Analysis) -> Section | None:
-    """What the reading leaves out, and results that could not be given, with the reasons.
+    """What the model leaves out, and results that could not be given, with the reasons.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> from flexstage.analysis.complete import Reading, analyse
-    >>> limit_section(analyse(double_triangle(), Reading.IDEAL)).title
+    >>> from flexstage.analysis.complete import Model, analyse
+    >>> limit_section(analyse(double_triangle(), Model.IDEAL)).title
     'Limits'
     """
-    blocks: list[Block | None] = [Prose(_LIMITS[analysis.reading])]
+    blocks: list[Block | None] = [Prose(_LIMITS[analysis.model])]
     if not part_cautions(analysis.mechanism):
         blocks.append(Prose("No part lies outside the range that beam theory was compared with."))
     blocks.append(_missing_table(analysis))
-    accuracy = error_of_theory_table(analysis.mechanism) if analysis.reading is not Reading.IDEAL else None
+    accuracy = error_of_theory_table(analysis.mechanism) if analysis.model is not Model.IDEAL else None
     return section("Limits", [*blocks, accuracy])
 
 
@@ -106,12 +106,12 @@ def reference_section(analysis: Analysis) -> Section | None:
     """The publications whose equations were used.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> from flexstage.analysis.complete import Reading, analyse
-    >>> len(reference_section(analyse(double_triangle(), Reading.IDEAL)).blocks)
+    >>> from flexstage.analysis.complete import Model, analyse
+    >>> len(reference_section(analyse(double_triangle(), Model.IDEAL)).blocks)
     1
     """
     parts = analysis.mechanism.parts.values()
-    elastic = analysis.reading is not Reading.IDEAL
+    elastic = analysis.model is not Model.IDEAL
     used = [_PAPER]
     used += [_NOTCH] if elastic and any(isinstance(part, Notch) for part in parts) else []
     used += [_NECK] if elastic and any(isinstance(part, Notch | Neck) for part in parts) else []

@@ -63,7 +63,7 @@ def state(
 
     Prints the table for the design file: file, digest, size, mass, centre of mass and inertia.
 
-    Rigid readings take what is stated; the solid reading draws the file, and holds what is stated to it.
+    Rigid models take what is stated; the solid model draws the file, and holds what is stated to it.
     """
     mechanism = load(design)
     chosen = _material(mechanism, material)

@@ -1,4 +1,4 @@
-"""Commands of the solid reading: `solid`, `verify`, `calibrate`."""
+"""Commands of the solid model: `solid`, `verify`, `calibrate`."""
 
 from __future__ import annotations
 
@@ -87,7 +87,7 @@ class _Request:
 
 @dataclass(frozen=True)
 class _Result:
-    """A result of the solid reading, as a document, tables, and sections of a report; cautions about it."""
+    """A result of the solid model, as a document, tables, and sections of a report; cautions about it."""
 
     body: Callable[[], dict[str, object]]
     tables: Callable[[], Iterator[Table | None]]
@@ -136,7 +136,7 @@ def verify(
 ) -> None:
     """Compare theory with finite elements: which to trust?
 
-    Hinges, units and the whole stage: the paper's springs, the lumped reading, the lumped reading with calibrated hinges, and FEA with its
+    Hinges, units and the whole stage: the paper's springs, the lumped model, the lumped model with calibrated hinges, and FEA with its
     own error. Rows that calibrated parts touch are not independent of FEA.
     """
     asked = _request(accuracy, order, memory)
@@ -167,7 +167,7 @@ def calibrate(
 ) -> None:
     """Give hinges their 6x6 from finite elements.
 
-    The lumped reading of the written file has FEA's accuracy in its hinges. Comments stay; the drawn hinges are kept beside.
+    The lumped model of the written file has FEA's accuracy in its hinges. Comments stay; the drawn hinges are kept beside.
     """
     require_writable([("--output", output), ("--json", json)], design)
     asked = _request(accuracy, order, memory)

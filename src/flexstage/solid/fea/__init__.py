@@ -1,1 +1,1 @@
-"""Solid reading: the description as a three-dimensional elastic body."""
+"""Solid model: the description as a three-dimensional elastic body."""

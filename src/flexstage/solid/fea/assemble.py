@@ -1,4 +1,4 @@
-"""Assembly: superelements, rigid bodies and casings as one linear model with the inputs and outputs of every elastic reading."""
+"""Assembly: superelements, rigid bodies and casings as one linear model with the inputs and outputs of every elastic model."""
 
 from __future__ import annotations
 

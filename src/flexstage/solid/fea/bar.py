@@ -1,4 +1,4 @@
-"""A plain bar: what every step of the solid reading can be tried on and checked by hand."""
+"""A plain bar: what every step of the solid model can be tried on and checked by hand."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The cache of superelements: files by content, so that a component is reduced once on a machine and a stopped reading resumes.
+"""The cache of superelements: files by content, so that a component is reduced once on a machine and a stopped run resumes.
 
 What cannot be read or kept is told, never fatal: the component is then computed, or not kept.
 """

@@ -1,4 +1,4 @@
-"""What is asked of a solid reading: how fine a mesh, of which order, and how many modes within each component. Loads no solver."""
+"""What is asked of a solid model: how fine a mesh, of which order, and how many modes within each component. Loads no solver."""
 
 from __future__ import annotations
 

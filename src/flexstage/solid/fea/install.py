@@ -1,4 +1,4 @@
-"""Is the solver of the solid reading there: NGSolve with netgen, in the version flexstage was tested with, able to load its libraries?"""
+"""Is the solver of the solid model there: NGSolve with netgen, in the version flexstage was tested with, able to load its libraries?"""
 
 from __future__ import annotations
 
@@ -36,10 +36,10 @@ def _versions() -> Iterator[Finding]:
         try:
             found = version(name)
         except PackageNotFoundError:
-            yield Finding(f"the solid reading's package {name}", "is not installed", _INSTALL)
+            yield Finding(f"the solid model's package {name}", "is not installed", _INSTALL)
             continue
         if found != SOLVER_VERSION:
-            yield Finding(f"the solid reading's package {name}", f"is version {found}, not {SOLVER_VERSION}", _INSTALL)
+            yield Finding(f"the solid model's package {name}", f"is version {found}, not {SOLVER_VERSION}", _INSTALL)
 
 
 def _loading() -> Iterator[Finding]:
@@ -47,4 +47,4 @@ def _loading() -> Iterator[Finding]:
         import_module("ngsolve")
     except (ImportError, OSError) as error:  # a library that does not load is either, by who loads it
         advice = "See what is broken with: flexstage doctor; mend it with: flexstage doctor --mend"
-        yield Finding("the solid reading's package ngsolve", f"does not load ({error})", advice)
+        yield Finding("the solid model's package ngsolve", f"does not load ({error})", advice)

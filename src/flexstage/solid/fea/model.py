@@ -1,4 +1,4 @@
-"""Solid reading: the same description as 3-D elastic bodies, by substructures."""
+"""Solid model: the same description as 3-D elastic bodies, by substructures."""
 
 from __future__ import annotations
 
@@ -68,10 +68,10 @@ def model(
     Traceback (most recent call last):
     flexstage.base.finding.DesignError: ...
     """
-    reading = model_with_parts(mechanism, reduction, cache=cache, progress=progress, memory=memory)
-    for notice in reading.notices:
+    solid = model_with_parts(mechanism, reduction, cache=cache, progress=progress, memory=memory)
+    for notice in solid.notices:
         warnings.warn(str(notice), stacklevel=2)
-    return reading.model
+    return solid.model
 
 
 def model_with_parts(
@@ -89,5 +89,5 @@ def model_with_parts(
     ways = Ways(cache, progress, Limits(memory=memory))
     shape = drawn(mechanism)
     reduced = reduce_parts(sound_components(shape, cache), reduction, ways)
-    model = linear_model(shape, expand(shape), reduced.parts, f"solid reading of {digest(shape, physics=True)[:16]}")
+    model = linear_model(shape, expand(shape), reduced.parts, f"solid model of {digest(shape, physics=True)[:16]}")
     return SolidModel(model, reduced.parts, reduction, reduced.notices)

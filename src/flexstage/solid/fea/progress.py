@@ -1,4 +1,4 @@
-"""Stages of a solid reading, told by the process that computes and gathered over all components by the one that waits."""
+"""Stages of a solid model, told by the process that computes and gathered over all components by the one that waits."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Jobs of the solid reading in processes of their own: as many at once as cores and memory allow, with time limits, watched and cleaned up.
+"""Jobs of the solid model in processes of their own: as many at once as cores and memory allow, with time limits, watched and cleaned up.
 
 One loop in the caller's thread starts, watches and ends them, so that it works from bare scripts, notebooks and tests alike, and so that
 an interruption, wherever it comes, ends every process and removes every file of a job that is not finished.

@@ -28,7 +28,7 @@ _RECORDS = {record.__name__: record for record in (Superelement, Skin)}
 
 @dataclass(frozen=True)
 class Versions:
-    """What made a superelement: form of the file, flexstage, NGSolve, and a digest of the code of the solid reading."""
+    """What made a superelement: form of the file, flexstage, NGSolve, and a digest of the code of the solid model."""
 
     format: int
     flexstage: str
@@ -58,7 +58,7 @@ def versions(method: str = "reduce") -> Versions:
 
 
 def method_files(method: str = "reduce") -> tuple[Path, ...]:
-    """The files of the solid reading that a method uses: its own, what that imports, and so on.
+    """The files of the solid model that a method uses: its own, what that imports, and so on.
 
     >>> {"draw.py", "mesh.py", "skin.py"} <= {path.name for path in method_files()}
     True

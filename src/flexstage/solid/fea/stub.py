@@ -1,6 +1,6 @@
 """The stubs of a specimen by themselves: prismatic beams, taken off the specimen's compliance again.
 
-Written apart from beam theory of hinges (`flexstage.beams`), which the solid reading is compared with and never uses.
+Written apart from beam theory of hinges (`flexstage.beams`), which the solid model is compared with and never uses.
 """
 
 from __future__ import annotations

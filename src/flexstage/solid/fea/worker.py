@@ -1,4 +1,4 @@
-"""The process that does one job of the solid reading: `python -m flexstage.solid.fea.worker FOLDER`.
+"""The process that does one job of the solid model: `python -m flexstage.solid.fea.worker FOLDER`.
 
 CAD and mesher may crash or hang; here they take nothing with them. In the folder are `task` (read), `progress` (JSON lines, appended),
 `result` or `findings` (written aside, then renamed). A byte on the standard input permits what was asked for; its

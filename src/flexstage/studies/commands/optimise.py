@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Annotated
 
 from flexstage.base.finding import Finding, refuse, require
-from flexstage.models.theory import Reading
+from flexstage.models.theory import Model
 from flexstage.show.command import options
 from flexstage.show.command.answer import answer
 from flexstage.show.command.output import require_writable, save
@@ -68,7 +68,7 @@ def _one(asked: Study, wanted: Wanted, *, study: Path, output: Path | None, repo
         asked.design,
         lambda: optimise_body(found),
         lambda: optimise_tables(found),
-        reading=Reading.LUMPED,
+        model=Model.LUMPED,
         json=json,
         cautions=cautions,
         beside=(output, report),
@@ -86,7 +86,7 @@ def _front(asked: Study, wanted: Wanted, report: Path | None, json: str | None) 
         asked.design,
         lambda: front_body(found),
         lambda: front_tables(found),
-        reading=Reading.LUMPED,
+        model=Model.LUMPED,
         json=json,
         cautions=loaded_findings(asked),
         beside=(report,),

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Annotated
 
 from flexstage.base.finding import refuse
-from flexstage.models.theory import Reading
+from flexstage.models.theory import Model
 from flexstage.show.command.answer import answer
 from flexstage.show.command.options import Json, Report, Resume, Scheduler, Study, Workers, output_option
 from flexstage.show.command.output import require_writable, save
@@ -53,7 +53,7 @@ def sweep(
         asked.design,
         lambda: sweep_body(asked, results, found),
         lambda: study_tables(asked, results, found),
-        reading=Reading.LUMPED,
+        model=Model.LUMPED,
         json=json,
         cautions=loaded_findings(asked),
         beside=(report,),

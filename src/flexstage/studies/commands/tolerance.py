@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Annotated
 
 from flexstage.base.finding import refuse
-from flexstage.models.theory import Reading
+from flexstage.models.theory import Model
 from flexstage.show.command.answer import answer
 from flexstage.show.command.options import Json, Report, Resume, Scheduler, Study, Workers, output_option
 from flexstage.show.command.output import require_writable, save
@@ -51,7 +51,7 @@ def tolerance(
         found.study.design,
         lambda: tolerance_body(found),
         lambda: tolerance_tables(found),
-        reading=Reading.LUMPED,
+        model=Model.LUMPED,
         json=json,
         cautions=loaded_findings(found.study),
         beside=(report,),

@@ -85,7 +85,7 @@ class Point:
 class Values:
     """Evaluates `measures` of a study's designs.
 
-    Derivatives are exact (complex step through the readings' formulas; eigenvalues analytically), except of map_error and opening: those
+    Derivatives are exact (complex step through the models' formulas; eigenvalues analytically), except of map_error and opening: those
     are worked out from real corners and outlines, and take central differences a thousandth of the range to either side, which is where
     rounding of the finite motion and curvature balance.
     """
