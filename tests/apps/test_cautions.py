@@ -127,7 +127,7 @@ def test_verdicts_that_the_weight_may_turn_are_withheld(flexstage: Command, tmp_
     assert (frequency["passed"], frequency["value"]) == (False, None)
     assert "withheld" in frequency["reason"]
     assert buckling["value"] == pytest.approx(2.01, rel=5e-3)
-    assert document["buckling"]["stage"]["dead_load"] == pytest.approx(buckling["value"], rel=1e-12)
+    assert document["buckling"]["stage"]["dead"] == pytest.approx(buckling["value"], rel=1e-12)
     assert "load factor 2.01" in document["cautions"][0]["what"]
     leaves(tmp_path, 0.1)
     assert flexstage("modes", "stage.toml", "--json", "-").document["cautions"] == []

@@ -31,7 +31,7 @@ class Section:
     def second_moment(self) -> Number:
         """Least second moment of area [m^4].
 
-        >>> round(Section(1e-3, 12e-3).second_moment * 1e12, 9)
+        >>> round(float(Section(1e-3, 12e-3).second_moment) * 1e12, 9)
         1.0
         """
         if self.is_round:
