@@ -15,6 +15,7 @@ from flexstage.cases.double_triangle import double_triangle
 from flexstage.experiment.comparison import FurtherMode, compare
 from flexstage.experiment.comparison_figures import compare_figure
 from flexstage.experiment.comparison_tables import compare_table, further_table, off_cell, repeated_table
+from flexstage.experiment.cross_spectra import example_spectra
 from flexstage.experiment.figures import (
     coherence_figure,
     estimator_figure,
@@ -175,3 +176,11 @@ def test_responses_of_an_analyser_are_reported() -> None:
     page = identify_report(seen)
     assert "<h2>Coherence</h2>" not in page
     assert "<h2>Responses</h2>" in page
+
+
+def test_estimates_on_other_lines_are_drawn_on_their_own() -> None:
+    first = h1(example_spectra())
+    every_second = replace(first, frequencies=first.frequencies[::2], values=first.values[::2], coherence=None)
+    (axes,) = estimator_figure(first, [every_second], (1.0, 8.0)).axes
+    fine, coarse = (set(line.get_xdata()) for line in axes.lines)
+    assert coarse < fine

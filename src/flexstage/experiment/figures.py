@@ -144,7 +144,8 @@ def estimator_figure(first: Responses, others: Sequence[Responses], band: tuple[
             axes = grid[place // across, place % across]
             column = int(np.argmax(np.sum(np.abs(first.values[inside, row]) ** 2, axis=0)))
             for index, each in enumerate((first, *others)):
-                x, size = _extremes(each.frequencies[inside], np.abs(each.values[inside, row, column]))
+                own = _inside(each.frequencies, band)  # estimates may stand on other lines than the first
+                x, size = _extremes(each.frequencies[own], np.abs(each.values[own, row, column]))
                 axes.semilogy(x, size, color=SERIES[index], linewidth=1.6 - 0.5 * index, label=each.name)
             axes.set_title(f"{first.outputs[row].name} / {first.inputs[column].name}", fontsize=7.5)
             _decades(axes)
@@ -157,10 +158,11 @@ def estimator_figure(first: Responses, others: Sequence[Responses], band: tuple[
     return figure
 
 
-def coherence_figure(found: Identified, multiple: Array | None) -> Any:
+def coherence_figure(found: Identified, multiple: Array | None, lines: Array | None = None) -> Any:
     """For each of the first outputs the multiple coherence, and the ordinary one with every input, as a matplotlib Figure.
 
-    `multiple` (f, p) is absent where only an analyser's ordinary coherence is known.
+    `multiple` (f, p) is absent where only an analyser's ordinary coherence is known; it stands on `lines` [Hz], by default those of the
+    responses found.
 
     >>> from flexstage.experiment.example import one_mode_record
     >>> from flexstage.experiment.identification.identify import identify
@@ -182,7 +184,8 @@ def coherence_figure(found: Identified, multiple: Array | None) -> Any:
                 x, share = _means(data.frequencies[inside], data.coherence[inside, row, column])  # pyright: ignore[reportOptionalSubscript]
                 axes.plot(x, share, color=SERIES[column % len(SERIES)], linewidth=0.7, label=f"with {found.inputs[column].name}")
             if multiple is not None:
-                x, share = _means(data.frequencies[inside], multiple[inside, row])
+                own = data.frequencies if lines is None else lines
+                x, share = _means(own[_inside(own, focus(found))], multiple[_inside(own, focus(found)), row])
                 axes.plot(x, share, color=INK, linewidth=1.3, label="multiple")
             axes.set_title(found.outputs[row].name, fontsize=7.5)
             axes.set_xlim(*band)

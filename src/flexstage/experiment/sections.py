@@ -72,7 +72,8 @@ def coherence_section(seen: Identification) -> Section | None:
     """Ordinary and multiple coherence; `None` where an analyser stored none."""
     if seen.found.responses.coherence is None and seen.multiple is None:
         return None
-    drawn = to_svg(coherence_figure(seen.found, seen.multiple), "coherence", "Coherence of outputs with inputs over frequency")
+    lines = None if seen.spectra is None else seen.spectra.frequencies
+    drawn = to_svg(coherence_figure(seen.found, seen.multiple, lines), "coherence", "Coherence of outputs with inputs over frequency")
     known = seen.spectra
     cut = ""
     if known is not None:
