@@ -185,7 +185,8 @@ def coherence_figure(found: Identified, multiple: Array | None, lines: Array | N
                 axes.plot(x, share, color=SERIES[column % len(SERIES)], linewidth=0.7, label=f"with {found.inputs[column].name}")
             if multiple is not None:
                 own = data.frequencies if lines is None else lines
-                x, share = _means(own[_inside(own, focus(found))], multiple[_inside(own, focus(found)), row])
+                shown = _inside(own, band)
+                x, share = _means(own[shown], multiple[shown, row])
                 axes.plot(x, share, color=INK, linewidth=1.3, label="multiple")
             axes.set_title(found.outputs[row].name, fontsize=7.5)
             axes.set_xlim(*band)

@@ -13,7 +13,7 @@ from flexstage.base import quantity as quantities
 from flexstage.base.dimension import Dimension, dimension_of
 from flexstage.base.number import Array
 from flexstage.base.quantity import Quantity
-from flexstage.experiment.record import Channel, Record, Responses, Samples
+from flexstage.experiment.record import Channel, Record, Samples
 
 _ABSENT = {"none", "n/a", "-", "unknown", "unitless", "[]", "()"}
 _SPELLINGS = (
@@ -97,18 +97,6 @@ def in_si(record: Record) -> Record:
     """
     channels, factors = _converted(record.channels)
     return replace(record, channels=channels, samples=Scaled(record.samples, np.array(factors)))
-
-
-def responses_in_si(responses: Responses) -> Responses:
-    """The responses with numbers and units in SI; a channel whose unit is absent or unknown stays as it is.
-
-    >>> one = Responses(np.array([1.0]), (Channel("S1", "um"),), (Channel("u1", "V"),), np.array([[[2j]]]))
-    >>> responses_in_si(one).values.tolist(), responses_in_si(one).units
-    ([[[2e-06j]]], (('m/V',),))
-    """
-    outputs, rows = _converted(responses.outputs)
-    inputs, columns = _converted(responses.inputs)
-    return replace(responses, outputs=outputs, inputs=inputs, values=responses.values * (np.array(rows)[:, None] / np.array(columns)))
 
 
 def _converted(channels: Iterable[Channel]) -> tuple[tuple[Channel, ...], list[float]]:

@@ -36,15 +36,6 @@ def moving(name: str, model: Hysteresis, bias: Array) -> tuple[list[str], State]
     return [*head, *lines], State(name, start.shape, f"{name}_rest")
 
 
-def has_code(model: Hysteresis | None) -> bool:
-    """Whether a hysteresis can be written as C; none at all can.
-
-    >>> has_code(None), has_code(PrandtlIshlinskii([0.0], [1.0]))
-    (True, True)
-    """
-    return model is None or isinstance(model, PrandtlIshlinskii | BoucWen)
-
-
 def _plays(name: str, model: PrandtlIshlinskii) -> list[str]:
     count = model.thresholds.shape[1]
     before, after = (_envelope(f"{name}_{which}", each, model.axes) for which, each in (("before", model.before), ("after", model.after)))
