@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import linear_sum_assignment
+import scipy
 
 from flexstage.analysis.modes import Modes, clusters
 from flexstage.base.number import Array, first_design
@@ -65,7 +65,7 @@ def paired(own: Moving, other: Moving) -> dict[int, Pair]:
     frequencies, others = (first_design(each.modes.frequencies, 1) for each in (own, other))
     highest = max((frequencies[index] for index in own.modes.platform), default=0.0) * (1.0 + _CLOSE)
     near = np.flatnonzero(frequencies <= highest)
-    rows, columns = linear_sum_assignment(-((first[:, near].T @ second) ** 2))
+    rows, columns = scipy.optimize.linear_sum_assignment(-((first[:, near].T @ second) ** 2))
     partner = dict(zip(near[rows].tolist(), columns.tolist(), strict=True))
     found: dict[int, Pair] = {}
     for group in clusters(frequencies[near], _CLOSE):

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import Annotated, TypeAlias
 
 import numpy as np
-from scipy.linalg import cholesky, eigh, solve_triangular
+import scipy
 
 from flexstage.analysis.workspace.load import dead_loads
 from flexstage.analysis.workspace.stroke import StrokeLimits
@@ -325,7 +325,7 @@ class _Found:
 
 def _single(stiffness: Array, dead: Array, unit: list[Array], corners: Array) -> _Found:
     """Factors of one design; of stepped numbers, those that belong to the real design's shape."""
-    root = cholesky(np.real(stiffness), lower=True)
+    root = scipy.linalg.cholesky(np.real(stiffness), lower=True)
     normal = np.stack([_normal(root, np.real(each)) for each in (dead, *unit)])
     values, shapes = np.linalg.eigh(normal[0])
     alike = values <= values[0] + _REPEATED * np.abs(values[0]) + _ALIKE * np.max(np.abs(values))
@@ -347,7 +347,9 @@ def _worst(normal: Array, corners: Array) -> tuple[Array, Array]:
     space, solved = np.zeros((normal.shape[-1], 0)), dict[int, Array]()
     while True:
         for corner in dict.fromkeys(wanted):
-            solved[corner] = eigh(np.tensordot(weights[corner], normal, axes=1), subset_by_index=[0, min(_KEPT, normal.shape[-1]) - 1])[1]
+            solved[corner] = scipy.linalg.eigh(
+                np.tensordot(weights[corner], normal, axes=1), subset_by_index=[0, min(_KEPT, normal.shape[-1]) - 1]
+            )[1]
             space = np.linalg.qr(np.concatenate([space, solved[corner]], axis=-1))[0][:, : normal.shape[-1]]
         small = space.T @ normal @ space
         bounds = np.array([np.linalg.eigvalsh(np.tensordot(weight, small, axes=1))[0] for weight in weights])
@@ -364,13 +366,13 @@ def _factor(stiffness: Array, softening: Array, shape: Array) -> complex:
 
 
 def _normal(root: Array, matrix: Array) -> Array:
-    half = solve_triangular(root, matrix, lower=True)
-    whole = solve_triangular(root, half.T, lower=True)
+    half = scipy.linalg.solve_triangular(root, matrix, lower=True)
+    whole = scipy.linalg.solve_triangular(root, half.T, lower=True)
     return 0.5 * (whole + whole.T)
 
 
 def _back(root: Array, shape: Array) -> Array:
-    return solve_triangular(root.T, shape, lower=False)
+    return scipy.linalg.solve_triangular(root.T, shape, lower=False)
 
 
 def _rows(model: LinearModel, owner: str, names: tuple[str, ...]) -> Array:

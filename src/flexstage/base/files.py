@@ -24,6 +24,7 @@ from pathlib import Path
 from typing import Any, BinaryIO, TypeAlias
 
 import numpy as np
+import scipy
 
 from flexstage.base.child import command, environment
 from flexstage.base.finding import refuse
@@ -533,8 +534,6 @@ def _some_texts(question: dict[str, Any], _arrays: list[Array]) -> list[str]:
 
 
 def _mat(question: dict[str, Any], arrays: list[Array]) -> list[tuple[str, list[str] | int]]:
-    import scipy.io
-
     content = scipy.io.loadmat(question["path"], appendmat=False)
     flat = [each for name, value in content.items() if not name.startswith("__") for each in _flat(name, value)]
     told: list[tuple[str, list[str] | int]] = []

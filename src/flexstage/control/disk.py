@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+import scipy
 
 from flexstage.base.number import Array
 from flexstage.control.closed import Cut, Loop, opened, opened_everywhere
@@ -131,13 +132,12 @@ def _searched(response: Resolvent, frequencies: Array) -> tuple[float, float, fl
 
 def _top(response: Resolvent, ends: tuple[float, float]) -> tuple[float, float]:
     """Where the bound from above is highest between two frequencies, and how high."""
-    from scipy.optimize import minimize_scalar
 
     def below(frequency: float) -> float:
         return -_bound(response, frequency)[0]
 
     options = {"xatol": 1e-7 * ends[1], "maxiter": 40}
-    found: Any = minimize_scalar(below, bounds=ends, method="bounded", options=options)
+    found: Any = scipy.optimize.minimize_scalar(below, bounds=ends, method="bounded", options=options)
     places = [float(found.x), *ends]
     heights = [-below(place) for place in places]
     best = int(np.argmax(heights))

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
+import scipy
 
 from flexstage.base.finding import refuse
 from flexstage.base.number import Array
@@ -90,14 +91,12 @@ def to_plane(system: System) -> Plane:
 
 def _balanced(system: System) -> System:
     """States scaled so that rows and columns are alike in size, the inputs and outputs among them."""
-    from scipy.linalg import matrix_balance
-
     size = len(system.A)
     if not size:
         return system
     entry, exit_ = (np.max(np.abs(each), axis=axis, initial=0.0) for each, axis in ((system.B, 1), (system.C, 0)))
     whole = np.block([[system.A, entry[:, None]], [exit_[None], np.zeros((1, 1))]])
-    _, (scale, _) = matrix_balance(whole, permute=False, separate=True)
+    _, (scale, _) = scipy.linalg.matrix_balance(whole, permute=False, separate=True)
     scale = scale[:size] / scale[size]
     return replace(system, A=system.A * scale / scale[:, None], B=system.B / scale[:, None], C=system.C * scale)
 

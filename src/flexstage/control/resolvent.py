@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+import scipy
 
 from flexstage.base.number import Array
 from flexstage.control.system import System
@@ -53,11 +54,9 @@ def resolvent(system: System) -> Resolvent:
     >>> bool(np.allclose(resolvent(system).at(far), system.transfer(far)))
     True
     """
-    from scipy.linalg import matrix_balance, schur
-
-    balanced, (scale, _) = matrix_balance(system.A, permute=False, separate=True)
+    balanced, (scale, _) = scipy.linalg.matrix_balance(system.A, permute=False, separate=True)
     if not len(balanced):
         return Resolvent(system, balanced.astype(complex), system.B.astype(complex), system.C.astype(complex))
-    found: Any = schur(balanced.astype(complex), output="complex")
+    found: Any = scipy.linalg.schur(balanced.astype(complex), output="complex")
     triangle, vectors = found
     return Resolvent(system, triangle, vectors.conj().T @ (system.B / scale[:, None]), (system.C * scale) @ vectors)

@@ -6,6 +6,7 @@ from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
+import scipy
 
 from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array
@@ -57,14 +58,12 @@ def ramped(system: System, step: float) -> System:
     >>> found.B.round(12).tolist(), found.D.round(12).tolist()  # the trapezoidal rule
     ([[0.1]], [[0.05]])
     """
-    from scipy.linalg import expm
-
     require(_findings(system, step, 0.0))
     size, width = system.B.shape
     joined = np.zeros((size + 2 * width, size + 2 * width))
     joined[:size, :size], joined[:size, size : size + width] = system.A * step, system.B * step
     joined[size : size + width, size + width :] = np.eye(width)
-    moved = expm(joined)
+    moved = scipy.linalg.expm(joined)
     whole, early, late = moved[:size, :size], moved[:size, size : size + width], moved[:size, size + width :]
     entry = early - late + whole @ late
     return replace(system, A=whole, B=entry, D=system.D + system.C @ late, step=step)
@@ -80,12 +79,10 @@ def _split(samples: float) -> tuple[int, float]:
 
 def _held(system: System, time: float) -> tuple[Array, Array]:
     """e^{At} and int_0^t e^{As} ds B."""
-    from scipy.linalg import expm
-
     size, width = system.B.shape
     joined = np.zeros((size + width, size + width))
     joined[:size, :size], joined[:size, size:] = system.A, system.B
-    result = expm(joined * time)
+    result = scipy.linalg.expm(joined * time)
     return result[:size, :size], result[:size, size:]
 
 

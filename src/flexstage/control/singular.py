@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import scipy
 
 from flexstage.base.number import Array
 
@@ -48,11 +49,9 @@ def upper_bound(matrix: Array, start: Array) -> tuple[float, Array]:
     >>> round(upper_bound(np.array([[0.0, 100.0], [1.0, 0.0]]), np.zeros(2))[0], 6)  # mu is the geometric mean of the two
     10.0
     """
-    from scipy.optimize import minimize
-
     best, logs = scaled_size(matrix, start), start
     for power in _POWERS:
-        found = minimize(_smooth, logs, args=(matrix, power), jac=True, method="BFGS", options={"gtol": 1e-9})
+        found = scipy.optimize.minimize(_smooth, logs, args=(matrix, power), jac=True, method="BFGS", options={"gtol": 1e-9})
         size = scaled_size(matrix, found.x)
         if size < best:
             best, logs = size, found.x
@@ -75,11 +74,11 @@ def lower_bound(matrix: Array) -> tuple[float, Array]:
     >>> round(lower_bound(np.array([[1.0, 2.0], [2.0, -1.0]]))[0], 6), round(5.0**0.5, 6)  # all of sigma is reached
     (2.236068, 2.236068)
     """
-    from scipy.optimize import minimize
-
     left, _, right = np.linalg.svd(matrix)
     starts = [np.zeros(len(matrix)), *(-np.angle(left[:, index]) - np.angle(right[index]) for index in range(min(2, len(matrix))))]
-    results = [minimize(_radius, start, args=(matrix,), jac=True, method="BFGS", options={"gtol": 1e-10}) for start in starts]
+    results = [
+        scipy.optimize.minimize(_radius, start, args=(matrix,), jac=True, method="BFGS", options={"gtol": 1e-10}) for start in starts
+    ]
     best = min(results, key=lambda result: result.fun)
     return float(np.exp(-best.fun)), np.asarray(best.x)
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+import scipy
 
 from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array
@@ -112,13 +113,11 @@ def _interval(closed: Loop, *, stable: bool) -> tuple[float, float]:
 
 def _edge(open_loop: System, start: float, ratio: float, steps: int) -> float | None:
     """The first factor, from a stable one on, at which the loop begins to grow."""
-    from scipy.optimize import brentq
-
     inside = start
     for _ in range(steps):
         outside = inside * ratio
         if _growth(open_loop, outside) >= 0.0:
-            found: Any = brentq(lambda log: _growth(open_loop, np.exp(log)), np.log(inside), np.log(outside), xtol=1e-13)
+            found: Any = scipy.optimize.brentq(lambda log: _growth(open_loop, np.exp(log)), np.log(inside), np.log(outside), xtol=1e-13)
             return float(np.exp(found))
         inside = outside
     return None

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+import scipy
 
 from flexstage.base.labelled import Matrix, ratio_units
 from flexstage.base.number import Array
@@ -256,12 +257,12 @@ def _later(closed: Loop, delay: float) -> Loop:
 
 def _scanned(closed: Loop, expected: float) -> float:
     """The first delay at which the loop begins to grow, from none up."""
-    from scipy.optimize import brentq
-
     for number in range(1, 31):
         outside = 0.1 * number * expected
         if _later(closed, outside).system.growth >= 0.0:
-            found: Any = brentq(lambda delay: _later(closed, delay).system.growth, outside - 0.1 * expected, outside, xtol=1e-13 * expected)
+            found: Any = scipy.optimize.brentq(
+                lambda delay: _later(closed, delay).system.growth, outside - 0.1 * expected, outside, xtol=1e-13 * expected
+            )
             return float(found)
     return np.inf
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+import scipy
 
 from flexstage.base.finding import Finding, nearest, require
 from flexstage.base.number import Array
@@ -64,13 +65,11 @@ class System:
 
         States are balanced first: rates of modes are thousands of times their motions, and a solve would lose as many digits.
         """
-        from scipy.linalg import matrix_balance
-
         turning = 2j * np.pi * np.asarray(frequencies, dtype=float)
         points = turning if self.step is None else np.exp(turning * self.step)
         if not len(self.A):
             return np.broadcast_to(self.D.astype(complex), (len(points), *self.D.shape)).copy()
-        balanced, (scale, _) = matrix_balance(self.A, permute=False, separate=True)
+        balanced, (scale, _) = scipy.linalg.matrix_balance(self.A, permute=False, separate=True)
         entry = (self.B / scale[:, None]).astype(complex)
         shifted = points[:, None, None] * np.eye(len(balanced)) - balanced
         return (self.C * scale) @ np.linalg.solve(shifted, np.broadcast_to(entry, (len(points), *entry.shape))) + self.D
@@ -208,13 +207,11 @@ def connected(systems: Iterable[System], links: Mapping[str, Terms], inputs: tup
 
 
 def _side_by_side(parts: tuple[System, ...]) -> System:
-    from scipy.linalg import block_diag
-
     steps = {part.step for part in parts}
     if len(steps) != 1:
         shown = ", ".join(sorted("continuous" if step is None else f"{step:g} s" for step in steps))
         require([Finding("systems", f"their steps differ: {shown}", "Sample them alike")])
-    matrices: list[Any] = [block_diag(*(getattr(part, name) for part in parts)) for name in "ABCD"]
+    matrices: list[Any] = [scipy.linalg.block_diag(*(getattr(part, name) for part in parts)) for name in "ABCD"]
     shapes = _shapes(parts)
     return System(
         *(np.reshape(matrix, shape) for matrix, shape in zip(matrices, shapes, strict=True)),

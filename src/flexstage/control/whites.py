@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from enum import Enum
 
 import numpy as np
+import scipy
 
 from flexstage.base.number import Array
 from flexstage.control.closed import Loop
@@ -44,14 +45,16 @@ def mean_squares(system: System) -> Array:
     >>> mean_squares(lag).tolist()  # 1/(2 pi) times the integral of 1/(1 + omega^2)
     [[0.5]]
     """
-    from scipy.linalg import matrix_balance, solve_continuous_lyapunov, solve_discrete_lyapunov
-
-    A, (scale, _) = matrix_balance(system.A, permute=False, separate=True)
+    A, (scale, _) = scipy.linalg.matrix_balance(system.A, permute=False, separate=True)
     B, C = system.B / scale[:, None], system.C * scale
     found = system.D**2 if system.step is not None else np.where(system.D == 0.0, 0.0, np.inf)
     for row, output in enumerate(C):
         weight = np.outer(output, output)
-        gramian = solve_continuous_lyapunov(A.T, -weight) if system.step is None else solve_discrete_lyapunov(A.T, weight, "bilinear")
+        gramian = (
+            scipy.linalg.solve_continuous_lyapunov(A.T, -weight)
+            if system.step is None
+            else scipy.linalg.solve_discrete_lyapunov(A.T, weight, "bilinear")
+        )
         found[row] += np.sum(B * (np.real(gramian) @ B), axis=0)
     return found
 
@@ -65,9 +68,7 @@ def held_noise(A: Array, B: Array, step: float) -> Array:
     >>> round(float(factor[0, 0] ** 2), 12), round(float(0.5 * (1.0 - np.exp(-1.0))), 12)
     (0.316060279414, 0.316060279414)
     """
-    from scipy.linalg import expm, matrix_balance
-
-    balanced, (scale, _) = matrix_balance(A, permute=False, separate=True)
+    balanced, (scale, _) = scipy.linalg.matrix_balance(A, permute=False, separate=True)
     driven = B / scale[:, None]
     doublings = max(0, int(np.ceil(np.log2(max(2.0 * np.linalg.norm(balanced, 2) * step, 1.0)))))
     part = step / 2**doublings
@@ -76,7 +77,7 @@ def held_noise(A: Array, B: Array, step: float) -> Array:
     for order in range(2, 24):
         term = (balanced @ term + term @ balanced.T) * (part / order)
         total = total + term
-    moved = expm(balanced * part)
+    moved = scipy.linalg.expm(balanced * part)
     for _ in range(doublings):
         total, moved = total + moved @ total @ moved.T, moved @ moved
     size = np.sqrt(np.maximum(np.diag(total), 1e-300))
@@ -136,15 +137,13 @@ def gauge_noise(given: Plant, gauge: str, density: float) -> System:
 
 def _coloured(filters: System, name: str, density: float, step: float) -> System:
     """The samples of white noise behind lag and filter: x[k+1] = e^{AT} x[k] + L w[k], unit w."""
-    from scipy.linalg import expm
-
     outputs = (Channel(f"coloured.{name}", "m"),)
     used = _reached(filters)
     if not len(used.A):
         return System(used.A, used.B, used.C, used.D * density / np.sqrt(2.0 * step), (Channel(f"white.{name}", "1"),), outputs, step)
     factor = held_noise(used.A, used.B * density / np.sqrt(2.0), step)
     inputs = tuple(Channel(f"white.{name}.{number + 1}", "1") for number in range(factor.shape[1]))
-    return System(expm(used.A * step), factor, used.C, np.zeros((1, len(inputs))), inputs, outputs, step)
+    return System(scipy.linalg.expm(used.A * step), factor, used.C, np.zeros((1, len(inputs))), inputs, outputs, step)
 
 
 def _reached(filters: System) -> System:

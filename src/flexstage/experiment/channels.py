@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from itertools import combinations
 
 import numpy as np
+import scipy
 
 from flexstage.base.number import Array
 
@@ -143,9 +144,7 @@ def _correlations(theory: Array, measured: Array) -> Array:
 
 def _misnamed(names: tuple[str, ...], likeness: Array, among: Array) -> Iterator[str]:
     """Channels whose part in the modes is another's, or its own inverted; not those that theory has alike."""
-    from scipy.optimize import linear_sum_assignment
-
-    _, order = linear_sum_assignment(-np.abs(likeness))
+    _, order = scipy.optimize.linear_sum_assignment(-np.abs(likeness))
     own = np.diag(likeness)
     moved = [index for index in range(len(names)) if order[index] != index and own[index] < _UNLIKE]
     sure = [index for index in moved if abs(likeness[index, order[index]]) > _ALIKE and abs(among[index, order[index]]) < _ALIKE]

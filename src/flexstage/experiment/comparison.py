@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+import scipy
 
 from flexstage.analysis.complete import platform_modes, read
 from flexstage.analysis.modes import Modes, clusters
@@ -223,8 +224,6 @@ def _weighted(shapes: Array, model: LinearModel, sensors: Sequence[str]) -> Arra
 
 def _pairs(frequencies: Array, experiment: Identified, groups: list[list[int]], both: tuple[Array, Array]) -> tuple[dict[int, int], Array]:
     """The measured mode of each of theory's, and how alike all are (n, k): the share of a measured shape within the mode's subspace."""
-    from scipy.optimize import linear_sum_assignment
-
     own, seen = both
     likeness = np.zeros((own.shape[1], seen.shape[1]))
     for group in groups:
@@ -234,18 +233,16 @@ def _pairs(frequencies: Array, experiment: Identified, groups: list[list[int]], 
         return {}, likeness
     apart = np.abs(np.log(experiment.frequencies[None, :] / frequencies[:, None]))
     fitting = (likeness >= _PAIRED) & (apart <= _FARTHEST)
-    first, second = linear_sum_assignment(np.where(fitting, _FAR * apart - likeness, 0.0))
+    first, second = scipy.optimize.linear_sum_assignment(np.where(fitting, _FAR * apart - likeness, 0.0))
     found = {i: j for i, j in zip(first.tolist(), second.tolist(), strict=True) if fitting[i, j]}
     return _in_order(found, groups), likeness
 
 
 def _scales(frequencies: Array, experiment: Identified, groups: list[list[int]], both: tuple[Array, Array]) -> Array:
     """How much larger every output is measured than theory has it, modes paired by frequency alone: scaled shapes tell no pairs."""
-    from scipy.optimize import linear_sum_assignment
-
     own, seen = both
     apart = np.abs(np.log(experiment.frequencies[None, :] / frequencies[:, None]))
-    first, second = linear_sum_assignment(np.minimum(apart, _FARTHEST))
+    first, second = scipy.optimize.linear_sum_assignment(np.minimum(apart, _FARTHEST))
     found = {i: j for i, j in zip(first.tolist(), second.tolist(), strict=True) if apart[i, j] <= _FARTHEST}
     whole = [group for group in groups if all(index in found for index in group)]
     theory = _sizes(own, whole)

@@ -14,8 +14,7 @@ from itertools import combinations
 from typing import TypeAlias
 
 import numpy as np
-from scipy.optimize import linprog
-from scipy.spatial import ConvexHull, HalfspaceIntersection, QhullError
+import scipy
 
 from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array, Number, stack
@@ -316,8 +315,8 @@ def _polytopes(normals: Array, offsets: Array, scale: float) -> tuple[Array, _Va
     beyond = np.einsum("bkx,bvx->bvk", np.real(normals), np.real(places)) - np.real(offsets)[:, None]
     alike = np.flatnonzero(np.all(beyond <= 2.0 * within, axis=(1, 2)))
     try:
-        hull = ConvexHull(np.real(places[0]) / scale)
-    except QhullError:
+        hull = scipy.spatial.ConvexHull(np.real(places[0]) / scale)
+    except scipy.spatial.QhullError:
         return empty
     if hull.volume < _FLUSH:
         flat = float(np.min(np.ptp(np.real(places[0]) @ np.real(normals[0, planes]).T, axis=0)))
@@ -328,7 +327,7 @@ def _polytopes(normals: Array, offsets: Array, scale: float) -> tuple[Array, _Va
     return alike, _fan(arms, middle[:, 0])
 
 
-def _outward(hull: ConvexHull) -> Array:
+def _outward(hull: scipy.spatial.ConvexHull) -> Array:
     """The triangles of a hull (n, 3), counter-clockwise seen from outside."""
     corners = hull.points[hull.simplices]
     normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
@@ -558,11 +557,11 @@ def _by_numbers(cell: _Cell, scale: float) -> float:
     """The volume of a region with round faces, as prisms of as much section [m^3]; 0 where prisms within do not meet."""
     inner = _halves(cell, float(np.cos(np.pi / _SIDES)))
     wanted = np.column_stack([inner[:, :3], np.ones(len(inner))])
-    ball = linprog([0.0, 0.0, 0.0, -1.0], A_ub=wanted, b_ub=-inner[:, 3], bounds=(None, None))
+    ball = scipy.optimize.linprog([0.0, 0.0, 0.0, -1.0], A_ub=wanted, b_ub=-inner[:, 3], bounds=(None, None))
     if ball.x is None or ball.x[3] <= _FLUSH * scale:
         return 0.0
     alike = _halves(cell, float(np.sqrt(np.pi / (_SIDES * np.tan(np.pi / _SIDES)))))
-    return float(ConvexHull(HalfspaceIntersection(alike, ball.x[:3]).intersections).volume)
+    return float(scipy.spatial.ConvexHull(scipy.spatial.HalfspaceIntersection(alike, ball.x[:3]).intersections).volume)
 
 
 def _halves(cell: _Cell, share: float) -> Array:

@@ -6,6 +6,7 @@ import io
 from typing import Any
 
 import numpy as np
+import scipy
 
 import flexstage
 from flexstage.analysis.complete import Analysis
@@ -27,10 +28,8 @@ def as_mat(analysis: Analysis) -> bytes:
     >>> as_mat(analyse(double_triangle(), Model.IDEAL))[:10]
     b'MATLAB 5.0'
     """
-    from scipy.io import savemat
-
     content = io.BytesIO()
-    savemat(content, mat_variables(analysis), do_compression=True, oned_as="column")
+    scipy.io.savemat(content, mat_variables(analysis), do_compression=True, oned_as="column")
     return content.getvalue()
 
 

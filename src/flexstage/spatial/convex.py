@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from itertools import product
 
 import numpy as np
-from scipy.optimize import nnls
+import scipy
 
 from flexstage.base.number import Array
 from flexstage.spatial.frame import Frame
@@ -104,7 +104,7 @@ def distance(first: Array, second: Array) -> float:
         return 0.0
     matrix = np.concatenate([between.T / scale, np.ones((1, len(between)))])
     try:
-        weights, _ = nnls(matrix, np.array([0.0, 0.0, 0.0, 1.0]), maxiter=100 * matrix.shape[1])
+        weights, _ = scipy.optimize.nnls(matrix, np.array([0.0, 0.0, 0.0, 1.0]), maxiter=100 * matrix.shape[1])
     except RuntimeError:  # corners so near that rounding makes the choice among them go round: that of two corners is as good
         return float(np.min(np.linalg.norm(between, axis=1)))
     rest = matrix @ weights - np.array([0.0, 0.0, 0.0, 1.0])

@@ -7,6 +7,7 @@ from itertools import combinations
 from typing import Annotated
 
 import numpy as np
+import scipy
 
 from flexstage.analysis.workspace.stroke import StrokeLimits
 from flexstage.base.finding import refuse
@@ -116,7 +117,5 @@ def _crossings(normals: Array, offsets: Array) -> Array:
 def _hull_volume(vertices: Array) -> float:
     if vertices.shape[1] == 1:
         return float(np.ptp(vertices))
-    from scipy.spatial import ConvexHull
-
     scale = np.max(np.abs(vertices), axis=0)
-    return float(ConvexHull(vertices / scale).volume * np.prod(scale))
+    return float(scipy.spatial.ConvexHull(vertices / scale).volume * np.prod(scale))

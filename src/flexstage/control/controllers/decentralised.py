@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 
 from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array
@@ -50,11 +51,9 @@ class Decentralised:
         >>> found.input_names, found.output_names
         (('error.x', 'reference.x', 'applied.B'), ('command.B',))
         """
-        from scipy.linalg import block_diag
-
         chains = loop_systems(self, step)
         loops, count = self.loops, len(chains)
-        A = np.asarray(block_diag(*(each.A for each in chains)))
+        A = np.asarray(scipy.linalg.block_diag(*(each.A for each in chains)))
         size = sum(len(each.A) for each in chains)
         entries = [_entry([each.B[:, [column]] for each in chains], size) for column in range(3)]
         exit_ = _entry([each.C.T for each in chains], size).T

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 
 from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.number import Array
@@ -102,8 +103,6 @@ def with_observer(model: System, coordinates: Coordinates, weights: Weights, obs
 
 def _regulator(model: System, coordinates: Coordinates, weights: Weights) -> tuple[Array, Array]:
     """K (n, s) and K_z (n, f)."""
-    from scipy.linalg import block_diag
-
     states, count = len(model.A), len(model.outputs)
     scale = np.diag(coordinates.scale)
     sampled = model.step is not None
@@ -112,7 +111,7 @@ def _regulator(model: System, coordinates: Coordinates, weights: Weights) -> tup
     B = np.vstack([model.B, -step * scale @ model.D])
     seen, rates = scale @ model.C, 2.0 * np.pi * np.broadcast_to(weights.bandwidth, (count,))
     cross = weights.pose * np.vstack([seen.T @ scale @ model.D, np.zeros((count, len(model.inputs)))])
-    cost = np.asarray(block_diag(weights.pose * seen.T @ seen, np.diag(rates**2)))
+    cost = np.asarray(scipy.linalg.block_diag(weights.pose * seen.T @ seen, np.diag(rates**2)))
     effort = np.eye(len(model.inputs)) + weights.pose * (scale @ model.D).T @ (scale @ model.D)
     solution = _riccati((A, B, cost, effort, cross), sampled=sampled)
     if sampled:
@@ -149,11 +148,9 @@ def observer_gain(model: System, coordinates: Coordinates, expected: Disturbance
 
 
 def _riccati(parts: tuple[Array, Array, Array, Array, Array], *, sampled: bool) -> Array:
-    from scipy.linalg import solve_continuous_are, solve_discrete_are
-
     A, B, cost, effort, cross = parts
     try:
-        found = (solve_discrete_are if sampled else solve_continuous_are)(A, B, cost, effort, s=cross)
+        found = (scipy.linalg.solve_discrete_are if sampled else scipy.linalg.solve_continuous_are)(A, B, cost, effort, s=cross)
     except np.linalg.LinAlgError as error:
         what = "the Riccati equation has no stabilising solution: something that does not decay is neither moved nor seen"
         raise refuse("LQG", what, "Keep fewer modes, or damp all of them") from error

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import scipy
 
 from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.store import put_together, write, written
@@ -120,8 +121,6 @@ def plant_file(given: Plant) -> bytes:
     >>> found["sampled"]["step"], list(found["sampled"]["inputs"][:2]), found["continuous"]["A"].shape
     (0.0001, ['B', 'ground.x'], (7, 7))
     """
-    from scipy.io import savemat
-
     content = io.BytesIO()
     variables: dict[str, Any] = {
         "continuous": _system(given.system, given.states),
@@ -132,7 +131,7 @@ def plant_file(given: Plant) -> bytes:
     }
     if given.hardware.step is not None:
         variables["sampled"] = _system(held(given), ())
-    savemat(content, variables, oned_as="column")
+    scipy.io.savemat(content, variables, oned_as="column")
     made = bytearray(content.getvalue())
     made[:116] = b"MATLAB 5.0 MAT-file, Platform: any".ljust(116)  # scipy writes the time: the same plant is to be the same file
     return bytes(made)

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 
 from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.number import Array, freeze
@@ -139,12 +140,12 @@ def exponentials(law: LogCreep, span: tuple[float, float], *, per_decade: int = 
 
 def _fitted(law: LogCreep, times: Array, spread: Array) -> tuple[float, Array]:
     """g_0 and g_i for given tau_i: the sign of the g_i is that of the rate."""
-    from scipy.optimize import lsq_linear
-
     columns = np.column_stack([np.ones_like(times), -np.expm1(-times[:, None] / spread)])
     sign = -1.0 if law.rate < 0.0 else 1.0
     lower = np.concatenate([[-np.inf], np.zeros(len(spread))])
-    solved = lsq_linear(columns * np.concatenate([[1.0], np.full(len(spread), sign)]), law.at(times), (lower, np.inf), tol=1e-14).x
+    solved = scipy.optimize.lsq_linear(
+        columns * np.concatenate([[1.0], np.full(len(spread), sign)]), law.at(times), (lower, np.inf), tol=1e-14
+    ).x
     return float(solved[0]), sign * solved[1:]
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 
 from flexstage.base.number import Array
 from flexstage.control.hysteresis.envelope import IDENTITY, Envelope, straight
@@ -167,10 +168,8 @@ def _ramps(volts: Array, knots: Array) -> Array:
 
 def _bounded(matrix: Array, target: Array, lower: Array) -> Array:
     """Least squares with lower bounds, on the triangle that the columns leave."""
-    from scipy.optimize import lsq_linear
-
     triangle = np.asarray(np.linalg.qr(np.column_stack([matrix, target]), mode="r"))
-    return lsq_linear(triangle[:, :-1], triangle[:, -1], (lower, np.inf), method="bvls", tol=1e-14).x
+    return scipy.optimize.lsq_linear(triangle[:, :-1], triangle[:, -1], (lower, np.inf), method="bvls", tol=1e-14).x
 
 
 def drift_of(plays: Array, strokes: Array) -> float:

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, fields, replace
 
 import numpy as np
+import scipy
 
 from flexstage.analysis.workspace.drive import Drive, drive
 from flexstage.analysis.workspace.stroke import StrokeLimits, stroke_limits
@@ -135,8 +136,6 @@ def rest_rms(given: Settled, control: Control, closed: Loop) -> RestRms:
 
     Each holds another place within the gauges' steps: on the middle of a step a loop rests, near its edge it wanders to and fro.
     """
-    from scipy.special import stdtrit
-
     rest = rest_time(closed)
     count = int(np.clip((_STILL * rest) / given.step, _FEWEST, _MOST)) // 3
     computed, to_pose = driven_machine(given, control), given.plant.coordinates.pose
@@ -147,7 +146,7 @@ def rest_rms(given: Settled, control: Control, closed: Loop) -> RestRms:
         found = _shaken(replace(given, setup=replace(given.setup, seed=seed)), computed, np.tile(held, (count, 1)), rest, held)
         squares.append(np.mean(found.true_error**2, axis=0))
     mean = np.mean(squares, axis=0)
-    reach = stdtrit(_REPEATED - 1, 0.975) * np.std(squares, axis=0, ddof=1) / np.sqrt(_REPEATED)
+    reach = scipy.special.stdtrit(_REPEATED - 1, 0.975) * np.std(squares, axis=0, ddof=1) / np.sqrt(_REPEATED)
     low, high = np.sqrt(np.maximum(mean - reach, 0.0)), np.sqrt(mean + reach)
     return RestRms(np.sqrt(mean), low, high, _REPEATED, count * given.step)
 

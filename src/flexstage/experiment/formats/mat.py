@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import scipy
 
 from flexstage.base.files import Attribute, Hdf, HdfArray, mat
 from flexstage.base.finding import refuse
@@ -129,8 +130,6 @@ def write_mat(path: str | os.PathLike[str], what: Record | Responses, *, version
     if version_73:
         _write_73(path, what)
         return
-    import scipy.io
-
     size = 8 * what.length * len(what.channels) if isinstance(what, Record) else 16 * what.values.size
     if size > _LARGEST:
         raise refuse(

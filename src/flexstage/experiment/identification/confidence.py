@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 
 from flexstage.base.number import Array
 from flexstage.experiment.identification.likelihood import Band, Fit, Modal, fit, residual_power
@@ -54,8 +55,6 @@ def misfits(band: Band, modal: Modal) -> Array:
     >>> misfits(replace(band, variance=noise(band, found)), found).tolist()
     [1.0]
     """
-    from scipy.stats import gamma
-
     cells = band.cells
     left = np.real(np.einsum("ooc->oc", residual_power(band, modal))) / band.variance
     outputs, taken = len(left), 1.0 + (1.0 + cells.width) / len(left)
@@ -72,7 +71,7 @@ def misfits(band: Band, modal: Modal) -> Array:
             free = max(lines[number - 1] - taken, 1.0)
             ratio = float(share @ np.sum(left[:, order[:number]], axis=1)) / free
             freedom = free / float(np.sum(share**2)) if outputs > 1 else free
-            if ratio > float(gamma.isf(_BY_CHANCE / len(_NEAR), freedom)) / freedom:
+            if ratio > float(scipy.stats.gamma.isf(_BY_CHANCE / len(_NEAR), freedom)) / freedom:
                 result[mode] = max(result[mode], np.sqrt(ratio))
     return result
 
@@ -142,8 +141,6 @@ def drive_strength(band: Band, found: Fit, once_in: float) -> Array:
     >>> bool(drive_strength(band, fit(band, start), 1e-9)[0] > 100.0)
     True
     """
-    from scipy.stats import chi2
-
     modal = found.modal
     count, total = modal.participation.shape
     inputs = total if band.inputs is None else band.inputs
@@ -155,7 +152,7 @@ def drive_strength(band: Band, found: Fit, once_in: float) -> Array:
         covariance = _inverse(found.information, np.append(largest, transients))
         places = count + mode * total + np.arange(driving[mode])
         wald = _wald(modal.participation[mode, : driving[mode]], covariance[np.ix_(places, places)])
-        strength[mode] = wald / float(chi2.isf(once_in, 2 * driving[mode]))
+        strength[mode] = wald / float(scipy.stats.chi2.isf(once_in, 2 * driving[mode]))
     return strength
 
 

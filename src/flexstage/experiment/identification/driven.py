@@ -6,6 +6,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 
 from flexstage.base.number import Array
 from flexstage.experiment.identification.confidence import SAME
@@ -112,8 +113,6 @@ class _Local:
 
 def _tested(near: _Near, inputs: int, sensed: float) -> tuple[float, float]:
     """The F-test's tail, of complex numbers: twice the degrees of freedom; and the share of motion that inputs do not explain."""
-    from scipy.stats import f
-
     values, force, distance = near.drive, near.motion * near.away, np.abs(near.away) ** 2
     count, total = values.shape
     if count <= total:
@@ -129,7 +128,7 @@ def _tested(near: _Near, inputs: int, sensed: float) -> tuple[float, float]:
     gained = float(np.sum(np.abs(_rest(free, force, weights)) ** 2)) - left
     more = total - free.shape[1]
     ratio = gained / more * (count - total) / max(left, 1e-300)
-    return float(f.sf(ratio, 2 * more, 2 * (count - total))), _unexplained(near, rest / np.sqrt(weights))
+    return float(scipy.stats.f.sf(ratio, 2 * more, 2 * (count - total))), _unexplained(near, rest / np.sqrt(weights))
 
 
 def _unexplained(near: _Near, rest: Array) -> float:

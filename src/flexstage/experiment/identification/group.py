@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
+import scipy
 
 from flexstage.base.number import Array
 from flexstage.experiment.identification.bands import Extent
@@ -109,13 +110,11 @@ def _hidden(band: Band, found: Fit) -> Array:
     well as they are then: deviations are the root of the sum of both squares (as models are averaged, Burnham & Anderson 2002, ch. 4, the
     larger one taken as right).
     """
-    from scipy.stats import chi2
-
     modal, score = found.modal, excess(band, found.modal)
     place = int(np.argmax(score))
     if score[place] < _NOTICED:
         return np.ones(len(modal.poles))
-    enough = found.cost - 0.5 * float(chi2.isf(_DOUBTED / len(score), freedoms(modal)))
+    enough = found.cost - 0.5 * float(scipy.stats.chi2.isf(_DOUBTED / len(score), freedoms(modal)))
     more = fit(band, suggested(band, modal, place), enough)
     if more.cost > enough:
         return np.ones(len(modal.poles))
@@ -164,15 +163,11 @@ def _widening(found: Found, band: Band, modal: Modal) -> Array:
 
 
 def _limit(modal: Modal) -> float:
-    from scipy.stats import chi2
-
-    return float(chi2.isf(ONCE_IN, freedoms(modal)))
+    return float(scipy.stats.chi2.isf(ONCE_IN, freedoms(modal)))
 
 
 def _chance(modal: Modal, strength: float) -> float:
-    from scipy.stats import chi2
-
-    return float(chi2.sf(strength, freedoms(modal)))
+    return float(scipy.stats.chi2.sf(strength, freedoms(modal)))
 
 
 def _pruned(band: Band, found: Fit, hunt: Hunt) -> tuple[Fit, Array]:

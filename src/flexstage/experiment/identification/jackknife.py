@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import scipy
 
 from flexstage.base.number import Array
 from flexstage.experiment.identification.confidence import NORMAL_95
@@ -33,8 +34,6 @@ def jackknife(band: Band, modal: Modal, groups: Array) -> Array:
     >>> bool(0.5 < wide[0] / deviations(found).frequencies[0] < 3.0)
     True
     """
-    from scipy.stats import t
-
     gradient, information = shares(band, modal, groups)
     count, total = modal.participation.shape
     held = count + np.arange(count) * total + np.argmax(np.abs(modal.participation), axis=1)
@@ -46,7 +45,7 @@ def jackknife(band: Band, modal: Modal, groups: Array) -> Array:
     moves = (rest @ (gradient[:, free] * scale)[:, :, None])[:, :count, 0] * scale[:count]
     power, size = np.abs(moves) ** 2, len(moves)
     freedom = np.sum(power, axis=0) ** 2 / np.maximum(np.sum(power**2, axis=0), 1e-300)
-    quantile = t.isf(0.025, 2.0 * np.clip(freedom, 1.0, max(size - 1.0, 1.0)))
+    quantile = scipy.stats.t.isf(0.025, 2.0 * np.clip(freedom, 1.0, max(size - 1.0, 1.0)))
     return np.sqrt((size - 1.0) / size * np.sum(power, axis=0) / 2.0) * quantile / NORMAL_95
 
 

@@ -8,6 +8,7 @@ from enum import Enum
 from typing import Any
 
 import numpy as np
+import scipy
 
 from flexstage.base.number import Array
 from flexstage.experiment.identification.evidence import Evidence
@@ -178,14 +179,12 @@ def narrow_peaks(responses: Responses, left: Left) -> list[Peak]:
     >>> [(peak.frequency, peak.outputs) for peak in narrow_peaks(here, Left(lines, rest, np.zeros(0)))]
     [(60.0, ('S1',))]
     """
-    from scipy.stats import f
-
     lines, rest, poles = left.lines, left.rest, left.poles
     step = float(responses.frequencies[1] - responses.frequencies[0])
     if len(lines) <= 2 * _REACH:
         return []
     ratio = _standing(rest)
-    chance = f.sf(ratio, 2, 2 * _FREE) * ratio.size
+    chance = scipy.stats.f.sf(ratio, 2, 2 * _FREE) * ratio.size
     near = np.any(np.abs(lines[:, None] - np.abs(poles)) < np.maximum(-_WIDTHS * np.real(poles), 3.0 * step), axis=1)
     least = np.where(near, 1.0, np.min(chance, axis=(1, 2)))
     found: list[Peak] = []

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 
 from flexstage.analysis.complete import platform_modes
 from flexstage.analysis.sensitivities import projected, slope, steppable, stepped
@@ -96,8 +97,6 @@ def followed(before: Design, mechanism: Mechanism) -> Design:
     >>> followed(here, double_triangle()).modes
     ((2,),)
     """
-    from scipy.optimize import linear_sum_assignment
-
     model = lumped(mechanism)
     solved = eigen(model)
     if len(solved.shapes) != len(before.solved.shapes):
@@ -108,7 +107,7 @@ def followed(before: Design, mechanism: Mechanism) -> Design:
     for modes in before.modes:
         inside = np.sum((weighted[:, list(modes)].T @ solved.shapes) ** 2, axis=0)
         likeness += [np.nan_to_num(inside)] * len(modes)
-    _, columns = linear_sum_assignment(-np.array(likeness))
+    _, columns = scipy.optimize.linear_sum_assignment(-np.array(likeness))
     ends = np.cumsum([len(modes) for modes in before.modes])[:-1]
     groups = tuple(tuple(sorted(group.tolist())) for group in np.split(columns, ends))
     return Design(mechanism, model, solved, groups)

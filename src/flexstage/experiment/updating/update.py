@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from enum import Enum
 
 import numpy as np
+import scipy
 
 from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.labelled import Matrix
@@ -163,9 +164,7 @@ class Updated:
     @property
     def probability(self) -> float:
         """Probability that chi-square is this large or larger, if deviations, priors and theory hold."""
-        from scipy.special import chdtrc
-
-        return float(chdtrc(self.freedoms, self.chi_square))
+        return float(scipy.special.chdtrc(self.freedoms, self.chi_square))
 
     def _verdict(self, index: int, told: Told) -> str:
         if told is Told.WITHHELD:
@@ -303,10 +302,8 @@ def _updated(data: _Data, found: Fitted[Design], compared: Compared, steps: int)
 
 def _cautions(data: _Data, found: Fitted[Design], compared: Compared) -> Iterator[str]:
     """What not to rely on, besides what the comparison says."""
-    from scipy.special import chdtrc
-
     freed, errors = data.freed, data.known
-    if chdtrc(len(found.residuals), found.cost) < _IMPROBABLE:
+    if scipy.special.chdtrc(len(found.residuals), found.cost) < _IMPROBABLE:
         yield (
             f"chi-square is {found.cost:.3g} with {len(found.residuals)} data: theory and test differ by more than the stated "
             f"errors, and the intervals are too narrow: state a larger model error than {100.0 * errors.model_error:.2g} %, or free "

@@ -10,6 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 
 from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array
@@ -134,14 +135,12 @@ def density_shape(frequencies: Array, band: tuple[float, float]) -> Array:
 
 def _flat(frequencies: Array, band: tuple[float, float]) -> Array:
     """Edges by the error function: their impulse response fades as a Gaussian, so that blocks need little of their neighbours."""
-    from scipy.special import erfc
-
     low, high = band
     upper = (frequencies - high) / (TAPER * high)
-    shape = np.where(upper <= 0.0, 1.0, np.where(upper >= 1.0, 0.0, 0.5 * erfc(_STEEPNESS * (2.0 * upper - 1.0))))
+    shape = np.where(upper <= 0.0, 1.0, np.where(upper >= 1.0, 0.0, 0.5 * scipy.special.erfc(_STEEPNESS * (2.0 * upper - 1.0))))
     if low > 0.0:
         lower = (low - frequencies) / (0.5 * low)
-        shape = shape * np.where(lower <= 0.0, 1.0, np.where(lower >= 1.0, 0.0, 0.5 * erfc(_STEEPNESS * (2.0 * lower - 1.0))))
+        shape = shape * np.where(lower <= 0.0, 1.0, np.where(lower >= 1.0, 0.0, 0.5 * scipy.special.erfc(_STEEPNESS * (2.0 * lower - 1.0))))
     return shape
 
 

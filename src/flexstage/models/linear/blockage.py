@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import linprog
+import scipy
 
 from flexstage.base.number import Array
 
@@ -87,7 +87,7 @@ def _forces(constraints: Array, stroke: int) -> Array:
     """The forces (m,) of least total magnitude with C^T f = e, the stroke's unit vector."""
     count, size = constraints.shape
     unit = (np.arange(size) == stroke).astype(float)
-    solved = linprog(np.ones(2 * count), A_eq=np.hstack([constraints.T, -constraints.T]), b_eq=unit, method="highs")
+    solved = scipy.optimize.linprog(np.ones(2 * count), A_eq=np.hstack([constraints.T, -constraints.T]), b_eq=unit, method="highs")
     if solved.x is None:  # rounding leaves the programme without a solution: the least squares
         return np.asarray(np.linalg.lstsq(constraints.T, unit, rcond=_HELD)[0])
     return np.asarray(solved.x[:count] - solved.x[count:])

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import cast
 
 import numpy as np
-from scipy.linalg import qr
+import scipy
 
 from flexstage.base.number import Array, first_design
 
@@ -141,4 +141,4 @@ def pivoted(matrix: Array) -> tuple[Array, Array, Array]:
     >>> pivoted(np.array([[1.0, 2.0]]))[2].tolist()
     [1, 0]
     """
-    return cast(tuple[Array, Array, Array], qr(matrix, pivoting=True))
+    return cast(tuple[Array, Array, Array], scipy.linalg.qr(matrix, pivoting=True))

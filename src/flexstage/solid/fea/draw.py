@@ -11,8 +11,8 @@ from itertools import pairwise
 from typing import Any, TypeAlias
 
 import numpy as np
+import scipy
 from netgen import occ
-from scipy.spatial.transform import Rotation
 
 from flexstage.base.finding import refuse
 from flexstage.base.number import Array
@@ -69,7 +69,7 @@ def moved(solid: occ.TopoDS_Shape, frame: Frame) -> occ.TopoDS_Shape:
     >>> round(there.center.x, 6)
     100.0
     """
-    turn = Rotation.from_matrix(np.real(frame.rotation)).as_rotvec()
+    turn = scipy.spatial.transform.Rotation.from_matrix(np.real(frame.rotation)).as_rotvec()
     angle = float(np.linalg.norm(turn))
     if angle > 0.0:
         axis = occ.Axis(occ.Pnt(0, 0, 0), occ.Dir(*(turn / angle)))

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import ngsolve
 import numpy as np
-from scipy.sparse.linalg import LinearOperator, eigsh
+import scipy
 
 from flexstage.base.number import Array
 from flexstage.mechanism.mechanism import PLATFORM
@@ -142,14 +142,14 @@ def _modes(problem: _Problem, count: int, springs: Array | None) -> Array:
         return np.zeros((problem.field.size, 0))
     mass, solve = (_operator(size, function) for function in (weighed, inverse))
     # With OPinv the first argument is used for its shape only.
-    _, vectors = eigsh(solve, k=count, M=mass, sigma=0.0, OPinv=solve, v0=start, tol=_EIGENVALUES)  # pyright: ignore[reportArgumentType]
+    _, vectors = scipy.sparse.linalg.eigsh(solve, k=count, M=mass, sigma=0.0, OPinv=solve, v0=start, tol=_EIGENVALUES)  # pyright: ignore[reportArgumentType]
     result = np.zeros((problem.field.size, count))
     result[free] = vectors[: len(free)]
     return result
 
 
-def _operator(size: int, function: Callable[[Array], Array]) -> LinearOperator:
-    return LinearOperator((size, size), matvec=function, dtype=float)  # pyright: ignore[reportCallIssue]  (its stubs know only __new__)
+def _operator(size: int, function: Callable[[Array], Array]) -> scipy.sparse.linalg.LinearOperator:
+    return scipy.sparse.linalg.LinearOperator((size, size), matvec=function, dtype=float)  # pyright: ignore[reportCallIssue]  (its stubs know only __new__)
 
 
 def _independent(problem: _Problem, motions: list[Array]) -> Array:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import nnls
+import scipy
 
 from flexstage.base.number import Array
 
@@ -40,6 +40,6 @@ def quadratic(hessian: Array, linear: Array, normals: Array, bounds: Array) -> S
     scale = float(np.max(away, initial=0.0))
     if scale <= 0.0:
         return Solution(np.linalg.solve(lower.T, free), np.zeros(len(bounds)))
-    share, _ = nnls(np.vstack([rows.T, away / scale]), np.append(np.zeros(len(free)), 1.0))
+    share, _ = scipy.optimize.nnls(np.vstack([rows.T, away / scale]), np.append(np.zeros(len(free)), 1.0))
     multipliers = scale * share / (1.0 - away @ share / scale)
     return Solution(np.linalg.solve(lower.T, free + rows.T @ multipliers), multipliers / length)

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 
 from flexstage.analysis.judge import bench_of, measured_on
 from flexstage.analysis.requirements import Measure, Requirement, Sense
@@ -55,10 +56,8 @@ class Setting:
 
     def starts(self) -> Array:
         """Shares (starts, n): the design as it stands, then a scrambled Sobol sequence."""
-        from scipy.stats import qmc
-
         count, size = self.wanted.starts - 1, len(self.study.variables)
-        generator = qmc.Sobol(size, scramble=True, rng=np.random.default_rng(self.wanted.seed))
+        generator = scipy.stats.qmc.Sobol(size, scramble=True, rng=np.random.default_rng(self.wanted.seed))
         drawn = generator.random(1 << max(count - 1, 0).bit_length())[:count]
         return np.concatenate([self.before.shares[None], drawn])
 

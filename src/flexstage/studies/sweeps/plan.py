@@ -7,6 +7,7 @@ from enum import Enum
 from functools import lru_cache
 
 import numpy as np
+import scipy
 
 from flexstage.base.number import Array
 
@@ -88,9 +89,7 @@ def _random(plan: Plan, start: int, stop: int) -> Array:
 
 def _sobol(dimensions: int, seed: int, start: int, stop: int) -> Array:
     """Rows of a scrambled Sobol sequence."""
-    from scipy.stats import qmc
-
-    sequence = qmc.Sobol(dimensions, scramble=True, rng=np.random.default_rng(seed))
+    sequence = scipy.stats.qmc.Sobol(dimensions, scramble=True, rng=np.random.default_rng(seed))
     if start:
         sequence.fast_forward(start)
     return _drawn(sequence, stop - start)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 
 from flexstage.analysis.requirements import Sense
 from flexstage.base.number import Array
@@ -113,12 +114,10 @@ def _reach(study: Tolerance, line: Line, values: Array) -> float:
 
 def _linear_reach(study: Tolerance, line: Line, gradient: Array) -> float:
     """The same of a response that is linear in the deviations: exact for normal ones, else by draws from their distributions."""
-    from scipy.special import ndtri
-
     deviations = study.deviations
     if all(each.distribution.shape is Shape.NORMAL and each.bounded is None for each in deviations):
         size = np.array([each.deviation for each in deviations])
-        return float(ndtri(study.wanted) * np.linalg.norm(gradient * size))
+        return float(scipy.special.ndtri(study.wanted) * np.linalg.norm(gradient * size))
     at = np.random.default_rng(0).random((_DRAWS, len(deviations)))
     worse = -_sign(line) * sum(
         slope * each.at(at[:, number]) for number, (each, slope) in enumerate(zip(deviations, gradient, strict=True))

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from enum import Enum
 
 import numpy as np
+import scipy
 
 from flexstage.base.number import Array
 
@@ -35,14 +36,12 @@ class Distribution:
         >>> Distribution(Shape.UNIFORM, 2.0).quantile(np.array([0.0, 0.5, 1.0])).tolist()
         [-2.0, 0.0, 2.0]
         """
-        from scipy.special import ndtr, ndtri
-
         if self.shape is Shape.UNIFORM:
             return self.size * (2.0 * shares - 1.0)
         if self.within is None:
-            return self.size * ndtri(np.clip(shares, _LEAST, 1.0 - 2.0 * _LEAST))
-        lowest = ndtr(-self.within / self.size)
-        return np.clip(self.size * ndtri(lowest + shares * (1.0 - 2.0 * lowest)), -self.within, self.within)
+            return self.size * scipy.special.ndtri(np.clip(shares, _LEAST, 1.0 - 2.0 * _LEAST))
+        lowest = scipy.special.ndtr(-self.within / self.size)
+        return np.clip(self.size * scipy.special.ndtri(lowest + shares * (1.0 - 2.0 * lowest)), -self.within, self.within)
 
     @property
     def deviation(self) -> float:
@@ -51,15 +50,13 @@ class Distribution:
         >>> round(Distribution(Shape.NORMAL, 1.0, within=1.0).deviation, 4), Distribution(Shape.UNIFORM, 3.0**0.5).deviation
         (0.5396, 1.0)
         """
-        from scipy.special import ndtr
-
         if self.shape is Shape.UNIFORM:
             return float(self.size / np.sqrt(3.0))
         if self.within is None:
             return self.size
         edge = self.within / self.size
         density = np.exp(-0.5 * edge * edge) / np.sqrt(2.0 * np.pi)
-        return float(self.size * np.sqrt(1.0 - 2.0 * edge * density / (2.0 * ndtr(edge) - 1.0)))
+        return float(self.size * np.sqrt(1.0 - 2.0 * edge * density / (2.0 * scipy.special.ndtr(edge) - 1.0)))
 
     @property
     def bounded(self) -> float | None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 
 from flexstage.analysis.requirements import Requirement, Sense, Verdict
 from flexstage.base.number import Array
@@ -139,11 +140,9 @@ def binomial(passed: Array) -> Yield:
     >>> found.share, round(found.low, 4), round(found.high, 4)
     (0.9, 0.555, 0.9975)
     """
-    from scipy.special import betaincinv
-
     kept, count, tail = int(np.sum(passed)), len(passed), 0.5 * (1.0 - CONFIDENCE)
-    low = float(betaincinv(kept, count - kept + 1, tail)) if kept else 0.0
-    return Yield(kept, count, low, float(betaincinv(kept + 1, count - kept, 1.0 - tail)) if kept < count else 1.0)
+    low = float(scipy.special.betaincinv(kept, count - kept + 1, tail)) if kept else 0.0
+    return Yield(kept, count, low, float(scipy.special.betaincinv(kept + 1, count - kept, 1.0 - tail)) if kept < count else 1.0)
 
 
 def _column(study: Tolerance, name: str) -> int:
