@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import fields
+from dataclasses import dataclass, fields, replace
+from typing import Annotated
 
 import numpy as np
 import pytest
@@ -12,8 +13,11 @@ from flexstage.analysis.lost_motion import lost_motion
 from flexstage.analysis.modes import modes
 from flexstage.analysis.stability import Stability
 from flexstage.analysis.statics import statics
+from flexstage.analysis.units import units
 from flexstage.analysis.workspace.buckling import Buckling, Ends
 from flexstage.analysis.workspace.workspace import Workspace
+from flexstage.base.quantity import FORCE, SHARE, Bound
+from flexstage.base.record import Along, Heading
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.cases.registry import case
 from flexstage.mechanism.address import set_value
@@ -21,7 +25,7 @@ from flexstage.models.ideal import ideal
 from flexstage.models.lumped import lumped
 from flexstage.show.page import Abreast, Folded
 from flexstage.show.render import to_html, to_markdown, to_rich, to_text
-from flexstage.show.table import Mark, Table
+from flexstage.show.table import Mark, Table, record_table, row_table
 from flexstage.show.tables.description import value_tables
 from flexstage.show.tables.lost_motion import budget_table, loss_table
 from flexstage.show.tables.modes import mode_table
@@ -176,3 +180,29 @@ def test_what_would_yield_is_marked_and_what_nearly_would(factor: float, mark: M
     """Below 1 a hinge yields and a column buckles; below 1.5 there is no margin to speak of."""
     column = Buckling(("B1/rod",), np.array([factor * 100.0]), np.array([100.0]), np.array([0.01]), (Ends.GUIDED,), "", STANDING)
     assert buckling_table(column).rows[-1][-1].mark is mark
+
+
+@dataclass(frozen=True, eq=False)
+class _Pressed:
+    """Forces of bars."""
+
+    bars: tuple[str, ...]
+    axial: Annotated[np.ndarray, FORCE, Along("bars"), Heading("axial force")]
+    used: Annotated[np.ndarray, SHARE, Bound(high=1.0), Along("bars")]
+    kind: Annotated[tuple[Ends, ...], Along("bars")]
+
+
+def test_fields_say_how_they_are_shown() -> None:
+    bars = _Pressed(("a", "b"), np.array([2.5, 1e-12]), np.array([1.5, 1e-17]), (Ends.PINNED, Ends.FREE))
+    table = row_table("Bars", bars)
+    assert table.texts() == [["bar", "axial force [N]", "used", "kind"], ["a", "2.5", "150 %", "pinned"], ["b", "0", "0 %", "free"]]
+    assert [row[2].mark for row in table.rows] == [Mark.FAIL, Mark.PLAIN]
+    assert row_table("Bars", bars, "kind").texts()[0] == ["bar", "kind"]
+
+
+def test_records_are_rows_and_what_is_absent_has_a_dash() -> None:
+    rows = row_table("Units", units(case("parallelogram")), "axial", "series", "gain", head="unit")
+    assert rows.texts()[0] == ["unit", "axial [N/um]", "series [N/um]", "gain"]
+    one = Buckling(("a",), np.ones(1), np.ones(1), np.ones(1), (Ends.FREE,), "", Stability(*[np.array(2.0)] * 4, (), ""))
+    assert record_table("Stage", one, "least", "weakest").texts()[1:] == [["least", "2", ""], ["weakest", "a", ""]]
+    assert record_table("Stage", replace(one, links=()), "weakest").texts()[1:] == [["weakest", "-", ""]]

@@ -68,6 +68,7 @@ NOT_NEGATIVE = Bound(low=0.0)
 POISSON_RANGE = Bound(low=-1.0, high=0.5, open_low=True, open_high=True)
 
 RATIO = Quantity("ratio", "1", "1", "0.3")
+SHARE = Quantity("share", "1", "%", "30 %")
 LENGTH = Quantity("length", "m", "mm", "1.54 mm")
 DISPLACEMENT = Quantity("displacement", "m", "um", "150 um")
 ANGLE = Quantity("angle", "rad", "deg", "30 deg")

@@ -11,10 +11,10 @@ from __future__ import annotations
 import functools
 import inspect
 import types
-from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, fields, is_dataclass
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, fields, is_dataclass, replace
 from enum import Enum
-from typing import Annotated, Any, Union, get_args, get_origin, get_type_hints
+from typing import Annotated, Any, TypeVar, Union, get_args, get_origin, get_type_hints
 
 import numpy as np
 
@@ -23,6 +23,8 @@ from flexstage.base.finding import DesignError
 from flexstage.base.labelled import Matrix
 from flexstage.base.number import Array
 from flexstage.base.quantity import Quantity
+
+_Kind = TypeVar("_Kind")
 
 
 class Told(Enum):
@@ -57,6 +59,22 @@ class Called:
 
 
 @dataclass(frozen=True)
+class Heading:
+    """How tables show a field where its name and its quantity do not say it.
+
+    `text` stands over the column (absent: the name in words). `digits` are significant ones of each number (absent: decimals are
+    aligned). `unit` is the display unit (absent: that of the quantity). `varying`: each number has the unit that suits it. `infinite`
+    is the word for an infinite value.
+    """
+
+    text: str = ""
+    digits: int | None = None
+    unit: str = ""
+    varying: bool = False
+    infinite: str = "inf"
+
+
+@dataclass(frozen=True)
 class Field:
     """What is told of a result: its name, type, annotations, and the first line that explains it."""
 
@@ -73,24 +91,40 @@ class Field:
         >>> Field("axial", float, (STIFFNESS,)).key
         'axial_n_per_m'
         """
-        called = next((each.key for each in self.annotations if isinstance(each, Called)), self.name)
-        return keyed(called, self.unit)
+        called = self.annotation(Called)
+        return keyed(called.key if called else self.name, self.unit)
 
     @property
     def unit(self) -> str:
         """The SI unit, `1` of what has none."""
-        return next((each.si for each in self.annotations if isinstance(each, Quantity)), "1")
+        quantity = self.annotation(Quantity)
+        return quantity.si if quantity else "1"
+
+    @property
+    def heading(self) -> Heading:
+        """How tables show it.
+
+        >>> Field("blocking_force", float, (Heading(digits=4),)).heading
+        Heading(text='blocking force', digits=4, unit='', varying=False, infinite='inf')
+        """
+        own = self.annotation(Heading) or Heading()
+        return replace(own, text=own.text or self.name.replace("_", " "))
+
+    def annotation(self, kind: type[_Kind]) -> _Kind | None:
+        """The annotation of a kind, a quantity or a bound for example."""
+        return next((each for each in self.annotations if isinstance(each, kind)), None)
 
     def of(self, record: Any) -> Any:
         """Its value."""
         value = getattr(record, self.name)
-        by_name = next((each for each in self.annotations if isinstance(each, UnitOf)), None)
+        by_name = self.annotation(UnitOf)
         return value if by_name is None or value is None else {keyed(name, by_name.unit(name)): each for name, each in value.items()}
 
     @property
     def along(self) -> str | None:
         """The field with the names of its last axis."""
-        return next((each.names for each in self.annotations if isinstance(each, Along)), None)
+        along = self.annotation(Along)
+        return along.names if along else None
 
 
 def keyed(name: str, unit: str) -> str:
@@ -120,7 +154,7 @@ def _opened(hint: Any) -> tuple[Any, tuple[Any, ...]]:
 
 
 def _is_told(kind: Any, annotations: tuple[Any, ...]) -> bool:
-    if annotations:
+    if any(not isinstance(each, Heading) for each in annotations):
         return INNER not in annotations
     return not any(part == Array or (isinstance(part, type) and issubclass(part, Description)) for part in _parts(kind))
 
@@ -143,20 +177,62 @@ def _properties(kind: type) -> Iterator[tuple[str, Any, str]]:
 
 def walk(record: Any) -> dict[str, Any]:
     """What is told of a result, one level deep, and the `reasons` for what is absent."""
-    kinds, found, reasons = told_of(type(record)), dict[str, Any](), dict(getattr(record, "reasons", {}))
-    for each in kinds:
-        try:
-            value = None if each.name in reasons else each.of(record)
-        except DesignError as error:
-            value, reasons[each.name] = None, str(error)
+    values, reasons = values_of(record)
+    named, found = {each.along for each in values}, dict[str, Any]()
+    for each, value in values.items():
         if each.along is None:
-            found[each.key] = {name: {} for name in value or ()} if any(each.name == other.along for other in kinds) else value
+            found[each.key] = {name: {} for name in value or ()} if each.name in named else value
         elif value is not None:
-            items = np.moveaxis(value, -1, 0) if isinstance(value, np.ndarray) else value
-            for under, item in zip(found[each.along].values(), items, strict=True):
+            for under, item in zip(found[each.along].values(), by_name(value), strict=True):
                 under[each.key] = item
-    keys = {each.name: each.key for each in kinds}
+    keys = {each.name: each.key for each in values}
     return found | ({"reasons": {keys.get(name, name): reason for name, reason in reasons.items()}} if reasons else {})
+
+
+def values_of(record: Any) -> tuple[dict[Field, Any], dict[str, str]]:
+    """The fields that are told of a result with their values, and why values are absent, by the field's name."""
+    reasons, found = dict(getattr(record, "reasons", {})), dict[Field, Any]()
+    for each in told_of(type(record)):
+        try:
+            found[each] = None if each.name in reasons else each.of(record)
+        except DesignError as error:
+            found[each], reasons[each.name] = None, str(error)
+    return found, reasons
+
+
+def by_name(value: Any) -> Any:
+    """The values of a field along names, a name each."""
+    return np.moveaxis(value, -1, 0) if isinstance(value, np.ndarray) else value
+
+
+@dataclass(frozen=True)
+class Rows:
+    """Records as rows: their names (none where they have none) under a head, and a value a row of every field."""
+
+    head: str
+    names: tuple[str, ...]
+    columns: Mapping[Field, tuple[Any, ...]]
+
+
+def rows_of(source: Any) -> Rows:
+    """Rows of a mapping or sequence of records of one kind, or of a record whose arrays stand along names."""
+    if isinstance(source, Mapping):
+        return Rows("", tuple(source), _columns(source.values()))
+    return Rows("", (), _columns(source)) if isinstance(source, Sequence) else next(rows_along(source))
+
+
+def rows_along(record: Any) -> Iterator[Rows]:
+    """Rows of a record: the arrays along each of its fields of names."""
+    values, _ = values_of(record)
+    for names, value in values.items():
+        columns = {each: tuple(by_name(items)) for each, items in values.items() if each.along == names.name and items is not None}
+        if columns:
+            yield Rows(names.heading.text.removesuffix("s"), tuple(value), columns)
+
+
+def _columns(records: Iterable[Any]) -> dict[Field, tuple[Any, ...]]:
+    told = [values_of(each)[0] for each in records]
+    return {each: tuple(values[each] for values in told) for each in (told[0] if told else ())}
 
 
 def paths(kind: type, before: str = "") -> Iterator[tuple[str, str, str]]:

@@ -94,6 +94,7 @@ _FIELD_UNITS = {
     "um/N": 1e6,
     "urad/N": 1e6,
     "urad/(N m)": 1e6,
+    "%": 100.0,
 }
 
 
@@ -132,6 +133,19 @@ def field_unit(quantity: Quantity) -> Shown:
     (Shown(unit='mm', factor=1000.0), 57.29578)
     """
     return Shown(quantity.shown, 1.0 if quantity.shown == quantity.si else _FIELD_UNITS[quantity.shown])
+
+
+def display_unit(quantity: Quantity | None, unit: str = "") -> Shown:
+    """The unit in which results of a quantity are shown: `unit`, one of its display units, or where it is absent the quantity's own.
+
+    >>> from flexstage.base.quantity import PIEZO_GAIN
+    >>> display_unit(PIEZO_GAIN, "um/V"), display_unit(None)
+    (Shown(unit='um/V', factor=1000000.0), Shown(unit='', factor=1.0))
+    """
+    if quantity is None or quantity.shown == "1":
+        return Shown("", 1.0)
+    ladder = dict(_LADDERS.get(quantity.si, ()))
+    return Shown(unit, ladder[unit]) if unit else field_unit(quantity)
 
 
 def number(value: float, digits: int = DIGITS) -> str:

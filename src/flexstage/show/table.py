@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 
 from flexstage.base.labelled import NOISE, NOISE_RULE, Matrix, quiet, ratio_units
 from flexstage.base.number import Array
-from flexstage.show.display import NO_VALUE, Shown, aligned, number, preferred, value_with_unit
+from flexstage.base.quantity import Bound, Quantity
+from flexstage.base.record import Field, rows_of, values_of
+from flexstage.show.display import DIGITS, NO_VALUE, Shown, aligned, display_unit, number, percent, preferred, shown, value_with_unit
 
 
 class Mark(Enum):
@@ -88,17 +90,99 @@ def build(
     return Table(title, heads, cells, tuple(notes), provenance)
 
 
-def figures(values: Iterable[float], form: Shown, digits: int = 5) -> list[Cell]:
-    """A column of SI values in a display unit, decimals aligned; rounding noise against the column's largest value is shown as 0.
+def figures(values: Iterable[float], form: Shown, digits: int | None = None) -> list[Cell]:
+    """A column of SI values in a display unit, decimals aligned, or each to as many significant `digits`.
+
+    Rounding noise against the column's largest value is shown as 0.
 
     >>> [cell.text for cell in figures([15e6, 1e-6], Shown("N/um", 1e-6))]
     ['15', '0']
     """
-    items = np.array([float(value) for value in values])
-    largest = np.max(np.abs(items[np.isfinite(items)]), initial=0.0)
-    silent = np.isfinite(items) & (np.abs(items) < NOISE * largest)
-    texts = aligned(np.where(silent, 0.0, items * form.factor), digits)
+    items = form.factor * _audible(np.array([float(value) for value in values]))
+    texts = aligned(items) if digits is None else [number(float(each), digits) for each in items]
     return [Cell(text, _faint(text)) for text in texts]
+
+
+def row_table(title: str, source: Any, *fields: str, head: str = "", notes: Iterable[str] = (), provenance: str = "") -> Table:
+    """One row a record, or a name, and a column a field, headed by its name in words with its quantity's unit, or as its `Heading` says.
+
+    `source` is a mapping or sequence of records of one kind, or a record with arrays `Along` names. `fields` are those shown, in that order
+    (absent: all that a cell can hold); `head` stands over the names. What lies outside of a field's `Bound` is marked.
+
+    >>> from flexstage.analysis.workspace.drive import Drive
+    >>> one = np.ones(1)
+    >>> row_table("Drive", Drive(("B1",), 1.5e-7 * one, 0.0 * one, 1e3 * one, 500.0 * one, 4e-7 * one), "gain", "low", "high").texts()
+    [['actuator', 'gain [um/V]', 'low [V]', 'high [V]'], ['B1', '0.15', '0', '1000']]
+    """
+    rows = rows_of(source)
+    told = {each.name: (each, values) for each, values in rows.columns.items()}
+    chosen = [told[name] for name in fields] if fields else [each for each in told.values() if _fits(each[1])]
+    columns = [field_column(*each) for each in chosen]
+    names = [(Column(head or rows.head, numeric=False), [Cell(name, Mark.STRONG) for name in rows.names])] if rows.names else []
+    heads, cells = [each for each, _ in (*names, *columns)], [each for _, each in (*names, *columns)]
+    return build(title, heads, zip(*cells, strict=True), notes=notes, provenance=provenance)
+
+
+def record_table(title: str, record: Any, *fields: str, notes: Iterable[str] = (), provenance: str = "") -> Table:
+    """A record as rows of name, value and unit; `fields` as for `row_table`."""
+    told = {each.name: (each, (value,)) for each, value in values_of(record)[0].items()}
+    chosen = [told[name] for name in fields] if fields else [each for each in told.values() if each[0].along is None and _fits(each[1])]
+    columns = [(each.heading.text, *field_column(each, values)) for each, values in chosen]
+    rows = [(Cell(name, Mark.STRONG), cells[0], column.unit) for name, column, cells in columns]
+    return build(title, ["", Column("value"), "unit"], rows, notes=notes, provenance=provenance)
+
+
+def field_column(field: Field, values: Sequence[Any]) -> tuple[Column, list[Cell]]:
+    """The column of a field and its cells, for tables that stand beside others' columns.
+
+    >>> from flexstage.base.quantity import SHARE, STIFFNESS
+    >>> from flexstage.base.record import Heading
+    >>> field_column(Field("loss", float, (SHARE,)), [0.03, 1e-17])[1]
+    [Cell(text='3 %', mark=<Mark.PLAIN: 'plain'>, bar=0.03), Cell(text='0 %', mark=<Mark.PLAIN: 'plain'>, bar=0.0)]
+    >>> [cell.text for cell in field_column(Field("axial", float, (STIFFNESS, Heading(varying=True))), [15e6, 2e3])[1]]
+    ['15 N/um', '2 N/mm']
+    """
+    heading, form = field.heading, display_unit(field.annotation(Quantity), field.heading.unit)
+    if not all(isinstance(each, _NUMBERS) and not isinstance(each, bool) for each in values if each is not None):
+        return Column(heading.text, numeric=False), [Cell(_words(each)) for each in values]
+    numbers = np.array([np.nan if each is None else float(first_design(each, 0)) for each in values])
+    if heading.varying:
+        cells = [Cell(value_with_unit(each, field.unit, heading.digits or DIGITS)) for each in _audible(numbers).tolist()]
+    elif form.unit == "%":
+        cells = [Cell(percent(each, heading.digits or 4), bar=each) for each in _audible(numbers, 1.0).tolist()]
+    else:
+        cells = figures(numbers, form, heading.digits)
+    bound = field.annotation(Bound) or Bound()
+    outside = [each > bound.high + NOISE * abs(bound.high) or each < bound.low - NOISE * abs(bound.low) for each in numbers]
+    cells = [replace(cell, mark=Mark.FAIL) if out else cell for cell, out in zip(cells, outside, strict=True)]
+    cells = [replace(cell, text=heading.infinite) if np.isposinf(each) else cell for cell, each in zip(cells, numbers, strict=True)]
+    return Column(heading.text, "" if heading.varying or form.unit == "%" else form.unit), cells
+
+
+_NUMBERS = (int, float, np.number, np.ndarray)
+
+
+def _fits(values: Sequence[Any]) -> bool:
+    """Whether a table's cell can hold each of the values: numbers, words, or a few words."""
+    return all(each is None or isinstance(each, (*_NUMBERS, str, Enum)) or _is_words(each) for each in values)
+
+
+def _is_words(value: Any) -> bool:
+    return isinstance(value, tuple) and all(isinstance(each, (str, Enum)) for each in value)
+
+
+def _words(value: Any) -> str:
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if isinstance(value, tuple):
+        return ", ".join(map(_words, value))
+    return NO_VALUE if value is None else str(value.value if isinstance(value, Enum) else value)
+
+
+def _audible(values: Array, least: float = 0.0) -> Array:
+    """A column of values in which rounding noise against its largest, or `least` where that is more, is 0."""
+    largest = np.max(np.abs(values[np.isfinite(values)]), initial=least)
+    return np.where(np.isfinite(values) & (np.abs(values) < NOISE * largest), 0.0, values)
 
 
 def matrix_table(title: str, matrix: Matrix, *, against: Matrix | None = None, fine: bool = True, notes: Iterable[str] = ()) -> Table:
@@ -126,6 +210,21 @@ def matrix_table(title: str, matrix: Matrix, *, against: Matrix | None = None, f
     ]
     ratio = ["Entries: row unit per column unit."] if all(any(_unit(form) for form in forms) for forms in (rows, columns)) else []
     return build(title, [Column("", numeric=False), *heads], lines, notes=[*notes, *ratio, *said])
+
+
+def unit_row_table(title: str, matrix: Matrix, *, heads: tuple[str, ...] = (), first: str = "along", notes: tuple[str, ...] = ()) -> Table:
+    """A matrix whose entries share a unit along each row: the unit stands in a column of its own.
+
+    >>> unit_row_table("a", Matrix(np.array([[2e-6]]), ("x",), ("low",), (("m",),))).texts()
+    [['along', 'unit', 'low'], ['x', 'um', '2']]
+    """
+    rows: list[tuple[Content, ...]] = []
+    values, units = first_design(matrix.values, 2), _entry_units(matrix)
+    for name, line, unit in zip(matrix.rows, values, units, strict=True):
+        alike = np.concatenate([other for other, its in zip(values, units, strict=True) if its[0] == unit[0]])
+        form = shown(unit[0], float(np.max(np.abs(alike[np.isfinite(alike)]), initial=0.0)))
+        rows.append((Cell(name, Mark.STRONG), _unit(form), *figures(line, form)))
+    return build(title, [first, "unit", *(Column(head) for head in heads or matrix.columns)], rows, notes=notes)
 
 
 def short_names(names: tuple[str, ...]) -> tuple[str, ...]:

@@ -10,8 +10,8 @@ import numpy as np
 from flexstage.analysis.workspace.stroke import StrokeLimits, stacks
 from flexstage.base.labelled import Matrix, ratio_units
 from flexstage.base.number import Array, Number, magnitude, stack
-from flexstage.base.quantity import FORCE, LENGTH, STIFFNESS
-from flexstage.base.record import VIEW, Along
+from flexstage.base.quantity import DISPLACEMENT, FORCE, STIFFNESS
+from flexstage.base.record import VIEW, Along, Heading
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.models.linear.model import LinearModel
@@ -28,12 +28,12 @@ class StackLine:
     """
 
     actuators: tuple[str, ...]
-    free: Annotated[Array, LENGTH, Along("actuators")]
-    blocking: Annotated[Array, FORCE, Along("actuators")]
-    stiffness: Annotated[Array, STIFFNESS, Along("actuators")]
-    against: Annotated[Array, STIFFNESS, Along("actuators")]
-    travel: Annotated[Array, LENGTH, Along("actuators")]
-    force: Annotated[Array, FORCE, Along("actuators")]
+    free: Annotated[Array, DISPLACEMENT, Along("actuators"), Heading("free stroke", digits=4)]
+    travel: Annotated[Array, DISPLACEMENT, Along("actuators"), Heading("stroke in the stage", digits=4)]
+    blocking: Annotated[Array, FORCE, Along("actuators"), Heading("blocking force", digits=4)]
+    force: Annotated[Array, FORCE, Along("actuators"), Heading("force in the stage", digits=4)]
+    stiffness: Annotated[Array, STIFFNESS, Along("actuators"), Heading("own stiffness", digits=4)]
+    against: Annotated[Array, STIFFNESS, Along("actuators"), Heading("stage's stiffness", digits=4)]
     provenance: str
 
 

@@ -11,7 +11,7 @@ from flexstage.analysis.workspace.stroke import stacks
 from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array, Number, stack
 from flexstage.base.quantity import CAPACITANCE, PIEZO_GAIN, VOLTAGE
-from flexstage.base.record import Along
+from flexstage.base.record import Along, Heading
 from flexstage.mechanism.mechanism import Mechanism
 
 
@@ -23,11 +23,11 @@ class Drive:
     """
 
     actuators: tuple[str, ...]
-    gain: Annotated[Array, PIEZO_GAIN, Along("actuators")]
-    low: Annotated[Array, VOLTAGE, Along("actuators")]
-    high: Annotated[Array, VOLTAGE, Along("actuators")]
-    bias: Annotated[Array, VOLTAGE, Along("actuators")]
-    capacitance: Annotated[Array, CAPACITANCE, Along("actuators")]
+    gain: Annotated[Array, PIEZO_GAIN, Along("actuators"), Heading(digits=5, unit="um/V")]
+    low: Annotated[Array, VOLTAGE, Along("actuators"), Heading(digits=5)]
+    high: Annotated[Array, VOLTAGE, Along("actuators"), Heading(digits=5)]
+    bias: Annotated[Array, VOLTAGE, Along("actuators"), Heading(digits=5)]
+    capacitance: Annotated[Array, CAPACITANCE, Along("actuators"), Heading(digits=5)]
 
     def volts(self, strokes: Array) -> Array:
         """Voltages (..., n) [V] for strokes (..., n) [m] counted from the bias."""

@@ -11,8 +11,8 @@ import numpy as np
 from flexstage.base.finding import Finding, nearest, refuse, require
 from flexstage.base.labelled import Matrix
 from flexstage.base.number import Array, Number, magnitude, stack
-from flexstage.base.quantity import LENGTH, RATIO
-from flexstage.base.record import VIEW, Along
+from flexstage.base.quantity import DISPLACEMENT, LENGTH, RATIO, SHARE, Bound
+from flexstage.base.record import VIEW, Along, Heading
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.incidence import layout, twist_at
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
@@ -95,12 +95,12 @@ class Utilisation:
 
     actuators: tuple[str, ...]
     command: Annotated[Mapping[str, Number], MOTION]
-    demand: Annotated[Array, LENGTH, Along("actuators")]
-    available: Annotated[Array, LENGTH, Along("actuators")]
+    demand: Annotated[Array, DISPLACEMENT, Along("actuators"), Heading("asked")]
+    available: Annotated[Array, DISPLACEMENT, Along("actuators")]
     provenance: str
 
     @property
-    def ratio(self) -> Annotated[Array, RATIO, Along("actuators")]:
+    def ratio(self) -> Annotated[Array, SHARE, Bound(high=1.0), Along("actuators"), Heading("used")]:
         """Demand over what is available (..., n); above 1 the corner cannot be reached."""
         return self.demand / self.available
 

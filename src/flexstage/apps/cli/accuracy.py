@@ -22,7 +22,7 @@ from flexstage.show.command.answer import answer, tell_missing
 from flexstage.show.command.design import open_design
 from flexstage.show.command.options import Changes, Design, Json, ModelName, text_option
 from flexstage.show.command.values import motions
-from flexstage.show.table import Table
+from flexstage.show.table import Table, row_table
 from flexstage.show.tables import workspace as tables
 from flexstage.show.tables.errors import drift_table, error_budget_tables, gauge_drift_table
 from flexstage.show.tables.sensitivities import frequency_sensitivity_table, loss_sensitivity_table
@@ -60,7 +60,7 @@ def _workspace_tables(workspace: study.Workspace) -> Iterator[Table | None]:
     yield None if workspace.corner is None else tables.corner_table(workspace.corner)
     yield None if workspace.polytope is None else tables.extent_table(workspace.polytope)
     yield None if workspace.map_error is None else tables.map_error_table(workspace.map_error)
-    yield None if workspace.drive is None else tables.drive_table(workspace.drive)
+    yield None if workspace.drive is None else row_table("Drive", workspace.drive)
     yield None if workspace.gauges is None else tables.gauge_range_table(workspace.gauges)
     yield None if workspace.resolution is None else tables.resolution_table(workspace.resolution)
     yield None if workspace.room is None else tables.room_table(workspace.room)

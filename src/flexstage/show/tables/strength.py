@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator
 import numpy as np
 
 from flexstage.analysis.stability import Stability
-from flexstage.analysis.workspace.blocking import PlatformLine, StackLine
+from flexstage.analysis.workspace.blocking import PlatformLine
 from flexstage.analysis.workspace.buckling import Buckling
 from flexstage.analysis.workspace.load import LoadShare
 from flexstage.analysis.workspace.strength import HingeStress
@@ -15,7 +15,7 @@ from flexstage.analysis.workspace.stroke import StrokeLimits
 from flexstage.analysis.workspace.workspace import Workspace
 from flexstage.base.number import Array
 from flexstage.show.display import NO_VALUE, number, percent, value_with_unit
-from flexstage.show.table import Cell, Column, Content, Mark, Table, build, first_design
+from flexstage.show.table import Cell, Column, Content, Mark, Table, build, first_design, row_table
 
 _WEAK, _POOR = 1.0, 1.5
 
@@ -23,7 +23,7 @@ _WEAK, _POOR = 1.0, 1.5
 def strength_tables(workspace: Workspace) -> Iterator[Table | None]:
     """All tables of what the parts bear; absent what the workspace does not tell."""
     yield None if workspace.platform_lines is None else platform_line_table(workspace.platform_lines)
-    yield None if workspace.stack_lines is None else stack_line_table(workspace.stack_lines)
+    yield None if workspace.stack_lines is None else row_table("Stacks against the stage", workspace.stack_lines)
     yield None if workspace.stress is None else stress_table(workspace.stress)
     yield None if workspace.buckling is None else buckling_table(workspace.buckling)
     yield None if workspace.loads is None else load_table(workspace.loads, workspace.limits.from_zero)
@@ -46,32 +46,6 @@ def platform_line_table(lines: PlatformLine) -> Table:
     heads = ["along", Column("travel without load"), Column("stiffness"), Column("blocking force")]
     note = "A command along one coordinate ends where the first actuator does; the load acts along it alone."
     return build("Forces of the platform", heads, rows, notes=[note])
-
-
-def stack_line_table(lines: StackLine) -> Table:
-    """Each stack driven alone over its full stroke against the stage.
-
-    >>> import numpy as np
-    >>> one = np.ones(1)
-    >>> stack_line_table(StackLine(("B1",), 1.5e-4 * one, 2550.0 * one, 17e6 * one, 5e6 * one, 1e-4 * one, 500.0 * one, "")).texts()[1]
-    ['B1', '150', '100', '2550', '500', '17', '5']
-    """
-    columns = [
-        _column(lines.free, 1e6),
-        _column(lines.travel, 1e6),
-        _column(lines.blocking, 1.0),
-        _column(lines.force, 1.0),
-        _column(lines.stiffness, 1e-6),
-        _column(lines.against, 1e-6),
-    ]
-    heads = ["actuator", Column("free stroke", "um"), Column("stroke in the stage", "um"), Column("blocking force", "N")]
-    heads += [Column("force in the stage", "N"), Column("own stiffness", "N/um"), Column("stage's stiffness", "N/um")]
-    rows = [(Cell(name, Mark.STRONG), *line) for name, line in zip(lines.actuators, zip(*columns, strict=True), strict=True)]
-    return build("Stacks against the stage", heads, rows)
-
-
-def _column(values: Array, factor: float) -> list[str]:
-    return [number(factor * float(value), 4) for value in first_design(np.atleast_1d(values), 1)]
 
 
 def stress_table(stress: HingeStress) -> Table:

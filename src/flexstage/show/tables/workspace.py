@@ -6,7 +6,6 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from flexstage.analysis.workspace.drive import Drive
 from flexstage.analysis.workspace.gauging import GaugeRange, PoseResolution
 from flexstage.analysis.workspace.map_error import MapError
 from flexstage.analysis.workspace.polytope import Polytope
@@ -15,8 +14,8 @@ from flexstage.analysis.workspace.stroke import Utilisation
 from flexstage.analysis.workspace.workspace import Workspace
 from flexstage.base.labelled import NOISE, Matrix
 from flexstage.base.number import Array, Number
-from flexstage.show.display import NO_VALUE, Shown, number, percent, shown, value_with_unit
-from flexstage.show.table import Cell, Column, Mark, Table, build, figures, first_design
+from flexstage.show.display import NO_VALUE, number, percent, shown, value_with_unit
+from flexstage.show.table import Cell, Column, Mark, Table, build, first_design, row_table, unit_row_table
 from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
 
 _ARM = 0.1
@@ -70,18 +69,10 @@ def corner_table(corner: Utilisation) -> Table:
     >>> corner_table(Utilisation(("B1",), {"x": 5e-05}, np.array([5e-5]), np.array([7.5e-5]), "")).texts()[1]
     ['B1', '50', '75', '66.67 %']
     """
-    ratio = first_design(corner.ratio, 1)
-    micro = Shown("um", 1e6)
-    demand, available = (figures(first_design(values, 1), micro) for values in (corner.demand, corner.available))
-    rows = [
-        (Cell(name, Mark.STRONG), need, have, _used(float(share)))
-        for name, need, have, share in zip(corner.actuators, demand, available, ratio, strict=True)
-    ]
     scale = float(first_design(np.atleast_1d(corner.scale), 1)[0])
     verdict = "within reach" if scale >= 1.0 else "out of reach"
     note = f"{command_text(corner.command)}, all at once: {verdict}; the whole box may be scaled by {number(scale, 4)}."
-    heads = ["actuator", Column("asked", "um"), Column("available", "um"), Column("used")]
-    return build("Simultaneous strokes", heads, rows, notes=[note])
+    return row_table("Simultaneous strokes", corner, notes=[note])
 
 
 def _used(share: float) -> Cell:
@@ -98,24 +89,7 @@ def extent_table(polytope: Polytope) -> Table:
     ['z', 'um', '-1', '2']
     """
     title = "Reachable extents, other coordinates free to follow"
-    return row_unit_table(title, polytope.extent, heads=("least", "largest"))
-
-
-def row_unit_table(title: str, matrix: Matrix, *, heads: tuple[str, ...] = (), first: str = "along", notes: tuple[str, ...] = ()) -> Table:
-    """A matrix whose entries share a unit along each row: the unit stands in a column of its own.
-
-    >>> import numpy as np
-    >>> row_unit_table("a", Matrix(np.array([[2e-6]]), ("x",), ("low",), (("m",),))).texts()
-    [['along', 'unit', 'low'], ['x', 'um', '2']]
-    """
-    units = ((matrix.unit,) * len(matrix.columns),) * len(matrix.rows) if isinstance(matrix.unit, str) else matrix.unit
-    rows: list[tuple[Cell | str, ...]] = []
-    values = first_design(matrix.values, 2)
-    for name, line, unit in zip(matrix.rows, values, units, strict=True):
-        alike = np.concatenate([other for other, its in zip(values, units, strict=True) if its[0] == unit[0]])
-        form = shown(unit[0], float(np.max(np.abs(alike[np.isfinite(alike)]), initial=0.0)))
-        rows.append((Cell(name, Mark.STRONG), "" if form.unit == "1" else form.unit, *figures(line, form)))
-    return build(title, [first, "unit", *(Column(head) for head in heads or matrix.columns)], rows, notes=notes)
+    return unit_row_table(title, polytope.extent, heads=("least", "largest"))
 
 
 def map_error_table(error: MapError) -> Table:
@@ -144,30 +118,6 @@ def map_error_table(error: MapError) -> Table:
 
 def _strokes_text(actuators: tuple[str, ...], strokes: Array) -> str:
     return ", ".join(f"{name} {number(1e6 * float(at), 4)}" for name, at in zip(actuators, strokes, strict=True))
-
-
-def drive_table(drive: Drive) -> Table:
-    """Volts: gain, range, bias and capacitance of every actuator.
-
-    >>> import numpy as np
-    >>> one = np.ones(1)
-    >>> drive_table(Drive(("B1",), 1.5e-7 * one, 0.0 * one, 1e3 * one, 500.0 * one, 4e-7 * one)).texts()[1]
-    ['B1', '0.15', '0', '1000', '500', '0.4']
-    """
-    columns = [
-        _plain_column(drive.gain, 1e6),
-        _plain_column(drive.low, 1.0),
-        _plain_column(drive.high, 1.0),
-        _plain_column(drive.bias, 1.0),
-        _plain_column(drive.capacitance, 1e6),
-    ]
-    heads = ["actuator", Column("gain", "um/V"), Column("low", "V"), Column("high", "V"), Column("bias", "V"), Column("capacitance", "uF")]
-    rows = [(Cell(name, Mark.STRONG), *line) for name, line in zip(drive.actuators, zip(*columns, strict=True), strict=True)]
-    return build("Drive", heads, rows)
-
-
-def _plain_column(values: Array, factor: float) -> list[str]:
-    return [number(factor * float(value)) for value in first_design(np.atleast_1d(values), 1)]
 
 
 def gauge_range_table(gauges: GaugeRange) -> Table:
@@ -212,7 +162,7 @@ def resolution_table(resolution: PoseResolution) -> Table:
     """
     notes = ("Worst: all gauges one step off with the worst signs. Rms: independent steps.",)
     fine = Matrix(resolution.table.values, COMPONENTS, resolution.table.columns, resolution.table.unit)
-    return row_unit_table("Pose resolution of the gauges", fine, heads=("worst", "rms", "noise, rms"), notes=notes)
+    return unit_row_table("Pose resolution of the gauges", fine, heads=("worst", "rms", "noise, rms"), notes=notes)
 
 
 def room_table(room: Room) -> Table:
