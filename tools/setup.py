@@ -1,7 +1,7 @@
 """Bring .venv to the state the lock files ask for: `python tools/setup.py runtime|dev|oracles`.
 
 Run by the Makefile with any Python 3.11 or newer; standard library only. A stamp within .venv says what was installed, so that a second run
-only checks that every file is still there. Whatever is broken (half-made, moved, files lost) is made anew rather than repaired.
+only looks whether it is there. Whatever is broken (half-made, moved, packages gone) is made anew rather than repaired.
 """
 
 from __future__ import annotations
@@ -21,7 +21,6 @@ sys.path.insert(0, str(ROOT / "src"))
 sys.dont_write_bytecode = True
 
 from flexstage.apps import quadmath  # noqa: E402
-from flexstage.apps.installed import packages  # noqa: E402
 
 VENV = ROOT / ".venv"
 PYTHON = VENV / "bin" / "python"
@@ -89,13 +88,13 @@ def clean_environment() -> dict[str, str]:
 
 
 def is_current(wanted: str) -> bool:
-    """Whether .venv holds what `wanted` asks for, every file of it."""
+    """Whether .venv holds what `wanted` asks for."""
     stamp = read_stamp(stamp_path(wanted))
     return stamp.get("digest") == digest(wanted) and COMMAND.exists() and is_usable()
 
 
 def is_usable() -> bool:
-    """Whether .venv was once completed here (its scripts name their place) and is still whole: it runs and no package has lost a file."""
+    """Whether .venv was once completed here (its scripts name their place) and still runs with its packages."""
     stamps = [read_stamp(path) for path in VENV.glob("*.stamp")]
     if not stamps or any(stamp.get("root") != str(ROOT) for stamp in stamps) or not interpreter_runs():
         return False
@@ -104,9 +103,8 @@ def is_usable() -> bool:
 
 
 def installed() -> set[str]:
-    """Whole packages in .venv, as `name==version`."""
-    found = packages(site_packages())
-    return {f"{package.name}=={package.version}" for package in found.values() if not package.lost}
+    """What installers left in .venv for each package and version."""
+    return {record.name for folder in site_packages() for record in folder.glob("*.dist-info")}
 
 
 def site_packages() -> list[Path]:
@@ -125,9 +123,10 @@ def interpreter_runs() -> bool:
 
 
 def digest(wanted: str) -> str:
-    """What .venv depends on: the lock files, the package's metadata and the interpreter."""
+    """What .venv depends on: the lock files, the package's metadata with its version, and the interpreter."""
     state = hashlib.sha256()
-    for path in (*(ROOT / "requirements" / f"{lock}.txt" for lock in LOCKS[wanted]), ROOT / "pyproject.toml"):
+    locks = (ROOT / "requirements" / f"{lock}.txt" for lock in LOCKS[wanted])
+    for path in (*locks, ROOT / "pyproject.toml", ROOT / "src" / "flexstage" / "__init__.py"):
         state.update(path.read_bytes())
     state.update(str(sys.version_info[:2]).encode())
     return state.hexdigest()

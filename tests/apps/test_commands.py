@@ -19,7 +19,6 @@ from flexstage.apps import doctor
 from flexstage.apps.cli import analyses, commands, run
 from flexstage.apps.cli.commands import COMMANDS
 from flexstage.apps.cli.installation import self_test
-from flexstage.apps.cure import MakeFolder
 from flexstage.apps.doctor import Row, Verdict
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.control.hysteresis.example import example_record
@@ -249,28 +248,25 @@ def test_the_doctor_runs_without_typer(tmp_path: Path) -> None:
     code = (
         "import sys; sys.modules['typer'] = None\n"
         "import flexstage.apps.cli.installation as installation\n"
-        "installation.consult = lambda *, mending: print('consulted', mending) or 0\n"
-        "from flexstage.apps.cli import run; print(run(['doctor', '--mend'])); print(run(['modes']))"
+        "installation.consult = lambda: print('consulted') or 0\n"
+        "from flexstage.apps.cli import run; print(run(['doctor'])); print(run(['modes']))"
     )
     done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=True)
-    assert done.stdout.splitlines() == ["consulted True", "0", "70"]
-    assert "flexstage doctor --mend" in done.stderr
+    assert done.stdout.splitlines() == ["consulted", "0", "70"]
+    assert "flexstage doctor" in done.stderr
 
 
 def test_the_doctor_prints_rows_and_tells_by_exit_code(flexstage: Command, monkeypatch: pytest.MonkeyPatch) -> None:
-    rows = [
-        Row("numpy", "2.0", ">=2", Verdict.GOOD),
-        Row("folder", "missing", "writable", Verdict.BAD, "make it", MakeFolder(Path("made"))),
-    ]
-    monkeypatch.setattr(doctor, "examine", lambda *_: tuple(row for row in rows if row.cure is None or not Path("made").exists()))
+    rows = [Row("numpy", "2.0", ">=2", Verdict.GOOD), Row("folder", "missing", "writable", Verdict.BAD, "make it")]
+    monkeypatch.setattr(doctor, "examine", lambda *_: rows)
     sick = flexstage("doctor")
     assert sick.code == 2
     assert "1 thing to mend" in sick.out
     assert "make it" in sick.out
-    mended = flexstage("doctor", "--mend")
-    assert mended.code == 0, mended.out
-    assert "mended" in mended.out
-    assert "sound" in mended.out
+    rows.pop()
+    sound = flexstage("doctor")
+    assert sound.code == 0, sound.out
+    assert "sound" in sound.out
 
 
 def test_the_doctors_self_test_is_good_and_notices_wrong_numbers(monkeypatch: pytest.MonkeyPatch) -> None:

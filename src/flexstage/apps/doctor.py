@@ -1,4 +1,4 @@
-"""The doctor: is this installation sound, and what can be mended? Returns rows, prints nothing, and runs when any package is missing."""
+"""The doctor: is this installation sound, and which command mends it? Returns rows, prints nothing, runs when any package is missing."""
 
 from __future__ import annotations
 
@@ -8,20 +8,19 @@ import platform
 import subprocess
 import sys
 import tempfile
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from enum import Enum
-from importlib.metadata import PackageNotFoundError, version
+from importlib.metadata import PackageNotFoundError, metadata, requires, version
 from pathlib import Path
+from typing import Any
 
 import flexstage
 from flexstage.apps import quadmath
-from flexstage.apps.cure import Cure, MakeFolder, Outcome, ProvideLibrary, Reinstall, carry_out
-from flexstage.apps.installed import package
-from flexstage.apps.pins import Need, can_parse, needs, needs_of, python_versions, requirement
 
 _TIME_LIMIT = 120.0
+_EXTRAS = ("", "solid", "tables")
 _THREADS = "import json, numpy.linalg, scipy.linalg, threadpoolctl as t; print(json.dumps([p['num_threads'] for p in t.threadpool_info()]))"
 
 
@@ -35,110 +34,69 @@ class Verdict(Enum):
 
 @dataclass(frozen=True)
 class Row:
-    """One thing examined: `what`, what was `found`, what is `wanted`, the `verdict`, the `remedy` in words and the `cure`, if known."""
+    """One thing examined: `what`, what was `found`, what is `wanted`, the `verdict` and the `remedy` in words."""
 
     what: str
     found: str
     wanted: str
     verdict: Verdict
     remedy: str = ""
-    cure: Cure | None = None
 
 
 def examine(folder: Path, self_test: Callable[[], Row] | None = None) -> tuple[Row, ...]:
     """Examine the running environment and the `folder` that results would be written to.
 
     `self_test` computes something known and returns its row; whatever it raises becomes a row too.
-
-    >>> {row.verdict for row in examine(Path(tempfile.mkdtemp())) if row.what == "Python"}
-    {<Verdict.GOOD: 'good'>}
     """
-    if not can_parse():
-        remedy = "python -m ensurepip, or flexstage doctor --mend; then examine again"
-        return (Row("packaging", "missing, and pip too", "installed", Verdict.BAD, remedy, Reinstall("packaging")),)
-    rows = [_python(), _itself(), *_packages(), _threads(), writable("current folder", folder), _cache(), *native_code()]
+    rows = [*_installed(), _threads(), writable("current folder", folder), _figure_cache(), *native_code()]
     return tuple(rows + [_tested(self_test)] * (self_test is not None))
 
 
-def mend(rows: Iterable[Row]) -> tuple[Outcome, ...]:
-    """Carry out the cures of the rows that are bad, in order; examine again afterwards.
-
-    >>> mend([])
-    ()
-    """
-    return tuple(carry_out(row.cure) for row in rows if row.cure and row.verdict is Verdict.BAD)
-
-
-def _python() -> Row:
-    wanted, found = python_versions(), platform.python_version()
-    good = not wanted or requirement(f"python{wanted}").specifier.contains(found, prereleases=True)
-    remedy = "" if good else f"make an environment with Python {wanted} and install flexstage there"
-    return Row("Python", found, wanted, Verdict.GOOD if good else Verdict.BAD, remedy)
-
-
-def _itself() -> Row:
+def _installed() -> Iterator[Row]:
+    """Python, flexstage itself, and the packages it needs."""
     try:
+        wanted, lines = metadata("flexstage")["Requires-Python"], requires("flexstage") or []
         found = version("flexstage")
     except PackageNotFoundError:
-        found = "not installed"
+        wanted, lines, found = "", [], "not installed"
+    yield Row("Python", platform.python_version(), wanted, Verdict.GOOD)  # an older one would not have come so far
     good = found == flexstage.__version__
     remedy = "" if good else "install it again: pip install --force-reinstall --no-deps flexstage, or make setup-runtime in a checkout"
-    return Row("flexstage", found, flexstage.__version__, Verdict.GOOD if good else Verdict.BAD, remedy)
-
-
-def _packages() -> Iterator[Row]:
-    direct = needs("solid", "tables")
+    yield Row("flexstage", found, flexstage.__version__, Verdict.GOOD if good else Verdict.BAD, remedy)
+    try:
+        from packaging.requirements import Requirement
+    except ImportError:
+        yield Row("packaging", "missing", "installed", Verdict.BAD, "pip install packaging; then examine again")
+        return
     with ThreadPoolExecutor(max_workers=os.cpu_count()) as pool:
-        yield from pool.map(examine_package, direct)
-    # What those need in turn is worth a row only when something is wrong with it.
-    further = (examine_files(need) for need in sorted(needs_of(direct), key=lambda need: need.name))
-    yield from (row for row in further if row and row.verdict is Verdict.BAD)
+        yield from filter(None, pool.map(examine_package, map(Requirement, lines)))
 
 
-def examine_package(need: Need) -> Row:
-    """Is a package there, whole, in the range of versions, and does it import (in a process of its own: a bad binary takes it down)?
+def examine_package(need: Any) -> Row | None:
+    """Is what a requirement names there, in its range of versions, and does it import? None where it is not needed here.
 
-    >>> examine_package(Need("no-such-package", ">=1", "")).found
+    It is imported in a process of its own, which a broken library may take down. What only an extra asks for may be missing.
+
+    >>> from packaging.requirements import Requirement
+    >>> examine_package(Requirement("no-such-package>=1")).found
     'missing'
     """
-    if damage := examine_files(need):
-        return damage
-    found = package(need.name)
-    present = found.version if found else ""
-    cure = Reinstall(need.name, need.versions)
-    if not need.admits(present):
-        return Row(need.name, present, need.versions, Verdict.BAD, _pip(need), cure)
-    if said := _import_error(need.name.replace("-", "_")):
-        return _not_importing(need, f"{present}, does not import: {said}")
-    return Row(need.name, present, need.versions, Verdict.GOOD)
-
-
-def _not_importing(need: Need, found: str) -> Row:
-    if need.name == "ngsolve" and quadmath.lacking(sys.path):
-        remedy = "flexstage doctor --mend puts a copy of libquadmath.so.0 beside it; or on Debian: apt-get install libquadmath0"
-        return Row(need.name, found, need.versions, Verdict.BAD, remedy, ProvideLibrary())
-    return Row(need.name, found, need.versions, Verdict.BAD, _pip(need), Reinstall(need.name, need.versions))
-
-
-def examine_files(need: Need) -> Row | None:
-    """The row of a package that is missing or has lost files; None if it is whole. What only an extra asks for may be missing.
-
-    >>> examine_files(Need("pip", "", "")) is None
-    True
-    """
-    found = package(need.name)
-    if found and not found.lost:
+    extra = next((each for each in _EXTRAS if need.marker is None or need.marker.evaluate({"extra": each})), None)
+    if extra is None:
         return None
-    wanted = need.versions or "installed"
-    if need.extra and not found:
-        return Row(need.name, "missing", wanted, Verdict.NOTE, f"if you want what needs it: pip install 'flexstage[{need.extra}]'")
-    state = f"{found.version}, {found.lost} files lost" if found else "missing"
-    return Row(need.name, state, wanted, Verdict.BAD, _pip(need), Reinstall(need.name, need.versions))
-
-
-def _pip(need: Need) -> str:
-    wanted = f"flexstage[{need.extra}]" if need.extra else f"{need.name}{need.versions}"
-    return f"pip install --force-reinstall '{wanted}', or flexstage doctor --mend"
+    wanted, asked = str(need.specifier), f"flexstage[{extra}]" if extra else f"{need.name}{need.specifier}"
+    try:
+        present = version(need.name)
+    except PackageNotFoundError:
+        return Row(need.name, "missing", wanted, Verdict.NOTE if extra else Verdict.BAD, f"pip install '{asked}'")
+    remedy = f"pip install --force-reinstall '{asked}'"
+    if not need.specifier.contains(present, prereleases=True):
+        return Row(need.name, present, wanted, Verdict.BAD, remedy)
+    if not (said := _import_error(need.name.replace("-", "_"))):
+        return Row(need.name, present, wanted, Verdict.GOOD)
+    if need.name == "ngsolve" and quadmath.lacking(sys.path):
+        remedy = f"{quadmath.COMMAND}; or on Debian: apt-get install libquadmath0"
+    return Row(need.name, f"{present}, does not import: {said}", wanted, Verdict.BAD, remedy)
 
 
 def _run(code: str) -> subprocess.CompletedProcess[str]:
@@ -180,24 +138,14 @@ def writable(what: str, folder: Path) -> Row:
         return Row(what, f"{folder}: {error.strerror}", "writable", Verdict.BAD, f"choose another folder, or: chmod u+rwx {folder}")
 
 
-def _cache() -> Row:
-    path = figure_cache()
-    row = writable("cache of figures", path)
+def _figure_cache() -> Row:
+    """The folder where matplotlib keeps its list of fonts: made anew for every figure when it cannot be written."""
+    chosen = os.environ.get("MPLCONFIGDIR")
+    path = Path(chosen) if chosen else Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache", "matplotlib")
+    row = writable("cache of figures", path.absolute())
     if row.verdict is Verdict.GOOD:
         return row
-    remedy = "flexstage doctor --mend, or set MPLCONFIGDIR to a folder of your own"
-    return Row(row.what, row.found, row.wanted, Verdict.BAD, remedy, MakeFolder(path))
-
-
-def figure_cache() -> Path:
-    """The folder where matplotlib keeps its list of fonts: made anew for every figure when it cannot be written.
-
-    >>> figure_cache().is_absolute()
-    True
-    """
-    if chosen := os.environ.get("MPLCONFIGDIR"):
-        return Path(chosen).absolute()
-    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache").absolute() / "matplotlib"
+    return Row(row.what, row.found, row.wanted, Verdict.NOTE, f"mkdir -p {path}, or set MPLCONFIGDIR to a folder of your own")
 
 
 def native_code() -> Iterator[Row]:

@@ -1,17 +1,20 @@
 """The library that NGSolve's wheels leave out: their OpenBLAS wants `libquadmath.so.0`, which a bare machine does not have.
 
 numpy's wheels carry it under another name. A copy beside the library that wants it is found first by the loader, whatever else the
-machine has. Standard library only: run by `tools/setup.py` before anything is installed, and by the doctor.
+machine has. `python -m flexstage.apps.quadmath` puts it there.
+Standard library only: `tools/setup.py` calls it too.
 """
 
 from __future__ import annotations
 
 import os
 import shutil
+import sys
 import tempfile
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
+COMMAND = "python -m flexstage.apps.quadmath"
 _NAME = "libquadmath.so.0"
 _WANTING = "ngsolve_openblas/libgfortran.so*"
 _CARRIERS = ("numpy.libs", "scipy.libs")
@@ -66,3 +69,7 @@ def _copy(source: Path, place: Path) -> None:
     except OSError:
         Path(unfinished).unlink(missing_ok=True)
         raise
+
+
+if __name__ == "__main__":
+    sys.exit(provide(sys.path) or 0)

@@ -44,5 +44,5 @@ def _run(arguments: list[str]) -> None:
             raise
         from flexstage.apps.cli.installation import consult
 
-        sys.exit(consult(mending="--mend" in arguments))
+        sys.exit(consult())
     application()(arguments, prog_name="flexstage", obj=MODELS)

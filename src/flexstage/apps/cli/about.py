@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import platform
-from typing import Annotated
 
 import typer
 
@@ -12,12 +11,13 @@ from flexstage.apps.cli import installation
 from flexstage.show.command.terminal import say
 
 
-def doctor(*, mend: Annotated[bool, typer.Option("--mend", help="Mend what can be mended, then examine again.")] = False) -> None:
-    """Examine the installation and mend it.
+def doctor() -> None:
+    """Examine the installation.
 
-    Python, packages, threads, folders, a computation with a known result. Exit code 2 if anything is bad.
+    Python, packages, threads, folders, a computation with a known result. What is wrong comes with the command that mends it. Exit
+    code 2 if anything is bad.
     """
-    raise typer.Exit(installation.consult(mending=mend))
+    raise typer.Exit(installation.consult())
 
 
 def version() -> None:

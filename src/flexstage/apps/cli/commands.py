@@ -108,8 +108,8 @@ COMMANDS: tuple[Command, ...] = (
             "flexstage optimise study.toml -o better.toml --report optimum.html"),
     Command("tolerance", _IMPROVE, "Scatter dimensions and materials: yield, allowances.", f"{_STUDIES}.tolerance:tolerance",
             "flexstage tolerance study.toml --report tolerance.html"),
-    Command("doctor", _INSTALLATION, "Examine the installation and mend it.", f"{_CLI}.about:doctor",
-            "flexstage doctor --mend"),
+    Command("doctor", _INSTALLATION, "Examine the installation.", f"{_CLI}.about:doctor",
+            "flexstage doctor"),
     Command("version", _INSTALLATION, "Print the version of flexstage.", f"{_CLI}.about:version",
             "flexstage version"),
 )

@@ -15,15 +15,10 @@ _FREQUENCIES = (110.910, 110.910, 135.148, 145.505, 176.690, 176.690)
 _TOLERANCE = 1e-5
 
 
-def consult(*, mending: bool) -> int:
-    """Examine the installation, print the rows, mend what can be mended if asked; the exit code says whether all is good."""
+def consult() -> int:
+    """Examine the installation and print the rows; the exit code says whether all is good."""
     rows = doctor.examine(Path.cwd(), self_test)
     _print_rows(rows)
-    if mending and any(row.cure and row.verdict is Verdict.BAD for row in rows):
-        for outcome in doctor.mend(rows):
-            say(f"{'mended' if outcome.worked else 'not mended'}: {outcome.cure}{f': {outcome.said}' if outcome.said else ''}")
-        rows = doctor.examine(Path.cwd(), self_test)
-        _print_rows(rows)
     bad = [row for row in rows if row.verdict is Verdict.BAD]
     say("The installation is sound." if not bad else f"{len(bad)} thing{'s' * (len(bad) > 1)} to mend.")
     return BAD_INPUT if bad else DONE

@@ -115,7 +115,7 @@ def _folder_is_gone() -> bool:
 def _missing(error: ModuleNotFoundError) -> int:
     if os.environ.get(_DEBUG) or (error.name or "").partition(".")[0] == "flexstage":
         raise error
-    tell(f"error: the package {error.name} is missing. Run: flexstage doctor --mend")
+    tell(f"error: the package {error.name} is missing. `flexstage doctor` says how to install it.")
     return FAULT
 
 

@@ -46,5 +46,5 @@ def _loading() -> Iterator[Finding]:
     try:
         import_module("ngsolve")
     except (ImportError, OSError) as error:  # a library that does not load is either, by who loads it
-        advice = "See what is broken with: flexstage doctor; mend it with: flexstage doctor --mend"
+        advice = "See what is broken, and the command that mends it, with: flexstage doctor"
         yield Finding("the solid model's package ngsolve", f"does not load ({error})", advice)
