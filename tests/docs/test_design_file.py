@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from flexstage.analysis.requirements import Subject
+from flexstage.analysis.measures import MEASURES
 from flexstage.mechanism.grammar import TAGS, ListNode, RecordNode, TableNode, UnionNode, node_of
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.node import ChoiceNode
@@ -46,5 +46,4 @@ def test_every_key_and_alternative_is_told():
 
 def test_every_requirement_is_told():
     told = {word.partition(".")[0] if "platform" not in word else word for word in _told(PAGE)}
-    own = (subject for subject in Subject if subject is not Subject.OFFERED)
-    expect_none((subject.value for subject in own if subject.value.partition(".")[0] not in told), "tell it under Requirements")
+    expect_none((form for form in MEASURES.own if form.partition(".")[0] not in told), "tell it under Requirements")

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from flexstage.analysis.judge import measured
+from flexstage.analysis.measures import Extreme
 from flexstage.analysis.requirements import Sense, measure
 from flexstage.studies.optimisation.front import pareto_front
 from flexstage.studies.optimisation.optimum import optimise
-from flexstage.studies.optimisation.pieces import Extreme
 from flexstage.studies.optimisation.problem import Problem, Side
 from flexstage.studies.optimisation.quadratic import quadratic
 from flexstage.studies.optimisation.search import Trace, search, together

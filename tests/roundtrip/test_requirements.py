@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 from dataclasses import replace
 
 import numpy as np
@@ -10,14 +11,15 @@ import pytest
 import flexstage as fs
 from flexstage.analysis.deflection import deflection
 from flexstage.analysis.drift import drift
-from flexstage.analysis.judge import judge
+from flexstage.analysis.judge import bench_of, judge
 from flexstage.analysis.lost_motion import lost_motion
+from flexstage.analysis.measures import MEASURES, Measure, loss, stroke
 from flexstage.analysis.modes import modes
-from flexstage.analysis.requirements import KINDS, Sense, Subject, known_keys, requirements
+from flexstage.analysis.requirements import Sense, known_keys, requirements
 from flexstage.analysis.statics import statics
 from flexstage.analysis.workspace.load import load_share
 from flexstage.analysis.workspace.strength import hinge_stress
-from flexstage.analysis.workspace.stroke import stroke_limits
+from flexstage.analysis.workspace.stroke import single_axis, stroke_limits
 from flexstage.cases.hexapod import Hexapod, hexapod
 from flexstage.cases.registry import CASES, case
 from flexstage.models.ideal import ideal
@@ -42,11 +44,11 @@ def test_every_key_of_every_case_is_read(name):
     """With the unit its quantity asks for, or that about an axis."""
     mechanism = case(name)
     for key in known_keys(mechanism):
-        for subject, kind in KINDS.items():
+        for form, kind in MEASURES.all.items():
             units = [kind.quantity.si, *([kind.about.si] if kind.about else [])]
-            if key.startswith(subject.value.partition("<")[0]):
+            if key.startswith(form.partition("<")[0]):
                 found = [item for unit in units if (item := readable(mechanism, key, f"at most 3 {unit}" if unit != "1" else "at most 3"))]
-                if found and found[0].subject is subject:
+                if found and found[0].kind is kind:
                     assert found[0].limit == 3.0
                     break
         else:
@@ -63,9 +65,9 @@ def readable(mechanism, key, text):
 def test_a_line_is_read():
     stage = replace(hexapod(), requirements={"stroke.ry": "  at least   300 urad  at sample ", "loss": "at most 5 %"})
     first, second = requirements(stage)
-    assert (first.subject, first.name, first.point, first.sense) == (Subject.STROKE, "ry", "sample", Sense.AT_LEAST)
+    assert (first.kind, first.name, first.point, first.sense) == (stroke, "ry", "sample", Sense.AT_LEAST)
     assert first.limit == pytest.approx(300e-6)
-    assert (second.subject, second.limit) == (Subject.LOSS, 0.05)
+    assert (second.kind, second.limit) == (loss, 0.05)
 
 
 @pytest.mark.parametrize(
@@ -169,6 +171,23 @@ def test_margins_and_edges(stage):
     assert one(stage, "opening", "at most 0 mm").passed
 
 
+def test_a_kind_of_measure_is_one_in_all_processes(stage):
+    """What is sent to another process is the same kind there, which code compares by identity."""
+    for form in MEASURES:
+        kind = MEASURES.get(form)
+        assert pickle.loads(pickle.dumps(kind)) is kind  # noqa: S301 (our own)
+        assert kind.form == form
+        assert kind.meaning
+
+
+def test_a_stroke_is_the_least_of_its_pieces(stage):
+    """Each actuator's share in a stroke against the strokes along single axes."""
+    bench = bench_of(stage)
+    single = single_axis(bench.lost.correction, bench.limits)
+    for name, value in zip(single.coordinates, single.symmetric, strict=True):
+        assert stroke.value(bench, Measure(f"stroke.{name}", stroke, name, stroke.quantity)) == value
+
+
 def test_what_the_stage_cannot_answer_fails_with_a_reason(stage):
     brittle = replace(stage, materials={"steel": replace(stage.materials["steel"], yield_stress=None)})
     found = one(brittle, "safety", "at least 2")
@@ -208,11 +227,11 @@ def test_a_batch_is_judged_design_by_design():
 
 def test_only_what_is_asked_is_worked_out(stage, monkeypatch):
     """A line about the mass reads no stage."""
-    from flexstage.analysis import judge as room
+    from flexstage.analysis import bench
 
     def refused(*_):
         raise AssertionError("worked out for nothing")
 
     for name in ("lumped", "ideal", "modes", "lost_motion", "hinge_stress", "drift"):
-        monkeypatch.setattr(room, name, refused)
+        monkeypatch.setattr(bench, name, refused)
     assert judge(replace(stage, requirements={"mass": "at most 14 kg"}))[0].passed

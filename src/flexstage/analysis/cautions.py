@@ -10,7 +10,8 @@ from typing import Annotated, Any
 
 import numpy as np
 
-from flexstage.analysis.requirements import Subject, requirements
+from flexstage.analysis.measures import drift
+from flexstage.analysis.requirements import requirements
 from flexstage.analysis.standing import load_factors, standing
 from flexstage.analysis.workspace.load import load_share
 from flexstage.analysis.workspace.room import bounds, room
@@ -134,7 +135,7 @@ def _lossless(mechanism: Mechanism) -> Iterator[Default]:
 def _ground_default(mechanism: Mechanism) -> Iterator[Default]:
     """What the ground is taken as, where a requirement asks for drift."""
     try:
-        asked = any(line.subject is Subject.DRIFT for line in requirements(mechanism))
+        asked = any(line.kind is drift for line in requirements(mechanism))
         ground = ground_of(mechanism) if asked else None
     except DesignError:
         return  # the requirement says what is missing

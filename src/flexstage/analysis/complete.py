@@ -14,8 +14,9 @@ from flexstage.analysis.drift import Drift, drift
 from flexstage.analysis.error_budget import ErrorBudget
 from flexstage.analysis.judge import judge
 from flexstage.analysis.lost_motion import LostMotion, lost_motion
+from flexstage.analysis.measures import stroke
 from flexstage.analysis.modes import Modes, modes
-from flexstage.analysis.requirements import Sense, Subject, Verdict, requirements
+from flexstage.analysis.requirements import Sense, Verdict, requirements
 from flexstage.analysis.response import response, transmissibility
 from flexstage.analysis.standing import require_standing, standing
 from flexstage.analysis.statics import Statics, statics
@@ -142,7 +143,7 @@ def required_command(mechanism: Mechanism) -> Mapping[str, float] | None:
     >>> required_command(double_triangle())["z"]
     0.00015
     """
-    lines = (line for line in requirements(mechanism) if line.subject is Subject.STROKE and line.sense is Sense.AT_LEAST)
+    lines = (line for line in requirements(mechanism) if line.kind is stroke and line.sense is Sense.AT_LEAST)
     found = {line.name: line.limit for line in lines if line.point == PLATFORM}
     return found or None
 

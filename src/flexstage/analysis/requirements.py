@@ -1,4 +1,4 @@
-"""Measures, the numbers by which a stage is judged; the `[require]` lines of a design file about them, and the verdict on a value."""
+"""The `[require]` lines of a design file about measures, and the verdict on a value."""
 
 from __future__ import annotations
 
@@ -9,21 +9,10 @@ from enum import Enum
 
 import numpy as np
 
-from flexstage.analysis.offered import MEASURES, OfferedMeasure
+from flexstage.analysis.measures import MEASURES, Measure, MeasureKind, direction_of, measure_kind
 from flexstage.base.finding import DesignError, Finding, nearest, refuse
 from flexstage.base.number import Array
-from flexstage.base.quantity import (
-    ANGLE,
-    DISPLACEMENT,
-    FORCE,
-    FREQUENCY,
-    LENGTH,
-    MASS,
-    MOMENT,
-    RATIO,
-    STIFFNESS,
-    Quantity,
-)
+from flexstage.base.quantity import Quantity
 from flexstage.base.unit import parse
 from flexstage.mechanism.expand import Assembly, expand
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
@@ -34,112 +23,12 @@ _MEASURE = re.compile(r"\s*(?P<key>[^\s]+)(?:\s+at\s+(?P<point>[^\s].*?))?\s*")
 _COUNT = re.compile(r"[1-9]\d{0,2}")
 _SLACK = 1e-9
 
-ROTATION = Quantity("rotation", ANGLE.si, "urad", "244 urad")
-TWISTING = Quantity("rotational stiffness", "N m/rad", "N m/rad", "8e4 N m/rad")
-DRIFT = Quantity("drift", "m/K", "nm/K", "5 nm/K")
-TILT_DRIFT = Quantity("rotational drift", "rad/K", "nrad/K", "50 nrad/K")
-FINE = Quantity("displacement", DISPLACEMENT.si, "nm", "10 nm")
-FINE_ROTATION = Quantity("rotation", ANGLE.si, "nrad", "50 nrad")
-
 
 class Sense(Enum):
     """Which side of the limit is good."""
 
     AT_LEAST = "at least"
     AT_MOST = "at most"
-
-
-class Subject(Enum):
-    """What a requirement is about; the value is the form of its key."""
-
-    STROKE = "stroke.<axis>"
-    CORNER = "corner"
-    FREQUENCY = "frequency.<n>"
-    PLATFORM_FREQUENCY = "frequency.platform.<n>"
-    SAFETY = "safety"
-    BUCKLING = "buckling"
-    STIFFNESS = "stiffness.<axis>"
-    DIRECTED_STIFFNESS = "stiffness.<direction>"
-    LEAST_STIFFNESS = "stiffness.least"
-    DEFLECTION = "deflection.<axis>"
-    FORCE = "force.<axis>"
-    LOSS = "loss"
-    OWN_LOSS = "loss.<actuator>"
-    CROSSTALK = "crosstalk"
-    MAP_ERROR = "map_error.<axis>"
-    DRIFT = "drift.<axis>"
-    MASS = "mass"
-    TOTAL_MASS = "mass.total"
-    SIZE = "envelope.<dimension>"
-    HEIGHT = "height"
-    OPENING = "opening"
-    RESOLUTION = "resolution.<axis>"
-    GAUGE_RANGE = "gauge.range"
-    OWN_GAUGE_RANGE = "gauge.range.<gauge>"
-    LOAD = "load"
-    OWN_LOAD = "load.<actuator>"
-    OFFERED = "<offered>"
-
-
-@dataclass(frozen=True)
-class Kind:
-    """What a subject means, its quantities along and about an axis, and whether a point may be named."""
-
-    meaning: str
-    quantity: Quantity
-    about: Quantity | None = None
-    pointed: bool = False
-
-
-KINDS: Mapping[Subject, Kind] = {
-    Subject.STROKE: Kind("stroke both ways along one axis, lost motion made up by command", DISPLACEMENT, ROTATION, pointed=True),
-    Subject.CORNER: Kind("share of the actuators' strokes that all required strokes at once ask for", RATIO),
-    Subject.FREQUENCY: Kind("n-th natural frequency, any body", FREQUENCY),
-    Subject.PLATFORM_FREQUENCY: Kind("n-th natural frequency of the platform", FREQUENCY),
-    Subject.SAFETY: Kind("yield over peak stress in the worst hinge at the worst corner of the strokes, from no voltage", RATIO),
-    Subject.BUCKLING: Kind("critical load over compression in the worst part at the worst corner of the strokes", RATIO),
-    Subject.STIFFNESS: Kind(
-        "stiffness of the platform against a load along one axis, the others giving way", STIFFNESS, TWISTING, pointed=True
-    ),
-    Subject.DIRECTED_STIFFNESS: Kind(
-        "stiffness of the platform against a force along a direction, or with r a moment about it, all else giving way",
-        STIFFNESS,
-        TWISTING,
-        pointed=True,
-    ),
-    Subject.LEAST_STIFFNESS: Kind("stiffness against a force in the direction that gives way most", STIFFNESS, pointed=True),
-    Subject.DEFLECTION: Kind("motion under gravity and stated forces, strokes held", DISPLACEMENT, ROTATION, pointed=True),
-    Subject.FORCE: Kind("blocking force of the platform along one axis", FORCE, MOMENT),
-    Subject.LOSS: Kind("largest share of its stroke an actuator loses", RATIO),
-    Subject.OWN_LOSS: Kind("share of its stroke the actuator loses", RATIO),
-    Subject.CROSSTALK: Kind("largest stroke one actuator appears to make when another does", RATIO),
-    Subject.MAP_ERROR: Kind("largest error of the linear map over the workspace", FINE, FINE_ROTATION),
-    Subject.DRIFT: Kind(
-        "motion per kelvin of uniform temperature, strokes held, the ground of the material of its links", DRIFT, TILT_DRIFT, pointed=True
-    ),
-    Subject.MASS: Kind("mass of the platform without payload", MASS),
-    Subject.TOTAL_MASS: Kind("mass of all bodies, links and stacks without payload", MASS),
-    Subject.SIZE: Kind("edge of the bounding box", LENGTH),
-    Subject.HEIGHT: Kind("edge of the bounding box along z", LENGTH),
-    Subject.OPENING: Kind("how far anything stands into the clear opening", LENGTH),
-    Subject.RESOLUTION: Kind("pose error of one resolution step of every gauge, worst signs", FINE, FINE_ROTATION, pointed=True),
-    Subject.GAUGE_RANGE: Kind("share of half the gauges' range that all required strokes at once ask for, worst gauge", RATIO),
-    Subject.OWN_GAUGE_RANGE: Kind("share of half the gauge's range that all required strokes at once ask for", RATIO),
-    Subject.LOAD: Kind("share of its maximum load, or of what may pull it, that the most loaded stack bears at the worst corner", RATIO),
-    Subject.OWN_LOAD: Kind("largest compression of the stack at the worst corner of the strokes, dead load included", FORCE),
-}
-"""Of all subjects but `OFFERED`, whose measures say it themselves."""
-
-
-@dataclass(frozen=True)
-class Measure:
-    """A number that a stage has: its `key`, the `subject` with its `name` (an axis, actuator, gauge, number), the point it is taken at."""
-
-    key: str
-    subject: Subject
-    name: str
-    quantity: Quantity
-    point: str = PLATFORM
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -185,7 +74,7 @@ def known_keys(mechanism: Mechanism) -> tuple[str, ...]:
     ['loss', 'loss.B1', 'loss.B2']
     """
     names = _names(expand(mechanism))
-    return tuple(key for subject in Subject for key in _spelt(subject.value, names))
+    return tuple(key for form in MEASURES for key in _spelt(form, names))
 
 
 def requirements(mechanism: Mechanism) -> tuple[Requirement, ...]:
@@ -196,8 +85,8 @@ def requirements(mechanism: Mechanism) -> tuple[Requirement, ...]:
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> read = requirements(double_triangle())[0]
-    >>> read.subject, read.name, read.sense.value, read.limit
-    (<Subject.STROKE: 'stroke.<axis>'>, 'x', 'at least', 5e-05)
+    >>> read.kind.form, read.name, read.sense.value, read.limit
+    ('stroke.<axis>', 'x', 'at least', 5e-05)
     """
     assembly = expand(mechanism)
     names, points = _names(assembly), (PLATFORM, *assembly.points)
@@ -205,7 +94,7 @@ def requirements(mechanism: Mechanism) -> tuple[Requirement, ...]:
     findings: list[Finding] = []
     for key, text in mechanism.requirements.items():
         try:
-            found.append(_read(f"require.{key}", (key, text), names, points))
+            found.append(_read(f"require.{key}", key, text, names, points))
         except DesignError as error:
             findings += error.findings
     if findings:
@@ -222,24 +111,7 @@ def _names(assembly: Assembly) -> dict[str, tuple[str, ...]]:
         "n": tuple(str(number) for number in range(1, 7)),
         "actuator": tuple(assembly.actuators),
         "gauge": tuple(assembly.gauges),
-        "offered": tuple(MEASURES),
     }
-
-
-def kind_of(subject: Subject, name: str = "") -> Kind:
-    """What a subject means; of a measure that another package offers, what it says itself."""
-    if subject is not Subject.OFFERED:
-        return KINDS[subject]
-    found = offered(name)
-    return Kind(found.meaning, found.quantity)
-
-
-def offered(name: str) -> OfferedMeasure:
-    """A measure that an installed package offers; raises `DesignError` where none does."""
-    found = MEASURES.get(name)
-    if found is None:
-        raise refuse(name, "no installed package offers this measure", "Install the one that does")
-    return found
 
 
 def _spelt(form: str, names: Mapping[str, tuple[str, ...]]) -> Iterator[str]:
@@ -259,18 +131,17 @@ def requirement(mechanism: Mechanism, key: str, text: str, where: str) -> Requir
     12.0
     """
     assembly = expand(mechanism)
-    return _read(where, (key, text), _names(assembly), (PLATFORM, *assembly.points))
+    return _read(where, key, text, _names(assembly), (PLATFORM, *assembly.points))
 
 
-def _read(where: str, line: tuple[str, str], names: Mapping[str, tuple[str, ...]], points: tuple[str, ...]) -> Requirement:
-    key, text = line
-    subject, name = _subject(key, names, where)
+def _read(where: str, key: str, text: str, names: Mapping[str, tuple[str, ...]], points: tuple[str, ...]) -> Requirement:
+    kind, name = _kind(key, names, where)
     match = _LINE.fullmatch(text)
     if match is None:
         raise refuse(where, f'found "{text}"', 'Write "at least" or "at most" and a value, for example "at least 50 um at chuck"')
-    point, quantity = _placed(where, (subject, name), match["point"], points)
+    point, quantity = _placed(where, kind, name, match["point"], points)
     limit = parse(match["value"], quantity, where=where)
-    return Requirement(key, subject, name, quantity, point, text=text, sense=Sense(match["sense"]), limit=limit)
+    return Requirement(key, kind, name, quantity, point, text=text, sense=Sense(match["sense"]), limit=limit)
 
 
 def measure(mechanism: Mechanism, text: str, where: str) -> Measure:
@@ -278,16 +149,16 @@ def measure(mechanism: Mechanism, text: str, where: str) -> Measure:
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> read = measure(double_triangle(), "stroke.x at platform", "responses.reach")
-    >>> read.subject, read.name, read.quantity.shown
-    (<Subject.STROKE: 'stroke.<axis>'>, 'x', 'um')
+    >>> read.kind.form, read.name, read.quantity.shown
+    ('stroke.<axis>', 'x', 'um')
     """
     assembly = expand(mechanism)
     match = _MEASURE.fullmatch(text)
     if match is None:
         raise refuse(where, f'found "{text}"', 'Write the name of a measure, for example "stroke.x at chuck"')
-    subject, name = _subject(match["key"], _names(assembly), where)
-    point, quantity = _placed(where, (subject, name), match["point"], (PLATFORM, *assembly.points))
-    return Measure(match["key"], subject, name, quantity, point)
+    kind, name = _kind(match["key"], _names(assembly), where)
+    point, quantity = _placed(where, kind, name, match["point"], (PLATFORM, *assembly.points))
+    return Measure(match["key"], kind, name, quantity, point)
 
 
 def _free(placeholder: str, name: str, where: str) -> bool:
@@ -298,25 +169,8 @@ def _free(placeholder: str, name: str, where: str) -> bool:
     return placeholder == "n" and _COUNT.fullmatch(name) is not None
 
 
-def direction_of(name: str, where: str = "direction") -> Array:
-    """The unit vector (3,) of a direction such as `(1,1,0)`, with `r` before it for a moment about it. Raises `DesignError` at `where`.
-
-    >>> direction_of("r(0,3,4)").tolist()
-    [0.0, 0.6, 0.8]
-    """
-    try:
-        vector = np.array([float(each) for each in name.removeprefix("r").removeprefix("(").removesuffix(")").split(",")])
-    except ValueError:
-        vector = np.zeros(0)
-    if vector.shape != (3,) or not np.all(np.isfinite(vector)) or not np.any(vector) or not name.endswith(")"):
-        raise refuse(where, f'"{name}" is no direction', "Write three numbers, not all 0, without spaces, for example (1,1,0)")
-    return vector / np.linalg.norm(vector)
-
-
-def _placed(where: str, asked: tuple[Subject, str], point: str | None, points: tuple[str, ...]) -> tuple[str, Quantity]:
+def _placed(where: str, kind: MeasureKind, name: str, point: str | None, points: tuple[str, ...]) -> tuple[str, Quantity]:
     """The point a measure is taken at, and its quantity: that about an axis for rotations."""
-    subject, name = asked
-    kind = kind_of(subject, name)
     if point and not kind.pointed:
         raise refuse(where, f"is not asked at a point, found at {point}", f'Leave out "at {point}"')
     point = point or PLATFORM
@@ -325,15 +179,15 @@ def _placed(where: str, asked: tuple[Subject, str], point: str | None, points: t
     return point, kind.about if kind.about is not None and name.startswith("r") else kind.quantity
 
 
-def _subject(key: str, names: Mapping[str, tuple[str, ...]], where: str) -> tuple[Subject, str]:
-    """The subject of a key and the name in it."""
-    for subject in Subject:
-        stem, _, placeholder = subject.value.rstrip(">").partition("<")
+def _kind(key: str, names: Mapping[str, tuple[str, ...]], where: str) -> tuple[MeasureKind, str]:
+    """The kind of measure that a key asks for, and the name in it."""
+    for form in MEASURES:
+        stem, _, placeholder = form.rstrip(">").partition("<")
         name = key.removeprefix(stem)
         if key == stem and not placeholder:
-            return subject, ""
+            return measure_kind(form), ""
         if placeholder and key.startswith(stem) and (name in names[placeholder] or _free(placeholder, name, where)):
-            return subject, name
-    known = [spelt for subject in Subject for spelt in _spelt(subject.value, names)]
+            return measure_kind(form), name
+    known = [spelt for form in MEASURES for spelt in _spelt(form, names)]
     advice = f"{nearest(key, known)}. A measure that another package offers is known where that package is installed"
     raise refuse(where, f'there is no measure called "{key}"', advice)

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from flexstage.analysis.requirements import Verdict, kind_of
+from flexstage.analysis.requirements import Verdict
 from flexstage.base.quantity import Quantity
 from flexstage.show.display import field_unit, number, percent, value_with_unit
 from flexstage.show.table import Cell, Column, Mark, Table, build, first_design
@@ -47,7 +47,7 @@ def meaning(verdict: Verdict) -> str:
     >>> meaning(judge(double_triangle())[6])
     'n-th natural frequency of the platform'
     """
-    return kind_of(verdict.requirement.subject, verdict.requirement.name).meaning
+    return verdict.requirement.kind.meaning
 
 
 def shown_value(verdict: Verdict) -> str:

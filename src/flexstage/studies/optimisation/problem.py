@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from flexstage.analysis.measures import Extreme
 from flexstage.analysis.requirements import Sense
 from flexstage.base.number import Array
-from flexstage.studies.optimisation.pieces import Extreme
 from flexstage.studies.optimisation.values import Numbered, Point, Scalars
 
 SPARE = 1e-8

@@ -9,7 +9,8 @@ import numpy as np
 import scipy
 
 from flexstage.analysis.judge import bench_of, measured_on
-from flexstage.analysis.requirements import Measure, Requirement, Sense
+from flexstage.analysis.measures import Measure
+from flexstage.analysis.requirements import Requirement, Sense
 from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array
 from flexstage.mechanism.address import get

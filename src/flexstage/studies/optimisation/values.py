@@ -8,20 +8,19 @@ from functools import cached_property
 
 import numpy as np
 
-from flexstage.analysis.judge import Bench, bench_of
-from flexstage.analysis.requirements import Measure, Subject
+from flexstage.analysis.bench import Bench
+from flexstage.analysis.judge import bench_of
+from flexstage.analysis.measures import Extreme, Measure, frequency, platform_frequency
 from flexstage.base.finding import DesignError
 from flexstage.base.number import Array, Table
 from flexstage.mechanism.checks import checked
 from flexstage.mechanism.mechanism import Mechanism
-from flexstage.studies.optimisation.pieces import Extreme, pieces
 from flexstage.studies.optimisation.spectrum import Modes, Spectrum, spectra
 from flexstage.studies.sweeps.definition import Study
 
 _STEP = 1e-20
 _APART = 1e-3
-_DIFFERENCED = {Subject.MAP_ERROR, Subject.OPENING}
-_SPECTRAL = {Subject.FREQUENCY, Subject.PLATFORM_FREQUENCY}
+_SPECTRAL = (frequency, platform_frequency)
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,8 +107,8 @@ class Values:
         """The spectra needed: of the platform, of all bodies, or both; each as far up as the highest number asked for."""
         highest: dict[bool, int] = {}
         for each in self.measures:
-            if each.subject in _SPECTRAL:
-                platform = each.subject is Subject.PLATFORM_FREQUENCY
+            if each.kind in _SPECTRAL:
+                platform = each.kind is platform_frequency
                 highest[platform] = max(highest.get(platform, 0), int(each.name))
         return tuple(Modes(count, platform) for platform, count in highest.items())
 
@@ -149,17 +148,16 @@ class Values:
             modes = spectra(stepped, bench.model, self._modes, (designs, variables if slopes else 0)) if self._modes else []
             columns: list[Sequence[Scalars | Numbered]] = []
             for asked in self.measures:
-                if asked.subject in _SPECTRAL:
+                if asked.kind in _SPECTRAL:
                     columns.append([self._numbered(own, asked) for own in modes])
-                elif asked.subject in _DIFFERENCED:
+                elif not asked.kind.analytic:
                     columns.append(self._differenced(asked, shares, slopes=slopes))
                 else:
-                    found = pieces(bench, asked)
-                    columns.append(_scalars(found.values, found.extreme, (designs, each), slopes=slopes))
+                    columns.append(_scalars(asked.kind.pieces(bench, asked), _extreme(asked), (designs, each), slopes=slopes))
         return [Point(shares[design], tuple(column[design] for column in columns)) for design in range(designs)]
 
     def _numbered(self, own: tuple[Spectrum, ...], asked: Measure) -> Numbered:
-        platform = asked.subject is Subject.PLATFORM_FREQUENCY
+        platform = asked.kind is platform_frequency
         return Numbered(own[[modes.platform for modes in self._modes].index(platform)], int(asked.name))
 
     def _differenced(self, asked: Measure, shares: Array, *, slopes: bool) -> list[Scalars]:
@@ -168,11 +166,16 @@ class Values:
         if slopes:
             moves = _APART * np.concatenate([moves, np.eye(variables), -np.eye(variables)])
         rows = (shares[:, None] + moves[None]).reshape(-1, variables)
-        found = pieces(bench_of(self._design(rows)), asked)
-        values = np.broadcast_to(found.values, (len(rows), found.values.shape[-1])).reshape(designs, len(moves), -1)
+        found = asked.kind.pieces(bench_of(self._design(rows)), asked)
+        values = np.broadcast_to(found, (len(rows), found.shape[-1])).reshape(designs, len(moves), -1)
         ahead, back = values[:, 1 : variables + 1], values[:, variables + 1 :]
         gradient = (ahead - back) / (2.0 * _APART) if slopes else np.zeros((designs, 0, values.shape[-1]))
-        return [Scalars(own[0], change.T, found.extreme) for own, change in zip(values, gradient, strict=True)]
+        return [Scalars(own[0], change.T, _extreme(asked)) for own, change in zip(values, gradient, strict=True)]
+
+
+def _extreme(asked: Measure) -> Extreme:
+    """Which of its pieces a measure is; of one piece that."""
+    return asked.kind.extreme or Extreme.LEAST
 
 
 def _scalars(values: Array, extreme: Extreme, shape: tuple[int, int], *, slopes: bool) -> list[Scalars]:

@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import Enum
 
-from flexstage.analysis.requirements import Measure, Requirement, Sense, requirements
+from flexstage.analysis.measures import Measure
+from flexstage.analysis.requirements import Requirement, Sense, requirements
 from flexstage.studies.sweeps.definition import Study
 
 

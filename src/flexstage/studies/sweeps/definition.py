@@ -10,8 +10,8 @@ import numpy as np
 
 import flexstage
 from flexstage.analysis.judge import measured
-from flexstage.analysis.offered import MEASURES
-from flexstage.analysis.requirements import Measure, Requirement, Subject, Verdict
+from flexstage.analysis.measures import MEASURES, Measure
+from flexstage.analysis.requirements import Requirement, Verdict
 from flexstage.base.digest import digest
 from flexstage.base.finding import Finding
 from flexstage.base.number import Array, Number
@@ -137,7 +137,8 @@ class Study:
 
 def _offer(asked: Measure) -> str:
     """The package and version that offers a measure, if one does."""
-    return f", of {MEASURES.offer(asked.name)}" if asked.subject is Subject.OFFERED else ""
+    offer = MEASURES.offer(asked.kind.form)
+    return f", of {offer}" if offer else ""
 
 
 def name_findings(study: Study) -> Iterator[Finding]:

@@ -15,7 +15,7 @@ import scipy
 from threadpoolctl import threadpool_limits
 
 from flexstage import __version__
-from flexstage.analysis.requirements import Subject
+from flexstage.analysis.measures import platform_frequency
 from flexstage.base.finding import DesignError
 from flexstage.base.number import Array, Table
 from flexstage.mechanism.locate import canonical
@@ -99,7 +99,7 @@ def engine_of(study: Study) -> Engine:
 
 
 def _engine_of(study: Study) -> Engine:
-    wanted = {name: int(each.name) - 1 for name, each in study.columns.items() if each.subject is Subject.PLATFORM_FREQUENCY}
+    wanted = {name: int(each.name) - 1 for name, each in study.columns.items() if each.kind is platform_frequency}
     modes = Table({name: mode for name, mode in wanted.items() if mode < _MODES})
     if not modes or not engine_covers(study) or _limit_varies(study):
         return Engine(Table({}))

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from flexstage.analysis.requirements import Measure
+from flexstage.analysis.measures import Measure
 from flexstage.base.number import Array
 from flexstage.base.unit import convert
 from flexstage.show.display import shown

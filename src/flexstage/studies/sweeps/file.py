@@ -7,7 +7,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from flexstage.analysis.requirements import Measure, Requirement, measure, requirement
+from flexstage.analysis.measures import Measure
+from flexstage.analysis.requirements import Requirement, measure, requirement
 from flexstage.analysis.sensitivities import not_numbers
 from flexstage.base.finding import DesignError, Finding, require
 from flexstage.base.number import Table

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 from filelock import FileLock, Timeout
 
-from flexstage.analysis.requirements import Subject
+from flexstage.analysis.measures import platform_frequency
 from flexstage.base import memory
 from flexstage.base.child import cores
 from flexstage.base.finding import DesignError, refuse, require
@@ -95,7 +95,7 @@ def piece_size(study: Study) -> int:
     >>> piece_size(neck_study()), piece_size(neck_study(1_000_000))
     (256, 2048)
     """
-    quick = engine_covers(study) and all(each.subject is Subject.PLATFORM_FREQUENCY for each in study.columns.values())
+    quick = engine_covers(study) and all(each.kind is platform_frequency for each in study.columns.values())
     return LARGE if quick and study.plan.designs >= _MANY * PIECE else PIECE
 
 

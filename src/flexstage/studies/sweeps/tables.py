@@ -7,7 +7,7 @@ from itertools import combinations
 
 import numpy as np
 
-from flexstage.analysis.requirements import Verdict, kind_of
+from flexstage.analysis.requirements import Verdict
 from flexstage.base.labelled import NOISE
 from flexstage.show.display import NO_VALUE, number, value_with_unit
 from flexstage.show.table import Cell, Column, Mark, Table, build
@@ -58,7 +58,7 @@ def response_table(study: Study, results: Results, found: Effects) -> Table:
         rows.append(
             (
                 Cell(name, Mark.STRONG),
-                f"{measure.key} at {measure.point}" if kind_of(measure.subject, measure.name).pointed else measure.key,
+                f"{measure.key} at {measure.point}" if measure.kind.pointed else measure.key,
                 *cells,
                 _met(study, results, name),
             )

@@ -8,8 +8,8 @@ from typing import cast
 
 import numpy as np
 
-from flexstage.analysis.judge import Bench
-from flexstage.analysis.requirements import Measure, Subject
+from flexstage.analysis.bench import Bench
+from flexstage.analysis.measures import Measure, crosstalk
 from flexstage.base.finding import refuse
 from flexstage.base.number import Array
 from flexstage.base.quantity import Quantity
@@ -103,9 +103,7 @@ def pose_measures(asked: Command) -> Mapping[str, Measure]:
     if asked.sensing is not None:
         pairs += [(HELD, row, column) for row in COMPONENTS for column in COMPONENTS]
     return {
-        f"{kind}.{row}.{column}": PoseMeasure(
-            f"{kind}.{row}.{column}", Subject.CROSSTALK, f"{row}.{column}", _quantity(row, column), asked.point
-        )
+        f"{kind}.{row}.{column}": PoseMeasure(f"{kind}.{row}.{column}", crosstalk, f"{row}.{column}", _quantity(row, column), asked.point)
         for kind, row, column in pairs
     }
 

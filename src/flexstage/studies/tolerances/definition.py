@@ -9,8 +9,10 @@ from itertools import pairwise
 
 import numpy as np
 
-from flexstage.analysis.judge import Bench, bench_of, measured_on
-from flexstage.analysis.requirements import Measure, Requirement
+from flexstage.analysis.bench import Bench
+from flexstage.analysis.judge import bench_of, measured_on
+from flexstage.analysis.measures import Measure
+from flexstage.analysis.requirements import Requirement
 from flexstage.base.number import Array
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.studies.sweeps.definition import Study

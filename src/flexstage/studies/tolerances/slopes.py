@@ -6,8 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from flexstage.analysis.judge import Bench, bench_of
-from flexstage.analysis.requirements import Measure, Subject
+from flexstage.analysis.bench import Bench
+from flexstage.analysis.judge import bench_of
+from flexstage.analysis.measures import Measure, frequency, platform_frequency
 from flexstage.analysis.sensitivities import projected
 from flexstage.base.number import Array
 from flexstage.models.linear.eigen import Eigen
@@ -19,7 +20,6 @@ _NEAR = 1e-3
 _DIRECTIONS = 8
 _EVEN = 0.01
 _GAP = 1e-6
-_FREQUENCIES = (Subject.FREQUENCY, Subject.PLATFORM_FREQUENCY)
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,7 +51,7 @@ def slopes(study: Tolerance) -> Slopes:
     bench = bench_of(study.design)
     values = _numbers(study, np.zeros((1, len(size))))[0]
     gradient = np.zeros((len(columns), len(size)))
-    modes = {row: _mode(bench, each) for row, each in enumerate(columns) if each.subject in _FREQUENCIES}
+    modes = {row: _mode(bench, each) for row, each in enumerate(columns) if each.kind in (frequency, platform_frequency)}
     for start in range(0, len(size), _CHUNK):
         chosen = np.arange(start, min(start + _CHUNK, len(size)))
         step = np.zeros((len(chosen), len(size)), dtype=complex)
@@ -71,10 +71,10 @@ def _mode(bench: Bench, asked: Measure) -> tuple[float, Eigen]:
     """The frequency that is asked, and the modes that share it."""
     modes = bench.modes
     index = int(asked.name) - 1
-    place = modes.platform[index] if asked.subject is Subject.PLATFORM_FREQUENCY else index
-    frequency = modes.frequencies[place]
-    group = np.flatnonzero(np.abs(modes.frequencies - frequency) <= _GAP * frequency)
-    return float(frequency), Eigen((2.0 * np.pi * modes.frequencies[group]) ** 2, modes.shapes[:, group])
+    place = modes.platform[index] if asked.kind is platform_frequency else index
+    value = modes.frequencies[place]
+    group = np.flatnonzero(np.abs(modes.frequencies - value) <= _GAP * value)
+    return float(value), Eigen((2.0 * np.pi * modes.frequencies[group]) ** 2, modes.shapes[:, group])
 
 
 def _stepped(study: Tolerance, step: Array, modes: dict[int, tuple[float, Eigen]]) -> Array:
@@ -85,10 +85,10 @@ def _stepped(study: Tolerance, step: Array, modes: dict[int, tuple[float, Eigen]
     for row, value in enumerate(study.read(bench, tuple(others))):
         if value is not None and not isinstance(value, str):
             found[row] = np.imag(np.broadcast_to(value, len(step))) / _STEP
-    for row, (frequency, group) in modes.items():
+    for row, (value, group) in modes.items():
         change = projected(bench.model.stiffness, group.shapes) - group.values.mean() * projected(bench.model.inertia, group.shapes)
         mean = np.trace(change, axis1=-2, axis2=-1) / len(group.values)
-        found[row] = mean / (8.0 * np.pi**2 * frequency)
+        found[row] = mean / (8.0 * np.pi**2 * value)
     return found
 
 

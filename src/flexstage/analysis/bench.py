@@ -1,0 +1,151 @@
+"""The bench on which a stage is measured: its models and results, each worked out when first asked for."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import cached_property
+
+import numpy as np
+
+from flexstage.analysis.deflection import Deflection, deflection
+from flexstage.analysis.drift import Drift, drift
+from flexstage.analysis.lost_motion import LostMotion, lost_motion
+from flexstage.analysis.modes import Modes, modes
+from flexstage.analysis.stability import Stability, stability
+from flexstage.analysis.standing import standing, under_load
+from flexstage.analysis.workspace.buckling import Buckling, buckling
+from flexstage.analysis.workspace.load import LoadShare, load_share
+from flexstage.analysis.workspace.map_error import linear_map_error
+from flexstage.analysis.workspace.room import Room, bounds, room
+from flexstage.analysis.workspace.strength import HingeStress, hinge_stress
+from flexstage.analysis.workspace.stroke import StrokeLimits, mapping_at, stroke_limits
+from flexstage.base.finding import refuse
+from flexstage.base.labelled import Matrix
+from flexstage.base.number import Array
+from flexstage.mechanism.expand import Assembly, expand
+from flexstage.mechanism.mechanism import PLATFORM, Mechanism
+from flexstage.mechanism.outline import outlines
+from flexstage.models.batch.choice import Choice, chosen
+from flexstage.models.ideal import ideal
+from flexstage.models.linear.kinematics import Kinematics
+from flexstage.models.linear.model import LinearModel
+from flexstage.models.lumped import lumped
+
+
+class Bench:
+    """Models and results of one stage, each worked out when first asked for. `command`: the required strokes as a box."""
+
+    def __init__(self, mechanism: Mechanism, command: Mapping[str, float]) -> None:
+        self.mechanism = mechanism
+        self.command = command
+        self._corrections: dict[str, Matrix] = {}
+
+    def correction(self, point: str) -> Matrix:
+        """Strokes per motion of a point, lost motion made up by command."""
+        if point not in self._corrections:
+            self._corrections[point] = mapping_at(self.mechanism, self.kinematics, point, mapping=self.lost.correction)
+        return self._corrections[point]
+
+    @cached_property
+    def assembly(self) -> Assembly:
+        """The description expanded."""
+        return expand(self.mechanism)
+
+    @cached_property
+    def kinematics(self) -> Kinematics:
+        """The ideal model."""
+        return ideal(self.mechanism)
+
+    @cached_property
+    def model(self) -> LinearModel:
+        """The lumped model, of a stage that stands under its dead load."""
+        return standing(self.mechanism)
+
+    @cached_property
+    def stability(self) -> Stability:
+        """Load factors of the dead load."""
+        return under_load(self.mechanism) or stability(self.mechanism, self.model)
+
+    @cached_property
+    def limits(self) -> StrokeLimits:
+        """Strokes around the bias."""
+        return stroke_limits(self.mechanism)
+
+    @cached_property
+    def lost(self) -> LostMotion:
+        """Lost motion."""
+        return lost_motion(self.kinematics, self.model)
+
+    @cached_property
+    def modes(self) -> Modes:
+        """Modes, the platform's among them below the description's limit."""
+        limit = self.mechanism.mode_limit
+        return modes(self.model, limit=np.inf if limit is None else float(np.max(limit)))
+
+    @cached_property
+    def platform_frequencies(self) -> Array:
+        """Frequencies of the platform's modes (..., k) [Hz], of a batch chosen design by design; NaN where one has fewer than others."""
+        found = self.modes
+        if found.frequencies.ndim == 1:
+            return found.platform_frequencies
+        flat = found.frequencies.reshape(-1, found.frequencies.shape[-1])
+        mask = chosen((2.0 * np.pi * flat) ** 2, found.share.reshape(flat.shape), Choice(limit=found.limit)).mask
+        ordered = np.sort(np.where(mask, flat, np.nan), axis=-1)[:, : int(np.max(np.sum(mask, axis=-1), initial=0))]
+        return ordered.reshape(*found.frequencies.shape[:-1], -1)
+
+    @cached_property
+    def stress(self) -> HingeStress:
+        """Stress of hinges over all strokes, relaxed without voltage."""
+        return hinge_stress(self.mechanism, self.model, self.limits.from_zero)
+
+    @cached_property
+    def drift(self) -> Drift:
+        """Motion by temperature."""
+        return drift(self.mechanism, self.model)
+
+    @cached_property
+    def buckling(self) -> Buckling:
+        """Columns and the whole stage over all strokes, from no voltage."""
+        return buckling(self.mechanism, lumped(self.mechanism), self.limits.from_zero)
+
+    def deflection(self, point: str) -> Deflection:
+        """Motion of a point under gravity and stated forces, strokes held."""
+        return deflection(self.mechanism, self.model, point=point)
+
+    @cached_property
+    def load_share(self) -> LoadShare:
+        """What the stacks bear."""
+        return load_share(self.mechanism, self.model)
+
+    @cached_property
+    def room(self) -> Room:
+        """What the stage occupies."""
+        return room(self.mechanism)
+
+    @cached_property
+    def size(self) -> Array:
+        """Edges of the bounding box (..., 3) [m]."""
+        low, high, _ = bounds(outlines(self.assembly))
+        return high - low
+
+    @cached_property
+    def map_error(self) -> Array:
+        """Largest errors of the linear map (..., 6)."""
+        return linear_map_error(self.mechanism, self.kinematics, self.limits).worst
+
+    def arm(self, point: str) -> Array:
+        """From the platform's reference to a point of the platform; refused for points of other bodies."""
+        if point == PLATFORM:
+            return np.zeros(3)
+        body, position = self.assembly.points[point]
+        if body != PLATFORM:
+            raise refuse(point, f"is a point of {body}", "Name a point of the platform")
+        return position - self.assembly.bodies[PLATFORM].reference
+
+    def box(self) -> Mapping[str, float]:
+        """The box of all required strokes."""
+        if not self.command:
+            raise refuse(
+                "require", "no stroke is required, so there is no corner to reach", 'Add for example "stroke.x" = "at least 50 um"'
+            )
+        return self.command

@@ -1,0 +1,343 @@
+"""Measures, the numbers by which a stage is judged: a function each, which requirements, sweeps, optimisation and tolerances know."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable
+from dataclasses import dataclass
+from enum import Enum
+from functools import partial
+
+import numpy as np
+
+from flexstage.analysis.bench import Bench
+from flexstage.analysis.statics import statics
+from flexstage.analysis.workspace.blocking import platform_lines
+from flexstage.analysis.workspace.gauging import gauge_swing, half_ranges, pose_resolution
+from flexstage.analysis.workspace.stroke import utilisation
+from flexstage.base.finding import refuse, require
+from flexstage.base.number import Array, magnitude
+from flexstage.base.quantity import ANGLE, DISPLACEMENT, FORCE, FREQUENCY, LENGTH, MASS, MOMENT, RATIO, STIFFNESS, Quantity
+from flexstage.base.register import Register
+from flexstage.beams.mass import mass as link_mass
+from flexstage.mechanism.mechanism import PLATFORM
+from flexstage.spatial.frame import COMPONENTS, transport
+
+ROTATION = Quantity("rotation", ANGLE.si, "urad", "244 urad")
+TWISTING = Quantity("rotational stiffness", "N m/rad", "N m/rad", "8e4 N m/rad")
+DRIFT = Quantity("drift", "m/K", "nm/K", "5 nm/K")
+TILT_DRIFT = Quantity("rotational drift", "rad/K", "nrad/K", "50 nrad/K")
+FINE = Quantity("displacement", DISPLACEMENT.si, "nm", "10 nm")
+FINE_ROTATION = Quantity("rotation", ANGLE.si, "nrad", "50 nrad")
+
+
+class Extreme(Enum):
+    """Which of its pieces a measure is."""
+
+    LEAST = "least"
+    LARGEST = "largest"
+
+    def of(self, values: Array) -> Array:
+        """The measure (...) from its pieces (..., m)."""
+        return np.min(values, axis=-1) if self is Extreme.LEAST else np.max(values, axis=-1)
+
+
+@dataclass(frozen=True, eq=False)
+class MeasureKind:
+    """A kind of measure: the `form` of its key, its `quantity`, that `about` an axis, and what works it out, in SI with all batch axes.
+
+    The first sentence of that function's docstring says what it means. `pointed`: it may be asked at a point. `extreme`: the function gives
+    pieces (..., m), of which the measure is the least or largest; an optimiser sees every actuator, hinge and stack then, not only the
+    worst one. `softening`: with which power of 1 - 1/factor it changes where the dead load softens it most. `over_strokes`: it is about all
+    strokes. `analytic`: it may be differentiated by complex step.
+    """
+
+    form: str
+    quantity: Quantity
+    work: Callable[[Bench, Measure], Array]
+    about: Quantity | None = None
+    pointed: bool = False
+    extreme: Extreme | None = None
+    softening: float = 0.0
+    over_strokes: bool = False
+    analytic: bool = True
+
+    @property
+    def meaning(self) -> str:
+        """What it is, in a few words."""
+        first = (inspect.getdoc(self.work) or "").partition(".\n")[0].rstrip(".")
+        return first[:1].lower() + first[1:]
+
+    def pieces(self, bench: Bench, asked: Measure) -> Array:
+        """Its pieces (..., m); of a smooth measure the one that it is."""
+        found = np.asarray(self.work(bench, asked))
+        return found[..., None] if self.extreme is None else found
+
+    def value(self, bench: Bench, asked: Measure) -> Array:
+        """The measure (...). Raises `DesignError` for what the stage does not have."""
+        found = np.asarray(self.work(bench, asked))
+        return found if self.extreme is None else self.extreme.of(found)
+
+    def __reduce__(self) -> tuple[Callable[[str], MeasureKind], tuple[str]]:
+        return measure_kind, (self.form,)
+
+
+@dataclass(frozen=True)
+class Measure:
+    """A number that a stage has: its `key`, the `kind` with its `name` (an axis, actuator, gauge, number), the point it is taken at."""
+
+    key: str
+    kind: MeasureKind
+    name: str
+    quantity: Quantity
+    point: str = PLATFORM
+
+
+@partial(MeasureKind, "stroke.<axis>", DISPLACEMENT, about=ROTATION, pointed=True, extreme=Extreme.LEAST)
+def stroke(bench: Bench, asked: Measure) -> Array:
+    """Stroke both ways along one axis, lost motion made up by command.
+
+    How far each actuator lets the platform go, either way.
+    """
+    mapping = bench.correction(asked.point)
+    if asked.name not in mapping.columns:
+        raise refuse(f"stroke.{asked.name}", "is no ideal motion of this stage", f"Its ideal motions are {', '.join(mapping.columns)}")
+    gain = mapping.values[..., mapping.columns.index(asked.name)]
+    able = np.abs(gain) > 1e-12 * np.max(np.abs(mapping.values), axis=(-2, -1), keepdims=False)[..., None]
+    safe = np.where(able, gain, 1.0)
+    ends = bench.limits.low / safe, bench.limits.high / safe
+    both = np.concatenate(np.broadcast_arrays(-np.minimum(*ends), np.maximum(*ends)), axis=-1)
+    return np.where(np.concatenate([able, able], axis=-1), both, np.inf)
+
+
+@partial(MeasureKind, "corner", RATIO, extreme=Extreme.LARGEST)
+def corner(bench: Bench, _: Measure) -> Array:
+    """Share of the actuators' strokes that all required strokes at once ask for."""
+    return utilisation(bench.lost.correction, bench.limits, bench.box()).ratio
+
+
+@partial(MeasureKind, "frequency.<n>", FREQUENCY, softening=0.5)
+def frequency(bench: Bench, asked: Measure) -> Array:
+    """N-th natural frequency, any body."""
+    return _numbered(bench.modes.frequencies, asked)
+
+
+@partial(MeasureKind, "frequency.platform.<n>", FREQUENCY, softening=0.5)
+def platform_frequency(bench: Bench, asked: Measure) -> Array:
+    """N-th natural frequency of the platform."""
+    return _numbered(bench.platform_frequencies, asked)
+
+
+def _numbered(frequencies: Array, asked: Measure) -> Array:
+    count = frequencies.shape[-1]
+    if int(asked.name) > count:
+        raise refuse(f"require.{asked.key}", f"there are {count} such modes", "Ask for a lower number")
+    return frequencies[..., int(asked.name) - 1]
+
+
+@partial(MeasureKind, "safety", RATIO, extreme=Extreme.LEAST, over_strokes=True)
+def safety(bench: Bench, _: Measure) -> Array:
+    """Yield over peak stress in the worst hinge at the worst corner of the strokes, from no voltage."""
+    if bench.stress.unknown:
+        links = ", ".join(bench.stress.unknown[:3])
+        raise refuse(
+            "safety", f"the material of {links} states no yield stress", 'Add for example yield_stress = "1360 MPa" to the material'
+        )
+    return bench.stress.safety
+
+
+@partial(MeasureKind, "buckling", RATIO, over_strokes=True)
+def buckling(bench: Bench, _: Measure) -> Array:
+    """Critical load over compression in the worst part at the worst corner of the strokes."""
+    return bench.buckling.least
+
+
+@partial(MeasureKind, "stiffness.<axis>", STIFFNESS, about=TWISTING, pointed=True, softening=1.0)
+def stiffness(bench: Bench, asked: Measure) -> Array:
+    """Stiffness of the platform against a load along one axis, the others giving way."""
+    index = COMPONENTS.index(asked.name)
+    return 1.0 / _compliance(bench, asked)[..., index, index]
+
+
+@partial(MeasureKind, "stiffness.<direction>", STIFFNESS, about=TWISTING, pointed=True, softening=1.0)
+def directed_stiffness(bench: Bench, asked: Measure) -> Array:
+    """Stiffness of the platform against a force along a direction, or with r a moment about it, all else giving way."""
+    along, start = direction_of(asked.name, asked.key), 3 * asked.name.startswith("r")
+    return 1.0 / (along @ _compliance(bench, asked)[..., start : start + 3, start : start + 3] @ along)
+
+
+def direction_of(name: str, where: str = "direction") -> Array:
+    """The unit vector (3,) of a direction such as `(1,1,0)`, with `r` before it for a moment about it. Raises `DesignError` at `where`.
+
+    >>> direction_of("r(0,3,4)").tolist()
+    [0.0, 0.6, 0.8]
+    """
+    try:
+        vector = np.array([float(each) for each in name.removeprefix("r").removeprefix("(").removesuffix(")").split(",")])
+    except ValueError:
+        vector = np.zeros(0)
+    if vector.shape != (3,) or not np.all(np.isfinite(vector)) or not np.any(vector) or not name.endswith(")"):
+        raise refuse(where, f'"{name}" is no direction', "Write three numbers, not all 0, without spaces, for example (1,1,0)")
+    return vector / np.linalg.norm(vector)
+
+
+@partial(MeasureKind, "stiffness.least", STIFFNESS, pointed=True, softening=1.0)
+def least_stiffness(bench: Bench, asked: Measure) -> Array:
+    """Stiffness against a force in the direction that gives way most.
+
+    Real directions, so that derivatives by complex step are those of a simple eigenvalue.
+    """
+    block = _compliance(bench, asked)[..., :3, :3]
+    worst = np.linalg.eigh(0.5 * np.real(block + np.swapaxes(block, -1, -2)))[1][..., :, -1]
+    return 1.0 / np.einsum("...i,...ij,...j->...", worst, block, worst)
+
+
+def _compliance(bench: Bench, asked: Measure) -> Array:
+    return statics(bench.model, load_point=asked.point, read_point=asked.point).compliance.values
+
+
+@partial(MeasureKind, "deflection.<axis>", DISPLACEMENT, about=ROTATION, pointed=True, softening=-1.0)
+def deflection(bench: Bench, asked: Measure) -> Array:
+    """Motion under gravity and stated forces, strokes held."""
+    causes = bench.deflection(asked.point).by_cause
+    return magnitude(np.sum(causes.values[..., causes.rows.index(f"{asked.point}.{asked.name}"), :], axis=-1))
+
+
+@partial(MeasureKind, "force.<axis>", FORCE, about=MOMENT)
+def force(bench: Bench, asked: Measure) -> Array:
+    """Blocking force of the platform along one axis."""
+    lines = platform_lines(bench.kinematics.mapping, bench.model, bench.limits)
+    if asked.name not in lines.coordinates:
+        raise refuse(f"force.{asked.name}", "is no ideal motion of this stage", f"Its ideal motions are {', '.join(lines.coordinates)}")
+    return lines.blocking[..., lines.coordinates.index(asked.name)]
+
+
+@partial(MeasureKind, "loss", RATIO, extreme=Extreme.LARGEST)
+def loss(bench: Bench, _: Measure) -> Array:
+    """Largest share of its stroke an actuator loses."""
+    return magnitude(np.diagonal(bench.lost.loss.values, axis1=-2, axis2=-1))
+
+
+@partial(MeasureKind, "loss.<actuator>", RATIO)
+def own_loss(bench: Bench, asked: Measure) -> Array:
+    """Share of its stroke the actuator loses."""
+    return loss.pieces(bench, asked)[..., bench.lost.loss.rows.index(asked.name)]
+
+
+@partial(MeasureKind, "crosstalk", RATIO, extreme=Extreme.LARGEST)
+def crosstalk(bench: Bench, _: Measure) -> Array:
+    """Largest stroke one actuator appears to make when another does."""
+    values = bench.lost.loss.values
+    others = values[..., ~np.eye(values.shape[-1], dtype=bool)]
+    return magnitude(others) if others.size else np.zeros((*values.shape[:-2], 1))
+
+
+@partial(MeasureKind, "map_error.<axis>", FINE, about=FINE_ROTATION, analytic=False)
+def map_error(bench: Bench, asked: Measure) -> Array:
+    """Largest error of the linear map over the workspace."""
+    return bench.map_error[..., COMPONENTS.index(asked.name)]
+
+
+@partial(MeasureKind, "drift.<axis>", DRIFT, about=TILT_DRIFT, pointed=True)
+def drift(bench: Bench, asked: Measure) -> Array:
+    """Motion per kelvin of uniform temperature, strokes held, the ground of the material of its links."""
+    return magnitude(bench.drift.motion.at(f"{asked.point}.{asked.name}", "uniform"))
+
+
+@partial(MeasureKind, "mass", MASS)
+def mass(bench: Bench, _: Measure) -> Array:
+    """Mass of the platform without payload."""
+    own = bench.assembly.bodies[PLATFORM].mass
+    if own is None:
+        raise refuse("platform", "has neither solids nor a stated mass", "Give it a solid of a material with a density, or its mass")
+    return np.asarray(own.mass)
+
+
+@partial(MeasureKind, "mass.total", MASS)
+def total_mass(bench: Bench, _: Measure) -> Array:
+    """Mass of all bodies, links and stacks without payload.
+
+    Links by their integrals over the profile: a rigid motion along has the mass of both ends and what is between them.
+    """
+    bodies = [body.mass.mass for body in bench.assembly.bodies.values() if body.mass is not None]
+    ends = [link_mass(link.part, link.material) for link in bench.assembly.links.values()]
+    links = [each[..., 0, 0] + each[..., 0, 6] + each[..., 6, 0] + each[..., 6, 6] for each in ends]
+    return sum([*bodies, *links], np.asarray(0.0))
+
+
+@partial(MeasureKind, "envelope.<dimension>", LENGTH)
+def size(bench: Bench, asked: Measure) -> Array:
+    """Edge of the bounding box."""
+    return bench.size[..., COMPONENTS.index(asked.name)]
+
+
+@partial(MeasureKind, "height", LENGTH)
+def height(bench: Bench, _: Measure) -> Array:
+    """Edge of the bounding box along z."""
+    return bench.size[..., 2]
+
+
+@partial(MeasureKind, "opening", LENGTH, analytic=False)
+def opening(bench: Bench, _: Measure) -> Array:
+    """How far anything stands into the clear opening."""
+    if bench.mechanism.opening is None:
+        raise refuse("opening", "the description has no clear opening", 'Add for example opening = { size = ["110 mm", "110 mm"] }')
+    depths = [item.depth for item in bench.room.intrusions]
+    return np.max(np.stack(np.broadcast_arrays(*depths)), axis=0) if depths else np.asarray(0.0)
+
+
+@partial(MeasureKind, "resolution.<axis>", FINE, about=FINE_ROTATION, pointed=True)
+def resolution(bench: Bench, asked: Measure) -> Array:
+    """Pose error of one resolution step of every gauge, worst signs."""
+    seen = pose_resolution(bench.mechanism, bench.kinematics)
+    inverse = transport(bench.arm(asked.point)) @ seen.inverse.values
+    return (magnitude(inverse) @ seen.gauge_steps[..., None])[..., COMPONENTS.index(asked.name), 0]
+
+
+@partial(MeasureKind, "gauge.range", RATIO, extreme=Extreme.LARGEST)
+def gauge_range(bench: Bench, _: Measure) -> Array:
+    """Share of half the gauges' range that all required strokes at once ask for, worst gauge."""
+    return gauge_swing(bench.kinematics, bench.box()) / half_ranges(bench.assembly)
+
+
+@partial(MeasureKind, "gauge.range.<gauge>", RATIO)
+def own_gauge_range(bench: Bench, asked: Measure) -> Array:
+    """Share of half the gauge's range that all required strokes at once ask for."""
+    return gauge_range.pieces(bench, asked)[..., bench.kinematics.gauges.index(asked.name)]
+
+
+@partial(MeasureKind, "load", RATIO, extreme=Extreme.LARGEST, over_strokes=True)
+def load(bench: Bench, _: Measure) -> Array:
+    """Share of its maximum load, or of what may pull it, that the most loaded stack bears at the worst corner."""
+    share, limits = bench.load_share, bench.limits.from_zero
+    use = share.use(limits)
+    if np.any(np.isnan(use)) or np.any(np.isnan(share.maximum)):
+        raise refuse("load", "not every stack states its maximum load", 'Add for example maximum_load = "5000 N" to the stack')
+    if use.ndim == 1:
+        require(each for each in share.pulled(limits) if "neither" in each.what)
+    return use
+
+
+@partial(MeasureKind, "load.<actuator>", FORCE, over_strokes=True)
+def own_load(bench: Bench, asked: Measure) -> Array:
+    """Largest compression of the stack at the worst corner of the strokes, dead load included."""
+    share = bench.load_share
+    return share.range(bench.limits.from_zero)[1][..., share.actuators.index(asked.name)]
+
+
+MEASURES: Register[MeasureKind] = Register(
+    "flexstage.measures", {each.form: each for each in globals().values() if isinstance(each, MeasureKind)}
+)
+"""Measures by the form of their keys, ours in the order they stand above: `[require]` lines and studies call them by it."""
+
+
+def measure_kind(form: str) -> MeasureKind:
+    """The kind of measure of that form. Raises `DesignError` where no installed package offers it.
+
+    >>> measure_kind("mass").meaning
+    'mass of the platform without payload'
+    """
+    found = MEASURES.get(form)
+    if found is None:
+        raise refuse(form, "no installed package offers this measure", "Install the one that does")
+    return found
