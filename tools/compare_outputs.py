@@ -69,6 +69,23 @@ PATHS: Mapping[str, str] = {  # in JSON, MAT and HDF5
     r"\bstage\.(dead|worst)_(load|strokes)": r"stage.\1",
     r"mapped_stiffness_n_per_m": "series_n_per_m",
     r"^(modes\.)?platform_shapes": r"\1twists",
+    r"^test\[\]": "files[]",
+    r"^(files\[\])\.seconds": r"\1.duration_s",
+    r"^(files\[\])\.samples": r"\1.length",
+    r"^close$": "close_modes",
+    r"^shapes\b": "shape_matrix",
+    r"^spectra\.(window|overlap)": r"spectra.segments.\1",
+    r"^spectra\.independent_averages": "spectra.independent",
+    r"^spectra\.(mean_multiple_coherence)": r"\1",
+    r"^((?:compared\.)?modes\[\])\.theory_over_experiment": r"\1.difference",
+    r"^((?:compared\.)?modes\[\])\.fea_over_experiment": r"\1.fea_difference",
+    r"^((?:compared\.)?(?:modes|further)\[\]\.(?:fea_)?)modal_assurance": r"\1assurance",
+    r"^((?:compared\.)?repeated\[\])\.modes": r"\1.numbers",
+    r"^((?:compared\.)?repeated\[\])\.largest_angle_rad": r"\1.angle_rad",
+    r"^chi_square\.before": "chi_square_before",
+    r"^chi_square\.after": "chi_square",
+    r"^chi_square\.data": "freedoms",
+    r"^chi_square\.(probability)": r"\1",
 }
 RULES: tuple[Rule, ...] = ()  # numbers whose arithmetic or its order changed; searched() gives those of searches
 

@@ -13,7 +13,7 @@ from flexstage.experiment.formats.write import write
 from flexstage.mechanism.address import get, set_value, tag_of
 from flexstage.mechanism.store import load
 from tests.apps.command import Command
-from tests.apps.test_documents import ENVELOPE, matrices, page_section
+from tests.apps.test_documents import matrices
 from tests.models.stage_records import stage_record
 
 BUILT = set_value(double_triangle(), "parts.neck.thickness", 1.617e-3)
@@ -53,13 +53,6 @@ def test_tables_say_what_the_test_tells(recorded: Command) -> None:
         assert title in ended.out
     assert "identified" in ended.out
     assert recorded("check", "updated.toml").code == 0
-
-
-def test_keys_of_the_document_are_explained(recorded: Command) -> None:
-    document = recorded("update", "stage.toml", "--record", "record.uff", *FREE, "-o", "-u.toml", "--json", "-").document
-    section = page_section("update")
-    for key in set(document) - ENVELOPE:
-        assert f"`{key}`" in section, key
 
 
 @pytest.mark.parametrize(

@@ -65,7 +65,7 @@ def expected() -> np.ndarray:
 
 def test_the_stage_differs_as_it_was_made_to(compared: Compared) -> None:
     assert max(abs(expected())) > 0.005
-    for row, known in zip(compared.rows, expected(), strict=True):
+    for row, known in zip(compared.modes, expected(), strict=True):
         assert row.difference == pytest.approx(known, abs=3.0 * (row.uncertainty or 0.0) + 1e-12)
         assert 0.0 < (row.uncertainty or 0.0) < 1e-3
         assert (row.assurance or 0.0) > 0.99
@@ -99,8 +99,8 @@ def test_shapes_turned_by_an_angle_have_its_squared_cosine(experiment: Identifie
     made[:, 2] = np.cos(z) * shapes[:, 2] + np.sin(z) * beside
     made[:, 0], made[:, 1] = plane[:, 0], np.cos(tilt) * plane[:, 1] + np.sin(tilt) * above
     found = compare(STAGE, replace(experiment, shapes=made.astype(complex), frequencies=theory.platform_frequencies))
-    assert found.rows[2].assurance == pytest.approx(np.cos(z) ** 2, abs=1e-9)
-    assert sorted(row.assurance or 0.0 for row in found.rows[:2]) == pytest.approx([np.cos(tilt) ** 2, 1.0], abs=1e-9)
+    assert found.modes[2].assurance == pytest.approx(np.cos(z) ** 2, abs=1e-9)
+    assert sorted(row.assurance or 0.0 for row in found.modes[:2]) == pytest.approx([np.cos(tilt) ** 2, 1.0], abs=1e-9)
     assert found.repeated[0].angle == pytest.approx(tilt, abs=1e-6)
 
 
@@ -113,7 +113,7 @@ def _across(shape: np.ndarray, basis: np.ndarray) -> np.ndarray:
 def test_channels_are_told_by_name(record: Record, compared: Compared) -> None:
     turned = record.select(record.names[::-1])
     again = compare(STAGE, identified(turned))
-    for row, known in zip(again.rows, compared.rows, strict=True):
+    for row, known in zip(again.modes, compared.modes, strict=True):
         assert frequency(row) == pytest.approx(frequency(known), rel=1e-5)
         assert row.assurance == pytest.approx(known.assurance, abs=1e-3)
 
@@ -123,14 +123,14 @@ def test_units_do_not_matter(record: Record, compared: Compared) -> None:
     values[:, record.names.index("S2")] *= 1e-3
     channels = tuple(replace(each, unit="mm") if each.name == "S2" else each for each in record.channels)
     again = compare(STAGE, identified(replace(record, channels=channels, samples=InMemory(values))))
-    assert [row.assurance for row in again.rows] == pytest.approx([row.assurance for row in compared.rows], abs=1e-3)
+    assert [row.assurance for row in again.modes] == pytest.approx([row.assurance for row in compared.modes], abs=1e-3)
 
 
 def test_a_gauge_the_wrong_way_round_shows(record: Record) -> None:
     values = record.values.copy()
     values[:, record.names.index("S4")] *= -1.0
     again = compare(STAGE, identified(replace(record, samples=InMemory(values))))
-    assert min(row.assurance or 0.0 for row in again.rows) < 0.9
+    assert min(row.assurance or 0.0 for row in again.modes) < 0.9
     assert any("assurance" in text or "not found" in text for text in again.warnings)
 
 
@@ -140,9 +140,9 @@ def test_fea_stands_beside_them(experiment: Identified, compared: Compared) -> N
     errors = (0.001,) * 6
     found = compare(STAGE, experiment, FeaModes(platform_modes(softer, model), model, 3, errors))
     known = platform_modes(softer, model).platform_frequencies
-    assert sorted(row.fea or 0.0 for row in found.rows) == pytest.approx(sorted(known.tolist()))
-    assert [row.experiment for row in found.rows] == [row.experiment for row in compared.rows]
-    assert all((row.fea_assurance or 0.0) > 0.9 and row.fea_error == 0.001 for row in found.rows)
+    assert sorted(row.fea or 0.0 for row in found.modes) == pytest.approx(sorted(known.tolist()))
+    assert [row.experiment for row in found.modes] == [row.experiment for row in compared.modes]
+    assert all((row.fea_assurance or 0.0) > 0.9 and row.fea_error == 0.001 for row in found.modes)
 
 
 def test_one_actuator_shows_one_of_a_pair() -> None:
@@ -156,9 +156,9 @@ def test_a_record_of_one_actuator_takes_no_local_mode_for_a_platform_mode() -> N
     """The rig shakes all modes of the stage: what B1 alone does not move stays without a partner, local modes go to local ones."""
     setup = RigSetup(seconds=10.0, drive=NoiseDrive(actuators=("B1",)))
     found = compare(STAGE, identified(rig(STAGE, lumped(STAGE), setup)))
-    for row in found.rows:
+    for row in found.modes:
         assert row.experiment is None or abs(row.difference or 0.0) < 1e-3
-    assert [row.number for row in found.rows if row.experiment is None] == [2, 6]
+    assert [row.number for row in found.modes if row.experiment is None] == [2, 6]
     assert found.further
     for mode in found.further:
         assert mode.theory is None or mode.theory == pytest.approx(mode.experiment.frequency, rel=0.01)
@@ -182,7 +182,7 @@ def test_modes_more_than_1_6_times_apart_are_no_pair(ratio: float, *, is_pair: b
     exact = made(STAGE, noise=Noise(frequency=0.0, model=0.0))
     moved = exact.frequencies * np.where(np.arange(6) == 2, ratio, 1.0)
     found = compare(STAGE, replace(exact, frequencies=moved))
-    assert [row.experiment is not None for row in found.rows] == [True, True, is_pair, True, True, True]
+    assert [row.experiment is not None for row in found.modes] == [True, True, is_pair, True, True, True]
     assert is_pair == (not found.further)
 
 
@@ -198,9 +198,9 @@ def test_modes_that_share_less_than_half_of_their_shape_are_no_pair(assurance: f
     fewer |= {name: getattr(exact, name)[kept] for name in ("damping_deviations", "significance")}
     few = replace(exact, **fewer, shapes=shapes.astype(complex), shape_deviations=exact.shape_deviations[:, kept])
     found = compare(STAGE, few)
-    assert (found.rows[2].experiment is not None) == is_pair
+    assert (found.modes[2].experiment is not None) == is_pair
     if is_pair:
-        assert found.rows[2].assurance == pytest.approx(assurance, abs=1e-9)
+        assert found.modes[2].assurance == pytest.approx(assurance, abs=1e-9)
 
 
 def test_what_sensors_cannot_tell_apart_goes_to_the_nearer_mode() -> None:
@@ -217,14 +217,14 @@ def test_what_sensors_cannot_tell_apart_goes_to_the_nearer_mode() -> None:
         outputs=exact.outputs[row : row + 1],
         noise=np.ones(1),
     )
-    assert [each.number for each in compare(STAGE, few).rows if each.experiment is not None] == [3]
+    assert [each.number for each in compare(STAGE, few).modes if each.experiment is not None] == [3]
 
 
 def test_noise_alone_is_compared_with_nothing() -> None:
     silent = stage_record(STAGE)
     noise = np.random.default_rng(5).standard_normal(silent.values.shape)
     found = compare(STAGE, identified(in_memory(silent.channels, silent.rate, noise)))
-    assert all(row.experiment is None for row in found.rows)
+    assert all(row.experiment is None for row in found.modes)
     assert any("no mode stands out" in text for text in found.warnings)
     assert any("not found in the experiment: 1 (tilt" in text for text in found.warnings)
 
@@ -235,7 +235,7 @@ def test_shapes_move_the_platform_as_the_model_does(experiment: Identified) -> N
     model = lumped(BUILT)
     known = platform_modes(BUILT, model).platform_shapes
     mass = model.inertia["platform"].law
-    alike = modal_assurance(found.twists["platform"], known, mass).values
+    alike = modal_assurance(found.motions["platform"], known, mass).values
     assert alike[2, 2] > 0.99
     assert alike[3, 3] > 0.99
     assert np.allclose(alike[:2, :2].sum(axis=1), 1.0, atol=0.02)
@@ -247,8 +247,8 @@ def test_bodies_move_with_the_platform(experiment: Identified) -> None:
     kinematics = ideal(STAGE)
     names = [f"B4/pole.{axis}" for axis in ("x", "y", "z", "rx", "ry", "rz")]
     rows = kinematics.bodies[[kinematics.body_coordinates.index(name) for name in names]]
-    platform = np.linalg.lstsq(kinematics.motion, found.twists["platform"], rcond=None)[0]
-    assert found.twists["B4/pole"] == pytest.approx(rows @ platform, abs=1e-12)
+    platform = np.linalg.lstsq(kinematics.motion, found.motions["platform"], rcond=None)[0]
+    assert found.motions["B4/pole"] == pytest.approx(rows @ platform, abs=1e-12)
 
 
 def test_angles_are_compared_by_the_platforms_radius_of_gyration() -> None:

@@ -109,17 +109,17 @@ def test_bars_stand_as_high_as_the_frequencies(seen: Identification) -> None:
     found = compare(STAGE, seen.found, FeaModes(platform_modes(STAGE, model), model, 3, (0.01,) * 6))
     upper, lower = compare_figure(found).axes
     heights = [bar.get_height() for bar in upper.patches]
-    assert heights[:6] == pytest.approx([row.theory for row in found.rows])
-    assert heights[6:12] == pytest.approx([row.fea for row in found.rows])
-    assert heights[12:18] == pytest.approx([row.experiment.frequency for row in found.rows if row.experiment])
+    assert heights[:6] == pytest.approx([row.theory for row in found.modes])
+    assert heights[6:12] == pytest.approx([row.fea for row in found.modes])
+    assert heights[12:18] == pytest.approx([row.experiment.frequency for row in found.modes if row.experiment])
     bands = [bar.get_height() for bar in lower.patches]
-    assert bands == pytest.approx([200.0 * (row.uncertainty or 0.0) for row in found.rows])
+    assert bands == pytest.approx([200.0 * (row.uncertainty or 0.0) for row in found.modes])
 
 
 def test_a_comparison_without_any_partner_is_drawn(seen: Identification) -> None:
     silent = in_memory(stage_record(STAGE).channels, 1024.0, np.random.default_rng(1).standard_normal((8192, 12)))
     found = compare(STAGE, identification((silent,)).found)
-    assert all(row.experiment is None for row in found.rows)
+    assert all(row.experiment is None for row in found.modes)
     ET.fromstring(to_svg(compare_figure(found), "none", "no mode"))  # noqa: S314  our own text
     assert compare_table(found).texts()[1][3] == "not found"
     repeated = repeated_table(found)
@@ -138,8 +138,8 @@ def test_the_table_says_what_was_found(seen: Identification) -> None:
 def test_modes_without_a_partner_are_listed(seen: Identification) -> None:
     found = compare(STAGE, seen.found)
     assert further_table(found) is None
-    assert found.rows[0].experiment is not None
-    extra = replace(found, further=(FurtherMode(found.rows[0].experiment),))
+    assert found.modes[0].experiment is not None
+    extra = replace(found, further=(FurtherMode(found.modes[0].experiment),))
     table = further_table(extra)
     assert table is not None
     assert table.texts()[1][0] == "1"

@@ -53,7 +53,7 @@ def _rig() -> Section:
     found = fs.experiment.compare(stage, fs.experiment.identify(fs.experiment.rig(stage, model, _SETUP), Search(band=(80.0, 220.0))))
     rows = tuple(
         Row(f"{row.name}, frequency", "lumped model", f"{theory:.4f}", row.experiment.frequency, "Hz", relative(5e-4))
-        for row, theory in zip(found.rows, known.platform_frequencies, strict=True)
+        for row, theory in zip(found.modes, known.platform_frequencies, strict=True)
         if row.experiment is not None
     )
     text = "The shipped stage with its threefold pairs: 60 s of white noise in all actuators, gauges of 1 nm/Hz^0.5 and steps of 10 nm."

@@ -65,6 +65,8 @@ def _plain(value: Any, where: str, reasons: dict[str, str]) -> Any:
         return [_plain(item, f"{where}.{number}", reasons) for number, item in enumerate(value)]
     if isinstance(value, Enum):
         return value.value
+    if isinstance(value, complex):
+        return _plain((value.real, value.imag), where, reasons)
     if isinstance(value, np.generic):
         return _plain(value.item(), where, reasons)
     if is_dataclass(value):

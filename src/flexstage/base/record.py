@@ -261,9 +261,17 @@ def _field_paths(each: Field, path: str) -> Iterator[tuple[str, str, str]]:
         yield path + form, "", f"{each.meaning} {explanation(inner)}".strip()
         yield from paths(inner, f"{path}{form}.")
         return
-    words: dict[Any, str] = {Matrix: "matrix", str: "text", bool: "true or false", int: "number", float: "number", Array: "numbers"}
-    word = f"number, {each.unit}" if each.unit != "1" else words.get(inner, "")
-    yield path + form, word, each.meaning
+    yield path + form, f"number, {each.unit}" if each.unit != "1" else _word(inner), each.meaning
+
+
+def _word(kind: Any) -> str:
+    words: dict[Any, str] = {Matrix: "matrix", str: "text", bool: "true or false", Array: "numbers"}
+    words |= {int: "number", float: "number", complex: "[real, imaginary]"}
+    if isinstance(kind, type) and issubclass(kind, Enum):
+        return ", ".join(str(each.value) for each in kind)
+    if get_origin(kind) is tuple:
+        return "numbers" if {int, float} & {*get_args(kind)} else "texts"
+    return words.get(kind, "")
 
 
 def explanation(kind: type) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from typing import Annotated
 
 import numpy as np
 import scipy
@@ -14,6 +15,8 @@ from flexstage.analysis.pairing import RELIABLE, Moving, Pair, gyration, paired
 from flexstage.analysis.solid_modes import FeaModes
 from flexstage.base.finding import Finding, nearest, require
 from flexstage.base.number import Array, first_design
+from flexstage.base.quantity import ANGLE, FREQUENCY, RATIO
+from flexstage.base.record import INNER, VIEW
 from flexstage.experiment.channels import Residues, gain_doubts, output_scales, shape_doubts, sized
 from flexstage.experiment.identification.identified import Identified
 from flexstage.experiment.shapes_on_stage import si_factor, si_shapes
@@ -33,17 +36,22 @@ _TURNED = np.deg2rad(20.0)
 
 @dataclass(frozen=True)
 class Measured:
-    """A mode of the experiment as it is compared: its number (from 0), frequency [Hz] and damping ratio with their 95 % intervals.
+    """A mode of the experiment as it is compared: its index (from 0), frequency [Hz] and damping ratio with their 95 % intervals.
 
     `widening` is how many times wider these are than noise makes them.
     """
 
-    number: int
-    frequency: float
-    interval: tuple[float, float]
+    index: Annotated[int, INNER]
+    frequency: Annotated[float, FREQUENCY]
+    frequency_interval: Annotated[tuple[float, float], FREQUENCY]
     damping: float
     damping_interval: tuple[float, float]
     widening: float
+
+    @property
+    def number(self) -> Annotated[int, VIEW]:
+        """Its number in the record, from 1."""
+        return self.index + 1
 
 
 @dataclass(frozen=True)
@@ -57,20 +65,20 @@ class ComparedMode:
 
     number: int
     name: str
-    theory: float
-    fea: float | None = None
+    theory: Annotated[float, FREQUENCY]
+    fea: Annotated[float | None, FREQUENCY] = None
     fea_error: float | None = None
     fea_assurance: float | None = None
     experiment: Measured | None = None
     assurance: float | None = None
 
     @property
-    def difference(self) -> float | None:
+    def difference(self) -> Annotated[float | None, RATIO]:
         """Theory over experiment less one."""
         return None if self.experiment is None else self.theory / self.experiment.frequency - 1.0
 
     @property
-    def fea_difference(self) -> float | None:
+    def fea_difference(self) -> Annotated[float | None, RATIO]:
         """FEA over experiment less one."""
         return None if self.experiment is None or self.fea is None else self.fea / self.experiment.frequency - 1.0
 
@@ -79,7 +87,7 @@ class ComparedMode:
         """Half of the experiment's 95 % interval, relative."""
         if self.experiment is None:
             return None
-        low, high = self.experiment.interval
+        low, high = self.experiment.frequency_interval
         return 0.5 * (high - low) / self.experiment.frequency
 
 
@@ -92,7 +100,7 @@ class RepeatedModes:
 
     numbers: tuple[int, ...]
     seen: int
-    angle: float | None
+    angle: Annotated[float | None, ANGLE]
 
 
 @dataclass(frozen=True)
@@ -101,7 +109,7 @@ class FurtherMode:
 
     experiment: Measured
     name: str | None = None
-    theory: float | None = None
+    theory: Annotated[float | None, FREQUENCY] = None
     assurance: float | None = None
 
 
@@ -109,21 +117,26 @@ class FurtherMode:
 class Compared:
     """Theory, FEA and experiment mode by mode.
 
-    `further` are measured modes without a partner among the platform's; `sensors` the outputs shapes are compared at;
+    `modes` are the platform's; `further` are measured modes without a partner among them; `sensors` the outputs shapes are compared at;
     `warnings` say what the experiment cannot tell and which pairings not to rely on; those of `misnamed` which channels look
     exchanged, inverted or scaled.
     """
 
-    rows: tuple[ComparedMode, ...]
+    modes: tuple[ComparedMode, ...]
     repeated: tuple[RepeatedModes, ...]
     further: tuple[FurtherMode, ...]
     sensors: tuple[str, ...]
-    model: Model
-    experiment: Identified
-    fea: FeaModes | None
+    model: Annotated[Model, INNER]
+    experiment: Annotated[Identified, INNER]
+    fea: Annotated[FeaModes | None, INNER]
     warnings: tuple[str, ...]
     provenance: str
-    misnamed: tuple[str, ...] = ()
+    misnamed: Annotated[tuple[str, ...], INNER] = ()
+
+    @property
+    def fea_order(self) -> Annotated[int | None, VIEW]:
+        """Order of the finite elements; null without them."""
+        return None if self.fea is None else self.fea.order
 
 
 def compare(mechanism: Mechanism, experiment: Identified, fea: FeaModes | None = None, *, model: Model = Model.LUMPED) -> Compared:
@@ -153,21 +166,23 @@ def compare(mechanism: Mechanism, experiment: Identified, fea: FeaModes | None =
     own = _sensed(linear, theory, candidates, sensors)
     groups = _groups(theory, candidates)
     frequencies = first_design(theory.frequencies, 1)[list(candidates)]
-    pairs, likeness = _pairs(frequencies, experiment, groups, (own, seen))
+    pairs, likeness = _pairs(frequencies, experiment, groups, own, seen)
 
     def score(shapes: Array) -> float:
-        found, alike = _pairs(frequencies, experiment, groups, (own, shapes))
+        found, alike = _pairs(frequencies, experiment, groups, own, shapes)
         return sum(float(alike[place, index]) for place, index in found.items()) / max(1, shapes.shape[1])
 
-    misnamed = shape_doubts(sensors, seen, score, _scales(frequencies, experiment, groups, (own, seen)))
-    misnamed = misnamed or gain_doubts(_residues(mechanism, (linear, theory), experiment, sensors, _matched(groups, candidates, pairs)))
+    misnamed = shape_doubts(sensors, seen, score, _scales(frequencies, experiment, groups, own, seen))
+    misnamed = misnamed or gain_doubts(
+        _residues(mechanism, linear, theory, experiment, sensors, matched=_matched(groups, candidates, pairs))
+    )
     rows = _rows(theory, experiment, pairs, likeness)
     rows = rows if fea is None else _with_fea(rows, theory, fea, linear)
     repeated = tuple(_repeated(group, pairs, own, seen) for group in groups if len(group) > 1 and group[-1] < len(rows))
     return Compared(
-        rows=rows,
+        modes=rows,
         repeated=repeated,
-        further=tuple(_further(theory, candidates, experiment, (pairs, likeness))),
+        further=tuple(_further(theory, candidates, experiment, pairs, likeness)),
         sensors=sensors,
         model=model,
         experiment=experiment,
@@ -222,9 +237,8 @@ def _weighted(shapes: Array, model: LinearModel, sensors: Sequence[str]) -> Arra
     return scaled / np.maximum(np.linalg.norm(scaled, axis=0), 1e-300)
 
 
-def _pairs(frequencies: Array, experiment: Identified, groups: list[list[int]], both: tuple[Array, Array]) -> tuple[dict[int, int], Array]:
+def _pairs(frequencies: Array, experiment: Identified, groups: list[list[int]], own: Array, seen: Array) -> tuple[dict[int, int], Array]:
     """The measured mode of each of theory's, and how alike all are (n, k): the share of a measured shape within the mode's subspace."""
-    own, seen = both
     likeness = np.zeros((own.shape[1], seen.shape[1]))
     for group in groups:
         basis = _basis(own[:, group])
@@ -238,9 +252,8 @@ def _pairs(frequencies: Array, experiment: Identified, groups: list[list[int]], 
     return _in_order(found, groups), likeness
 
 
-def _scales(frequencies: Array, experiment: Identified, groups: list[list[int]], both: tuple[Array, Array]) -> Array:
+def _scales(frequencies: Array, experiment: Identified, groups: list[list[int]], own: Array, seen: Array) -> Array:
     """How much larger every output is measured than theory has it, modes paired by frequency alone: scaled shapes tell no pairs."""
-    own, seen = both
     apart = np.abs(np.log(experiment.frequencies[None, :] / frequencies[:, None]))
     first, second = scipy.optimize.linear_sum_assignment(np.minimum(apart, _FARTHEST))
     found = {i: j for i, j in zip(first.tolist(), second.tolist(), strict=True) if apart[i, j] <= _FARTHEST}
@@ -279,13 +292,14 @@ def _matched(groups: list[list[int]], candidates: tuple[int, ...], pairs: dict[i
 
 def _residues(
     mechanism: Mechanism,
-    known: tuple[LinearModel, Modes],
+    model: LinearModel,
+    theory: Modes,
     experiment: Identified,
     sensors: Sequence[str],
+    *,
     matched: list[tuple[list[int], list[int]]],
 ) -> Residues:
     """Modal gains of theory and test between shared sensors and shared inputs: repeated modes together, whatever their basis."""
-    model, theory = known
     names = {channel.name for channel in model.inputs}
     columns = [index for index, channel in enumerate(experiment.inputs) if channel.name in names]
     inputs = tuple(experiment.inputs[index].name for index in columns)
@@ -339,9 +353,8 @@ def _measured(experiment: Identified, index: int) -> Measured:
 
 
 def _further(
-    theory: Modes, candidates: tuple[int, ...], experiment: Identified, found: tuple[dict[int, int], Array]
+    theory: Modes, candidates: tuple[int, ...], experiment: Identified, pairs: dict[int, int], likeness: Array
 ) -> Iterator[FurtherMode]:
-    pairs, likeness = found
     partners = {measured: place for place, measured in pairs.items()}
     for index in range(len(experiment.frequencies)):
         place = partners.get(index)

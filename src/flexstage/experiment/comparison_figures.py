@@ -18,16 +18,16 @@ def compare_figure(found: Compared) -> Any:
 
     Whiskers are the experiment's 95 % intervals, in the lower panel as bands about zero.
     """
-    series: list[_Series] = [("theory", _THEORY, [row.theory for row in found.rows])]
+    series: list[_Series] = [("theory", _THEORY, [row.theory for row in found.modes])]
     if found.fea is not None:
-        series.append(("FEA", _FEA, [row.fea for row in found.rows]))
-    series.append(("experiment", _EXPERIMENT, [None if row.experiment is None else row.experiment.frequency for row in found.rows]))
+        series.append(("FEA", _FEA, [row.fea for row in found.modes]))
+    series.append(("experiment", _EXPERIMENT, [None if row.experiment is None else row.experiment.frequency for row in found.modes]))
     with styled():
         figure = canvas(FULL, 3.9)
         grid = panels(figure, 2, 1, Margins(left=0.7, top=0.45, bottom=0.55, down=0.18), heights=[1.7, 1.0])
-        _bars(grid[0, 0], series, found.rows)
+        _bars(grid[0, 0], series, found.modes)
         _differences(grid[1, 0], found)
-        names = [f"{row.number}\n{row.name}" for row in found.rows]
+        names = [f"{row.number}\n{row.name}" for row in found.modes]
         grid[1, 0].set_xticks(range(len(names)), names)
         grid[0, 0].tick_params(labelbottom=False)
         grid[1, 0].set_xlabel("mode of the platform")
@@ -46,7 +46,7 @@ def _bars(axes: Any, series: list[_Series], rows: tuple[ComparedMode, ...]) -> N
         for index, height in zip(known, heights, strict=True):
             axes.text(places[index], height, f"{height:.1f}", ha="center", va="bottom", fontsize=5.5, color=INK)
         if name == "experiment":
-            seen = [row.experiment.interval for row in rows if row.experiment is not None]
+            seen = [row.experiment.frequency_interval for row in rows if row.experiment is not None]
             whiskers = np.abs(np.array(seen).reshape(-1, 2).T - np.array(heights))
             axes.errorbar(places[known], heights, yerr=whiskers, fmt="none", ecolor=INK, elinewidth=0.8, capsize=1.5)
     axes.set_ylabel("frequency [Hz]")
@@ -57,15 +57,15 @@ def _bars(axes: Any, series: list[_Series], rows: tuple[ComparedMode, ...]) -> N
 def _differences(axes: Any, found: Compared) -> None:
     """Points at the differences, bands at the experiment's interval, repeated modes joined below."""
     axes.axhline(0.0, color=MUTED, linewidth=0.6)
-    seen = [index for index, row in enumerate(found.rows) if row.experiment is not None]
-    width = [100.0 * (found.rows[index].uncertainty or 0.0) for index in seen]
+    seen = [index for index, row in enumerate(found.modes) if row.experiment is not None]
+    width = [100.0 * (found.modes[index].uncertainty or 0.0) for index in seen]
     axes.bar(seen, [2.0 * each for each in width], 0.7, bottom=[-each for each in width], color=_EXPERIMENT, alpha=0.35)
     for name, colour, marker in (("difference", _THEORY, "o"), ("fea_difference", _FEA, "s")):
-        points = [(index, 100.0 * value) for index in seen if (value := getattr(found.rows[index], name)) is not None]
+        points = [(index, 100.0 * value) for index in seen if (value := getattr(found.modes[index], name)) is not None]
         if points:
             axes.plot(*zip(*points, strict=True), marker, color=colour, markersize=4.0, linestyle="none")
     largest = max((abs(line) for each in axes.lines for line in np.ravel(each.get_ydata()).astype(float)), default=0.0)
     reach = 1.25 * max(largest, *width, 0.05) if width else 1.0
     axes.set_ylim(-reach, reach)
-    axes.set_xlim(-0.6, len(found.rows) - 0.4)
+    axes.set_xlim(-0.6, len(found.modes) - 0.4)
     axes.set_ylabel("difference [%]")

@@ -16,7 +16,7 @@ _NEAR, _OFF = 0.02, 0.1
 def compare_table(found: Compared) -> Table:
     """Platform modes by theory, FEA where there is one, and experiment: frequencies, differences, modal assurance."""
     with_fea = found.fea is not None
-    rows = [_line(row, with_fea=with_fea) for row in found.rows]
+    rows = [_line(row, with_fea=with_fea) for row in found.modes]
     heads = ["mode", "name", Column(f"theory ({found.model.value})", "Hz")]
     heads += [Column("FEA", "Hz"), Column("FEA's error")] if with_fea else []
     heads += [Column("experiment", "Hz"), Column("95 % interval", "Hz"), Column("widened"), Column("theory off")]
@@ -41,7 +41,7 @@ def _line(row: ComparedMode, *, with_fea: bool) -> list[Content]:
 def _experiment(seen: Measured | None) -> list[Content]:
     if seen is None:
         return [Cell("not found", Mark.WARN), NO_VALUE, NO_VALUE]
-    return [*interval_texts(np.array([seen.frequency]), np.array([seen.interval]))[0], widening_cell(seen.widening)]
+    return [*interval_texts(np.array([seen.frequency]), np.array([seen.frequency_interval]))[0], widening_cell(seen.widening)]
 
 
 def _damping(seen: Measured | None) -> list[Content]:
@@ -106,7 +106,7 @@ def further_table(found: Compared) -> Table | None:
         return None
     rows = [
         (
-            Cell(str(mode.experiment.number + 1), Mark.STRONG),
+            Cell(str(mode.experiment.number), Mark.STRONG),
             *_experiment(mode.experiment),
             _damping(mode.experiment)[0],
             mode.name or NO_VALUE,

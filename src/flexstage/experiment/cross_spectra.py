@@ -5,11 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from enum import Enum
+from typing import Annotated
 
 import numpy as np
 
 from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.number import Array
+from flexstage.base.quantity import FREQUENCY
+from flexstage.base.record import INNER
 from flexstage.experiment.record import Channel, Record
 
 _BATCH = 2_000_000
@@ -41,7 +44,7 @@ class Window(Enum):
 class Segments:
     """How a record is cut up: `seconds` of each segment (its inverse is the resolution in Hz), `overlap` as a share, and window."""
 
-    seconds: float
+    seconds: Annotated[float, INNER]
     overlap: float = 0.5
     window: Window = Window.HANN
 
@@ -56,14 +59,19 @@ class Spectra:
     """
 
     frequencies: Array
-    inputs: tuple[Channel, ...]
-    outputs: tuple[Channel, ...]
+    inputs: Annotated[tuple[Channel, ...], INNER]
+    outputs: Annotated[tuple[Channel, ...], INNER]
     xx: Array
     yx: Array
     yy: Array
     averages: int
     independent: float
     segments: Segments
+
+    @property
+    def resolution(self) -> Annotated[float, FREQUENCY]:
+        """How far the lines lie apart."""
+        return float(self.frequencies[1])
 
     def band(self, low: float, high: float) -> Spectra:
         """The lines from `low` to `high` in Hz, both included."""

@@ -48,8 +48,8 @@ def response_matrix_figure(found: Identified) -> Any:
             for column in range(len(columns)):
                 pair = grid[2 * row : 2 * row + 2, column]
                 own = None if fitted is None else fitted[:, row, column]
-                _magnitude(pair[0], (lines, values[:, row, column]), (fine, own), bins)
-                _phase(pair[1], (lines, values[:, row, column]), (fine, own), bins)
+                _magnitude(pair[0], lines, values[:, row, column], fine=fine, fit=own, bins=bins)
+                _phase(pair[1], lines, values[:, row, column], fine=fine, fit=own, bins=bins)
             _same_scale(grid[2 * row], values[:, row, : len(columns)])
         _matrix_labels(grid, rows, columns, band)
     return figure
@@ -69,20 +69,20 @@ def focus(found: Identified) -> tuple[float, float]:
     return max(low, _BELOW * float(np.min(found.frequencies))), min(high, _ABOVE * float(np.max(found.frequencies)))
 
 
-def _magnitude(axes: Any, data: tuple[Array, Array], fit: tuple[Array, Array | None], bins: int) -> None:
-    x, size = _extremes(data[0], np.abs(data[1]), bins)
+def _magnitude(axes: Any, lines: Array, data: Array, *, fine: Array, fit: Array | None, bins: int) -> None:
+    x, size = _extremes(lines, np.abs(data), bins)
     axes.semilogy(x, size, color=_DATA, linewidth=1.6)
-    if fit[1] is not None:
-        axes.semilogy(fit[0], np.abs(fit[1]), color=_FIT, linewidth=0.8)
+    if fit is not None:
+        axes.semilogy(fine, np.abs(fit), color=_FIT, linewidth=0.8)
 
 
-def _phase(axes: Any, data: tuple[Array, Array], fit: tuple[Array, Array | None], bins: int) -> None:
-    step = max(1, len(data[0]) // bins)
-    axes.plot(data[0][::step], np.rad2deg(np.angle(data[1][::step])), ".", color=_DATA, markersize=2.0, markeredgewidth=0.0)
-    if fit[1] is not None:
-        angle = np.rad2deg(np.angle(fit[1]))
+def _phase(axes: Any, lines: Array, data: Array, *, fine: Array, fit: Array | None, bins: int) -> None:
+    step = max(1, len(lines) // bins)
+    axes.plot(lines[::step], np.rad2deg(np.angle(data[::step])), ".", color=_DATA, markersize=2.0, markeredgewidth=0.0)
+    if fit is not None:
+        angle = np.rad2deg(np.angle(fit))
         jumps = np.flatnonzero(np.abs(np.diff(angle)) > 0.5 * _PERIOD) + 1
-        axes.plot(np.insert(fit[0], jumps, np.nan), np.insert(angle, jumps, np.nan), color=_FIT, linewidth=0.8)
+        axes.plot(np.insert(fine, jumps, np.nan), np.insert(angle, jumps, np.nan), color=_FIT, linewidth=0.8)
     axes.set_ylim(-200.0, 200.0)
     axes.set_yticks([-180.0, 0.0, 180.0])
 

@@ -158,7 +158,7 @@ def _samples(record: Record, found: Gathered, where: str) -> Iterator[Fault]:
     for channel, numbers in zip(record.channels, found.channels, strict=True):
         place = f"{where}: {channel.name}"
         if numbers.broken:
-            yield from _broken(record, channel, numbers, (place, found.stretch))
+            yield from _broken(record, channel, numbers, place, found.stretch)
         if numbers.broken < record.length:
             dead = _dead(record, channel, numbers) or _faint(record, found, channel, numbers)
             windowed = _force_windowed(record, channel, numbers)
@@ -170,8 +170,8 @@ def _samples(record: Record, found: Gathered, where: str) -> Iterator[Fault]:
                 yield from _clipped(record, channel, numbers, place)
 
 
-def _broken(record: Record, channel: Channel, numbers: Numbers, where: tuple[str, tuple[int, int]]) -> Iterator[Fault]:
-    place, (start, stop) = where
+def _broken(record: Record, channel: Channel, numbers: Numbers, place: str, stretch: tuple[int, int]) -> Iterator[Fault]:
+    start, stop = stretch
     share = numbers.broken / max(1, record.length)
     first = record.start + numbers.first_broken / record.rate
     what = f"{numbers.broken} of {record.length} samples are not numbers, the first at {first:.6g} s"

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TypeAlias
+from typing import Annotated, TypeAlias
 
 import numpy as np
 
 from flexstage.base.finding import DesignError, Finding, joined, require
 from flexstage.base.number import Array
+from flexstage.base.record import INNER, VIEW
 from flexstage.experiment.cross_spectra import Spectra, pooled, spectra
 from flexstage.experiment.health import Needs, responses_findings, usable
 from flexstage.experiment.identification.evidence import chosen_segments
@@ -37,12 +38,26 @@ class Identification:
     spectra do not give them. All are absent for an analyser's responses. H1 and the ordinary coherence are in `found.responses`.
     """
 
-    test: Measurement
-    found: Identified
+    test: Annotated[Measurement, INNER]
+    found: Annotated[Identified, INNER]
     spectra: Spectra | None = None
     multiple: Array | None = None
-    second: Responses | None = None
-    ratio: Responses | None = None
+    second: Annotated[Responses | None, INNER] = None
+    ratio: Annotated[Responses | None, INNER] = None
+
+    @property
+    def files(self) -> Annotated[tuple[Record | Responses, ...], VIEW]:
+        """What was measured, file by file."""
+        return (self.test,) if isinstance(self.test, Responses) else self.test
+
+    @property
+    def mean_multiple_coherence(self) -> Annotated[Mapping[str, float] | None, VIEW]:
+        """The share of each output's power that all inputs explain, over the band; null for an analyser's responses."""
+        if self.spectra is None or self.multiple is None:
+            return None
+        low, high = self.found.band
+        inside = (self.spectra.frequencies >= low) & (self.spectra.frequencies <= high)
+        return {channel.name: float(np.mean(self.multiple[inside, row])) for row, channel in enumerate(self.spectra.outputs)}
 
 
 def sound(

@@ -10,13 +10,15 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from enum import Enum
-from typing import Protocol
+from typing import Annotated, Protocol
 
 import numpy as np
 
 from flexstage.base.finding import Finding, nearest, require
 from flexstage.base.labelled import ratio_units
 from flexstage.base.number import Array
+from flexstage.base.quantity import FREQUENCY, TIME
+from flexstage.base.record import INNER, VIEW
 
 RATES = (1e-12, 1e15)
 """Sampling rates there can be [Hz]."""
@@ -36,7 +38,7 @@ class Channel:
 
     name: str
     unit: str = ""
-    role: Role = Role.UNKNOWN
+    role: Annotated[Role, INNER] = Role.UNKNOWN
 
 
 class Samples(Protocol):
@@ -143,11 +145,11 @@ class Record:
     (2.0, ['S1'])
     """
 
-    channels: tuple[Channel, ...]
-    rate: float
-    samples: Samples
-    start: float = 0.0
-    name: str = ""
+    channels: Annotated[tuple[Channel, ...], INNER]
+    rate: Annotated[float, FREQUENCY]
+    samples: Annotated[Samples, INNER]
+    start: Annotated[float, INNER] = 0.0
+    name: Annotated[str, INNER] = ""
     source: str = ""
 
     def __post_init__(self) -> None:
@@ -155,12 +157,17 @@ class Record:
         require([*_rate_findings(where, self.rate), *name_findings(where, self.channels)])
 
     @property
-    def length(self) -> int:
+    def kind(self) -> Annotated[str, VIEW]:
+        """`record`, beside `responses`."""
+        return "record"
+
+    @property
+    def length(self) -> Annotated[int, VIEW]:
         """Number of samples of each channel."""
         return self.samples.length
 
     @property
-    def duration(self) -> float:
+    def duration(self) -> Annotated[float, TIME]:
         """Length in seconds: number of samples over rate."""
         return self.length / self.rate
 
@@ -170,12 +177,12 @@ class Record:
         return tuple(channel.name for channel in self.channels)
 
     @property
-    def inputs(self) -> tuple[Channel, ...]:
+    def inputs(self) -> Annotated[tuple[Channel, ...], VIEW]:
         """Channels that were inputs."""
         return tuple(channel for channel in self.channels if channel.role is Role.INPUT)
 
     @property
-    def outputs(self) -> tuple[Channel, ...]:
+    def outputs(self) -> Annotated[tuple[Channel, ...], VIEW]:
         """Channels that were outputs."""
         return tuple(channel for channel in self.channels if channel.role is Role.OUTPUT)
 
@@ -246,7 +253,7 @@ class Responses:
     coherence: Array | None = None
     window: str = ""
     averages: int | None = None
-    name: str = ""
+    name: Annotated[str, INNER] = ""
     source: str = ""
 
     def __post_init__(self) -> None:
@@ -260,6 +267,21 @@ class Responses:
             if shape != expected
         ]
         require([*name_findings(where, self.outputs), *name_findings(where, self.inputs), *wrong])
+
+    @property
+    def kind(self) -> Annotated[str, VIEW]:
+        """`responses`, beside `record`."""
+        return "responses"
+
+    @property
+    def lines(self) -> Annotated[int, VIEW]:
+        """Number of frequencies."""
+        return len(self.frequencies)
+
+    @property
+    def band(self) -> Annotated[tuple[float, float], FREQUENCY]:
+        """The lowest and the highest frequency."""
+        return float(self.frequencies[0]), float(self.frequencies[-1])
 
     @property
     def units(self) -> tuple[tuple[str, ...], ...]:

@@ -107,7 +107,7 @@ def measured_shape_section(found: Identified, shapes: StageShapes, seen: Scene) 
 
 def _pictures(found: Identified, shapes: StageShapes, seen: Scene) -> Iterator[Picture]:
     for index, frequency in enumerate(found.frequencies):
-        twists = {name: twist[:, index] for name, twist in shapes.twists.items() if name in seen.references}
+        twists = {name: twist[:, index] for name, twist in shapes.motions.items() if name in seen.references}
         largest = largest_motion(seen, twists)
         if largest > 0.0:
             picture = moved_picture(seen, twists, _REACH * seen.size / largest, width=THIRD)

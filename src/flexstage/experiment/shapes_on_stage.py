@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
 from flexstage.base.dimension import dimension_of
 from flexstage.base.number import Array, first_design
+from flexstage.base.quantity import RATIO
+from flexstage.base.record import VIEW
 from flexstage.experiment.identification.identified import Identified
 from flexstage.experiment.record import Channel
 from flexstage.experiment.unit import unit_problem
@@ -23,15 +26,21 @@ _RANK = 1e-6
 class StageShapes:
     """Measured shapes as motions of the stage.
 
-    `twists` holds by body the twists (6, k) [m, rad] of all modes; `used` names the outputs they follow from; `explained` (k,) is the
+    `motions` holds by body the twists (6, k) [m, rad] of all modes; `used` names the outputs they follow from; `explained` (k,) is the
     share of each measured shape that a motion of the ideal stage explains: 1 where there are no more outputs than freedoms. `missing` says
     why there are no twists.
     """
 
-    twists: Mapping[str, Array]
+    motions: Mapping[str, Array]
     used: tuple[str, ...]
-    explained: Array
-    missing: str = ""
+    explained: Annotated[Array, RATIO]
+    missing: str | None = None
+
+    @property
+    def twists(self) -> Annotated[tuple[Mapping[str, float], ...] | None, VIEW]:
+        """The platform's twist [m, rad] in each mode."""
+        found = self.motions.get(PLATFORM)
+        return None if found is None else tuple(dict(zip(COMPONENTS, column.tolist(), strict=True)) for column in found.T)
 
 
 def stage_shapes(kinematics: Kinematics, found: Identified) -> StageShapes:

@@ -76,7 +76,7 @@ class Room:
             limit = np.inf if self.envelope is None else float(np.min(self.envelope[..., index]))
             if size > limit + _TOUCHING:
                 shown = (show(size, LENGTH, digits=4), show(limit, LENGTH, digits=4))
-                ends = f"{self.extreme[index]} and {self.extreme[3 + index]}"
+                ends = " and ".join(dict.fromkeys((self.extreme[index], self.extreme[3 + index])))
                 yield Finding(f"envelope.{axis}", f"the stage is {shown[0]} wide, the envelope {shown[1]}", f"Look at {ends}")
 
 

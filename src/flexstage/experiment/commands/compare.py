@@ -23,7 +23,6 @@ from flexstage.experiment.commands.records import (
     identify_records,
     shapes_on,
 )
-from flexstage.experiment.document import compare_body
 from flexstage.experiment.report import compare_report
 from flexstage.experiment.sections import compare_tables
 from flexstage.models.theory import Model
@@ -75,4 +74,4 @@ def compare(  # noqa: PLR0913 (its options)
     if report is not None:
         save(report, compare_report(found, seen, mechanism, shapes_on(mechanism, seen)), "--report")
     tables = compare_tables(found)[:-1]
-    answer("compare", mechanism, lambda: compare_body(found), lambda: tables, model=model, json=json, beside=(report,))
+    answer("compare", mechanism, lambda: found, lambda: tables, model=model, json=json, beside=(report,))

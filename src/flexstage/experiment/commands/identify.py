@@ -8,6 +8,8 @@ from typing import Annotated, TypeAlias
 
 import typer
 
+from flexstage.base.document import Document
+from flexstage.base.record import walk
 from flexstage.experiment.commands.records import (
     Allow,
     Band,
@@ -22,9 +24,9 @@ from flexstage.experiment.commands.records import (
     identify_records,
     shapes_on,
 )
-from flexstage.experiment.document import identify_body
 from flexstage.experiment.pipeline import Identification
 from flexstage.experiment.report import identify_report
+from flexstage.experiment.shapes_on_stage import StageShapes
 from flexstage.experiment.tables import identified_table, measured_shape_table, peak_table, recorded_table
 from flexstage.models.theory import Model
 from flexstage.show.command.answer import answer
@@ -70,7 +72,11 @@ def identify(  # noqa: PLR0913 (its options)
     shapes = None if mechanism is None else shapes_on(mechanism, seen)
     if report is not None:
         save(report, identify_report(seen, mechanism, shapes), "--report")
-    answer("identify", mechanism, lambda: identify_body(seen, shapes), lambda: _tables(seen), json=json, beside=(report,))
+    answer("identify", mechanism, lambda: _body(seen, shapes), lambda: _tables(seen), json=json, beside=(report,))
+
+
+def _body(seen: Identification, shapes: StageShapes | None) -> Document:
+    return {**walk(seen), **walk(seen.found), **({} if shapes is None else {"platform": shapes})}
 
 
 def _tables(seen: Identification) -> Iterator[Table | None]:

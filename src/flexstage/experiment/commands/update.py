@@ -27,7 +27,6 @@ from flexstage.experiment.commands.records import (
     names,
 )
 from flexstage.experiment.updating import update as updating
-from flexstage.experiment.updating.document import update_body
 from flexstage.experiment.updating.free import DEFAULT, Known
 from flexstage.experiment.updating.free import free as free_numbers
 from flexstage.experiment.updating.tables import update_tables
@@ -93,8 +92,7 @@ def update(  # noqa: PLR0913 (its options)
     save(output, updated_text(text, found, ", ".join(path.name for path in record), where=str(design)), "--output")
     for caution in found.warnings[len(seen.found.warnings) :]:
         warn(caution)
-    body, tables = lambda: update_body(found), lambda: update_tables(found)
-    answer("update", mechanism, body, tables, model=Model.LUMPED, json=json, beside=(output,))
+    answer("update", mechanism, lambda: found, lambda: update_tables(found), model=Model.LUMPED, json=json, beside=(output,))
 
 
 def _known(priors: Sequence[str], model_error: str, gain_error: str, *, gain: bool) -> Known:

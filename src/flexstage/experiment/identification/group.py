@@ -94,7 +94,7 @@ def grouped(known: Evidence, cells: Cells, candidates: tuple[Candidate, ...], hu
     for _ in range(_ROUNDS):
         band = replace(band, variance=noise(band, found.modal))
         found, strength = _pruned(band, fit(band, found.modal), hunt)
-        band, found, strength = _extended(band, (found, strength), hunt)
+        band, found, strength = _extended(band, found, strength, hunt)
     if not len(found.modal.poles):
         return None
     beyond = misfits(band, found.modal)
@@ -181,9 +181,8 @@ def _pruned(band: Band, found: Fit, hunt: Hunt) -> tuple[Fit, Array]:
     return found, np.zeros(0)
 
 
-def _extended(band: Band, known: tuple[Fit, Array], hunt: Hunt) -> tuple[Band, Fit, Array]:
+def _extended(band: Band, found: Fit, strength: Array, hunt: Hunt) -> tuple[Band, Fit, Array]:
     """Add modes, one at a time, where the data hold more than those found explain, as long as that is significant."""
-    found, strength = known
     while len(found.modal.poles) < _MOST_MODES:
         score = excess(band, found.modal)
         place = int(np.argmax(score))

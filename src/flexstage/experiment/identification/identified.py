@@ -2,18 +2,40 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Annotated
 
 import numpy as np
 
-from flexstage.base.labelled import Matrix, ratio_units
+from flexstage.base.labelled import Matrix
 from flexstage.base.number import Array
+from flexstage.base.quantity import FREQUENCY
+from flexstage.base.record import INNER, VIEW
 from flexstage.experiment.identification.cluster import Stabilisation
 from flexstage.experiment.identification.confidence import NORMAL_95
 from flexstage.experiment.identification.peaks import Peak
 from flexstage.experiment.identification.residues import modal_sum, remainder_sum
 from flexstage.experiment.record import Channel, Responses
+
+
+@dataclass(frozen=True)
+class IdentifiedMode:
+    """One mode, its number counted from 1, with 95 % intervals; `shape` by output and `participation` by input are complex.
+
+    `widening`, `complexity` and `significance` are told at `Identified`.
+    """
+
+    number: int
+    frequency: Annotated[float, FREQUENCY]
+    frequency_interval: Annotated[tuple[float, float], FREQUENCY]
+    damping: float
+    damping_interval: tuple[float, float]
+    widening: float
+    shape: Mapping[str, complex]
+    participation: Mapping[str, complex]
+    complexity: float
+    significance: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,17 +60,42 @@ class Identified:
     shape_deviations: Array
     widening: Array
     significance: Array
-    outputs: tuple[Channel, ...]
-    inputs: tuple[Channel, ...]
-    close: tuple[tuple[int, ...], ...]
+    outputs: Annotated[tuple[Channel, ...], INNER]
+    inputs: Annotated[tuple[Channel, ...], INNER]
+    close: Annotated[tuple[tuple[int, ...], ...], INNER]
     residuals: Array
-    responses: Responses
-    stabilisation: tuple[Stabilisation, ...]
-    band: tuple[float, float]
+    responses: Annotated[Responses, INNER]
+    stabilisation: Annotated[tuple[Stabilisation, ...], INNER]
+    band: Annotated[tuple[float, float], FREQUENCY]
     noise: Array
     warnings: tuple[str, ...]
     provenance: str
     peaks: tuple[Peak, ...] = ()
+
+    @property
+    def modes(self) -> Annotated[tuple[IdentifiedMode, ...], VIEW]:
+        """The modes one by one, ascending."""
+        return tuple(self._mode(index) for index in range(len(self.frequencies)))
+
+    def _mode(self, index: int) -> IdentifiedMode:
+        (low, high), (least, most) = self.frequency_intervals[index].tolist(), self.damping_intervals[index].tolist()
+        return IdentifiedMode(
+            number=index + 1,
+            frequency=float(self.frequencies[index]),
+            frequency_interval=(low, high),
+            damping=float(self.damping[index]),
+            damping_interval=(least, most),
+            widening=float(self.widening[index]),
+            shape=_by_channel(self.outputs, self.shapes[:, index]),
+            participation=_by_channel(self.inputs, self.participation[index]),
+            complexity=float(self.complexity[index]),
+            significance=float(self.significance[index]),
+        )
+
+    @property
+    def close_modes(self) -> Annotated[tuple[tuple[int, ...], ...], VIEW]:
+        """Numbers of modes that lie nearer than their half-widths: compare those by subspace."""
+        return tuple(tuple(index + 1 for index in group) for group in self.close)
 
     @property
     def poles(self) -> Array:
@@ -84,38 +131,16 @@ class Identified:
         values = modal_sum(frequencies, self.poles, self.shapes, self.participation) + remainder_sum(frequencies, self.residuals)
         return Responses(np.asarray(frequencies), self.outputs, self.inputs, values, name="modes", source=self.provenance)
 
-    def shape_matrix(self) -> Matrix:
-        """The real shapes labelled: rows are outputs, columns modes."""
+    @property
+    def shape_matrix(self) -> Annotated[Matrix, VIEW]:
+        """The real shapes: rows are outputs, columns modes."""
         names = tuple(str(index + 1) for index in range(len(self.frequencies)))
         return Matrix(self.real_shapes, tuple(channel.name for channel in self.outputs), names, "1")
-
-    def to_json(self) -> dict[str, Any]:
-        """Modes, deviations, shapes and warnings as plain lists."""
-        rows = tuple(channel.unit or "?" for channel in self.outputs)
-        unit = ratio_units(rows, tuple(channel.unit or "?" for channel in self.inputs))
-        return {
-            "frequency_hz": self.frequencies.tolist(),
-            "frequency_interval_hz": self.frequency_intervals.tolist(),
-            "damping": self.damping.tolist(),
-            "damping_interval": self.damping_intervals.tolist(),
-            "outputs": [channel.name for channel in self.outputs],
-            "inputs": [channel.name for channel in self.inputs],
-            "shape_real": np.real(self.shapes).tolist(),
-            "shape_imaginary": np.imag(self.shapes).tolist(),
-            "shape_deviation": self.shape_deviations.tolist(),
-            "participation_real": np.real(self.participation).tolist(),
-            "participation_imaginary": np.imag(self.participation).tolist(),
-            "response_unit": [list(row) for row in unit],
-            "widening": self.widening.tolist(),
-            "complexity": self.complexity.tolist(),
-            "close": [[index + 1 for index in group] for group in self.close],
-            "significance": self.significance.tolist(),
-            "band_hz": list(self.band),
-            "peaks": [peak.to_json() for peak in self.peaks],
-            "warnings": list(self.warnings),
-            "provenance": self.provenance,
-        }
 
 
 def _interval(values: Array, deviations: Array) -> Array:
     return np.stack([values - NORMAL_95 * deviations, values + NORMAL_95 * deviations], axis=-1)
+
+
+def _by_channel(channels: Sequence[Channel], values: Array) -> dict[str, complex]:
+    return {channel.name: complex(value) for channel, value in zip(channels, values, strict=True)}

@@ -79,7 +79,7 @@ def _identified(what: Record | Responses | Sequence[Record], search: Search, tel
     diagrams, candidates, reach = _candidates(known, band, search)
     lost: list[Lost] = []
     found, refused, share = _driven(known, _fitted(known, candidates, band, search.highest_damping, lost))
-    return _result(known, (band, reach, diagrams), found, share, (refused, lost))
+    return _result(known, found, share, band=band, reach=reach, diagrams=diagrams, refused=refused, lost=lost)
 
 
 def _band(known: Evidence, search: Search) -> tuple[float, float]:
@@ -169,12 +169,15 @@ def _driven(known: Evidence, fitted: list[Found]) -> tuple[list[Found], list[Los
 
 def _result(
     known: Evidence,
-    searched: tuple[tuple[float, float], Reach, tuple[Stabilisation, ...]],
     found: list[Found],
     share: Array,
-    doubted: tuple[list[Lost], list[Lost]],
+    *,
+    band: tuple[float, float],
+    reach: Reach,
+    diagrams: tuple[Stabilisation, ...],
+    refused: list[Lost],
+    lost: list[Lost],
 ) -> Identified:
-    band, reach, diagrams = searched
     inputs, outputs = len(known.input_scale), len(known.output_scale)
     modal = _joined([part.modal for part in found], inputs, outputs)
     widened = [part.deviations.widened(part.widening) for part in found]
@@ -207,7 +210,7 @@ def _result(
         band=band,
         noise=np.median(known.density[inside], axis=0) * 2.0 / known.rate,
         warnings=warnings(known, Modes(poles, close, share[order], widening[order]), reach),
-        peaks=peaks(known, Left(lines, rest, poles), *doubted),
+        peaks=peaks(known, Left(lines, rest, poles), refused, lost),
         provenance=f"identified from {known.where}: pLSCF, then maximum likelihood",
     )
 

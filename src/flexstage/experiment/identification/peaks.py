@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from enum import Enum
-from typing import Any
+from typing import Annotated
 
 import numpy as np
 import scipy
 
 from flexstage.base.number import Array
+from flexstage.base.quantity import FREQUENCY
+from flexstage.base.record import VIEW
 from flexstage.experiment.identification.evidence import Evidence
 from flexstage.experiment.identification.group import Lost
 from flexstage.experiment.identification.tones import Tone
@@ -51,15 +53,15 @@ class Peak:
     lines within their width.
     """
 
-    frequency: float
+    frequency: Annotated[float, FREQUENCY]
     doubt: Doubt
     chance: float
-    width: float | None
-    resolution: float
+    width: Annotated[float | None, FREQUENCY]
+    resolution: Annotated[float, FREQUENCY]
     outputs: tuple[str, ...]
 
     @property
-    def reason(self) -> str:
+    def reason(self) -> Annotated[str, VIEW]:
         """Why it is no mode, in words.
 
         >>> Peak(120.0, Doubt.NARROW, 1e-6, None, 0.3125, ("y",)).reason
@@ -75,22 +77,6 @@ class Peak:
             return "noise might be as strong. Record longer, or drive more."
         lines = f"one line, {self.resolution:.4g} Hz from the next"
         return f"{lines}: a narrower resonance or a tone{_mains(self)}. Measure with finer lines."
-
-    def to_json(self) -> dict[str, Any]:
-        """The peak as plain values.
-
-        >>> Peak(50.0, Doubt.TONE, 1e-12, None, 0.1, ("S1",)).to_json()["doubt"]
-        'tone'
-        """
-        return {
-            "frequency_hz": self.frequency,
-            "doubt": self.doubt.value,
-            "chance": self.chance,
-            "width_hz": self.width,
-            "resolution_hz": self.resolution,
-            "outputs": list(self.outputs),
-            "reason": self.reason,
-        }
 
 
 @dataclass(frozen=True, eq=False)

@@ -105,7 +105,7 @@ def quieted(record: Record, tell: Tell | None = None) -> tuple[Record, tuple[Ton
     size = record.length // parts
     found: list[Tone] = []
     for start in range(0, parts * size, size):
-        found += _within(record, (inputs, outputs), start, start + size)
+        found += _within(record, inputs, outputs, start, start + size)
         if tell is not None:
             tell((start + size) / (parts * size))
     if not steady(found):
@@ -113,9 +113,8 @@ def quieted(record: Record, tell: Tell | None = None) -> tuple[Record, tuple[Ton
     return replace(record, samples=Quieted(record.samples, steady(found), outputs, record.rate)), tuple(found)
 
 
-def _within(record: Record, columns: tuple[tuple[int, ...], tuple[int, ...]], start: int, stop: int) -> list[Tone]:
+def _within(record: Record, inputs: tuple[int, ...], outputs: tuple[int, ...], start: int, stop: int) -> list[Tone]:
     found: list[Tone] = []
-    inputs, outputs = columns
     line = record.rate / (stop - start)
     for _ in range(_ROUNDS):
         block = Quieted(record.samples, steady(found), outputs, record.rate).read(start, stop)[:, [*inputs, *outputs]]

@@ -64,7 +64,7 @@ def fitted(problem: Problem[_State], start: Array, state: _State) -> Fitted[_Sta
     while count < _MOST_STEPS:
         step = _step(slopes, residuals, here)
         count, length = count + 1, float(np.max(np.abs(step)))
-        taken = _down(problem, (here, state, residuals), step) if np.isfinite(length) else None
+        taken = _down(problem, here, state, residuals, step) if np.isfinite(length) else None
         if taken is None and not length < _NEAR:
             break
         if taken is not None:
@@ -81,9 +81,8 @@ def _step(slopes: Array, residuals: Array, here: Array) -> Array:
     return np.linalg.lstsq(stacked, np.concatenate([residuals, -here]), rcond=None)[0]
 
 
-def _down(problem: Problem[_State], now: tuple[Array, _State, Array], step: Array) -> tuple[Array, _State, Array] | None:
+def _down(problem: Problem[_State], here: Array, state: _State, residuals: Array, step: Array) -> tuple[Array, _State, Array] | None:
     """The first of ever shorter steps that lowers the cost; `None` where none does."""
-    here, state, residuals = now
     cost = _cost(residuals, here)
     for halving in range(_HALVINGS):
         there = here + step * 0.5**halving

@@ -56,11 +56,11 @@ def mode_rows(mechanism: Mechanism, compared: Compared, experiment: Identified) 
     """The rows that a comparison gives: one for each platform mode that was found, one for all of a group of repeated modes."""
     places = platform_modes(mechanism, lumped(mechanism)).platform
     repeated = [group.numbers for group in compared.repeated]
-    groups = [*repeated, *((row.number,) for row in compared.rows if not any(row.number in group for group in repeated))]
+    groups = [*repeated, *((row.number,) for row in compared.modes if not any(row.number in group for group in repeated))]
     found: list[ModeRow] = []
     for numbers in sorted(groups):
-        rows = [compared.rows[number - 1] for number in numbers]
-        measured = tuple(row.experiment.number for row in rows if row.experiment is not None)
+        rows = [compared.modes[number - 1] for number in numbers]
+        measured = tuple(row.experiment.index for row in rows if row.experiment is not None)
         if measured:
             names = dict.fromkeys(row.name for row in rows)
             label = f"mode {', '.join(str(number) for number in numbers)} ({', '.join(names)})"

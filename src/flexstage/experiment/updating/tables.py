@@ -16,7 +16,7 @@ def update_tables(found: Updated) -> Iterator[Table]:
     """All tables of an update."""
     yield update_table(found)
     yield residual_table(found)
-    if len(found.parameters) > 1:
+    if len(found.addresses) > 1:
         yield matrix_table("Correlations after the test", found.correlations)
         yield combination_table(found)
 
@@ -25,27 +25,26 @@ def update_table(found: Updated) -> Table:
     """Numbers before and after, with prior and posterior standard deviations."""
     rows = [
         (
-            Cell(name, Mark.STRONG),
-            value_with_unit(float(found.before[index]), found.units[index]),
-            value_with_unit(float(found.after[index]), found.units[index]),
-            _signed(100.0 * float(found.changes[index])),
-            number(100.0 * float(found.prior[index]), 2),
-            number(100.0 * float(found.deviations[index]), 2),
-            percent(float(found.left[index]), 2),
-            Cell(found.verdicts[index].partition("; ")[0], _MARKS[found.told[index]]),
+            Cell(each.address, Mark.STRONG),
+            value_with_unit(each.before, each.unit),
+            value_with_unit(each.after, each.unit),
+            _signed(100.0 * each.change),
+            number(100.0 * each.prior_deviation, 2),
+            number(100.0 * each.deviation, 2),
+            percent(each.prior_variance_left, 2),
+            Cell(each.verdict.partition("; ")[0], _MARKS[each.told]),
         )
-        for index, name in enumerate(found.parameters)
+        for each in found.parameters
     ]
     heads = [
         *("number", Column("before"), Column("after"), Column("change", "%"), Column("prior +-", "%"), Column("after +-", "%")),
         *(Column("variance left"), "what the test tells"),
     ]
-    known = found.known
+    known = found.assumed
     gains = "" if known.gain_error is None else f", gains {percent(known.gain_error, 3)}"
     errors = f"Stated or assumed errors: theory's frequencies {percent(known.model_error, 3)}{gains}; +- is one standard deviation."
     notes = ["Variance left: of the prior's. At most 10 % is identified, at most 20 % weakly, more is the prior's word.", errors]
-    parted = [(name, verdict.partition("; ")[2]) for name, verdict in zip(found.parameters, found.verdicts, strict=True)]
-    notes += [f"{name}: {rest}." for name, rest in parted if rest]
+    notes += [f"{each.address}: {rest}." for each in found.parameters if (rest := each.verdict.partition("; ")[2])]
     return build("Numbers after the test", heads, rows, notes=notes, provenance=found.provenance)
 
 
@@ -70,18 +69,18 @@ def combination_table(found: Updated) -> Table:
     """Combinations of numbers by how well the test tells them."""
     rows = [
         (
-            Cell(", ".join(f"{part:+.2f} {name}" for part, name in zip(column, found.parameters, strict=True) if abs(part) > 0.05)),
-            number(float(size), 3),
-            percent(float(1.0 / (1.0 + size**2)), 2),
+            Cell(", ".join(f"{part:+.2f} {name}" for name, part in each.direction.items() if abs(part) > 0.05)),
+            number(each.singular_value, 3),
+            percent(each.prior_variance_left, 2),
         )
-        for size, column in zip(found.singular, found.directions.T, strict=True)
+        for each in found.combinations
     ]
     notes = ["In prior standard deviations. A singular value of 1 halves the prior variance; far below, the test tells nothing."]
     return build("Combinations that the test tells", ["combination", Column("singular value"), Column("variance left")], rows, notes=notes)
 
 
 def _residual(each: Residual) -> tuple[Cell | str, ...]:
-    first, last = each.misfit_before, each.misfit
+    first, last = each.misfit_before, each.misfit_after
     mark = Mark.PASS if abs(last) < 2.0 else Mark.WARN if abs(last) < 3.0 else Mark.FAIL
     texts = (number(each.measured, 6), number(each.before, 6), number(each.after, 6), number(100.0 * each.deviation, 2))
     return (Cell(each.name, Mark.STRONG), *texts, _signed(first), Cell(_signed(last), mark))

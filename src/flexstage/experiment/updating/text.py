@@ -14,8 +14,8 @@ def updated_text(text: str, found: Updated, record: str, *, where: str = "text")
 
     Raises `DesignError` where the file's layout does not allow it.
     """
-    values = {name: float(f"{value:.{_DIGITS}g}") for name, value in zip(found.parameters, found.after.tolist(), strict=True)}
-    tags = {name: _tag(found, index, record) for index, name in enumerate(found.parameters)}
+    values = {name: float(f"{value:.{_DIGITS}g}") for name, value in zip(found.addresses, found.after.tolist(), strict=True)}
+    tags = {name: _tag(found, index, record) for index, name in enumerate(found.addresses)}
     return retagged(patch(text, values, where=where), tags, where=where)
 
 

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from enum import Enum
+from typing import Annotated
 
 import numpy as np
 import scipy
@@ -12,6 +13,7 @@ import scipy
 from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.labelled import Matrix
 from flexstage.base.number import Array
+from flexstage.base.record import INNER, VIEW
 from flexstage.experiment.comparison import Compared, compare, shared_sensors
 from flexstage.experiment.identification.confidence import NORMAL_95
 from flexstage.experiment.identification.identified import Identified
@@ -67,31 +69,64 @@ class Residual:
     deviation: float
     before: float
     after: float
-    scale: float
+    scale: Annotated[float, INNER]
 
     @property
-    def misfit_before(self) -> float:
+    def misfit_before(self) -> Annotated[float, VIEW]:
         """Measured less theory before, in standard deviations."""
         return (self.measured - self.before) / (self.scale * self.deviation)
 
     @property
-    def misfit(self) -> float:
+    def misfit_after(self) -> Annotated[float, VIEW]:
         """Measured less theory after, in standard deviations."""
         return (self.measured - self.after) / (self.scale * self.deviation)
+
+
+@dataclass(frozen=True)
+class UpdatedNumber:
+    """One number before and after, in SI; `change` is relative, deviations are of the logarithm.
+
+    `prior_variance_left` is the share that the test leaves; `told` and `verdict` say how well it tells the number.
+    """
+
+    address: str
+    unit: str
+    before: float
+    after: float
+    change: float
+    prior_deviation: float
+    deviation: float
+    interval: tuple[float, float]
+    prior_variance_left: float
+    told: Told
+    verdict: str
+
+
+@dataclass(frozen=True)
+class Combination:
+    """A combination of numbers, in prior standard deviations: 1/(1 + s^2) of its prior variance is left at a singular value s."""
+
+    singular_value: float
+    direction: Mapping[str, float]
+
+    @property
+    def prior_variance_left(self) -> Annotated[float, VIEW]:
+        """Share of the prior's variance."""
+        return 1.0 / (1.0 + self.singular_value**2)
 
 
 @dataclass(frozen=True, eq=False)
 class Updated:
     """Numbers before and after a test, SI, with the standard deviations of their logarithms (relative ones, where small).
 
-    `parameters` (P) are full addresses; `prior` (P,) and `covariance` (P, P) are of logarithms. `singular` (P,) and the columns of
+    `addresses` (P) are full; `prior` (P,) and `covariance` (P, P) are of logarithms. `singular` (P,) and the columns of
     `directions` (P, P) are combinations of parameters, in prior standard deviations, by how well the data tell them: 1/(1 + s^2) of the
     prior variance is left. `chi_square` counts data and priors at the result, over `freedoms` data; `chi_square_before` the data alone.
     `mechanism` is the description after. `warnings` say what not to rely on.
     """
 
-    parameters: tuple[str, ...]
-    units: tuple[str, ...]
+    addresses: Annotated[tuple[str, ...], INNER]
+    units: Annotated[tuple[str, ...], INNER]
     before: Array
     after: Array
     prior: Array
@@ -102,11 +137,38 @@ class Updated:
     chi_square_before: float
     chi_square: float
     steps: int
-    known: Known
+    assumed: Known
     mechanism: Mechanism
     compared: Compared
     warnings: tuple[str, ...]
     provenance: str
+
+    @property
+    def parameters(self) -> Annotated[tuple[UpdatedNumber, ...], VIEW]:
+        """The numbers one by one."""
+        return tuple(self._number(index) for index in range(len(self.addresses)))
+
+    def _number(self, index: int) -> UpdatedNumber:
+        low, high = self.intervals[index].tolist()
+        return UpdatedNumber(
+            address=self.addresses[index],
+            unit=self.units[index],
+            before=float(self.before[index]),
+            after=float(self.after[index]),
+            change=float(self.changes[index]),
+            prior_deviation=float(self.prior[index]),
+            deviation=float(self.deviations[index]),
+            interval=(low, high),
+            prior_variance_left=float(self.left[index]),
+            told=self.told[index],
+            verdict=self.verdicts[index],
+        )
+
+    @property
+    def combinations(self) -> Annotated[tuple[Combination, ...], VIEW]:
+        """Combinations of the numbers, best told first."""
+        columns = zip(self.singular, self.directions.T, strict=True)
+        return tuple(Combination(float(size), dict(zip(self.addresses, column.tolist(), strict=True))) for size, column in columns)
 
     @property
     def deviations(self) -> Array:
@@ -125,10 +187,10 @@ class Updated:
         return self.after / self.before - 1.0
 
     @property
-    def correlations(self) -> Matrix:
+    def correlations(self) -> Annotated[Matrix, VIEW]:
         """Posterior correlations (P, P)."""
         values = self.covariance / np.outer(self.deviations, self.deviations)
-        return Matrix(values, self.parameters, self.parameters, "1")
+        return Matrix(values, self.addresses, self.addresses, "1")
 
     @property
     def left(self) -> Array:
@@ -149,7 +211,7 @@ class Updated:
     @property
     def data(self) -> str:
         """What was compared: `frequencies`, or `frequencies and static gains`."""
-        return "frequencies" if self.known.gain_error is None else "frequencies and static gains"
+        return "frequencies" if self.assumed.gain_error is None else "frequencies and static gains"
 
     @property
     def verdicts(self) -> tuple[str, ...]:
@@ -157,12 +219,12 @@ class Updated:
         return tuple(self._verdict(index, told) for index, told in enumerate(self.told))
 
     @property
-    def freedoms(self) -> int:
+    def freedoms(self) -> Annotated[int, VIEW]:
         """Number of data."""
         return len(self.residuals)
 
     @property
-    def probability(self) -> float:
+    def probability(self) -> Annotated[float, VIEW]:
         """Probability that chi-square is this large or larger, if deviations, priors and theory hold."""
         return float(scipy.special.chdtrc(self.freedoms, self.chi_square))
 
@@ -171,9 +233,9 @@ class Updated:
             return f"withheld: chi-square {self.chi_square:.2g} with {self.freedoms} data"
         if told is not Told.NOT:
             return told.value
-        row = np.where(np.arange(len(self.parameters)) == index, 0.0, self.correlations.values[index])
+        row = np.where(np.arange(len(self.addresses)) == index, 0.0, self.correlations.values[index])
         other = int(np.argmax(np.abs(row)))
-        rest = f"; only together with {self.parameters[other]}" if abs(row[other]) > _ALONE else ""
+        rest = f"; only together with {self.addresses[other]}" if abs(row[other]) > _ALONE else ""
         return f"{told.value} from {self.data}{rest}"
 
 
@@ -280,7 +342,7 @@ def _updated(data: _Data, found: Fitted[Design], compared: Compared, steps: int)
     residuals = tuple(data.residuals(before, found.state))
     start = data.misfit(before)
     return Updated(
-        parameters=freed.names,
+        addresses=freed.names,
         units=freed.units,
         before=freed.values,
         after=freed.values * np.exp(found.parameters * freed.deviations),
@@ -292,7 +354,7 @@ def _updated(data: _Data, found: Fitted[Design], compared: Compared, steps: int)
         chi_square_before=float(start @ start),
         chi_square=found.cost,
         steps=steps,
-        known=data.known,
+        assumed=data.known,
         mechanism=found.state.mechanism,
         compared=compared,
         warnings=(*compared.warnings, *_cautions(data, found, compared)),

@@ -19,14 +19,14 @@ class Stream(IntEnum):
     DRIFT_ENDS = 3
 
 
-def white(seed: int, stream: tuple[Stream, int], block: int, size: int) -> Array:
-    """White Gaussian noise (size,) of unit variance: that block of that stream, a kind and a channel's number. Blocks count from -1.
+def white(seed: int, stream: Stream, channel: int, block: int, size: int) -> Array:
+    """White Gaussian noise (size,) of unit variance: that block of that channel's stream. Blocks count from -1.
 
-    >>> first = white(7, (Stream.DRIVE, 0), 0, 3)
-    >>> bool(np.all(first == white(7, (Stream.DRIVE, 0), 0, 3))), bool(np.any(first == white(7, (Stream.DRIVE, 1), 0, 3)))
+    >>> first = white(7, Stream.DRIVE, 0, 0, 3)
+    >>> bool(np.all(first == white(7, Stream.DRIVE, 0, 0, 3))), bool(np.any(first == white(7, Stream.DRIVE, 1, 0, 3)))
     (True, False)
     """
-    return _generator(seed, stream, block + 1).standard_normal(size)
+    return generator(seed, int(stream), channel, block + 1).standard_normal(size)
 
 
 def walk(seed: int, channel: int, block: int, size: int) -> Array:
@@ -38,12 +38,7 @@ def walk(seed: int, channel: int, block: int, size: int) -> Array:
     >>> 0.9 < float(np.std(steps)) < 1.1, bool(np.max(np.abs(steps)) < 5.0)
     (True, True)
     """
-    ends = np.sqrt(size) * _generator(seed, (Stream.DRIFT_ENDS, channel), 0).standard_normal(block + 1)
-    free = np.cumsum(white(seed, (Stream.DRIFT, channel), block, size))
+    ends = np.sqrt(size) * generator(seed, int(Stream.DRIFT_ENDS), channel, 0).standard_normal(block + 1)
+    free = np.cumsum(white(seed, Stream.DRIFT, channel, block, size))
     share = np.arange(1, size + 1) / size
     return np.sum(ends[:-1]) + free - share * (free[-1] - ends[-1])
-
-
-def _generator(seed: int, stream: tuple[Stream, int], number: int) -> np.random.Generator:
-    kind, channel = stream
-    return generator(seed, int(kind), channel, number)

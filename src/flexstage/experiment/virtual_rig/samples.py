@@ -106,7 +106,7 @@ class Simulated:
     def _white(self, stream: Stream, channel: int, number: int) -> Array:
         """White numbers of a block with its two neighbours."""
         seed, size = self.plan.setup.seed, self.chain.size
-        return np.concatenate([white(seed, (stream, channel), each, size) for each in (number - 1, number, number + 1)])
+        return np.concatenate([white(seed, stream, channel, each, size) for each in (number - 1, number, number + 1)])
 
     def _middle(self, spectra: Array) -> Array:
         """The middle block of what transforms over three blocks stand for, at the sampling rate."""
