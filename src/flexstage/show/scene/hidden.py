@@ -5,16 +5,17 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from PIL import Image, ImageDraw
 
 from flexstage.base.number import Array
 
-_PIXELS = 450
+_PIXELS = 800
 
 
 def visible(polygons: Sequence[Array], opaque: Sequence[bool]) -> list[bool]:
     """Whether each convex polygon (n, 2), given from the farthest to the nearest, shows from under the opaque ones before it.
 
-    Decided on a raster; lines, and polygons too small to hold a point of it, count as visible.
+    Decided on a raster, to a point of it; lines, and polygons smaller than two points of it, count as visible.
 
     >>> square = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
     >>> visible([square, square], [True, True])
@@ -24,32 +25,30 @@ def visible(polygons: Sequence[Array], opaque: Sequence[bool]) -> list[bool]:
         return []
     everything = np.concatenate(polygons)
     low = everything.min(axis=0)
-    extent = float((everything.max(axis=0) - low).max()) or 1.0
-    covered = np.zeros((_PIXELS + 1, _PIXELS + 1), dtype=bool)
-    result = [True] * len(polygons)
-    for index in reversed(range(len(polygons))):
-        if len(polygons[index]) < 3:
-            continue
-        corner, inside = _raster((polygons[index] - low) * (_PIXELS / extent))
-        rows, columns = inside.shape
-        window = covered[corner[1] : corner[1] + rows, corner[0] : corner[0] + columns]
-        if inside.any():
-            result[index] = bool(np.any(inside & ~window))
-            if opaque[index]:
-                window |= inside
-    return result
+    places = (everything - low) * ((_PIXELS - 1) / (float((everything - low).max()) or 1.0))
+    drawn = np.split(places, np.cumsum([len(each) for each in polygons])[:-1])
+    nearest = Image.new("I", (_PIXELS, _PIXELS), -1)
+    pen = ImageDraw.Draw(nearest)
+    for index, polygon in enumerate(drawn):
+        if opaque[index] and len(polygon) > 2:
+            pen.polygon(polygon.ravel().tolist(), fill=index)
+    last = np.asarray(nearest)
+    shows = np.bincount(last.ravel() + 1, minlength=len(polygons) + 1)[1:] > 0
+    return [
+        bool(shows[index]) or _is_small(polygon) or (not opaque[index] and _is_before(polygon, last, index))
+        for index, polygon in enumerate(drawn)
+    ]
 
 
-def _raster(polygon: Array) -> tuple[tuple[int, int], Array]:
-    """First column and row of the polygon's box, and which raster points (rows, columns) of it lie inside."""
-    first = np.maximum(np.ceil(polygon.min(axis=0)).astype(int), 0)
-    last = np.minimum(np.floor(polygon.max(axis=0)).astype(int), _PIXELS)
-    x = np.arange(first[0], last[0] + 1)[None, :]
-    y = np.arange(first[1], last[1] + 1)[:, None]
-    inside = np.ones((max(0, len(y)), max(0, x.shape[1])), dtype=bool)
-    after = np.roll(polygon, -1, axis=0)
-    turn = np.sum(polygon[:, 0] * after[:, 1] - polygon[:, 1] * after[:, 0])
-    for start, end in zip(polygon, after, strict=True):
-        side = (end[0] - start[0]) * (y - start[1]) - (end[1] - start[1]) * (x - start[0])
-        inside &= side * turn >= 0.0
-    return (int(first[0]), int(first[1])), inside
+def _is_small(polygon: Array) -> bool:
+    return len(polygon) < 3 or bool(np.all(np.ptp(polygon, axis=0) < 2.0))
+
+
+def _is_before(polygon: Array, last: Array, index: int) -> bool:
+    """Whether some point of the raster that the polygon covers shows what was drawn before it: it lies before that."""
+    left, top = np.floor(polygon.min(axis=0)).astype(int)
+    right, bottom = np.ceil(polygon.max(axis=0)).astype(int) + 1
+    mask = Image.new("1", (right - left, bottom - top))
+    ImageDraw.Draw(mask).polygon((polygon - (left, top)).ravel().tolist(), fill=1)
+    window = last[top:bottom, left:right]
+    return bool(np.any((window < index) & np.asarray(mask)[: window.shape[0], : window.shape[1]]))

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from flexstage.base.number import Array
+from flexstage.show.figures.export import SCENERY
 from flexstage.show.figures.style import DRIVE, GAUGE, INK, MUTED, PAPER
 from flexstage.show.scene.facet import Facet, Kind
 from flexstage.show.scene.hidden import visible
@@ -141,9 +142,8 @@ def draw(axes: Any, facets: Sequence[Facet], seen: View) -> None:
     if strokes:
         fills, edges = (np.array([getattr(each, name) for each in strokes]) for name in ("fill", "edge"))
         widths = [each.width for each in strokes]
-        axes.add_collection(
-            PathCollection([each.path for each in strokes], facecolors=fills, edgecolors=edges, linewidths=widths, clip_on=False)
-        )
+        paths = [each.path for each in strokes]
+        axes.add_collection(PathCollection(paths, facecolors=fills, edgecolors=edges, linewidths=widths, clip_on=False, gid=SCENERY))
 
 
 @dataclass(frozen=True)
@@ -195,10 +195,13 @@ def outline(axes: Any, facets: Sequence[Facet], seen: View) -> None:
     >>> from flexstage.show.figures.style import canvas
     >>> outline(canvas(1.0, 1.0).add_subplot(), [], view(Side.TOP))
     """
-    from matplotlib.collections import LineCollection
+    from matplotlib.collections import PathCollection
+    from matplotlib.path import Path
 
-    lines = [seen.flat(facet.points)[list(edge)] for facet in facets for edge in _edges(facet, seen)]
-    axes.add_collection(LineCollection(lines, colors=MUTED, linewidths=0.5, linestyles="dashed", clip_on=False))
+    lines = [Path(seen.flat(facet.points)[list(edge)], [Path.MOVETO, Path.LINETO]) for facet in facets for edge in _edges(facet, seen)]
+    if lines:
+        style = {"facecolors": "none", "edgecolors": MUTED, "linewidths": 0.5, "linestyles": "dashed"}
+        axes.add_collection(PathCollection(lines, **style, clip_on=False, gid=SCENERY))
 
 
 def write(axes: Any, labels: tuple[Label, ...], seen: View) -> None:
