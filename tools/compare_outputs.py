@@ -24,14 +24,14 @@ from collections.abc import Generator, Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import groupby, pairwise
 from pathlib import Path
 
 import numpy as np
 from filelock import FileLock
 from platformdirs import user_cache_path
 
-from tools.differences import DIFFERENT, EQUAL, SKIPPED, WITHIN, Meant, Rule, compared_folders, respelled
+from tools.differences import DIFFERENT, EQUAL, RENAMED, SKIPPED, WITHIN, Meant, Rule, compared_folders, respelled
 
 ROOT = Path(__file__).resolve().parents[1]
 
@@ -42,33 +42,45 @@ TEXTS: Mapping[str, str] = {  # of terminal, HTML and other text
     r"(?<!gauge's )\breading\b": "model",
     r"(for all|What|connect) readings": r"\1 models",
     "The theories a stage can be read by": "Models of theory",
+    "^flexstage result 1$": "flexstage result 2",
     r"^(# [a-z0-9-]+: .*\.)$": "#:schema ./flexstage.schema.json\n\\1",
     r"^(# flexstage check \S+ .*)$": "\\1\n# flexstage schema > flexstage.schema.json lets an editor check this file while you type.",
 }
 PATHS: Mapping[str, str] = {  # in JSON, MAT and HDF5
     r"\breading$": "model",
     r"^([a-z-]+\.)?method$": r"\1provenance",
-    r"^modes\.platform_modes": "modes.platform",
-    r"^(lost-motion\.)?gain_matrix": r"\1gain",
-    r"^((?:stiffness\.)?)in_plane_tensor_free": r"\1free.tensor",
-    r"^((?:stiffness\.)?)in_plane_tensor": r"\1held.tensor",
-    r"^((?:stiffness\.)?)centre_of_stiffness_m": r"\1centre_m",
+    r"\bplatform_modes": "platform",
+    r"^((?:[a-z-]+\.)?)gain_matrix": r"\1gain",
+    r"\bin_plane_tensor_free": "free.tensor",
+    r"\bin_plane_tensor": "held.tensor",
+    r"\bcentre_of_stiffness_m": "centre_m",
+    r"\bprincipal_free\.": "free.",
+    r"\bprincipal\.": "held.",
+    r"\b(held|free)\.stiffness_n_per_m": r"\1.principal_n_per_m",
+    r"\bstiffest_direction_rad": "angle_rad",
+    r"\bredundant$": "redundant[].constraints",
+    r"\bsingle_axis_corrected": "corrected",
+    r"\bsingle_axis": "single",
+    r"\b(single|corrected)\.limiting\.(\w+)$": r"\1.coordinates.\2.limiting",
+    r"\bgauge_range": "gauges",
+    r"\bgauges\.fits\.": "gauges.gauges.",
+    r"\b(gauges\.gauges\.[^.]+)$": r"\1.fits",
+    r"\bpose_resolution": "resolution",
+    r"\b(resolution|platform_lines)(?=\.(rows|columns|unit|values))": r"\1.table",
+    r"\bpolytope\.vertices": "polytope.poses.values",
     r"\b(drive|stack_lines)\.(?!actuators)": r"\1.actuators.",
     r"(axial|lateral)_stiffness_n_per_m": r"\1_n_per_m",
-    r"^(workspace\.)?single_axis": r"\1single",
-    r"^(workspace\.)?gauge_range": r"\1gauges",
-    r"^(workspace\.)?(stress\.least)_safety": r"\1\2",
+    r"\bstress\.least_safety": "stress.least",
     r"\bstress\.strokes": "stress.worst_strokes",
-    r"\bpose_resolution": "resolution.table",
-    r"\bplatform_lines": "platform_lines.table",
     r"\bleast_factor": "least",
+    r"\bbuckling\.ends\.(.+)$": r"buckling.links.\1.ends",
+    r"\bstage\.dead_load": "stage.dead",
+    r"\bstage\.worst_strokes": "stage.worst",
     r"\bmaximum_load_n": "maximum_n",
     r"\btensile_limit_n": "tensile_n",
     r"\bloads(\.actuators\..*\.)(least|largest)_compression": r"bearing\1\2",
     r"\bloads(\.actuators\..*\.(usage|pull))": r"bearing\1",
-    r"\bstage\.(dead|worst)_(load|strokes)": r"stage.\1",
     r"mapped_stiffness_n_per_m": "series_n_per_m",
-    r"^(modes\.)?platform_shapes": r"\1twists",
     r"^test\[\]": "files[]",
     r"^(files\[\])\.seconds": r"\1.duration_s",
     r"^(files\[\])\.samples": r"\1.length",
@@ -86,8 +98,32 @@ PATHS: Mapping[str, str] = {  # in JSON, MAT and HDF5
     r"^chi_square\.after": "chi_square",
     r"^chi_square\.data": "freedoms",
     r"^chi_square\.(probability)": r"\1",
+    r"\bplatform_shapes": "twists",
+    r"^(frequency|gain|loss)(?=\.(rows|columns|unit|values))": r"\1_slopes",
+    r"\bground_source$": "ground.source",
+    r"^(drift\.)?ground$": r"\1ground.material",
 }
-RULES: tuple[Rule, ...] = ()  # numbers whose arithmetic or its order changed; searched() gives those of searches
+GONE: Mapping[str, str] = {  # paths that stand at BASE only, and where the same is now
+    r"\bcrosstalk\.": "the entries of `transfer` beside its diagonal",
+    r"^(workspace\.)?strokes\.": "`limits`, actuator by actuator",
+    r"\bmap_error\.worst": "the first column of its `table`",
+    r"^parameters\[\]": "`parameters` by address",
+    r"\broom\.intrusions\.": "a list",
+}
+COME: Mapping[str, str] = {  # paths that stand in the working tree only
+    r"\bprovenance$": "each result says where it comes from",
+    r"^(workspace\.)?limits\.": "strokes, actuator by actuator",
+    r"\bcorner\.command|\bpolytope\.poses\.(rows|columns|unit)": "names of rows and columns",
+    r"\b(platform_lines\.coordinates|stress\.links|units\.[^.]+\.unit|actuators)$": "names of rows and columns",
+    r"\b(resolution\.inverse|room\.extreme|buckling\.stage\.(strokes_m|stiffens))": "fields of the result that were not told",
+    r"^(budget\.)?ground\.": "which material the ground was taken as",
+    r"\broom\.intrusions\[\]": "a list",
+    r"^(workspace\.)?bearing$": "null, where `loads` is",
+    r"^parameters\.": "`parameters` by address",
+}
+RULES: tuple[Rule, ...] = (  # numbers whose arithmetic or its order changed; searched() gives those of searches
+    Rule(r"room\.intrusions$", "was by body, is a list", np.inf),
+)
 
 KERNEL = os.environ.get("OPENBLAS_CORETYPE", "Haswell")
 
@@ -217,20 +253,31 @@ def main() -> int:
     asked = parser.parse_args()
     cache = user_cache_path("flexstage", appauthor=False) / "compare-outputs"
     old, new = base_side(_command("git", "rev-parse", f"{asked.base}^{{commit}}")[:12], cache), head_side(cache)
-    meant = Meant(TEXTS, PATHS, RULES)
-    counts, told = Counter[str](), defaultdict[str, list[str]](list)
+    meant = Meant(TEXTS, PATHS, RULES, GONE, COME)
+    states, told = dict[str, Counter[str]](), defaultdict[str, list[str]](list)
     with ThreadPoolExecutor(2) as pool:
         begun = [(each.name, pool.submit(old.outputs, each), pool.submit(new.outputs, each.spelled(WORDS))) for each in tasks(asked.only)]
         for name, first, second in begun:
-            for where, (state, text) in compared_folders(name, first.result(), second.result(), meant):
-                counts[state] += 1
+            found = list(compared_folders(name, first.result(), second.result(), meant))
+            states[name] = Counter(state for _, (state, _) in found)
+            for where, (state, text) in found:
                 if state == DIFFERENT:
                     told[text].append(where)
-            print(f"{name}: compared; {counts[DIFFERENT]} differences so far", file=sys.stderr, flush=True)
+            print(f"{name}: {_verdict(states[name])}", file=sys.stderr, flush=True)
     for text, places in told.items():
         print(f"{places[0]}{f' (and {len(places) - 1} more)' if len(places) > 1 else ''}: {text}")
-    print(f"compared {counts.total()}:", ", ".join(f"{counts[state]} {state}" for state in (EQUAL, WITHIN, DIFFERENT, SKIPPED)))
+    for verdict, runs in groupby(sorted(states, key=lambda each: _verdict(states[each])), lambda each: _verdict(states[each])):
+        print(f"{verdict}: {', '.join(runs)}")
+    counts = sum(states.values(), Counter[str]())
+    print(f"compared {counts.total()}:", ", ".join(f"{counts[state]} {state}" for state in (EQUAL, RENAMED, WITHIN, DIFFERENT, SKIPPED)))
     return int(counts[DIFFERENT] > 0)
+
+
+def _verdict(states: Mapping[str, int]) -> str:
+    """What the findings of a run come to."""
+    if states.get(DIFFERENT):
+        return DIFFERENT
+    return "equal by the tables of what is meant" if states.get(RENAMED) or states.get(WITHIN) else EQUAL
 
 
 if __name__ == "__main__":

@@ -21,8 +21,8 @@ import numpy as np
 from scipy.io import loadmat
 
 # What is left out, by name: paths of documents, words of texts, and files inside of others.
-LEFT_PATHS = {"versions": r"(^|\.)version$|^made\[\]"}
-LEFT_WORDS = {"date": r"\d{4}-\d\d-\d\dT[\d:.]+\S*", "version": r"(?<=flexstage )\d+\.\d+\.\d+\S*"}
+LEFT_PATHS = {"versions": r"(^|[._])version$|^made\[\]"}
+LEFT_WORDS = {"date": r"\d{4}-\d\d-\d\dT[\d:.]+\S*", "version": r"(?<=flexstage )\d+\.\d+\.\d+\S*|^\d+\.\d+\.\d+$"}
 LEFT_MEMBERS = r"\.(so|dll|dylib)$"
 
 
@@ -48,11 +48,16 @@ def searched(run: str, because: str) -> tuple[Rule, ...]:
 
 @dataclass(frozen=True)
 class Meant:
-    """What is meant to differ: regular expressions of words in texts and of paths in documents, each to what it is now, and rules."""
+    """What is meant to differ: regular expressions of words in texts and of paths in documents, each to what it is now, and rules.
+
+    `gone` and `come`: paths of one side alone, each with what was done.
+    """
 
     texts: Mapping[str, str] = field(default_factory=dict)
     paths: Mapping[str, str] = field(default_factory=dict)
     rules: tuple[Rule, ...] = ()
+    gone: Mapping[str, str] = field(default_factory=dict)
+    come: Mapping[str, str] = field(default_factory=dict)
 
 
 Document = Mapping[str, list[Any]]
@@ -140,7 +145,7 @@ def respelled(text: str, words: Mapping[str, str]) -> str:
     return text
 
 
-EQUAL, WITHIN, DIFFERENT, SKIPPED = "equal", "within what is stated", "different", "left out"
+EQUAL, RENAMED, WITHIN, DIFFERENT, SKIPPED = "equal", "equal but for words", "within what is stated", "different", "left out"
 Finding = tuple[str, str]
 """One of these words, and which path or what differs."""
 
@@ -188,12 +193,21 @@ def bits(value: Any) -> str:
 
 def compared(where: str, old: Document, new: Document, meant: Meant) -> Iterator[Finding]:
     """Two documents, path by path; `where` is "run/file"."""
-    old = {respelled(path, meant.paths): leaves for path, leaves in old.items()}
+    renamed = {path: path if path in new else respelled(path, meant.paths) for path in old}
+    said = {
+        renamed[path]: _spread([_said(each, meant.texts) for each in leaves], new.get(renamed[path], [])) for path, leaves in old.items()
+    }
+    untouched = {now for path, now in renamed.items() if now == path and repr(said[now]) == repr(old[path])}
+    old = said
     for path in (each for each in old if each in new):
         rule = next((each for each in meant.rules if re.search(each.where, f"{where}:{path}")), None)
-        yield _judged(path, old, new, rule)
-    gone = {path: repr([*map(bits, each)]) for path, each in old.items() if path not in new}
-    come = {path: repr([*map(bits, each)]) for path, each in new.items() if path not in old}
+        state, text = _judged(path, old, new, rule)
+        yield RENAMED if state == EQUAL and path not in untouched else state, text
+    one_sided = {path: meant.gone for path in old if path not in new} | {path: meant.come for path in new if path not in old}
+    stated = {path for path, reasons in one_sided.items() if any(re.search(each, path) for each in reasons)}
+    yield from ((WITHIN, path) for path in stated)
+    gone = {path: repr([*map(bits, each)]) for path, each in old.items() if path not in new and path not in stated}
+    come = {path: repr([*map(bits, each)]) for path, each in new.items() if path not in old and path not in stated}
     moved = dict(_moves(gone, come))
     for text in dict.fromkeys(_short(*each) for each in moved.items()):
         yield DIFFERENT, text
@@ -201,6 +215,18 @@ def compared(where: str, old: Document, new: Document, meant: Meant) -> Iterator
         yield DIFFERENT, f"{path}: only at BASE"
     for path in dict.fromkeys(_top(each, old) for each in come if each not in moved.values()):
         yield DIFFERENT, f"{path}: only at HEAD"
+
+
+def _said(value: Any, words: Mapping[str, str]) -> Any:
+    """A value whose texts are in other words."""
+    if isinstance(value, list):
+        return [_said(each, words) for each in value]
+    return respelled(value, words) if isinstance(value, str) else value
+
+
+def _spread(old: list[Any], new: Sequence[Any]) -> list[Any]:
+    """The entries of the one list that stands where each has a place of its own now."""
+    return old[0] if len(old) == 1 != len(new) and isinstance(old[0], list) and len(old[0]) == len(new) else old
 
 
 def _judged(path: str, old: Document, new: Document, rule: Rule | None) -> Finding:
@@ -247,9 +273,12 @@ def _top(path: str, other: Document) -> str:
 
 def compared_texts(old: Sequence[str], new: Sequence[str], meant: Meant) -> Iterator[Finding]:
     """Two texts, by what was put for what; five differences are told of each."""
-    old = [part for line in old for part in respelled(line, meant.texts).split("\n")]
     if old == new:
         yield EQUAL, ""
+        return
+    old = [part for line in old for part in respelled(line, meant.texts).split("\n")]
+    if " ".join(old) == " ".join(new):  # lines may break elsewhere
+        yield RENAMED, ""
         return
     if len(old) * len(new) < 1e7:
         blocks = [each[1:] for each in difflib.SequenceMatcher(None, old, new, autojunk=False).get_opcodes() if each[0] != "equal"]

@@ -14,6 +14,7 @@ from tools.compare_outputs import tasks
 from tools.differences import (
     DIFFERENT,
     EQUAL,
+    RENAMED,
     SKIPPED,
     WITHIN,
     Meant,
@@ -99,7 +100,20 @@ def test_files_are_compared_as_what_they_are(tmp_path: Path) -> None:
     ]
     assert seen == [("run/a.html", 'line 2: "0.98" -> "0.97"'), ("run/new.json", "only at HEAD"), ("run/old.json", "only at BASE")]
     meant = Meant({"0.98": "0.97"})
-    assert EQUAL in {state for where, (state, _) in compared_folders("run", tmp_path / "old", tmp_path / "new", meant) if "html" in where}
+    assert RENAMED in {state for where, (state, _) in compared_folders("run", tmp_path / "old", tmp_path / "new", meant) if "html" in where}
+
+
+def test_what_is_meant_is_told_apart_from_what_is_equal() -> None:
+    meant = Meant(
+        {"reading": "model"}, {"^ends$": "ends[].of", "^gain_matrix": "gain"}, (), {"worst": "in the table"}, {"source": "told now"}
+    )
+    old = {"ends": [["a"], ["b"]], "gain_matrix": 1.0, "why": "a reading", "same": 1.0, "worst": 2.0, "other": "c"}
+    new = {"ends": [{"of": ["a"]}, {"of": ["b"]}], "gain": 1.0, "why": "a model", "same": 1.0, "source": "x"}
+    states = {text: state for state, text in compared("run/a.json", document(old), document(new), meant)}
+    assert {states[each] for each in ("ends[].of", "gain", "why")} == {RENAMED}
+    assert {states[each] for each in ("worst", "source")} == {WITHIN}
+    assert states["same"] == EQUAL
+    assert states["other: only at BASE"] == DIFFERENT
 
 
 def test_long_texts_are_compared_line_by_line() -> None:

@@ -69,7 +69,7 @@ def _painted(collection: Any, name: str) -> str:
     styles: dict[str, str] = {}
     drawn: list[str] = []
     for path, style in zip(paths, _paints(collection), strict=True):
-        course = _course([(*next(places), code) for code in path.codes.tolist()])
+        course = _course([(x, y, code) for code, (x, y) in zip(path.codes.tolist(), places, strict=False)])
         drawn.append(f'<path class="{styles.setdefault(style, f"{name}-{len(styles)}")}" d="{course}"/>')
     rules = "".join(f".{each}{{{style}}}" for style, each in styles.items())
     return f'<style>{rules}</style><g transform="scale(.01)" stroke-linejoin="round">{"".join(drawn)}</g>'
