@@ -111,4 +111,4 @@ def test_bad_input_ends_with_findings(recorded: Command, tmp_path: Path) -> None
 
 def test_responses_show_no_hysteresis(recorded: Command, tmp_path: Path) -> None:
     savemat(tmp_path / "responses.mat", {"f": np.arange(1.0, 9.0), "H": np.ones((8, 1, 1), dtype=complex)})
-    assert "a record cannot be told from its arrays" in ended_badly(recorded, "responses.mat")
+    assert 'it has no array "samples"' in ended_badly(recorded, "responses.mat")

@@ -1,4 +1,4 @@
-"""A package from outside with a hinge, a gauge and a measure: commands know what it offers where it is installed, and only there."""
+"""A package from outside with a hinge, a gauge, a measure and a record format: known where it is installed, and only there."""
 
 import json
 import math
@@ -98,6 +98,16 @@ def test_verify_draws_its_shape(work, package):
     first = next(row for row in rows if row["figure"].startswith("platform mode 1 "))
     assert first["fea_error"] < 0.05
     assert first["theory"] == pytest.approx(first["fea"], rel=first["fea_error"])
+
+
+def test_a_record_of_its_form_is_read(work, package):
+    (work / "a.log").write_text("LOG 100\nu1 S1\nV um\n1 2\n3 4\n")
+    ask = "import flexstage as fs; a = fs.experiment.read_record('a.log'); print(a.rate, a.inputs[0].name, a.values.tolist())"
+    run = [sys.executable, "-c", ask]
+    told = subprocess.run(run, cwd=work, env={**os.environ, "PYTHONPATH": str(package)}, capture_output=True, text=True, check=True)
+    assert told.stdout == "100.0 u1 [[1.0, 2.0], [3.0, 4.0]]\n"
+    told = subprocess.run(run, cwd=work, env=os.environ, capture_output=True, text=True, check=False)
+    assert "none of its columns is called time" in told.stderr
 
 
 def test_the_page_shows_what_the_package_offers():

@@ -11,16 +11,24 @@ import pyuff
 import scipy.io
 
 from flexstage.base.finding import DesignError
+from flexstage.experiment.formats.arrays import SideBySide
 from flexstage.experiment.formats.read import read
 from flexstage.experiment.formats.uff.values import BinaryValues, PrintedValues
-from flexstage.experiment.formats.variables import SideBySide
 from flexstage.experiment.identification.identify import identify
 from flexstage.experiment.identification.peaks import Doubt
-from flexstage.experiment.options import Kind, Options
+from flexstage.experiment.options import Arrays, Options
 from flexstage.experiment.record import Record, Responses
 
 FOLDER = Path(os.environ.get("FLEXSTAGE_RECORDS", "no folder of records"))
 pytestmark = pytest.mark.skipif(not FOLDER.is_dir(), reason="FLEXSTAGE_RECORDS names no folder of real records")
+
+
+FRAME = Options(
+    arrays=Arrays(samples=("Time_chan_*",), time=("Time_domain",), rate=("Time_Sample_Rate",)),
+    inputs=("Time_chan_1",),
+    units=(("Time_chan_*", "V"),),
+)
+AVERAGED = Options(arrays=Arrays(frequencies=("Freq_domain",), responses=("Hf_chan_2",), coherence=("Hf_coh_chan_2",)))
 
 
 def record(name: str, options: Options | None = None) -> Record:
@@ -66,13 +74,13 @@ def test_spectra_without_phase_are_refused() -> None:
 
 def test_an_analysers_file_holds_a_frame_and_responses() -> None:
     path = FOLDER / "case1.mat"
-    with pytest.raises(DesignError, match=r"Time_chan_1, Time_chan_2; 4096 samples\) and frequency responses \(1601 frequencies\)"):
+    with pytest.raises(DesignError, match=r"Time_chan_1 \(4096, 1\), Time_Sample_Rate = 1280.*Hf_chan_2 \(1601, 1\) complex"):
         read(path)
     content = scipy.io.loadmat(path)
-    frame = record("case1.mat", Options(kind=Kind.RECORD, inputs=("Time_chan_1",), units=(("Time_chan_*", "V"),)))
+    frame = record("case1.mat", FRAME)
     assert (frame.rate, frame.length) == (1280.0, 4096)
     np.testing.assert_array_equal(frame.select(["Time_chan_2"]).values, content["Time_chan_2"])
-    averaged = read(path, Options(kind=Kind.RESPONSES))
+    averaged = read(path, AVERAGED)
     assert isinstance(averaged, Responses)
     np.testing.assert_array_equal(averaged.values[:, 0, 0], content["Hf_chan_2"][:, 0])
     assert averaged.coherence is not None
@@ -87,7 +95,7 @@ def test_modes_of_a_blow_by_the_analyser_and_by_its_time_frame() -> None:
     """What is seen in its response: 34.05 and 212.1 Hz far above the lines around, a damped bump at 163 Hz with a dip of phase, one line at
     66.9 Hz. 398.8 and 405.9 Hz are single lines of the scatter around an antiresonance, 2 to 3 standard deviations high.
     """
-    averaged = read(FOLDER / "case1.mat", Options(kind=Kind.RESPONSES))
+    averaged = read(FOLDER / "case1.mat", AVERAGED)
     assert isinstance(averaged, Responses)
     scores = {peak: _standing_out(averaged, peak) for peak in (34.05, 66.9, 212.1, 398.8, 405.9)}
     assert min(scores[peak] for peak in (34.05, 66.9, 212.1)) > 15.0
@@ -96,7 +104,7 @@ def test_modes_of_a_blow_by_the_analyser_and_by_its_time_frame() -> None:
     assert found.frequencies == pytest.approx([34.05, 162.6, 212.1], rel=2e-3)
     assert found.damping[1] > 20.0 * found.damping[2]
     assert any("further modes next to those found may be missing" in each for each in found.warnings)  # 66.9 Hz is narrower than a line
-    frame = identify(record("case1.mat", Options(kind=Kind.RECORD, inputs=("Time_chan_1",), units=(("Time_chan_*", "V"),))))
+    frame = identify(record("case1.mat", FRAME))
     assert frame.frequencies == pytest.approx([162.8, 212.1], rel=2e-3)
     np.testing.assert_allclose(frame.frequencies, found.frequencies[1:], rtol=5e-3)
     np.testing.assert_allclose(frame.damping, found.damping[1:], rtol=0.1)
@@ -117,7 +125,7 @@ def _standing_out(averaged: Responses, peak: float) -> float:
 
 
 def test_big_endian_with_its_step() -> None:
-    found = record("frf_data1.mat")
+    found = record("frf_data1.mat", Options(arrays=Arrays(samples=("x", "f"), step=("dt",))))
     assert ([each.name for each in found.inputs], [each.name for each in found.outputs]) == (["f"], ["x"])
     assert (found.rate, found.length) == (10.0, 1024)
     np.testing.assert_array_equal(found.select(["x"]).values, scipy.io.loadmat(FOLDER / "frf_data1.mat")["x"])

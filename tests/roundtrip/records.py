@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+from typing import Any
+
+import h5py
 import numpy as np
 
 from flexstage.base.number import Array
@@ -38,3 +42,40 @@ def awkward_responses(seed: int = 0, *, even: bool = True, coherence: bool = Tru
 
 def bits(values: Array) -> bytes:
     return np.ascontiguousarray(values).tobytes()
+
+
+def write_version_73(path: Path, values: dict[str, Any]) -> Path:
+    """A MAT file as MATLAB itself stores it in version 7.3: arrays, texts, tuples of texts as cells, dictionaries as structures."""
+    with h5py.File(path, "w", userblock_size=512) as file:
+        for name, value in values.items():
+            _as_matlab(file, name, value)
+    with path.open("r+b") as stream:
+        stream.write(b"MATLAB 7.3 MAT-file, Platform: GLNXA64, Created on: Mon".ljust(124) + b"\x00\x02IM")
+    return path
+
+
+def _as_matlab(file: h5py.File | h5py.Group, name: str, value: Any) -> h5py.Dataset | None:
+    if isinstance(value, dict):
+        for key, each in value.items():
+            _as_matlab(file.require_group(name), key, each)
+        return None
+    if isinstance(value, tuple):
+        references = file.file.require_group("#refs#")
+        own = [_as_matlab(references, f"{name}{number}", each) for number, each in enumerate(value)]
+        found = file.create_dataset(name, (len(value), 1), dtype=h5py.ref_dtype)
+        for number, each in enumerate(own):
+            found[number, 0] = each.ref if each is not None else None
+        found.attrs["MATLAB_class"] = np.bytes_("cell")
+        return found
+    if isinstance(value, str):
+        found = file.create_dataset(name, data=np.array([[ord(each)] for each in value], np.uint16))
+        found.attrs["MATLAB_class"] = np.bytes_("char")
+        return found
+    array = np.atleast_2d(np.asarray(value)).T
+    if np.iscomplexobj(array):
+        pairs = np.zeros(array.shape, [("real", "<f8"), ("imag", "<f8")])
+        pairs["real"], pairs["imag"] = array.real, array.imag
+        array = pairs
+    found = file.create_dataset(name, data=array)
+    found.attrs["MATLAB_class"] = np.bytes_("double")
+    return found

@@ -7,7 +7,6 @@ import signal
 import subprocess
 import sys
 import threading
-import time
 from pathlib import Path
 
 import h5py
@@ -18,7 +17,7 @@ import scipy.io
 
 from flexstage.base import files
 from flexstage.base.child import environment
-from flexstage.base.files import hdf, mat, require_regular
+from flexstage.base.files import hdf, mat, new_hdf, require_regular
 from flexstage.base.finding import DesignError
 from flexstage.experiment.formats.read import read
 
@@ -51,19 +50,18 @@ def test_a_file_that_runs_in_circles_is_refused_and_the_next_is_read(tmp_path: P
     sound = without_checksums(tmp_path / "a.h5")
     assert set(hdf(sound).arrays) == {"test/u", "test/y"}
     monkeypatch.setattr(files, "PATIENCE", 2.0)
-    assert "it is damaged: reading it did not end within 2 s" in refusal(circling(tmp_path))
+    assert "it is damaged: reading it took more than 2 s of the processor" in refusal(circling(tmp_path))
     monkeypatch.setattr(files, "PATIENCE", 60.0)
     np.testing.assert_array_equal(hdf(sound).read("test/u", [(3, 7)]), np.arange(3.0, 7.0))
 
 
-def test_an_interrupt_ends_the_reading_of_a_file_that_runs_in_circles(tmp_path: Path) -> None:
+def test_an_interrupt_ends_the_reading_of_a_file_that_runs_in_circles(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     hdf(without_checksums(tmp_path / "a.h5"))  # the child is there
     path = circling(tmp_path)
+    monkeypatch.setattr(files, "PATIENCE", 1e6)
     threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT)).start()
-    start = time.monotonic()
     with pytest.raises(KeyboardInterrupt):
         hdf(path)
-    assert time.monotonic() - start < files.PATIENCE / 2
     assert not [each for each in psutil.Process().children() if "flexstage.base.files" in each.cmdline()]
 
 
@@ -97,22 +95,13 @@ def test_data_in_other_files_are_refused_by_name(version: str, tmp_path: Path) -
         with h5py.File(tmp_path / f"{name}.h5", "w", libver=(version, "latest")) as file:
             file["fs"] = 50.0
             way(file)
-        told = refusal(tmp_path / f"{name}.h5")
-        assert "u: its data stand in another file" in told
-        assert ("secret" if name == "storage" else "other.h5") in told
+        assert "u: its data stand in another file" in refusal(tmp_path / f"{name}.h5")
 
 
 def layout(path: Path) -> h5py.VirtualLayout:
     found = h5py.VirtualLayout((50,), "f8")
     found[:] = h5py.VirtualSource(str(path), "test/u", (50,))
     return found
-
-
-def test_arrays_that_were_never_written_are_refused_before_they_are_read(tmp_path: Path) -> None:
-    with h5py.File(tmp_path / "a.h5", "w") as file:
-        file["fs"] = 50.0
-        file.create_dataset("u1", (4_000_000_000,), "f4", chunks=(1_000_000,), compression="gzip")
-    assert "u1: it is said to have 4e+09 numbers (16 GB), 0 bytes of which are in the file" in refusal(tmp_path / "a.h5")
 
 
 def test_memory_is_estimated_before_it_is_taken(tmp_path: Path) -> None:
@@ -135,21 +124,8 @@ def test_a_mat_file_pressed_beyond_belief_is_refused(tmp_path: Path, monkeypatch
     scipy.io.savemat(tmp_path / "a.mat", {"u": np.zeros((40_000_000,))}, do_compression=True)
     assert (tmp_path / "a.mat").stat().st_size < 500_000
     monkeypatch.setattr(files, "MEMORY", 500_000_000)
+    monkeypatch.setattr(files, "PATIENCE", 1e6)  # it is memory that runs out, however slow the processor
     assert "reading it takes more than" in refusal(tmp_path / "a.mat")
-
-
-def test_where_the_system_limits_no_memory_a_child_that_takes_too_much_is_ended(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    scipy.io.savemat(tmp_path / "a.mat", {"u": np.zeros((40_000_000,))}, do_compression=True)
-    (tmp_path / "resource.py").write_text("raise ImportError")
-    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
-    monkeypatch.setitem(sys.modules, "resource", None)
-    monkeypatch.setattr(files, "CHILD", files.Child())
-    monkeypatch.setattr(files, "PATIENCE", 60.0)
-    monkeypatch.setattr(files, "MEMORY", 200_000_000)
-    assert "reading it takes more than 0.201 GB of memory. Export it anew, or in parts" in refusal(tmp_path / "a.mat")
-    assert files.CHILD.code() == -signal.SIGKILL, "it ended by itself"
-    assert set(hdf(without_checksums(tmp_path / "a.h5")).arrays) == {"test/u", "test/y"}
-    files.CHILD.end()
 
 
 def test_what_is_no_regular_file_is_refused(tmp_path: Path) -> None:
@@ -160,13 +136,17 @@ def test_what_is_no_regular_file_is_refused(tmp_path: Path) -> None:
         assert kind in refusal(path)
 
 
-def test_structures_and_cells_of_mat_files_are_flattened(tmp_path: Path) -> None:
+def test_structures_of_mat_files_are_flattened(tmp_path: Path) -> None:
     cell = np.empty(2, dtype=object)
     cell[:] = [np.eye(2), "text"]
-    scipy.io.savemat(
-        tmp_path / "a.mat", {"test": {"fs": 50.0, "note": "run 2"}, "cell": cell, "names": np.array(["a", "bc"], dtype=object)}
-    )
+    inner = {"fs": 50.0, "note": "run 2", "frame": {"u": np.eye(2)}}
+    scipy.io.savemat(tmp_path / "a.mat", {"test": inner, "cell": cell, "names": np.array(["a", "bc"], dtype=object)})
     found = dict(mat(tmp_path / "a.mat"))
-    assert set(found) == {"test.fs", "test.note", "cell(1)", "cell(2)", "names"}
+    assert set(found) == {"test.fs", "test.note", "test.frame.u", "names"}  # a cell of anything but texts is left out
     assert (found["test.note"], found["names"]) == (("run 2",), ("a", "bc"))
-    np.testing.assert_array_equal(found["cell(1)"], np.eye(2))
+    np.testing.assert_array_equal(found["test.frame.u"], np.eye(2))
+
+
+def test_an_hdf5_file_whose_room_is_not_there_is_not_begun(tmp_path: Path) -> None:
+    with pytest.raises(OSError, match=r"large|space"), new_hdf(tmp_path / "a.h5", 2**62):
+        pytest.fail("its room cannot be there")

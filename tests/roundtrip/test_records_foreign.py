@@ -12,13 +12,13 @@ import pyuff
 import scipy.io
 
 from flexstage.base.finding import DesignError
+from flexstage.experiment.formats.arrays import SideBySide
 from flexstage.experiment.formats.read import read
 from flexstage.experiment.formats.uff.values import BinaryValues, PrintedValues
-from flexstage.experiment.formats.variables import SideBySide
-from flexstage.experiment.formats.write import Form, write
-from flexstage.experiment.options import Kind, Options
+from flexstage.experiment.formats.write import write
+from flexstage.experiment.options import Arrays, Kind, Options
 from flexstage.experiment.record import Record, Responses, in_memory
-from tests.roundtrip.records import awkward_record, awkward_responses
+from tests.roundtrip.records import awkward_record, awkward_responses, write_version_73
 
 pytestmark = pytest.mark.filterwarnings("ignore:unclosed file:ResourceWarning")  # pyuff does not close what it writes in binary
 
@@ -35,6 +35,11 @@ def record(path: Path, options: Options | None = None) -> Record:
     found = read(path, options or Options())
     assert isinstance(found, Record)
     return found
+
+
+def of(**names: str) -> Options:
+    """The arrays that are meant, names of one meaning with blanks between."""
+    return Options(arrays=Arrays(**{meaning: tuple(listed.split()) for meaning, listed in names.items()}))
 
 
 def responses(path: Path, options: Options | None = None) -> Responses:
@@ -161,40 +166,46 @@ def test_a_response_that_is_missing_is_named(tmp_path: Path) -> None:
     assert responses(path, Options(inputs=("u1",))).values.shape == (64, 2, 1)
 
 
-@pytest.mark.parametrize("form", [Form.UFF, Form.UFF_ASCII])
-def test_pyuff_reads_what_we_write(form: Form, tmp_path: Path) -> None:
+@pytest.mark.parametrize("form", ["uff", "uff-ascii"])
+def test_pyuff_reads_what_we_write(form: str, tmp_path: Path) -> None:
     path = tmp_path / "a.uff"
     ours = in_memory(awkward_record().channels, RATE, np.random.default_rng(2).standard_normal((LENGTH, 6)))
     write(path, ours, form)
     theirs = pyuff.UFF(str(path)).read_sets()
     assert [each["id1"] for each in theirs] == list(ours.names)
     assert [each["ordinate_axis_units_lab"] or "NONE" for each in theirs] == [each.unit or "NONE" for each in ours.channels]
-    np.testing.assert_allclose(np.stack([each["data"] for each in theirs], axis=-1), ours.values, rtol=0.0 if form is Form.UFF else 5.1e-13)
+    np.testing.assert_allclose(np.stack([each["data"] for each in theirs], axis=-1), ours.values, rtol=0.0 if form == "uff" else 5.1e-13)
     np.testing.assert_allclose(theirs[0]["x"][-1], (LENGTH - 1) / RATE, rtol=1e-6)
 
 
-@pytest.mark.parametrize("form", [Form.UFF, Form.UFF_ASCII])
-def test_pyuff_reads_our_responses(form: Form, tmp_path: Path) -> None:
+@pytest.mark.parametrize("form", ["uff", "uff-ascii"])
+def test_pyuff_reads_our_responses(form: str, tmp_path: Path) -> None:
     path = tmp_path / "a.uff"
     draw = awkward_responses(coherence=False)
     ours = Responses(draw.frequencies, draw.outputs, draw.inputs, np.exp(1j * np.arange(320.0)).reshape(40, 4, 2))
     write(path, ours, form)
     theirs = pyuff.UFF(str(path)).read_sets()
     values = np.stack([each["data"] for each in theirs], axis=-1).reshape(40, 4, 2)
-    np.testing.assert_allclose(values, ours.values, rtol=0.0 if form is Form.UFF else 1e-11, atol=1e-12 if form is Form.UFF_ASCII else 0.0)
+    np.testing.assert_allclose(values, ours.values, rtol=0.0 if form == "uff" else 1e-11, atol=1e-12 if form == "uff-ascii" else 0.0)
     np.testing.assert_allclose(theirs[0]["x"], ours.frequencies, rtol=1e-6)
 
 
 # --- MAT files ---
 
 
-MAT: dict[str, dict[str, Any]] = {
-    "columns and a time vector": {"time": TIMES[:, None], "u": U, "y": Y},
-    "rows and a step": {"dt": 1 / RATE, "u": U.T, "y": Y.T},
-    "mixed orientations and a rate": {"fs": np.int32(2048), "u": U.T, "y": Y},
-    "one variable a channel": {"t": TIMES[None], "u1": U[:, 0], "u2": U[:, 1], "y1": Y[:, 0], "y2": Y[None, :, 1], "y3": Y[:, 2]},
-    "a structure": {"test": {"u": U, "y": Y, "Fs": RATE, "operator": "someone"}},
-    "big-endian": {"dt": np.array(1 / RATE, ">f8"), "u": U.astype(">f8"), "y": Y.astype(">f8")},
+FORM = {"samples": np.hstack([U, Y]), "rate": RATE, "names": np.array(["u1", "u2", "y1", "y2", "y3"], dtype=object)}
+U_Y = of(samples="u y", step="dt")
+MAT: dict[str, tuple[dict[str, Any], Options]] = {
+    "the documented form": (FORM, Options()),
+    "columns and a time vector": ({"time": TIMES[:, None], "u": U, "y": Y}, of(samples="u y")),
+    "rows and a step": ({"dt": 1 / RATE, "u": U.T, "y": Y.T}, U_Y),
+    "mixed orientations and a rate": ({"t": TIMES, "fs": np.int32(2048), "u": U.T, "y": Y}, of(samples="u y", time="t", rate="fs")),
+    "one variable a channel": (
+        {"t": TIMES[None], "u1": U[:, 0], "u2": U[:, 1], "y1": Y[:, 0], "y2": Y[None, :, 1], "y3": Y[:, 2]},
+        of(samples="u? y?", time="t"),
+    ),
+    "a structure": ({"test": {"u": U, "y": Y, "Fs": RATE, "operator": "someone"}}, of(samples="test.u test.y", rate="test.Fs")),
+    "big-endian": ({"dt": np.array(1 / RATE, ">f8"), "u": U.astype(">f8"), "y": Y.astype(">f8")}, U_Y),
 }
 
 
@@ -202,118 +213,86 @@ MAT: dict[str, dict[str, Any]] = {
 @pytest.mark.parametrize("compressed", [False, True])
 def test_mat_files_of_scipy(layout: str, compressed: bool, tmp_path: Path) -> None:
     path = tmp_path / "a.mat"
-    scipy.io.savemat(path, MAT[layout], do_compression=compressed)
-    same(record(path))
+    values, options = MAT[layout]
+    scipy.io.savemat(path, values, do_compression=compressed)
+    same(record(path, options))
 
 
 def test_mat_version_4(tmp_path: Path) -> None:
     path = tmp_path / "a.mat"
     scipy.io.savemat(path, {"dt": 1 / RATE, "u": U, "y": Y}, format="4")
-    same(record(path))
+    same(record(path, U_Y))
 
 
 def test_mat_single_precision_and_integers(tmp_path: Path) -> None:
     path = tmp_path / "a.mat"
     counts = np.arange(LENGTH, dtype=np.int16)[:, None] % 100
     scipy.io.savemat(path, {"t": TIMES.astype(np.float32), "u": U.astype(np.float32), "y": counts})
-    found = record(path)
+    found = record(path, of(samples="u y", time="t"))
     np.testing.assert_array_equal(found.values, np.hstack([U.astype(np.float32), counts]))
     assert found.rate == RATE
 
 
-def test_mat_structure_array_of_channels(tmp_path: Path) -> None:
-    # A structure a channel, with its name, unit and data: as data loggers export.
-    path = tmp_path / "a.mat"
-    channels = np.zeros((1, 2), dtype=[("name", object), ("unit", object), ("data", object)])
-    channels[0, 0] = ("force", "N", U[:, :1])
-    channels[0, 1] = ("gap", "µm", Y[:, :1])
-    scipy.io.savemat(path, {"ch": channels, "fs": RATE})
-    found = record(path)
-    assert [(each.name, each.unit, each.role.value) for each in found.channels] == [("force", "N", "input"), ("gap", "µm", "output")]
-
-
-def test_mat_names_and_units_beside(tmp_path: Path) -> None:
+def test_names_and_units_in_lists_that_are_named(tmp_path: Path) -> None:
     path = tmp_path / "a.mat"
     cells = np.array(["drive", "S1"], dtype=object)
-    scipy.io.savemat(path, {"fs": RATE, "data": U, "channel_names": cells, "units": np.array(["Volts", "micron"], dtype=object)})
-    assert [(each.name, each.unit) for each in record(path).channels] == [("drive", "V"), ("S1", "um")]
+    scipy.io.savemat(path, {"fs": RATE, "data": U, "channel_names": cells, "unit": np.array(["Volts", "micron"], dtype=object)})
+    found = record(path, of(samples="data", rate="fs", names="channel_names", units="unit"))
+    assert [(each.name, each.unit) for each in found.channels] == [("drive", "V"), ("S1", "um")]
+    scipy.io.savemat(path, {"rate": RATE, "samples": U[:, :1], "names": cells})
+    with pytest.raises(DesignError, match=r"its names are 2 \(drive, S1\), its channels 1"):
+        read(path)
 
 
 def test_mat_responses(tmp_path: Path) -> None:
     path = tmp_path / "a.mat"
     for name, values in {"inputs last": H, "frequencies last": np.moveaxis(H, 0, -1), "frequencies between": np.moveaxis(H, 0, 1)}.items():
         scipy.io.savemat(path, {"freq": LINES, "FRF": values, "coh": np.full(values.shape, 0.9)})
-        found = responses(path)
+        found = responses(path, of(frequencies="freq", responses="FRF", coherence="coh"))
         np.testing.assert_array_equal(found.values, H, err_msg=name)
         assert found.coherence is not None
         assert found.coherence.shape == H.shape
 
 
-def test_mat_responses_one_a_variable_and_in_halves(tmp_path: Path) -> None:
+def test_mat_responses_one_a_variable(tmp_path: Path) -> None:
     path = tmp_path / "a.mat"
-    one = {"H_x": H[:, 0, 0], "H_y": H[:, 1, 0], "cross_spec": H[:, 2, 0]}
-    scipy.io.savemat(path, {"f": LINES[None], **one})
-    found = responses(path)
+    scipy.io.savemat(path, {"f": LINES[None], "H_x": H[:, 0, 0], "H_y": H[:, 1, 0], "cross_spec": H[:, 2, 0]})
+    found = responses(path, of(frequencies="f", responses="H_*"))
     assert [each.name for each in found.outputs] == ["H_x", "H_y"]
-    scipy.io.savemat(path, {"f": LINES, "H_re": H[:, 0, 0].real, "H_im": H[:, 0, 0].imag})
-    np.testing.assert_array_equal(responses(path).values[:, 0, 0], H[:, 0, 0])
+    np.testing.assert_array_equal(found.values[:, :, 0], H[:, :2, 0])
 
 
 def test_a_file_with_both_asks_which_is_meant(tmp_path: Path) -> None:
     path = tmp_path / "a.mat"
-    scipy.io.savemat(path, {"time": TIMES, "u": U, "y": Y, "f": LINES, "H": H})
+    scipy.io.savemat(path, FORM | {"frequencies": LINES, "responses": H})
     with pytest.raises(DesignError, match=r"holds a record \(u1, u2, y1, y2, y3; 500 samples\) and frequency responses \(64 frequencies\)"):
         read(path)
     same(record(path, Options(kind=Kind.RECORD)))
     assert responses(path, Options(kind=Kind.RESPONSES)).values.shape == H.shape
 
 
-def as_matlab(file: h5py.File | h5py.Group, name: str, values: np.ndarray | float | str) -> None:
-    """A variable as MATLAB itself stores it in version 7.3."""
-    if isinstance(values, str):
-        found = file.create_dataset(name, data=np.array([[ord(each)] for each in values], np.uint16))
-        found.attrs["MATLAB_class"] = np.bytes_("char")
-        return
-    array = np.atleast_2d(np.asarray(values)).T
-    if np.iscomplexobj(array):
-        pairs = np.zeros(array.shape, [("real", "<f8"), ("imag", "<f8")])
-        pairs["real"], pairs["imag"] = array.real, array.imag
-        array = pairs
-    file.create_dataset(name, data=array).attrs["MATLAB_class"] = np.bytes_("double")
-
-
-def version_73(path: Path) -> h5py.File:
-    return h5py.File(path, "w", userblock_size=512)
-
-
-def signed(path: Path) -> None:
-    with path.open("r+b") as stream:
-        stream.write(b"MATLAB 7.3 MAT-file, Platform: GLNXA64, Created on: Mon".ljust(124) + b"\x00\x02IM")
+def test_arrays_of_unknown_meaning_are_listed_with_the_option_that_names_them(tmp_path: Path) -> None:
+    path = tmp_path / "a.mat"
+    scipy.io.savemat(path, {"dt": 1 / RATE, "u": U, "H": H, "note": "run 2"})
+    told = r"no array \"samples\" or \"responses\".*dt = 0.000488281, u \(500, 2\), H \(64, 3, 2\) complex.*Say which is what \(array\)"
+    with pytest.raises(DesignError, match=told):
+        read(path)
+    with pytest.raises(DesignError, match=r"neither times nor a rate.*dt = 0.000488281.*\"step=...\""):
+        read(path, of(samples="u"))
+    with pytest.raises(DesignError, match=r"step=dz: it has no array of this name"):
+        read(path, of(samples="u", step="dz"))
+    with pytest.raises(DesignError, match=r"it has no frequencies"):
+        read(path, of(responses="H"))
 
 
 def test_mat_73_structures_cells_and_complex(tmp_path: Path) -> None:
-    path = tmp_path / "a.mat"
-    with version_73(path) as file:
-        test = file.create_group("test")
-        as_matlab(test, "u", U)
-        as_matlab(test, "y", Y.T)
-        as_matlab(test, "fs", RATE)
-        as_matlab(test, "comment", "white noise")
-        references = file.create_group("#refs#")
-        units = ["V", "V", "um", "um", "um"]
-        for number, unit in enumerate(units):
-            as_matlab(references, f"r{number}", unit)
-        cell = file.create_dataset("units", (5, 1), dtype=h5py.ref_dtype)
-        for number in range(5):
-            cell[number, 0] = references[f"r{number}"].ref
-        cell.attrs["MATLAB_class"] = np.bytes_("cell")
-        as_matlab(file, "freq", LINES)
-        as_matlab(file, "H1", H)
-    signed(path)
-    found = record(path, Options(kind=Kind.RECORD))
+    test = {"u": U, "y": Y.T, "fs": RATE, "comment": "white noise"}
+    units = ("V", "V", "um", "um", "um")
+    path = write_version_73(tmp_path / "a.mat", {"test": test, "time": TIMES, "units": units, "freq": LINES, "H1": H})
+    found = record(path, of(samples="test.u test.y", rate="test.fs"))
     same(found)
     assert [each.unit for each in found.channels] == ["V", "V", "um", "um", "um"]
-    np.testing.assert_array_equal(responses(path, Options(kind=Kind.RESPONSES)).values, H)
+    np.testing.assert_array_equal(responses(path, of(frequencies="freq", responses="H1")).values, H)
 
 
 def test_scipy_reads_what_we_write(tmp_path: Path) -> None:
@@ -335,10 +314,10 @@ def test_hdf_groups_with_attributes(tmp_path: Path) -> None:
         file.attrs["sampling_rate"] = RATE
         for kind, values, unit in (("inputs", U, "V"), ("outputs", Y, "um")):
             for number, column in enumerate(values.T):
-                one = file.create_dataset(f"run 1/{kind}/{kind[0] if kind[0] != 'i' else 'u'}{number}", data=column)
-                one.attrs["name"] = f"{'u' if kind == 'inputs' else 'y'}{number + 1}"
-                one.attrs["unit"] = np.bytes_(unit)
-    found = record(path)
+                one = file.create_dataset(f"run 1/{kind}/{number}", data=column)
+                one.attrs["names"] = f"{'u' if kind == 'inputs' else 'y'}{number + 1}"
+                one.attrs["units"] = np.bytes_(unit)
+    found = record(path, Options(arrays=Arrays(samples=("run 1/*",), rate=("sampling_rate",))))
     same(found)
     assert [each.unit for each in found.channels] == ["V", "V", "um", "um", "um"]
 
@@ -346,10 +325,10 @@ def test_hdf_groups_with_attributes(tmp_path: Path) -> None:
 def test_hdf_transposed_big_endian_float32_and_times_in_ms(tmp_path: Path) -> None:
     path = tmp_path / "a.hdf5"
     with h5py.File(path, "w") as file:
-        file.create_dataset("Time", data=1000.0 * TIMES).attrs["unit"] = "ms"
+        file.create_dataset("Time", data=1000.0 * TIMES).attrs["units"] = "ms"
         file["u"] = U.T.astype(">f4")
         file.create_dataset("y", data=Y, chunks=(64, 3), compression="gzip")
-    found = record(path)
+    found = record(path, of(samples="u y", time="Time"))
     same(found, rtol=1e-7)
     np.testing.assert_array_equal(found.values[:, 2:], Y)
 
@@ -362,7 +341,7 @@ def test_hdf_table_with_named_columns(tmp_path: Path) -> None:
         table[name] = column
     with h5py.File(path, "w") as file:
         file["log/table"] = table
-    same(record(path))
+    same(record(path, of(samples="log/table/u? log/table/y?", time="log/table/time")))
 
 
 def test_hdf_responses_with_lists_of_names(tmp_path: Path) -> None:
@@ -370,9 +349,9 @@ def test_hdf_responses_with_lists_of_names(tmp_path: Path) -> None:
     with h5py.File(path, "w") as file:
         file["frf/frequency"] = LINES
         file["frf/H"] = H
-        file["frf/outputs"] = ["S1", "S2", "S3"]
-        file["frf/inputs"] = ["B1", "B2"]
-    found = responses(path)
+        file["output_names"] = ["S1", "S2", "S3"]
+        file["input_names"] = ["B1", "B2"]
+    found = responses(path, of(frequencies="frf/frequency", responses="frf/H"))
     assert ([each.name for each in found.outputs], [each.name for each in found.inputs]) == (["S1", "S2", "S3"], ["B1", "B2"])
     np.testing.assert_array_equal(found.at("S2", "B2"), H[:, 1, 1])
 
@@ -402,17 +381,13 @@ def test_other_delimiters(delimiter: str, kind: str, tmp_path: Path) -> None:
 def test_decimal_commas_units_below_and_latin_1(tmp_path: Path) -> None:
     path = tmp_path / "a.csv"
     rows = [";".join(f"{value:.17e}".replace(".", ",") for value in line) for line in TABLE]
-    head = ["Messung vom 3. März", "Abtastrate: 2,048 kHz", "Zeit;u1;u2;y1;y2;y3", "s;V;V;µm;µm;µm"]
+    head = ["Messung vom 3. März", "Zeit;u1;u2;y1;y2;y3", "s;V;V;µm;µm;µm"]
     path.write_bytes("\r\n".join([*head, *rows, ""]).encode("latin-1"))
-    found = record(path)
+    with pytest.raises(DesignError, match=r"none of its columns is called time: Zeit, u1.*array \"time=...\""):
+        read(path)
+    found = record(path, of(time="Zeit"))
     same(found)
     assert [each.unit for each in found.channels] == ["V", "V", "µm", "µm", "µm"]
-
-
-def test_a_rate_in_a_comment_stands_for_times(tmp_path: Path) -> None:
-    path = tmp_path / "a.csv"
-    np.savetxt(path, TABLE[:, 1:], header=f"Sampling rate: 2048 Hz\n{HEAD.partition(',')[2]}", delimiter=",")
-    same(record(path))
 
 
 def test_times_of_few_digits_give_the_rate(tmp_path: Path) -> None:
@@ -425,15 +400,22 @@ def test_parentheses_quotes_and_a_byte_order_mark(tmp_path: Path) -> None:
     path = tmp_path / "a.csv"
     lines = ['"Time (s)","u1 (V)","gap left, ""a"" (um)"', *(f'"{t!r}","{u!r}","{y!r}"' for t, u, y in TABLE[:, [0, 1, 3]].tolist())]
     path.write_text("\n".join(lines), encoding="utf-8-sig")
-    found = record(path)
+    found = record(path, of(time="Time"))
     assert [(each.name, each.unit) for each in found.channels] == [("u1", "V"), ('gap left, "a"', "um")]
     np.testing.assert_array_equal(found.values, TABLE[:, [1, 3]])
 
 
 def test_responses_in_columns(tmp_path: Path) -> None:
     path = tmp_path / "a.csv"
-    np.savetxt(path, np.column_stack([LINES, H[:, 0, 0].real, H[:, 0, 0].imag]), header="f [Hz],H_re,H_im", delimiter=",")
-    np.testing.assert_array_equal(responses(path).values[:, 0, 0], H[:, 0, 0])
+    columns = np.column_stack([LINES / 1e3, *(part for row in range(2) for part in (H[:, row, 0].real, H[:, row, 0].imag))])
+    np.savetxt(path, columns, header="f [kHz],x re [um/V],x im [um/V],y_re [um/V],y_im [um/V]", delimiter=",")
+    found = responses(path, of(frequencies="f"))
+    np.testing.assert_array_equal(found.values[:, :, 0], H[:, :2, 0])
+    np.testing.assert_allclose(found.frequencies, LINES, rtol=1e-15)
+    assert ([each.name for each in found.outputs], found.units) == (["x", "y"], (("um/V",), ("um/V",)))
+    np.savetxt(path, columns[:, :4], header="frequency [Hz],x re,x im,y re", delimiter=",")
+    with pytest.raises(DesignError, match=r"it has frequencies, and beside them x re, x im, y re\. Give real and imaginary part"):
+        read(path)
 
 
 def test_numpy_reads_what_we_write(tmp_path: Path) -> None:

@@ -1,8 +1,8 @@
-"""Files that others wrote: only regular ones; HDF5 and MAT files in a process of their own, with limits of time and memory.
+"""Files that others wrote: only regular ones; HDF5 and MAT files in a process of their own, with limits of processor time and memory.
 
 The libraries that read these files can crash, run in circles beyond the reach of any exception, or take all memory. They run in a child,
 this very module, which is asked by a line of JSON and answers by one, numbers behind it. A child serves many files; one that dies, hangs or
-is interrupted is replaced. Data that stand in other files are refused by name.
+is interrupted is replaced. Limits are kept by the system, where it has them. Data that stand in other files are refused.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ import contextlib
 import json
 import math
 import os
+import signal
 import stat
 import struct
 import subprocess
@@ -33,13 +34,11 @@ from flexstage.base.number import Array
 
 Attribute: TypeAlias = str | float | tuple[str, ...]
 PATIENCE = 8.0
-"""How long one question about a file may take [s], and `_SLOW` more for every byte of what is asked."""
+"""Processor time that one question about a file may take [s], and `_SLOW` more for every byte of what is asked."""
 MEMORY = 1_000_000_000
 """What the child may take beside what is asked of it [B]."""
 _SLOW = 1e-7
 _COPIES = 3
-_LONGEST = 256_000_000
-_OBJECTS = 100_000
 _TEXTS = 100_000
 _LENGTH = struct.Struct("<Q")
 _NUMBERS = "fiub"
@@ -142,7 +141,7 @@ def _attributes(told: Mapping[str, Any]) -> dict[str, Attribute]:
 
 
 def mat(path: Path) -> list[tuple[str, Array | tuple[str, ...]]]:
-    """Arrays and texts of a MAT file of version 4 or 5, those of structures and cells by their paths (`test.u`). Raises `DesignError`.
+    """Arrays and texts of a MAT file of version 4 or 5, those of structures by their paths (`test.u`). Raises `DesignError`.
 
     >>> import scipy.io, tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
@@ -161,11 +160,40 @@ def _less(there: float) -> str:
     return f"Read less of it, export it in parts, or free memory: {gigabytes(there / _COPIES)} of numbers would fit"
 
 
+@contextlib.contextmanager
+def new_hdf(place: Path, size: int) -> Generator[Any]:
+    """An HDF5 file to fill, at most `size` bytes, whose room is taken first: on a full disk the library takes its process down.
+
+    Raises `OSError` where there is no room, or where it cannot be written.
+
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     with new_hdf(Path(folder) / "a.h5", 1_000_000) as file:
+    ...         file["x"] = [1.0, 2.0]
+    ...     hdf(Path(folder) / "a.h5").read("x").tolist(), (Path(folder) / "a.h5").stat().st_size < 5000
+    ([1.0, 2.0], True)
+    """
+    import h5py
+
+    with h5py.File("empty", "w", driver="core", backing_store=False, libver="v110") as file:
+        file.flush()
+        image = file.id.get_file_image()
+    with place.open("xb") as stream:
+        stream.write(image)
+        stream.flush()
+        if hasattr(os, "posix_fallocate"):
+            os.posix_fallocate(stream.fileno(), 0, max(size, len(image)))
+    file = h5py.File(place, "r+", libver="v110", locking=False)
+    try:
+        yield file
+    finally:
+        try:
+            file.close()  # room that is not used is given back
+        except RuntimeError as error:  # of what was left to write
+            raise OSError(str(error)) from None
+
+
 # --- the child as the caller sees it ---
-
-
-class _TooMuchError(EOFError):
-    """The child took more memory than it may."""
 
 
 class Child:
@@ -181,8 +209,7 @@ class Child:
         with self._lock:
             process = self._running()
             try:
-                with _watched(process, question["memory"]):
-                    return _exchange(process, question)
+                return _exchange(process, question)
             except EOFError:
                 self.end(1.0)
                 raise
@@ -232,8 +259,6 @@ def _exchange(process: subprocess.Popen[bytes], question: dict[str, Any]) -> tup
     except OSError:
         raise EOFError from None
     length = _LENGTH.unpack(_exactly(out, _LENGTH.size))[0]
-    if length > _LONGEST:
-        raise EOFError
     answer: dict[str, Any] = json.loads(_exactly(out, length))
     arrays = [np.empty(shape, np.dtype(kind)) for kind, shape in answer["arrays"]]
     for each in arrays:
@@ -262,71 +287,23 @@ def _into(stream: Any, array: Array) -> None:
         rest = rest[count:]
 
 
-@contextlib.contextmanager
-def _watched(process: subprocess.Popen[bytes], memory: int) -> Generator[None]:
-    """Where the system does not limit memory itself, a thread looks, and ends a child that takes more: raises `_TooMuchError` then."""
-    if sys.platform == "linux" and _resource() is not None:
-        yield
-        return
-    done, exceeded = threading.Event(), threading.Event()
-    watch = threading.Thread(target=_watch, args=(process, memory, done, exceeded), daemon=True)
-    watch.start()
-    try:
-        yield
-    except EOFError:
-        if exceeded.is_set():
-            raise _TooMuchError from None
-        raise
-    finally:
-        done.set()
-        watch.join()
-
-
-def _watch(process: subprocess.Popen[bytes], memory: int, done: threading.Event, exceeded: threading.Event) -> None:
-    with contextlib.suppress(ImportError):  # where the system lacks what it asks, there is the limit of time alone
-        import psutil
-
-        with contextlib.suppress(psutil.Error):
-            seen = psutil.Process(process.pid)
-            while not done.wait(0.05):
-                if seen.memory_info().rss > memory:
-                    exceeded.set()
-                    process.kill()
-                    return
-
-
-def _resource() -> Any:
-    try:
-        import resource
-    except ImportError:
-        return None
-    return resource
-
-
 def _ask(path: Path, question: dict[str, Any], size: int) -> tuple[Any, list[Array]]:
     """What the child says about a file, at most `size` bytes of numbers; raises `DesignError` with what keeps it from being read."""
-    seconds, memory, start = PATIENCE + _SLOW * size, MEMORY + _COPIES * size, time.monotonic()
+    seconds, memory = PATIENCE + _SLOW * size, MEMORY + _COPIES * size
     try:
         answer, arrays = CHILD.ask(question | {"seconds": seconds, "memory": memory})
-    except _TooMuchError:
-        raise refuse(str(path), *_too_much(memory)) from None
     except (EOFError, ValueError, KeyError, TypeError):
-        what = _ended(CHILD.code(), seconds if time.monotonic() - start >= seconds else None)
-        raise refuse(str(path), f"it is damaged: {what}", "Copy or export it anew") from None
+        raise refuse(str(path), f"it is damaged: {_ended(CHILD.code(), seconds)}", "Copy or export it anew") from None
     if "wrong" in answer:
         where, what, advice = answer["wrong"]
         raise refuse(f"{path}: {where}" if where else str(path), what, advice)
     return answer["result"], arrays
 
 
-def _too_much(memory: int) -> tuple[str, str]:
-    return f"reading it takes more than {gigabytes(memory)} of memory", "Export it anew, or in parts"
-
-
-def _ended(code: int, seconds: float | None) -> str:
-    """How reading a file ended that gave no answer; `seconds` where its time was up."""
-    if seconds is not None:
-        return f"reading it did not end within {seconds:.3g} s"
+def _ended(code: int, seconds: float) -> str:
+    """How reading a file ended that gave no answer."""
+    if -code == getattr(signal, "SIGXCPU", None):
+        return f"reading it took more than {seconds:.3g} s of the processor"
     return "the library that reads it crashed" + (f" (signal {-code})" if code < 0 else "")
 
 
@@ -339,26 +316,25 @@ class _WrongError(Exception):
 
 def serve(questions: BinaryIO, answers: BinaryIO) -> None:
     """Answer questions, one a line, until there are no more; a question that takes too long ends the process."""
-    import faulthandler
-
-    with open(os.devnull, "w") as nowhere:  # noqa: PTH123 (a place for what the watch would print)
-        for line in questions:
-            question = json.loads(line)
-            faulthandler.dump_traceback_later(question["seconds"], exit=True, file=nowhere)  # beyond the reach of the interpreter's lock
-            _limit(question["memory"])
-            arrays: list[Array] = []
-            try:
-                answer: dict[str, Any] = {"result": _TASKS[question["task"]](question, arrays)}
-            except Exception as error:  # noqa: BLE001 damaged files make the libraries stumble in ways of all kinds
-                arrays, answer = [], {"wrong": _wrong(question, error)}
-            _send(answers, answer, arrays)
-            faulthandler.cancel_dump_traceback_later()
+    for line in questions:
+        question = json.loads(line)
+        _limit(question["seconds"], question["memory"])
+        arrays: list[Array] = []
+        try:
+            answer: dict[str, Any] = {"result": _TASKS[question["task"]](question, arrays)}
+        except Exception as error:  # noqa: BLE001 damaged files make the libraries stumble in ways of all kinds
+            arrays, answer = [], {"wrong": _wrong(question, error)}
+        _send(answers, answer, arrays)
 
 
-def _limit(memory: int) -> None:
-    resource = _resource()
-    if resource is not None and sys.platform == "linux":
-        resource.setrlimit(resource.RLIMIT_AS, (memory, resource.getrlimit(resource.RLIMIT_AS)[1]))
+def _limit(seconds: float, memory: int) -> None:
+    """Let the system end this process beyond so much processor time, and refuse it more memory; nothing where it cannot."""
+    with contextlib.suppress(ImportError):
+        import resource
+
+        limits = {resource.RLIMIT_CPU: math.ceil(time.process_time() + seconds), resource.RLIMIT_AS: memory}
+        for kind, limit in limits.items():
+            resource.setrlimit(kind, (limit, resource.getrlimit(kind)[1]))
 
 
 def _send(answers: BinaryIO, answer: dict[str, Any], arrays: list[Array]) -> None:
@@ -376,7 +352,7 @@ def _wrong(question: dict[str, Any], error: Exception) -> tuple[str, str, str]:
     if isinstance(error, _WrongError):
         return error.args[0], error.args[1], error.args[2]
     if isinstance(error, MemoryError):
-        return "", *_too_much(question["memory"])
+        return "", f"reading it takes more than {gigabytes(question['memory'])} of memory", "Export it anew, or in parts"
     said = _said(error)
     if question["task"] == "mat":
         size = Path(question["path"]).stat().st_size
@@ -386,6 +362,9 @@ def _wrong(question: dict[str, Any], error: Exception) -> tuple[str, str, str]:
         numbers = said.partition("truncated file: ")[2].rstrip(")") or said
         return "", f"the file breaks off ({numbers})", "HDF5 cannot be read in part: copy or export it anew"
     return "", f"it cannot be read as HDF5 ({said})", "Check the file, or export it anew"
+
+
+_ELSEWHERE = "its data stand in another file", "Only the file that is named is read: copy all data into it"
 
 
 @contextlib.contextmanager
@@ -407,8 +386,6 @@ def _look(question: dict[str, Any], _arrays: list[Array]) -> dict[str, Any]:
             if thing.id in seen:
                 continue
             seen.add(thing.id)
-            if len(seen) > _OBJECTS:
-                raise _WrongError("", f"it has more than {_OBJECTS} groups and arrays", "Export what is needed")
             if hasattr(thing, "external"):  # committed types have a dtype and no data
                 found.append(_told(file, name, thing))
             elif hasattr(thing, "keys"):
@@ -425,18 +402,15 @@ def _members(name: str, group: Any) -> Iterator[tuple[str, Any]]:
             raise ValueError("a name in it is no text")
         link = group.get(key, getlink=True)
         if isinstance(link, h5py.ExternalLink):
-            raise _elsewhere(f"{name}/{key}".lstrip("/"), link.filename)
+            raise _WrongError(f"{name}/{key}".lstrip("/"), *_ELSEWHERE)
         if isinstance(link, h5py.HardLink):
             yield key, group[key]
 
 
-def _elsewhere(name: str, other: str) -> _WrongError:
-    return _WrongError(name, f'its data stand in another file, "{other}"', "Only the file that is named is read: copy all data into it")
-
-
 def _told(file: Any, name: str, data: Any) -> dict[str, Any]:
     """An array: everything but its numbers. Raises where they stand in other files."""
-    _require_inside(name, data)
+    if data.external or data.is_virtual:
+        raise _WrongError(name, *_ELSEWHERE)
     kind, columns = _kind(data)
     shape, size = data.shape or (), data.dtype.itemsize
     short = math.prod(shape) <= _TEXTS
@@ -451,16 +425,6 @@ def _told(file: Any, name: str, data: Any) -> dict[str, Any]:
         "columns": columns,
     }
     return own | {"attributes": _plain_attributes(data), "texts": texts, "references": references}
-
-
-def _require_inside(name: str, data: Any) -> None:
-    external = data.external
-    if external:
-        raise _elsewhere(name, str(external[0][0]))
-    if data.is_virtual:
-        other = next((each.file_name for each in data.virtual_sources() if each.file_name != "."), None)
-        if other is not None:
-            raise _elsewhere(name, other)
 
 
 def _kind(data: Any) -> tuple[str, dict[str, str]]:
@@ -508,7 +472,6 @@ def _text(value: Any) -> str:
 def _one_array(question: dict[str, Any], arrays: list[Array]) -> None:
     with _opened(question) as file:
         found = file[question["name"]]
-        _require_inside(question["name"], found)
         values = found[tuple(slice(*span) for span in question["spans"])]
     values = np.asarray(values[question["column"]] if question["column"] else values)
     names = values.dtype.names
@@ -528,7 +491,6 @@ def _numbers(values: Array) -> Array:
 def _some_texts(question: dict[str, Any], _arrays: list[Array]) -> list[str]:
     with _opened(question) as file:
         found = file[question["name"]]
-        _require_inside(question["name"], found)
         values = found[()]
     return _texts(values[question["column"]] if question["column"] else values)
 
@@ -544,28 +506,19 @@ def _mat(question: dict[str, Any], arrays: list[Array]) -> list[tuple[str, list[
 
 
 def _flat(name: str, value: Any) -> Iterator[tuple[str, Any]]:
-    """Arrays and texts of a value, those of structures and cells by their paths."""
+    """Arrays, texts and lists of texts, those of a structure by their paths; nothing of what else there is."""
     array = np.asarray(value)
     if array.dtype.kind == "U":
         yield name, [text.rstrip() for text in array.ravel().tolist()] or [""]
-    elif array.dtype.names:
-        for index, each in enumerate(array.ravel()):
-            inner = name if array.size == 1 else f"{name}({index + 1})"
-            for key in array.dtype.names:
-                yield from _flat(f"{inner}.{key}", each[key])
+    elif array.dtype.names and array.size == 1:
+        for key in array.dtype.names:
+            yield from _flat(f"{name}.{key}", array.ravel()[0][key])
     elif array.dtype.kind == "O":
-        yield from _cell(name, array)
+        members = [np.asarray(each) for each in array.ravel()]
+        if members and all(each.dtype.kind == "U" for each in members):
+            yield name, [str(each.ravel()[0]).rstrip() if each.size else "" for each in members]
     elif array.dtype.kind in "fiubc":
         yield name, array
-
-
-def _cell(name: str, array: Array) -> Iterator[tuple[str, Any]]:
-    members = [np.asarray(each) for each in array.ravel()]
-    if members and all(each.dtype.kind == "U" for each in members):
-        yield name, [str(each.ravel()[0]).rstrip() if each.size else "" for each in members]
-    else:
-        for index, each in enumerate(members):
-            yield from _flat(f"{name}({index + 1})", each)
 
 
 _TASKS = {"look": _look, "array": _one_array, "texts": _some_texts, "mat": _mat}
@@ -573,8 +526,6 @@ _TASKS = {"look": _look, "array": _one_array, "texts": _some_texts, "mat": _mat}
 
 def main() -> None:
     """Serve on the standard streams; what libraries print goes nowhere, and an interrupt ends the process at once."""
-    import signal
-
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     answers = os.fdopen(os.dup(1), "wb")
     with open(os.devnull, "wb") as nowhere:  # noqa: PTH123

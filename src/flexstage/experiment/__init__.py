@@ -4,9 +4,9 @@ from flexstage.base.lazy import lazily
 
 HOMES = {
     "record": "Channel Record Role in_memory",
-    "options": "Allow Kind Options",
+    "options": "Allow Arrays Kind Options",
     "formats.read": "read_record",
-    "formats.write": "Form write_record",
+    "formats.write": "write_record",
     "health": "Needs examine",
     "cross_spectra": "Segments spectra",
     "transfer": "h1 h2",

@@ -9,7 +9,6 @@ from flexstage.experiment.formats.read import (
     read_record as read_record,
 )
 from flexstage.experiment.formats.write import (
-    Form as Form,
     write_record as write_record,
 )
 from flexstage.experiment.health import (
@@ -22,6 +21,7 @@ from flexstage.experiment.identification.identify import (
 )
 from flexstage.experiment.options import (
     Allow as Allow,
+    Arrays as Arrays,
     Kind as Kind,
     Options as Options,
 )

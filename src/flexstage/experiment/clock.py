@@ -14,6 +14,8 @@ from flexstage.base.number import Array
 from flexstage.experiment.record import RATES, Record
 
 _LISTED = 5
+TIME_SCALES = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "ns": 1e-9, "min": 60.0, "h": 3600.0}
+"""Seconds in the units that times may have."""
 
 
 def nominal(value: float, uncertainty: float) -> float:

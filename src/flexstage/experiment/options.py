@@ -5,7 +5,7 @@ from __future__ import annotations
 import fnmatch
 from collections import Counter
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from enum import Enum
 
 from flexstage.base.finding import Finding, nearest, require
@@ -58,12 +58,41 @@ class Allow(Enum):
 
 
 @dataclass(frozen=True)
+class Arrays:
+    """Which arrays of a MAT or HDF5 file, or which columns of a CSV file, are what: names or patterns.
+
+    A record has `samples`, and `time` [s], `rate` [Hz] or `step` [s]; `names` and `units` are lists of texts, one a channel. Responses have
+    `frequencies` [Hz], complex `responses`, and `coherence`. What is not stated has the name that files written here give it. Of a CSV file
+    `time` and `frequencies` count: the others are its channels.
+    """
+
+    samples: tuple[str, ...] = ("samples",)
+    time: tuple[str, ...] = ("time",)
+    rate: tuple[str, ...] = ("rate",)
+    step: tuple[str, ...] = ("step",)
+    names: tuple[str, ...] = ("names",)
+    units: tuple[str, ...] = ("units",)
+    frequencies: tuple[str, ...] = ("frequencies", "frequency")
+    responses: tuple[str, ...] = ("responses",)
+    coherence: tuple[str, ...] = ("coherence",)
+
+    def stated(self) -> tuple[tuple[str, str], ...]:
+        """Pairs of a meaning and a name that is not the usual one.
+
+        >>> Arrays(samples=("u", "y"), time=("t",)).stated()
+        (('samples', 'u'), ('samples', 'y'), ('time', 't'))
+        """
+        own = [each for each in fields(self) if getattr(self, each.name) != each.default]
+        return tuple((each.name, name) for each in own for name in getattr(self, each.name))
+
+
+@dataclass(frozen=True)
 class Options:
     """What a user says about a file.
 
     `inputs` and `outputs` are names or patterns (`u*`, `S?`); where only one of them is given, all other channels are of the other kind.
     `only` names the channels that count at all. `rate` in Hz overrides what the file says of time. `units` are pairs of a name or pattern
-    and a unit. `allow` is what may be used although it is bad.
+    and a unit. `arrays` says which arrays of the file are what. `allow` is what may be used although it is bad.
     """
 
     inputs: tuple[str, ...] = ()
@@ -72,6 +101,7 @@ class Options:
     rate: float | None = None
     units: tuple[tuple[str, str], ...] = ()
     kind: Kind | None = None
+    arrays: Arrays = Arrays()
     allow: frozenset[Allow] = frozenset()
 
 

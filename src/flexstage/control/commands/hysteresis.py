@@ -15,7 +15,7 @@ from flexstage.control.hysteresis.report import hysteresis_report
 from flexstage.control.hysteresis.stack import dumps_hysteresis
 from flexstage.control.hysteresis.stack_test import Channels, stack_test
 from flexstage.control.hysteresis.tables import plays_table, stack_table
-from flexstage.experiment.commands.records import Rate, RecordTexts, Units, open_records
+from flexstage.experiment.commands.records import Arrays, Rate, RecordTexts, Units, open_records
 from flexstage.experiment.record import Record
 from flexstage.show.command.answer import answer
 from flexstage.show.command.options import Json, Report, output_option, text_option
@@ -37,6 +37,7 @@ def hysteresis(  # noqa: PLR0913 (its options)
     ] = None,
     units: Units = None,
     rate: Rate = None,
+    arrays: Arrays = None,
     output: Annotated[Path | None, output_option("STACK.TOML", "Hysteresis file to write, for the loop.")] = None,
     json: Json = None,
     report: Report = None,
@@ -50,7 +51,7 @@ def hysteresis(  # noqa: PLR0913 (its options)
     records = [record] if step is None else [record, step]
     require_writable([("--output", output), ("--json", json), ("--report", report)], records=records)
     between = None if limits is None else _volts(limits)
-    reader = RecordTexts(units=units, rate=rate, kind="record")
+    reader = RecordTexts(units=units, rate=rate, kind="record", arrays=arrays)
     opened = [_open(each, reader) for each in records]
     found = stack_test(opened[0], Channels(volts, stroke), step=None if step is None else opened[1], limits=between)
     for caution in found.found.cautions:

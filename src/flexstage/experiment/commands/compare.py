@@ -11,6 +11,7 @@ from flexstage.analysis.complete import platform_modes
 from flexstage.experiment import comparison
 from flexstage.experiment.commands.records import (
     Allow,
+    Arrays,
     Band,
     Inputs,
     Kind,
@@ -46,6 +47,7 @@ def compare(  # noqa: PLR0913 (its options)
     only: Only = None,
     units: Units = None,
     rate: Rate = None,
+    arrays: Arrays = None,
     kind: Kind = None,
     allow: Allow = None,
     band: Band = None,
@@ -60,7 +62,7 @@ def compare(  # noqa: PLR0913 (its options)
 
     FEA is shown where the cache holds all of it, else with --fea.
     """
-    texts = RecordTexts(inputs, outputs, only, units, rate, kind, allow, band, resolution)
+    texts = RecordTexts(inputs, outputs, only, units, rate, kind, allow, band, resolution, arrays)
     require_writable([("--json", json), ("--report", report)], design, record)
     mechanism = open_design(design, changes)
     linear = elastic_model(mechanism, model)

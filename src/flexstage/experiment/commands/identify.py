@@ -12,6 +12,7 @@ from flexstage.base.document import Document
 from flexstage.base.record import walk
 from flexstage.experiment.commands.records import (
     Allow,
+    Arrays,
     Band,
     Inputs,
     Kind,
@@ -52,6 +53,7 @@ def identify(  # noqa: PLR0913 (its options)
     only: Only = None,
     units: Units = None,
     rate: Rate = None,
+    arrays: Arrays = None,
     kind: Kind = None,
     allow: Allow = None,
     band: Band = None,
@@ -65,7 +67,7 @@ def identify(  # noqa: PLR0913 (its options)
 
     Bad channels are named and explained, and used only as far as --allow says.
     """
-    texts = RecordTexts(inputs, outputs, only, units, rate, kind, allow, band, resolution)
+    texts = RecordTexts(inputs, outputs, only, units, rate, kind, allow, band, resolution, arrays)
     require_writable([("--json", json), ("--report", report)], stage, records)
     mechanism = None if stage is None else open_design(stage)
     seen = identify_records(records, texts, None if mechanism is None else elastic_model(mechanism, Model.LUMPED))

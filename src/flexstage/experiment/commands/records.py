@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from enum import Enum
 from pathlib import Path
 from typing import Annotated, TypeAlias
@@ -38,6 +38,15 @@ Units: TypeAlias = Annotated[
 Rate: TypeAlias = Annotated[
     str | None, text_option("--rate", "FREQUENCY", 'Sampling rate, if the file has none or a wrong one: "2048 Hz".')
 ]
+Arrays: TypeAlias = Annotated[
+    list[str] | None,
+    text_option(
+        "--array",
+        "MEANING=NAMES",
+        "Which arrays of the file are what, e.g. samples=u,y or time=t (also rate, step, names, units, frequencies, responses, coherence). "
+        "May be given several times.",
+    ),
+]
 Kind: TypeAlias = Annotated[str | None, text_option("--kind", "<record|responses>", "Which is meant of a file that holds both.")]
 Allow: TypeAlias = Annotated[
     list[str] | None,
@@ -68,6 +77,7 @@ class RecordTexts:
     allow: list[str] | None = None
     band: tuple[str, str] | None = None
     resolution: str | None = None
+    arrays: list[str] | None = None
 
     def options(self) -> options.Options:
         """The options of the reader; raises `DesignError` with all that is wrong with them."""
@@ -75,6 +85,7 @@ class RecordTexts:
         units = _units(self.units, findings)
         allowed = [_word("--allow", word, options.Allow, findings) for word in names(self.allow)]
         kind = None if self.kind is None else _word("--kind", self.kind, options.Kind, findings)
+        arrays = _arrays(self.arrays, findings)
         require(findings)
         return options.Options(
             inputs=names(self.inputs),
@@ -83,6 +94,7 @@ class RecordTexts:
             rate=None if self.rate is None else _hertz("--rate", self.rate),
             units=units,
             kind=None if kind is None else options.Kind(kind),
+            arrays=arrays,
             allow=frozenset(options.Allow(word) for word in allowed if word is not None),
         )
 
@@ -154,6 +166,19 @@ def _units(texts: Sequence[str] | None, findings: list[Finding]) -> tuple[tuple[
         if not name or not unit:
             findings.append(Finding(f"--units {text}", "this names no channel and unit", 'Write for example --units "S*=um"'))
     return tuple((name, unit) for texts_of, unit in pairs for name in names([texts_of]))
+
+
+def _arrays(texts: Sequence[str] | None, findings: list[Finding]) -> options.Arrays:
+    known, stated = [each.name for each in fields(options.Arrays)], dict[str, tuple[str, ...]]()
+    for text in texts or ():
+        meaning, _, listed = text.partition("=")
+        if meaning.strip() not in known or not names([listed]):
+            findings.append(
+                Finding(f"--array {text}", f"this says of no array what it is: {', '.join(known)}", "Write for example samples=u,y")
+            )
+        else:
+            stated[meaning.strip()] = stated.get(meaning.strip(), ()) + names([listed])
+    return options.Arrays(**stated)
 
 
 def _word(option: str, word: str, kind: type[Enum], findings: list[Finding]) -> str | None:

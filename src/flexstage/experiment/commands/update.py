@@ -14,6 +14,7 @@ from flexstage.base.quantity import RATIO
 from flexstage.base.unit import parse
 from flexstage.experiment.commands.records import (
     Allow,
+    Arrays,
     Band,
     Inputs,
     Kind,
@@ -67,6 +68,7 @@ def update(  # noqa: PLR0913 (its options)
     only: Only = None,
     units: Units = None,
     rate: Rate = None,
+    arrays: Arrays = None,
     kind: Kind = None,
     allow: Allow = None,
     band: Band = None,
@@ -79,7 +81,7 @@ def update(  # noqa: PLR0913 (its options)
 
     Writes a new design file with the values tagged; comments stay, and the file that was read stays as it is.
     """
-    texts = RecordTexts(inputs, outputs, only, units, rate, kind, allow, band, resolution)
+    texts = RecordTexts(inputs, outputs, only, units, rate, kind, allow, band, resolution, arrays)
     require_writable([("--output", output), ("--json", json)], design, record)
     known = _known(prior or [], model_error, gain_error, gain=gain)
     text = read_text(design)

@@ -1,1 +1,11 @@
-"""Files of tests, read and written: CSV, UFF, HDF5, MAT."""
+"""Files of tests, read and written: a register of their forms, which other packages can add to."""
+
+from flexstage.base.register import Register
+from flexstage.experiment.formats.format import Format
+from flexstage.experiment.formats.hdf import HDF5
+from flexstage.experiment.formats.mat import MAT
+from flexstage.experiment.formats.table import CSV
+from flexstage.experiment.formats.uff import UFF, UFF_ASCII
+
+FORMATS: Register[Format] = Register("flexstage.formats", {"uff": UFF, "uff-ascii": UFF_ASCII, "mat": MAT, "hdf5": HDF5, "csv": CSV})
+"""Forms of record files by name."""

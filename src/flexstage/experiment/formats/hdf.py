@@ -2,28 +2,27 @@
 
 from __future__ import annotations
 
-import math
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from flexstage.base.files import Attribute, Hdf, HdfArray, hdf
-from flexstage.base.finding import Finding, require
+from flexstage.base.files import Attribute, Hdf, HdfArray, hdf, new_hdf
 from flexstage.base.number import Array
-from flexstage.experiment.formats.hdf_written import hdf_written
-from flexstage.experiment.formats.variables import OWN_FORM, Contents, Variable
+from flexstage.base.store import atomic_write
+from flexstage.experiment.formats.arrays import RECORD_FORM, RESPONSES_FORM, Contents, Variable, read_arrays
+from flexstage.experiment.formats.format import Format
+from flexstage.experiment.options import Options
 from flexstage.experiment.record import Record, Responses
 
-RESPONSES_FORM = "flexstage responses 1"
 BLOCK = 65_536
-_UNWRITTEN, _HARMLESS = 2000, 16_000_000
-"""How many times more numbers an array may have than the file holds (zeros are pressed a thousandfold), and bytes that do no harm."""
 NUMBERS = frozenset("fiub")
 """Kinds of real numbers, as numpy calls them."""
+_FRAME = 1_000_000
+"""Bytes of a file beside its numbers, at most: names, units, the tree of chunks."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,67 +75,35 @@ class StoredSamples:
         return values.reshape(len(values), int(np.prod(values.shape[1:]))).astype(float, copy=False)
 
 
-def hdf_contents(path: Path) -> Contents:
-    """What an HDF5 file holds; nothing is read but texts and attributes. Raises `DesignError` where it is none, breaks off or is damaged.
-
-    An array has the attributes of its groups too, but for names, which belong to the group.
-
-    >>> import h5py, tempfile
-    >>> with tempfile.TemporaryDirectory() as folder:
-    ...     with h5py.File(Path(folder) / "a.h5", "w") as file:
-    ...         file["test/u"] = [1.0, 2.0]
-    ...         file["test"].attrs["fs"] = 50.0
-    ...     [(each.name, dict(each.attributes)) for each in hdf_contents(Path(folder) / "a.h5").variables]
-    [('test/u', {'fs': 50.0})]
-    """
-    file = recorded(path)
-    own = file.attributes
-    texts = {name: (value,) for name, value in own.items() if isinstance(value, str)}
-    texts |= {name: value for name, value in own.items() if isinstance(value, tuple)}
-    texts |= {each.name: each.texts for each in file.arrays.values() if each.kind == "t"}
-    variables = [variable for each in file.arrays.values() for variable in _variables(file, each)]
-    return Contents(str(path), tuple(variables), texts, own)
+def is_hdf(start: bytes, _suffix: str) -> bool:
+    """Whether a file begins as HDF5 files do."""
+    return start.startswith(b"\x89HDF\r\n\x1a\n")
 
 
-def recorded(path: Path) -> Hdf:
-    """The HDF5 file; raises `DesignError` where its arrays are said to be far larger than what of them was written.
+def read_hdf(path: Path, options: Options) -> tuple[Record | Responses, ...]:
+    """What an HDF5 file holds, by the names of its arrays, which stay in the file. Columns of tables are arrays of their own.
+
+    Lists of names, units and roles are attributes of the array they belong to, or arrays themselves; single values attributes of the file.
+    Raises `DesignError` where it is none, breaks off or is damaged, and as `read_arrays` does.
 
     >>> import h5py, tempfile
+    >>> from flexstage.experiment.options import Arrays
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     with h5py.File(Path(folder) / "a.h5", "w") as file:
-    ...         found = file.create_dataset("u", 4_000_000_000, dtype="f4", chunks=(1000,))
-    ...     recorded(Path(folder) / "a.h5")
-    Traceback (most recent call last):
-    flexstage.base.finding.DesignError: ...a.h5: u: it is said to have 4e+09 numbers (16 GB), 0 bytes of which are in the file. ...
+    ...         file["test/u"], file["test/y"], file.attrs["fs"] = [1.0, 2.0], [3.0, 4.0], 50.0
+    ...     (found,) = read_hdf(Path(folder) / "a.h5", Options(arrays=Arrays(samples=("test/*",), rate=("fs",))))
+    ...     found.names, found.rate, found.values.tolist()
+    (('u', 'y'), 50.0, [[1.0, 3.0], [2.0, 4.0]])
     """
     file = hdf(path)
-    require(
-        Finding(f"{path}: {each.name}", _unwritten(each), "They were never written, or pressed beyond belief: export it anew")
-        for each in file.arrays.values()
-        if math.prod(each.shape) * each.size > max(_HARMLESS, _UNWRITTEN * each.stored)
-    )
-    return file
-
-
-def _unwritten(array: HdfArray) -> str:
-    count = math.prod(array.shape)
-    return f"it is said to have {count:.4g} numbers ({count * array.size / 1e9:.3g} GB), {array.stored} bytes of which are in the file"
-
-
-def _inherited(file: Hdf, name: str) -> dict[str, Attribute]:
-    """The attributes of an array's groups."""
-    parts = name.split("/")[:-1]
-    found: dict[str, Attribute] = {}
-    for depth in range(1, len(parts) + 1):
-        group = "/".join(parts[:depth])
-        alone = sum(each.rpartition("/")[0] == group for each in (*file.groups, *file.arrays)) == 1
-        found |= {key: value for key, value in file.groups[group].items() if alone or "name" not in key.lower()}
-    return found
+    said = dict(file.attributes) | {each.name: each.texts for each in file.arrays.values() if each.kind == "t"}
+    variables = [variable for each in file.arrays.values() for variable in _variables(file, each)]
+    return read_arrays(Contents(str(path), tuple(variables), said), options)
 
 
 def _variables(file: Hdf, array: HdfArray) -> list[Variable]:
     """The array; of a table its columns; nothing for what has no numbers."""
-    name, attributes = array.name, _inherited(file, array.name) | dict(array.attributes)
+    name, attributes = array.name, array.attributes
     if array.kind == "V":
         return [
             Stored(file, f"{name}/{column}", array.shape, is_complex=False, attributes=attributes, dataset=name, column=column)
@@ -160,7 +127,8 @@ def write_hdf(path: str | os.PathLike[str], what: Record | Responses) -> None:
     ...         file["samples"][:, 0].tolist(), file["samples"].attrs["names"].tolist(), float(file.attrs["rate"])
     ([0.1, 0.2], ['S1'], 3.0)
     """
-    with hdf_written(path, version="v110") as file:  # its metadata have check sums
+    size = 8 * (what.length + BLOCK) * len(what.channels) if isinstance(what, Record) else 3 * what.values.nbytes
+    with atomic_write(path) as place, new_hdf(place, size + _FRAME) as file:
         if isinstance(what, Record):
             _write_record(file, what)
         else:
@@ -168,14 +136,14 @@ def write_hdf(path: str | os.PathLike[str], what: Record | Responses) -> None:
 
 
 def _write_record(file: Any, record: Record) -> None:
-    file.attrs.update({"format": OWN_FORM, "rate": float(record.rate), "start": float(record.start), "name": record.name})
+    file.attrs.update({"format": RECORD_FORM, "rate": float(record.rate), "start": float(record.start), "name": record.name})
     shape = (record.length, len(record.channels))
     samples = file.create_dataset(
         "samples", shape, dtype="<f8", chunks=(max(1, min(record.length, BLOCK // 4)), shape[1]) if record.length else None
     )
-    samples.attrs["names"] = _listed(record.names)
-    samples.attrs["units"] = _listed(channel.unit for channel in record.channels)
-    samples.attrs["roles"] = _listed(channel.role.value for channel in record.channels)
+    samples.attrs["names"] = _texts(record.names)
+    samples.attrs["units"] = _texts(channel.unit for channel in record.channels)
+    samples.attrs["roles"] = _texts(channel.role.value for channel in record.channels)
     for start in range(0, record.length, BLOCK):
         stop = min(start + BLOCK, record.length)
         samples[start:stop] = record.samples.read(start, stop)
@@ -184,15 +152,19 @@ def _write_record(file: Any, record: Record) -> None:
 def _write_responses(file: Any, responses: Responses) -> None:
     file.attrs.update({"format": RESPONSES_FORM, "name": responses.name, "window": responses.window, "averages": responses.averages or 0})
     for side, channels in (("output", responses.outputs), ("input", responses.inputs)):
-        file.attrs[f"{side}_names"] = _listed(channel.name for channel in channels)
-        file.attrs[f"{side}_units"] = _listed(channel.unit for channel in channels)
+        file.attrs[f"{side}_names"] = _texts(channel.name for channel in channels)
+        file.attrs[f"{side}_units"] = _texts(channel.unit for channel in channels)
     file["frequencies"] = responses.frequencies
     file["responses"] = responses.values
     if responses.coherence is not None:
         file["coherence"] = responses.coherence
 
 
-def _listed(texts: Iterator[str] | tuple[str, ...] | Any) -> Any:
+def _texts(texts: Iterable[str]) -> Any:
     import h5py
 
     return np.array(list(texts), dtype=h5py.string_dtype())
+
+
+HDF5 = Format((".h5", ".hdf5", ".hdf"), is_hdf, read_hdf, write_hdf)
+"""HDF5 file: to the bit, of any size."""

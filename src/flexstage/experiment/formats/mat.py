@@ -11,87 +11,76 @@ from typing import Any
 import numpy as np
 import scipy
 
-from flexstage.base.files import Attribute, Hdf, HdfArray, mat
+from flexstage.base.files import Hdf, HdfArray, hdf, mat
 from flexstage.base.finding import refuse
 from flexstage.base.number import Array
 from flexstage.base.store import atomic_write
-from flexstage.experiment.formats.hdf import BLOCK, NUMBERS, RESPONSES_FORM, Stored, recorded
-from flexstage.experiment.formats.hdf_written import hdf_written
-from flexstage.experiment.formats.variables import OWN_FORM, Contents, Held, Variable
+from flexstage.experiment.formats.arrays import RECORD_FORM, RESPONSES_FORM, Contents, Held, Variable, read_arrays
+from flexstage.experiment.formats.format import Format
+from flexstage.experiment.formats.hdf import NUMBERS, Stored, is_hdf
+from flexstage.experiment.options import Options
 from flexstage.experiment.record import Channel, Record, Responses
 
 _LARGEST = 2**31 - 1
 _HEAD = 512
-_REFERENCES = "#refs#"
+_REFERENCES = "#refs#/"
 
 
-def is_version_73(start: bytes) -> bool:
-    """Whether the first bytes are those of a MAT file of version 7.3, which is HDF5 behind a head of 512 bytes.
+def is_mat(start: bytes, suffix: str) -> bool:
+    """Whether a file begins as MAT files of version 5 and 7.3 do; version 4 has no mark but its ending.
 
-    >>> is_version_73(b"MATLAB 7.3 MAT-file, Platform: GLNXA64"), is_version_73(b"MATLAB 5.0 MAT-file")
+    >>> is_mat(b"MATLAB 5.0 MAT-file", ".dat"), is_mat(b"time,u1", ".csv")
     (True, False)
     """
-    return start.startswith(b"MATLAB 7.3") or start[_HEAD : _HEAD + 8] == b"\x89HDF\r\n\x1a\n"
+    return start.startswith(b"MATLAB") or is_hdf(start[_HEAD:], suffix) or (suffix == ".mat" and not is_hdf(start, suffix))
 
 
-def mat_contents(path: Path) -> Contents:
-    """What a MAT file holds: arrays and texts, structures flattened (`test.u`). Version 7.3 stays in the file, others are read at once.
+def read_mat(path: Path, options: Options) -> tuple[Record | Responses, ...]:
+    """What a MAT file holds, by the names of its arrays; those of structures by their paths (`test.u`), lists of texts are cells.
 
-    The text and numbers of a structure that has one array belong to that array (its name, its unit). Raises `DesignError` where the file
-    is none or breaks off.
+    Arrays of version 7.3 stay in the file, others are read at once. Raises `DesignError` where the file is none or breaks off, and as
+    `read_arrays` does.
 
     >>> import scipy.io, tempfile
+    >>> from flexstage.experiment.options import Arrays
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     scipy.io.savemat(Path(folder) / "a.mat", {"test": {"u": [1.0, 2.0], "fs": 50.0}, "units": ["V"]})
-    ...     [(each.name, each.shape) for each in mat_contents(Path(folder) / "a.mat").variables]
-    [('test.u', (1, 2)), ('test.fs', (1, 1))]
+    ...     (found,) = read_mat(Path(folder) / "a.mat", Options(arrays=Arrays(samples=("test.u",), rate=("test.fs",))))
+    ...     found.channels[0], found.rate
+    (Channel(name='u', unit='V', role=<Role.INPUT: 'input'>), 50.0)
     """
     with path.open("rb") as stream:
         start = stream.read(_HEAD + 8)
-    found = _version_73(path) if is_version_73(start) else _version_5(path)
-    texts = {name: value for name, value in found if isinstance(value, tuple)}
-    arrays = [(name, value) for name, value in found if not isinstance(value, tuple)]
-    return Contents(str(path), tuple(_with_siblings(name, value, arrays, texts) for name, value in arrays), texts)
+    found = list(_version_73(path) if start.startswith(b"MATLAB 7.3") or is_hdf(start[_HEAD:], "") else _version_5(path))
+    said = {name: value for name, value in found if isinstance(value, tuple)}
+    return read_arrays(Contents(str(path), tuple(value for _, value in found if not isinstance(value, tuple)), said), options)
 
 
-def _with_siblings(name: str, value: Variable, arrays: list[tuple[str, Variable]], texts: dict[str, tuple[str, ...]]) -> Variable:
-    """The array with what stands beside it in its structure, if it is the only array there."""
-    owner = name.rpartition(".")[0]
-    beside = [each for each, array in arrays if each.rpartition(".")[0] == owner and np.prod(array.shape) > 1]
-    if not owner or beside != [name]:
-        return value
-    words: dict[str, Attribute] = {
-        each.rpartition(".")[2]: text[0] if len(text) == 1 else text for each, text in texts.items() if each.rpartition(".")[0] == owner
-    }
-    if isinstance(value, Held):
-        return Held(name, value.values, words)
-    return (
-        Stored(value.file, name, value.shape, value.is_complex, words, value.dataset, turned=True) if isinstance(value, Stored) else value
-    )
+def _version_5(path: Path) -> Iterator[tuple[str, Variable | tuple[str, ...]]]:
+    for name, value in mat(path):
+        yield name, value if isinstance(value, tuple) else Held(name, value)
 
 
-def _version_5(path: Path) -> list[tuple[str, Any]]:
-    return [(name, value if isinstance(value, tuple) else Held(name, value)) for name, value in mat(path)]
+def _version_73(path: Path) -> Iterator[tuple[str, Variable | tuple[str, ...]]]:
+    """Arrays and texts as MATLAB stores them in HDF5: axes in the opposite order, texts as numbers, cells as references."""
+    file = hdf(path)
+    for array in file.arrays.values():
+        name = array.name.replace("/", ".")
+        if array.name.startswith(_REFERENCES):
+            continue
+        if array.kind == "r":
+            yield name, tuple(" ".join(_characters(file, file.arrays[each])) for each in array.references if each in file.arrays)
+        elif array.attributes.get("MATLAB_class") == "char":
+            yield name, _characters(file, array)
+        elif array.kind in (*NUMBERS, "c") and not array.attributes.get("MATLAB_empty", 0):
+            yield name, Stored(file, name, tuple(reversed(array.shape)), array.kind == "c", dataset=array.name, turned=True)
 
 
-def _version_73(path: Path) -> list[tuple[str, Any]]:
-    file = recorded(path)
-    outside = (array for name, array in file.arrays.items() if not name.startswith(f"{_REFERENCES}/"))
-    return [each for array in outside for each in _node(file, array.name.replace("/", "."), array, (array.name,))]
-
-
-def _node(file: Hdf, name: str, array: HdfArray, above: tuple[str, ...]) -> Iterator[tuple[str, Any]]:
-    """Arrays and texts of an array of a file of version 7.3; `name` is its path as MATLAB writes it, `above` what refers to it."""
-    kind = array.attributes.get("MATLAB_class", "")
-    if array.attributes.get("MATLAB_empty", 0):
-        if kind == "char":
-            yield name, ("",)
-    elif kind == "char" and array.kind in NUMBERS:
-        yield name, tuple("".join(map(_letter, line)).rstrip() for line in np.atleast_2d(file.read(array.name).T).tolist())
-    elif array.kind == "r":
-        yield from _referred(file, name, array, above)
-    elif array.kind in (*NUMBERS, "c"):
-        yield name, Stored(file, name, tuple(reversed(array.shape)), array.kind == "c", dataset=array.name, turned=True)
+def _characters(file: Hdf, array: HdfArray) -> tuple[str, ...]:
+    """The lines of a text; nothing for an array that is none."""
+    if array.attributes.get("MATLAB_class") != "char" or array.kind not in NUMBERS or array.attributes.get("MATLAB_empty", 0):
+        return ("",)
+    return tuple("".join(map(_letter, line)).rstrip() for line in np.atleast_2d(file.read(array.name).T).tolist())
 
 
 def _letter(code: float) -> str:
@@ -99,26 +88,11 @@ def _letter(code: float) -> str:
     return chr(int(code)) if 0 <= code <= sys.maxunicode else "\ufffd"
 
 
-def _referred(file: Hdf, name: str, array: HdfArray, above: tuple[str, ...]) -> Iterator[tuple[str, Any]]:
-    """Members of a cell or of a structure's field, of a group all its arrays; texts alone are a list."""
-    inner: list[tuple[str, Any]] = []
-    for index, member in enumerate(array.references):
-        if member in above:
-            raise refuse(f"{file.path}: {array.name}", "a cell of it holds itself", "It is damaged: save it anew")
-        for each in [member] if member in file.arrays else [each for each in file.arrays if each.startswith(f"{member}/")]:
-            below = each[len(member) :].replace("/", ".")
-            inner += _node(file, f"{name}({index + 1}){below}", file.arrays[each], (*above, each))
-    if len(inner) == len(array.references) and all(isinstance(value, tuple) and len(value) == 1 for _, value in inner):
-        yield name, tuple(value[0] for _, value in inner)
-    else:
-        yield from inner
+def write_mat(path: str | os.PathLike[str], what: Record | Responses) -> None:
+    """Write a MAT file of version 5: `samples` (n, channels), `rate`, `start`, `names`, `units` and `roles`; or the like of responses.
 
-
-def write_mat(path: str | os.PathLike[str], what: Record | Responses, *, version_73: bool = False) -> None:
-    """Write a MAT file with `samples` (n, channels), `rate`, `start`, `names`, `units` and `roles`; or the like of responses.
-
-    Version 5 holds two gigabytes and is made in memory; version 7.3 is written block by block. Numbers come back to the bit. Raises
-    `DesignError` where a record is too large and where the file cannot be written.
+    It is made in memory and holds two gigabytes. Numbers come back to the bit. Raises `DesignError` where a record is larger and where the
+    file cannot be written.
 
     >>> import scipy.io, tempfile
     >>> from flexstage.experiment.record import in_memory
@@ -127,17 +101,11 @@ def write_mat(path: str | os.PathLike[str], what: Record | Responses, *, version
     ...     scipy.io.loadmat(Path(folder) / "a.mat")["samples"].tolist()
     [[0.1], [0.2]]
     """
-    if version_73:
-        _write_73(path, what)
-        return
     size = 8 * what.length * len(what.channels) if isinstance(what, Record) else 16 * what.values.size
     if size > _LARGEST:
-        raise refuse(
-            os.fspath(path), f"the record has {size / 1e9:.3g} GB, MAT files of version 5 hold 2.1 GB", "Write version 7.3 or HDF5"
-        )
+        what_is = f"the record has {size / 1e9:.3g} GB, MAT files of version 5 hold 2.1 GB"
+        raise refuse(os.fspath(path), what_is, "Write HDF5 (.h5), which MATLAB reads by h5read")
     values = {name: _cells(value) if isinstance(value, tuple) else value for name, value in _fields(what)}
-    if isinstance(what, Record):
-        values["samples"] = what.values
     with atomic_write(path) as place, place.open("wb") as stream:
         scipy.io.savemat(stream, values, oned_as="column")
         stream.seek(0)  # scipy writes the time into the head: the same record is to be the same file
@@ -145,11 +113,12 @@ def write_mat(path: str | os.PathLike[str], what: Record | Responses, *, version
 
 
 def _fields(what: Record | Responses) -> Iterator[tuple[str, Any]]:
-    """Names and values of a file's variables but for the samples."""
+    """Names and values of a file's variables."""
     if isinstance(what, Record):
-        yield from {"format": OWN_FORM, "name": what.name, "rate": float(what.rate), "start": float(what.start)}.items()
+        yield from {"format": RECORD_FORM, "name": what.name, "rate": float(what.rate), "start": float(what.start)}.items()
         yield from _described("", what.channels)
         yield "roles", tuple(channel.role.value for channel in what.channels)
+        yield "samples", what.values
         return
     yield from {"format": RESPONSES_FORM, "name": what.name, "window": what.window, "averages": float(what.averages or 0)}.items()
     yield from _described("output_", what.outputs)
@@ -171,57 +140,5 @@ def _cells(texts: tuple[str, ...]) -> Array:
     return cells
 
 
-def _write_73(path: str | os.PathLike[str], what: Record | Responses) -> None:
-    head = b"MATLAB 7.3 MAT-file, Platform: any, HDF5 schema 1.00 .".ljust(116) + bytes(8) + b"\x00\x02IM"
-    with hdf_written(path, head=head.ljust(_HEAD, b"\x00")) as file:
-        for name, value in _fields(what):
-            _put(file, name, value)
-        if isinstance(what, Record):
-            _put_samples(file, what)
-
-
-def _put(file: Any, name: str, value: Any) -> Any:
-    """One variable as MATLAB stores it: axes in the opposite order, texts as numbers of characters, cells as references."""
-    if isinstance(value, tuple):
-        return _put_cells(file, name, value)
-    if isinstance(value, str):
-        return _put_text(file, name, value)
-    values = np.atleast_2d(np.asarray(value)).T
-    if np.iscomplexobj(values):
-        values = np.ascontiguousarray(values).view([("real", "<f8"), ("imag", "<f8")])
-    found = file.create_dataset(name, data=values)
-    found.attrs["MATLAB_class"] = np.bytes_("double")
-    return found
-
-
-def _put_text(file: Any, name: str, text: str) -> Any:
-    codes = np.frombuffer(text.encode("utf-16-le"), "<u2")
-    found = file.create_dataset(name, data=codes[:, None] if text else np.zeros(2, "<u8"))
-    found.attrs["MATLAB_class"] = np.bytes_("char")
-    if text:
-        found.attrs["MATLAB_int_decode"] = np.int32(2)
-    else:
-        found.attrs["MATLAB_empty"] = np.uint8(1)
-    return found
-
-
-def _put_cells(file: Any, name: str, texts: tuple[str, ...]) -> Any:
-    import h5py
-
-    group = file.require_group(_REFERENCES)
-    references = [_put_text(group, f"{name}_{number}", text).ref for number, text in enumerate(texts)]
-    found = file.create_dataset(name, (len(texts), 1), dtype=h5py.ref_dtype)
-    for number, reference in enumerate(references):
-        found[number, 0] = reference
-    found.attrs["MATLAB_class"] = np.bytes_("cell")
-    return found
-
-
-def _put_samples(file: Any, record: Record) -> None:
-    shape = (len(record.channels), record.length)
-    chunks = (shape[0], min(record.length, BLOCK // 4)) if record.length else None
-    found = file.create_dataset("samples", shape, dtype="<f8", chunks=chunks)
-    found.attrs["MATLAB_class"] = np.bytes_("double")
-    for start in range(0, record.length, BLOCK):
-        stop = min(start + BLOCK, record.length)
-        found[:, start:stop] = record.samples.read(start, stop).T
+MAT = Format((".mat",), is_mat, read_mat, write_mat)
+"""MAT file, written as version 5: to the bit, up to 2 GB."""

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 import flexstage
-from flexstage.base.files import Hdf
+from flexstage.base.files import Hdf, new_hdf
 from flexstage.base.finding import refuse
 from flexstage.base.number import Array
 from flexstage.base.store import atomic_write
@@ -108,36 +108,16 @@ def _settle(folder: Path) -> None:
 
 
 def _written(place: Path, path: Path, pieces: dict[int, Path], what: tuple[Study, int]) -> None:
-    """The whole file. Its room is taken before HDF5 writes anything: on a full disk that library takes its process down."""
-    import h5py
-
+    """The whole file."""
     done = gathered(path)
     fresh = {start: each for start, each in pieces.items() if not len(done) or not done[start // what[1]]}
     old = opened(path) if path.exists() else None
     failures: Failures = [] if old is None else stored_failures(old)
     failures += [(start + row, reason) for start, each in fresh.items() for row, reason in read_failures(each).items()]
-    _reserve(place, needed(what[0], failures))
-    try:
-        with h5py.File(place, "r+", libver="v110", locking=False) as file:
-            _frame(file, *what)
-            _fill(file, old, fresh)
-            _put_failures(file, sorted(failures))
-    except RuntimeError as error:  # what is left to write when a file is closed
-        raise OSError(str(error)) from None
-
-
-def _reserve(place: Path, size: int) -> None:
-    """An empty HDF5 file whose blocks are taken on the disk; what is not used is given back when it is closed."""
-    import h5py
-
-    with h5py.File("empty", "w", driver="core", backing_store=False, libver="v110") as file:
-        file.flush()
-        image = file.id.get_file_image()
-    with place.open("xb") as stream:
-        stream.write(image)
-        stream.flush()
-        if hasattr(os, "posix_fallocate"):
-            os.posix_fallocate(stream.fileno(), 0, max(size, len(image)))
+    with new_hdf(place, needed(what[0], failures)) as file:
+        _frame(file, *what)
+        _fill(file, old, fresh)
+        _put_failures(file, sorted(failures))
 
 
 def _frame(file: Any, study: Study, size: int) -> None:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import csv
 import io
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -27,9 +27,6 @@ MISSING = frozenset({"", "nan", "-nan", "na", "n/a", "#n/a", "null", "none", "-"
 _COMMENT = re.compile(r"\s*(#|%|//|\*)+\s?")
 _WITH_UNIT = re.compile(r"(?P<name>.*?)\s*[\[(](?P<unit>[^\[\]]*)[\])]")
 _WORD = re.compile(r"[^\s\[(]+(?:\s*[\[(][^\])]*[\])])?")
-_RATE = re.compile(
-    r"(?:\w*rate|sampl\w*[ _]*freq\w*|fs)\s*(?:\[\w+\]|\(\w+\))?\s*[:=;,\s]\s*(\d+(?:[.,]\d+)?(?:[eE][-+]?\d+)?)\s*(k?Hz)?", re.IGNORECASE
-)
 _EXAMPLE = 'Write a header such as "time [s], u1 [V], S1 [um]" as its first line'
 
 
@@ -37,7 +34,7 @@ _EXAMPLE = 'Write a header such as "time [s], u1 [V], S1 [um]" as its first line
 class Layout:
     """Names and units of the columns, how they are divided (None: by blanks), the decimal sign, where numbers begin (byte and line).
 
-    `comments` are the lines before them, without their signs; `rate` in Hz is what one of them says.
+    `comments` are the lines before them, without their signs.
     """
 
     names: tuple[str, ...]
@@ -48,12 +45,11 @@ class Layout:
     line: int
     encoding: str
     comments: tuple[str, ...]
-    rate: float | None
 
     def fields(self, line: str) -> list[str]:
         """The fields of a line, blanks around them left out.
 
-        >>> Layout(("a", "b"), ("", ""), ",", ".", 0, 1, "utf-8", (), None).fields("1.0, 2.0")
+        >>> Layout(("a", "b"), ("", ""), ",", ".", 0, 1, "utf-8", ()).fields("1.0, 2.0")
         ['1.0', '2.0']
         """
         return _fields(line, self.delimiter)
@@ -61,7 +57,7 @@ class Layout:
     def fits(self, line: str) -> bool:
         """Whether a line has as many fields as there are columns; it may end with what divides them.
 
-        >>> two = Layout(("a", "b"), ("", ""), ",", ".", 0, 1, "utf-8", (), None)
+        >>> two = Layout(("a", "b"), ("", ""), ",", ".", 0, 1, "utf-8", ())
         >>> two.fits("1,2"), two.fits("1,2,"), two.fits("1,2,3"), two.fits("1")
         (True, True, False, False)
         """
@@ -96,7 +92,7 @@ def layout_of(path: Path) -> Layout:
             head = [_COMMENT.sub("", each) for each in lines[:number]]
             names, units = _header(head, delimiter, columns, path)
             start = sum(len(each.encode(encoding)) for each in lines[:number]) + (3 if raw.startswith(b"\xef\xbb\xbf") else 0)
-            return Layout(names, units, delimiter, decimal, start, number + 1, encoding, tuple(each.strip() for each in head), _rate(head))
+            return Layout(names, units, delimiter, decimal, start, number + 1, encoding, tuple(each.strip() for each in head))
     raise refuse(str(path), f"no line of numbers was found in its first {len(lines)} lines", _EXAMPLE)
 
 
@@ -197,11 +193,3 @@ def _candidates(head: list[str], delimiter: str | None, columns: int) -> Iterato
 def _split(text: str) -> tuple[str, str]:
     found = _WITH_UNIT.fullmatch(text.strip())
     return (found["name"], plain_unit(found["unit"])) if found else (text.strip(), "")
-
-
-def _rate(head: Iterable[str]) -> float | None:
-    found = next((match for match in map(_RATE.search, head) if match), None)
-    if found is None:
-        return None
-    value = float(found[1].replace(",", ".")) * (1000.0 if (found[2] or "").lower() == "khz" else 1.0)
-    return value if 0.0 < value < float("inf") else None

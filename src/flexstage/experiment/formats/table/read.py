@@ -10,14 +10,14 @@ from pathlib import Path
 
 import numpy as np
 
-from flexstage.base.finding import refuse
+from flexstage.base.files import Attribute
+from flexstage.base.finding import Finding, nearest, refuse, require
 from flexstage.base.number import Array
-from flexstage.experiment.clock import Clock, Told, longest_stretch, settled
-from flexstage.experiment.formats.stored import responses_of
+from flexstage.experiment.clock import TIME_SCALES, Clock, Told, longest_stretch, settled
+from flexstage.experiment.formats.arrays import Contents, Held, complex_of, read_arrays
 from flexstage.experiment.formats.table.layout import Layout, layout_of
 from flexstage.experiment.formats.table.values import TableSamples, indexed
-from flexstage.experiment.formats.variables import FREQUENCIES, TIMES, Contents, Held, complex_of, plain_name
-from flexstage.experiment.options import Allow, Options, assigned, wanted
+from flexstage.experiment.options import Allow, Arrays, Kind, Options, assigned, matches, wanted
 from flexstage.experiment.record import Channel, Record, Responses, Role
 
 _FLOAT = r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?"
@@ -25,30 +25,50 @@ OWN = re.compile(rf"flexstage record; rate (?P<rate>{_FLOAT}) Hz; start (?P<star
 """The comment that heads records written here: what times of a column do not say to the bit."""
 OWN_RESPONSES = re.compile(r"flexstage responses; outputs \d+; inputs \d+; averages (?P<averages>\d+)")
 SAYING = {"name": "name: ", "roles": "roles: ", "window": "window: ", "inputs": "inputs: ", "outputs": "outputs: "}
-_TIME_SCALES = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "ns": 1e-9, "min": 60.0, "h": 3600.0}
+_PART = re.compile(r"(?P<name>.+?)[ _](?P<part>re|im|coherence)")
 _BLOCK = 65_536
 
 
-def read_table(path: Path, options: Options) -> Record | Responses:
-    r"""What a CSV file holds: responses where its first column is frequency, else a record.
+def is_text(_start: bytes, _suffix: str) -> bool:
+    """What no other form claims is tried as a table."""
+    return True
 
-    Raises `DesignError` where there is neither a column of times nor a rate (in a comment, or stated), for gaps between times (passed over
-    where `Allow.GAPS`), for a last line cut short (left out where `Allow.TRUNCATED`).
+
+def read_table(path: Path, options: Options) -> tuple[Record | Responses, ...]:
+    r"""What a CSV file holds: responses where a column is called `frequency` (or as the user says), else a record.
+
+    Its times stand in the column `time`, or the one that is named. Raises `DesignError` where there is none and no rate is stated, for gaps
+    between times (passed over where `Allow.GAPS`), for a last line cut short (left out where `Allow.TRUNCATED`).
 
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     path = Path(folder) / "a.csv"
     ...     _ = path.write_text("time [s], u1 [V], S1 [um]\n0, 1, 10\n0.5, 2, 20\n1.0, 3, 30\n")
-    ...     found = read_table(path, Options())
+    ...     (found,) = read_table(path, Options())
     ...     found.rate, [channel.unit for channel in found.inputs], found.values.tolist()
     (2.0, ['V'], [[1.0, 10.0], [2.0, 20.0], [3.0, 30.0]])
     """
     layout = layout_of(path)
     samples = _samples(path, layout, options)
+    require(_unmatched(path, layout, options.arrays))
     own = next(filter(None, map(OWN_RESPONSES.match, layout.comments)), None)
-    if own or (FREQUENCIES.fullmatch(plain_name(layout.names[0])) and layout.units[0] in ("Hz", "kHz")):
+    is_record = any(map(OWN.match, layout.comments))
+    if own or (not is_record and _column(layout, options.arrays.frequencies) is not None):
         return _responses(path, layout, samples, options, own)
-    return _record(path, layout, samples, options)
+    return (_record(path, layout, samples, options),)
+
+
+def _unmatched(path: Path, layout: Layout, arrays: Arrays) -> Iterator[Finding]:
+    for meaning, name in arrays.stated():
+        if meaning not in ("time", "frequencies"):
+            yield Finding(f"{path}: {meaning}={name}", "of a table only time and frequencies are named", "Name channels otherwise (only)")
+        elif not any(matches(each, [name]) for each in layout.names):
+            yield Finding(f"{path}: {meaning}={name}", "no column is called so", nearest(name, layout.names))
+
+
+def _column(layout: Layout, names: tuple[str, ...]) -> int | None:
+    """The first column that has one of these names."""
+    return next((number for number, name in enumerate(layout.names) if matches(name, names)), None)
 
 
 def _samples(path: Path, layout: Layout, options: Options) -> TableSamples:
@@ -89,7 +109,7 @@ def _saying(layout: Layout, kind: str) -> str:
 
 
 def _record(path: Path, layout: Layout, samples: TableSamples, options: Options) -> Record:
-    time = next((number for number, name in enumerate(layout.names) if TIMES.fullmatch(plain_name(name))), None)
+    time = _column(layout, options.arrays.time)
     clock = _clock(path, layout, samples, time, options)
     columns = tuple(number for number in range(len(layout.names)) if number != time)
     roles = _roles(layout, len(columns))
@@ -110,15 +130,15 @@ def _roles(layout: Layout, count: int) -> list[Role]:
 
 def _clock(path: Path, layout: Layout, samples: TableSamples, time: int | None, options: Options) -> Clock:
     own = next(filter(None, map(OWN.match, layout.comments)), None)
-    stated = options.rate or (float(own["rate"]) if own else layout.rate)
+    stated = options.rate or (float(own["rate"]) if own else None)
     if time is None and stated is None:
-        what = f"none of its columns is time ({', '.join(layout.names[:12])}), and no comment states a rate"
-        raise refuse(str(path), what, 'Name the column of times "time [s]", or state the rate (rate)')
+        what = f"none of its columns is called time: {', '.join(layout.names[:12])}"
+        raise refuse(str(path), what, 'Say which has the times (array "time=..."), or state the rate (rate)')
     if time is None or options.rate:
         return Clock(float(stated or 0.0), 0.0, ((0, samples.length),))
-    if layout.units[time] not in ("", *_TIME_SCALES):
+    if layout.units[time] not in ("", *TIME_SCALES):
         raise refuse(f"{path}: {layout.names[time]}", f'its unit is "{layout.units[time]}", where a time is expected', "Write s, ms or us")
-    scale = _TIME_SCALES.get(layout.units[time], 1.0)
+    scale = TIME_SCALES.get(layout.units[time], 1.0)
     times = replace(samples, columns=(time,))
     told = Told(stated, allow_gaps=Allow.GAPS in options.allow)
     return settled(
@@ -131,34 +151,48 @@ def _times(samples: TableSamples, scale: float) -> Iterator[Array]:
         yield samples.read(start, start + _BLOCK)[:, 0] * scale
 
 
-def _responses(path: Path, layout: Layout, samples: TableSamples, options: Options, own: re.Match[str] | None) -> Responses:
+def _responses(
+    path: Path, layout: Layout, samples: TableSamples, options: Options, own: re.Match[str] | None
+) -> tuple[Record | Responses, ...]:
+    """The columns in the form of named arrays: frequencies, then of each pair real and imaginary part, and coherence or not."""
+    at = 0 if own else _column(layout, options.arrays.frequencies)
+    unit = layout.units[at or 0]
+    if unit not in ("", "Hz", "kHz"):
+        raise refuse(f"{path}: {layout.names[at or 0]}", f'its unit is "{unit}", where a frequency is expected', "Write Hz or kHz")
     values = samples.read(0, samples.length)
-    lines = Held("frequency", values[:, 0] * (1e3 if layout.units[0] == "kHz" else 1.0))
-    if own is None:
-        columns = (Held(name, values[:, number]) for number, name in enumerate(layout.names) if number)
-        found = responses_of(Contents(str(path), (lines, *columns)), options)
-    else:
-        found = responses_of(_own_contents(path, layout, (lines, values), own), options)
-    if found is None:
-        advice = 'Give rising frequencies, and columns of real and imaginary parts: "H_re [um/V]", "H_im [um/V]"'
-        raise refuse(str(path), "it has a column of frequencies but no responses", advice)
-    return found
+    others = np.delete(values, at or 0, axis=1)
+    sides = {side: _side(layout, side) for side in ("outputs", "inputs")} if own else _pairs(path, layout, at or 0)
+    outputs, inputs = len(sides["outputs"]), len(sides["inputs"])
+    parts = others.shape[1] // max(1, outputs * inputs)
+    if parts not in (2, 3) or parts * outputs * inputs != others.shape[1]:
+        what = f"{others.shape[1]} columns do not hold the responses of {outputs} outputs to {inputs} inputs"
+        raise refuse(str(path), what, "Write the file anew")
+    columns = others.reshape(-1, outputs, inputs, parts)
+    held = [
+        Held("frequencies", values[:, at or 0] * (1e3 if unit == "kHz" else 1.0)),
+        Held("responses", complex_of(columns[..., 0], columns[..., 1])),
+        *([Held("coherence", columns[..., 2])] if parts == 3 else []),
+    ]
+    said: dict[str, Attribute] = {kind: _saying(layout, kind) for kind in ("name", "window")}
+    said |= {f"{side[:-1]}_names": tuple(name for name, _ in pairs) for side, pairs in sides.items()}
+    said |= {f"{side[:-1]}_units": tuple(unit for _, unit in pairs) for side, pairs in sides.items()}
+    said |= {"averages": float(own["averages"])} if own else {}
+    whole = replace(options, kind=Kind.RESPONSES, arrays=Arrays())
+    return read_arrays(Contents(str(path), tuple(held), said), whole)
 
 
-def _own_contents(path: Path, layout: Layout, numbers: tuple[Held, Array], own: re.Match[str]) -> Contents:
-    """Frequencies, responses and coherence of a file written here, with names and units from its comments."""
-    lines, values = numbers
-    sides = {side: _side(layout, side) for side in ("outputs", "inputs")}
-    outputs, inputs, width = len(sides["outputs"]), len(sides["inputs"]), values.shape[1] - 1
-    parts = width // max(1, outputs * inputs)
-    if parts not in (2, 3) or parts * outputs * inputs != width:
-        raise refuse(str(path), f"{width} columns do not hold the responses of {outputs} outputs to {inputs} inputs", "Write the file anew")
-    columns = values[:, 1:].reshape(-1, outputs, inputs, parts)
-    held = [lines, Held("responses", complex_of(columns[..., 0], columns[..., 1])), Held("averages", np.array(float(own["averages"])))]
-    held += [Held("coherence", columns[..., 2])] if parts == 3 else []
-    texts = {f"{side[:-1]}_names": tuple(name for name, _ in pairs) for side, pairs in sides.items()}
-    texts |= {f"{side[:-1]}_units": tuple(unit for _, unit in pairs) for side, pairs in sides.items()}
-    return Contents(str(path), tuple(held), texts | {kind: (_saying(layout, kind),) for kind in ("name", "window")})
+def _pairs(path: Path, layout: Layout, at: int) -> dict[str, list[tuple[str, str]]]:
+    """Outputs by the names of their columns, `S1 re`, `S1 im` and maybe `S1 coherence`; the one input is not named."""
+    names = [name for number, name in enumerate(layout.names) if number != at]
+    found = [_PART.fullmatch(name) for name in names]
+    endings = tuple(each["part"] if each else "" for each in found)
+    order = ("re", "im", "coherence")[: 3 if "coherence" in endings else 2]
+    if not endings or endings != order * (len(endings) // len(order)):
+        advice = 'Give real and imaginary part of each: "frequency [Hz], S1 re [um/V], S1 im [um/V]", with or without "S1 coherence"'
+        raise refuse(str(path), f"it has frequencies, and beside them {', '.join(names[:12])}", advice)
+    units = [unit for number, unit in enumerate(layout.units) if number != at][:: len(order)]
+    outputs = [each["name"] for each in found if each][:: len(order)]
+    return {"outputs": list(zip(outputs, units, strict=True)), "inputs": [("input", "1" if any(units) else "")]}
 
 
 def _side(layout: Layout, side: str) -> list[tuple[str, str]]:

@@ -15,7 +15,7 @@ from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array
 from flexstage.base.store import atomic_write
 from flexstage.experiment.formats.table.read import SAYING
-from flexstage.experiment.formats.variables import TIMES, plain_name
+from flexstage.experiment.options import Arrays, matches
 from flexstage.experiment.record import Channel, Record, Responses
 
 _BLOCK = 16_384
@@ -46,7 +46,7 @@ def write_table(path: str | os.PathLike[str], what: Record | Responses) -> None:
 
 def _unwritable(where: str, channels: Iterable[Channel]) -> Iterable[Finding]:
     for channel in channels:
-        if not channel.name.isprintable() or channel.name != channel.name.strip() or TIMES.fullmatch(plain_name(channel.name)):
+        if not channel.name.isprintable() or channel.name != channel.name.strip() or matches(channel.name, Arrays().time):
             yield Finding(f"{where}: {channel.name}", "its name cannot head a column of a CSV file", "Rename the channel")
 
 

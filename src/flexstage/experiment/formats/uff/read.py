@@ -14,9 +14,9 @@ import numpy as np
 from flexstage.base.finding import DesignError, Finding, require
 from flexstage.base.number import Array
 from flexstage.experiment.clock import Clock, Told, longest_stretch, settled
+from flexstage.experiment.formats.arrays import SideBySide, complex_of
 from flexstage.experiment.formats.uff.function import COHERENCE, KINDS
 from flexstage.experiment.formats.uff.scan import DataSet, scan
-from flexstage.experiment.formats.variables import SideBySide, complex_of
 from flexstage.experiment.options import Allow, Kind, Options, assigned, matches, numbered, wanted
 from flexstage.experiment.record import Channel, Record, Responses, Role, Samples
 
@@ -46,12 +46,24 @@ class Column:
         return self.samples.read(start, stop)[:, [self.number]]
 
 
-def read_uff(path: Path, options: Options) -> tuple[Record | None, Responses | None]:
-    """What a universal file holds: its time histories, its frequency responses, or both; `options.kind` keeps one of them from being read.
+def is_uff(start: bytes, _suffix: str) -> bool:
+    r"""Whether a file begins as universal files do.
+
+    >>> is_uff(b"    -1\n    58\n", ".uff"), is_uff(b"time,u1\n", ".uff")
+    (True, False)
+    """
+    lines = [line.strip() for line in start.lstrip().split(b"\n")[:2]]
+    return lines[0] == b"-1" and len(lines) > 1 and lines[1][:2].isdigit()
+
+
+def read_uff(path: Path, options: Options) -> tuple[Record | Responses, ...]:
+    """What a universal file holds: its time histories, its frequency responses, or both, as far as `options.kind` asks for them.
 
     Raises `DesignError` with all that keeps it from being read: functions that break off (used as far as they go where `Allow.TRUNCATED`),
     of different lengths or rates, of other kinds.
     """
+    stated = options.arrays.stated()
+    require(Finding(f"{path}: {meaning}={name}", "universal files have no named arrays", "Leave it out") for meaning, name in stated)
     found, findings = scan(path)
     truncated = [Finding(_where(path, each), each.problem, _ADVICE) for each in found if each.problem is not None]
     require([*findings, *([*truncated, *_missing(path, found)] if Allow.TRUNCATED not in options.allow else ())])
@@ -59,9 +71,9 @@ def read_uff(path: Path, options: Options) -> tuple[Record | None, Responses | N
     responses = [each for each in found if each.function.is_response]
     if not histories and not responses:
         raise DesignError([_nothing(path, found)])
-    record = _record(path, histories, options) if histories and options.kind is not Kind.RESPONSES else None
     coherences = [each for each in found if each.function.kind == COHERENCE]
-    return record, _responses(path, responses, coherences, options) if responses and options.kind is not Kind.RECORD else None
+    record = (_record(path, histories, options),) if histories and options.kind is not Kind.RESPONSES else ()
+    return (*record, *((_responses(path, responses, coherences, options),) if responses and options.kind is not Kind.RECORD else ()))
 
 
 _ADVICE = 'Export the file anew, or allow "truncated" to use what there is'

@@ -33,7 +33,7 @@ def write_uff(path: str | os.PathLike[str], what: Record | Responses, *, binary:
     >>> from flexstage.experiment.formats.uff.read import read_uff
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     write_uff(Path(folder) / "a.uff", in_memory([Channel("S1", "um", Role.OUTPUT)], 3.0, np.array([[0.1], [0.2]])))
-    ...     again, _ = read_uff(Path(folder) / "a.uff", Options())
+    ...     (again,) = read_uff(Path(folder) / "a.uff", Options())
     ...     again.rate, again.channels[0].unit, again.values.tolist()
     (3.0, 'um', [[0.1], [0.2]])
     """

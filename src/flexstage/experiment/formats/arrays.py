@@ -1,0 +1,406 @@
+"""Records and responses among the named arrays of a file: by the names of one documented form, or as the user says which array is what.
+
+A record: `samples` (n, channels) and `time` (n,) [s], `rate` [Hz] or `step` [s]; beside them `start` [s], `name`, and lists of texts
+`names`, `units`, `roles`. Responses: `frequencies` (f,) [Hz] and complex `responses` (f, outputs, inputs); beside them `coherence` of that
+shape, `output_names`, `output_units`, `input_names`, `input_units`, `window`, `averages`, `name`.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Protocol
+
+import numpy as np
+
+from flexstage.base.files import Attribute
+from flexstage.base.finding import DesignError, Finding, nearest, refuse, require
+from flexstage.base.number import Array
+from flexstage.experiment.clock import TIME_SCALES, Clock, Told, longest_stretch, settled
+from flexstage.experiment.options import Allow, Arrays, Kind, Options, assigned, matches, numbered, wanted
+from flexstage.experiment.record import Channel, InMemory, Record, Responses, Role, Samples, not_rising
+from flexstage.experiment.unit import plain_unit
+
+RECORD_FORM, RESPONSES_FORM = "flexstage record 1", "flexstage responses 1"
+"""What files written here say of themselves."""
+_BLOCK = 262_144
+_LISTED = 24
+
+
+class Variable(Protocol):
+    """An array of a file: its name (a path), its shape, what the file says beside it, and how it is read."""
+
+    @property
+    def name(self) -> str:
+        """Path of the array within its file."""
+        ...
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Shape of the array, axes of length one included."""
+        ...
+
+    @property
+    def is_complex(self) -> bool:
+        """Whether its numbers are complex."""
+        ...
+
+    @property
+    def attributes(self) -> Mapping[str, Attribute]:
+        """What the file says beside the array."""
+        ...
+
+    def whole(self) -> Array:
+        """The array."""
+        ...
+
+    def samples(self, axis: int) -> Samples:
+        """The array as samples along an axis; the others are its channels, in order."""
+        ...
+
+
+@dataclass(frozen=True, eq=False)
+class Held:
+    """An array that is in memory already."""
+
+    name: str
+    values: Array
+    attributes: Mapping[str, Attribute] = field(default_factory=dict[str, Attribute])
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Shape of the array."""
+        return self.values.shape
+
+    @property
+    def is_complex(self) -> bool:
+        """Whether its numbers are complex."""
+        return np.iscomplexobj(self.values)
+
+    def whole(self) -> Array:
+        """The array."""
+        return self.values
+
+    def samples(self, axis: int) -> Samples:
+        """The array as samples along an axis, as floats."""
+        first = np.moveaxis(self.values, axis, 0)
+        return InMemory(first.reshape(len(first), -1).astype(float))
+
+
+@dataclass(frozen=True, eq=False)
+class Contents:
+    """What a file holds: arrays, and what it says in texts, lists of texts and numbers by name; `where` names it."""
+
+    where: str
+    variables: tuple[Variable, ...]
+    said: Mapping[str, Attribute] = field(default_factory=dict[str, Attribute])
+
+    def find(self, names: tuple[str, ...]) -> tuple[Variable, ...]:
+        """The arrays that have one of the names or fit one of the patterns, in the order of these."""
+        fitting = (each for name in names for each in self.variables if matches(each.name, [name]))
+        return tuple(dict.fromkeys(fitting))
+
+    def vector(self, names: tuple[str, ...]) -> Variable | None:
+        """The first real array of these that has more than one number, all along one axis."""
+        return next(
+            (each for each in self.find(names) if not each.is_complex and 1 < max(each.shape, default=0) == np.prod(each.shape)), None
+        )
+
+    def number(self, *names: str) -> float | None:
+        """The first number of one of these names.
+
+        >>> Contents("a.mat", (Held("data.fs", np.array([[50.0]])),)).number("data.fs")
+        50.0
+        """
+        found: list[Attribute | None] = [float(np.real(each.whole().ravel()[0])) for each in self.find(names) if np.prod(each.shape) == 1]
+        found += [self.said.get(name) for name in names]
+        return next((value for value in found if isinstance(value, float)), None)
+
+    def texts(self, *names: str) -> tuple[str, ...]:
+        """The list of texts, or the one text, of the first of these names; empty if there is none."""
+        found = next((self.said[name] for name in names if name in self.said), ())
+        return found if isinstance(found, tuple) else (str(found),)
+
+    def text(self, name: str) -> str:
+        """One text; empty if there is none."""
+        return " ".join(self.texts(name))
+
+
+@dataclass(frozen=True, eq=False)
+class SideBySide:
+    """Samples of several sources as one: their channels one after another."""
+
+    sources: tuple[Samples, ...]
+
+    @property
+    def length(self) -> int:
+        """Number of samples of each channel."""
+        return min(source.length for source in self.sources)
+
+    def read(self, start: int, stop: int) -> Array:
+        """Samples `start` to `stop`, the latter excluded, of all sources."""
+        return np.hstack([source.read(start, stop) for source in self.sources])
+
+
+def complex_of(real: Array, imaginary: Array) -> Array:
+    """The complex array of two real ones, to the bit: a sum would lose the sign of zeros.
+
+    >>> complex_of(np.array([-0.0]), np.array([2.0])).tolist()
+    [(-0+2j)]
+    """
+    whole = np.empty(real.shape, dtype=complex)
+    np.real(whole)[...], np.imag(whole)[...] = real, imaginary
+    return whole
+
+
+def read_arrays(contents: Contents, options: Options) -> tuple[Record | Responses, ...]:
+    """The record, the responses, or both of a file's arrays, as far as `options.kind` asks for them.
+
+    Raises `DesignError` that lists the arrays where there is neither, and with what keeps those there are from being read.
+
+    >>> both = (Held("u", np.zeros((1, 8))), Held("y", np.ones((8, 2))), Held("fs", np.array(4.0)))
+    >>> (found,) = read_arrays(Contents("a.mat", both), Options(arrays=Arrays(samples=("u", "y"), rate=("fs",))))
+    >>> found.names, found.rate, found.values[0].tolist()
+    (('u', 'y1', 'y2'), 4.0, [0.0, 1.0, 1.0])
+    """
+    require(_unmatched(contents, options.arrays))
+    samples, responses = contents.find(options.arrays.samples), contents.find(options.arrays.responses)
+    found: list[Record | Responses] = []
+    if samples and options.kind is not Kind.RESPONSES:
+        found.append(_record(contents, samples, options))
+    if responses and options.kind is not Kind.RECORD:
+        found.append(_responses(contents, responses, options))
+    if not found:
+        raise _nothing(contents, options.kind)
+    return tuple(found)
+
+
+def _unmatched(contents: Contents, arrays: Arrays) -> Iterator[Finding]:
+    known = [*(each.name for each in contents.variables), *contents.said]
+    for meaning, name in arrays.stated():
+        if not any(matches(each, [name]) for each in known):
+            yield Finding(f"{contents.where}: {meaning}={name}", "it has no array of this name", nearest(name, known))
+
+
+def _nothing(contents: Contents, kind: Kind | None) -> DesignError:
+    missing = {None: '"samples" or "responses"', Kind.RECORD: '"samples"', Kind.RESPONSES: '"responses"'}[kind]
+    advice = (
+        'Say which is what (array): of a record "samples=..." with "time=...", "rate=..." or "step=...", or the rate itself (rate); '
+        'of responses "responses=..." with "frequencies=..."'
+    )
+    return refuse(contents.where, f"it has no array {missing}. {listed(contents)}", advice)
+
+
+def listed(contents: Contents) -> str:
+    """The arrays of a file with their shapes, single numbers with their values, for a message.
+
+    >>> listed(Contents("a.mat", (Held("u", np.zeros((8, 2))), Held("dt", np.array(0.5))), {"note": "run 2"}))
+    'It has u (8, 2), dt = 0.5, note "run 2"'
+    """
+    arrays = [
+        f"{each.name} = {each.whole().ravel()[0]:.6g}"
+        if np.prod(each.shape) == 1
+        else f"{each.name} {each.shape}{' complex' if each.is_complex else ''}"
+        for each in contents.variables[:_LISTED]
+    ]
+    said = [f'{name} "{value[:20]}"' if isinstance(value, str) else f"{name} = {value}" for name, value in contents.said.items()]
+    more = len(contents.variables) - _LISTED
+    return f"It has {', '.join([*arrays, *([f'{more} more arrays'] if more > 0 else []), *said[:_LISTED]]) or 'none'}"
+
+
+def _require_real(contents: Contents, chosen: Iterable[Variable]) -> None:
+    advice = "Name real arrays of one or two axes"
+    require(
+        Finding(f"{contents.where}: {each.name}", f"it is {'complex' if each.is_complex else f'of shape {each.shape}'}, no samples", advice)
+        for each in chosen
+        if each.is_complex or not 1 <= len(each.shape) <= 2 or 0 in each.shape
+    )
+
+
+def _record(contents: Contents, chosen: tuple[Variable, ...], options: Options) -> Record:
+    _require_real(contents, chosen)
+    time = contents.vector(options.arrays.time)
+    clock = _clock(contents, time, options)
+    axes = _axes(contents, chosen, time, options)
+    samples = SideBySide(tuple(variable.samples(axis) for variable, axis in axes))
+    channels = assigned(_channels(contents, axes, options.arrays), options, contents.where)
+    start = clock.start if time is not None else contents.number("start") or 0.0
+    whole = Record(channels, clock.rate, samples, start, name=contents.text("name"), source=contents.where)
+    return longest_stretch(whole.select(wanted(whole.names, options)) if options.only else whole, clock)
+
+
+def _clock(contents: Contents, time: Variable | None, options: Options) -> Clock:
+    step = contents.number(*options.arrays.step)
+    stated = options.rate or contents.number(*options.arrays.rate) or (1.0 / step if step else None)
+    if time is None and stated is None:
+        advice = 'Say what the time is: "time=...", "rate=..." or "step=..." (array), or the rate itself (rate)'
+        raise refuse(contents.where, f"it has neither times nor a rate. {listed(contents)}", advice)
+    if time is None or options.rate:
+        return Clock(float(stated or 0.0), 0.0, ((0, 0),))
+    scale = TIME_SCALES.get(plain_unit(str(time.attributes.get("units", "s"))), 1.0)
+    source = time.samples(int(np.argmax(time.shape)))
+    blocks = (source.read(first, min(first + _BLOCK, source.length))[:, 0] * scale for first in range(0, source.length, _BLOCK))
+    told = Told(stated, allow_gaps=Allow.GAPS in options.allow)
+    return settled(blocks, lambda number: float(source.read(number, number + 1)[0, 0]) * scale, told, f"{contents.where}: {time.name}")
+
+
+def _axes(contents: Contents, chosen: tuple[Variable, ...], time: Variable | None, options: Options) -> list[tuple[Variable, int]]:
+    """The axis of time of each array: as long as the times; without times the first, of arrays the user names the longest."""
+    named = options.arrays.samples != Arrays().samples
+    length = max(time.shape) if time is not None else max(chosen[0].shape) if named else chosen[0].shape[0]
+    if not all(length in each.shape for each in chosen):
+        sizes = ", ".join(f"{each.name} {each.shape}" for each in (*([time] if time is not None else []), *chosen[:_LISTED]))
+        raise refuse(contents.where, f"its arrays differ in length: {sizes}", 'Name arrays of as many samples (array "samples=...")')
+    return [(each, each.shape.index(length)) for each in chosen]
+
+
+def _channels(contents: Contents, axes: list[tuple[Variable, int]], arrays: Arrays) -> tuple[Channel, ...]:
+    widths = [int(np.prod(variable.shape)) // variable.shape[axis] for variable, axis in axes]
+    variables = [variable for variable, _ in axes]
+    names = _each(contents, "names", arrays.names, variables, widths) or _own_names(variables, widths)
+    total = sum(widths)
+    units = _each(contents, "units", arrays.units, variables, widths) or ("",) * total
+    roles = _each(contents, "roles", ("roles",), variables, widths) or ("",) * total
+    known = {role.value: role for role in Role}
+    triples = zip(numbered(names), units, roles, strict=True)
+    return tuple(Channel(name, plain_unit(unit), known.get(role, Role.UNKNOWN)) for name, unit, role in triples)
+
+
+def _each(contents: Contents, kind: str, names: tuple[str, ...], variables: list[Variable], widths: list[int]) -> tuple[str, ...]:
+    """A text a channel: of one list in the file, or of the attributes of all arrays; empty where there is neither."""
+    total = sum(widths)
+    found = contents.texts(*names)
+    if not found:
+        own = [_texts(variable.attributes.get(kind, ())) for variable in variables]
+        found = tuple(text for each, width in zip(own, widths, strict=True) for text in (each or ("",) * width))
+        found = found if any(own) else ()
+    if found and len(found) != total:
+        what = f"its {kind} are {len(found)} ({', '.join(found[:6])}), its channels {total}"
+        raise refuse(contents.where, what, f'Name the list that is meant (array "{kind}=...")')
+    return found
+
+
+def _texts(value: Attribute) -> tuple[str, ...]:
+    return value if isinstance(value, tuple) else (str(value),)
+
+
+def _own_names(variables: list[Variable], widths: list[int]) -> tuple[str, ...]:
+    """Names of channels by those of their arrays: the last part of the path where these differ."""
+    short = [re.split(r"[/.]", variable.name)[-1] for variable in variables]
+    plain = short if len(set(short)) == len(short) else [variable.name for variable in variables]
+    pairs = zip(plain, widths, strict=True)
+    return tuple(each for name, width in pairs for each in ([name] if width == 1 else (f"{name}{number + 1}" for number in range(width))))
+
+
+def _responses(contents: Contents, chosen: tuple[Variable, ...], options: Options) -> Responses:
+    """Of several arrays each holds outputs to the same inputs."""
+    lines = contents.vector(options.arrays.frequencies)
+    if lines is None:
+        raise refuse(contents.where, f"it has no frequencies. {listed(contents)}", 'Say which they are (array "frequencies=...")')
+    frequencies = lines.whole().ravel().astype(float)
+    problem = not_rising(frequencies)
+    if problem is not None:
+        raise refuse(f"{contents.where}: {lines.name}", problem, "Export each frequency once, from the lowest to the highest")
+    size = len(frequencies)
+    require(_no_responses(contents.where, chosen, size))
+    cubes = [_cube(each, size) for each in chosen]
+    if len({cube.shape[2] for cube in cubes}) > 1:
+        shapes = ", ".join(f"{each.name} {each.shape}" for each in chosen)
+        raise refuse(contents.where, f"its responses are to different numbers of inputs: {shapes}", "Name those that are meant (array)")
+    values = np.concatenate(cubes, axis=1)
+    averages = contents.number("averages")
+    several = len(chosen) == values.shape[1]
+    own = _own_names(list(chosen), [1] * len(chosen)) if several else tuple(f"y{number + 1}" for number in range(values.shape[1]))
+    outputs = _side(contents, "output", own, options.outputs)
+    names = ("input",) if values.shape[2] == 1 else tuple(f"u{number + 1}" for number in range(values.shape[2]))
+    whole = Responses(
+        frequencies,
+        outputs,
+        _side(contents, "input", names, options.inputs),
+        values,
+        _coherence(contents, values.shape, options.arrays),
+        window=contents.text("window"),
+        averages=int(averages) if averages is not None and averages >= 1.0 else None,
+        name=contents.text("name"),
+        source=contents.where,
+    )
+    require(_not_finite(contents.where, values, outputs))
+    return _chosen(whole, options)
+
+
+def _no_responses(where: str, chosen: Iterable[Variable], size: int) -> Iterator[Finding]:
+    for each in chosen:
+        if not each.is_complex or size not in each.shape:
+            what = f"it is {'complex' if each.is_complex else 'real'} of shape {each.shape}, no responses at {size} frequencies"
+            yield Finding(f"{where}: {each.name}", what, "Name complex arrays (frequencies, outputs, inputs)")
+
+
+def _cube(variable: Variable, size: int) -> Array:
+    """The array as (frequencies, outputs, inputs); the axis of frequencies is the first of their number."""
+    values = np.moveaxis(variable.whole(), variable.shape.index(size), 0)
+    rest = values.shape[1:] if values.ndim <= 3 else tuple(length for length in values.shape[1:] if length > 1)
+    if len(rest) > 2:
+        raise refuse(variable.name, f"it has shape {variable.shape}", "Store frequencies, outputs and inputs")
+    return values.reshape(size, *rest, *[1] * (2 - len(rest)))
+
+
+def _side(contents: Contents, side: str, own: tuple[str, ...], given: tuple[str, ...]) -> tuple[Channel, ...]:
+    """Outputs or inputs as the file names them, else as the user does, else by their arrays."""
+    names, units = (_as_many(contents.texts(f"{side}_{kind}"), own) for kind in ("names", "units"))
+    plain = not any(sign in name for name in given for sign in "*?[")
+    names = names or (_as_many(given, own) if plain else ()) or own
+    pairs = zip(numbered(names), units or ("",) * len(own), strict=True)
+    return tuple(Channel(name, plain_unit(unit), Role(side)) for name, unit in pairs)
+
+
+def _as_many(texts: tuple[str, ...], own: tuple[str, ...]) -> tuple[str, ...]:
+    return texts if len(texts) == len(own) else ()
+
+
+def _coherence(contents: Contents, shape: tuple[int, ...], arrays: Arrays) -> Array | None:
+    """The coherence that is stored with the responses. Raises `DesignError` where it is not of their shape."""
+    stored = contents.find(arrays.coherence)
+    if not stored:
+        return None
+    if not any(each.is_complex or shape[0] not in each.shape for each in stored):
+        whole = np.concatenate([_cube(each, shape[0]) for each in stored], axis=1).astype(float)
+        if whole.shape == shape:
+            return whole
+    sizes = ", ".join(f"{each.name} {each.shape}" for each in stored)
+    raise refuse(
+        contents.where, f"its coherence ({sizes}) is not of the shape of its responses, {shape}", 'Name it (array "coherence=...")'
+    )
+
+
+def _not_finite(where: str, values: Array, outputs: tuple[Channel, ...]) -> Iterator[Finding]:
+    for column, output in enumerate(outputs):
+        broken = int(np.count_nonzero(~np.isfinite(values[:, column])))
+        if broken:
+            what = f"{broken} of {values[:, column].size} responses are not numbers"
+            yield Finding(f"{where}: {output.name}", what, "Store the responses anew")
+
+
+def _chosen(responses: Responses, options: Options) -> Responses:
+    """The responses with units as the user says; only the channels that count."""
+    whole = assigned((*responses.outputs, *responses.inputs), Options(units=options.units), responses.source)
+    outputs, inputs = whole[: len(responses.outputs)], whole[len(responses.outputs) :]
+    rows, columns = _kept(outputs, options.outputs), _kept(inputs, options.inputs)
+    sides = (("outputs", rows, outputs, options.outputs), ("inputs", columns, inputs, options.inputs))
+    require(
+        Finding(
+            f"{responses.source}: {kind}",
+            f"none of {', '.join(each.name for each in known)} is called {', '.join(asked)}",
+            "Check the names",
+        )
+        for kind, left, known, asked in sides
+        if not left
+    )
+    coherence = None if responses.coherence is None else responses.coherence[:, rows][:, :, columns]
+    values = responses.values[:, rows][:, :, columns]
+    kept = tuple(outputs[row] for row in rows), tuple(inputs[column] for column in columns)
+    return replace(responses, outputs=kept[0], inputs=kept[1], values=values, coherence=coherence)
+
+
+def _kept(channels: tuple[Channel, ...], patterns: tuple[str, ...]) -> list[int]:
+    return [number for number, channel in enumerate(channels) if not patterns or matches(channel.name, patterns)]
