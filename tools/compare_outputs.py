@@ -102,6 +102,9 @@ PATHS: Mapping[str, str] = {  # in JSON, MAT and HDF5
     r"^(frequency|gain|loss)(?=\.(rows|columns|unit|values))": r"\1_slopes",
     r"\bground_source$": "ground.source",
     r"^(drift\.)?ground$": r"\1ground.material",
+    r"^scatter\[\]\.(shape|size|within)": r"scatter[].distribution.\1",
+    r"^yield\.lines\[\]\.(kept|copies|share|interval)": r"yield.lines[].yield.\1",
+    r"^failures\[\]\.copy": "failures[].design",
 }
 GONE: Mapping[str, str] = {  # paths that stand at BASE only, and where the same is now
     r"\bcrosstalk\.": "the entries of `transfer` beside its diagonal",
@@ -120,6 +123,7 @@ COME: Mapping[str, str] = {  # paths that stand in the working tree only
     r"\broom\.intrusions\[\]": "a list",
     r"^(workspace\.)?bearing$": "null, where `loads` is",
     r"^parameters\.": "`parameters` by address",
+    r"\bvariables\[\]\.(logarithmic|levels|step|parameters)$": "fields of a variable that were not told",
 }
 RULES: tuple[Rule, ...] = (  # numbers whose arithmetic or its order changed; searched() gives those of searches
     Rule(r"room\.intrusions$", "was by body, is a list", np.inf),

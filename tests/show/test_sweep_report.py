@@ -6,6 +6,7 @@ import pytest
 from flexstage.studies.sweeps.effects import effects
 from flexstage.studies.sweeps.file import loads_study
 from flexstage.studies.sweeps.report import sweep_report
+from flexstage.studies.sweeps.result import Sweep
 from flexstage.studies.sweeps.store import Results, columns_of
 from flexstage.studies.sweeps.tables import study_tables
 
@@ -29,12 +30,12 @@ def swept(responses, failures=None, sampling="grid"):
 
 
 def told(study, results):
-    tables = study_tables(study, results, effects(results, study.plan))
+    tables = study_tables(Sweep(study, results, effects(results, study.plan)))
     return "\n".join(str(line) for table in tables for line in (*table.texts(), *table.notes))
 
 
 def page_of(study, results):
-    return sweep_report(study, results, effects(results, study.plan))
+    return sweep_report(Sweep(study, results, effects(results, study.plan)))
 
 
 def mass_and_stiffness(mass, stiffness):

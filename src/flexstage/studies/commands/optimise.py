@@ -11,15 +11,14 @@ from flexstage.show.command import options
 from flexstage.show.command.answer import answer
 from flexstage.show.command.output import require_writable, save
 from flexstage.show.command.progress import progress_bar
-from flexstage.studies.optimisation.document import front_body, optimise_body
 from flexstage.studies.optimisation.file import load_wanted
 from flexstage.studies.optimisation.front import pareto_front
 from flexstage.studies.optimisation.optimum import optimise as run_optimise
 from flexstage.studies.optimisation.report import front_report, optimise_report
 from flexstage.studies.optimisation.result import Front, Optimum
-from flexstage.studies.optimisation.rounding import values_of
 from flexstage.studies.optimisation.stage_text import design_path, design_text, optimised_text
 from flexstage.studies.optimisation.tables import contradiction_text, front_tables, optimise_tables
+from flexstage.studies.optimisation.values import values_of
 from flexstage.studies.optimisation.wanted import Wanted
 from flexstage.studies.sweeps.definition import Study
 from flexstage.studies.sweeps.file import load_study
@@ -66,7 +65,7 @@ def _one(asked: Study, wanted: Wanted, *, study: Path, output: Path | None, repo
     answer(
         "optimise",
         asked.design,
-        lambda: optimise_body(found),
+        lambda: found,
         lambda: optimise_tables(found),
         model=Model.LUMPED,
         json=json,
@@ -84,7 +83,7 @@ def _front(asked: Study, wanted: Wanted, report: Path | None, json: str | None) 
     answer(
         "optimise",
         asked.design,
-        lambda: front_body(found),
+        lambda: found,
         lambda: front_tables(found),
         model=Model.LUMPED,
         json=json,

@@ -13,11 +13,11 @@ from flexstage.show.command.answer import answer
 from flexstage.show.command.options import Json, Report, Resume, Scheduler, Study, Workers, output_option
 from flexstage.show.command.output import require_writable, save
 from flexstage.show.command.progress import progress_bar
-from flexstage.studies.sweeps.document import sweep_body
 from flexstage.studies.sweeps.effects import effects
 from flexstage.studies.sweeps.file import load_study
 from flexstage.studies.sweeps.loaded import loaded_findings
 from flexstage.studies.sweeps.report import sweep_report
+from flexstage.studies.sweeps.result import Sweep
 from flexstage.studies.sweeps.run import Run
 from flexstage.studies.sweeps.run import sweep as run_sweep
 from flexstage.studies.sweeps.tables import study_tables
@@ -45,14 +45,14 @@ def sweep(
         results = run_sweep(
             asked, output, Run(workers, resume, scheduler), lambda done, of: shown.share(f"{done} of {of} designs", done / max(of, 1))
         )
-    found = effects(results, asked.plan)
+    found = Sweep(asked, results, effects(results, asked.plan))
     if report is not None:
-        save(report, sweep_report(asked, results, found), "--report")
+        save(report, sweep_report(found), "--report")
     answer(
         "sweep",
         asked.design,
-        lambda: sweep_body(asked, results, found),
-        lambda: study_tables(asked, results, found),
+        lambda: found,
+        lambda: study_tables(found),
         model=Model.LUMPED,
         json=json,
         cautions=loaded_findings(asked),

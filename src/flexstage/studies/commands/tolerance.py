@@ -13,7 +13,6 @@ from flexstage.show.command.output import require_writable, save
 from flexstage.show.command.progress import progress_bar
 from flexstage.studies.sweeps.loaded import loaded_findings
 from flexstage.studies.sweeps.run import Run
-from flexstage.studies.tolerances.document import tolerance_body
 from flexstage.studies.tolerances.file import load_tolerance
 from flexstage.studies.tolerances.report import tolerance_report
 from flexstage.studies.tolerances.run import tolerance as run_tolerance
@@ -49,7 +48,7 @@ def tolerance(
     answer(
         "tolerance",
         found.study.design,
-        lambda: tolerance_body(found),
+        lambda: found,
         lambda: tolerance_tables(found),
         model=Model.LUMPED,
         json=json,

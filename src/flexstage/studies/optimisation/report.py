@@ -9,8 +9,8 @@ from flexstage.show.page import Head, Picture, Section, page, section
 from flexstage.show.sections.caveats import caveat_section
 from flexstage.studies.optimisation.figures import convergence_figure, front_figure
 from flexstage.studies.optimisation.result import Front, Optimum
-from flexstage.studies.optimisation.rounding import values_of
 from flexstage.studies.optimisation.tables import front_tables, optimise_tables
+from flexstage.studies.optimisation.values import values_of
 from flexstage.studies.sweeps.definition import Study
 from flexstage.studies.sweeps.loaded import loaded_findings, require_holding
 

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
-from flexstage.analysis.requirements import Requirement
+from flexstage.analysis.requirements import Requirement, Verdict
 from flexstage.base.number import Array
-from flexstage.studies.optimisation.values import Point
-from flexstage.studies.optimisation.wanted import Wanted
+from flexstage.base.record import INNER, VIEW, Called
+from flexstage.studies.optimisation.values import Point, values_of
+from flexstage.studies.optimisation.wanted import Objective, Wanted
 from flexstage.studies.sweeps.definition import Study
+from flexstage.studies.sweeps.variable import Variable
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,7 +28,15 @@ class Binding:
     limit: float
     unit: str
     price: float
-    of_range: bool
+    of_range: Annotated[bool, Called("range")]
+
+
+@dataclass(frozen=True)
+class Accepted:
+    """A design that a search accepted: the objective [SI] and the largest relative violation of a limit."""
+
+    objective: float
+    violation: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,15 +47,20 @@ class Start:
     feasible and as good as the best one within a ten-thousandth.
     """
 
-    begun: Array
-    ended: Array
-    value: float
+    begun: Annotated[Array, VIEW]
+    ended: Annotated[Array, VIEW]
+    value: Annotated[float, Called("objective")]
     violation: float
     evaluated: int
     converged: bool
     history: Array
     agrees: bool
     reason: str = ""
+
+    @property
+    def accepted(self) -> Annotated[tuple[Accepted, ...], VIEW, Called("history")]:
+        """Designs as the search accepted them."""
+        return tuple(Accepted(*each) for each in self.history.tolist())
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,6 +77,35 @@ class Rounded:
     reason: str = ""
 
 
+@dataclass(frozen=True)
+class LimitAt:
+    """A limit and the value [SI] that a design has, with the relative margin."""
+
+    measure: str
+    point: str
+    demand: str
+    value: float
+    margin: float
+    passed: bool
+
+
+@dataclass(frozen=True)
+class DesignPoint:
+    """A design: variables and objectives by name [SI; factors on what the design states for relative variables], and its limits."""
+
+    variables: Mapping[str, float]
+    objectives: Mapping[str, float]
+    limits: tuple[LimitAt, ...]
+
+
+@dataclass(frozen=True)
+class RoundedPoint(DesignPoint):
+    """The best design on the variables' steps: what rounding costs the objective [SI], and how many neighbours were tried."""
+
+    loss: float
+    tried: int
+
+
 @dataclass(frozen=True, eq=False)
 class Contradiction:
     """Limits that cannot all be kept within the ranges, though any of them left out the others can; `violation` is the least largest one.
@@ -72,27 +118,87 @@ class Contradiction:
     point: Point
 
 
-@dataclass(frozen=True, eq=False)
-class Optimum:
-    """The outcome of an optimisation with one objective.
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Outcome:
+    """What every optimisation tells: `before` is the design as it stands; `contradictions` say why no design keeps the `limits`.
 
-    `before` is the design as it stands, `point` the best one found, `None` where no start found a design that keeps the limits: then
-    `contradictions` say why. `idle` names variables that move none of the measures asked for. `interrupted`: the best so far.
+    `idle` names variables that move none of the measures asked for. `evaluated`: designs in all. `interrupted`: the best so far.
     """
 
-    study: Study
-    wanted: Wanted
-    limits: tuple[Requirement, ...]
-    before: Point
-    point: Point | None
-    starts: tuple[Start, ...]
-    binding: tuple[Binding, ...]
-    rounded: Rounded | None
-    contradictions: tuple[Contradiction, ...]
+    study: Annotated[Study, INNER]
+    wanted: Annotated[Wanted, INNER]
+    limits: Annotated[tuple[Requirement, ...], INNER]
+    before: Annotated[Point, INNER]
+    contradictions: Annotated[tuple[Contradiction, ...], INNER]
     idle: tuple[str, ...]
     evaluated: int
-    seconds: float
+    seconds: Annotated[float, INNER]
     interrupted: bool = False
+
+    @property
+    def name(self) -> Annotated[str, VIEW, Called("study")]:
+        """The study's name."""
+        return self.study.name
+
+    @property
+    def objectives(self) -> Annotated[tuple[Objective, ...], VIEW]:
+        """What is to be best."""
+        return self.wanted.objectives
+
+    @property
+    def variables(self) -> Annotated[tuple[Variable, ...], VIEW]:
+        """What may be moved."""
+        return self.study.variables
+
+    @property
+    def seed(self) -> Annotated[int, VIEW]:
+        """The seed of its starts."""
+        return self.wanted.seed
+
+    @property
+    def drawn(self) -> Annotated[DesignPoint, VIEW, Called("before")]:
+        """The design as it stands."""
+        return self.design(self.before)
+
+    def design(self, point: Point) -> DesignPoint:
+        """A design with its names, in SI."""
+        first = len(self.wanted.objectives)
+        return DesignPoint(
+            dict(zip((each.name for each in self.study.variables), values_of(self.study, point.shares).tolist(), strict=True)),
+            {each.name: float(point.values[number]) for number, each in enumerate(self.wanted.objectives)},
+            tuple(_limit_at(each, float(value)) for each, value in zip(self.limits, point.values[first:], strict=True)),
+        )
+
+
+def _limit_at(limit: Requirement, value: float) -> LimitAt:
+    verdict = Verdict(limit, np.asarray(value))
+    return LimitAt(limit.key, limit.point, limit.text, value, float(verdict.margin), bool(verdict.passed))
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Optimum(Outcome):
+    """The outcome of an optimisation with one objective.
+
+    `point` is the best design found, `None` where no start found one that keeps the limits. What keeps it from being better is `binding`.
+    """
+
+    point: Annotated[Point | None, INNER]
+    starts: tuple[Start, ...]
+    binding: tuple[Binding, ...]
+    rounded: Annotated[Rounded | None, INNER]
+
+    @property
+    def best(self) -> Annotated[DesignPoint | None, VIEW, Called("optimum")]:
+        """The best design found."""
+        return None if self.point is None else self.design(self.point)
+
+    @property
+    def on_steps(self) -> Annotated[RoundedPoint | None, VIEW, Called("rounded")]:
+        """The best design that can be made; null without steps, or where no neighbour keeps the limits."""
+        if self.rounded is None or self.rounded.point is None:
+            return None
+        found = self.design(self.rounded.point)
+        return RoundedPoint(found.variables, found.objectives, found.limits, self.rounded.loss, self.rounded.tried)
 
     @property
     def final(self) -> Point | None:
@@ -108,7 +214,7 @@ class Optimum:
         return ""
 
     @property
-    def agreeing(self) -> int:
+    def agreeing(self) -> Annotated[int, VIEW]:
         """How many starts ended as good as the best."""
         return sum(start.agrees for start in self.starts)
 
@@ -123,20 +229,16 @@ class Optimum:
         return np.nan if self.final is None or before == 0.0 else self.value(self.final) / before - 1.0
 
 
-@dataclass(frozen=True, eq=False)
-class Front:
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Front(Outcome):
     """Designs none of which is better in both objectives: `points` from the best in the first to the best in the second."""
 
-    study: Study
-    wanted: Wanted
-    limits: tuple[Requirement, ...]
-    before: Point
-    points: tuple[Point, ...]
-    contradictions: tuple[Contradiction, ...]
-    idle: tuple[str, ...]
-    evaluated: int
-    seconds: float
-    interrupted: bool = False
+    points: Annotated[tuple[Point, ...], INNER]
+
+    @property
+    def front(self) -> Annotated[tuple[DesignPoint, ...], VIEW]:
+        """The designs, from the best in the first objective to the best in the second."""
+        return tuple(self.design(point) for point in self.points)
 
     @property
     def unfinished(self) -> str:

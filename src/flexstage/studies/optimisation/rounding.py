@@ -11,8 +11,7 @@ from flexstage.base.number import Array
 from flexstage.studies.optimisation.problem import SPARE, Problem
 from flexstage.studies.optimisation.result import Rounded
 from flexstage.studies.optimisation.setting import Setting, share_of
-from flexstage.studies.optimisation.values import Point
-from flexstage.studies.sweeps.definition import Study
+from flexstage.studies.optimisation.values import Point, values_of
 
 _TRIED, _BATCH = 64, 16
 _ALL = 12
@@ -48,21 +47,6 @@ def rounded(setting: Setting, problem: Problem, point: Point) -> Rounded | None:
         best = better
     loss = (problem.worth(best) - problem.worth(point)) * setting.scale(0)
     return Rounded(best, values_of(setting.study, best.shares), loss, tried)
-
-
-def values_of(study: Study, shares: Array) -> Array:
-    """Values (d,) of the variables at shares; what is within a millionth of the range of a step is on it.
-
-    >>> from flexstage.studies.optimisation.example import leaf_study
-    >>> values_of(leaf_study()[0], np.array([0.5000000001])).round(12).tolist()
-    [0.0013]
-    """
-    found = []
-    for each, share in zip(study.variables, shares, strict=True):
-        value = float(np.real(each.at(np.asarray(share))))
-        near = value if each.step is None else round(value / each.step) * each.step
-        found.append(near if abs(near - value) <= 1e-6 * (each.high - each.low) else value)
-    return np.array(found)
 
 
 def _neighbours(setting: Setting, point: Point, stepped: list[int]) -> Array:

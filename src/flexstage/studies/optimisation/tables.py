@@ -11,8 +11,7 @@ from flexstage.base.unit import show
 from flexstage.show.display import number, value_with_unit
 from flexstage.show.table import Cell, Column, Mark, Table, build
 from flexstage.studies.optimisation.result import Binding, Contradiction, Front, Optimum
-from flexstage.studies.optimisation.rounding import values_of
-from flexstage.studies.optimisation.values import Point
+from flexstage.studies.optimisation.values import Point, values_of
 from flexstage.studies.sweeps.definition import Study
 
 

@@ -173,6 +173,21 @@ class Values:
         return [Scalars(own[0], change.T, _extreme(asked)) for own, change in zip(values, gradient, strict=True)]
 
 
+def values_of(study: Study, shares: Array) -> Array:
+    """Values (d,) of the variables at shares; what is within a millionth of the range of a step is on it.
+
+    >>> from flexstage.studies.optimisation.example import leaf_study
+    >>> values_of(leaf_study()[0], np.array([0.5000000001])).round(12).tolist()
+    [0.0013]
+    """
+    found = []
+    for each, share in zip(study.variables, shares, strict=True):
+        value = float(np.real(each.at(np.asarray(share))))
+        near = value if each.step is None else round(value / each.step) * each.step
+        found.append(near if abs(near - value) <= 1e-6 * (each.high - each.low) else value)
+    return np.array(found)
+
+
 def _extreme(asked: Measure) -> Extreme:
     """Which of its pieces a measure is; of one piece that."""
     return asked.kind.extreme or Extreme.LEAST

@@ -5,9 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import Enum
 
-from flexstage.analysis.measures import Measure
 from flexstage.analysis.requirements import Requirement, Sense, requirements
-from flexstage.studies.sweeps.definition import Study
+from flexstage.studies.sweeps.definition import Asked, Study
 
 
 class Aim(Enum):
@@ -23,11 +22,9 @@ class Aim(Enum):
 
 
 @dataclass(frozen=True)
-class Objective:
+class Objective(Asked):
     """A response by name, its measure, and which way it is to go."""
 
-    name: str
-    measure: Measure
     aim: Aim
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields
 from enum import Enum
+from typing import Annotated
 
 import numpy as np
 
@@ -16,10 +17,34 @@ from flexstage.base.digest import digest
 from flexstage.base.finding import Finding
 from flexstage.base.number import Array, Number
 from flexstage.base.quantity import Quantity
+from flexstage.base.record import INNER, VIEW, Called
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.studies.sweeps.numbers import Numbers
 from flexstage.studies.sweeps.plan import Plan, shares
 from flexstage.studies.sweeps.variable import Variable, varied_by
+
+
+@dataclass(frozen=True)
+class Asked:
+    """A measure that a study asks for, by the name that its file gives it."""
+
+    name: str
+    measure: Annotated[Measure, INNER]
+
+    @property
+    def key(self) -> Annotated[str, VIEW, Called("measure")]:
+        """The measure, as in `[require]`."""
+        return self.measure.key
+
+    @property
+    def point(self) -> Annotated[str, VIEW]:
+        """The point it is taken at."""
+        return self.measure.point
+
+    @property
+    def unit(self) -> Annotated[str, VIEW]:
+        """The SI unit of its values."""
+        return self.measure.quantity.si
 
 
 @dataclass(frozen=True, eq=False)

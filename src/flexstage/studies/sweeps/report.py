@@ -14,7 +14,7 @@ from flexstage.studies.sweeps.effects import Effects
 from flexstage.studies.sweeps.figures import designs_figure, effects_figure
 from flexstage.studies.sweeps.interaction_figures import pairs_figure, strongest_figure
 from flexstage.studies.sweeps.loaded import loaded_findings
-from flexstage.studies.sweeps.store import Results
+from flexstage.studies.sweeps.result import Sweep
 from flexstage.studies.sweeps.tables import failure_table, pair_table, response_table, share_table, variable_table
 
 _STEEP = "All panels of a row have one scale: the steeper, the stronger. Means over designs, the other variables anywhere in their ranges."
@@ -22,8 +22,9 @@ _MAP = "Shares of variance in percent: of variables alone on the diagonal, of wh
 _STRONGEST = "The strongest pairs: where lines are not parallel, one variable decides what the other does. Above: share of variance."
 
 
-def sweep_report(study: Study, results: Results, found: Effects) -> str:
+def sweep_report(sweep: Sweep) -> str:
     """A sweep as a page of HTML: what was varied, distributions, main effects, shares of variance, designs as lines."""
+    study, results, found = sweep.study, sweep.results, sweep.effects
     effects = designs = None
     if found.used:
         effects = Picture(to_svg(effects_figure(study, found), "effects", "mean responses over the variables"), _STEEP)

@@ -28,6 +28,14 @@ _ATTEMPTS = 20
 _PIECES = ".pieces"
 
 
+@dataclass(frozen=True)
+class Failure:
+    """A design, or copy, without values: its number, and why."""
+
+    design: int
+    reason: str
+
+
 @dataclass(frozen=True, eq=False)
 class Results:
     """Designs computed so far: `designs` (n,) their numbers, `variables` (n, d), `responses` (n, r) in SI, failures by design number.
@@ -51,6 +59,11 @@ class Results:
     def complete(self) -> bool:
         """Whether every planned design is there."""
         return len(self.designs) == self.planned
+
+    @property
+    def failed(self) -> tuple[Failure, ...]:
+        """Designs without values."""
+        return tuple(Failure(design, reason) for design, reason in self.failures.items())
 
     def column(self, name: str) -> Array:
         """Values (n,) of a variable or a response by name."""

@@ -13,6 +13,7 @@ from flexstage.show.display import NO_VALUE, number, value_with_unit
 from flexstage.show.table import Cell, Column, Mark, Table, build
 from flexstage.studies.sweeps.definition import Study
 from flexstage.studies.sweeps.effects import Effects
+from flexstage.studies.sweeps.result import Sweep
 from flexstage.studies.sweeps.store import Results
 
 _MOST_FAILURES = 8
@@ -21,8 +22,9 @@ _LEAST = 0.01
 _NUMBER = re.compile(r"-?\d+(\.\d+)?(e[+-]?\d+)?")
 
 
-def study_tables(study: Study, results: Results, found: Effects) -> list[Table]:
+def study_tables(sweep: Sweep) -> list[Table]:
     """What was varied, how the responses are distributed, what does it, and designs that failed."""
+    study, results, found = sweep.study, sweep.results, sweep.effects
     tables = [variable_table(study, results), response_table(study, results, found), share_table(found)]
     tables += [pair_table(found)] if np.any(np.isfinite(found.pairs)) else []
     return tables + ([failure_table(results)] if results.failures else [])

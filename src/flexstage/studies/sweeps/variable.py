@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
+from typing import Annotated
 
 import numpy as np
 
@@ -11,6 +12,7 @@ from flexstage.analysis.sensitivities import departure
 from flexstage.base.finding import Finding
 from flexstage.base.number import Array, Number
 from flexstage.base.quantity import Quantity
+from flexstage.base.record import INNER, VIEW, Called
 from flexstage.base.unit import show
 from flexstage.cases.registry import Variant
 from flexstage.mechanism.address import get, set_value
@@ -31,15 +33,30 @@ class Variable:
     """
 
     name: str
-    addresses: tuple[str, ...]
-    quantity: Quantity
-    low: float
-    high: float
+    addresses: Annotated[tuple[str, ...], INNER]
+    quantity: Annotated[Quantity, INNER]
+    low: Annotated[float, Called("from")]
+    high: Annotated[float, Called("to")]
     relative: bool = False
     logarithmic: bool = False
     levels: int | None = None
     step: float | None = field(default=None, repr=False)
-    variant: Variant | None = None
+    variant: Annotated[Variant | None, INNER] = None
+
+    @property
+    def moved(self) -> Annotated[tuple[str, ...], VIEW, Called("addresses")]:
+        """The numbers of the design that it moves."""
+        return self.addresses if self.variant is None else ()
+
+    @property
+    def parameters(self) -> Annotated[tuple[str, ...], VIEW]:
+        """The parameters of the case that it moves."""
+        return () if self.variant is None else self.addresses
+
+    @property
+    def unit(self) -> Annotated[str, VIEW]:
+        """The SI unit of its range; of a relative one that of the numbers, of which the range says factors."""
+        return self.quantity.si
 
     def at(self, shares: Array) -> Array:
         """Values (n,) at shares (n,) of the range: 0 is low, 1 is high.

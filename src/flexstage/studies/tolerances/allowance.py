@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 import scipy
 
 from flexstage.analysis.requirements import Sense
 from flexstage.base.number import Array
+from flexstage.base.record import INNER, VIEW, Called
 from flexstage.studies.sweeps.store import Results
 from flexstage.studies.tolerances.definition import Tolerance
 from flexstage.studies.tolerances.distribution import Shape
@@ -19,29 +21,54 @@ _DRAWS = 20_000
 _NEGLIGIBLE = 1e-9
 
 
+@dataclass(frozen=True)
+class AllowedEntry:
+    """Factors on one entry's deviations: `alone`, the others as stated, and which line decides that; in `equal_shares` of the room.
+
+    Infinite where nothing depends on it.
+    """
+
+    name: str
+    alone: float
+    decided_by: str | None
+    equal_shares: float
+
+
 @dataclass(frozen=True, eq=False)
 class Allowance:
     """Factors on the stated deviations that give each line at least the yield `wanted`, to first order.
 
-    `reach` (l,): how far a line's value moves towards its limit at that yield, `share` (m, l): each entry's share of its square.
-    `together`: all deviations so many times as wide (above one: there is room; 0: a line fails as drawn). `alone` (m,): one entry's, the
-    others as stated; `equal` (m,): all at once, each entry with the same share of the room. Infinite where nothing depends on an entry.
-    `binding` and `binds` (m,) name the lines that decide. `then`: what the sample's own copies, their changes scaled, say of the yield of
-    all lines with all deviations `together` times as wide.
+    `names` are those of the m entries. `reach` (l,): how far a line's value moves towards its limit at that yield, `share` (m, l): each
+    entry's share of its square. `together`: all deviations so many times as wide (above one: there is room; 0: a line fails as drawn).
+    `alone` (m,): one entry's, the others as stated; `equal` (m,): all at once, each entry with the same share of the room. Infinite where
+    nothing depends on an entry. `binding` and `binds` (m,) name the lines that decide. `then`: what the sample's own copies, their changes
+    scaled, say of the yield of all lines with all deviations `together` times as wide.
     """
 
-    wanted: float
-    lines: tuple[str, ...]
+    wanted: Annotated[float, Called("yield")]
+    names: Annotated[tuple[str, ...], INNER]
+    lines: Annotated[tuple[str, ...], INNER]
     margin: Array
     reach: Array
     by_slope: Array
     share: Array
-    together: float
-    binding: str
+    together: Annotated[float, Called("all_alike")]
+    binding: Annotated[str, INNER]
     alone: Array
-    binds: tuple[str, ...]
+    binds: Annotated[tuple[str, ...], INNER]
     equal: Array
     then: Yield | None
+
+    @property
+    def decided_by(self) -> Annotated[str | None, VIEW]:
+        """The line that decides how far all may deviate alike."""
+        return self.binding or None
+
+    @property
+    def entries(self) -> Annotated[tuple[AllowedEntry, ...], VIEW]:
+        """What each entry of `[scatter]` may deviate."""
+        parts = zip(self.names, self.alone.tolist(), self.binds, self.equal.tolist(), strict=True)
+        return tuple(AllowedEntry(name, alone, binds or None, equal) for name, alone, binds, equal in parts)
 
 
 def allowance(study: Tolerance, results: Results, slope: Slopes, found: Summary) -> Allowance:
@@ -76,6 +103,7 @@ def _allowed(study: Tolerance, found: Summary, parts: tuple[Array, Array, Array,
     together = float(np.min(room, initial=np.inf))
     return Allowance(
         wanted=study.wanted,
+        names=tuple(each.name for each in study.scatters),
         lines=labels,
         margin=margin,
         reach=reach,

@@ -4,25 +4,103 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass
+from typing import Annotated
 
+from flexstage.base.record import INNER, VIEW, Called
 from flexstage.base.store import temporary_folder
+from flexstage.studies.sweeps.plan import Sampling
 from flexstage.studies.sweeps.run import DEFAULT, Progress, Run, sweep
-from flexstage.studies.sweeps.store import Results
+from flexstage.studies.sweeps.store import Failure, Results
 from flexstage.studies.tolerances.allowance import Allowance, allowance
 from flexstage.studies.tolerances.definition import Tolerance
+from flexstage.studies.tolerances.scatter import Scatter
 from flexstage.studies.tolerances.slopes import Slopes, slopes
-from flexstage.studies.tolerances.summary import Summary, summary
+from flexstage.studies.tolerances.summary import PERCENTILES, Crosstalk, ResponseSpread, Summary, Yields, summary
+
+
+@dataclass(frozen=True)
+class CopyCount:
+    """How many copies are computed, and how many of them have no values."""
+
+    computed: int
+    failed: int
 
 
 @dataclass(frozen=True, eq=False)
 class Toleranced:
     """A tolerance study with the `results` of all its copies, its `slopes`, what both say (`summary`) and what they allow (`allowance`)."""
 
-    study: Tolerance
-    results: Results
-    slopes: Slopes
-    summary: Summary
-    allowance: Allowance
+    study: Annotated[Tolerance, INNER]
+    results: Annotated[Results, INNER]
+    slopes: Annotated[Slopes, INNER]
+    summary: Annotated[Summary, INNER]
+    allowance: Annotated[Allowance, INNER]
+
+    @property
+    def name(self) -> Annotated[str, VIEW, Called("study")]:
+        """The study's name."""
+        return self.study.name
+
+    @property
+    def sampling(self) -> Annotated[Sampling, VIEW]:
+        """How copies are drawn."""
+        return self.study.plan.sampling
+
+    @property
+    def seed(self) -> Annotated[int, VIEW]:
+        """The seed of everything random."""
+        return self.study.plan.seed
+
+    @property
+    def copies(self) -> Annotated[CopyCount, VIEW]:
+        """How many there are."""
+        return CopyCount(self.summary.copies, self.summary.failed)
+
+    @property
+    def scatter(self) -> Annotated[tuple[Scatter, ...], VIEW]:
+        """What deviates, and how far."""
+        return self.study.scatters
+
+    @property
+    def yields(self) -> Annotated[Yields | None, VIEW, Called("yield")]:
+        """How many copies keep the specification; null without one."""
+        return None if self.summary.together is None else Yields(self.summary.together, self.summary.lines)
+
+    @property
+    def responses(self) -> Annotated[tuple[ResponseSpread, ...], VIEW]:
+        """What is asked, with the measures that the specification is about."""
+        return tuple(self._response(column, name) for column, name in enumerate(self.study.asked))
+
+    @property
+    def allowed(self) -> Annotated[Allowance | None, VIEW]:
+        """What the specification allows; null without one."""
+        return self.allowance if self.summary.lines else None
+
+    @property
+    def crosstalk(self) -> Annotated[tuple[Crosstalk, ...], VIEW]:
+        """Pose errors of the real stage, commanded and measured through the drawn one's mapping."""
+        return self.summary.crosstalk
+
+    @property
+    def failures(self) -> Annotated[tuple[Failure, ...], VIEW]:
+        """Copies without values."""
+        return self.results.failed
+
+    def _response(self, column: int, name: str) -> ResponseSpread:
+        spread, entries = self.summary.spread, [each.name for each in self.study.scatters]
+        return ResponseSpread(
+            name=name,
+            measure=self.study.asked[name],
+            nominal=float(spread.nominal[column]),
+            mean=float(spread.mean[column]),
+            deviation=float(spread.deviation[column]),
+            percentiles={str(at): value for at, value in zip(PERCENTILES, spread.percentiles[:, column].tolist(), strict=True)},
+            linear_deviation=float(spread.linear[column]),
+            linear=bool(spread.trusted[column]),
+            share_by_derivatives=dict(zip(entries, spread.by_slope[:, column].tolist(), strict=True)),
+            share_by_copies=dict(zip(entries, spread.by_sample[:, column].tolist(), strict=True)),
+            derivatives=dict(zip((each.name for each in self.study.variables), self.slopes.gradient[column].tolist(), strict=True)),
+        )
 
 
 def tolerance(

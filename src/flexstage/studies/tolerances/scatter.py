@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from functools import reduce
+from typing import Annotated
 
 import numpy as np
 
 from flexstage.analysis.sensitivities import departure
 from flexstage.base.number import Array
 from flexstage.base.quantity import Quantity
+from flexstage.base.record import INNER, VIEW, Called
 from flexstage.mechanism.address import get, set_value
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.studies.sweeps.numbers import Numbers
@@ -27,12 +29,17 @@ class Scatter:
     """
 
     name: str
-    source: tuple[str, ...]
-    quantity: Quantity
+    source: Annotated[tuple[str, ...], Called("of")]
+    quantity: Annotated[Quantity, INNER]
     distribution: Distribution
-    members: tuple[tuple[str, ...], ...]
+    members: Annotated[tuple[tuple[str, ...], ...], Called("numbers")]
     each: bool
     relative: bool = False
+
+    @property
+    def unit(self) -> Annotated[str, VIEW]:
+        """The SI unit of the numbers; sizes of a relative scatter are shares of what the design states."""
+        return self.quantity.si
 
     def variables(self) -> tuple[Deviation, ...]:
         """Its variables, one a member; where there are several, they are named after what they move."""

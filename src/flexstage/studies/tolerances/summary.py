@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 import scipy
 
 from flexstage.analysis.requirements import Requirement, Sense, Verdict
 from flexstage.base.number import Array
+from flexstage.base.record import INNER, VIEW, Called
 from flexstage.spatial.frame import COMPONENTS
+from flexstage.studies.sweeps.definition import Asked
 from flexstage.studies.sweeps.store import Results
 from flexstage.studies.tolerances.crosstalk import HELD, OPEN
 from flexstage.studies.tolerances.definition import Tolerance
@@ -43,6 +47,25 @@ class Spread:
 
 
 @dataclass(frozen=True)
+class ResponseSpread(Asked):
+    """A response over the copies that have values [SI].
+
+    Its `percentiles`; the deviation that first-order propagation gives, and whether it holds (`linear`); by entry of `[scatter]` the shares
+    of its variance, by derivatives and by the copies in which one entry scatters alone; its derivatives by every number that deviates.
+    """
+
+    nominal: float
+    mean: float
+    deviation: float
+    percentiles: Mapping[str, float]
+    linear_deviation: float
+    linear: bool
+    share_by_derivatives: Mapping[str, float]
+    share_by_copies: Mapping[str, float]
+    derivatives: Mapping[str, float]
+
+
+@dataclass(frozen=True)
 class Yield:
     """`kept` of `copies` keep a line, or all; `low` to `high` is the 95 % interval of Clopper and Pearson, exact for random copies.
 
@@ -51,29 +74,47 @@ class Yield:
 
     kept: int
     copies: int
-    low: float
-    high: float
+    low: Annotated[float, INNER]
+    high: Annotated[float, INNER]
 
     @property
-    def share(self) -> float:
+    def share(self) -> Annotated[float, VIEW]:
         """Share of the copies."""
         return self.kept / self.copies
+
+    @property
+    def interval(self) -> Annotated[tuple[float, float], VIEW]:
+        """The ends of its interval."""
+        return self.low, self.high
 
 
 @dataclass(frozen=True, eq=False)
 class Line:
     """A line of the specification, the column it is about, its nominal value and its yield."""
 
-    requirement: Requirement
-    column: str
+    requirement: Annotated[Requirement, INNER]
+    column: Annotated[str, Called("line")]
     nominal: float
-    kept: Yield
+    kept: Annotated[Yield, Called("yield")]
 
     @property
-    def margin(self) -> float:
+    def wanted(self) -> Annotated[str, VIEW]:
+        """What it asks for."""
+        return self.requirement.text
+
+    @property
+    def margin(self) -> Annotated[float, VIEW]:
         """Distance of the nominal value to the limit on the good side, in SI."""
         spare = self.nominal - self.requirement.limit
         return spare if self.requirement.sense is Sense.AT_LEAST else -spare
+
+
+@dataclass(frozen=True, eq=False)
+class Yields:
+    """The yields of all lines of the specification together, and of each."""
+
+    together: Annotated[Yield, Called("all")]
+    lines: tuple[Line, ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,12 +127,17 @@ class Crosstalk:
 
     kind: str
     point: str
-    coordinates: tuple[str, ...]
-    nominal: Array
-    mean: Array
-    deviation: Array
-    usual: Array
-    worst: Array
+    coordinates: Annotated[tuple[str, ...], Called("columns")]
+    nominal: Annotated[Array, VIEW]
+    mean: Annotated[Array, VIEW]
+    deviation: Annotated[Array, VIEW]
+    usual: Annotated[Array, VIEW]
+    worst: Annotated[Array, VIEW]
+
+    @property
+    def rows(self) -> Annotated[tuple[str, ...], VIEW]:
+        """The motion."""
+        return COMPONENTS
 
 
 @dataclass(frozen=True, eq=False)

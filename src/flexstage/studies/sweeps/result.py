@@ -1,0 +1,125 @@
+"""What a sweep found: how responses are distributed over the designs, which variables do it, and designs that failed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from itertools import combinations
+from typing import Annotated
+
+from flexstage.base.record import INNER, VIEW, Called
+from flexstage.studies.sweeps.definition import Asked, Study
+from flexstage.studies.sweeps.effects import Effects
+from flexstage.studies.sweeps.plan import Sampling
+from flexstage.studies.sweeps.store import Failure, Results
+from flexstage.studies.sweeps.variable import Variable
+
+
+@dataclass(frozen=True)
+class DesignCount:
+    """How many designs are planned, how many of them are computed, and how many of these have no values."""
+
+    planned: int
+    computed: int
+    failed: int
+
+
+@dataclass(frozen=True)
+class PairShare:
+    """The share of a response's variance that two variables explain together, beyond each alone."""
+
+    variables: tuple[str, str]
+    share: float
+
+
+@dataclass(frozen=True)
+class ResponseEffects(Asked):
+    """A response over the designs that have values [SI], and which variables do it.
+
+    By variable the shares of its variance of first and of total order; the latter are absent unless the plan is Saltelli's. The largest
+    standard errors of an index and of one of second order are those of Saltelli's plan, with pairs.
+    """
+
+    least: float
+    mean: float
+    deviation: float
+    largest: float
+    first_order: Mapping[str, float]
+    total_order: Mapping[str, float] | None
+    standard_error: float
+    pairs_standard_error: float
+    pairs: tuple[PairShare, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Sweep:
+    """A sweep: its study, the results of all designs so far (they are in the results file), and what variables do to responses."""
+
+    study: Annotated[Study, INNER]
+    results: Annotated[Results, INNER]
+    effects: Annotated[Effects, INNER]
+
+    @property
+    def name(self) -> Annotated[str, VIEW, Called("study")]:
+        """The study's name."""
+        return self.study.name
+
+    @property
+    def sampling(self) -> Annotated[Sampling, VIEW]:
+        """How designs are spread over the ranges."""
+        return self.study.plan.sampling
+
+    @property
+    def seed(self) -> Annotated[int, VIEW]:
+        """The seed of everything random."""
+        return self.study.plan.seed
+
+    @property
+    def designs(self) -> Annotated[DesignCount, VIEW]:
+        """How many there are."""
+        return DesignCount(self.results.planned, len(self.results.designs), len(self.results.failures))
+
+    @property
+    def variables(self) -> Annotated[tuple[Variable, ...], VIEW]:
+        """What is varied."""
+        return self.study.variables
+
+    @property
+    def responses(self) -> Annotated[tuple[ResponseEffects, ...], VIEW]:
+        """What is asked, with the measures that limits are on."""
+        return tuple(self._response(index, name) for index, name in enumerate(self.effects.responses))
+
+    @property
+    def failures(self) -> Annotated[tuple[Failure, ...], VIEW]:
+        """Designs without values."""
+        return self.results.failed
+
+    @property
+    def method(self) -> Annotated[str, VIEW]:
+        """How the shares were estimated."""
+        return self.effects.method
+
+    @property
+    def made(self) -> Annotated[tuple[str, ...], VIEW]:
+        """Every combination of versions, processor and kernel that computed a part of the results."""
+        return self.results.made
+
+    def _response(self, index: int, name: str) -> ResponseEffects:
+        found = self.effects
+        total = None if found.total is None else dict(zip(found.variables, found.total[:, index].tolist(), strict=True))
+        return ResponseEffects(
+            name=name,
+            measure=self.study.columns[name],
+            least=float(found.low[index]),
+            mean=float(found.mean[index]),
+            deviation=float(found.deviation[index]),
+            largest=float(found.high[index]),
+            first_order=dict(zip(found.variables, found.first[:, index].tolist(), strict=True)),
+            total_order=total,
+            standard_error=float(found.errors[0, index]),
+            pairs_standard_error=float(found.errors[1, index]),
+            pairs=tuple(
+                PairShare((found.variables[first], found.variables[second]), float(found.pairs[first, second, index]))
+                for first, second in combinations(range(len(found.variables)), 2)
+            ),
+        )
