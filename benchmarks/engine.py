@@ -31,7 +31,7 @@ from flexstage.mechanism.address import set_value
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import Mechanism, Unit
 from flexstage.models.batch.blocks import Blocks, blocks, dense, of_kind
-from flexstage.models.batch.engine import PORTION, Method, Plan, iterated, plan, platform_modes
+from flexstage.models.batch.engine import PORTION, Method, Plan, iterate, plan, platform_modes
 from flexstage.models.batch.kernel import kernel
 from flexstage.models.batch.numbers import numbers_of, slopes_of
 from flexstage.models.batch.solution import Stage, found_modes
@@ -144,7 +144,7 @@ def compare(label: str, stage: Mechanism) -> None:
         "LAPACK": (ALONE, lambda: [lapack(*each) for each in zip(stiffness, inertia, strict=True)]),
         "Exudyn": (ALONE, lambda: [frequencies(each) for each in peers]),
         "numpy": (DESIGNS, lambda: [found_modes(family_plan.scheme, *each) for each in portions]),
-        "numpy, all derivatives": (DESIGNS, lambda: iterated(family_plan, whole, Method.NUMPY)),
+        "numpy, all derivatives": (DESIGNS, lambda: iterate(family_plan, whole, Method.NUMPY)),
     }
     numbers_on: dict[str, tuple[int, Callable[[], object]]] = {
         "LAPACK": (ALONE, lambda: [lapack_from(each) for each in stages]),
@@ -152,8 +152,8 @@ def compare(label: str, stage: Mechanism) -> None:
         "numpy": (DESIGNS, lambda: platform_modes(family_plan, values, method=Method.NUMPY)),
     }
     if kernel() is not None:
-        solving["kernel"] = (DESIGNS, lambda: iterated(family_plan, plain))
-        solving["kernel, all derivatives"] = (DESIGNS, lambda: iterated(family_plan, whole))
+        solving["kernel"] = (DESIGNS, lambda: iterate(family_plan, plain))
+        solving["kernel, all derivatives"] = (DESIGNS, lambda: iterate(family_plan, whole))
         numbers_on["kernel"] = (DESIGNS, lambda: platform_modes(family_plan, values))
         numbers_on["kernel, all derivatives"] = (DESIGNS, lambda: platform_modes(family_plan, values, slopes=True))
         if (fitted := in_ranges(family_plan, stage)) is not None:

@@ -11,7 +11,7 @@ import pytest
 from flexstage.beams.compliance import compliance
 from flexstage.parts.leaf import Leaf
 from flexstage.parts.material import Material
-from flexstage.spatial.frame import Frame, seen_at, transport, turn_z
+from flexstage.spatial.frame import Frame, transport, turn_z, twist_transform
 
 BEAM = Material(young=70e3, poisson=0.0, density=1.0)
 
@@ -29,7 +29,7 @@ def unsheared(leaf):
 
 def seen(own, centre, angle=0.0):
     """The stiffness of a part of compliance `own` for the twist of its second body at the origin."""
-    operator = seen_at(Frame(turn_z(angle), np.array([*centre, 0.0])), np.zeros(3))
+    operator = twist_transform(Frame(turn_z(angle), np.array([*centre, 0.0])), np.zeros(3))
     return operator.T @ np.linalg.inv(own) @ operator
 
 

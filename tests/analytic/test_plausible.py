@@ -10,7 +10,7 @@ import pytest
 import flexstage as fs
 from flexstage.analysis.cautions import caveats
 from flexstage.cases.registry import CASES, case
-from flexstage.mechanism.store import loads, shipped
+from flexstage.mechanism.store import loads, shipped_catalogue
 from flexstage.parts.plausible import implausible
 
 STEEL = fs.Material(young=200e9, poisson=0.3, density=7800.0, expansion=10.8e-6, yield_stress=1e9)
@@ -32,7 +32,7 @@ def told(item: object) -> list[str]:
 
 def test_nothing_shipped_is_doubted() -> None:
     tables = {fs.Material: "materials", fs.Piezo: "parts", fs.Gauge: "sensors"}
-    for section in shipped().sections:
+    for section in shipped_catalogue().sections:
         table = tables[section.record]
         kind = 'kind = "piezo", ' if table == "parts" else ""
         lines = [f'e{number} = {{ {kind}like = "{name}" }}' for number, name in enumerate(section.entries)]

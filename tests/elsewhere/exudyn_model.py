@@ -34,7 +34,7 @@ from flexstage.beams.compliance import Law, law
 from flexstage.beams.mass import mass
 from flexstage.mechanism.expand import Assembly, PlacedLink
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
-from flexstage.mechanism.moving_mass import carried
+from flexstage.mechanism.moving_mass import carried_masses
 from flexstage.parts.freedom import ALL
 
 Value = TypeVar("Value")
@@ -80,7 +80,7 @@ def _add_body(result: System, mechanism: Mechanism, assembly: Assembly, name: st
     placed = assembly.bodies[name]
     node = result.mbs.AddNode(NodeRigidBodyRxyz(referenceCoordinates=[*placed.reference, 0.0, 0.0, 0.0]))
     result.nodes[name], result.references[name] = node, placed.reference
-    loads = [(float(item.mass), item.centre - placed.reference, item.inertia) for item in carried(mechanism, placed)]
+    loads = [(float(item.mass), item.centre - placed.reference, item.inertia) for item in carried_masses(mechanism, placed)]
     for kilograms, arm, inertia in loads or [(0.0, np.zeros(3), np.zeros((3, 3)))]:
         at_node = inertia + kilograms * (arm @ arm * np.eye(3) - np.outer(arm, arm))
         components = [at_node[row, column] for row, column in ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1))]

@@ -19,7 +19,7 @@ from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Link, Mechanism
 from flexstage.models.batch.blocks import blocks, dense
 from flexstage.models.batch.choice import Choice
-from flexstage.models.batch.engine import Method, Plan, Status, iterated, plan, platform_modes
+from flexstage.models.batch.engine import Method, Plan, Status, iterate, plan, platform_modes
 from flexstage.models.batch.kernel import kernel
 from flexstage.models.batch.numbers import numbers_of, slopes_of
 from flexstage.models.batch.order import elimination
@@ -106,7 +106,7 @@ def test_iteration_agrees_with_dense_matrices_in_numpy_and_in_c(mechanism: Mecha
         return
     stage = stage_of(family_plan, designs(family_plan, 4, 0.1))
     for method in METHODS:
-        found = iterated(family_plan, stage, method)
+        found = iterate(family_plan, stage, method)
         for design in np.flatnonzero(found.good):
             exact = wholly(stage.take(np.array([design])), family_plan.choice)[0]
             np.testing.assert_allclose(found.values[design], exact.values[0], rtol=2e-6)
@@ -313,7 +313,7 @@ def test_iteration_on_a_ring_is_proved() -> None:
     assert family_plan.start is not None
     stage = stage_of(family_plan, values)
     for method in METHODS:
-        found = iterated(family_plan, stage, method)
+        found = iterate(family_plan, stage, method)
         assert found.good.all()
         exact = np.concatenate([each.values for each in wholly(stage, family_plan.choice)])
         np.testing.assert_allclose(found.values, exact, rtol=1e-9)
@@ -330,7 +330,7 @@ def test_a_start_without_the_right_modes_is_found_out() -> None:
     value = family_plan.family.nominal[None]
     stage = Stage(blind.scheme, numbers_of(blind.family, value))
     for method in METHODS:
-        assert not iterated(blind, stage, method).good.any()
+        assert not iterate(blind, stage, method).good.any()
         found = platform_modes(blind, value, method=method)
         assert Status(found.status[0]) is Status.WHOLE
         np.testing.assert_allclose(found.frequencies[0], fs.modes(lumped(double_triangle())).platform_frequencies, rtol=1e-9)

@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import flexstage as fs
-from flexstage.analysis.drift import FIELDS, drift, held_by_gauges
+from flexstage.analysis.drift import FIELDS, closed_loop_drift, drift
 from flexstage.analysis.workspace.gauging import gauge_inverse
 from flexstage.base.number import Table
 from flexstage.cases.registry import CASES, case
@@ -144,11 +144,11 @@ def test_gauges_held_still():
     """With six gauges held by a loop, the platform's drift is what the gauges do not see: for a stage of one material, its scaling."""
     alike = of_one_material(case("double-triangle"), 10e-6)
     found = drift(alike, lumped(alike), ground="steel")
-    held = held_by_gauges(found, gauge_inverse(ideal(alike)))
+    held = closed_loop_drift(found, gauge_inverse(ideal(alike)))
     np.testing.assert_allclose(held.values, found.of("platform").values, atol=1e-12)
     unlike = case("double-triangle")
     loose = drift(unlike, lumped(unlike), ground="steel")
-    held = held_by_gauges(loose, gauge_inverse(ideal(unlike)))
+    held = closed_loop_drift(loose, gauge_inverse(ideal(unlike)))
     assert np.max(np.abs(held.values[:3, 0])) < 0.5 * np.max(np.abs(loose.of("platform").values[:3, 0]))
     assert held.columns == FIELDS
     assert held.rows == tuple(f"platform.{name}" for name in COMPONENTS)

@@ -17,9 +17,9 @@ from flexstage.beams.mass import mass
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.incidence import deformation, layout, twist_at
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism, ModalDamping
-from flexstage.mechanism.path import replaced
+from flexstage.mechanism.path import replace_member
 from flexstage.models.linear.eigen import eigen
-from flexstage.models.linear.model import Contribution, assembled
+from flexstage.models.linear.model import Contribution, assemble
 from flexstage.models.linear.port import ports
 from flexstage.models.linear.static import displacement, part_deformation, static_gain
 from flexstage.parts.body import Body
@@ -27,7 +27,7 @@ from flexstage.parts.freedom import Freedom, others
 from flexstage.parts.given import Given, Joint
 from flexstage.parts.part import Restricted, is_actuator
 from flexstage.parts.piezo import Piezo
-from flexstage.spatial.frame import COMPONENTS, FORCES, rigid_inertia, transport, turned
+from flexstage.spatial.frame import COMPONENTS, FORCES, rigid_inertia, spatial_rotation, transport
 from tests.laws.shared import ideal, lumped
 from tests.laws.strategies import actuated_platforms, mechanisms, moved, platforms, rosettes, turns
 
@@ -98,7 +98,7 @@ def test_rigid_motion_strains_nothing(mechanism):
         operator = deformation(stage, order, link)
         assert np.abs(operator @ rigid).max() < 1e-12
         parts[name] = Contribution(operator, law(link.part, link.material).stiffness)
-    K = assembled(parts, order.size)
+    K = assemble(parts, order.size)
     assert np.abs(K @ rigid).max() < 1e-11 * np.abs(K).max()
     model = lumped(mechanism)
     feels = [index for index, channel in enumerate(model.outputs) if channel.name in mechanism.gauges or channel.unit[0] == "N"]
@@ -128,8 +128,8 @@ def test_transmissibility_is_that_of_a_moved_floor(mechanism, ratio):
     natural = eigen(model).values
     frequency = ratio * np.sqrt(natural[0]) / (2.0 * np.pi)
     gap = np.min(np.abs(1.0 - ratio**2 * natural[0] / natural))
-    static = assembled(parts, order.size)
-    dynamic = static - (2.0 * np.pi * frequency) ** 2 * assembled(masses, order.size)
+    static = assemble(parts, order.size)
+    dynamic = static - (2.0 * np.pi * frequency) ** 2 * assemble(masses, order.size)
     floor = range(*order.columns("floor").indices(order.size))
     free = [index for index in range(order.size) if index not in floor]
     moved_ = -np.linalg.solve(dynamic[np.ix_(free, free)], dynamic[np.ix_(free, floor)])
@@ -167,7 +167,7 @@ def rounding_per_stroke(model, rows):
 def test_moving_an_elastic_stage_changes_only_frames(mechanism, move):
     turn, shift = move
     here, there = lumped(mechanism), lumped(moved(mechanism, turn, shift))
-    carry = turned(turn)
+    carry = spatial_rotation(turn)
     near(platform_compliance(there), carry @ platform_compliance(here) @ carry.T, rounding(here))
     values = eigen(here).values[:6]
     assert np.all(np.abs(eigen(there).values[:6] - values) <= rounding_of_values(here) * values)
@@ -190,7 +190,7 @@ def test_moving_a_loaded_stage_leaves_its_load_factors(mechanism, move):
 def test_moving_an_ideal_stage_changes_only_frames(mechanism, move):
     turn, shift = move
     here, there = ideal(mechanism), ideal(moved(mechanism, turn, shift))
-    carry = turned(turn)
+    carry = spatial_rotation(turn)
     assert there.mobility == here.mobility
     assert len(there.redundant) == len(here.redundant)
     assert len(there.idle) == len(here.idle)
@@ -354,7 +354,7 @@ def at(value, path):
 def varied(mechanism, changes):
     """The stage with the numbers at these paths replaced."""
     for path, value in changes.items():
-        mechanism = replaced(mechanism, path, value)
+        mechanism = replace_member(mechanism, path, value)
     return mechanism
 
 

@@ -10,7 +10,7 @@ import pytest
 import flexstage as fs
 from flexstage.analysis.complete import platform_modes
 from flexstage.analysis.modes import modal_assurance
-from flexstage.analysis.pairing import RELIABLE, Moving, Pair, paired
+from flexstage.analysis.pairing import RELIABLE, Moving, Pair, pair_modes
 from flexstage.base.number import Array
 from flexstage.cases.bridge import bridge
 from flexstage.cases.double_triangle import double_triangle
@@ -30,7 +30,7 @@ def of(stage: fs.Mechanism) -> Moving:
 @pytest.mark.parametrize("stage", [bridge(), double_triangle(), hexapod(), parallelogram()], ids=lambda stage: stage.name)
 def test_a_model_pairs_with_itself(stage: fs.Mechanism) -> None:
     own = of(stage)
-    found = paired(own, own)
+    found = pair_modes(own, own)
     assert tuple(found) == own.modes.platform
     for index, pair in found.items():
         assert pair.index == index
@@ -45,7 +45,7 @@ def test_every_basis_of_repeated_modes_is_as_good() -> None:
         turn = np.array([[np.cos(0.7), -np.sin(0.7)], [np.sin(0.7), np.cos(0.7)]])
         shapes[:, [first, second]] = shapes[:, [first, second]] @ turn
     turned = replace(own, modes=replace(own.modes, shapes=shapes))
-    assert all(pair.assurance == pytest.approx(1.0, abs=1e-6) for pair in paired(own, turned).values())
+    assert all(pair.assurance == pytest.approx(1.0, abs=1e-6) for pair in pair_modes(own, turned).values())
 
 
 def test_a_single_mode_is_compared_with_all_of_a_pair() -> None:
@@ -58,9 +58,9 @@ def test_a_single_mode_is_compared_with_all_of_a_pair() -> None:
     apart = replace(one, modes=replace(one.modes, shapes=shapes, frequencies=frequencies))
     assert np.diff(frequencies[:2]) > 0.01 * frequencies[0]
     for first, second in ((apart, one), (one, apart)):
-        pairs = paired(first, second)
+        pairs = pair_modes(first, second)
         assert {pairs[index].index for index in (0, 1)} == {0, 1}
-    assert min(paired(apart, one)[index].assurance for index in (0, 1)) == pytest.approx(1.0, abs=1e-6)
+    assert min(pair_modes(apart, one)[index].assurance for index in (0, 1)) == pytest.approx(1.0, abs=1e-6)
 
 
 def chain(stiffness: Array, masses: Array) -> Moving:
@@ -102,7 +102,7 @@ def test_modes_that_look_alike_at_the_platform_are_told_apart() -> None:
     one, two = (each.modes.platform_shapes[:, :2] for each in (first, second))
     alike = modal_assurance(one, two, np.diag([1.0, 1.0, 1.0, 0.1, 0.1, 0.1]))
     assert np.min(alike.values) > 0.999  # by the platform alone all are alike
-    pairs = paired(first, second)
+    pairs = pair_modes(first, second)
     assert [pairs[index].index for index in (0, 1)] == [0, 1]
     assert min(pairs[index].assurance for index in (0, 1)) > 0.95
 
@@ -110,7 +110,7 @@ def test_modes_that_look_alike_at_the_platform_are_told_apart() -> None:
 def test_a_mode_that_the_other_model_has_not_is_not_reliable() -> None:
     """Four bodies here, two there: whatever is nearest to the higher modes is no partner, and two of four have none at all."""
     rich, poor = chain(np.full(4, 1e6), np.full(4, 1.0)), chain(np.full(2, 1e6), np.array([1.0, 3.0]))
-    pairs = paired(rich, poor)
+    pairs = pair_modes(rich, poor)
     assert not all(pair.reliable for pair in pairs.values())
     assert all(pair.reliable == (pair.assurance >= RELIABLE) for pair in pairs.values())
 
@@ -119,16 +119,16 @@ def test_what_no_output_sees_is_not_alike() -> None:
     """The second body is hidden: a mode that is mostly its motion is no partner of the platform's, however alike the platform moves."""
     whole = chain(np.array([2e6, 1e5]), np.array([1.0, 1.0]))
     alone = chain(np.array([2e6]), np.array([1.0]))
-    for found in (paired(alone, whole)[0], paired(whole, alone)[1]):
+    for found in (pair_modes(alone, whole)[0], pair_modes(whole, alone)[1]):
         assert found.assurance > RELIABLE
         assert found.assurance < 0.999
-    assert paired(alone, whole)[0].index == 1
+    assert pair_modes(alone, whole)[0].index == 1
 
 
 def test_the_masses_may_differ_a_little() -> None:
     """The kinetic energy is compared: by as much as the masses differ, no more."""
     first, second = chain(np.array([2e6]), np.array([1.0])), chain(np.array([2e6]), np.array([1.03]))
-    for pairs in (paired(first, second), paired(second, first)):
+    for pairs in (pair_modes(first, second), pair_modes(second, first)):
         assert 1.0 / 1.03 - 1e-9 < pairs[0].assurance < 1.0 + 1e-9
 
 

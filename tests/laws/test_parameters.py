@@ -13,7 +13,7 @@ from flexstage.cases.parameters import parameters
 from flexstage.cases.registry import CASES, Variant
 from flexstage.mechanism.grammar import node_of
 from flexstage.mechanism.mechanism import Mechanism
-from flexstage.models.batch.engine import planned, platform_modes
+from flexstage.models.batch.engine import plan_family, platform_modes
 from flexstage.models.batch.numbers import drawn_family
 from flexstage.studies.sweeps.engine import engine_of
 from flexstage.studies.sweeps.evaluate import piece
@@ -43,9 +43,9 @@ def values_of(mechanism):
 def test_a_batch_of_parameters_is_its_stages_one_by_one(name):
     factors = np.array([1.0, 1.01, 0.98])
     varying = {each.name: each.value * factors for each in parameters(CASES[name].parameters).values() if each.quantity is not None}
-    batch = values_of(Variant(name).drawn(varying))
+    batch = values_of(Variant(name).mechanism_at(varying))
     for index in range(len(factors)):
-        alone = values_of(Variant(name).drawn({key: float(value[index]) for key, value in varying.items()}))
+        alone = values_of(Variant(name).mechanism_at({key: float(value[index]) for key, value in varying.items()}))
         assert alone.keys() == batch.keys()
         assert all(np.broadcast_to(batch[address], (3,))[index] == value for address, value in alone.items())
 
@@ -67,8 +67,8 @@ def test_a_lever_gains_by_its_arms():
     """The ideal stroke of a vertical actuator for a height is r1/r2 of it; so is the derivative, by complex step through the case."""
     arm = np.array([0.024, 0.026, 0.028])
     variant = Variant("double-triangle", (("long_arm", 0.08),))
-    np.testing.assert_allclose(vertical(fs.ideal(variant.drawn({"short_arm": arm})).mapping), arm / 0.08, rtol=1e-9)
-    stepped = vertical(fs.ideal(variant.drawn({"short_arm": 0.026 + 1e-20j})).mapping)
+    np.testing.assert_allclose(vertical(fs.ideal(variant.mechanism_at({"short_arm": arm})).mapping), arm / 0.08, rtol=1e-9)
+    stepped = vertical(fs.ideal(variant.mechanism_at({"short_arm": 0.026 + 1e-20j})).mapping)
     assert np.imag(stepped) / 1e-20 == pytest.approx(1.0 / 0.08, rel=1e-9)
 
 
@@ -132,7 +132,7 @@ def test_many_designs_are_drawn_from_parameters_with_derivatives():
     study = loads_study(STUDY.replace('responses.mass = "mass"', 'responses.f = "frequency.platform.1"'))
     values = study.drawn(0, 1)
     names = tuple(each.name for each in study.variables)
-    family = planned(drawn_family(lambda columns: varied_by(study.design, study.variables, columns), names, values[0]))
+    family = plan_family(drawn_family(lambda columns: varied_by(study.design, study.variables, columns), names, values[0]))
     np.testing.assert_allclose(engine_of(study).answers(values)[0], platform_modes(family, values).frequencies[:, :1], rtol=1e-9)
     found = platform_modes(family, values, slopes=True)
     alone = fs.modes(fs.lumped(study.described(values[0])))

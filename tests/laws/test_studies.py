@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from flexstage.analysis.judge import measured
 from flexstage.analysis.requirements import measure
-from flexstage.analysis.sensitivities import stepped
+from flexstage.analysis.sensitivities import step_parameters
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.mechanism.address import get, set_value
 from flexstage.mechanism.mechanism import Mechanism
@@ -145,7 +145,7 @@ def test_measures_are_analytic(key):
     stage, step = double_triangle(), 1e-3
     names = ("parts.neck.thickness", "bodies.platform.solids.plate.size.x", "parts.lever_notch.thickness")
     asked = (measure(stage, key, "here"),)
-    slopes = np.imag(measured(replace(stepped(stage, names), requirements=stage.requirements), asked)[0]) / 1e-20
+    slopes = np.imag(measured(replace(step_parameters(stage, names), requirements=stage.requirements), asked)[0]) / 1e-20
     for slope, name in zip(np.broadcast_to(slopes, 3), names, strict=True):
         value = get(stage, name)
         values = measured(set_value(stage, name, value * (1.0 + step * np.array([-1.0, -0.5, 0.5, 1.0]))), asked)[0] * np.ones(4)

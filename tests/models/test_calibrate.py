@@ -16,7 +16,7 @@ from flexstage.base.finding import DesignError
 from flexstage.beams.compliance import compliance
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.cases.parallelogram import parallelogram
-from flexstage.mechanism.drawn import calibrated, drawn
+from flexstage.mechanism.drawn import calibrated_parts, with_drawn_parts
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.restrict import isolate
 from flexstage.solid.calibration import with_matrices
@@ -86,7 +86,7 @@ def test_calibrated_hinges_grow_and_lose_energy_as_the_drawn_ones(stage: fs.Mech
     bare = replace(
         after, parts={name: replace(part, stands_for="") if isinstance(part, fs.Given) else part for name, part in after.parts.items()}
     )
-    assert len([each for each in defaults(bare) if "loss factor" in each.what]) == len(calibrated(bare))
+    assert len([each for each in defaults(bare) if "loss factor" in each.what]) == len(calibrated_parts(bare))
 
 
 def test_softer_hinges_are_read_softer() -> None:
@@ -129,8 +129,8 @@ def test_comments_stay_and_the_drawn_hinges_are_kept() -> None:
     assert "# The neck of the prototype." in after
     assert "# The drive." in after
     stage = fs.loads(after)
-    assert drawn(stage).parts["neck-front"] == parallelogram().parts["neck"]
-    assert set(calibrated(stage)) == {"leaf", "neck-back", "neck-front"}
+    assert with_drawn_parts(stage).parts["neck-front"] == parallelogram().parts["neck"]
+    assert set(calibrated_parts(stage)) == {"leaf", "neck-back", "neck-front"}
     assert stage.tags["parts.neck-front.compliance"].startswith("derived FEA")
 
 

@@ -10,7 +10,7 @@ import pytest
 from flexstage.base.scale import X, mm
 from flexstage.mechanism.expand import PlacedLink, expand
 from flexstage.mechanism.mechanism import PLATFORM, Link, Mechanism
-from flexstage.models.linear.model import Contributions, LinearModel, assembled
+from flexstage.models.linear.model import Contributions, LinearModel, assemble
 from flexstage.models.linear.static import static_gain
 from flexstage.parts.body import Body
 from flexstage.parts.mass import MassProperties
@@ -35,7 +35,7 @@ def model() -> LinearModel:
 
 def without(mark: str, contributions: Contributions, model: LinearModel) -> np.ndarray:
     """The matrix of all contributions but those with a mark in their names."""
-    return assembled({name: item for name, item in contributions.items() if mark not in name}, len(model.coordinates))
+    return assemble({name: item for name, item in contributions.items() if mark not in name}, len(model.coordinates))
 
 
 def moved(matrix: np.ndarray, model: LinearModel) -> np.ndarray:
@@ -107,7 +107,7 @@ def exact(*names: str) -> np.ndarray:
 def test_the_whole_weighs_what_its_outlines_do(model: LinearModel) -> None:
     """Mass, centre of mass and all moments of inertia of blocks, necks, frame and payload by closed forms: flat faces mesh exactly."""
     flat = {name: item for name, item in model.inertia.items() if MOUNT not in name and "pzt" not in name}
-    found = moved(assembled(flat, len(model.coordinates)), model)
+    found = moved(assemble(flat, len(model.coordinates)), model)
     assert np.abs(found - exact(*stated())).max() < 1e-9 * found[0, 0]
 
 
@@ -131,7 +131,7 @@ def test_a_round_stack_weighs_what_it_does(model: LinearModel) -> None:
     ],
 )
 def test_each_body_weighs_what_its_outlines_do(model: LinearModel, names: tuple[str, ...], parts: tuple[str, ...]) -> None:
-    found = moved(assembled({name: model.inertia[name] for name in names}, len(model.coordinates)), model)
+    found = moved(assemble({name: model.inertia[name] for name in names}, len(model.coordinates)), model)
     assert np.abs(found - exact(*parts)).max() < 1e-9 * found[0, 0]
 
 

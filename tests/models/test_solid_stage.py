@@ -16,7 +16,7 @@ from flexstage.models.lumped import lumped
 from flexstage.solid.fea.assemble import linear_model
 from flexstage.solid.fea.cad import cad
 from flexstage.solid.fea.component import components
-from flexstage.spatial.frame import COMPONENTS, FORCES, Frame, seen_at, turn_z, turned
+from flexstage.spatial.frame import COMPONENTS, FORCES, Frame, spatial_rotation, turn_z, twist_transform
 from tests.laws.strategies import moved
 from tests.models.solids import read
 
@@ -126,7 +126,7 @@ def test_moving_the_stage_changes_only_frames(guide):
         for new, (old, element) in zip(components(there_stage), solid.parts, strict=True)
     )
     there = linear_model(there_stage, expand(there_stage), placed, "moved")
-    carry = turned(turn)
+    carry = spatial_rotation(turn)
     expected = carry @ compliance(solid.model) @ carry.T
     assert np.abs(compliance(there) - expected).max() < 1e-9 * np.abs(expected).max()
     np.testing.assert_allclose(modes(there).frequencies[:6], modes(solid.model).frequencies[:6], rtol=1e-9)
@@ -143,7 +143,7 @@ def test_stress_resultants_balance_the_load(guide):
         if PLATFORM in link.joins:
             sign = 1.0 if link.joins[1] == PLATFORM else -1.0
             own = model.output[model.output_index(tuple(f"{name}.{part}" for part in FORCES))] @ motion
-            total += sign * seen_at(link.frame, centre).T @ own
+            total += sign * twist_transform(link.frame, centre).T @ own
     assert np.abs(total[:3] - np.array([[1.0, 0.0], [0.0, 0.0], [0.0, 1.0]])).max() < 1e-8
 
 

@@ -9,11 +9,11 @@ import pytest
 
 import flexstage as fs
 from flexstage.analysis.complete import platform_modes
-from flexstage.analysis.pairing import RELIABLE, Moving, paired
+from flexstage.analysis.pairing import RELIABLE, Moving, pair_modes
 from flexstage.analysis.trust import Trust
 from flexstage.analysis.units import units
 from flexstage.base.finding import DesignError, Finding
-from flexstage.mechanism.drawn import drawn
+from flexstage.mechanism.drawn import with_drawn_parts
 from flexstage.models.linear.static import displacement
 from flexstage.solid.fea.fineness import Reduction
 from flexstage.solid.read import read_solid, solids
@@ -62,7 +62,7 @@ def test_the_stage_is_near_the_lumped_one() -> None:
     theory = fs.statics(fs.lumped(small()))
     assert stage.statics.held.principal[1] / theory.held.principal[1] == pytest.approx(1.0, abs=0.08)
     model = fs.lumped(small())
-    pairs = paired(Moving(stage.modes, stage.read.model), Moving(platform_modes(small(), model), model))
+    pairs = pair_modes(Moving(stage.modes, stage.read.model), Moving(platform_modes(small(), model), model))
     for index in stage.modes.platform[:2]:
         assert stage.modes.frequencies[index] == pytest.approx(pairs[index].frequency, rel=0.08)
         assert pairs[index].assurance > 0.99
@@ -134,10 +134,10 @@ def test_given_parts_are_drawn_as_what_they_stand_for() -> None:
     stage = small()
     unit = tuple(tuple(1e-7 * (row == column) for column in range(6)) for row in range(6))
     stands = replace(stage, parts={**stage.parts, "old": stage.parts["leaf"], "leaf": fs.Given(unit, free=(), stands_for="old")})
-    assert drawn(stands).parts["leaf"] == stage.parts["leaf"]
+    assert with_drawn_parts(stands).parts["leaf"] == stage.parts["leaf"]
     lost = replace(stage, parts={**stage.parts, "leaf": fs.Given(unit, free=(), stands_for="gone")})
     with pytest.raises(DesignError, match='no part "gone"'):
-        drawn(lost)
+        with_drawn_parts(lost)
 
 
 def test_errors_that_were_not_estimated_are_unknown() -> None:

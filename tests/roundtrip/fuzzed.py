@@ -28,7 +28,7 @@ from flexstage.experiment.formats.write import write
 from flexstage.experiment.options import Allow, Arrays, Kind, Options
 from flexstage.experiment.record import Channel, Record, Role, in_memory
 from flexstage.mechanism.expand import expand
-from flexstage.mechanism.store import dumps, loads, tidied
+from flexstage.mechanism.store import dumps, loads, round_to_digits
 from flexstage.studies.optimisation.file import load_wanted
 from flexstage.studies.sweeps.example import neck_study
 from flexstage.studies.sweeps.file import loads_study
@@ -192,7 +192,7 @@ def tree_of(text: str) -> Any:
 
 @functools.cache
 def shipped() -> tuple[str, ...]:
-    return tuple(dumps(tidied(case.build())) for case in CASES.values())
+    return tuple(dumps(round_to_digits(case.build())) for case in CASES.values())
 
 
 def a_design(chance: random.Random) -> bytes:

@@ -14,7 +14,7 @@ import pytest
 from flexstage.base.finding import DesignError
 from flexstage.control.hysteresis.stack import load_hysteresis
 from flexstage.control.study.file import load_setup
-from flexstage.mechanism.checks import check, checked
+from flexstage.mechanism.checks import check, require_valid
 from flexstage.mechanism.mechanism import Link, Mechanism, Placement
 from flexstage.mechanism.pattern import Facing, Polar, Pose
 from flexstage.mechanism.store import load, loads
@@ -341,7 +341,7 @@ def test_each_fault_of_a_description_is_told(mechanism: Mechanism, words: list[s
     lines = [str(finding) for finding in check(mechanism)]
     assert any(all(word in line for word in words) for line in lines), lines
     with pytest.raises(DesignError):
-        checked(mechanism)
+        require_valid(mechanism)
 
 
 @pytest.mark.parametrize(

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from flexstage.base.finding import DesignError
 from flexstage.cases.registry import CASES
 from flexstage.mechanism.address import addresses, get, set_value, tag_of
-from flexstage.mechanism.store import dumps, loads, patch, tidied, write
+from flexstage.mechanism.store import dumps, loads, patch, round_to_digits, write
 from tests.conftest import examples
 from tests.roundtrip.designs import TEXT
 
@@ -62,7 +62,7 @@ def test_absent_values_are_added() -> None:
 @examples(15, 150)
 @given(data=st.data())
 def test_any_number_of_a_case_can_be_patched(name: str, data: st.DataObject) -> None:
-    stage = tidied(CASES[name].build())
+    stage = round_to_digits(CASES[name].build())
     address = data.draw(st.sampled_from(addresses(stage)))
     value = data.draw(st.floats(min_value=1e-6, max_value=10.0))
     assert loads(patch(dumps(stage), {address: value}), checked=False) == set_value(stage, address, value)

@@ -18,7 +18,7 @@ from flexstage.mechanism.address import assign, provenance, tag_of
 from flexstage.mechanism.checks import check
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
-from flexstage.mechanism.store import dump, dumps, load, loads, shipped, tidied
+from flexstage.mechanism.store import dump, dumps, load, loads, round_to_digits, shipped_catalogue
 from flexstage.parts.rod import Rod
 from tests.conftest import examples
 from tests.roundtrip.designs import mechanisms
@@ -56,8 +56,8 @@ def test_shipped_cases_survive_their_files_and_pass_the_checks(name: str, tmp_pa
 @pytest.mark.parametrize("name", CASES)
 def test_a_tidied_case_is_the_same_stage_in_short_texts(name: str) -> None:
     mechanism = CASES[name].build()
-    tidy = tidied(mechanism)
-    assert tidied(tidy) == tidy
+    tidy = round_to_digits(mechanism)
+    assert round_to_digits(tidy) == tidy
     assert loads(dumps(tidy)) == tidy
     assert dict(provenance(tidy)) == dict(provenance(mechanism))
     digits = [len([sign for sign in text if sign.isdigit()]) for text in dumps(tidy).split('"') if text[:1].isdigit()]
@@ -125,14 +125,14 @@ def test_the_catalogue_is_overridden_by_what_follows_and_brings_its_tags_and_sou
 
 
 def test_every_entry_of_the_catalogue_can_be_read_and_is_tagged_throughout() -> None:
-    sections = zip(("materials", "parts", "sensors"), shipped().sections, strict=True)
+    sections = zip(("materials", "parts", "sensors"), shipped_catalogue().sections, strict=True)
     lines = [f'[{table}.e{number}]\nlike = "{name}"' for table, section in sections for number, name in enumerate(section.entries)]
     read = loads(START + "\n".join(lines), checked=False)
     assert [str(finding) for finding in check(read) if "platform" not in finding.what] == []
-    for section in shipped().sections:
+    for section in shipped_catalogue().sections:
         for name, item in section.entries.items():
             assert set(item["tags"]) == set(item) - {"tags", "source"}, name
-            assert {tag.split()[1] for tag in item["tags"].values() if tag != "assumed"} <= set(shipped().sources), name
+            assert {tag.split()[1] for tag in item["tags"].values() if tag != "assumed"} <= set(shipped_catalogue().sources), name
 
 
 def test_tags_stand_in_any_table() -> None:

@@ -10,7 +10,7 @@ import numpy as np
 import flexstage as fs
 from flexstage.analysis.complete import platform_modes
 from flexstage.analysis.modes import Modes
-from flexstage.analysis.pairing import Moving, Pair, paired
+from flexstage.analysis.pairing import Moving, Pair, pair_modes
 from flexstage.cases.registry import case
 from flexstage.mechanism.restrict import isolate
 from flexstage.solid.calibration import with_matrices
@@ -97,7 +97,7 @@ def _stage(stage: fs.Mechanism) -> Section:
     fea = platform_modes(stage, model)
     better = with_matrices(stage, fs.solid.solid_hinges(stage))
     models = [fs.lumped(each) for each in (stage, better)]
-    theory, calibrated = (paired(Moving(fea, model), Moving(platform_modes(stage, each), each)) for each in models)
+    theory, calibrated = (pair_modes(Moving(fea, model), Moving(platform_modes(stage, each), each)) for each in models)
     rows = (
         Row(
             "in-plane stiffness, softest over stiffest",

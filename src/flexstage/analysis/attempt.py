@@ -33,7 +33,7 @@ class Attempts:
             self.missing[name] = str(error)
             return None
 
-    def given(self, name: str, ground: _Ground | None, reason: str, result: Callable[[_Ground], _Result]) -> _Result | None:
+    def of_ground(self, name: str, ground: _Ground | None, reason: str, result: Callable[[_Ground], _Result]) -> _Result | None:
         """The result of its `ground` where that is there; else `None`, noted with the reason."""
         if ground is None:
             self.missing[name] = reason

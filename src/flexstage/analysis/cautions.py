@@ -85,7 +85,7 @@ def defaults(mechanism: Mechanism) -> tuple[Default, ...]:
     >>> defaults(Mechanism("stage"))
     ()
     """
-    return (*_stack_defaults(mechanism), *_left_out(mechanism), *_lossless(mechanism), *_ground_default(mechanism))
+    return (*_stack_defaults(mechanism), *_massless_defaults(mechanism), *_lossless(mechanism), *_ground_default(mechanism))
 
 
 def _stack_defaults(mechanism: Mechanism) -> Iterator[Default]:
@@ -99,7 +99,7 @@ def _stack_defaults(mechanism: Mechanism) -> Iterator[Default]:
             yield Default(f"parts.{name}", what, advice, _LINEAR | _MEASURED)
 
 
-def _left_out(mechanism: Mechanism) -> Iterator[Default]:
+def _massless_defaults(mechanism: Mechanism) -> Iterator[Default]:
     """The mass of restricted parts, which count as springs only."""
     told: dict[str, float] = {}
     for link in expand(mechanism).links.values():
@@ -165,10 +165,10 @@ def cautions(mechanism: Mechanism) -> tuple[Finding, ...]:
     factors = load_factors(mechanism)
     return (
         *(() if factors is None else (*factors.refusals, *factors.cautions)),
-        *_pulled(mechanism),
-        *implausible(_catalogued(mechanism)),
+        *_tension_findings(mechanism),
+        *implausible(_catalogue_items(mechanism)),
         *_disproportions(mechanism),
-        *_overloaded(mechanism),
+        *_overload_findings(mechanism),
         *_points(mechanism),
         *part_cautions(mechanism),
         *_blockages(mechanism),
@@ -188,7 +188,7 @@ def _large_motions(mechanism: Mechanism) -> tuple[Finding, ...]:
     return tuple(small_motion(mechanism, kinematics).cautions(single))
 
 
-def _catalogued(mechanism: Mechanism) -> Iterator[tuple[str, Any]]:
+def _catalogue_items(mechanism: Mechanism) -> Iterator[tuple[str, Any]]:
     """Materials, parts, gauges, payloads, bodies and their outlines by address; parts of single copies too."""
     for name in ("materials", "parts", "sensors", "payloads"):
         yield from ((f"{name}.{key}", item) for key, item in getattr(mechanism, name).items())
@@ -247,20 +247,20 @@ def _sizes(mechanism: Mechanism) -> Iterator[tuple[str, float, float, float]]:
             yield f"{where}.inertia", float(np.max(np.sqrt(largest / np.real(item.mass)))), 0.0, 3.0
 
 
-def _overloaded(mechanism: Mechanism) -> tuple[Finding, ...]:
+def _overload_findings(mechanism: Mechanism) -> tuple[Finding, ...]:
     """Hinges beyond yield and stacks beyond their maximum load under weight, payloads and forces alone."""
     try:
         model = lumped(mechanism)
     except DesignError:
         return ()
     found: list[Finding] = []
-    for judged in (_overstressed, _overpressed):
+    for judged in (_stress_findings, _compression_findings):
         with suppress(DesignError):
             found += judged(mechanism, model)
     return tuple(found)
 
 
-def _overstressed(mechanism: Mechanism, model: LinearModel) -> Iterator[Finding]:
+def _stress_findings(mechanism: Mechanism, model: LinearModel) -> Iterator[Finding]:
     stress = hinge_stress(mechanism, model, StrokeLimits((), np.zeros(0), np.zeros(0)))
     safety = np.nan_to_num(np.real(stress.safety).reshape(-1, len(stress.links))[0], nan=np.inf)
     if np.min(safety, initial=np.inf) < 1.0:
@@ -268,7 +268,7 @@ def _overstressed(mechanism: Mechanism, model: LinearModel) -> Iterator[Finding]
         yield Finding(stress.weakest, what, "Check masses and forces, or make it stronger")
 
 
-def _overpressed(mechanism: Mechanism, model: LinearModel) -> Iterator[Finding]:
+def _compression_findings(mechanism: Mechanism, model: LinearModel) -> Iterator[Finding]:
     share = load_share(mechanism, model)
     uses = np.real(share.usage(share.compression)).reshape(-1, len(share.actuators))[0]
     for name, use in zip(share.actuators, uses, strict=True):
@@ -288,7 +288,7 @@ def _points(mechanism: Mechanism) -> Iterator[Finding]:
             yield Finding(where, what, 'State inertia = { xx = "...", yy = "...", zz = "..." } or an outline, or point = true if it is one')
 
 
-def _pulled(mechanism: Mechanism) -> tuple[Finding, ...]:
+def _tension_findings(mechanism: Mechanism) -> tuple[Finding, ...]:
     """Stacks in tension beyond what they bear; nothing where their forces are not known."""
     try:
         return tuple(load_share(mechanism, lumped(mechanism)).pulled(stroke_limits(mechanism).from_zero))

@@ -98,12 +98,12 @@ def key_figures(analysis: Analysis) -> tuple[KeyFigure, ...]:
     >>> [figure.name for figure in key_figures(analyse(double_triangle(), Model.MAPPED))][8:10]
     ['frequency.platform.2', 'frequency.platform.3']
     """
-    found = (*_required(analysis), *_frequencies(analysis), *_stiffness(analysis), *_losses(analysis), *_reach(analysis))
+    found = (*_requirement_figures(analysis), *_frequencies(analysis), *_stiffness(analysis), *_losses(analysis), *_reach(analysis))
     named = {figure.name: figure for figure in reversed(found)}
     return tuple(named[name] for name in dict.fromkeys(figure.name for figure in found))
 
 
-def _required(analysis: Analysis) -> Iterator[KeyFigure]:
+def _requirement_figures(analysis: Analysis) -> Iterator[KeyFigure]:
     for verdict in analysis.verdicts:
         if verdict.value is not None:
             asked = verdict.requirement

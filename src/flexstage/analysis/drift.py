@@ -27,7 +27,7 @@ from flexstage.models.linear.model import LinearModel
 from flexstage.models.linear.static import displacement
 from flexstage.parts.given import Joint
 from flexstage.parts.part import Restricted
-from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNITS, transport, turned
+from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNITS, spatial_rotation, transport
 
 FIELDS = ("uniform", "gradient.x", "gradient.y", "gradient.z")
 _FIELD_UNITS = ("K", "K/m", "K/m", "K/m")
@@ -67,12 +67,12 @@ class _Thermal:
     def growth(self, body: str, point: Array) -> Array:
         """Growth twist (..., 6, 4) of a body at a point, from its reference, in stage axes."""
         reference = self.datum if body == GROUND else self.assembly.bodies[body].reference
-        return np.asarray(self.expansion.bodies[body])[..., None, None] * _grown(point - reference, reference - self.datum)
+        return np.asarray(self.expansion.bodies[body])[..., None, None] * _growth(point - reference, reference - self.datum)
 
     def misfit(self, link: PlacedLink) -> Array:
         """Deformation (..., 6, 4) of a link, in its frame, if no body moved."""
         first, second = (self.growth(body, link.frame.position) + self._half(link, end) for end, body in enumerate(link.joins))
-        return np.swapaxes(turned(link.frame.rotation), -1, -2) @ (second - first)
+        return np.swapaxes(spatial_rotation(link.frame.rotation), -1, -2) @ (second - first)
 
     def _half(self, link: PlacedLink, end: int) -> Array:
         """What the part's half next to a body grows more than that body would: seen at the part's centre from that end."""
@@ -81,7 +81,7 @@ class _Thermal:
         own, length = self.expansion.parts[link.name]
         more = own - self.expansion.bodies[link.joins[end]]
         arm = (0.5 if end == 0 else -0.5) * np.asarray(length)[..., None] * link.frame.rotation[..., :, 0]
-        return np.asarray(more)[..., None, None] * _grown(arm, link.frame.position - arm - self.datum)
+        return np.asarray(more)[..., None, None] * _growth(arm, link.frame.position - arm - self.datum)
 
 
 @takes_models
@@ -101,17 +101,17 @@ def drift(mechanism: Mechanism, model: LinearModel, *, ground: str | None = None
     """
     thermal = _Thermal(expand(mechanism), expansion(mechanism, ground), stack(datum))
     misfits = {name: thermal.misfit(link) for name, link in thermal.assembly.links.items()}
-    fitted = _fitted(thermal.assembly, misfits)
+    fitted = _fit_misfits(thermal.assembly, misfits)
     strains = {name: misfits[name] + fitted.strains.get(name, 0.0) for name in misfits}
     size = len(model.coordinates)
-    load = sum((_transposed(part.operator) @ (part.law @ strains[name]) for name, part in model.stiffness.items()), np.zeros((size, 4)))
+    load = sum((_transpose(part.operator) @ (part.law @ strains[name]) for name, part in model.stiffness.items()), np.zeros((size, 4)))
     motion = displacement(model, -load)
     twists = {body: _twist(model, body, motion) + fitted.twists.get(body, 0.0) for body in thermal.assembly.bodies}
     forces = {name: part.law @ (part.operator @ motion + strains[name]) for name, part in model.stiffness.items()}
     return Drift(
         motion=_motions(thermal, twists),
         gauges=_gauges(thermal, twists),
-        forces=_labelled(forces, FORCES, WRENCH_UNITS),
+        forces=_label(forces, FORCES, WRENCH_UNITS),
         ground=thermal.expansion.ground,
         datum=thermal.datum,
         taken=thermal.expansion.taken,
@@ -119,20 +119,20 @@ def drift(mechanism: Mechanism, model: LinearModel, *, ground: str | None = None
     )
 
 
-def held_by_gauges(drifted: Drift, gauge_inverse: Matrix) -> Matrix:
+def closed_loop_drift(drifted: Drift, gauge_inverse: Matrix) -> Matrix:
     """Platform motion (6 x fields) when a control loop holds all gauge readings: x - S s, with S of `gauge_inverse`.
 
     >>> zero = Matrix(np.zeros((1, 4)), ("S1",), FIELDS, "m/K")
     >>> moved = Matrix(np.eye(6)[:, :4], tuple(f"platform.{name}" for name in COMPONENTS), FIELDS, "m/K")
     >>> free = Drift(moved, zero, zero, Ground(None, "as asked"), np.zeros(3), {}, "")
-    >>> held_by_gauges(free, Matrix(np.ones((6, 1)), COMPONENTS, ("S1",), "1")).values[0].tolist()
+    >>> closed_loop_drift(free, Matrix(np.ones((6, 1)), COMPONENTS, ("S1",), "1")).values[0].tolist()
     [1.0, 0.0, 0.0, 0.0]
     """
     moved = drifted.of(PLATFORM)
     return Matrix(moved.values - gauge_inverse.values @ drifted.gauges.values, moved.rows, moved.columns, moved.unit)
 
 
-def _grown(arm: Array, origin: Array) -> Array:
+def _growth(arm: Array, origin: Array) -> Array:
     """Free growth (..., 6, 4) over `arm` from a point at `origin` from the datum, for a unit coefficient and the four fields."""
     arm, origin = np.broadcast_arrays(arm, origin)
     square = np.sum(arm * arm, axis=-1)
@@ -152,7 +152,7 @@ class _Fitted:
     strains: Mapping[str, Array]
 
 
-def _fitted(assembly: Assembly, misfits: Mapping[str, Array]) -> _Fitted:
+def _fit_misfits(assembly: Assembly, misfits: Mapping[str, Array]) -> _Fitted:
     """Locked freedoms leave no room for misfits: find body motions of least norm that close them."""
     bound = {
         name: law(link.part, link.material).locked for name, link in assembly.links.items() if isinstance(link.part, (Joint, Restricted))
@@ -162,8 +162,8 @@ def _fitted(assembly: Assembly, misfits: Mapping[str, Array]) -> _Fitted:
     order = layout(assembly)
     operators = {name: deformation(assembly, order, link) for name, link in assembly.links.items()}
     picked = {name: [freedom.index for freedom in locked] for name, locked in bound.items() if locked}
-    rows = np.concatenate(_spread([operators[name][..., index, :] for name, index in picked.items()]), axis=-2)
-    gaps = np.concatenate(_spread([misfits[name][..., index, :] for name, index in picked.items()]), axis=-2)
+    rows = np.concatenate(_broadcast([operators[name][..., index, :] for name, index in picked.items()]), axis=-2)
+    gaps = np.concatenate(_broadcast([misfits[name][..., index, :] for name, index in picked.items()]), axis=-2)
     motion = -np.linalg.pinv(rows, rcond=1e-10) @ gaps
     left = np.max(np.abs(rows @ motion + gaps))
     if left > _FITS * np.max(np.abs(gaps)):
@@ -186,36 +186,36 @@ def _motions(thermal: _Thermal, twists: Mapping[str, Array]) -> Matrix:
     for name, (body, point) in thermal.assembly.points.items():
         carry = transport(point - thermal.assembly.bodies[body].reference)
         found[name] = carry @ twists[body] + thermal.growth(body, point)
-    return _labelled(found, COMPONENTS, TWIST_UNITS)
+    return _label(found, COMPONENTS, TWIST_UNITS)
 
 
 def _gauges(thermal: _Thermal, twists: Mapping[str, Array]) -> Matrix:
     names = tuple(thermal.assembly.gauges)
     rows: list[Array] = []
     for gauge in thermal.assembly.gauges.values():
-        ends = [_seen(thermal, twists, body, gauge.frame.position) for body in (gauge.body, gauge.base)]
+        ends = [_material_motion(thermal, twists, body, gauge.frame.position) for body in (gauge.body, gauge.base)]
         direction = gauge.sign * gauge.frame.rotation[..., :, 0]
         rows.append((direction[..., None, :] @ (ends[0] - ends[1])[..., :3, :])[..., 0, :])
     values = np.stack(np.broadcast_arrays(*rows), axis=-2) if rows else np.zeros((0, 4))
     return Matrix(values, names, FIELDS, ratio_units(("m",) * len(names), _FIELD_UNITS))
 
 
-def _seen(thermal: _Thermal, twists: Mapping[str, Array], body: str, point: Array) -> Array:
+def _material_motion(thermal: _Thermal, twists: Mapping[str, Array], body: str, point: Array) -> Array:
     """Motion (..., 6, 4) of a body's material at a point."""
     grown = thermal.growth(body, point)
     return grown if body == GROUND else transport(point - thermal.assembly.bodies[body].reference) @ twists[body] + grown
 
 
-def _labelled(blocks: Mapping[str, Array], components: tuple[str, ...], units: tuple[str, ...]) -> Matrix:
+def _label(blocks: Mapping[str, Array], components: tuple[str, ...], units: tuple[str, ...]) -> Matrix:
     rows = tuple(f"{name}.{component}" for name in blocks for component in components)
-    values = np.concatenate(_spread(list(blocks.values())), axis=-2)
+    values = np.concatenate(_broadcast(list(blocks.values())), axis=-2)
     return Matrix(values, rows, FIELDS, ratio_units(units * len(blocks), _FIELD_UNITS))
 
 
-def _spread(arrays: list[Array]) -> list[Array]:
+def _broadcast(arrays: list[Array]) -> list[Array]:
     batch = np.broadcast_shapes(*(array.shape[:-2] for array in arrays))
     return [np.broadcast_to(array, (*batch, *array.shape[-2:])) for array in arrays]
 
 
-def _transposed(matrix: Array) -> Array:
+def _transpose(matrix: Array) -> Array:
     return np.swapaxes(matrix, -1, -2)

@@ -86,9 +86,9 @@ def error_budget(evidence: Evidence, command: Mapping[str, Number], *, temperatu
     columns = command_columns(evidence.kinematics, command)
     half = stack([command[name] for name in command]) if command else np.zeros(0)
     carry = transport(evidence.arm)
-    loss, cross, left = _commanded(evidence, columns, carry)
+    loss, cross, left = _command_errors(evidence, columns, carry)
     bent = np.max(np.abs((carry @ evidence.map_error.errors[..., None])[..., 0]), axis=0)
-    noise, step = coverage * _random(evidence.resolution, carry), _stepped(evidence.resolution, carry)
+    noise, step = coverage * _random(evidence.resolution, carry), _resolution_errors(evidence.resolution, carry)
     warmed = np.abs(evidence.drift.values[..., :, 0]) * np.abs(temperature)
     common = (bent, noise, step, warmed)
     rows = {
@@ -134,7 +134,7 @@ def command_strokes(kinematics: Kinematics, command: Mapping[str, Number], *, de
     return (mapping @ (signs.reshape(lead) * half)[..., None])[..., 0]
 
 
-def _commanded(evidence: Evidence, columns: list[int], carry: Array) -> tuple[Array, Array, Array]:
+def _command_errors(evidence: Evidence, columns: list[int], carry: Array) -> tuple[Array, Array, Array]:
     """Errors (..., 6, c) per command: own loss, the rest, and what the correction gains leave."""
     kinematics, lost = evidence.kinematics, evidence.lost_motion
     strokes = kinematics.mapping.values[..., columns]
@@ -154,7 +154,7 @@ def _random(resolution: PoseResolution, carry: Array) -> Array:
     return np.sqrt((((carry @ resolution.inverse.values) ** 2) @ (resolution.gauge_noise**2)[..., None])[..., 0])
 
 
-def _stepped(resolution: PoseResolution, carry: Array) -> Array:
+def _resolution_errors(resolution: PoseResolution, carry: Array) -> Array:
     return (np.abs(carry @ resolution.inverse.values) @ (0.5 * resolution.gauge_steps)[..., None])[..., 0]
 
 

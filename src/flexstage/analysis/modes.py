@@ -135,13 +135,13 @@ def modes(model: LinearModel, *, limit: float = np.inf, count: int = 6, cluster:
     """
     platform = model.output[..., model.output_index(tuple(f"{_PLATFORM}.{name}" for name in COMPONENTS)), :]
     solved = eigen(model)
-    groups = repeated(first_design(solved.values, 1), cluster)
-    solved, moving = _aligned(platform, solved, groups, sign_weights(model.coordinates))
+    groups = repeated_groups(first_design(solved.values, 1), cluster)
+    solved, moving = _align(platform, solved, groups, sign_weights(model.coordinates))
     frequencies = np.sqrt(solved.values) / (2.0 * np.pi)
     bodies, energies, components = _energies(model, solved)
     share = energies[..., bodies.index(_PLATFORM), :] if _PLATFORM in bodies else np.zeros_like(frequencies)
-    chosen, margin = _chosen(first_design(share, 1), first_design(frequencies, 1), limit, count, groups)
-    names, in_plane = _named(bodies, *_together(bodies, first_design(energies, 2), components, list(zip(groups, moving, strict=True))))
+    chosen, margin = _choose(first_design(share, 1), first_design(frequencies, 1), limit, count, groups)
+    names, in_plane = _name_modes(bodies, *_together(bodies, first_design(energies, 2), components, list(zip(groups, moving, strict=True))))
     return Modes(
         frequencies=frequencies,
         shapes=solved.shapes,
@@ -174,12 +174,12 @@ def clusters(values: Array, gap: float) -> list[list[int]]:
     return groups
 
 
-def repeated(values: Array, gap: float = _REPEATED) -> list[list[int]]:
+def repeated_groups(values: Array, gap: float = _REPEATED) -> list[list[int]]:
     """Groups of ascending eigenvalues omega^2 whose frequencies agree within `gap`, or as well as rounding lets one tell.
 
     Solved by 1/lambda, an eigenvalue is known to eps times its ratio to the least one, times what rounding grows by.
 
-    >>> repeated(np.array([1.0, 1.0 + 1e-9, 2.0]))
+    >>> repeated_groups(np.array([1.0, 1.0 + 1e-9, 2.0]))
     [[0, 1], [2]]
     """
     groups: list[list[int]] = []
@@ -192,16 +192,16 @@ def repeated(values: Array, gap: float = _REPEATED) -> list[list[int]]:
     return groups
 
 
-def averaged(values: Array, groups: list[list[int]]) -> Array:
+def average(values: Array, groups: list[list[int]]) -> Array:
     """Every value (k,) as the mean of its group's.
 
-    >>> averaged(np.array([1.0, 3.0, 5.0]), [[0, 1], [2]]).tolist()
+    >>> average(np.array([1.0, 3.0, 5.0]), [[0, 1], [2]]).tolist()
     [2.0, 2.0, 5.0]
     """
     return np.concatenate([np.full(len(group), np.mean(values[group])) for group in groups])
 
 
-def _aligned(platform: Array, solved: Eigen, groups: list[list[int]], weights: Array) -> tuple[Eigen, list[int]]:
+def _align(platform: Array, solved: Eigen, groups: list[list[int]], weights: Array) -> tuple[Eigen, list[int]]:
     """Turn the basis of repeated modes so that their platform shapes separate along the axes; and how many of each group move the platform.
 
     Of each group (of the first design) as many shapes as it has motions of the platform come first, along x, y, ...; the others leave the
@@ -282,7 +282,7 @@ def _main(bodies: tuple[str, ...], energies: Array) -> Array:
     return np.where(energies[platform] >= 0.5 * np.max(energies, axis=0) - _EQUAL, platform, main)
 
 
-def _chosen(share: Array, frequencies: Array, limit: float, count: int, groups: list[list[int]]) -> tuple[tuple[int, ...], float]:
+def _choose(share: Array, frequencies: Array, limit: float, count: int, groups: list[list[int]]) -> tuple[tuple[int, ...], float]:
     """Indices of the largest shares below the limit that are no rounding, clusters whole; and the largest share left out."""
     groups = [group for group in groups if frequencies[group[0]] < limit and np.mean(share[group]) >= NEGLIGIBLE]
     means = np.array([np.mean(share[group]) for group in groups])
@@ -295,7 +295,7 @@ def _chosen(share: Array, frequencies: Array, limit: float, count: int, groups: 
     return tuple(sorted(chosen)), float(max(left, default=0.0))
 
 
-def _named(bodies: tuple[str, ...], energies: Array, components: Array) -> tuple[tuple[str, ...], tuple[bool, ...]]:
+def _name_modes(bodies: tuple[str, ...], energies: Array, components: Array) -> tuple[tuple[str, ...], tuple[bool, ...]]:
     """Names of modes by the component that carries most of their main body's energy, and whether that motion is in plane."""
     main = _main(bodies, energies)
     parts = components[main, :, np.arange(len(main))]

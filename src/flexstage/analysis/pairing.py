@@ -43,7 +43,7 @@ class Moving:
     model: LinearModel
 
 
-def paired(own: Moving, other: Moving) -> dict[int, Pair]:
+def pair_modes(own: Moving, other: Moving) -> dict[int, Pair]:
     """For each platform mode, by index, the mode of another model with the most similar motion of all bodies, points and gauges.
 
     Modal assurance (Allemang and Brown 1982) in kinetic energy: the outputs that are motions and that both models have, turns times the
@@ -57,7 +57,7 @@ def paired(own: Moving, other: Moving) -> dict[int, Pair]:
     >>> from flexstage.models.lumped import lumped
     >>> model = lumped(double_triangle())
     >>> found = Moving(modes(model), model)
-    >>> pairs = paired(found, found)
+    >>> pairs = pair_modes(found, found)
     >>> all(index == pair.index for index, pair in pairs.items()), round(min(pair.assurance for pair in pairs.values()), 9)
     (True, 1.0)
     """
@@ -70,7 +70,7 @@ def paired(own: Moving, other: Moving) -> dict[int, Pair]:
     found: dict[int, Pair] = {}
     for group in clusters(frequencies[near], _CLOSE):
         members = sorted(partner[index] for index in group if index in partner)
-        shared = _shared(first[:, group], second[:, sorted(_with_close(members, others))])
+        shared = _shared_energy(first[:, group], second[:, sorted(_with_close(members, others))])
         found |= {
             index: Pair(member, float(others[member]), float(share)) for index, member, share in zip(group, members, shared, strict=False)
         }
@@ -82,7 +82,7 @@ def _with_close(members: Iterable[int], frequencies: Array) -> set[int]:
     return {int(index) for member in members for index in np.flatnonzero(np.abs(frequencies / frequencies[member] - 1.0) <= _CLOSE)}
 
 
-def _shared(own: Array, other: Array) -> Array:
+def _shared_energy(own: Array, other: Array) -> Array:
     """How much of the kinetic energy of modes (r, n) one motion within those (r, k) of another model shares.
 
     Mode by mode the energy is 1, what no output sees included; where the models' masses differ, no more than 1 is counted.

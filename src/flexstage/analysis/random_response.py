@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from flexstage.analysis.modes import averaged, repeated
+from flexstage.analysis.modes import average, repeated_groups
 from flexstage.base.finding import Finding, require
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
@@ -166,9 +166,9 @@ def _panels(model: LinearModel, law: Damping, spectra: Mapping[str, Spectrum], b
 
 def _around(natural: Array, ratios: Array) -> Array:
     """Ends of panels around the resonances of one design; modes that repeat are one, at their mean."""
-    groups = repeated(natural**2)
-    width = np.maximum(averaged(ratios, groups), 1e-9)
-    return (averaged(natural, groups)[:, None] * (1.0 + width[:, None] * _OFFSETS)).ravel()
+    groups = repeated_groups(natural**2)
+    width = np.maximum(average(ratios, groups), 1e-9)
+    return (average(natural, groups)[:, None] * (1.0 + width[:, None] * _OFFSETS)).ravel()
 
 
 def quadrature(ends: Array) -> tuple[Array, Array]:

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from flexstage.analysis.modes import averaged, repeated
+from flexstage.analysis.modes import average, repeated_groups
 from flexstage.base.finding import refuse
 from flexstage.base.number import Array, distinct, first_design
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Damping
@@ -40,7 +40,7 @@ def response(
     """
     law = damping_law(model, damping)
     chosen = ports(model, outputs, inputs)
-    grid = default_frequencies(model, damping=law) if frequencies is None else _checked(frequencies)
+    grid = default_frequencies(model, damping=law) if frequencies is None else _check(frequencies)
     return Response(grid, chosen.outputs, chosen.inputs, transfer(model, chosen, grid, law), model.provenance)
 
 
@@ -79,8 +79,8 @@ def default_frequencies(model: LinearModel, band: tuple[float, float] | None = N
     if not natural.size:
         raise refuse("stage", "the model has no mass, so it has no resonances to choose frequencies by", "Pass the frequencies")
     ratios = modal_ratios(model, solved, damping_law(model, damping))
-    groups = repeated(first_design(solved.values, 1))
-    natural, width = averaged(natural, groups), np.maximum(averaged(first_design(ratios, 1), groups), 1e-6)
+    groups = repeated_groups(first_design(solved.values, 1))
+    natural, width = average(natural, groups), np.maximum(average(first_design(ratios, 1), groups), 1e-6)
     low, high = band if band is not None else (natural[0] / 50.0, 2.0 * natural[min(_MODES_SHOWN, len(natural)) - 1])
     around = (natural[:, None] * (1.0 + width[:, None] * np.tan(_ANGLES))).ravel()
     coarse = np.geomspace(low, high, 1 + max(2, round(40.0 * float(np.log10(high / low)))))
@@ -88,7 +88,7 @@ def default_frequencies(model: LinearModel, band: tuple[float, float] | None = N
     return distinct(np.concatenate([coarse, inner[(inner > low) & (inner < high * (1.0 - 1e-9))]]))
 
 
-def _checked(frequencies: Array) -> Array:
+def _check(frequencies: Array) -> Array:
     grid = np.asarray(frequencies, dtype=float)
     if grid.ndim != 1 or not np.all(np.isfinite(grid)) or np.any(grid < 0.0):
         raise refuse("frequencies", f"expected one row of finite, non-negative numbers in Hz, got shape {grid.shape}", "Mend the list")

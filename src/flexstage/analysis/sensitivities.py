@@ -114,7 +114,7 @@ def sensitivities(
     attempt = Attempts()
     actuators = attempt.of("lost_motion", lambda: ideal(mechanism).mapping.rows) or ()
     chunks = list(steppable(mechanism, names))
-    batches = (stepped(mechanism, tuple(names[position] for position in chunk)) for chunk in chunks)
+    batches = (step_parameters(mechanism, tuple(names[position] for position in chunk)) for chunk in chunks)
     pieces = [_piece(batch, len(chunk), (solved, groups), gains=bool(actuators)) for batch, chunk in zip(batches, chunks, strict=True)]
     back = np.argsort([position for chunk in chunks for position in chunk])
     slopes = [np.concatenate([piece[0][number] for piece in pieces])[back] for number in range(len(groups))]
@@ -180,11 +180,11 @@ def steppable(mechanism: Mechanism, names: tuple[str, ...]) -> Iterator[list[int
             yield members[start : start + _CHUNK]
 
 
-def stepped(mechanism: Mechanism, names: tuple[str, ...]) -> Mechanism:
+def step_parameters(mechanism: Mechanism, names: tuple[str, ...]) -> Mechanism:
     """The description with one batch axis: design k has a tiny imaginary step in parameter k.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> stepped(double_triangle(), ("parts.neck.thickness",)).parts["neck"].thickness.real.round(9).tolist()
+    >>> step_parameters(double_triangle(), ("parts.neck.thickness",)).parts["neck"].thickness.real.round(9).tolist()
     [0.00154]
     """
     result = mechanism
@@ -210,16 +210,16 @@ def _piece(batch: Mechanism, count: int, modes: tuple[Eigen, list[list[int]]], *
 def _slopes(model: LinearModel, solved: Eigen, group: list[int], count: int) -> Array:
     shapes = solved.shapes[:, group]
     value = solved.values[group].mean()
-    change = projected(model.stiffness, shapes) - value * projected(model.inertia, shapes)
+    change = project(model.stiffness, shapes) - value * project(model.inertia, shapes)
     return np.linalg.eigvalsh(np.broadcast_to(change, (count, len(group), len(group))))
 
 
-def projected(contributions: Contributions, shapes: Array) -> Array:
+def project(contributions: Contributions, shapes: Array) -> Array:
     """Phi^T dA Phi (p, k, k) of a stepped description's matrix, given as contributions and not formed, for shapes (n, k).
 
     >>> from flexstage.models.linear.model import Contribution
     >>> one = np.ones((1, 1))
-    >>> projected({"a": Contribution(one, one + 3e-20j)}, 2.0 * one).round(9).tolist()
+    >>> project({"a": Contribution(one, one + 3e-20j)}, 2.0 * one).round(9).tolist()
     [[12.0]]
     """
     total = np.zeros((shapes.shape[1], shapes.shape[1]))

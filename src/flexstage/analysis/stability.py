@@ -19,16 +19,16 @@ from flexstage.analysis.workspace.stroke import StrokeLimits
 from flexstage.base.finding import DesignError, Finding
 from flexstage.base.number import Array, stack
 from flexstage.base.quantity import LENGTH, RATIO
-from flexstage.beams.compliance import locked as locked_by
+from flexstage.beams.compliance import locked_freedoms as locked_by
 from flexstage.beams.geometric import ENDS, Geometric, geometric
 from flexstage.beams.mass import mass
-from flexstage.mechanism.drawn import drawn
+from flexstage.mechanism.drawn import with_drawn_parts
 from flexstage.mechanism.expand import Assembly, PlacedLink, expand
 from flexstage.mechanism.mechanism import GROUND, Mechanism
-from flexstage.mechanism.moving_mass import carried
+from flexstage.mechanism.moving_mass import carried_masses
 from flexstage.models.linear.model import LinearModel
 from flexstage.models.linear.static import displacement
-from flexstage.spatial.frame import COMPONENTS, FORCES, seen_at, transport, turned
+from flexstage.spatial.frame import COMPONENTS, FORCES, spatial_rotation, transport, twist_transform
 
 DOUBTFUL = 20.0
 """Load factor below which the loaded stage is told apart from the drawn one: 5 % of the stiffness."""
@@ -179,7 +179,9 @@ class _Pieces:
         return np.concatenate([np.broadcast_to(each, (*batch, *each.shape[-2:])) for each in seen], axis=-2)
 
     def _end(self, body: str, link: PlacedLink) -> Array:
-        return self.twists[body] if body == GROUND else seen_at(link.frame, self.assembly.bodies[body].reference) @ self.twists[body]
+        return (
+            self.twists[body] if body == GROUND else twist_transform(link.frame, self.assembly.bodies[body].reference) @ self.twists[body]
+        )
 
     def softening(self, wrenches: Mapping[str, Array], loads: _Loads) -> Array:
         """K_g (..., n + k, n + k) of the wrenches (..., 6) of all links, and of the loads on bodies."""
@@ -230,7 +232,7 @@ class _Pieces:
 def _shown(mechanism: Mechanism) -> Mechanism:
     """The description with the drawn parts that computed matrices stand for: those have a length."""
     try:
-        return drawn(mechanism)
+        return with_drawn_parts(mechanism)
     except DesignError:
         return mechanism
 
@@ -262,14 +264,14 @@ def _weights(mechanism: Mechanism) -> _Loads:
     assembly, gravity = expand(mechanism), stack(mechanism.gravity)
     loads: dict[str, list[tuple[Array, Array]]] = {name: [] for name in assembly.bodies}
     for name, placed in assembly.bodies.items():
-        loads[name] += [(_force(item.mass[..., None] * gravity), item.centre) for item in carried(mechanism, placed)]
+        loads[name] += [(_force(item.mass[..., None] * gravity), item.centre) for item in carried_masses(mechanism, placed)]
     for link in assembly.links.values():
         back = _transposed(link.frame.rotation)
         fall = (back @ gravity[..., None])[..., 0]
         pulled = mass(link.part, link.material) @ np.concatenate([_force(fall), _force(fall)], axis=-1)[..., None]
         for place, body in enumerate(link.joins):
             if body != GROUND:
-                wrench = (turned(link.frame.rotation) @ pulled[..., 6 * place : 6 * place + 6, :])[..., 0]
+                wrench = (spatial_rotation(link.frame.rotation) @ pulled[..., 6 * place : 6 * place + 6, :])[..., 0]
                 loads[body].append((wrench, link.frame.position))
     for force in mechanism.forces.values():
         if force.body != GROUND:
@@ -298,7 +300,7 @@ def _whole(mechanism: Mechanism, sprung: dict[str, Array], loads: _Loads) -> dic
         carry = np.zeros((*batch, 6 * len(order), 6), dtype=np.result_type(unmet, link.frame.position))
         for body, sign in zip(link.joins, (1.0, -1.0), strict=True):
             if body != GROUND:
-                carry[..., order[body], :] = sign * _transposed(seen_at(link.frame, assembly.bodies[body].reference))
+                carry[..., order[body], :] = sign * _transposed(twist_transform(link.frame, assembly.bodies[body].reference))
         unmet = unmet + (carry @ sprung[name][..., None])[..., 0]
         columns.append(carry[..., locked[name]])
     held = np.concatenate(columns, axis=-1)

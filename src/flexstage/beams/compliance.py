@@ -41,7 +41,7 @@ def compliance(part: Elastic, material: Material | None) -> Array:
     >>> compliance(Rod("steel", length=0.1, diameter=0.002), steel).shape
     (6, 6)
     """
-    whole = _known(part).compliance
+    whole = _law_of(part).compliance
     return _diagonal_matrix(_diagonal(part, material)) if whole is None else whole(part)
 
 
@@ -54,7 +54,7 @@ def stiffness(part: Elastic, material: Material | None) -> Array:
     >>> bool(np.allclose(stiffness(rod, steel) @ compliance(rod, steel), np.eye(6)))
     True
     """
-    whole = _known(part).compliance
+    whole = _law_of(part).compliance
     if whole is not None:
         return np.linalg.inv(whole(part))
     return _diagonal_matrix(1.0 / _diagonal(part, material))
@@ -66,11 +66,11 @@ def law(part: Part, material: Material | None) -> Law:
     A `Joint` has no stiffness and locks what is not free. A `Restricted` part starts from K = C^-1: locked rows and columns are deleted,
     freed ones condensed out, K_ee - K_ef K_ff^-1 K_fe. Ordinary parts lock nothing.
 
-    >>> law(Joint((Freedom.RZ,)), None).locked == others((Freedom.RZ,))
+    >>> law(Joint((Freedom.RZ,)), None).locked_freedoms == others((Freedom.RZ,))
     True
     """
     if isinstance(part, Joint):
-        return Law(np.zeros((6, 6)), locked(part))
+        return Law(np.zeros((6, 6)), locked_freedoms(part))
     if not isinstance(part, Restricted):
         return Law(stiffness(part, material))
     full = stiffness(part.part, material)
@@ -81,10 +81,10 @@ def law(part: Part, material: Material | None) -> Law:
         block = block - mixed @ np.linalg.solve(full[..., freed[:, None], freed], np.swapaxes(mixed, -1, -2))
     result = np.zeros_like(full)
     result[..., kept[:, None], kept] = block
-    return Law(result, locked(part))
+    return Law(result, locked_freedoms(part))
 
 
-def locked(part: Part) -> tuple[Freedom, ...]:
+def locked_freedoms(part: Part) -> tuple[Freedom, ...]:
     """The freedoms that a part locks."""
     if isinstance(part, Joint):
         return others(part.free)
@@ -103,13 +103,13 @@ def beam_of(part: Part, material: Material | None) -> Beam:
     >>> beam_of(Piezo(stroke=1e-4, stiffness=1e7, length=0.1, diameter=0.01), None).section.is_round
     True
     """
-    known = _known(part)
+    known = _law_of(part)
     if known.beam is None:
         raise _unknown(part)
-    return known.beam(part, _required(part, material) if known.needs_material else material)
+    return known.beam(part, _required_material(part, material) if known.needs_material else material)
 
 
-def _known(part: Part) -> PartLaw:
+def _law_of(part: Part) -> PartLaw:
     known = law_of(part)
     if known is None:
         raise _unknown(part)
@@ -124,11 +124,11 @@ def _unknown(part: Part) -> DesignError:
 
 @lru_cache(maxsize=32)
 def _diagonal(part: Elastic, material: Material | None) -> Array:
-    own = _known(part).diagonal
-    return beam_of(part, material).diagonal() if own is None else own(part, _required(part, material))
+    own = _law_of(part).diagonal
+    return beam_of(part, material).diagonal() if own is None else own(part, _required_material(part, material))
 
 
-def _required(part: Part, material: Material | None) -> Material:
+def _required_material(part: Part, material: Material | None) -> Material:
     if material is None:
         where = f"{inner(part).kind} of {material_of(part)}"
         raise refuse(where, "its stiffness was asked for without a material", f"pass the material {material_of(part)}")

@@ -57,11 +57,11 @@ class Slot:
         return self.thickness + 2.0 * self.across
 
     @property
-    def sheared(self) -> Array:
+    def shear_share(self) -> Array:
         """What shear has of the compliance across, by beam theory."""
         return 2.4 * (1.0 + self.poisson) * self.beam[..., 0]
 
-    def strained(self, scale: float, power: float, size: Array) -> Array:
+    def plane_strain(self, scale: float, power: float, size: Array) -> Array:
         """1 - nu^2 where the width prevents contraction over a `size`, 1 where it does not, and in between."""
         return 1.0 - self.poisson**2 / (1.0 + (scale * size / self.width) ** power)
 
@@ -74,7 +74,7 @@ def notch_x(slot: Slot, p: Numbers) -> Array:
     """Tension: what the roots yield, d(t/R) / (E b), and contraction prevented."""
     root, flat = slot.root, slot.flatness
     yielded = (p[0] + p[1] * root + p[2] * root**2) * flat ** p[5] + p[6] * (1.0 - flat)
-    return slot.strained(p[3], p[4], slot.half) * (slot.beam[..., 0] + yielded / slot.width)
+    return slot.plane_strain(p[3], p[4], slot.half) * (slot.beam[..., 0] + yielded / slot.width)
 
 
 def notch_y(slot: Slot, p: Numbers) -> Array:
@@ -85,8 +85,8 @@ def notch_y(slot: Slot, p: Numbers) -> Array:
     yielded = yielded * (1.0 + p[8] * (slot.poisson - 0.3)) / (root**2 * slot.width)
     block = 2.0 / slot.width * (12.0 / height**2 * (slot.half + 0.5 * height) ** 2 + 1.0)
     plate = slot.poisson**2 * p[6] / (1.0 + (p[7] * height / slot.width) ** 2)
-    bent = slot.strained(p[4], p[5], np.sqrt(slot.thickness * slot.radius)) * (slot.beam[..., 1] - slot.sheared)
-    return bent + slot.sheared + yielded - plate * block
+    bent = slot.plane_strain(p[4], p[5], np.sqrt(slot.thickness * slot.radius)) * (slot.beam[..., 1] - slot.shear_share)
+    return bent + slot.shear_share + yielded - plate * block
 
 
 def notch_ry(slot: Slot, p: Numbers) -> Array:
@@ -94,27 +94,27 @@ def notch_ry(slot: Slot, p: Numbers) -> Array:
     root, flat = slot.root, slot.flatness
     yielded = (p[0] + p[1] * root + p[2] * root**2) * flat ** p[7] + p[8] * (1.0 - flat)
     share = 1.0 / (1.0 + p[5] * (slot.along / slot.width) ** p[6])
-    return slot.strained(p[3], p[4], slot.half) * (slot.beam[..., 4] + 12.0 / slot.width**3 * share * yielded)
+    return slot.plane_strain(p[3], p[4], slot.half) * (slot.beam[..., 4] + 12.0 / slot.width**3 * share * yielded)
 
 
 def notch_rz(slot: Slot, p: Numbers) -> Array:
     """Bending: the roots turn, in proportion to t/R at first."""
     neck = np.sqrt(slot.thickness * slot.radius)
-    return slot.strained(p[2], p[3], neck) * (slot.beam[..., 5] + _turned(slot, p) * slot.flatness ** p[4])
+    return slot.plane_strain(p[2], p[3], neck) * (slot.beam[..., 5] + _root_rotation(slot, p) * slot.flatness ** p[4])
 
 
 def fillet_y(slot: Slot, p: Numbers) -> Array:
     """Across a fillet: a plate where it is wide, and roots that turn at their arms."""
-    bent = _plated(slot, shear_factor, p[3], p[4]) * (slot.beam[..., 1] - slot.sheared)
-    return bent + slot.sheared * (1.0 + p[5] * slot.root) + _turned(slot, p) * (slot.half - p[2] * slot.along) ** 2
+    bent = _plate_share(slot, shear_factor, p[3], p[4]) * (slot.beam[..., 1] - slot.shear_share)
+    return bent + slot.shear_share * (1.0 + p[5] * slot.root) + _root_rotation(slot, p) * (slot.half - p[2] * slot.along) ** 2
 
 
 def fillet_rz(slot: Slot, p: Numbers) -> Array:
     """Bending of a fillet: a plate where it is wide, and roots that turn."""
-    return _plated(slot, moment_factor, p[2], p[3]) * (slot.beam[..., 5] + _turned(slot, p))
+    return _plate_share(slot, moment_factor, p[2], p[3]) * (slot.beam[..., 5] + _root_rotation(slot, p))
 
 
-def _turned(slot: Slot, p: Numbers) -> Array:
+def _root_rotation(slot: Slot, p: Numbers) -> Array:
     """What the roots turn: as those of the circular notch with the same throat."""
     circle = np.asarray(wu_zhou_rotation(1.0, slot.width, slot.thickness, slot.radius))
     return circle * (p[0] * slot.root**2 + p[1] * slot.root**3)
@@ -123,15 +123,15 @@ def _turned(slot: Slot, p: Numbers) -> Array:
 def bar_x(slot: Slot, p: Numbers) -> Array:
     """Tension between rigid faces, which hold the contraction across the width and the thickness."""
     wide, thick = _proportions(slot)
-    return slot.beam[..., 0] * (1.0 - slot.poisson**2 * (_held(p[0] * wide) + _held(p[1] * thick)))
+    return slot.beam[..., 0] * (1.0 - slot.poisson**2 * (_saturate(p[0] * wide) + _saturate(p[1] * thick)))
 
 
 def bar_z(slot: Slot, p: Numbers) -> Array:
     """Bending and shear in the plane of the width between rigid faces."""
     wide, thick = _proportions(slot)
-    sheared = slot.sheared / slot.beam[..., 2]
+    sheared = slot.shear_share / slot.beam[..., 2]
     held = slot.poisson**2 * (p[0] * wide + p[1] * thick)
-    return slot.beam[..., 2] * (1.0 - (1.0 - sheared) * held - sheared * (p[2] * _held(p[3] * wide) + p[4] * slot.poisson))
+    return slot.beam[..., 2] * (1.0 - (1.0 - sheared) * held - sheared * (p[2] * _saturate(p[3] * wide) + p[4] * slot.poisson))
 
 
 def bar_ry(slot: Slot, p: Numbers) -> Array:
@@ -142,15 +142,15 @@ def bar_ry(slot: Slot, p: Numbers) -> Array:
 
 def bar_y(slot: Slot, p: Numbers) -> Array:
     """Across a bar that beam theory has without plate action."""
-    return slot.beam[..., 1] * (_plated(slot, shear_factor, 1.0, p[0]) - slot.poisson**2 * p[1] * _proportions(slot)[1])
+    return slot.beam[..., 1] * (_plate_share(slot, shear_factor, 1.0, p[0]) - slot.poisson**2 * p[1] * _proportions(slot)[1])
 
 
 def bar_rz(slot: Slot, p: Numbers) -> Array:
     """Bending of a bar that beam theory has without plate action."""
-    return slot.beam[..., 5] * _plated(slot, moment_factor, 1.0, p[0])
+    return slot.beam[..., 5] * _plate_share(slot, moment_factor, 1.0, p[0])
 
 
-def _plated(slot: Slot, factor: Callable[[Number, Number], Number], scale: float, power: float) -> Array:
+def _plate_share(slot: Slot, factor: Callable[[Number, Number], Number], scale: float, power: float) -> Array:
     """What a plate has of a beam's compliance, less where the width is no more than some thicknesses."""
     wide = scale * _proportions(slot)[0]
     stiffer = np.asarray(factor(1.0 / wide, slot.poisson))
@@ -178,18 +178,18 @@ def _proportions(slot: Slot) -> tuple[Array, Array]:
     return slot.width / (2.0 * slot.half), slot.thickness / (2.0 * slot.half)
 
 
-def _held(share: Array) -> Array:
+def _saturate(share: Array) -> Array:
     """A share that grows evenly and ends at one."""
     return share / (1.0 + share**3) ** (1.0 / 3.0)
 
 
-def rounded(slot: Slot, p: Numbers, index: int) -> Array:
+def toroidal(slot: Slot, p: Numbers, index: int) -> Array:
     """Compliance of a toroidal neck: larger by exp(t/R (p0 + p1 (t/R)^1/2 + p2 (nu - 0.3)))."""
     return slot.beam[..., index] * np.exp(slot.root**2 * (p[0] + p[1] * slot.root + p[2] * (slot.poisson - 0.3)))
 
 
 def _toroid(index: int) -> Law:
-    return lambda slot, p: rounded(slot, p, index)
+    return lambda slot, p: toroidal(slot, p, index)
 
 
 LAWS: Mapping[str, Mapping[str, tuple[Law, Numbers]]] = MappingProxyType(

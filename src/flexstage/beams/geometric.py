@@ -70,9 +70,9 @@ def _of_beam(beam: Beam, inner: tuple[int, int, int]) -> Geometric:
     1/2 int N (theta_y^2 + theta_z^2 + r^2 theta_x'^2) - theta_x (Q . theta) - m . (theta x theta') dx, r the polar radius of the section.
     """
     position, weight, turn, bend, stiffness = _shapes(beam, inner)
-    outer, mixed, moved = _summed(weight, turn, turn), _summed(weight, turn, bend), _summed(weight * position, turn, bend)
+    outer, mixed, moved = _sum(weight, turn, turn), _sum(weight, turn, bend), _sum(weight * position, turn, bend)
     polar = _both(np.broadcast_to(beam.section.polar / beam.section.area, beam.flexibility.shape[:-1]))
-    wagner = _summed(weight * polar, bend[..., :1, :], bend[..., :1, :])[..., 0, 0, :, :]
+    wagner = _sum(weight * polar, bend[..., :1, :], bend[..., :1, :])[..., 0, 0, :, :]
     moments = [-np.einsum("jk,...jkab->...ab", _CROSS[axis], mixed) for axis in range(3)]
     along_y, along_z = (-np.einsum("jk,...jkab->...ab", _CROSS[axis], moved) for axis in (1, 2))
     rows = np.broadcast_arrays(
@@ -84,7 +84,7 @@ def _of_beam(beam: Beam, inner: tuple[int, int, int]) -> Geometric:
     return Geometric(_symmetric(np.stack(rows, axis=-3)), stiffness, position[..., -1])
 
 
-def _summed(weight: Array, first: Array, second: Array) -> Array:
+def _sum(weight: Array, first: Array, second: Array) -> Array:
     """Sum over the stations of weights (..., s) times products of shapes (..., s, i, a) and (..., s, j, b): (..., i, j, a, b)."""
     weighed = weight[..., None, None] * first
     wide, across = (each.reshape(*each.shape[:-2], -1) for each in (weighed, second))
@@ -115,14 +115,17 @@ def _shapes(beam: Beam, inner: tuple[int, int, int]) -> tuple[Array, Array, Arra
         flexible = beam.flexibility[..., 3 + axis]
         lever = points.whole(flexible * half**2)[..., None]
         _step(
-            turn, bend, (axis, across), sign * _turned(beam, flexible * half, odd=True) / lever, sign * _both(flexible) * position / lever
+            turn, bend, (axis, across), sign * _integral(beam, flexible * half, odd=True) / lever, sign * _both(flexible) * position / lever
         )
     column = ENDS
     for axis, count in enumerate(inner):
         flexible = beam.flexibility[..., 3 + axis]
         for degree, shape, size in _inner(beam, flexible, range(1 if axis == 0 else 2, count + (1 if axis == 0 else 2))):
             odd = degree % 2 == 1
-            turn[..., axis, column], bend[..., axis, column] = _turned(beam, flexible * shape, odd=odd), _signed(flexible * shape, odd=odd)
+            turn[..., axis, column], bend[..., axis, column] = (
+                _integral(beam, flexible * shape, odd=odd),
+                _mirror(flexible * shape, odd=odd),
+            )
             stiffness.append(size)
             column += 1
     return position, weight, turn, bend, np.stack(np.broadcast_arrays(*stiffness), axis=-1)
@@ -144,13 +147,13 @@ def _inner(beam: Beam, flexible: Array, degrees: range) -> Iterator[tuple[int, A
             yield degree, shape, points.whole(flexible * shape * shape)
 
 
-def _turned(beam: Beam, rate: Array, *, odd: bool) -> Array:
+def _integral(beam: Beam, rate: Array, *, odd: bool) -> Array:
     """Integral from the first end, at -x and x, of a rate that is even or odd and whose whole integral is zero."""
     running = beam.points.running(rate)
     return _both(running - running[..., -1:]) if odd else np.concatenate([-running, running], axis=-1)
 
 
-def _signed(half: Array, *, odd: bool) -> Array:
+def _mirror(half: Array, *, odd: bool) -> Array:
     return np.concatenate([-half if odd else half, half], axis=-1)
 
 

@@ -27,12 +27,12 @@ def neck_beam(part: Neck, material: Material) -> Beam:
     if part.width is None:
         points = stations(part.profile, part.thickness)
         factor = np.asarray(cowper_circle(material.poisson))[..., None]
-        return beam(points, circle(_grown(part.thickness, points.growth), factor), material)
+        return beam(points, circle(_grow(part.thickness, points.growth), factor), material)
     points = stations(part.profile, np.minimum(part.thickness, part.width))
-    return beam(points, rectangle(_grown(part.thickness, points.growth), _grown(part.width, points.growth)), material)
+    return beam(points, rectangle(_grow(part.thickness, points.growth), _grow(part.width, points.growth)), material)
 
 
-def _grown(size: Number, growth: Array) -> Array:
+def _grow(size: Number, growth: Array) -> Array:
     return np.asarray(size)[..., None] + 2.0 * growth
 
 

@@ -59,7 +59,7 @@ def stations(profile: Profile, thinnest: Number) -> Stations:
         return _arc(profile.along, profile.across, thinnest)
     if isinstance(profile, Straight):
         return _straight(0.5 * profile.length)
-    return _filleted(profile, thinnest)
+    return _fillet_stations(profile, thinnest)
 
 
 def _straight(half: Number) -> Stations:
@@ -80,15 +80,15 @@ def _arc(along: Number, across: Number, thinnest: Number) -> Stations:
     return Stations(along * np.sin(angle), rate, growth * np.ones_like(rate), _rule(1))
 
 
-def _filleted(profile: Filleted, thinnest: Number) -> Stations:
+def _fillet_stations(profile: Filleted, thinnest: Number) -> Stations:
     straight = _straight(0.5 * profile.length - profile.radius)
     fillet = _arc(profile.radius, profile.radius, thinnest)
     start = np.asarray(0.5 * profile.length - profile.radius)[..., None]
-    position = _joined(straight.position, start + fillet.position)
-    return Stations(position, _joined(straight.rate, fillet.rate), _joined(straight.growth, fillet.growth), _rule(2))
+    position = _join(straight.position, start + fillet.position)
+    return Stations(position, _join(straight.rate, fillet.rate), _join(straight.growth, fillet.growth), _rule(2))
 
 
-def _joined(first: Array, second: Array) -> Array:
+def _join(first: Array, second: Array) -> Array:
     batch = np.broadcast_shapes(first.shape[:-1], second.shape[:-1])
     return np.concatenate([np.broadcast_to(item, (*batch, item.shape[-1])) for item in (first, second)], axis=-1)
 

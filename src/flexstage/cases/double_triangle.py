@@ -92,7 +92,7 @@ STEEL = Material(
 )
 
 
-def _cased(outer: float, inner: float) -> float:
+def _casing_rigidity(outer: float, inner: float) -> float:
     """Bending rigidity of a steel casing tube [N m^2]."""
     return round(200e9 * math.pi / 64.0 * (outer**4 - inner**4), 1)
 
@@ -109,7 +109,7 @@ def _horizontal_stack(length: float) -> Piezo:
         length=length,
         diameter=10 * mm,
         mass=_stack_mass(10 * mm, 18 * mm, 16 * mm, length),
-        bending_rigidity=_cased(18 * mm, 16 * mm),
+        bending_rigidity=_casing_rigidity(18 * mm, 16 * mm),
         maximum_load=5000.0,
         tensile_limit=500.0,
         resonance=5 * kHz,
@@ -130,7 +130,7 @@ def _vertical_stack(length: float) -> Piezo:
         length=length,
         diameter=16 * mm,
         mass=_stack_mass(16 * mm, 25 * mm, 22 * mm, length),
-        bending_rigidity=_cased(25 * mm, 22 * mm),
+        bending_rigidity=_casing_rigidity(25 * mm, 22 * mm),
         maximum_load=15000.0,
         tensile_limit=1500.0,
         resonance=4 * kHz,

@@ -19,7 +19,7 @@ from flexstage.base.unit import parse, show
 from flexstage.mechanism.checks.value import number_findings
 from flexstage.mechanism.grammar import node_of
 from flexstage.mechanism.node import ChoiceNode, NumberNode, WholeNode
-from flexstage.mechanism.path import complete, replaced
+from flexstage.mechanism.path import complete, replace_member
 
 Stated: TypeAlias = str | float | Array
 """A parameter as a user gives it: a text with its unit, or a number or an array of numbers in SI."""
@@ -114,7 +114,7 @@ def with_parameters(of: Any, stated: Mapping[str, Stated], where: str = "paramet
             wanted = _value(found, value, f"{where}.{name}")
             if isinstance(found.node, NumberNode):
                 require(number_findings(f"{where}.{name}", wanted, found.node))
-            result = replaced(result, tuple(found.name.split(".")), wanted)
+            result = replace_member(result, tuple(found.name.split(".")), wanted)
         except DesignError as error:
             findings += error.findings
     require(findings)

@@ -19,7 +19,7 @@ from flexstage.cases.tip_tilt import TipTilt, tip_tilt
 from flexstage.cases.xy_stage import XYStage, xy_stage
 from flexstage.mechanism.address import get
 from flexstage.mechanism.mechanism import Mechanism
-from flexstage.mechanism.store import tidied
+from flexstage.mechanism.store import round_to_digits
 
 
 @dataclass(frozen=True)
@@ -82,13 +82,13 @@ def case(name: str, parameters: Mapping[str, Stated] | None = None) -> Mechanism
     >>> case("hexapod", {"slope": "50 deg", "neck.thickness": np.array([2.5e-3, 3e-3])}).parts["neck"].thickness.tolist()
     [0.0025, 0.003]
     """
-    return tidied(shipped(name).build(parameters))
+    return round_to_digits(shipped_case(name).build(parameters))
 
 
-def shipped(name: str) -> Case:
+def shipped_case(name: str) -> Case:
     """The shipped case of that name. Raises `DesignError` with the nearest name where there is none.
 
-    >>> shipped("hexapod").summary
+    >>> shipped_case("hexapod").summary
     'six axes: six flexure struts in three pairs'
     """
     if name not in CASES:
@@ -106,7 +106,7 @@ class Variant:
     @property
     def parameters(self) -> Any:
         """The dataclass of all its parameters."""
-        return with_parameters(shipped(self.case).parameters, dict(self.stated))
+        return with_parameters(shipped_case(self.case).parameters, dict(self.stated))
 
     def value(self, name: str) -> Any:
         """What it has for a parameter [SI].
@@ -116,10 +116,10 @@ class Variant:
         """
         return parameter(self.parameters, name).value
 
-    def drawn(self, values: Mapping[str, Number]) -> Mechanism:
+    def mechanism_at(self, values: Mapping[str, Number]) -> Mechanism:
         """The description at other `values` of some parameters [SI], numbers or arrays: to the last bit, and without tags.
 
-        >>> Variant("hexapod").drawn({"neck.profile.radius": 0.005}).parts["neck"].profile
+        >>> Variant("hexapod").mechanism_at({"neck.profile.radius": 0.005}).parts["neck"].profile
         Circular(radius=0.005)
         """
-        return replace(shipped(self.case).draw(with_parameters(self.parameters, values)), tags=Table({}))
+        return replace(shipped_case(self.case).draw(with_parameters(self.parameters, values)), tags=Table({}))

@@ -68,7 +68,7 @@ def xy_stage(parameters: XYStage | None = None) -> Mechanism:
         materials={"aluminium": ALUMINIUM, "steel": STEEL},
         parts={"coupling": p.coupling, "guide": p.guide, "neck": p.neck, "stack": p.stack},
         bodies={"platform": _platform(p)},
-        units={"pushed": _pushed(p), "following": _following(p)},
+        units={"pushed": _pushed_unit(p), "following": _following(p)},
         place=placed,
         sensors={"probe": GAUGE},
         gauges={"S1-S2": Probe("probe", "platform", Polar(0.5 * p.edge, 0.0, Facing.OUTWARD, step=90 * deg), Positive.OPENS)},
@@ -109,7 +109,7 @@ def _following(p: XYStage) -> Unit:
     return Unit(bodies={"carriage": Body(solids={"block": block})}, links=links)
 
 
-def _pushed(p: XYStage) -> Unit:
+def _pushed_unit(p: XYStage) -> Unit:
     """The same with a strut that pushes on the outer face of the carriage."""
     carriage = _following(p)
     head = (_middle(p) - 0.5 * (p.carriage[0] + hinge_length(p.neck.profile)), 0.0, 0.0)

@@ -11,7 +11,7 @@ import scipy
 
 from flexstage.analysis.complete import platform_modes, read
 from flexstage.analysis.modes import Modes, clusters
-from flexstage.analysis.pairing import RELIABLE, Moving, Pair, gyration, paired
+from flexstage.analysis.pairing import RELIABLE, Moving, Pair, gyration, pair_modes
 from flexstage.analysis.solid_modes import FeaModes
 from flexstage.base.finding import Finding, nearest, require
 from flexstage.base.number import Array, first_design
@@ -367,7 +367,7 @@ def _further(
 
 
 def _with_fea(rows: tuple[ComparedMode, ...], theory: Modes, fea: FeaModes, model: LinearModel) -> tuple[ComparedMode, ...]:
-    pairs = paired(Moving(theory, model), Moving(fea.modes, fea.model))
+    pairs = pair_modes(Moving(theory, model), Moving(fea.modes, fea.model))
     return tuple(
         row
         if (pair := pairs.get(theory.platform[row.number - 1])) is None

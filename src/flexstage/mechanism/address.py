@@ -21,12 +21,12 @@ from typing import Any
 from flexstage.base.finding import DesignError, refuse
 from flexstage.base.number import Table, freeze
 from flexstage.base.quantity import Quantity
-from flexstage.mechanism.expand import departed
+from flexstage.mechanism.expand import apply_changes
 from flexstage.mechanism.grammar import node_of
 from flexstage.mechanism.locate import Place, canonical, locate
 from flexstage.mechanism.mechanism import Link, Mechanism
 from flexstage.mechanism.misalignment import misalignment_of
-from flexstage.mechanism.path import member, replaced
+from flexstage.mechanism.path import member, replace_member
 from flexstage.parts.part import Part
 
 ASSUMED = "assumed"
@@ -45,7 +45,7 @@ def get(mechanism: Mechanism, address: str) -> Any:
     if place.misaligned:
         value = misalignment_of(mechanism.changes, place.owners[0])
     elif place.owners:
-        link, part = _departed(mechanism, place)
+        link, part = _link_and_part(mechanism, place)
         value = link if place.in_link else part
     for name in place.path:
         value = member(value, name)
@@ -66,7 +66,7 @@ def set_value(mechanism: Mechanism, address: str, value: Any) -> Mechanism:
     fitting = place.node.fit(freeze(value), address)
     changed = mechanism
     for path in _with_mirror(place.path):
-        changed = _written(changed, replace(place, path=path), fitting)
+        changed = _write(changed, replace(place, path=path), fitting)
     tags = {key: tag for key, tag in mechanism.tags.items() if canonical(mechanism, key) != place.address}
     return changed if len(tags) == len(mechanism.tags) else replace(changed, tags=Table(tags))
 
@@ -150,15 +150,15 @@ def provenance(mechanism: Mechanism) -> Mapping[str, str]:
     return Table({address: _tag(tags, address) for address in addresses(mechanism)})
 
 
-def _departed(mechanism: Mechanism, place: Place) -> tuple[Link, Part]:
-    link = _drawn(mechanism, place.owners)
+def _link_and_part(mechanism: Mechanism, place: Place) -> tuple[Link, Part]:
+    link = _link_of(mechanism, place.owners)
     try:
-        return departed(mechanism, link, place.owners)
+        return apply_changes(mechanism, link, place.owners)
     except KeyError as error:
         raise refuse(f"change of {place.owners[-1]}", f"there is no {error}", "Check the description") from None
 
 
-def _drawn(mechanism: Mechanism, owners: tuple[str, ...]) -> Link:
+def _link_of(mechanism: Mechanism, owners: tuple[str, ...]) -> Link:
     owner, slash, name = owners[0].partition("/")
     return mechanism.units[owner].links[name] if slash else mechanism.links[owner]
 
@@ -170,21 +170,21 @@ def _with_mirror(path: tuple[str, ...]) -> tuple[tuple[str, ...], ...]:
     return (path,)
 
 
-def _written(mechanism: Mechanism, place: Place, value: Any) -> Mechanism:
+def _write(mechanism: Mechanism, place: Place, value: Any) -> Mechanism:
     if not place.owners:
-        return replaced(mechanism, place.path, value)
+        return replace_member(mechanism, place.path, value)
     changes = dict(mechanism.changes)
-    for key, path in _made(mechanism, place.owners[-1]):
+    for key, path in _departures(mechanism, place.owners[-1]):
         depth = len(path)
         if place.path[:depth] == path:
-            changes[key] = replaced(changes[key], place.path[depth:], value)
+            changes[key] = replace_member(changes[key], place.path[depth:], value)
             return replace(mechanism, changes=Table(changes))
         if path[: len(place.path)] == place.path:
             del changes[key]
     return replace(mechanism, changes=Table(changes | {place.address: value}))
 
 
-def _made(mechanism: Mechanism, owner: str) -> Iterator[tuple[str, tuple[str, ...]]]:
+def _departures(mechanism: Mechanism, owner: str) -> Iterator[tuple[str, tuple[str, ...]]]:
     """The departures made of that owner: key and full path."""
     for key in mechanism.changes:
         if not f"links.{key}".startswith((f"{owner}.", f"links.{owner}.")):
@@ -201,12 +201,12 @@ def _canonical_tags(mechanism: Mechanism) -> dict[str, str]:
 def _origin(mechanism: Mechanism, place: Place) -> str:
     """The address that a value comes from: the departure that is made, or the shared part or drawn link."""
     for owner in reversed(place.owners):
-        for _, path in _made(mechanism, owner):
+        for _, path in _departures(mechanism, owner):
             if path == place.path[: len(path)] or path[: len(place.path)] == place.path:
                 return replace(place, owners=(owner,)).address
     if not place.owners or place.misaligned:
         return place.address
-    link = _drawn(mechanism, place.owners)
+    link = _link_of(mechanism, place.owners)
     if not place.in_link:
         return ".".join(("parts", link.part, *place.path))
     owner, slash, name = place.owners[0].partition("/")

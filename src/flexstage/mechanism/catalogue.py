@@ -41,10 +41,10 @@ class Catalogue:
 
 
 @functools.cache
-def shipped() -> Catalogue:
+def shipped_catalogue() -> Catalogue:
     """The catalogue that comes with the package.
 
-    >>> "SUS420" in shipped().section(Material).entries
+    >>> "SUS420" in shipped_catalogue().section(Material).entries
     True
     """
     text = resources.files("flexstage.mechanism").joinpath("catalogue.toml").read_text(encoding="utf-8")

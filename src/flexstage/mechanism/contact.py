@@ -16,7 +16,7 @@ from flexstage.base.finding import Finding
 from flexstage.base.number import Array, first_design
 from flexstage.base.quantity import LENGTH
 from flexstage.base.unit import show
-from flexstage.mechanism.drawn import drawn
+from flexstage.mechanism.drawn import with_drawn_parts
 from flexstage.mechanism.expand import Assembly, expand
 from flexstage.mechanism.mechanism import GROUND, Mechanism
 from flexstage.mechanism.near import near_pairs
@@ -56,7 +56,7 @@ class _Thing:
     def pieces(self) -> tuple[Convex, ...]:
         return tuple(piece.within(self.frame) for piece in pieces(self.form))
 
-    def trimmed(self, margin: float) -> tuple[Convex, ...]:
+    def trim(self, margin: float) -> tuple[Convex, ...]:
         return tuple(piece.within(self.frame) for piece in pieces(self.form, margin))
 
     @property
@@ -81,7 +81,7 @@ def contact_findings(mechanism: Mechanism) -> tuple[Finding, ...]:
     >>> contact_findings(parallelogram())
     ()
     """
-    shown = drawn(mechanism)
+    shown = with_drawn_parts(mechanism)
     assembly = expand(shown)
     things = _things(assembly)
     solids = _by_body(things.values())
@@ -167,11 +167,11 @@ class _Meeting:
 def _joint_findings(assembly: Assembly, things: Mapping[str, _Thing], solids: Mapping[str, list[_Thing]]) -> Iterator[Finding]:
     for name, link in assembly.links.items():
         if name in things:
-            ends = [(side, body, _met(things[name], body, solids)) for side, body in zip((-1.0, 1.0), link.joins, strict=True)]
+            ends = [(side, body, _obstacles(things[name], body, solids)) for side, body in zip((-1.0, 1.0), link.joins, strict=True)]
             yield from _link_findings(things[name], [end for end in ends if end[2]])
 
 
-def _met(link: _Thing, body: str, solids: Mapping[str, list[_Thing]]) -> list[_Thing]:
+def _obstacles(link: _Thing, body: str, solids: Mapping[str, list[_Thing]]) -> list[_Thing]:
     """The outlines of a body that a link may meet: of the ground those drawn with it; none where one is imported."""
     own = [each for each in solids.get(body, []) if body != GROUND or _group(each.name) == _group(link.name)]
     return [] if any(isinstance(each.form, Imported) for each in own) else own
@@ -212,14 +212,14 @@ def _end_face(link: _Thing) -> tuple[Array, Array]:
         shares = np.array([0.0, 0.36, 0.28, 0.2, 0.12, 0.04])
         angles = 2.0 * np.pi * (np.arange(16) + 0.5) / 16
         points = np.array([(0.0, y * r * np.cos(a), y * r * np.sin(a)) for r, a in product(radii, angles)])
-        return points, _rimmed(np.repeat(shares / 16.0, 16))
+        return points, _widen(np.repeat(shares / 16.0, 16))
     stations = np.array([-0.9995, 0.9995, *(np.arange(10) - 4.5) / 5.0])
     shares = np.array([0.0, 0.0, *[0.1] * 10])
     points = np.array([(0.0, y * u, z * v) for u, v in product(stations, stations)])
-    return points, _rimmed(np.array([a * b for a, b in product(shares, shares)]))
+    return points, _widen(np.array([a * b for a, b in product(shares, shares)]))
 
 
-def _rimmed(weights: Array) -> Array:
+def _widen(weights: Array) -> Array:
     """Points on the rim count for a little more than what may lie beside a body."""
     rim = weights == 0.0
     return np.where(rim, 1.5 * _SHARE, weights * (1.0 - 1.5 * _SHARE * np.count_nonzero(rim)))
@@ -287,7 +287,7 @@ def _side_findings(link: _Thing, body: str, met: Sequence[_Thing]) -> Iterator[F
     size = first_design(np.real(link.outline.size), 1) - np.array([2.0 * margin, 0.0, 0.0])
     short = Outline(link.name, link.frame, size, is_round=link.outline.is_round)
     near = [met[other - 1] for one, other in near_pairs([short, *(each.outline for each in met)], 0.0) if one == 0]
-    deep = max((_overlap(link.trimmed(margin), each.pieces)[0] for each in near), default=0.0)
+    deep = max((_overlap(link.trim(margin), each.pieces)[0] for each in near), default=0.0)
     if deep > TOUCHING:
         what = f"it meets {body} beside its end face too, {_text(deep)} deep"
         yield Finding(link.name, what, f"Trim the outline of {body} beside the link")

@@ -11,13 +11,13 @@ from flexstage.parts.given import Given, Origin
 from flexstage.parts.part import Restricted, material_of
 
 
-def drawn(mechanism: Mechanism) -> Mechanism:
+def with_drawn_parts(mechanism: Mechanism) -> Mechanism:
     """The stage with every given part that stands for a drawn one replaced by it.
 
     Raises `DesignError` where the part it stands for is not there.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> drawn(double_triangle()) == double_triangle()
+    >>> with_drawn_parts(double_triangle()) == double_triangle()
     True
     """
     stand_ins = {name: part.stands_for for name, part in mechanism.parts.items() if isinstance(part, Given) and part.stands_for}
@@ -48,11 +48,11 @@ def as_drawn(mechanism: Mechanism, link: PlacedLink) -> PlacedLink:
     return replace(link, part=kept, material=mechanism.materials[material] if material else None)
 
 
-def calibrated(mechanism: Mechanism) -> tuple[str, ...]:
+def calibrated_parts(mechanism: Mechanism) -> tuple[str, ...]:
     """Names of the parts whose 6x6 is of FEA origin: theory that uses them is not independent of FEA.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> calibrated(double_triangle())
+    >>> calibrated_parts(double_triangle())
     ()
     """
     return tuple(name for name, part in mechanism.parts.items() if isinstance(part, Given) and part.origin is Origin.FEA)

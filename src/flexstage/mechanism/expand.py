@@ -13,12 +13,12 @@ import numpy as np
 from flexstage.base.finding import Finding, nearest, require
 from flexstage.base.number import Array, Number, Table, stack
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Link, Mechanism, Probe
-from flexstage.mechanism.misalignment import MISALIGNED, misaligned
-from flexstage.mechanism.path import complete, replaced
+from flexstage.mechanism.misalignment import MISALIGNED, misalign
+from flexstage.mechanism.path import complete, replace_member
 from flexstage.mechanism.pattern import Facing, Pattern, Polar
 from flexstage.parts.body import Body, Solid, owner_of, solid_frame
 from flexstage.parts.gauge import DisplacementGauge, Positive
-from flexstage.parts.mass import MassProperties, combined, drawn_solids, mass_properties, united, within
+from flexstage.parts.mass import MassProperties, combine, drawn_solids, mass_properties, union_properties, within
 from flexstage.parts.material import Material
 from flexstage.parts.part import Part, is_actuator, material_of
 from flexstage.spatial.frame import Frame, axes, identity, turn_z
@@ -143,7 +143,7 @@ def expand(mechanism: Mechanism) -> Assembly:
     >>> len(expand(double_triangle()).links)
     27
     """
-    return _expanded(_Same(mechanism))
+    return _assembly(_Same(mechanism))
 
 
 class _Same:
@@ -160,7 +160,7 @@ class _Same:
 
 
 @lru_cache(maxsize=2)
-def _expanded(key: _Same) -> Assembly:
+def _assembly(key: _Same) -> Assembly:
     """The assembly, kept for the next model or analysis of the same description: each of them asks for it."""
     mechanism = key.mechanism
     require(_unknown_names(mechanism))
@@ -216,7 +216,7 @@ def copies(mechanism: Mechanism) -> Iterator[tuple[str, str, Frame]]:
         names = copy_names(key)
         frames = copy_frames(placement.pattern, len(names))
         for name, frame in zip(names, frames, strict=True):
-            yield name, placement.unit, misaligned(frame, mechanism.changes, name)
+            yield name, placement.unit, misalign(frame, mechanism.changes, name)
 
 
 @dataclass(frozen=True, eq=False)
@@ -303,20 +303,20 @@ def _link_frame(link: Link) -> Frame:
 
 def _placed_link(mechanism: Mechanism, drawn: _DrawnLink, outer: Frame, names: tuple[str, tuple[str, str]]) -> PlacedLink:
     name, joins = names
-    link, part = departed(mechanism, drawn.link, (drawn.address, name))
+    link, part = apply_changes(mechanism, drawn.link, (drawn.address, name))
     material = material_of(part)
     frame = drawn.frame if link is drawn.link else _link_frame(link)
     return PlacedLink(name, drawn.address, joins, link, part, mechanism.materials[material] if material else None, frame.within(outer))
 
 
-def departed(mechanism: Mechanism, link: Link, owners: tuple[str, ...]) -> tuple[Link, Part]:
+def apply_changes(mechanism: Mechanism, link: Link, owners: tuple[str, ...]) -> tuple[Link, Part]:
     """A link and its part with the mechanism's `changes` for the owners' addresses applied, in the owners' order.
 
     >>> from dataclasses import replace
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> stage = replace(double_triangle(), changes={"horizontal/front.thickness": 1.4e-3})
     >>> link = stage.units["horizontal"].links["front"]
-    >>> departed(stage, link, ("horizontal/front", "B1/front"))[1].thickness
+    >>> apply_changes(stage, link, ("horizontal/front", "B1/front"))[1].thickness
     0.0014
     """
     part = mechanism.parts[link.part]
@@ -328,9 +328,9 @@ def departed(mechanism: Mechanism, link: Link, owners: tuple[str, ...]) -> tuple
             if path[0] in MISALIGNED:  # of a gauge that has a link's name
                 continue
             if path[0] in _LINK_FIELDS:
-                link = replaced(link, complete(link, path), value)
+                link = replace_member(link, complete(link, path), value)
             else:
-                part = replaced(part, complete(part, path), value)
+                part = replace_member(part, complete(part, path), value)
     return link, part
 
 
@@ -362,8 +362,8 @@ def _mass(drawn: tuple[_DrawnBody, ...], materials: Mapping[str, Material]) -> M
             [solid for item in weighed for solid in drawn_solids(item.body, materials, item.name, frame(item))]
             for frame in (lambda item: item.frame, lambda item: item.aligned)
         )
-        masses.append(united(actual, meant))
-    return combined(masses) if len(masses) > 1 else masses[0] if masses else None
+        masses.append(union_properties(actual, meant))
+    return combine(masses) if len(masses) > 1 else masses[0] if masses else None
 
 
 def _actuators(links: Mapping[str, PlacedLink]) -> dict[str, str]:
@@ -378,7 +378,7 @@ def _gauges(mechanism: Mechanism) -> Iterator[tuple[str, PlacedGauge]]:
         names = copy_names(key)
         frames = copy_frames(probe.pattern, len(names))
         for name, frame in zip(names, frames, strict=True):
-            yield name, _placed_gauge(mechanism, probe, name, misaligned(frame, mechanism.changes, name))
+            yield name, _placed_gauge(mechanism, probe, name, misalign(frame, mechanism.changes, name))
 
 
 def _placed_gauge(mechanism: Mechanism, probe: Probe, name: str, frame: Frame) -> PlacedGauge:

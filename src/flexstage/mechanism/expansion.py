@@ -64,15 +64,15 @@ def expansion(mechanism: Mechanism, ground: str | None = None) -> Expansion:
     floor = ground_of(mechanism, ground)
     if floor.material is not None:
         choices[GROUND] = (floor.material, floor.source)
-    require([*_unknown(mechanism, choices), *_unstated(mechanism, assembly, choices)])
-    bodies = {name: _stated(mechanism, material) for name, (material, _) in choices.items()}
+    require([*_unknown(mechanism, choices), *_unstated_findings(mechanism, assembly, choices)])
+    bodies = {name: _stated_expansion(mechanism, material) for name, (material, _) in choices.items()}
     drawn = {name: as_drawn(mechanism, link) for name, link in assembly.links.items()}
     parts = {name: (coefficient(link), span(link.part)) for name, link in drawn.items() if _grows(link)}
     taken = {name: f"{material}, {source}" for name, (material, source) in choices.items()}
     return Expansion({GROUND: 0.0, **bodies}, parts, {GROUND: f"does not grow, {floor.source}", **taken}, floor)
 
 
-def _stated(mechanism: Mechanism, material: str) -> Number:
+def _stated_expansion(mechanism: Mechanism, material: str) -> Number:
     value = mechanism.materials[material].expansion
     return np.nan if value is None else value
 
@@ -165,7 +165,7 @@ def _unknown(mechanism: Mechanism, choices: Mapping[str, tuple[str, str]]) -> li
     return found
 
 
-def _unstated(mechanism: Mechanism, assembly: Assembly, choices: Mapping[str, tuple[str, str]]) -> list[Finding]:
+def _unstated_findings(mechanism: Mechanism, assembly: Assembly, choices: Mapping[str, tuple[str, str]]) -> list[Finding]:
     used = {material for material, _ in choices.values()}
     used |= {name for name in (material_of(as_drawn(mechanism, link).part) for link in assembly.links.values()) if name is not None}
     missing = [

@@ -133,7 +133,7 @@ class TableNode(Node):
         """A table of the values."""
         if not _is_table(raw, where, reader):
             return BAD
-        items = {name: reader.read(self.item, part, join(where, name)) for name, part in _untagged(raw, where, reader).items()}
+        items = {name: reader.read(self.item, part, join(where, name)) for name, part in _strip_tags(raw, where, reader).items()}
         return BAD if BAD in items.values() else Table(items)
 
     def write(self, value: Any, where: str, writer: Writer) -> dict[str, Any]:
@@ -202,7 +202,7 @@ class RecordNode(Node):
         if not _is_table(raw, where, reader):
             return BAD
         known_like = self._like_is_known(raw, where, reader)
-        raw = _untagged(self._expanded(raw, reader) if known_like else _without_like(raw), where, reader)
+        raw = _strip_tags(self._expand(raw, reader) if known_like else _without_like(raw), where, reader)
         values: dict[str, Any] = {}
         used: set[str] = set()
         for name, slot in self.fields.items():
@@ -233,7 +233,7 @@ class RecordNode(Node):
             reader.refuse(join(where, LIKE), f"the catalogue has no {kind(name)}", nearest(kind(name), section.entries))
         return known
 
-    def _expanded(self, raw: dict[str, Any], reader: Reader) -> dict[str, Any]:
+    def _expand(self, raw: dict[str, Any], reader: Reader) -> dict[str, Any]:
         """The table with what its `like` brings along, overridden by what stands in it."""
         section = reader.catalogue.section(self.record)
         if section is None or LIKE not in raw:
@@ -248,9 +248,9 @@ class RecordNode(Node):
 
     def write(self, value: Any, where: str, writer: Writer) -> dict[str, Any]:
         """A table of the fields that are not at their defaults."""
-        return dict(self._written(value, where, writer))
+        return dict(self._entries(value, where, writer))
 
-    def _written(self, record: Any, where: str, writer: Writer) -> Iterator[tuple[str, Any]]:
+    def _entries(self, record: Any, where: str, writer: Writer) -> Iterator[tuple[str, Any]]:
         for name, slot in self.fields.items():
             value = getattr(record, name)
             default = name not in _ALWAYS and not slot.required and digest(value) == digest(slot.default)
@@ -420,7 +420,7 @@ def _is_table(raw: Any, where: str, reader: Reader) -> bool:
     return fits
 
 
-def _untagged(raw: dict[str, Any], where: str, reader: Reader) -> dict[str, Any]:
+def _strip_tags(raw: dict[str, Any], where: str, reader: Reader) -> dict[str, Any]:
     """The table without its tags, which are noted by address."""
     if not reader.tagged:
         return raw
@@ -488,28 +488,28 @@ def _without_none(hint: Any) -> tuple[Any, bool]:
 def _node(hint: Any) -> Node:
     origin = typing.get_origin(hint)
     if origin is Annotated:
-        return _annotated(hint)
+        return _annotated_node(hint)
     if hint is DisplacementGauge:
         kinds = {name: RecordNode(option) for name, option in GAUGES.all.items()}
         return UnionNode(_KIND, tuple(kinds.items()), Gauge.kind)
     if hint is Elastic or origin in (types.UnionType, typing.Union):
         options = [each for option in typing.get_args(hint) or (hint,) for each in (PARTS.all.values() if option is Elastic else [option])]
-        told = [_told_by(option) for option in options]
+        told = [_discriminator(option) for option in options]
         return UnionNode(told[0][0], tuple((name, RecordNode(option)) for (_, name), option in zip(told, options, strict=True)))
     if origin is tuple:
         return _tuple(typing.get_args(hint))
     if isinstance(origin, type) and issubclass(origin, Mapping):
         return TableNode(_node(typing.get_args(hint)[1]))
-    return _named(hint)
+    return _named_node(hint)
 
 
-def _told_by(option: type) -> tuple[str | None, str]:
+def _discriminator(option: type) -> tuple[str | None, str]:
     """The key that tells an alternative apart, and its name there; parts say their kind."""
     told = _ALTERNATIVES.get(option) or getattr(option, TOLD_BY, None)
     return told or (_KIND, option.kind)  # type: ignore[attr-defined]
 
 
-def _named(hint: type) -> TextNode | WholeNode | FlagNode | ChoiceNode | RecordNode:
+def _named_node(hint: type) -> TextNode | WholeNode | FlagNode | ChoiceNode | RecordNode:
     if hint is bool:
         return FlagNode()
     if hint in (str, int):
@@ -517,7 +517,7 @@ def _named(hint: type) -> TextNode | WholeNode | FlagNode | ChoiceNode | RecordN
     return ChoiceNode(hint) if issubclass(hint, Enum) else RecordNode(hint)
 
 
-def _annotated(hint: Any) -> Node:
+def _annotated_node(hint: Any) -> Node:
     inner, *extras = typing.get_args(hint)
     node = next((extra for extra in extras if isinstance(extra, Node)), None)
     if node is not None:
@@ -540,4 +540,4 @@ def _tuple(items: tuple[Any, ...]) -> VectorNode | ListNode:
     numbers = tuple(node for node in nodes if isinstance(node, NumberNode))
     if numbers:
         return ListNode(numbers[0], None) if Ellipsis in items else VectorNode(numbers)
-    return ListNode(_named(items[0]), None if Ellipsis in items else len(items))
+    return ListNode(_named_node(items[0]), None if Ellipsis in items else len(items))

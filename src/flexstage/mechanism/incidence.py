@@ -11,7 +11,7 @@ from flexstage.base.memory import require_memory
 from flexstage.base.number import Array
 from flexstage.mechanism.expand import Assembly, PlacedLink
 from flexstage.mechanism.mechanism import GROUND, PLATFORM
-from flexstage.spatial.frame import COMPONENTS, Frame, seen_at, transport
+from flexstage.spatial.frame import COMPONENTS, Frame, transport, twist_transform
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,7 +83,7 @@ def twist_at(assembly: Assembly, order: Layout, body: str, frame: Frame) -> Arra
     """
     if body == GROUND:
         return np.zeros((6, order.size))
-    carry = seen_at(frame, assembly.bodies[body].reference)
+    carry = twist_transform(frame, assembly.bodies[body].reference)
     result = np.zeros((*carry.shape[:-2], 6, order.size), dtype=carry.dtype)
     result[..., order.columns(body)] = carry
     return result

@@ -119,7 +119,7 @@ def _descend(value: Any, address: str, start: Place, steps: tuple[str, ...]) -> 
     for number, step in enumerate(steps):
         if isinstance(value, Link) and not has_member(value, step):
             return _in_link(mechanism, address, path, _owners(path), steps[number:])
-        for name in _completed(value, address, node, step):
+        for name in _complete(value, address, node, step):
             node, value = node.child(value, name), member(value, name)
             path += (name,)
     return replace(start, path=path, node=node)
@@ -130,7 +130,7 @@ def _owners(tree: tuple[str, ...]) -> tuple[str, ...]:
     return (tree[1], f"links.{tree[1]}") if tree[0] == "links" else (f"{tree[1]}/{tree[3]}",)
 
 
-def _completed(value: Any, address: str, node: Node, step: str) -> tuple[str, ...]:
+def _complete(value: Any, address: str, node: Node, step: str) -> tuple[str, ...]:
     if isinstance(value, tuple):
         return (_component(value, address, node, step),)
     step = node.field_called(value, step)

@@ -11,7 +11,7 @@ import numpy as np
 from flexstage.base.digest import Description
 from flexstage.base.number import Vector, stack
 from flexstage.base.quantity import ANGLE, LENGTH
-from flexstage.mechanism.path import replaced
+from flexstage.mechanism.path import replace_member
 from flexstage.spatial.frame import Frame
 from flexstage.spatial.rotation import exponential
 
@@ -42,15 +42,15 @@ def misalignment_of(changes: Mapping[str, Any], copy: str) -> Misalignment:
         name, _, rest = address.partition(".")
         path = tuple(rest.split("."))
         if name == copy and path[0] in MISALIGNED:
-            result = replaced(result, path, value)
+            result = replace_member(result, path, value)
     return result
 
 
-def misaligned(frame: Frame, changes: Mapping[str, Any], copy: str) -> Frame:
+def misalign(frame: Frame, changes: Mapping[str, Any], copy: str) -> Frame:
     """The frame of a copy as departures leave it: shifted along its own axes, turned about its own origin.
 
     >>> at = Frame(np.eye(3), np.zeros(3))
-    >>> misaligned(at, {"B2.rotation.z": 0.5 * np.pi}, "B2").direction(np.array([1.0, 0.0, 0.0])).round(12).tolist()
+    >>> misalign(at, {"B2.rotation.z": 0.5 * np.pi}, "B2").direction(np.array([1.0, 0.0, 0.0])).round(12).tolist()
     [0.0, 1.0, 0.0]
     """
     if not any(address.partition(".")[0] == copy for address in changes):

@@ -11,13 +11,13 @@ from flexstage.parts.mass import MassProperties, tensor
 from flexstage.spatial.frame import rigid_inertia
 
 
-def carried(mechanism: Mechanism, placed: PlacedBody) -> tuple[MassProperties, ...]:
+def carried_masses(mechanism: Mechanism, placed: PlacedBody) -> tuple[MassProperties, ...]:
     """Mass properties of the body itself, where it has mass, and of each payload it carries, in the stage's frame.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.mechanism.expand import expand
     >>> stage = double_triangle()
-    >>> len(carried(stage, expand(stage).bodies["platform"]))
+    >>> len(carried_masses(stage, expand(stage).bodies["platform"]))
     1
     """
     loads = [
@@ -37,7 +37,7 @@ def moving_inertia(mechanism: Mechanism, placed: PlacedBody) -> Array | None:
     >>> round(float(moving_inertia(stage, expand(stage).bodies["platform"])[0, 0]), 4)
     13.9965
     """
-    items = carried(mechanism, placed)
+    items = carried_masses(mechanism, placed)
     if not items:
         return None
     return sum((rigid_inertia(item.mass, item.inertia, item.centre, placed.reference) for item in items), np.zeros((6, 6)))

@@ -76,15 +76,15 @@ def complete(value: Any, path: tuple[str, ...]) -> tuple[str, ...]:
     return found[0] + complete(inner, path[1:])
 
 
-def replaced(value: Any, path: tuple[str, ...], new: Any) -> Any:
+def replace_member(value: Any, path: tuple[str, ...], new: Any) -> Any:
     """Return a copy of the value in which the member at the full path is `new`.
 
-    >>> replaced((1.0, 2.0, 3.0), ("y",), 5.0)
+    >>> replace_member((1.0, 2.0, 3.0), ("y",), 5.0)
     (1.0, 5.0, 3.0)
     """
     if not path:
         return new
-    inner = replaced(member(value, path[0]), path[1:], new)
+    inner = replace_member(member(value, path[0]), path[1:], new)
     if isinstance(value, Mapping):
         return Table({**value, path[0]: inner})
     if isinstance(value, tuple):

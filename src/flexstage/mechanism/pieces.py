@@ -59,7 +59,7 @@ def pieces(form: Form, trim: float = 0.0) -> tuple[Convex, ...]:
         return tuple(_tube(single(form.length), single(form.diameter), 0.0 if form.bore is None else single(form.bore)))
     if isinstance(form, Profiled):
         return tuple(_hinge(form, trim))
-    return tuple(_bar(form, trim) if form.is_prismatic else _lofted(form, trim))
+    return tuple(_bar(form, trim) if form.is_prismatic else _loft(form, trim))
 
 
 def _bar(form: Shaped, trim: float) -> Iterator[Convex]:
@@ -72,7 +72,7 @@ def _bar(form: Shaped, trim: float) -> Iterator[Convex]:
     yield cuboid(tuple(-half), tuple(half))
 
 
-def _lofted(form: Shaped, trim: float) -> Iterator[Convex]:
+def _loft(form: Shaped, trim: float) -> Iterator[Convex]:
     """A part of varying section, straight between the stations of its silhouette."""
     stations = form.silhouette
     places = np.array([x for x, _ in stations])

@@ -30,13 +30,13 @@ def restrict(mechanism: Mechanism, kept: Mapping[str, tuple[Freedoms, Freedoms]]
     result = mechanism
     for name, (elastic, free) in kept.items():
         if name in mechanism.parts:
-            result = replace(result, parts={**result.parts, name: _restricted(mechanism.parts[name], elastic, free)})
+            result = replace(result, parts={**result.parts, name: _restrict(mechanism.parts[name], elastic, free)})
         else:
             result = _restrict_link(result, mechanism, name, (elastic, free))
     return result
 
 
-def _restricted(part: Part, elastic: Freedoms, free: Freedoms) -> Part:
+def _restrict(part: Part, elastic: Freedoms, free: Freedoms) -> Part:
     inner = part.part if isinstance(part, Restricted) else part
     return Joint(free) if isinstance(inner, Joint) else Restricted(inner, elastic, free)
 
@@ -47,7 +47,7 @@ def _restrict_link(result: Mechanism, original: Mechanism, address: str, freedom
         raise refuse(address, "neither a part nor a link", f"Parts are {', '.join(original.parts)}")
     drawn = result.units[unit]
     own = f"{drawn.links[link].part} of {address}"
-    part = _restricted(original.parts[original.units[unit].links[link].part], *freedoms)
+    part = _restrict(original.parts[original.units[unit].links[link].part], *freedoms)
     links = {**drawn.links, link: replace(drawn.links[link], part=own)}
     return replace(result, parts={**result.parts, own: part}, units={**result.units, unit: replace(drawn, links=links)})
 

@@ -137,7 +137,7 @@ def forward_kinematics(mechanism: Mechanism, kinematics: Kinematics, strokes: Ar
     150.0
     """
     strokes = np.asarray(strokes)
-    return _solved(mechanism, kinematics, strokes, None)
+    return _solve(mechanism, kinematics, strokes, None)
 
 
 @takes_models
@@ -155,7 +155,7 @@ def inverse_kinematics(mechanism: Mechanism, kinematics: Kinematics, pose: Finit
     """
     wanted = pose.vector[..., [COMPONENTS.index(name) for name in kinematics.coordinates]]
     strokes = np.zeros((*wanted.shape[:-1], len(kinematics.actuators)))
-    return _solved(mechanism, kinematics, strokes, wanted)
+    return _solve(mechanism, kinematics, strokes, wanted)
 
 
 def design_shape(mechanism: Mechanism, kinematics: Kinematics) -> tuple[int, ...]:
@@ -169,10 +169,10 @@ def design_shape(mechanism: Mechanism, kinematics: Kinematics) -> tuple[int, ...
     return _links(mechanism, kinematics, posed=False).shape
 
 
-def _solved(mechanism: Mechanism, kinematics: Kinematics, strokes: Array, wanted: Array | None) -> FiniteMotion:
+def _solve(mechanism: Mechanism, kinematics: Kinematics, strokes: Array, wanted: Array | None) -> FiniteMotion:
     _ = kinematics.mapping  # refuses under-actuated stages
     links = _links(mechanism, kinematics, posed=wanted is not None)
-    state, iterations = _newton(links, _drawn(links, strokes, wanted))
+    state, iterations = _newton(links, _state_at(links, strokes, wanted))
     names = (*links.bodies, GROUND)
     poses = {name: FinitePose(state.shift[..., index, :], logarithm(state.turn[..., index, :, :])) for index, name in enumerate(names)}
     return FiniteMotion(
@@ -194,7 +194,7 @@ def _newton(links: _Links, state: _State) -> tuple[_State, int]:
     before = np.inf
     for iteration in range(1, _STEPS + 1):
         step = -_times(slope, _residual(links, state, relative))
-        state = _moved(links, state, step)
+        state = _move(links, state, step)
         relative = _relative(links, state)
         size = float(np.max(np.abs(step) * _step_weights(links, state), initial=0.0))
         if size < _SETTLED * links.length or 0.5 * before < size < _STALLED * links.length:
@@ -226,7 +226,7 @@ def _links(mechanism: Mechanism, kinematics: Kinematics, *, posed: bool) -> _Lin
         first_arm=_together([_arm(assembly, link, link.joins[0]) for link in placed], 1),
         second_arm=_together([_arm(assembly, link, link.joins[1]) for link in placed], 1),
         axes=_together([link.frame.rotation for link in placed], 2),
-        locked=_locked(placed, kinematics),
+        locked=_locked_rows(placed, kinematics),
         drives=[6 * list(assembly.links).index(name) for name in assembly.actuators.values()],
         beams=beams,
         spans=_together([np.asarray(part.span) for part in slender], 0),
@@ -236,7 +236,7 @@ def _links(mechanism: Mechanism, kinematics: Kinematics, *, posed: bool) -> _Lin
     )
 
 
-def _locked(placed: tuple[PlacedLink, ...], kinematics: Kinematics) -> list[int]:
+def _locked_rows(placed: tuple[PlacedLink, ...], kinematics: Kinematics) -> list[int]:
     return [
         6 * number + freedom.index for number, link in enumerate(placed) for freedom in ALL if freedom not in kinematics.free[link.name]
     ]
@@ -254,7 +254,7 @@ def _together(arrays: list[Array], depth: int) -> Array:
     return np.stack([np.broadcast_to(array, batch + array.shape[array.ndim - depth :]) for array in arrays], axis=-1 - depth)
 
 
-def _drawn(links: _Links, strokes: Array, wanted: Array | None) -> _State:
+def _state_at(links: _Links, strokes: Array, wanted: Array | None) -> _State:
     lead = np.broadcast_shapes(strokes.shape[:-1], links.shape)
     kind = np.result_type(strokes, float if wanted is None else wanted, links.first_arm, links.axes)
     count = len(links.bodies) + 1
@@ -295,17 +295,17 @@ def _shortening(links: _Links, relative: _Relative) -> Array:
     half = 0.5 * links.spans
     turn, vector = relative.rotation[..., links.beams, :, :], relative.vector[..., links.beams, :]
     end = relative.translation[..., links.beams, :] + half[..., None] * turn[..., :, 0]
-    bent = _bent(end[..., 1], vector[..., 2], links.spans) + links.round * _bent(end[..., 2], -vector[..., 1], links.spans)
+    bent = _bend(end[..., 1], vector[..., 2], links.spans) + links.round * _bend(end[..., 2], -vector[..., 1], links.spans)
     return bent + half * (turn[..., 0, 0] - 1.0)
 
 
-def _bent(deflection: Array, slope: Array, span: Array) -> Array:
+def _bend(deflection: Array, slope: Array, span: Array) -> Array:
     return 0.6 * deflection**2 / span - 0.1 * deflection * slope + span * slope**2 / 15.0
 
 
 def _first_slope(links: _Links, state: _State) -> Array:
     """The pseudo-inverse at the drawn position, one for all points."""
-    drawn = _drawn(links, np.zeros(state.strokes.shape[-1]), np.zeros(state.wanted.shape[-1]))
+    drawn = _state_at(links, np.zeros(state.strokes.shape[-1]), np.zeros(state.wanted.shape[-1]))
     return _pseudo_inverse(links, drawn, _relative(links, drawn))
 
 
@@ -359,7 +359,7 @@ def _block(shift: Array, lever: Array, turn: Array) -> Array:
     return result
 
 
-def _moved(links: _Links, state: _State, step: Array) -> _State:
+def _move(links: _Links, state: _State, step: Array) -> _State:
     bodies = len(links.bodies)
     twist = step[..., : 6 * bodies].reshape(*step.shape[:-1], bodies, 6)
     shift, turn = state.shift.copy(), state.turn.copy()

@@ -20,7 +20,7 @@ from flexstage.mechanism.expand import Assembly, PlacedLink, expand
 from flexstage.mechanism.incidence import Layout, deformation, layout, require_room, twist_at
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.models.linear.blockage import Blockage, blockage
-from flexstage.models.linear.elimination import Elimination, echelon, eliminate, null_space, pivoted
+from flexstage.models.linear.elimination import Elimination, echelon, eliminate, null_space, pivoted_qr
 from flexstage.models.linear.kinematics import Idle, Kinematics, Redundant
 from flexstage.parts.freedom import ALL, Freedom
 from flexstage.spatial.frame import COMPONENTS
@@ -79,7 +79,7 @@ def ideal(mechanism: Mechanism) -> Kinematics:
         coordinates=tuple(COMPONENTS[index] for index in freedoms),
         gauges=tuple(graph.assembly.gauges),
         actuation=strokes,
-        sensing=_sensing(graph, _sensed(graph, (solution, columns, rest), bodies)),
+        sensing=_sensing(graph, _sense(graph, (solution, columns, rest), bodies)),
         motion=bodies[..., :6, :],
         body_coordinates=graph.order.coordinates,
         bodies=bodies,
@@ -90,10 +90,10 @@ def ideal(mechanism: Mechanism) -> Kinematics:
         length=graph.length,
         provenance=f"ideal model of {digest(mechanism, physics=True)[:16]}",
     )
-    return replace(found, blocked=_blocked(graph, found.immobile)) if found.immobile else found
+    return replace(found, blocked=_blockages(graph, found.immobile)) if found.immobile else found
 
 
-def _blocked(graph: _Graph, immobile: tuple[str, ...]) -> dict[str, Blockage]:
+def _blockages(graph: _Graph, immobile: tuple[str, ...]) -> dict[str, Blockage]:
     """What blocks each immobile stroke, by the links' addresses in the description."""
     rows = _comparable(graph)
     links = {name: link.drawn.removeprefix("links.") for name, link in graph.assembly.links.items()}
@@ -183,7 +183,7 @@ def _without_idle(graph: _Graph, solution: Elimination, columns: list[int], rest
     return wanted - idle @ np.linalg.solve(transposed @ spun, transposed @ before)
 
 
-def _sensed(graph: _Graph, eliminated: tuple[Elimination, list[int], list[int]], bodies: Array) -> Array:
+def _sense(graph: _Graph, eliminated: tuple[Elimination, list[int], list[int]], bodies: Array) -> Array:
     """The bodies' motions (..., N, f) as gauges see them: idle motions that one sees store the least energy in the links they strain."""
     solution, columns, rest = eliminated
     size = graph.order.size
@@ -198,8 +198,8 @@ def _sensed(graph: _Graph, eliminated: tuple[Elimination, list[int], list[int]],
         strain = graph.strain[..., place, :]
         force = np.swapaxes(stiffness @ (strain @ idle), -1, -2)
         energy, mixed = energy + force @ (strain @ idle), mixed + force @ (strain @ wanted)
-    held, loose = _held(np.real(first_design(energy, 2)))
-    require(_undetermined(graph, [name for name in watching if _sees(rows[name], still @ loose)], still @ loose))
+    held, loose = _split_by_energy(np.real(first_design(energy, 2)))
+    require(_undetermined_findings(graph, [name for name in watching if _sees(rows[name], still @ loose)], still @ loose))
     return wanted - idle[..., held] @ np.linalg.solve(energy[..., held, :][..., held], mixed[..., held, :])
 
 
@@ -221,7 +221,7 @@ def _stiffnesses(graph: _Graph, idle: Array, watching: list[str]) -> Iterator[tu
                 raise refuse(", ".join(watching), what, "State it, or move the gauge to the platform") from error
 
 
-def _held(energy: Array) -> tuple[list[int], Array]:
+def _split_by_energy(energy: Array) -> tuple[list[int], Array]:
     """Idle motions that store energy, as many as tell the rest, and combinations (k, l) that store none."""
     diagonal = np.diag(energy)
     top = np.max(diagonal, initial=0.0)
@@ -229,11 +229,11 @@ def _held(energy: Array) -> tuple[list[int], Array]:
     scaled = energy / root / root[:, None]
     values, vectors = np.linalg.eigh(scaled)
     loose = values < _ENERGYLESS
-    order = pivoted(scaled)[2][: int(np.sum(~loose))]
+    order = pivoted_qr(scaled)[2][: int(np.sum(~loose))]
     return sorted(int(index) for index in order), (vectors / root[:, None])[:, loose]
 
 
-def _undetermined(graph: _Graph, gauges: list[str], motions: Array) -> Iterator[Finding]:
+def _undetermined_findings(graph: _Graph, gauges: list[str], motions: Array) -> Iterator[Finding]:
     """Gauges that see an idle motion which no link resists."""
     moving = np.max(np.abs(_by_link(motions)), axis=(1, 2), initial=0.0) > _NEGLIGIBLE * np.max(np.abs(motions), initial=0.0)
     bodies = ", ".join(itertools.compress(graph.order.bodies, moving))

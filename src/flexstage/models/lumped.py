@@ -29,17 +29,17 @@ from flexstage.models.linear.channels import (
     gauge_rows,
     imposed_strokes,
     input_channels,
-    loaded_places,
     output_channels,
     place_twists,
-    seen_places,
+    twist_places,
+    wrench_places,
 )
-from flexstage.models.linear.elimination import Elimination, eliminate, imposed_motion, pivoted
-from flexstage.models.linear.model import Contribution, LinearModel, assembled, gathered
+from flexstage.models.linear.elimination import Elimination, eliminate, imposed_motion, pivoted_qr
+from flexstage.models.linear.model import Contribution, LinearModel, assemble, strain_forces
 from flexstage.parts.freedom import Freedom
 from flexstage.parts.material import Material
 from flexstage.parts.part import Part, Restricted
-from flexstage.spatial.frame import COMPONENTS, FORCES, seen_at
+from flexstage.spatial.frame import COMPONENTS, FORCES, twist_transform
 
 _SINGULAR = 1e-11
 _ROUNDING = 1e-12
@@ -100,8 +100,8 @@ def lumped(mechanism: Mechanism, masses: Masses = Masses.ALL) -> LinearModel:
     """
     stage = _stage(mechanism)
     inertia = _inertia(mechanism, stage, masses)
-    carried = _carried(stage, inertia)
-    kept = _kept(stage, inertia)
+    carried = _carrier_forces(stage, inertia)
+    kept = _keep(stage, inertia)
     basis = kept.basis
     force, imposed = _inputs(stage, kept.driven)
     output, feedthrough = _outputs(stage, imposed)
@@ -143,7 +143,7 @@ class _Idle:
     def momentless(self, momentum: Array) -> Array:
         """What to add to a motion (..., N, m) of `momentum` M z (..., N, m) to leave none in the idle motions."""
         heavy = self.motions[..., list(self.heavy)]
-        return -(heavy @ np.linalg.solve(*_spread((self.mass, _transposed(heavy) @ momentum))))
+        return -(heavy @ np.linalg.solve(*_broadcast((self.mass, _transpose(heavy) @ momentum))))
 
 
 @dataclass(frozen=True, eq=False)
@@ -223,7 +223,7 @@ def _loss_factor(link: PlacedLink) -> Number:
     return 0.0 if value is None else value
 
 
-def _kept(stage: _Stage, inertia: Mapping[str, Contribution]) -> _Kept:
+def _keep(stage: _Stage, inertia: Mapping[str, Contribution]) -> _Kept:
     """What satisfies the locked freedoms and leaves idle motions without momentum."""
     names = stage.order.coordinates
     scale = np.array([10.0 if name.rpartition(".")[2].startswith("r") else 1.0 for name in names])
@@ -231,17 +231,17 @@ def _kept(stage: _Stage, inertia: Mapping[str, Contribution]) -> _Kept:
     driven: Array | None = None
     independent = tuple(range(stage.order.size))
     if stage.locked:
-        rows = np.concatenate(_spread(tuple(stage.locked.values())), axis=-2)
+        rows = np.concatenate(_broadcast(tuple(stage.locked.values())), axis=-2)
         solution = eliminate(rows, scale, keep=tuple(range(6)))
         basis, independent = solution.basis, solution.independent
-        driven = _driven(stage, solution, rows)
+        driven = _stroke_motion(stage, solution, rows)
     if not independent:
         what = f"every freedom is locked, by {', '.join(stage.freedoms)}: strokes move the platform, and nothing is elastic"
         raise refuse("stage", what, "Give a link stiffness in some freedom; the ideal model tells how strokes move it as it is")
     loose = _loose(stage, basis)
     if loose.shape[1] == 0:
         return _Kept(basis, driven, tuple(names[index] for index in independent), None)
-    named = _named(stage, loose, independent)
+    named = _loose_coordinates(stage, loose, independent)
     left = [index for index in range(len(independent)) if index not in named]
     full = np.eye(stage.order.size) if basis is None else basis
     idle = _idle(stage, inertia, full, (left, named), tuple(names[independent[index]] for index in named))
@@ -251,7 +251,7 @@ def _kept(stage: _Stage, inertia: Mapping[str, Contribution]) -> _Kept:
     return _Kept(kept, driven, tuple(names[independent[index]] for index in left), idle)
 
 
-def _driven(stage: _Stage, solution: Elimination, rows: Array) -> Array | None:
+def _stroke_motion(stage: _Stage, solution: Elimination, rows: Array) -> Array | None:
     """The motion (..., N, inputs) that strokes of locked stacks impose; absent where no stack is locked along its axis."""
     channels = len(input_channels(stage.assembly))
     strokes = {(link, Freedom.X): number for number, link in enumerate(stage.assembly.actuators.values())}
@@ -264,11 +264,11 @@ def _driven(stage: _Stage, solution: Elimination, rows: Array) -> Array | None:
         return None
     motion = imposed_motion(solution, rows, imposed)
     missed = np.abs(np.real(first_design(rows @ motion, 2)) - imposed) > _BLOCKED
-    require(_blocked(stage, locked, missed))
+    require(_blocked_findings(stage, locked, missed))
     return motion
 
 
-def _blocked(stage: _Stage, locked: list[tuple[str, Freedom]], missed: Array) -> Iterator[Finding]:
+def _blocked_findings(stage: _Stage, locked: list[tuple[str, Freedom]], missed: Array) -> Iterator[Finding]:
     """Strokes (columns) that locked freedoms (rows) cannot follow."""
     for number, (name, link) in enumerate(stage.assembly.actuators.items()):
         held = [f"{locked[row][0]}.{locked[row][1].value}" for row in np.flatnonzero(missed[:, number])]
@@ -284,7 +284,7 @@ def _idle(
 ) -> _Idle:
     """The idle motions, each with a unit in one of the `named` coordinates, the `left` ones following: K_ll n_l = -K_ln."""
     left, named = parts
-    stiffness = assembled({name: _through(item, basis) for name, item in stage.strains.items()}, basis.shape[-1])
+    stiffness = assemble({name: _through(item, basis) for name, item in stage.strains.items()}, basis.shape[-1])
     inner = stiffness[..., left, :][..., left]
     root = np.sqrt(np.abs(np.diagonal(np.real(inner), axis1=-2, axis2=-1)))
     root = np.where(root > 0.0, root, 1.0)
@@ -293,7 +293,7 @@ def _idle(
     small[..., left, :] = -solved / root[..., None]
     small[..., named, :] = np.eye(len(named))
     motions = basis @ small
-    mass = _transposed(motions) @ _momentum(inertia, motions)
+    mass = _transpose(motions) @ _momentum(inertia, motions)
     heavy = _heavy(np.real(first_design(mass, 2)), _largest(inertia, np.real(first_design(motions, 2)), stage.order.coordinates))
     return _Idle(motions, names, heavy, mass[..., heavy, :][..., heavy])
 
@@ -318,14 +318,14 @@ def _heavy(mass: Array, largest: Array) -> tuple[int, ...]:
     if not len(some):
         return ()
     root = np.sqrt(np.diag(mass)[some])
-    _, triangle, order = pivoted(mass[np.ix_(some, some)] / root / root[:, None])
+    _, triangle, order = pivoted_qr(mass[np.ix_(some, some)] / root / root[:, None])
     rank = int(np.sum(np.abs(np.diag(triangle)) > _MASSLESS))
     return tuple(sorted(int(some[index]) for index in order[:rank]))
 
 
 def _momentum(inertia: Mapping[str, Contribution], motion: Array) -> Array:
     """M times a motion (..., N, m)."""
-    return gathered(inertia, {name: item.operator @ motion for name, item in inertia.items()}) if inertia else np.zeros_like(motion)
+    return strain_forces(inertia, {name: item.operator @ motion for name, item in inertia.items()}) if inertia else np.zeros_like(motion)
 
 
 def _unsprung(stage: _Stage, output: Array) -> Array:
@@ -334,7 +334,7 @@ def _unsprung(stage: _Stage, output: Array) -> Array:
     return np.concatenate([output[..., : output.shape[-2] - forces, :], np.zeros((*output.shape[:-2], forces, output.shape[-1]))], axis=-2)
 
 
-def _spread(arrays: tuple[Array, ...]) -> list[Array]:
+def _broadcast(arrays: tuple[Array, ...]) -> list[Array]:
     batch = np.broadcast_shapes(*(array.shape[:-2] for array in arrays))
     return [np.broadcast_to(array, (*batch, *array.shape[-2:])) for array in arrays] if batch else list(arrays)
 
@@ -346,7 +346,7 @@ def _loose(stage: _Stage, basis: Array | None) -> Array:
         name: Contribution(_without_rounding(np.real(first_design(item.operator, 2)), first), np.real(first_design(item.law, 2)))
         for name, item in stage.strains.items()
     }
-    stiffness = assembled(strains, stage.order.size if first is None else first.shape[1])
+    stiffness = assemble(strains, stage.order.size if first is None else first.shape[1])
     diagonal = np.sqrt(np.where(np.diag(stiffness) > 0.0, np.diag(stiffness), 1.0))
     scaled = stiffness / diagonal / diagonal[:, None]
     try:
@@ -370,7 +370,7 @@ def _without_rounding(operator: Array, basis: Array | None) -> Array:
     return np.where(np.abs(product) > _ROUNDING * largest, product, 0.0)
 
 
-def _named(stage: _Stage, loose: Array, independent: tuple[int, ...]) -> list[int]:
+def _loose_coordinates(stage: _Stage, loose: Array, independent: tuple[int, ...]) -> list[int]:
     """Coordinates that tell the loose motions apart; a loose motion that moves the platform makes the stage a mechanism."""
     platform = [position for position, index in enumerate(independent) if index < 6]
     moved = np.max(np.abs(loose), axis=0, initial=0.0)
@@ -381,7 +381,7 @@ def _named(stage: _Stage, loose: Array, independent: tuple[int, ...]) -> list[in
             f"{', '.join(_moving(stage, loose, independent))}",
             "Add a link that holds this motion, or check which freedoms the links leave free",
         )
-    order = pivoted((loose / moved).T)[2]
+    order = pivoted_qr((loose / moved).T)[2]
     return sorted(int(index) for index in order[: loose.shape[1]])
 
 
@@ -396,7 +396,7 @@ def _through(item: Contribution, basis: Array | None) -> Contribution:
 
 
 def _project(force: Array, basis: Array | None) -> Array:
-    return force if basis is None else _transposed(basis) @ force
+    return force if basis is None else _transpose(basis) @ force
 
 
 def _inertia(mechanism: Mechanism, stage: _Stage, masses: Masses) -> dict[str, Contribution]:
@@ -411,7 +411,7 @@ def _inertia(mechanism: Mechanism, stage: _Stage, masses: Masses) -> dict[str, C
         own = _by_part(mass, stage.assembly)
         require(_endless(stage.assembly, own, "inertia"))
         for name, matrix in own.items():
-            result[_of_link(name)] = Contribution(np.concatenate(_spread(stage.ends[name]), axis=-2), matrix)
+            result[_of_link(name)] = Contribution(np.concatenate(_broadcast(stage.ends[name]), axis=-2), matrix)
     return result
 
 
@@ -419,19 +419,19 @@ def _of_link(name: str) -> str:
     return f"{name} (link)"
 
 
-def _carried(stage: _Stage, inertia: Mapping[str, Contribution]) -> Array:
+def _carrier_forces(stage: _Stage, inertia: Mapping[str, Contribution]) -> Array:
     """Inertial forces (..., n, 6) on the coordinates when everything, the ground included, is accelerated rigidly."""
     centre = stage.assembly.bodies[PLATFORM].reference
     seen = {name: stage.rigid[..., stage.order.columns(name), :] for name in stage.order.bodies}
     for name, link in stage.assembly.links.items():
-        carry = seen_at(link.frame, centre)
+        carry = twist_transform(link.frame, centre)
         seen[_of_link(name)] = np.concatenate([carry, carry], axis=-2)
-    return gathered(inertia, seen) if inertia else np.zeros((stage.order.size, 6))
+    return strain_forces(inertia, seen) if inertia else np.zeros((stage.order.size, 6))
 
 
 def _idle_inertia(stage: _Stage, inertia: Mapping[str, Contribution], idle: _Idle, carried: Array) -> Array:
     """What accelerating the ground exerts on the idle motions (..., k, 6), without what is only rounding."""
-    exerted = _transposed(idle.motions) @ carried
+    exerted = _transpose(idle.motions) @ carried
     names = stage.order.coordinates
     spin, rigid = (_largest(inertia, np.real(first_design(motions, 2)), names) for motions in (idle.motions, stage.rigid))
     most = spin[:, None] * rigid
@@ -441,8 +441,8 @@ def _idle_inertia(stage: _Stage, inertia: Mapping[str, Contribution], idle: _Idl
 def _inputs(stage: _Stage, driven: Array | None) -> tuple[Array, dict[str, Array]]:
     """Direct forces, and what the inputs impose on links: strokes of sprung stacks, less what a motion imposed elsewhere takes up."""
     drives = stage.assembly.actuators
-    wrenches = [_transposed(rows) for rows in place_twists(loaded_places(stage.assembly), stage.motions)]
-    columns = _spread((np.zeros((stage.order.size, len(drives))), *wrenches))
+    wrenches = [_transpose(rows) for rows in place_twists(wrench_places(stage.assembly), stage.motions)]
+    columns = _broadcast((np.zeros((stage.order.size, len(drives))), *wrenches))
     imposed = imposed_strokes(stage.assembly, dict.fromkeys(drives.values(), _STRETCHED))
     if driven is not None:
         imposed = {name: imposed.get(name, 0.0) - item.operator @ driven for name, item in stage.strains.items()}
@@ -450,13 +450,13 @@ def _inputs(stage: _Stage, driven: Array | None) -> tuple[Array, dict[str, Array
 
 
 def _outputs(stage: _Stage, imposed: Mapping[str, Array]) -> tuple[Array, Array]:
-    rows = [*place_twists(seen_places(stage.assembly), stage.motions), *gauge_rows(stage.assembly, stage.motions)]
+    rows = [*place_twists(twist_places(stage.assembly), stage.motions), *gauge_rows(stage.assembly, stage.motions)]
     inputs = len(input_channels(stage.assembly))
     passed = [np.zeros((row.shape[-2], inputs)) for row in rows]
     for name, item in stage.strains.items():
         rows.append(item.law @ item.operator)
         passed.append(-item.law @ imposed[name] if name in imposed else np.zeros((6, inputs)))
-    return np.concatenate(_spread(tuple(rows)), axis=-2), np.concatenate(_spread(tuple(passed)), axis=-2)
+    return np.concatenate(_broadcast(tuple(rows)), axis=-2), np.concatenate(_broadcast(tuple(passed)), axis=-2)
 
 
 def _rigid_coordinates(stage: _Stage, coordinates: tuple[str, ...]) -> Array:
@@ -470,5 +470,5 @@ def _rigid_output(stage: _Stage, output: Array, carried: Array, idle: _Idle | No
     return carried_along if idle is None else carried_along + output @ idle.momentless(carried)
 
 
-def _transposed(matrix: Array) -> Array:
+def _transpose(matrix: Array) -> Array:
     return np.swapaxes(matrix, -1, -2)

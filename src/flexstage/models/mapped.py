@@ -106,7 +106,7 @@ def _model(mechanism: Mechanism, kinematics: Kinematics, springs: Mapping[str, N
         force=np.concatenate([np.zeros((*batch, freedoms, count)), transposed], axis=-1),
         imposed={name: np.eye(count + 6)[index : index + 1] for index, name in enumerate(kinematics.actuators)},
         outputs=tuple(channels),
-        output=np.concatenate(_spread(outputs, sensing), axis=-2),
+        output=np.concatenate(_broadcast(outputs, sensing), axis=-2),
         feedthrough=np.zeros((len(channels), count + 6)),
         rigid=kinematics.projection,
         rigid_output=np.concatenate([np.eye(6), np.zeros((len(kinematics.gauges), 6))]),
@@ -117,7 +117,7 @@ def _model(mechanism: Mechanism, kinematics: Kinematics, springs: Mapping[str, N
     )
 
 
-def _spread(*arrays: Array) -> list[Array]:
+def _broadcast(*arrays: Array) -> list[Array]:
     batch = np.broadcast_shapes(*(array.shape[:-2] for array in arrays))
     return [np.broadcast_to(array, (*batch, *array.shape[-2:])) for array in arrays]
 

@@ -47,7 +47,7 @@ def mass_properties(body: Body, materials: Mapping[str, Material], name: str = "
 @lru_cache(maxsize=32)
 def _drawn_mass(body: Body, materials: tuple[tuple[str, Material], ...], name: str) -> MassProperties:
     """The mass of what is drawn, kept: many descriptions that differ in their links have the same bodies."""
-    return united(drawn_solids(body, dict(materials), name, identity()))
+    return union_properties(drawn_solids(body, dict(materials), name, identity()))
 
 
 def drawn_solids(body: Body, materials: Mapping[str, Material], name: str, frame: Frame) -> list[Drawn]:
@@ -61,17 +61,17 @@ def drawn_solids(body: Body, materials: Mapping[str, Material], name: str, frame
     return [Drawn(f"{prefix}{key}", solid, materials[solid.material].density, frame) for key, solid in body.solids.items()]
 
 
-def united(solids: Sequence[Drawn], meant: Sequence[Drawn] | None = None) -> MassProperties:
+def union_properties(solids: Sequence[Drawn], meant: Sequence[Drawn] | None = None) -> MassProperties:
     """Mass properties of the union of solids, in the frame that theirs stand in.
 
     What they have in common is that of the solids as they are `meant` to stand, where that is told.
 
     >>> half = Block("steel", size=(1.0, 1.0, 1.0))
-    >>> float(united([Drawn("a", half, 2.0, identity()), Drawn("b", half, 2.0, identity())]).mass)
+    >>> float(union_properties([Drawn("a", half, 2.0, identity()), Drawn("b", half, 2.0, identity())]).mass)
     2.0
     """
     own = [within(solid_properties(each.solid, each.density), each.frame) for each in solids]
-    return combined([*own, *(_of_moments(density, moments) for density, moments in common_moments(meant or solids))])
+    return combine([*own, *(_of_moments(density, moments) for density, moments in common_moments(meant or solids))])
 
 
 def _of_moments(density: Number, moments: Moments) -> MassProperties:
@@ -84,12 +84,12 @@ def _of_moments(density: Number, moments: Moments) -> MassProperties:
     return MassProperties(weight * moments.volume, centre, weight[..., None, None] * spread)
 
 
-def combined(items: list[MassProperties]) -> MassProperties:
+def combine(items: list[MassProperties]) -> MassProperties:
     """Mass properties of several bodies moving as one.
 
     >>> point = MassProperties(np.array(1.0), np.array([1.0, 0, 0]), np.zeros((3, 3)))
     >>> other = MassProperties(np.array(1.0), np.array([-1.0, 0, 0]), np.zeros((3, 3)))
-    >>> combined([point, other]).inertia.diagonal().tolist()
+    >>> combine([point, other]).inertia.diagonal().tolist()
     [0.0, 2.0, 2.0]
     """
     mass = sum((item.mass for item in items), np.asarray(0.0))

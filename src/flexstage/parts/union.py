@@ -117,10 +117,10 @@ def common_moments(solids: Sequence[Drawn]) -> Iterator[tuple[Number, Moments]]:
         try:
             found = _product(cells[pair[0]], cells[pair[1]], where, scale)
         except _InexactError as crossing:
-            problems += _refused(seen, pair, crossing.volume)
+            problems += _refusals(seen, pair, crossing.volume)
             continue
         if found and _differ(seen, pair):
-            problems += _mixed(seen, pair, sum(float(np.max(region.sign * np.real(region.moments.volume))) for region in found))
+            problems += _mixtures(seen, pair, sum(float(np.max(region.sign * np.real(region.moments.volume))) for region in found))
         elif found:
             groups.append((pair, found))
     require(problems)
@@ -145,7 +145,7 @@ def _alternating(
                     try:
                         wider = _product([(region.sign, region.cell) for region in found], cells[other], where, scale)
                     except _InexactError as crossing:
-                        require(_refused(seen, (*group, other), crossing.volume))
+                        require(_refusals(seen, (*group, other), crossing.volume))
                         continue
                     larger += [((*group, other), wider)] if wider else []
             told += 1
@@ -247,14 +247,14 @@ def _differ(seen: Sequence[Drawn], pair: tuple[int, int]) -> bool:
     return bool(np.any(np.real(np.asarray(seen[pair[0]].density) - seen[pair[1]].density)))
 
 
-def _refused(seen: Sequence[Drawn], numbers: tuple[int, ...], volume: float) -> Iterator[Finding]:
+def _refusals(seen: Sequence[Drawn], numbers: tuple[int, ...], volume: float) -> Iterator[Finding]:
     first, *others = (seen[number] for number in numbers)
     names = " and ".join(other.name for other in others)
     what = f"it overlaps {names} by {_volume(volume)}, which would weigh twice: a round face crosses another face there"
     yield Finding(first.name, what, "Cut one of them so that they only touch, draw one within the other, or state the body's mass")
 
 
-def _mixed(seen: Sequence[Drawn], pair: tuple[int, int], volume: float) -> Iterator[Finding]:
+def _mixtures(seen: Sequence[Drawn], pair: tuple[int, int], volume: float) -> Iterator[Finding]:
     first, second = (seen[number] for number in pair)
     there = f"{second.name} of {second.solid.material} by {_volume(volume)}"
     what = f"it is of {first.solid.material} and overlaps {there}: which of them fills it is not known"
@@ -342,10 +342,10 @@ def _fan(arms: Array, middle: Array) -> _Values:
     volume = np.sum(sixfold, axis=1) / 6.0
     first = np.einsum("bn,bnx->bx", sixfold, total) / 24.0
     second = (np.einsum("bn,bnvx,bnvy->bxy", sixfold, arms, arms) + np.einsum("bn,bnx,bny->bxy", sixfold, total, total)) / 120.0
-    return _shifted((volume, first, second), middle)
+    return _shift((volume, first, second), middle)
 
 
-def _shifted(values: _Values, by: Array) -> _Values:
+def _shift(values: _Values, by: Array) -> _Values:
     volume, first, second = values
     cross = first[..., :, None] * by[..., None, :]
     moved = second + cross + np.swapaxes(cross, -1, -2) + volume[..., None, None] * by[..., :, None] * by[..., None, :]
@@ -403,7 +403,7 @@ def _round_moments(cell: _Cell, scale: float) -> _Values:
     flat = np.concatenate([np.zeros(1), first * size])
     turn = frame.rotation
     own = (np.asarray(area * size), turn @ flat, turn @ moments @ turn.T)
-    return _shifted(own, frame.position + middle * turn[:, 0])
+    return _shift(own, frame.position + middle * turn[:, 0])
 
 
 def _prism(cell: _Cell, within: float) -> tuple[Frame, tuple[Array, Array], _Values] | None:
@@ -445,7 +445,7 @@ _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(24)
 
 def _section(circles: Sequence[_Circle], lines: Sequence[_Line], within: float) -> _Values | None:
     """Moments of the region within all circles (centre, radius) and lines (normal, offset): by Green, along what is left of each."""
-    circles, lines = _needed(circles, lines, within)
+    circles, lines = _distinct_edges(circles, lines, within)
     sides = [
         *(_along_line(number, circles, lines) for number in range(len(lines))),
         *(piece for number in range(len(circles)) for piece in _along_circle(number, circles, lines)),
@@ -459,7 +459,7 @@ def _section(circles: Sequence[_Circle], lines: Sequence[_Line], within: float) 
     return np.asarray(area), first, second
 
 
-def _needed(circles: Sequence[_Circle], lines: Sequence[_Line], within: float) -> tuple[list[_Circle], list[_Line]]:
+def _distinct_edges(circles: Sequence[_Circle], lines: Sequence[_Line], within: float) -> tuple[list[_Circle], list[_Line]]:
     """The circles and lines that differ from those before them."""
     rounds: list[_Circle] = []
     for centre, radius in circles:
@@ -515,13 +515,13 @@ def _along_circle(number: int, circles: Sequence[_Circle], lines: Sequence[_Line
             limits.append((np.array([1.0, 0.0]), np.asarray(2.0 if np.real(radius) <= np.real(size) else -2.0)))
         else:
             limits.append((arm / apart, (size**2 - apart**2 - radius**2) / (2.0 * radius * apart)))
-    for low, high in _allowed(limits):
+    for low, high in _intervals(limits):
         angles = 0.5 * (low + high) + 0.5 * (high - low) * _NODES
         outward = np.column_stack([np.cos(angles), np.sin(angles)])
         yield centre + radius * outward, (radius**2 + radius * (outward @ centre)) * 0.5 * (high - low) * _WEIGHTS
 
 
-def _allowed(limits: Sequence[tuple[Array, Array]]) -> Iterator[tuple[Array, Array]]:
+def _intervals(limits: Sequence[tuple[Array, Array]]) -> Iterator[tuple[Array, Array]]:
     """Intervals of the angle where e(angle) . direction <= limit holds for all limits."""
     cut = [(direction, limit) for direction, limit in limits if np.real(limit) < 1.0]
     if any(np.real(limit) <= -1.0 for _, limit in cut):

@@ -9,7 +9,7 @@ from typing import Any
 
 from flexstage.base.finding import nearest, refuse
 from flexstage.cases.parameters import parameters
-from flexstage.cases.registry import CASES, shipped
+from flexstage.cases.registry import CASES, shipped_case
 from flexstage.mechanism.catalogue import Catalogue, Section
 from flexstage.mechanism.grammar import TAGS
 from flexstage.parts.gauge import Gauge
@@ -37,7 +37,7 @@ def parameter_table(name: str) -> Table:
     >>> parameter_table("parallelogram").texts()[-2]
     ['spacing', 'length', '50 mm']
     """
-    own = shipped(name).parameters
+    own = shipped_case(name).parameters
     rows = [(Cell(each.name, Mark.STRONG), each.kind, each.text) for each in parameters(own).values()]
     meaning = " ".join((inspect.getdoc(type(own)) or "").partition("\n\n")[2].replace("`", "").split())
     notes = [meaning, f"flexstage new stage.toml --case {name} --parameter NAME=VALUE"]
@@ -57,8 +57,8 @@ def catalogue_tables(catalogue: Catalogue) -> tuple[Table, ...]:
 def section_named(catalogue: Catalogue, name: str) -> Catalogue:
     """The catalogue with one section only: `materials`, `stacks` or `gauges`. Raises `DesignError` for another name.
 
-    >>> from flexstage.mechanism.catalogue import shipped
-    >>> [section.record.__name__ for section in section_named(shipped(), "gauges").sections]
+    >>> from flexstage.mechanism.catalogue import shipped_catalogue
+    >>> [section.record.__name__ for section in section_named(shipped_catalogue(), "gauges").sections]
     ['Gauge']
     """
     if name not in _SECTIONS.values():

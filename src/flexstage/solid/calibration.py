@@ -12,14 +12,14 @@ from flexstage.base.number import Array, stack
 from flexstage.beams.compliance import compliance
 from flexstage.beams.mass import mass
 from flexstage.mechanism.checks.orientation import is_round
-from flexstage.mechanism.drawn import calibrated
+from flexstage.mechanism.drawn import calibrated_parts
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import Link, Mechanism
 from flexstage.mechanism.store import loads
-from flexstage.mechanism.store.stand_in import KEPT, StandIn, stood_in
+from flexstage.mechanism.store.stand_in import KEPT, StandIn, write_stand_ins
 from flexstage.parts.given import Given, Origin
 from flexstage.solid.hinges import STANDARD_HINGES, Hinges, SolidHinge, solid_hinges
-from flexstage.spatial.frame import COMPONENTS, mirror, turned
+from flexstage.spatial.frame import COMPONENTS, mirror, spatial_rotation
 
 TAG = "derived FEA"
 _DIGITS = 7
@@ -55,7 +55,7 @@ def calibrate(text: str, compute: Hinges = STANDARD_HINGES, *, where: str = "tex
     parts = given_parts(found)
     errors = max(hinge.found.error for hinge in found.values())
     stands = {name: StandIn(part, found[name].links) for name, part in parts.items()}
-    return Calibration(found, parts, stood_in(text, stands, f"{TAG} within {100.0 * errors:.2g} %", where=where))
+    return Calibration(found, parts, write_stand_ins(text, stands, f"{TAG} within {100.0 * errors:.2g} %", where=where))
 
 
 def given_parts(found: Mapping[str, SolidHinge]) -> dict[str, Given]:
@@ -111,7 +111,7 @@ def _renamed(links: Mapping[str, Link], names: Mapping[str, str], owner: str) ->
 
 
 def _already(mechanism: Mechanism) -> Iterator[Finding]:
-    for name in calibrated(mechanism):
+    for name in calibrated_parts(mechanism):
         yield Finding(f"parts.{name}", "its 6x6 is of FEA origin already", "Calibrate the file that it was made from")
 
 
@@ -122,7 +122,7 @@ def _departing(mechanism: Mechanism) -> Iterator[Finding]:
             yield Finding(link.name, f"departs from its part {link.link.part}, whose 6x6 is shared", "Give that link a part of its own")
 
 
-_TURN = turned(np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]]))
+_TURN = spatial_rotation(np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]]))
 """A quarter turn about x."""
 
 

@@ -16,7 +16,7 @@ from flexstage.base.digest import digest
 from flexstage.base.finding import refuse
 from flexstage.base.labelled import Matrix, ratio_units
 from flexstage.base.number import Array
-from flexstage.mechanism.drawn import drawn
+from flexstage.mechanism.drawn import with_drawn_parts
 from flexstage.mechanism.expand import PlacedLink, expand
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.parts.leaf import Leaf
@@ -129,7 +129,7 @@ def distinct_hinges(mechanism: Mechanism) -> dict[str, DrawnHinge]:
     >>> list(found), found["lever_notch"].links
     (['neck-back', 'neck-front', 'foot_notch-back', 'foot_notch-front', 'lever_notch', 'pole_neck'], ('vertical/pivot',))
     """
-    shape = drawn(mechanism)
+    shape = with_drawn_parts(mechanism)
     assembly = expand(shape)
     found: dict[str, list[PlacedLink]] = {}
     for link in assembly.links.values():
@@ -142,7 +142,7 @@ def distinct_hinges(mechanism: Mechanism) -> dict[str, DrawnHinge]:
 
 def unknown_hinges(mechanism: Mechanism) -> dict[str, str]:
     """Why parts that are drawn have no 6x6 as a solid by themselves, by part: how their kind is held between blocks is not known."""
-    parts = {link.link.part: link.part for link in expand(drawn(mechanism)).links.values()}
+    parts = {link.link.part: link.part for link in expand(with_drawn_parts(mechanism)).links.values()}
     odd = {name: part for name, part in parts.items() if isinstance(part, Shaped) and not isinstance(part, (Notch, Neck, Leaf, Rod, Piezo))}
     return {name: f"the 6x6 of a part of kind {part.kind} as a solid by itself is not known" for name, part in odd.items()}
 

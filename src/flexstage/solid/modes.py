@@ -8,7 +8,7 @@ from flexstage.analysis.complete import platform_modes
 from flexstage.analysis.solid_modes import FeaModes
 from flexstage.base.digest import digest
 from flexstage.base.finding import DesignError
-from flexstage.mechanism.drawn import drawn
+from flexstage.mechanism.drawn import with_drawn_parts
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.solid.fea.assemble import linear_model
@@ -54,7 +54,7 @@ def kept_fea_modes(mechanism: Mechanism, cache: Cache) -> FeaModes | None:
 
 
 def _kept(mechanism: Mechanism, cache: Cache, reduction: Reduction) -> FeaModes | None:
-    shape = drawn(mechanism)
+    shape = with_drawn_parts(mechanism)
     parts: Parts = ()
     for part in components(shape):
         element = find(cache, key_of(part, reduction), part.name).element

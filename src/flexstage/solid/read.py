@@ -8,7 +8,7 @@ from typing import TypeAlias
 
 from flexstage.base.digest import digest
 from flexstage.base.finding import Finding
-from flexstage.mechanism.drawn import drawn
+from flexstage.mechanism.drawn import with_drawn_parts
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.linear.model import LinearModel
@@ -88,7 +88,7 @@ def read_solid(mechanism: Mechanism, reduction: Reduction, reduce: Solids) -> So
         ...
     flexstage.base.finding.DesignError: left: some of its freedoms are locked or freed by a restriction. ...
     """
-    shape = drawn(mechanism)
+    shape = with_drawn_parts(mechanism)
     assembly = expand(shape)
     parts = reduce(shape, reduction)
     said = f"solid model of {digest(shape, physics=True)[:16]}, order {reduction.fineness.order}, {reduction.modes} modes a component"

@@ -8,13 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexstage.analysis.complete import platform_modes
-from flexstage.analysis.pairing import RELIABLE, Moving, Pair, paired
+from flexstage.analysis.pairing import RELIABLE, Moving, Pair, pair_modes
 from flexstage.analysis.statics import statics
 from flexstage.analysis.trust import Trust
 from flexstage.analysis.units import UnitResult, driven_units, unit_alone, units
 from flexstage.base.finding import DesignError
 from flexstage.beams.compliance import compliance
-from flexstage.mechanism.drawn import calibrated
+from flexstage.mechanism.drawn import calibrated_parts
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.restrict import isolate
@@ -155,7 +155,7 @@ def hinge_rows(mechanism: Mechanism, found: Mapping[str, SolidHinge]) -> Iterato
     >>> list(hinge_rows(double_triangle(), {}))
     []
     """
-    given = calibrated(mechanism)
+    given = calibrated_parts(mechanism)
     links = {link.drawn: link for link in expand(mechanism).links.values()}
     for name, hinge in found.items():
         link = links.get(hinge.links[0]) or links[hinge.links[0].removeprefix("links.")]
@@ -223,7 +223,7 @@ def _mapped_unit(unit: UnitResult) -> dict[str, float]:
 
 def _touched(mechanism: Mechanism, unit: str | None) -> tuple[str, ...]:
     """The calibrated parts that a unit, or with `None` the stage, is built of."""
-    given = calibrated(mechanism)
+    given = calibrated_parts(mechanism)
     links = [link.link for link in expand(mechanism).links.values() if unit is None or link.drawn.startswith(f"{unit}/")]
     return tuple(name for name in given if any(link.part == name for link in links))
 
@@ -243,7 +243,7 @@ def stage_rows(mechanism: Mechanism, matched: Mechanism, found: Resolved[SolidSt
         reason = _unestimated(error) if "theory" in extra else "theory gives no finite value"
         yield Row("stage", figure, unit, *values, touched, reason=reason)
     own = Moving(fea.modes, fea.read.model)
-    pairs = {name: paired(own, Moving(platform_modes(mechanism, model), model)) for name, model in known.items()}
+    pairs = {name: pair_modes(own, Moving(platform_modes(mechanism, model), model)) for name, model in known.items()}
     for number, index in enumerate(fea.modes.platform):
         figure = f"platform mode {number + 1}"
         best = {name: pair[index] for name, pair in pairs.items() if index in pair}
@@ -289,7 +289,7 @@ def _mapped(mechanism: Mechanism) -> LinearModel | None:
 def verdict(rows: tuple[Row, ...]) -> str:
     """In words, what the rows of one group say about which theory to trust.
 
-    >>> verdict((Row("stage", "mode 1", "Hz", 105.0, 100.0, 0.001, calibrated=100.5),))
+    >>> verdict((Row("stage", "mode 1", "Hz", 105.0, 100.0, 0.001, calibrated_parts=100.5),))
     'Lumped theory is up to 5 % off (mode 1); with calibrated hinges 0.5 %: calibrate, then trust the lumped model.'
     """
     open_rows = [row for row in rows if row.difference is None or (row.error is None and not row.calibration)]

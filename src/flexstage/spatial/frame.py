@@ -97,10 +97,10 @@ def mirror(axis: int) -> Array:
     return np.diag(np.concatenate([np.where(along, -1.0, 1.0), np.where(along, 1.0, -1.0)]))
 
 
-def turned(rotation: Array) -> Array:
+def spatial_rotation(rotation: Array) -> Array:
     """The 6x6 diag(R, R) that turns twists and wrenches from a frame of axes R to the outer axes.
 
-    >>> turned(np.eye(3)).shape
+    >>> spatial_rotation(np.eye(3)).shape
     (6, 6)
     """
     result = np.zeros((*rotation.shape[:-2], 6, 6), dtype=rotation.dtype)
@@ -109,10 +109,10 @@ def turned(rotation: Array) -> Array:
     return result
 
 
-def seen_at(frame: Frame, reference: Array) -> Array:
+def twist_transform(frame: Frame, reference: Array) -> Array:
     """The 6x6 that takes a body's twist at `reference` (outer axes) to the twist at the frame's origin, in the frame's axes.
 
-    >>> seen_at(identity(), np.zeros(3)).tolist() == np.eye(6).tolist()
+    >>> twist_transform(identity(), np.zeros(3)).tolist() == np.eye(6).tolist()
     True
     """
     back = np.swapaxes(frame.rotation, -1, -2)
@@ -135,10 +135,10 @@ def turn_z(angle: Number) -> Array:
     return np.stack([np.stack([cosine, -sine, zero], -1), np.stack([sine, cosine, zero], -1), np.stack([zero, zero, one], -1)], -2)
 
 
-def normalised(vector: Array) -> Array:
+def normalise(vector: Array) -> Array:
     """The vector divided by its length (complex-analytic: no conjugates).
 
-    >>> normalised(np.array([3.0, 0.0, 4.0])).tolist()
+    >>> normalise(np.array([3.0, 0.0, 4.0])).tolist()
     [0.6, 0.0, 0.8]
     """
     return vector / np.sqrt(np.sum(vector * vector, axis=-1, keepdims=True))
@@ -152,13 +152,13 @@ def axes(along: Vector | Array, up: Vector | Array | None = None) -> Array:
     >>> axes((1.0, 0.0, 0.0), (0.0, 0.0, 1.0)).tolist()
     [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
     """
-    x = normalised(stack(along) if isinstance(along, tuple) else along)
+    x = normalise(stack(along) if isinstance(along, tuple) else along)
     if up is None:
         steep = np.abs(np.real(x[..., 2:3])) > np.cos(np.deg2rad(5.0))
         z = np.where(steep, np.array([0.0, 1.0, 0.0]), np.array([0.0, 0.0, 1.0]))
     else:
         z = stack(up) if isinstance(up, tuple) else up
-    z = normalised(z - np.sum(z * x, axis=-1, keepdims=True) * x)
+    z = normalise(z - np.sum(z * x, axis=-1, keepdims=True) * x)
     x, z = np.broadcast_arrays(x, z)
     return np.stack([x, (cross_matrix(z) @ x[..., None])[..., 0], z], axis=-1)
 

@@ -96,7 +96,7 @@ def workspace(
         command=Table(asked),
         limits=limits,
         single=single,
-        corrected=attempt.given(
+        corrected=attempt.of_ground(
             "corrected", lost, _RIGID, lambda known: single_axis(known.correction, limits, provenance=known.provenance)
         ),
         corner=attempt.of("corner", lambda: utilisation(mapping, limits, asked, provenance=kinematics.provenance)),
@@ -106,11 +106,11 @@ def workspace(
         gauges=attempt.of("gauges", lambda: gauge_range(mechanism, kinematics, asked)),
         resolution=attempt.of("resolution", lambda: pose_resolution(mechanism, kinematics)),
         room=attempt.of("room", lambda: room(mechanism)),
-        platform_lines=attempt.given("platform_lines", model, _RIGID, lambda known: platform_lines(mapping, known, limits)),
-        stack_lines=attempt.given("stack_lines", hinged, _HINGELESS, lambda known: stack_lines(mechanism, known)),
-        stress=attempt.given("stress", hinged, _HINGELESS, lambda known: hinge_stress(mechanism, known, unloaded)),
-        buckling=attempt.given("buckling", hinged, _HINGELESS, lambda known: buckling(mechanism, known, unloaded)),
-        loads=attempt.given("loads", hinged, _HINGELESS, lambda known: load_share(mechanism, known)),
+        platform_lines=attempt.of_ground("platform_lines", model, _RIGID, lambda known: platform_lines(mapping, known, limits)),
+        stack_lines=attempt.of_ground("stack_lines", hinged, _HINGELESS, lambda known: stack_lines(mechanism, known)),
+        stress=attempt.of_ground("stress", hinged, _HINGELESS, lambda known: hinge_stress(mechanism, known, unloaded)),
+        buckling=attempt.of_ground("buckling", hinged, _HINGELESS, lambda known: buckling(mechanism, known, unloaded)),
+        loads=attempt.of_ground("loads", hinged, _HINGELESS, lambda known: load_share(mechanism, known)),
         reasons=Table(attempt.missing),
     )
 

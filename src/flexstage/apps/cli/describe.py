@@ -19,7 +19,7 @@ from flexstage.cases.registry import case as shipped_case
 from flexstage.control.hysteresis.stack import hysteresis_schema
 from flexstage.control.study.file import setup_schema
 from flexstage.mechanism.mechanism import Mechanism
-from flexstage.mechanism.store import dumps, load, shipped
+from flexstage.mechanism.store import dumps, load, shipped_catalogue
 from flexstage.mechanism.store import schema as design_schema
 from flexstage.show.command.answer import caveat_lines, show
 from flexstage.show.command.design import change, open_design
@@ -166,7 +166,7 @@ def catalogue(
     Each number has its source. In a design file, like = "NAME" starts from an entry.
     """
     require_writable([("--json", json)])
-    known = shipped() if section is None else section_named(shipped(), section)
+    known = shipped_catalogue() if section is None else section_named(shipped_catalogue(), section)
     if json is not None:
         body = {"format": FORMAT, "kind": "catalogue", "version": flexstage.__version__, **catalogue_body(known)}
         write(json, as_text(body) + "\n", "--json")

@@ -19,7 +19,7 @@ from flexstage.mechanism.grammar import node_of
 from flexstage.mechanism.store.decode import record_from
 from flexstage.mechanism.store.encode import plain
 from flexstage.mechanism.store.file import parse_toml, read_text
-from flexstage.mechanism.store.lines import placed
+from flexstage.mechanism.store.lines import with_lines
 from flexstage.mechanism.store.schema import schema_of
 from flexstage.mechanism.store.toml import text_of
 
@@ -162,7 +162,7 @@ def loads_hysteresis(text: str, *, where: str = "text") -> StackHysteresis:
         stack = record_from(StackHysteresis, raw, FORMAT)
         _ = stack.model, stack.log_creep
     except DesignError as error:
-        raise DesignError(placed(error.findings, text, where)) from None
+        raise DesignError(with_lines(error.findings, text, where)) from None
     return stack
 
 

@@ -12,7 +12,7 @@ from flexstage.base.finding import DesignError, Finding
 from flexstage.control.study.setup import FileMotion, LoopSetup
 from flexstage.mechanism.store.decode import record_from
 from flexstage.mechanism.store.file import parse_toml, read_text
-from flexstage.mechanism.store.lines import placed
+from flexstage.mechanism.store.lines import with_lines
 from flexstage.mechanism.store.schema import schema_of
 
 FORMAT = "flexstage loop 1"
@@ -49,7 +49,7 @@ def loads_setup(text: str, *, where: str = "text") -> LoopSetup:
     try:
         return record_from(LoopSetup, raw, FORMAT)
     except DesignError as error:
-        raise DesignError(placed(map(_renamed, error.findings), text, where)) from None
+        raise DesignError(with_lines(map(_renamed, error.findings), text, where)) from None
 
 
 def _renamed(finding: Finding) -> Finding:

@@ -8,7 +8,7 @@ import numpy as np
 import scipy
 
 from flexstage.analysis.complete import platform_modes
-from flexstage.analysis.sensitivities import projected, slope, steppable, stepped
+from flexstage.analysis.sensitivities import project, slope, step_parameters, steppable
 from flexstage.base.finding import refuse
 from flexstage.base.number import Array
 from flexstage.experiment.comparison import Compared
@@ -126,7 +126,7 @@ def frequency_slopes(design: Design, names: tuple[str, ...]) -> Array:
     ends = np.cumsum([0, *(len(modes) for modes in design.modes)])[:-1]
     result = np.zeros((len(design.modes), len(names)))
     for chunk, model in _stepped(design, names):
-        change = projected(model.stiffness, shapes) - values * projected(model.inertia, shapes)
+        change = project(model.stiffness, shapes) - values * project(model.inertia, shapes)
         moved = np.broadcast_to(np.diagonal(change, axis1=-2, axis2=-1), (len(chunk), len(used)))
         result[:, chunk] = (np.add.reduceat(moved, ends, axis=1) / (2.0 * np.add.reduceat(values, ends))).T
     return result
@@ -148,7 +148,7 @@ def gain_slopes(design: Design, names: tuple[str, ...], gains: Gains) -> Array:
 
 def _stepped(design: Design, names: tuple[str, ...]) -> list[tuple[list[int], LinearModel]]:
     chunks = steppable(design.mechanism, names)
-    return [(chunk, lumped(stepped(design.mechanism, tuple(names[index] for index in chunk)))) for chunk in chunks]
+    return [(chunk, lumped(step_parameters(design.mechanism, tuple(names[index] for index in chunk)))) for chunk in chunks]
 
 
 def paired_alike(rows: tuple[ModeRow, ...], design: Design, again: tuple[ModeRow, ...]) -> bool:

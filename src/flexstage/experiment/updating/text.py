@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from flexstage.experiment.updating.update import Told, Updated
 from flexstage.mechanism.store import patch
-from flexstage.mechanism.store.retag import retagged
+from flexstage.mechanism.store.retag import set_tags
 
 _DIGITS = 7
 
@@ -16,7 +16,7 @@ def updated_text(text: str, found: Updated, record: str, *, where: str = "text")
     """
     values = {name: float(f"{value:.{_DIGITS}g}") for name, value in zip(found.addresses, found.after.tolist(), strict=True)}
     tags = {name: _tag(found, index, record) for index, name in enumerate(found.addresses)}
-    return retagged(patch(text, values, where=where), tags, where=where)
+    return set_tags(patch(text, values, where=where), tags, where=where)
 
 
 def _tag(found: Updated, index: int, record: str) -> str:

@@ -19,7 +19,7 @@ from flexstage.experiment.virtual_rig.setup import Tap
 from flexstage.mechanism.mechanism import Damping, ModalDamping, StructuralDamping
 from flexstage.models.linear.damping import modal_ratios
 from flexstage.models.linear.eigen import eigen
-from flexstage.models.linear.frequency import superposed
+from flexstage.models.linear.frequency import superpose
 from flexstage.models.linear.model import LinearModel
 from flexstage.models.linear.port import Ports, ports
 
@@ -172,7 +172,7 @@ def _block(memory: float, rate: float) -> int:
 
 def _plant(model: LinearModel, chosen: Ports, lines: Array, damping: Damping) -> Array:
     """H (l, p, m) of the stage, a few thousand lines at a time."""
-    pieces = [superposed(model, chosen, lines[start : start + _LINES], damping) for start in range(0, len(lines), _LINES)]
+    pieces = [superpose(model, chosen, lines[start : start + _LINES], damping) for start in range(0, len(lines), _LINES)]
     return np.concatenate(pieces)
 
 

@@ -1,6 +1,6 @@
 """Checks of a description: everything that is wrong with it, told so that it can be mended.
 
-`check` asks, `checked` throws. Checks are vectorised: of a batch they name the first failing index. What needs the elastic model (a
+`check` asks, `require_valid` throws. Checks are vectorised: of a batch they name the first failing index. What needs the elastic model (a
 mechanism that gives way) is found by the models.
 """
 
@@ -19,7 +19,7 @@ from flexstage.mechanism.checks.provenance import change_findings, tag_findings
 from flexstage.mechanism.checks.value import value_findings
 from flexstage.mechanism.mechanism import Mechanism
 
-__all__ = ["check", "checked", "copy_findings"]
+__all__ = ["check", "copy_findings", "require_valid"]
 
 
 def check(mechanism: Mechanism) -> tuple[Finding, ...]:
@@ -44,10 +44,10 @@ def check(mechanism: Mechanism) -> tuple[Finding, ...]:
     return findings if names else (*findings, *graph_findings(mechanism))
 
 
-def checked(mechanism: Mechanism) -> Mechanism:
+def require_valid(mechanism: Mechanism) -> Mechanism:
     """Return the description if there are no findings about it, else raise them together as `DesignError`.
 
-    >>> checked(Mechanism("empty"))
+    >>> require_valid(Mechanism("empty"))
     Traceback (most recent call last):
         ...
     flexstage.base.finding.DesignError: bodies: there is no body "platform". Declare the moving part under bodies.platform.

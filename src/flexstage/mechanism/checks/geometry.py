@@ -14,7 +14,7 @@ from flexstage.base.number import Number, stack
 from flexstage.base.quantity import LENGTH, Quantity
 from flexstage.base.unit import show
 from flexstage.mechanism.checks.value import first_failing
-from flexstage.mechanism.expand import departed
+from flexstage.mechanism.expand import apply_changes
 from flexstage.mechanism.locate import locate
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.parts.body import Body, Cylinder, Imported, Inertia, Solid
@@ -58,7 +58,7 @@ def _departed_parts(mechanism: Mechanism) -> Iterator[tuple[str, Part]]:
     for owners in dict.fromkeys(place.owners for place in places if not place.misaligned):
         owner, slash, name = owners[0].partition("/")
         link = mechanism.units[owner].links[name] if slash else mechanism.links[owner]
-        yield owners[-1], departed(mechanism, link, owners)[1]
+        yield owners[-1], apply_changes(mechanism, link, owners)[1]
 
 
 def _part(where: str, part: Part) -> Iterator[Finding]:
@@ -71,7 +71,7 @@ def _part(where: str, part: Part) -> Iterator[Finding]:
         compared = _Order(f"{where}.{order.field}", order.quantity, order.other, order.advice)
         yield from (compared.strict if order.strict else compared.loose)(order.small, order.large)
     if isinstance(part, Given):
-        yield from _given(where, part)
+        yield from _given_findings(where, part)
 
 
 @dataclass(frozen=True)
@@ -85,13 +85,13 @@ class _Order:
 
     def strict(self, small: Number | None, large: Number | None) -> Iterator[Finding]:
         """The first must be below the second."""
-        return self._told(small, large, "below", lambda low, high: low >= high)
+        return self._report(small, large, "below", lambda low, high: low >= high)
 
     def loose(self, small: Number | None, large: Number | None) -> Iterator[Finding]:
         """The first must not be above the second."""
-        return self._told(small, large, "at most", lambda low, high: low > high * (1.0 + _SLACK))
+        return self._report(small, large, "at most", lambda low, high: low > high * (1.0 + _SLACK))
 
-    def _told(self, small: Number | None, large: Number | None, word: str, fails: Callable[[Any, Any], Any]) -> Iterator[Finding]:
+    def _report(self, small: Number | None, large: Number | None, word: str, fails: Callable[[Any, Any], Any]) -> Iterator[Finding]:
         if small is None or large is None:
             return
         failing = fails(np.real(small), np.real(large))
@@ -101,7 +101,7 @@ class _Order:
             yield Finding(f"{self.where}{at}", f"found {low}, which is not {word} {self.other}, {high}", self.advice)
 
 
-def _given(where: str, part: Given) -> Iterator[Finding]:
+def _given_findings(where: str, part: Given) -> Iterator[Finding]:
     matrix = np.real(stack(part.compliance))
     mirrored = np.swapaxes(matrix, -1, -2)
     scale = np.sqrt(np.abs(np.einsum("...ii->...i", matrix)))

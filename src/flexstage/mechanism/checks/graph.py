@@ -28,8 +28,8 @@ def graph_findings(mechanism: Mechanism) -> Iterator[Finding]:
     >>> print(*graph_findings(Mechanism("", bodies={"platform": Body(mass=1.0)})))
     platform: no chain of links leads from it to the ground. Join it by a link, or remove it.
     """
-    bodies, edges = _expanded(mechanism)
-    reached = _reached(edges)
+    bodies, edges = _graph(mechanism)
+    reached = _reach(edges)
     for body in bodies:
         if body not in reached:
             yield Finding(body, "no chain of links leads from it to the ground", "Join it by a link, or remove it")
@@ -40,7 +40,7 @@ def graph_findings(mechanism: Mechanism) -> Iterator[Finding]:
             yield Finding(edge.name, what, "Lead one of its ends to the ground and the other to the platform, or remove it")
 
 
-def _expanded(mechanism: Mechanism) -> tuple[list[str], list[_Edge]]:
+def _graph(mechanism: Mechanism) -> tuple[list[str], list[_Edge]]:
     stage = {body: owner_of(mechanism.bodies, body) for body in mechanism.bodies}
     bodies = list(_moving(mechanism.bodies, stage))
     edges = [_edge(name, link, stage) for name, link in mechanism.links.items()]
@@ -63,7 +63,7 @@ def _edge(name: str, link: Link, bodies: Mapping[str, str]) -> _Edge:
     return _Edge(name, (first, second), link.part)
 
 
-def _reached(edges: Iterable[_Edge]) -> set[str]:
+def _reach(edges: Iterable[_Edge]) -> set[str]:
     """Bodies that hang together with the ground."""
     neighbours: dict[str, set[str]] = {}
     for edge in edges:

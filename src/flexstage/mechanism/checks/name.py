@@ -30,7 +30,7 @@ def name_findings(mechanism: Mechanism) -> Iterator[Finding]:
     yield from _bodies(mechanism)
     yield from _owners(mechanism)
     yield from _materials(mechanism)
-    yield from _placed(mechanism)
+    yield from _check_placement(mechanism)
     yield from _clashes(mechanism)
     for where, link, bodies in _links(mechanism):
         yield from _link(mechanism, where, link, bodies)
@@ -108,7 +108,7 @@ def _owners(mechanism: Mechanism) -> Iterator[Finding]:
     for where, body in _all_bodies(mechanism):
         if body.of is None:
             continue
-        yield from _known(f"{where}.of", "body of the stage", body.of, {GROUND, *mechanism.bodies})
+        yield from _check_known(f"{where}.of", "body of the stage", body.of, {GROUND, *mechanism.bodies})
         owner = mechanism.bodies.get(body.of)
         if where == f"bodies.{PLATFORM}":
             yield Finding(f"{where}.of", "the platform moves by itself", "Let the other body be of the platform")
@@ -130,33 +130,33 @@ def _bodies(mechanism: Mechanism) -> Iterator[Finding]:
 
 def _materials(mechanism: Mechanism) -> Iterator[Finding]:
     for name, part in mechanism.parts.items():
-        yield from _known(f"parts.{name}.material", "material", material_of(part), mechanism.materials)
+        yield from _check_known(f"parts.{name}.material", "material", material_of(part), mechanism.materials)
         if isinstance(part, Given):
-            yield from _known(f"parts.{name}.stands_for", "part", part.stands_for or None, mechanism.parts)
+            yield from _check_known(f"parts.{name}.stands_for", "part", part.stands_for or None, mechanism.parts)
     for where, body in _all_bodies(mechanism):
         for name, solid in body.solids.items():
-            yield from _known(f"{where}.solids.{name}.material", "material", solid.material, mechanism.materials)
-    yield from _known("ground", "material", mechanism.ground, (*mechanism.materials, NOT_GROWING))
+            yield from _check_known(f"{where}.solids.{name}.material", "material", solid.material, mechanism.materials)
+    yield from _check_known("ground", "material", mechanism.ground, (*mechanism.materials, NOT_GROWING))
 
 
-def _known(where: str, kind: str, name: str | None, names: Iterable[str]) -> Iterator[Finding]:
+def _check_known(where: str, kind: str, name: str | None, names: Iterable[str]) -> Iterator[Finding]:
     if name is not None and name not in names:
         yield Finding(where, f'there is no {kind} "{name}"', nearest(name, names))
 
 
-def _placed(mechanism: Mechanism) -> Iterator[Finding]:
+def _check_placement(mechanism: Mechanism) -> Iterator[Finding]:
     bodies = {GROUND, *mechanism.bodies}
     for name, placement in mechanism.place.items():
-        yield from _known(f"place.{name}.unit", "unit", placement.unit, mechanism.units)
+        yield from _check_known(f"place.{name}.unit", "unit", placement.unit, mechanism.units)
     gauged = {name for name in bodies if owner_of(mechanism.bodies, name) == name}
     gauged |= {f"{copy}/{name}" for copy, unit in _copies(mechanism) for name, body in unit.bodies.items() if body.of is None}
     for name, probe in mechanism.gauges.items():
-        yield from _known(f"gauges.{name}.gauge", "sensor", probe.gauge, mechanism.sensors)
-        yield from _known(f"gauges.{name}.body", "body", probe.body, gauged)
-        yield from _known(f"gauges.{name}.base", "body", probe.base, gauged)
+        yield from _check_known(f"gauges.{name}.gauge", "sensor", probe.gauge, mechanism.sensors)
+        yield from _check_known(f"gauges.{name}.body", "body", probe.body, gauged)
+        yield from _check_known(f"gauges.{name}.base", "body", probe.base, gauged)
     for section, items in (("payloads", mechanism.payloads), ("forces", mechanism.forces)):
         for name, item in items.items():
-            yield from _known(f"{section}.{name}.body", "body", item.body, gauged - {GROUND})
+            yield from _check_known(f"{section}.{name}.body", "body", item.body, gauged - {GROUND})
 
 
 def _copies(mechanism: Mechanism) -> Iterator[tuple[str, Unit]]:
@@ -176,8 +176,8 @@ def _clashes(mechanism: Mechanism) -> Iterator[Finding]:
 
 def _link(mechanism: Mechanism, where: str, link: Link, bodies: dict[str, Body]) -> Iterator[Finding]:
     for body in link.joins:
-        yield from _known(f"{where}.joins", "body", body, {GROUND, *bodies})
+        yield from _check_known(f"{where}.joins", "body", body, {GROUND, *bodies})
     first, second = (owner_of(bodies, body) for body in link.joins)
     if first == second:
         yield Finding(f"{where}.joins", f'both ends join "{first}"', "Name two different bodies")
-    yield from _known(f"{where}.part", "part", link.part, mechanism.parts)
+    yield from _check_known(f"{where}.part", "part", link.part, mechanism.parts)

@@ -9,19 +9,19 @@ from pathlib import Path
 
 from flexstage.base.finding import DesignError
 from flexstage.base.store import write
-from flexstage.mechanism.catalogue import shipped
-from flexstage.mechanism.checks import checked as _checked
+from flexstage.mechanism.catalogue import shipped_catalogue
+from flexstage.mechanism.checks import require_valid
 from flexstage.mechanism.mechanism import Mechanism
-from flexstage.mechanism.store.anchor import anchored, beside, outline_text
+from flexstage.mechanism.store.anchor import anchor_paths, beside, outline_text
 from flexstage.mechanism.store.decode import mechanism_from
 from flexstage.mechanism.store.encode import tree_of
 from flexstage.mechanism.store.file import parse_toml, read_text
 from flexstage.mechanism.store.patch import patch
 from flexstage.mechanism.store.schema import schema
-from flexstage.mechanism.store.tidy import tidied
+from flexstage.mechanism.store.tidy import round_to_digits
 from flexstage.mechanism.store.toml import text_of
 
-__all__ = ["dump", "dumps", "load", "loads", "outline_text", "patch", "schema", "shipped", "tidied", "write"]
+__all__ = ["dump", "dumps", "load", "loads", "outline_text", "patch", "round_to_digits", "schema", "shipped_catalogue", "write"]
 
 
 def load(path: str | os.PathLike[str], *, checked: bool = True) -> Mechanism:
@@ -35,7 +35,7 @@ def load(path: str | os.PathLike[str], *, checked: bool = True) -> Mechanism:
     ...     load(dump(Mechanism("empty"), f"{folder}/stage.toml"), checked=False) == Mechanism("empty")
     True
     """
-    return anchored(loads(read_text(path), where=os.fspath(path), checked=checked), Path(path).parent)
+    return anchor_paths(loads(read_text(path), where=os.fspath(path), checked=checked), Path(path).parent)
 
 
 def loads(text: str, *, where: str = "text", checked: bool = True) -> Mechanism:
@@ -46,8 +46,8 @@ def loads(text: str, *, where: str = "text", checked: bool = True) -> Mechanism:
     """
     raw = parse_toml(text, where)
     try:
-        mechanism = mechanism_from(raw, shipped())
-        return _checked(mechanism) if checked else mechanism
+        mechanism = mechanism_from(raw, shipped_catalogue())
+        return require_valid(mechanism) if checked else mechanism
     except DesignError as error:
         raise DesignError(replace(finding, where=f"{where}: {finding.where}") for finding in error.findings) from None
 

@@ -8,15 +8,15 @@ from pathlib import Path
 
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.store.encode import tree_of
-from flexstage.mechanism.store.tidy import tidied
+from flexstage.mechanism.store.tidy import round_to_digits
 from flexstage.mechanism.store.toml import text_of
 from flexstage.parts.body import Body, Imported
 
 
-def anchored(mechanism: Mechanism, folder: Path) -> Mechanism:
+def anchor_paths(mechanism: Mechanism, folder: Path) -> Mechanism:
     """The description with the relative paths of imported solids made whole, from the folder of its file.
 
-    >>> anchored(Mechanism("a"), Path()) == Mechanism("a")
+    >>> anchor_paths(Mechanism("a"), Path()) == Mechanism("a")
     True
     """
     root = folder.resolve()
@@ -31,10 +31,10 @@ def beside(mechanism: Mechanism, folder: Path) -> Mechanism:
     """
     root = folder.resolve()
 
-    def shortened(path: str) -> str:
+    def shorten(path: str) -> str:
         return Path(path).relative_to(root).as_posix() if Path(path).is_relative_to(root) else path
 
-    return _with_paths(mechanism, shortened)
+    return _with_paths(mechanism, shorten)
 
 
 def outline_text(body: str, name: str, solid: Imported, folder: Path) -> str:
@@ -49,7 +49,7 @@ def outline_text(body: str, name: str, solid: Imported, folder: Path) -> str:
     file = "cube.step"
     ...
     """
-    stage = beside(tidied(Mechanism("", bodies={body: Body(solids={name: solid})})), folder)
+    stage = beside(round_to_digits(Mechanism("", bodies={body: Body(solids={name: solid})})), folder)
     lines = text_of({"bodies": tree_of(stage)["bodies"]}, {}).splitlines()
     return "\n".join(line for line in lines if line and not line.startswith("#"))
 

@@ -23,8 +23,8 @@ _Record = TypeVar("_Record")
 def mechanism_from(raw: dict[str, Any], catalogue: Catalogue) -> Mechanism:
     """Return the description that a file's tree means; raises `DesignError` with everything that is wrong with it.
 
-    >>> from flexstage.mechanism.catalogue import shipped
-    >>> mechanism_from({"format": "flexstage 1", "name": "empty"}, shipped()).name
+    >>> from flexstage.mechanism.catalogue import shipped_catalogue
+    >>> mechanism_from({"format": "flexstage 1", "name": "empty"}, shipped_catalogue()).name
     'empty'
     """
     reader = Reader(catalogue)

@@ -13,10 +13,10 @@ _KEY = re.compile(r"\s*(?P<name>(?:[\w-]+|\"[^\"]*\"|'[^']*')(?:\s*\.\s*(?:[\w-]
 _STEP = re.compile(r"[\w-]+|\"[^\"]*\"|'[^']*'")
 
 
-def placed(findings: Iterable[Finding], text: str, where: str) -> Iterator[Finding]:
+def with_lines(findings: Iterable[Finding], text: str, where: str) -> Iterator[Finding]:
     r"""The findings with the file `where` and the line in front of their addresses; of an inline table's entry the table's line.
 
-    >>> found = placed([Finding("place.B1.unit", "it is lost", "Find it")], "[place]\nB1 = { unit = 1 }", "stage.toml")
+    >>> found = with_lines([Finding("place.B1.unit", "it is lost", "Find it")], "[place]\nB1 = { unit = 1 }", "stage.toml")
     >>> print(next(found))
     stage.toml: line 2: place.B1.unit: it is lost. Find it.
     """

@@ -10,7 +10,7 @@ from tomlkit.exceptions import TOMLKitError
 
 from flexstage.base.finding import DesignError, refuse
 from flexstage.mechanism.address import set_value
-from flexstage.mechanism.catalogue import shipped
+from flexstage.mechanism.catalogue import shipped_catalogue
 from flexstage.mechanism.grammar import TAGS, node_of
 from flexstage.mechanism.locate import canonical, locate
 from flexstage.mechanism.mechanism import Mechanism
@@ -32,7 +32,7 @@ def patch(text: str, values: Mapping[str, Any], *, where: str = "text") -> str:
     name = "a"  # a stage
     mode_limit = "800 Hz"  # enough
     """
-    mechanism = mechanism_from(parse_toml(text, where), shipped())
+    mechanism = mechanism_from(parse_toml(text, where), shipped_catalogue())
     steps: list[_Step] = []
     for address, value in values.items():
         place = locate(mechanism, address)
@@ -40,25 +40,25 @@ def patch(text: str, values: Mapping[str, Any], *, where: str = "text") -> str:
         steps.append((mechanism, set_value(mechanism, address, kept), address))
         mechanism = steps[-1][1]
     try:
-        return _written(text, [steps], mechanism, where)
+        return _write(text, [steps], mechanism, where)
     except DesignError:  # some layouts bear one change at a time only
-        return _written(text, [[step] for step in steps], mechanism, where)
+        return _write(text, [[step] for step in steps], mechanism, where)
 
 
 _Step = tuple[Mechanism, Mechanism, str]
 """The description before and after a change, and its address."""
 
 
-def _written(text: str, portions: list[list[_Step]], wanted: Mechanism, where: str) -> str:
+def _write(text: str, portions: list[list[_Step]], wanted: Mechanism, where: str) -> str:
     """The text after all changes, read anew after each portion of them."""
     for steps in portions:
-        text = _patched(text, steps)
-    if mechanism_from(parse_toml(text, where), shipped()) != wanted:
+        text = _patch_steps(text, steps)
+    if mechanism_from(parse_toml(text, where), shipped_catalogue()) != wanted:
         raise refuse(where, "its tables are laid out so that single values cannot be changed", "Write it anew with dump")
     return text
 
 
-def _patched(text: str, steps: list[_Step]) -> str:
+def _patch_steps(text: str, steps: list[_Step]) -> str:
     document = tomlkit.parse(text)
     for mechanism, changed, address in steps:
         try:
@@ -111,17 +111,17 @@ def _holds(table: Any, key: Any) -> bool:
 
 def _untag(document: Any, mechanism: Mechanism, changed: Mechanism) -> None:
     lost = {canonical(mechanism, key) for key in mechanism.tags.keys() - changed.tags.keys()}
-    for table, prefix in list(_tagged(document, "")):
+    for table, prefix in list(_tagged_tables(document, "")):
         for key in [key for key in table[TAGS] if canonical(mechanism, prefix + key) in lost]:
             del table[TAGS][key]
         if not table[TAGS]:
             del table[TAGS]
 
 
-def _tagged(table: Any, prefix: str) -> Iterator[tuple[Any, str]]:
+def _tagged_tables(table: Any, prefix: str) -> Iterator[tuple[Any, str]]:
     """The tables that have tags, with the beginning of their addresses."""
     if TAGS in table:
         yield table, prefix
     for key, value in table.items():
         if isinstance(value, Mapping) and key != TAGS:
-            yield from _tagged(value, f"{prefix}{key}.")
+            yield from _tagged_tables(value, f"{prefix}{key}.")

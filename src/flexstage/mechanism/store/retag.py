@@ -11,7 +11,7 @@ from tomlkit.items import InlineTable
 
 from flexstage.base.finding import refuse
 from flexstage.mechanism.address import tag_of
-from flexstage.mechanism.catalogue import shipped
+from flexstage.mechanism.catalogue import shipped_catalogue
 from flexstage.mechanism.grammar import TAGS
 from flexstage.mechanism.locate import locate
 from flexstage.mechanism.mechanism import Mechanism
@@ -19,13 +19,13 @@ from flexstage.mechanism.store.decode import mechanism_from
 from flexstage.mechanism.store.file import parse_toml
 
 
-def retagged(text: str, tags: Mapping[str, str], *, where: str = "text") -> str:
+def set_tags(text: str, tags: Mapping[str, str], *, where: str = "text") -> str:
     """Return a design file's text with tags at some addresses, in the tables of the values, those of departures in `[tags]`.
 
     Raises `DesignError` where the file's layout does not allow it.
 
     >>> text = 'format = "flexstage 1"' + chr(10) + 'name = "a"' + chr(10) + 'mode_limit = "1 kHz"  # enough' + chr(10)
-    >>> print(retagged(text, {"mode_limit": "derived test"}))
+    >>> print(set_tags(text, {"mode_limit": "derived test"}))
     format = "flexstage 1"
     name = "a"
     mode_limit = "1 kHz"  # enough
@@ -34,15 +34,15 @@ def retagged(text: str, tags: Mapping[str, str], *, where: str = "text") -> str:
     mode_limit = "derived test"
     <BLANKLINE>
     """
-    mechanism = mechanism_from(parse_toml(text, where), shipped())
-    together = _tagged(text, mechanism, tags, where, beside=True)
+    mechanism = mechanism_from(parse_toml(text, where), shipped_catalogue())
+    together = _with_tags(text, mechanism, tags, where, beside=True)
     return _one_by_one(text, mechanism, tags, where) if together is None else together
 
 
 def _one_by_one(text: str, mechanism: Mechanism, tags: Mapping[str, str], where: str) -> str:
     """Each beside its value if the file is laid out so that it can stand there, else in the table of all tags."""
     for address, tag in tags.items():
-        ways = (_tagged(text, mechanism, {address: tag}, where, beside=beside) for beside in (True, False))
+        ways = (_with_tags(text, mechanism, {address: tag}, where, beside=beside) for beside in (True, False))
         found = next((way for way in ways if way is not None), None)
         if found is None:
             raise refuse(address, "no tag can be put there: the file's tables are laid out otherwise", "Write it anew with dump")
@@ -50,7 +50,7 @@ def _one_by_one(text: str, mechanism: Mechanism, tags: Mapping[str, str], where:
     return text
 
 
-def _tagged(text: str, mechanism: Mechanism, tags: Mapping[str, str], where: str, *, beside: bool) -> str | None:
+def _with_tags(text: str, mechanism: Mechanism, tags: Mapping[str, str], where: str, *, beside: bool) -> str | None:
     """The text with these tags; nothing if it then says anything else than before beside them."""
     try:
         document = tomlkit.parse(text)
@@ -58,7 +58,7 @@ def _tagged(text: str, mechanism: Mechanism, tags: Mapping[str, str], where: str
             place = locate(mechanism, address)
             _put(document, place.path if beside and not place.owners else (), place.address, tag)
         found = tomlkit.dumps(document)
-        now = mechanism_from(parse_toml(found, where), shipped())
+        now = mechanism_from(parse_toml(found, where), shipped_catalogue())
     except (TOMLKitError, ValueError):  # findings are ValueErrors
         return None
     told = all(tag_of(now, address) == tag for address, tag in tags.items())

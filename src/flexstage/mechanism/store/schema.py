@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from flexstage.mechanism.catalogue import shipped
+from flexstage.mechanism.catalogue import shipped_catalogue
 from flexstage.mechanism.grammar import node_of
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.node import Definitions
@@ -27,7 +27,7 @@ def schema_of(record: type, form: str, title: str, *, tagged: bool = True) -> di
     >>> schema_of(Rod, "rod 1", "rod")["properties"]["format"]
     {'const': 'rod 1'}
     """
-    definitions = Definitions(shipped(), tagged)
+    definitions = Definitions(shipped_catalogue(), tagged)
     root = node_of(record).definition(definitions)
     properties = {"format": {"const": form}, **root.pop("properties")}
     return {

@@ -10,8 +10,8 @@ import tomlkit
 from tomlkit.exceptions import TOMLKitError
 
 from flexstage.base.finding import Finding, refuse, require
-from flexstage.mechanism.catalogue import shipped
-from flexstage.mechanism.checks import checked
+from flexstage.mechanism.catalogue import shipped_catalogue
+from flexstage.mechanism.checks import require_valid
 from flexstage.mechanism.grammar import TAGS, node_of
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.store.decode import mechanism_from
@@ -30,16 +30,16 @@ class StandIn:
     links: tuple[str, ...]
 
     @property
-    def drawn(self) -> str:
+    def drawn_name(self) -> str:
         """The name that the drawn part had.
 
-        >>> StandIn(Given((), (), stands_for="neck-drawn"), ()).drawn
+        >>> StandIn(Given((), (), stands_for="neck-drawn_name"), ()).drawn_name
         'neck'
         """
         return self.given.stands_for.removesuffix(KEPT)
 
 
-def stood_in(text: str, parts: Mapping[str, StandIn], tag: str, *, where: str = "text") -> str:
+def write_stand_ins(text: str, parts: Mapping[str, StandIn], tag: str, *, where: str = "text") -> str:
     """The text of a design file with given parts, by name, in the places of drawn ones, which are kept as `<name>-drawn`.
 
     The new matrices carry `tag`. Raises `DesignError` where links depart from such a part, and where the file's layout does not allow it.
@@ -47,16 +47,16 @@ def stood_in(text: str, parts: Mapping[str, StandIn], tag: str, *, where: str = 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.mechanism.store import dumps, loads
     >>> unit = tuple(tuple(1e-7 * (row == column) for column in range(6)) for row in range(6))
-    >>> leaf = StandIn(Given(unit, free=(), stands_for="leaf-drawn"), ("links.left", "links.right"))
-    >>> text = stood_in(dumps(parallelogram()), {"leaf": leaf}, "derived test")
-    >>> loads(text).parts["leaf"].stands_for, "leaf-drawn" in loads(text).parts
+    >>> leaf = StandIn(Given(unit, free=(), stands_for="leaf-drawn_name"), ("links.left", "links.right"))
+    >>> text = write_stand_ins(dumps(parallelogram()), {"leaf": leaf}, "derived test")
+    >>> loads(text).parts["leaf"].stands_for, "leaf-drawn_name" in loads(text).parts
     ('leaf-drawn', True)
     """
-    before = mechanism_from(parse_toml(text, where), shipped())
+    before = mechanism_from(parse_toml(text, where), shipped_catalogue())
     require(_clashes(before, parts))
     try:
         document = tomlkit.parse(text)
-        for name in dict.fromkeys(part.drawn for part in parts.values()):
+        for name in dict.fromkeys(part.drawn_name for part in parts.values()):
             document["parts"][name + KEPT] = document["parts"].pop(name)  # pyright: ignore[reportIndexIssue, reportAttributeAccessIssue]
             _rename_tags(document, f"parts.{name}.", f"parts.{name}{KEPT}.")
         for name, part in parts.items():
@@ -64,15 +64,15 @@ def stood_in(text: str, parts: Mapping[str, StandIn], tag: str, *, where: str = 
         after = tomlkit.dumps(document)
     except (TOMLKitError, KeyError) as error:
         raise refuse(where, f"the file cannot be changed: {error}", "Write it anew with dump") from None
-    found = checked(mechanism_from(parse_toml(after, where), shipped()))
+    found = require_valid(mechanism_from(parse_toml(after, where), shipped_catalogue()))
     if any(found.parts.get(name) != part.given for name, part in parts.items()):
         raise refuse(where, "its tables are laid out so that parts cannot be exchanged", "Write it anew with dump")
     return after
 
 
 def _clashes(mechanism: Mechanism, parts: Mapping[str, StandIn]) -> list[Finding]:
-    drawn = {part.drawn for part in parts.values()}
-    taken = {name + KEPT: name for name in drawn} | {name: part.drawn for name, part in parts.items() if name != part.drawn}
+    drawn = {part.drawn_name for part in parts.values()}
+    taken = {name + KEPT: name for name in drawn} | {name: part.drawn_name for name, part in parts.items() if name != part.drawn_name}
     found = [
         Finding(f"parts.{name}", "there is a part of this name", f"Rename it: the name is needed for the {old} that is calibrated")
         for name, old in taken.items()
@@ -98,7 +98,7 @@ def _stand_in(document: Any, name: str, part: StandIn, tag: str) -> None:
     table[TAGS] = tomlkit.inline_table()
     table[TAGS].update({"compliance": tag})
     document["parts"][name] = table
-    for address in part.links if name != part.drawn else ():
+    for address in part.links if name != part.drawn_name else ():
         unit, _, link = address.rpartition("/")
         owner = document["units"][unit] if unit else document
         owner["links"][link.removeprefix("links.")]["part"] = name

@@ -5,21 +5,21 @@ from __future__ import annotations
 from flexstage.base.unit import parse, show
 from flexstage.mechanism.grammar import node_of
 from flexstage.mechanism.mechanism import Mechanism
-from flexstage.mechanism.path import replaced
+from flexstage.mechanism.path import replace_member
 
 
-def tidied(mechanism: Mechanism, digits: int = 12) -> Mechanism:
+def round_to_digits(mechanism: Mechanism, digits: int = 12) -> Mechanism:
     """Return the description with every number rounded to significant digits of its shown unit; tags stay.
 
     Products of parameters carry rounding errors (1.54 * mm is 1.5400000000000001 mm) that a starting file should not show.
 
     >>> from flexstage.parts.rod import Rod
-    >>> tidied(Mechanism("", parts={"wire": Rod("steel", 1.54 * 1e-3, 0.001)})).parts["wire"].length
+    >>> round_to_digits(Mechanism("", parts={"wire": Rod("steel", 1.54 * 1e-3, 0.001)})).parts["wire"].length
     0.00154
     """
     result = mechanism
     for address, value, node in node_of(Mechanism).numbers(mechanism):
         if isinstance(value, float):
             tidy = parse(show(value, node.quantity, digits=digits), node.quantity, where=address)
-            result = result if tidy == value else replaced(result, tuple(address.split(".")), tidy)
+            result = result if tidy == value else replace_member(result, tuple(address.split(".")), tidy)
     return result

@@ -63,27 +63,27 @@ class _Writer:
 
     def table(self, path: tuple[str, ...], table: Mapping[str, Any]) -> Iterator[str]:
         """The table's own lines, then its headed tables."""
-        headed = _headed(path, table)
+        headed = _headed_entries(path, table)
         for key, value in table.items():
             if key not in headed:
                 yield from self.comment(".".join((*path, key)))
                 yield _line(key, value)
         for key, value in headed.items():
-            yield from self.headed((*path, key), value)
+            yield from self.headed_table((*path, key), value)
 
-    def headed(self, path: tuple[str, ...], table: Mapping[str, Any]) -> Iterator[str]:
+    def headed_table(self, path: tuple[str, ...], table: Mapping[str, Any]) -> Iterator[str]:
         """A table with its heading; none where it only holds headed tables."""
         comment = self.comment(".".join(path))
         if comment:
             yield from ["", *comment]
-        if len(_headed(path, table)) < len(table) or not table:
+        if len(_headed_entries(path, table)) < len(table) or not table:
             if not comment:
                 yield ""
             yield f"[{'.'.join(_key(step) for step in path)}]"
         yield from self.table(path, table)
 
 
-def _headed(path: tuple[str, ...], table: Mapping[str, Any]) -> dict[str, Any]:
+def _headed_entries(path: tuple[str, ...], table: Mapping[str, Any]) -> dict[str, Any]:
     """The entries with a heading of their own. Of a table of tables all have one or none: the order of copies and links stays."""
     headed = {key: value for key, value in table.items() if _is_headed((*path, key), value)}
     return dict(table) if headed and path and all(isinstance(value, dict) for value in table.values()) else headed
@@ -116,7 +116,7 @@ def _line(key: str, value: Any) -> str:
 
 
 def _key(key: str) -> str:
-    return key if _BARE.fullmatch(key) else _quoted(key)
+    return key if _BARE.fullmatch(key) else _quote(key)
 
 
 def _value(value: Any) -> str:
@@ -126,10 +126,10 @@ def _value(value: Any) -> str:
         return f"[{', '.join(_value(item) for item in value)}]"
     if isinstance(value, bool):
         return "true" if value else "false"
-    return _quoted(value) if isinstance(value, str) else repr(value)
+    return _quote(value) if isinstance(value, str) else repr(value)
 
 
-def _quoted(text: str) -> str:
+def _quote(text: str) -> str:
     """A TOML basic string: that of JSON, with delete escaped too."""
     return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
 

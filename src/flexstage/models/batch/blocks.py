@@ -115,13 +115,13 @@ def blocks(plan: Scheme, numbers: Array) -> tuple[Blocks, Blocks]:
     heavy = of_kind(plan, numbers, "mass").reshape(-1, plan.topology.parts, 2, 6, 2, 6).swapaxes(3, 4)
     back = np.swapaxes(carry, -1, -2)
     inertia = of_kind(plan, numbers, "inertia")[:, list(plan.graph.order)]
-    own = (_summed(plan, back @ (stiff[:, part] @ carry)), inertia + _summed(plan, back @ (heavy[:, part, side, side] @ carry)))
+    own = (_sum(plan, back @ (stiff[:, part] @ carry)), inertia + _sum(plan, back @ (heavy[:, part, side, side] @ carry)))
     if not plan.pairs:
         return Blocks(own[0], np.zeros((len(inertia), 0, 6, 6))), Blocks(own[1], np.zeros((len(inertia), 0, 6, 6)))
     first, later = (np.array([pair[index] for pair in plan.pairs]) for index in (1, 2))
     between = heavy[:, part[first], side[first], side[later]]
     left, right = back[:, first], carry[:, later]
-    edges = (_joined(plan, -left @ (stiff[:, part[first]] @ right)), _joined(plan, left @ (between @ right)))
+    edges = (_join(plan, -left @ (stiff[:, part[first]] @ right)), _join(plan, left @ (between @ right)))
     return Blocks(own[0], edges[0]), Blocks(own[1], edges[1])
 
 
@@ -138,14 +138,14 @@ def of_kind(plan: Scheme, numbers: Array, kind: str) -> Array:
     return np.ascontiguousarray(rows.T).reshape(-1, len(members), *members[0].shape)
 
 
-def _summed(plan: Scheme, values: Array) -> Array:
+def _sum(plan: Scheme, values: Array) -> Array:
     result = np.zeros((len(values), len(plan.graph.order), 6, 6))
     for number, (_, _, place) in enumerate(plan.ends):
         result[:, place] += values[:, number]
     return result
 
 
-def _joined(plan: Scheme, values: Array) -> Array:
+def _join(plan: Scheme, values: Array) -> Array:
     result = np.zeros((len(values), len(plan.graph.edges), 6, 6))
     for number, (edge, _, _) in enumerate(plan.pairs):
         result[:, edge] += values[:, number]

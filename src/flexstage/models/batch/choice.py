@@ -31,10 +31,10 @@ class Chosen:
     exact: Array
 
 
-def chosen(values: Array, share: Array, choice: Choice) -> Chosen:
+def choose(values: Array, share: Array, choice: Choice) -> Chosen:
     """Choose from ascending eigenvalues (b, k) and platform shares (b, k), as `analysis.modes` does for one design.
 
-    >>> found = chosen(np.array([[1.0, 2.0, 3.0]]), np.array([[0.2, 0.1, 0.9]]), Choice(count=2))
+    >>> found = choose(np.array([[1.0, 2.0, 3.0]]), np.array([[0.2, 0.1, 0.9]]), Choice(count=2))
     >>> found.mask.tolist(), found.least.tolist()
     ([[True, False, True]], [0.2])
     """

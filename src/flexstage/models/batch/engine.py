@@ -17,13 +17,13 @@ import numpy as np
 from flexstage.base.number import Array
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.batch.blocks import Scheme, scheme
-from flexstage.models.batch.choice import Choice, chosen
+from flexstage.models.batch.choice import Choice, choose
 from flexstage.models.batch.compiled import MODES, Tables, by_kernel
 from flexstage.models.batch.dense import Whole
 from flexstage.models.batch.kernel import kernel
 from flexstage.models.batch.locked import locked_solution
 from flexstage.models.batch.numbers import Family, family, numbers_of, slopes_of
-from flexstage.models.batch.solution import Solution, Stage, by_iteration, every_mode, kept, wholly
+from flexstage.models.batch.solution import Solution, Stage, by_iteration, every_mode, keep, wholly
 from flexstage.models.batch.subspace import Start
 from flexstage.models.batch.surface import Surface, surface
 from flexstage.models.lumped import lumped
@@ -116,14 +116,14 @@ def plan(mechanism: Mechanism, addresses: tuple[str, ...], choice: Choice | None
     >>> found.scheme.topology.size
     114
     """
-    return planned(family(mechanism, addresses), choice, ranges)
+    return plan_family(family(mechanism, addresses), choice, ranges)
 
 
-def planned(family_: Family, choice: Choice | None = None, ranges: tuple[Array, Array] | None = None) -> Plan:
+def plan_family(family_: Family, choice: Choice | None = None, ranges: tuple[Array, Array] | None = None) -> Plan:
     """Plan a family of designs, however it is drawn: see `plan`.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> planned(family(double_triangle(), ("parts.neck.thickness",))).scheme.topology.size
+    >>> plan_family(family(double_triangle(), ("parts.neck.thickness",))).scheme.topology.size
     114
     """
     scheme_ = scheme(family_.topology)
@@ -141,7 +141,7 @@ def planned(family_: Family, choice: Choice | None = None, ranges: tuple[Array, 
 
 def _starts(scheme_: Scheme, modes: Whole, choice: Choice) -> tuple[Start | None, Start | None]:
     """The modes to begin with, as many as make the fewest operations, and the most there is room for; none if that is not less than all."""
-    picked = chosen(modes.values[None], modes.share[None], choice)
+    picked = choose(modes.values[None], modes.share[None], choice)
     values = modes.values
     if not picked.mask.any():
         return None, None
@@ -198,7 +198,7 @@ def _piece(plan_: Plan, values: Array, *, slopes: bool, method: Method) -> Platf
         result.status[~finite] = Status.NOT_FINITE
         left = finite
         if plan_.start is not None:
-            found = iterated(plan_, _tame(stage, finite), method)
+            found = iterate(plan_, _tame(stage, finite), method)
             good = finite & found.good
             _write(plan_, result, np.flatnonzero(good), found.take(good))
             result.status[good] = Status.ITERATED
@@ -209,12 +209,12 @@ def _piece(plan_: Plan, values: Array, *, slopes: bool, method: Method) -> Platf
     return result
 
 
-def iterated(plan_: Plan, stage: Stage, method: Method = Method.FASTEST) -> Solution:
+def iterate(plan_: Plan, stage: Stage, method: Method = Method.FASTEST) -> Solution:
     """The designs of a stage by iteration: from features to eigenvalues and their derivatives.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> found = plan(double_triangle(), ())
-    >>> iterated(found, Stage(found.scheme, numbers_of(found.family, np.zeros((1, 0))))).good.tolist()
+    >>> iterate(found, Stage(found.scheme, numbers_of(found.family, np.zeros((1, 0))))).good.tolist()
     [True]
     """
     if plan_.start is None:
@@ -275,7 +275,7 @@ def _write(plan_: Plan, result: PlatformModes, designs: Array, found: Solution) 
         result.status[designs] = Status.FEW if found.good.all() else Status.SINGULAR
         return
     result.status[designs] = Status.WHOLE if found.values.shape[1] == plan_.choice.count else Status.CUT
-    found, gradient = kept(found, plan_.choice)
+    found, gradient = keep(found, plan_.choice)
     frequencies = np.sqrt(found.values) / (2.0 * np.pi)
     scale = (1.0 / (8.0 * np.pi**2 * frequencies))[:, None]
     result.frequencies[designs], result.share[designs] = frequencies, found.share

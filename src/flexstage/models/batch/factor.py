@@ -42,7 +42,7 @@ def factor(graph: Elimination, matrix: Blocks) -> Factor:
     firsts = np.array([first for first, _ in graph.edges], dtype=int)
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         for (start, stop), (low, high), updates in zip(graph.levels, graph.edge_ranges, graph.updates, strict=True):
-            inverse[:, start:stop], pivots[:, start:stop] = _inverted(own[:, start:stop])
+            inverse[:, start:stop], pivots[:, start:stop] = _invert(own[:, start:stop])
             if not updates:
                 continue
             plain = edges[:, low:high].copy()
@@ -57,7 +57,7 @@ def factor(graph: Elimination, matrix: Blocks) -> Factor:
     return Factor(inverse, edges, pivots.reshape(len(own), -1))
 
 
-def _inverted(matrix: Array) -> tuple[Array, Array]:
+def _invert(matrix: Array) -> tuple[Array, Array]:
     """Inverse of symmetric 6x6 matrices by elimination without exchange (Gauss-Jordan), and the pivots."""
     work = np.ascontiguousarray(np.moveaxis(matrix, (-2, -1), (0, 1)))
     pivots = np.empty(work.shape[1:])
@@ -72,12 +72,12 @@ def _inverted(matrix: Array) -> tuple[Array, Array]:
     return np.moveaxis(work, (0, 1), (-2, -1)), np.moveaxis(pivots, 0, -1)
 
 
-def solved(graph: Elimination, parts: Factor, right: Array) -> Array:
+def solve(graph: Elimination, parts: Factor, right: Array) -> Array:
     """K^-1 right, for right (b, bodies, 6, m).
 
     >>> from flexstage.models.batch.order import elimination
     >>> graph = elimination(1, [], keep=0)
-    >>> solved(graph, factor(graph, Blocks(4.0 * np.eye(6)[None, None], np.zeros((1, 0, 6, 6)))), np.ones((1, 1, 6, 1)))[0, 0, 0].tolist()
+    >>> solve(graph, factor(graph, Blocks(4.0 * np.eye(6)[None, None], np.zeros((1, 0, 6, 6)))), np.ones((1, 1, 6, 1)))[0, 0, 0].tolist()
     [0.25]
     """
     work = right.copy()

@@ -157,23 +157,23 @@ def features(mechanism: Mechanism, wanted: Wanted = everything) -> dict[tuple[st
     return result
 
 
-def spaced(rows: int, count: int) -> Array:
+def empty_rows(rows: int, count: int) -> Array:
     """An empty (rows, count) whose rows do not begin on the same line of a processor's cache, as powers of two would.
 
-    >>> spaced(3, 512).strides[0] % 128
+    >>> empty_rows(3, 512).strides[0] % 128
     64
     """
     return np.empty((rows, count + -count % 16 + 8))[:, :count]
 
 
-def packed(found: Mapping[tuple[str, int], Array], places: tuple[Feature, ...], count: int) -> Array:
+def pack(found: Mapping[tuple[str, int], Array], places: tuple[Feature, ...], count: int) -> Array:
     """All numbers of `count` designs as (numbers, designs).
 
     >>> place = Feature("first", 0, 0)
-    >>> packed({("first", 0): np.arange(3.0)}, (place,), 2).tolist()
+    >>> pack({("first", 0): np.arange(3.0)}, (place,), 2).tolist()
     [[0.0, 0.0], [1.0, 1.0], [2.0, 2.0]]
     """
-    result = spaced(places[-1].slots.stop, count)
+    result = empty_rows(places[-1].slots.stop, count)
     for place in places:
         values = np.real(found[place.kind, place.owner])
         flat = values.reshape(*values.shape[: values.ndim - len(place.shape)], -1)

@@ -9,9 +9,9 @@ from flexstage.base.number import Array
 from flexstage.mechanism.mechanism import PLATFORM
 from flexstage.models.batch.choice import Choice, groups, means
 from flexstage.models.batch.dense import Whole, whole
-from flexstage.models.batch.numbers import Family, described, stepped, width
-from flexstage.models.batch.solution import Solution, picked_modes
-from flexstage.models.linear.model import Contributions, LinearModel, assembled
+from flexstage.models.batch.numbers import Family, describe, step_numbers, width
+from flexstage.models.batch.solution import Solution, platform_indices
+from flexstage.models.linear.model import Contributions, LinearModel, assemble
 from flexstage.models.lumped import lumped
 
 
@@ -26,21 +26,21 @@ def locked_solution(family: Family, values: Array, choice: Choice, *, slopes: bo
     """
     variables = len(family.addresses) if slopes else 0
     try:
-        mechanism = described(family, values[None])
+        mechanism = describe(family, values[None])
         model = lumped(mechanism)
         modes = _modes(model)
     except DesignError:
         return _none(variables)
     if not len(modes.values):
         return _none(variables)
-    picked = picked_modes(modes, choice)
+    picked = platform_indices(modes, choice)
     found, shapes = modes.values[None, picked], modes.shapes[:, picked]
     group = groups(found, choice.cluster)
     value = means(found, group)[0]
     result = np.zeros((1, variables, len(picked), len(picked)))
     for variable in range(variables):
-        change = lumped(stepped(family, mechanism, values[None], (variable,)))
-        stiff, heavy = (_projected(items, shapes) / width(family, variable) for items in (change.stiffness, change.inertia))
+        change = lumped(step_numbers(family, mechanism, values[None], (variable,)))
+        stiff, heavy = (_project(items, shapes) / width(family, variable) for items in (change.stiffness, change.inertia))
         result[0, variable] = np.where(group[0][:, None] == group[0], stiff - value * heavy, 0.0)
     return Solution(found, modes.share[None, picked], np.array([True]), result)
 
@@ -53,12 +53,12 @@ def _modes(model: LinearModel) -> Whole:
     size = len(model.coordinates)
     own = {name: item for name, item in model.inertia.items() if name == PLATFORM}
     stiffness, inertia, platform = (
-        np.broadcast_to(item, (1, size, size))[0] for item in (model.stiffness_matrix, model.inertia_matrix, assembled(own, size))
+        np.broadcast_to(item, (1, size, size))[0] for item in (model.stiffness_matrix, model.inertia_matrix, assemble(own, size))
     )
     return whole(stiffness, inertia, platform)
 
 
-def _projected(items: Contributions, shapes: Array) -> Array:
+def _project(items: Contributions, shapes: Array) -> Array:
     total = np.zeros((shapes.shape[1],) * 2)
     for item in items.values():
         seen = item.operator @ shapes

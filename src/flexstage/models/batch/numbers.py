@@ -17,8 +17,8 @@ from flexstage.mechanism.address import get, set_value
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.locate import locate
 from flexstage.mechanism.mechanism import Mechanism
-from flexstage.mechanism.path import replaced
-from flexstage.models.batch.features import Feature, Topology, features, packed, spaced, topology
+from flexstage.mechanism.path import replace_member
+from flexstage.models.batch.features import Feature, Topology, empty_rows, features, pack, topology
 
 _STEP = 1e-20
 
@@ -112,17 +112,17 @@ def drawn_family(draw: Draw, names: tuple[str, ...], nominal: Array) -> Family:
 
     >>> from flexstage.cases.registry import Variant
     >>> hexapod = Variant("hexapod")
-    >>> found = drawn_family(lambda values: hexapod.drawn({"slope": values[0]}), ("slope",), np.array([0.8]))
+    >>> found = drawn_family(lambda values: hexapod.mechanism_at({"slope": values[0]}), ("slope",), np.array([0.8]))
     >>> numbers_of(found, np.array([[0.8], [0.9]])).shape[1]
     2
     """
     own = tuple(np.asarray(float(value)) for value in nominal)
-    touched = tuple(_complex(draw((*own[:number], _stepped(own[number]), *own[number + 1 :]))) for number in range(len(own)))
+    touched = tuple(_complex(draw((*own[:number], _step(own[number]), *own[number + 1 :]))) for number in range(len(own)))
     plain = _without_requirements(draw(own))
     return Family(plain, names, np.asarray(nominal, float), topology(expand(plain)), touched, tuple(_together(touched)), draw)
 
 
-def _stepped(value: Array) -> Array:
+def _step(value: Array) -> Array:
     return value + 1j * (abs(value) * _STEP or _STEP)
 
 
@@ -152,12 +152,12 @@ def _together(touched: tuple[frozenset[Key], ...]) -> Iterator[tuple[int, ...]]:
         left = [number for number in left if number not in group]
 
 
-def described(family_: Family, values: Array) -> Mechanism:
+def describe(family_: Family, values: Array) -> Mechanism:
     """The description of many designs, from their numbers (b, P).
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> found = family(double_triangle(), ("parts.neck.thickness",))
-    >>> described(found, np.array([[1e-3], [2e-3]])).parts["neck"].thickness.tolist()
+    >>> describe(found, np.array([[1e-3], [2e-3]])).parts["neck"].thickness.tolist()
     [0.001, 0.002]
     """
     columns = tuple(values.T)
@@ -169,7 +169,7 @@ def _set(family_: Family, mechanism: Mechanism, values: Mapping[int, Array]) -> 
         address = family_.addresses[number]
         place = locate(mechanism, address)
         plain = not place.owners and "compliance" not in place.path
-        mechanism = replaced(mechanism, place.path, value) if plain else set_value(mechanism, address, value)
+        mechanism = replace_member(mechanism, place.path, value) if plain else set_value(mechanism, address, value)
     return mechanism
 
 
@@ -181,7 +181,7 @@ def numbers_of(family_: Family, values: Array) -> Array:
     >>> numbers_of(found, np.array([[1e-3], [2e-3]])).shape[1]
     2
     """
-    return packed(features(described(family_, values)), family_.topology.features, len(values))
+    return pack(features(describe(family_, values)), family_.topology.features, len(values))
 
 
 @dataclass(frozen=True, eq=False)
@@ -210,8 +210,8 @@ def slopes_of(family_: Family, values: Array) -> Slopes:
 
 
 def _slopes(family_: Family, values: Array, changes: tuple[Change, ...]) -> Array:
-    mechanism = described(family_, values)
-    result = spaced(sum(len(change.rows) for change in changes), len(values))
+    mechanism = describe(family_, values)
+    result = empty_rows(sum(len(change.rows) for change in changes), len(values))
     places: dict[int, list[tuple[int, Change]]] = {}
     start = 0
     for change in changes:
@@ -221,7 +221,7 @@ def _slopes(family_: Family, values: Array, changes: tuple[Change, ...]) -> Arra
         wanted = {(change.place.kind, change.place.owner) for number in group for _, change in places.get(number, [])}
         if not wanted:
             continue
-        arrays = features(stepped(family_, mechanism, values, group), lambda kind, owner, wanted=wanted: (kind, owner) in wanted)
+        arrays = features(step_numbers(family_, mechanism, values, group), lambda kind, owner, wanted=wanted: (kind, owner) in wanted)
         for number in group:
             for at, change in places.get(number, []):
                 array = arrays[change.place.kind, change.place.owner]
@@ -230,12 +230,12 @@ def _slopes(family_: Family, values: Array, changes: tuple[Change, ...]) -> Arra
     return result
 
 
-def stepped(family_: Family, mechanism: Mechanism, values: Array, group: tuple[int, ...]) -> Mechanism:
+def step_numbers(family_: Family, mechanism: Mechanism, values: Array, group: tuple[int, ...]) -> Mechanism:
     """The description of the same designs with a complex step in every number of a group.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> found, value = family(double_triangle(), ("parts.neck.thickness",)), np.array([[1e-3]])
-    >>> stepped(found, found.mechanism, value, (0,)).parts["neck"].thickness
+    >>> step_numbers(found, found.mechanism, value, (0,)).parts["neck"].thickness
     array([0.001+1.54e-23j])
     """
     steps = {number: values[:, number] + 1j * width(family_, number) for number in group}

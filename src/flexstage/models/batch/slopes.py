@@ -74,11 +74,11 @@ def slope(plan: Scheme, seen: Motion, change: Change, values: Array) -> Array:
         if place.kind == "stiffness":
             strain = twists[:, :, 6:] - twists[:, :, :6]
             return np.sum(np.swapaxes(strain, -1, -2) @ (by[:, None] @ strain), axis=1)
-        return -_weighted(seen, np.sum(np.swapaxes(twists, -1, -2) @ (by[:, None] @ twists), axis=1))
+        return -_weigh(seen, np.sum(np.swapaxes(twists, -1, -2) @ (by[:, None] @ twists), axis=1))
     if place.kind == "inertia":
         moved = seen.bodies[:, place.owner]
-        return -_weighted(seen, np.swapaxes(moved, -1, -2) @ (by @ moved))
-    half = np.swapaxes(seen.forces[:, place.owner], -1, -2) @ _moved(plan, seen, place, by)
+        return -_weigh(seen, np.swapaxes(moved, -1, -2) @ (by @ moved))
+    half = np.swapaxes(seen.forces[:, place.owner], -1, -2) @ _move(plan, seen, place, by)
     return half + np.swapaxes(half, -1, -2)
 
 
@@ -92,12 +92,12 @@ def _whole(change: Change, values: Array) -> Array:
     return result
 
 
-def _weighted(seen: Motion, products: Array) -> Array:
+def _weigh(seen: Motion, products: Array) -> Array:
     """Products of modes i and j times lambda, which is the same for both where it matters: within a cluster."""
     return seen.value[:, :, None] * products
 
 
-def _moved(plan: Scheme, seen: Motion, place: Feature, by: Array) -> Array:
+def _move(plan: Scheme, seen: Motion, place: Feature, by: Array) -> Array:
     """Change (b, 12, k) of the twists of a link's ends as its axes turn, or as the arm of one end changes."""
     turn = seen.turns[:, place.owner]
     result = np.zeros((*seen.twists.shape[:1], 12, seen.twists.shape[-1]))

@@ -8,7 +8,7 @@ import numpy as np
 
 from flexstage.base.number import Array
 from flexstage.models.batch.blocks import Blocks, Scheme, blocks, dense, of_kind
-from flexstage.models.batch.choice import Choice, chosen, groups, means
+from flexstage.models.batch.choice import Choice, choose, groups, means
 from flexstage.models.batch.dense import Whole, whole
 from flexstage.models.batch.factor import factor
 from flexstage.models.batch.numbers import Slopes
@@ -119,7 +119,7 @@ def wholly(stage: Stage, choice: Choice) -> list[Solution]:
     """
     order = np.argsort(stage.scheme.coordinates)
     modes = [every_mode(stage.scheme, stage.numbers[:, [design]]) for design in range(stage.numbers.shape[1])]
-    picked = [picked_modes(each, choice) for each in modes]
+    picked = [platform_indices(each, choice) for each in modes]
     result: dict[int, Solution] = {}
     for count in {len(each) for each in picked}:
         designs = [design for design, each in enumerate(picked) if len(each) == count]
@@ -149,22 +149,22 @@ def every_mode(scheme: Scheme, numbers: Array) -> Whole:
     return whole(dense(scheme, stiffness)[0], dense(scheme, inertia)[0], platform)
 
 
-def picked_modes(modes: Whole, choice: Choice) -> Array:
+def platform_indices(modes: Whole, choice: Choice) -> Array:
     """Which modes of one design are the platform's.
 
-    >>> picked_modes(Whole(np.array([1.0, 2.0]), np.eye(2), np.array([0.1, 0.9])), Choice(count=1)).tolist()
+    >>> platform_indices(Whole(np.array([1.0, 2.0]), np.eye(2), np.array([0.1, 0.9])), Choice(count=1)).tolist()
     [1]
     """
     if not len(modes.values):
         return np.zeros(0, dtype=int)
-    return np.flatnonzero(chosen(modes.values[None], modes.share[None], choice).mask[0])
+    return np.flatnonzero(choose(modes.values[None], modes.share[None], choice).mask[0])
 
 
-def kept(solution: Solution, choice: Choice) -> tuple[Solution, Array]:
+def keep(solution: Solution, choice: Choice) -> tuple[Solution, Array]:
     """As many modes as asked for, and the derivatives (b, P, k) of their clusters' means; the cluster of least share is cut if need be.
 
     >>> both = Solution(np.array([[1.0, 4.0, 4.0]]), np.array([[0.9, 0.5, 0.5]]), np.array([True]), np.diag([1.0, 2.0, 4.0])[None, None])
-    >>> left, mean = kept(both, Choice(count=2))
+    >>> left, mean = keep(both, Choice(count=2))
     >>> left.values.tolist(), mean.tolist()
     ([[1.0, 4.0]], [[[1.0, 3.0]]])
     """

@@ -23,8 +23,8 @@ import numpy as np
 
 from flexstage.base.number import Array
 from flexstage.models.batch.blocks import Blocks
-from flexstage.models.batch.choice import Choice, Chosen, chosen
-from flexstage.models.batch.factor import Factor, factor, product, solved
+from flexstage.models.batch.choice import Choice, Chosen, choose
+from flexstage.models.batch.factor import Factor, factor, product, solve
 from flexstage.models.batch.order import Elimination
 
 TOGETHER = 1e-4
@@ -125,9 +125,9 @@ def iterate(problem: Problem, stiffness: Blocks, start: Start) -> Found:
         if not len(left):
             break
         part = problem.take(left) if len(left) < count else problem
-        better = _ritz(part, _filtered(part, ritz.take(left) if len(left) < count else ritz, start))
-        ritz = _replaced(ritz, better, left)
-        verdict = _replaced(verdict, _verdict(better, start), left)
+        better = _ritz(part, _filter(part, ritz.take(left) if len(left) < count else ritz, start))
+        ritz = _replace(ritz, better, left)
+        verdict = _replace(verdict, _verdict(better, start), left)
     proved = verdict.done & (_negative(problem, stiffness, verdict.shift) == verdict.below)
     return Found(ritz, verdict.chosen.mask, proved)
 
@@ -135,7 +135,7 @@ def iterate(problem: Problem, stiffness: Blocks, start: Start) -> Found:
 def _ritz(problem: Problem, block: Array) -> Ritz:
     """Rayleigh-Ritz on T Y for the block Y."""
     force = product(problem.graph, problem.inertia, block)
-    ahead = solved(problem.graph, problem.parts, force)
+    ahead = solve(problem.graph, problem.parts, force)
     heavy = product(problem.graph, problem.inertia, ahead)
     flat, force, ahead, heavy = (_flat(item) for item in (block, force, ahead, heavy))
     turned = np.swapaxes(ahead, -1, -2)
@@ -146,7 +146,7 @@ def _ritz(problem: Problem, block: Array) -> Ritz:
         residual = np.sqrt(np.maximum(1.0 - values * values / norm, 0.0))
     shapes, heavy = (item @ vectors for item in (ahead, heavy))
     seen = shapes[:, -6:]
-    return Ritz(values, _blocked(shapes), _blocked(heavy), residual, np.sum(seen * (problem.platform @ seen), axis=-2))
+    return Ritz(values, _as_block(shapes), _as_block(heavy), residual, np.sum(seen * (problem.platform @ seen), axis=-2))
 
 
 def _small(stiff: Array, mass: Array) -> tuple[Array, Array]:
@@ -179,14 +179,14 @@ def _lower(matrix: Array) -> tuple[Array, Array]:
         return np.linalg.cholesky(np.where(failed[:, None, None], np.eye(matrix.shape[-1]), matrix)), failed
 
 
-def _filtered(problem: Problem, ritz: Ritz, start: Start) -> Array:
+def _filter(problem: Problem, ritz: Ritz, start: Start) -> Array:
     """Chebyshev's polynomial in 2 T / mu - 1, mu where the modes outside begin, of the shapes; columns divided by its value there."""
     outside = start.edge * ritz.values[:, -1:]
     twice = 2.0 * outside[..., None, None]
-    before, now = ritz.shapes, twice * solved(problem.graph, problem.parts, ritz.heavy) - ritz.shapes
+    before, now = ritz.shapes, twice * solve(problem.graph, problem.parts, ritz.heavy) - ritz.shapes
     for _ in range(start.degree - 1):
         force = product(problem.graph, problem.inertia, now)
-        before, now = now, 2.0 * (twice * solved(problem.graph, problem.parts, force) - now) - before
+        before, now = now, 2.0 * (twice * solve(problem.graph, problem.parts, force) - now) - before
     with np.errstate(invalid="ignore", over="ignore"):
         growth = np.cosh(start.degree * np.arccosh(np.maximum(2.0 * outside / ritz.values - 1.0, 1.0)))
     return now / growth[:, None, None, :]
@@ -197,10 +197,10 @@ def _verdict(ritz: Ritz, start: Start) -> Verdict:
     values, count = ritz.values, ritz.values.shape[1]
     ceiling = (2.0 * np.pi * start.choice.limit) ** 2
     with np.errstate(invalid="ignore", divide="ignore"):
-        picked = chosen(values, ritz.share, start.choice)
+        picked = choose(values, ritz.share, start.choice)
         needed = count - np.argmax(picked.mask[:, ::-1], axis=1)
         first = _apart(values, needed)
-        below, wide = _counted(ritz, picked, first)
+        below, wide = _count(ritz, picked, first)
         # Some mode not found might have a larger share: then all below the limit are needed.
         below = np.where(wide, _apart(values, np.maximum(needed, np.sum(values < ceiling, axis=1))), below)
         edge = np.minimum(below, count - 1)[:, None]
@@ -232,7 +232,7 @@ def _apart(values: Array, needed: Array) -> Array:
     return np.argmax(~near & (np.arange(values.shape[1]) >= needed[:, None] - 1), axis=1) + 1
 
 
-def _counted(ritz: Ritz, picked: Chosen, first: Array) -> tuple[Array, Array]:
+def _count(ritz: Ritz, picked: Chosen, first: Array) -> tuple[Array, Array]:
     """The fewest Ritz values, `first` at least, with whose shares too little is left for any other mode; and where there are none such."""
     values, count = ritz.values, ritz.values.shape[1]
     left = SHARES - np.cumsum(ritz.share, axis=1)
@@ -254,11 +254,11 @@ def _flat(item: Array) -> Array:
     return item.reshape(len(item), -1, item.shape[-1])
 
 
-def _blocked(item: Array) -> Array:
+def _as_block(item: Array) -> Array:
     return item.reshape(len(item), -1, 6, item.shape[-1])
 
 
-def _replaced(whole: _Any, part: _Any, designs: Array) -> _Any:
+def _replace(whole: _Any, part: _Any, designs: Array) -> _Any:
     """The whole with some designs' values taken from a part: every array of it, and of what it holds."""
     if isinstance(whole, np.ndarray):
         if len(designs) == len(whole):
@@ -266,5 +266,5 @@ def _replaced(whole: _Any, part: _Any, designs: Array) -> _Any:
         result = whole.copy()
         result[designs] = part
         return cast(_Any, result)
-    values = (_replaced(getattr(whole, field.name), getattr(part, field.name), designs) for field in fields(whole))
+    values = (_replace(getattr(whole, field.name), getattr(part, field.name), designs) for field in fields(whole))
     return type(whole)(*values)

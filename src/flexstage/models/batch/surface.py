@@ -15,7 +15,7 @@ from functools import cached_property
 import numpy as np
 
 from flexstage.base.number import Array
-from flexstage.models.batch.features import Feature, spaced
+from flexstage.models.batch.features import Feature, empty_rows
 from flexstage.models.batch.numbers import Family, Slopes, numbers_of
 
 TOLERANCE = 1e-10
@@ -59,20 +59,20 @@ class Surface:
 
     def numbers(self, values: Array) -> Array:
         """The features' numbers (features, b), as `numbers_of` gives them."""
-        result = spaced(len(self.fixed), len(values))
+        result = empty_rows(len(self.fixed), len(values))
         result[:] = self.fixed[:, None]
         for start, table, _ in self._tables(values):
             stop = min(start + _TOGETHER, len(values))
             for piece in self.pieces:
                 found = (piece.coefficients.T @ _basis(piece, table))[:, : stop - start]
                 result[piece.rows, start:stop] = found
-        result[self._mirrored[0]] = result[self._mirrored[1]]
+        result[self._mirror_places[0]] = result[self._mirror_places[1]]
         return result
 
     def slopes(self, values: Array) -> Slopes:
         """Their derivatives, as `slopes_of` gives them."""
         changes = self.family.changes
-        result = spaced(sum(len(change.rows) for change in changes), len(values))
+        result = empty_rows(sum(len(change.rows) for change in changes), len(values))
         result[:] = 0.0
         for start, table, steep in self._tables(values):
             stop = min(start + _TOGETHER, len(values))
@@ -94,7 +94,7 @@ class Surface:
             yield start, table, steep / half[:, None]
 
     @cached_property
-    def _mirrored(self) -> tuple[Array, Array]:
+    def _mirror_places(self) -> tuple[Array, Array]:
         """Lower halves of symmetric features, and where their upper halves stand."""
         found = {row: mirror for place in self.family.topology.features for row, mirror in _mirror(place)}
         known = set(np.concatenate([piece.rows for piece in self.pieces]).tolist()) if self.pieces else set[int]()
@@ -166,7 +166,7 @@ def surface(family: Family, low: Array, high: Array) -> Surface | None:
     middle, half = _ranges(low, high)
     fitted, met = (numbers_of(family, middle + half * points) for points in (inner, outer))
     scale = _scale(family, fitted)
-    degrees = _needed(family, (middle, half), scale)
+    degrees = _degrees(family, (middle, half), scale)
     lower = [mirror for place in family.topology.features for _, mirror in _mirror(place)]
     degrees[:, lower] = 0
     varies: Array = np.asarray(degrees.any(axis=0))
@@ -180,7 +180,7 @@ def surface(family: Family, low: Array, high: Array) -> Surface | None:
     for variables, rows in groups.items():
         at = (np.array(variables), np.array(rows))
         highest = degrees[at[0]][:, rows].max(axis=1)
-        found = _fitted(at, highest, (inner, fitted[at[1]], outer, met[at[1]]), scale[at[1]])
+        found = _fit(at, highest, (inner, fitted[at[1]], outer, met[at[1]]), scale[at[1]])
         if found is None:
             return None
         pieces.append(found[0])
@@ -210,7 +210,7 @@ def _scale(family: Family, numbers: Array) -> Array:
     return result
 
 
-def _needed(family: Family, ranges: tuple[Array, Array], scale: Array) -> Array:
+def _degrees(family: Family, ranges: tuple[Array, Array], scale: Array) -> Array:
     """Degree (P, features) that each number needs along each variable: where its series is at rounding, on two lines."""
     middle, half = ranges
     count = len(middle)
@@ -225,7 +225,7 @@ def _needed(family: Family, ranges: tuple[Array, Array], scale: Array) -> Array:
     return (_NODES - 1 - np.argmax(above[..., ::-1], axis=-1)).T
 
 
-def _fitted(at: tuple[Array, Array], highest: Array, known: tuple[Array, Array, Array, Array], scale: Array) -> tuple[Piece, float] | None:
+def _fit(at: tuple[Array, Array], highest: Array, known: tuple[Array, Array, Array, Array], scale: Array) -> tuple[Piece, float] | None:
     """The piece of (variables, rows) with the fewest terms that meets the other designs, and its error there."""
     variables, rows = at
     inner, fitted, outer, met = known

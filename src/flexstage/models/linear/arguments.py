@@ -33,13 +33,13 @@ def takes_models(function: Callable[P, T]) -> Callable[P, T]:
     meant = f"{function.__name__}({', '.join(needed)})"
 
     @wraps(function)
-    def checked(*args: P.args, **kwargs: P.kwargs) -> T:
+    def check_arguments(*args: P.args, **kwargs: P.kwargs) -> T:
         for place, name in places:
             if isinstance(args[place] if place < len(args) else kwargs.get(name), Mechanism):
                 raise TypeError(f"{function.__name__} takes a model, not a description: {meant}")
         return function(*args, **kwargs)
 
-    return checked
+    return check_arguments
 
 
 def _is_needed(parameter: Parameter) -> bool:

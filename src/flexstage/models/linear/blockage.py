@@ -46,7 +46,7 @@ def blockage(constraints: Array, stroke: int, names: Sequence[str], wanted: froz
     single = [row for row in against if alone[row]]
     if single:
         meant = [row for row in single if names[row] in wanted]
-        return Blockage(_told(against, names), _told(meant or single, names))
+        return Blockage(_unique_names(against, names), _unique_names(meant or single, names))
     left, freed, held = list(range(len(names))), [], []
     while against and not _moves(constraints[left], stroke):
         rows = [left[row] for row in against]
@@ -54,7 +54,7 @@ def blockage(constraints: Array, stroke: int, names: Sequence[str], wanted: froz
         freed.append(next((row for row in rows if names[row] in wanted), rows[0]))
         left.remove(freed[-1])
         against = _against(constraints[left], stroke)
-    return Blockage(_told(held, names), _told(freed, names), together=True)
+    return Blockage(_unique_names(held, names), _unique_names(freed, names), together=True)
 
 
 def _against(constraints: Array, stroke: int) -> list[int]:
@@ -78,7 +78,7 @@ def _states(constraints: Array, stroke: int) -> tuple[Array, Array]:
     return left[:, :rank] @ (right[:rank, stroke] / values[:rank]), left[:, rank:]
 
 
-def _told(rows: Sequence[int], names: Sequence[str]) -> tuple[str, ...]:
+def _unique_names(rows: Sequence[int], names: Sequence[str]) -> tuple[str, ...]:
     """Names of rows, each once: copies of a link have one."""
     return tuple(dict.fromkeys(names[row] for row in rows))
 

@@ -34,28 +34,28 @@ class Motions:
     at: Callable[[str, Frame], Array]
 
 
-def loaded_places(assembly: Assembly) -> dict[str, Place]:
+def wrench_places(assembly: Assembly) -> dict[str, Place]:
     """Where wrenches act: the platform's reference point and the named points.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.mechanism.expand import expand
-    >>> list(loaded_places(expand(parallelogram())))
+    >>> list(wrench_places(expand(parallelogram())))
     ['platform', 'corner']
     """
     points = {name: Place(body, point) for name, (body, point) in assembly.points.items()}
     return {PLATFORM: Place(PLATFORM, assembly.bodies[PLATFORM].reference), **points}
 
 
-def seen_places(assembly: Assembly) -> dict[str, Place]:
+def twist_places(assembly: Assembly) -> dict[str, Place]:
     """Where twists are read: where wrenches act, and the reference points of all other bodies.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.mechanism.expand import expand
-    >>> list(seen_places(expand(parallelogram())))
+    >>> list(twist_places(expand(parallelogram())))
     ['platform', 'corner', 'B/base', 'B/tip']
     """
     others = {name: Place(name, body.reference) for name, body in assembly.bodies.items() if name != PLATFORM}
-    return loaded_places(assembly) | others
+    return wrench_places(assembly) | others
 
 
 def input_channels(assembly: Assembly) -> tuple[Channel, ...]:
@@ -66,7 +66,7 @@ def input_channels(assembly: Assembly) -> tuple[Channel, ...]:
     >>> [channel.name for channel in input_channels(expand(parallelogram()))][:3]
     ['B', 'platform.fx', 'platform.fy']
     """
-    return (*(Channel(name, "m") for name in assembly.actuators), *_components(loaded_places(assembly), FORCES, WRENCH_UNITS))
+    return (*(Channel(name, "m") for name in assembly.actuators), *_components(wrench_places(assembly), FORCES, WRENCH_UNITS))
 
 
 def output_channels(assembly: Assembly) -> tuple[Channel, ...]:
@@ -79,7 +79,7 @@ def output_channels(assembly: Assembly) -> tuple[Channel, ...]:
     ('platform.x', 'B/front.mz', True)
     """
     return (
-        *_components(seen_places(assembly), COMPONENTS, TWIST_UNITS),
+        *_components(twist_places(assembly), COMPONENTS, TWIST_UNITS),
         *(Channel(name, "m") for name in assembly.gauges),
         *_components(assembly.links, FORCES, WRENCH_UNITS),
     )
@@ -97,7 +97,7 @@ def absolute(assembly: Assembly) -> Array:
     >>> int(absolute(expand(parallelogram())).sum())  # six of each of four places
     24
     """
-    return np.arange(len(output_channels(assembly))) < len(COMPONENTS) * len(seen_places(assembly))
+    return np.arange(len(output_channels(assembly))) < len(COMPONENTS) * len(twist_places(assembly))
 
 
 def place_twists(places: Mapping[str, Place], motions: Motions) -> list[Array]:

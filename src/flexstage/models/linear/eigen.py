@@ -53,7 +53,7 @@ def solve(stiffness: Array, inertia: Array, weights: Array) -> Eigen:
     shapes = np.linalg.solve(np.swapaxes(lower, -1, -2), vectors) / np.sqrt(inverse_values)[..., None, :]
     failed = np.isnan(lower[..., 0, 0])
     values = np.where(failed[..., None], np.nan, 1.0 / inverse_values)
-    return Eigen(values, np.where(failed[..., None, None], np.nan, _signed(shapes, weights)))
+    return Eigen(values, np.where(failed[..., None, None], np.nan, _apply_signs(shapes, weights)))
 
 
 def cholesky(matrix: Array) -> Array:
@@ -82,7 +82,7 @@ def _clean(matrix: Array) -> Array:
     return np.where(failed, np.eye(matrix.shape[-1]), matrix)
 
 
-def _signed(shapes: Array, weights: Array) -> Array:
+def _apply_signs(shapes: Array, weights: Array) -> Array:
     weighted = shapes * weights[:, None]
     largest = np.argmax(np.round(np.abs(weighted) / np.max(np.abs(weighted), axis=-2, keepdims=True), 6), axis=-2)
     picked = np.take_along_axis(shapes, largest[..., None, :], axis=-2)

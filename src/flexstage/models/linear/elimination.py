@@ -79,7 +79,7 @@ def _pivot_columns(first: Array, keep: tuple[int, ...]) -> list[int]:
     outside = _without(first.shape[1], keep)
     if not first.size:
         return []
-    orthogonal, triangle, order = pivoted(_preferred(first[:, outside]))
+    orthogonal, triangle, order = pivoted_qr(_preference(first[:, outside]))
     rank = _rank(triangle)
     dependent = [outside[index] for index in order[:rank]]
     left = (orthogonal.T @ first[:, list(keep)])[rank:]
@@ -92,11 +92,11 @@ def _pivots(matrix: Array) -> list[int]:
     """Indices of a maximal set of independent columns, best conditioned first."""
     if not matrix.size:
         return []
-    _, triangle, order = pivoted(_preferred(matrix))
+    _, triangle, order = pivoted_qr(_preference(matrix))
     return [int(index) for index in order[: _rank(triangle)]]
 
 
-def _preferred(matrix: Array) -> Array:
+def _preference(matrix: Array) -> Array:
     return matrix * (1.0 - _PREFERENCE * np.arange(matrix.shape[1]))
 
 
@@ -130,15 +130,15 @@ def null_space(matrix: Array) -> Array:
     """
     if not matrix.size:
         return np.eye(matrix.shape[1])
-    orthogonal, triangle, _ = pivoted(_preferred(matrix.T))
+    orthogonal, triangle, _ = pivoted_qr(_preference(matrix.T))
     diagonal = np.abs(np.diag(triangle))
     return orthogonal[:, int(np.sum(diagonal > _RANK * diagonal[0])) :]
 
 
-def pivoted(matrix: Array) -> tuple[Array, Array, Array]:
+def pivoted_qr(matrix: Array) -> tuple[Array, Array, Array]:
     """QR decomposition of one real matrix with column pivoting: Q (m, m), R and the order of the columns, largest first.
 
-    >>> pivoted(np.array([[1.0, 2.0]]))[2].tolist()
+    >>> pivoted_qr(np.array([[1.0, 2.0]]))[2].tolist()
     [1, 0]
     """
     return cast(tuple[Array, Array, Array], scipy.linalg.qr(matrix, pivoting=True))

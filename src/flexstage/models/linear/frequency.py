@@ -105,7 +105,7 @@ def transfer(model: LinearModel, chosen: Ports, frequencies: Array, damping: Dam
         lossy = replace(chosen, force=chosen.force + 1j * chosen.lost)
         found = direct(structural_stiffness(model), model.inertia_matrix, lossy, frequencies)
         return found * (1.0 + 1j * np.asarray(chosen.loss))[..., None, :, None]
-    return superposed(model, chosen, frequencies, damping)
+    return superpose(model, chosen, frequencies, damping)
 
 
 def direct(stiffness: Array, inertia: Array, chosen: Ports, frequencies: Array) -> Array:
@@ -131,7 +131,7 @@ def _direct(stiffness: Array, inertia: Array, chosen: Ports, omega: Array) -> Ar
     return chosen.output[..., None, :, :] @ motion + chosen.feedthrough[..., None, :, :]
 
 
-def superposed(model: LinearModel, chosen: Ports, frequencies: Array, damping: Damping) -> Array:
+def superpose(model: LinearModel, chosen: Ports, frequencies: Array, damping: Damping) -> Array:
     """H (..., f, p, m) by superposition of modes: as `transfer`, but structural damping by each mode's equivalent ratio, as in time.
 
     >>> from flexstage.cases.parallelogram import parallelogram
@@ -140,7 +140,7 @@ def superposed(model: LinearModel, chosen: Ports, frequencies: Array, damping: D
     >>> from flexstage.models.lumped import lumped
     >>> model = lumped(parallelogram())
     >>> far, chosen = np.array([1.0]), ports(model, ["platform.x"], ["B"])
-    >>> ways = [function(model, chosen, far, StructuralDamping()) for function in (superposed, transfer)]
+    >>> ways = [function(model, chosen, far, StructuralDamping()) for function in (superpose, transfer)]
     >>> bool(np.allclose(*ways, rtol=0.05)), bool(np.allclose(*ways, rtol=1e-6))
     (True, False)
     """

@@ -73,12 +73,12 @@ class LinearModel:
     @cached_property
     def stiffness_matrix(self) -> Array:
         """K (..., n, n), read-only."""
-        return _kept(assembled(self.stiffness, len(self.coordinates)))
+        return _freeze(assemble(self.stiffness, len(self.coordinates)))
 
     @cached_property
     def inertia_matrix(self) -> Array:
         """M (..., n, n), read-only."""
-        return _kept(assembled(self.inertia, len(self.coordinates)))
+        return _freeze(assemble(self.inertia, len(self.coordinates)))
 
     @property
     def input_matrix(self) -> Array:
@@ -86,7 +86,7 @@ class LinearModel:
         return self.force + self._of_imposed(lost=False)
 
     @property
-    def lost_matrix(self) -> Array:
+    def loss_matrix(self) -> Array:
         """What structural damping adds to B, (..., n, m), to be taken times j: an imposed deformation is lost like any other."""
         return self._of_imposed(lost=True)
 
@@ -95,7 +95,7 @@ class LinearModel:
         for name, deformation in self.imposed.items():
             part = self.stiffness[name]
             factor = np.asarray(part.loss_factor)[..., None, None] if lost else 1.0
-            total = total + factor * (_transposed(part.operator) @ (part.law @ deformation))
+            total = total + factor * (_transpose(part.operator) @ (part.law @ deformation))
         return total
 
     def output_index(self, names: tuple[str, ...]) -> list[int]:
@@ -114,52 +114,52 @@ class LinearModel:
         return tuple(channel.name for channel in self.inputs if channel.unit == "m")
 
 
-def assembled(contributions: Contributions, size: int) -> Array:
+def assemble(contributions: Contributions, size: int) -> Array:
     """Sum of contributions as one matrix (..., n, n), symmetric by construction.
 
     >>> half = Contribution(np.array([[1.0, -1.0]]), np.array([[0.5]]))
-    >>> assembled({"a": half, "b": half}, 2).tolist()
+    >>> assemble({"a": half, "b": half}, 2).tolist()
     [[1.0, -1.0], [-1.0, 1.0]]
     """
     if not contributions:
         return np.zeros((size, size))
-    total = gathered(contributions, {name: item.operator for name, item in contributions.items()})
-    return 0.5 * (total + _transposed(total))
+    total = strain_forces(contributions, {name: item.operator for name, item in contributions.items()})
+    return 0.5 * (total + _transpose(total))
 
 
-def gathered(contributions: Contributions, strains: Mapping[str, Array]) -> Array:
+def strain_forces(contributions: Contributions, strains: Mapping[str, Array]) -> Array:
     """Generalised forces (..., n, k) of given strains (..., r, k): sum of operator^T law strain over the contributions.
 
     >>> half = Contribution(np.array([[1.0, -1.0]]), np.array([[0.5]]))
-    >>> gathered({"a": half, "b": half}, {"a": np.array([[2.0]]), "b": np.array([[4.0]])}).tolist()
+    >>> strain_forces({"a": half, "b": half}, {"a": np.array([[2.0]]), "b": np.array([[4.0]])}).tolist()
     [[3.0], [-3.0]]
     """
     operators = [item.operator for item in contributions.values()]
     forces = [item.law @ strains[name] for name, item in contributions.items()]
-    return _transposed(_stacked(operators)) @ _stacked(forces)
+    return _transpose(_stack(operators)) @ _stack(forces)
 
 
-def _kept(matrix: Array) -> Array:
+def _freeze(matrix: Array) -> Array:
     """A matrix that whoever is given it cannot change for others."""
     matrix.flags.writeable = False
     return matrix
 
 
-def _stacked(matrices: list[Array]) -> Array:
+def _stack(matrices: list[Array]) -> Array:
     batch = np.broadcast_shapes(*{matrix.shape[:-2] for matrix in matrices})
     return np.concatenate([np.broadcast_to(matrix, (*batch, *matrix.shape[-2:])) if batch else matrix for matrix in matrices], axis=-2)
 
 
-def _transposed(matrix: Array) -> Array:
+def _transpose(matrix: Array) -> Array:
     return np.swapaxes(matrix, -1, -2)
 
 
-def labelled(model: LinearModel, values: Array, rows: tuple[str, ...], columns: tuple[str, ...]) -> Matrix:
+def label(model: LinearModel, values: Array, rows: tuple[str, ...], columns: tuple[str, ...]) -> Matrix:
     """A matrix from the model's inputs to outputs, with units from its channels.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped
-    >>> labelled(mapped(double_triangle()), np.eye(1), ("platform.rx",), ("B4",)).unit
+    >>> label(mapped(double_triangle()), np.eye(1), ("platform.rx",), ("B4",)).unit
     (('rad/m',),)
     """
     row_units = tuple(model.outputs[index].unit for index in model.output_index(rows))

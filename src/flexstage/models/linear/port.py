@@ -49,9 +49,9 @@ def ports(model: LinearModel, outputs: Iterable[str], inputs: Iterable[str]) -> 
     ['B', 'B/tip.fz', 'ground.x']
     """
     known = {channel.name: number for number, channel in enumerate(model.outputs)}
-    rows = _expanded(outputs, tuple(known), "output")
+    rows = _expand_groups(outputs, tuple(known), "output")
     sources = {channel.name: number for number, channel in enumerate(model.inputs)}
-    columns = _expanded(inputs, (*sources, *_further_inputs(model)), "input")
+    columns = _expand_groups(inputs, (*sources, *_further_inputs(model)), "input")
     named = {"outputs": rows, "inputs": columns}
     require(Finding(kind, "none is named", "Name at least one") for kind, names in named.items() if not names)
     picked = [known[name] for name in rows]
@@ -65,7 +65,7 @@ def ports(model: LinearModel, outputs: Iterable[str], inputs: Iterable[str]) -> 
         inertial=_side_by_side([part[2] for part in parts]),
         output=model.output[..., picked, :],
         feedthrough=_side_by_side([part[3] for part in parts])[..., picked, :],
-        lost=_side_by_side([_lost(model, name, sources) for name in columns]),
+        lost=_side_by_side([_loss_rows(model, name, sources) for name in columns]),
         loss=np.stack(np.broadcast_arrays(*(_loss(model, name) for name in rows)), axis=-1),
     )
 
@@ -95,7 +95,7 @@ def _twists(model: LinearModel) -> list[str]:
     return [name for name in names if name.rpartition(".")[0]]
 
 
-def _expanded(names: Iterable[str], known: tuple[str, ...], kind: str) -> list[str]:
+def _expand_groups(names: Iterable[str], known: tuple[str, ...], kind: str) -> list[str]:
     """Groups written out; unknown names refused together."""
     result: list[str] = []
     findings: list[Finding] = []
@@ -131,8 +131,8 @@ def _column(model: LinearModel, name: str, known: dict[str, int], sources: dict[
     return Channel(name, WRENCH_UNITS[axis]), force, np.zeros_like(force), np.zeros((len(model.outputs), 1))
 
 
-def _lost(model: LinearModel, name: str, sources: dict[str, int]) -> Array:
-    return model.lost_matrix[..., [sources[name]]] if name in sources else np.zeros((len(model.coordinates), 1))
+def _loss_rows(model: LinearModel, name: str, sources: dict[str, int]) -> Array:
+    return model.loss_matrix[..., [sources[name]]] if name in sources else np.zeros((len(model.coordinates), 1))
 
 
 def _loss(model: LinearModel, output: str) -> Array:

@@ -6,7 +6,7 @@ import numpy as np
 
 from flexstage.base.labelled import Matrix
 from flexstage.base.number import Array
-from flexstage.models.linear.model import LinearModel, labelled
+from flexstage.models.linear.model import LinearModel, label
 from flexstage.models.linear.undetermined import require_known, require_still, require_unmoved
 
 
@@ -36,7 +36,7 @@ def static_gain(model: LinearModel, outputs: tuple[str, ...], inputs: tuple[str,
     require_unmoved(model, inputs)
     motion = displacement(model, model.input_matrix[..., columns])
     values = model.output[..., rows, :] @ motion + model.feedthrough[..., rows, :][..., columns]
-    return labelled(model, values, outputs, inputs)
+    return label(model, values, outputs, inputs)
 
 
 def part_deformation(model: LinearModel, motion: Array, inputs: Array | None = None) -> dict[str, Array]:

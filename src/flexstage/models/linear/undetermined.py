@@ -40,10 +40,10 @@ def require_still(model: LinearModel, outputs: Iterable[str]) -> None:
     >>> from flexstage.models.lumped import lumped
     >>> require_still(lumped(parallelogram()), ["S"])
     """
-    seen = _seen(model)
+    seen = _idle_seen(model)
     number = {channel.name: index for index, channel in enumerate(model.outputs)}
     require(
-        Finding(name, f"this gauge sees an idle motion that no stiffness holds: {_named(model)}", f"{_ADVICE}, or move the gauge")
+        Finding(name, f"this gauge sees an idle motion that no stiffness holds: {_names(model)}", f"{_ADVICE}, or move the gauge")
         for name in outputs
         if number[name] in seen and name.rpartition(".")[2] not in (*COMPONENTS, *FORCES)
     )
@@ -58,7 +58,7 @@ def require_unmoved(model: LinearModel, inputs: Iterable[str]) -> None:
     """
     driving = _driving(model)
     require(
-        Finding(name, f"it drives an idle motion that no stiffness holds: {_named(model)}", f"{_ADVICE}, or load another body")
+        Finding(name, f"it drives an idle motion that no stiffness holds: {_names(model)}", f"{_ADVICE}, or load another body")
         for name in inputs
         if name in driving
     )
@@ -71,11 +71,11 @@ def require_held(model: LinearModel, outputs: Iterable[str], inputs: Iterable[st
     >>> from flexstage.models.lumped import lumped
     >>> require_held(lumped(parallelogram()), ["S"], ["corner.fx"])
     """
-    seen, driving = _seen(model), _driving(model)
+    seen, driving = _idle_seen(model), _driving(model)
     number = {channel.name: index for index, channel in enumerate(model.outputs)}
     watched = {motion for name in outputs for motion in seen.get(number[name], ())}
     require(
-        Finding(name, f"it drives an idle motion that an output sees and no stiffness holds: {_named(model)}", _ADVICE)
+        Finding(name, f"it drives an idle motion that an output sees and no stiffness holds: {_names(model)}", _ADVICE)
         for name in inputs
         if watched & driving.get(name, set())
     )
@@ -103,10 +103,10 @@ def require_balanced(model: LinearModel, where: str, load: Array, rows: list[int
         # by what the motion does to any output: of a body that takes no part in it, only rounding is seen
         least = _TENTH * np.max(np.abs(motions), axis=0) * np.linalg.norm(load / _METRE)
     if np.any(np.abs(works @ load) > _SEEN * least):
-        raise refuse(where, f"it drives an idle motion that no stiffness holds, so there is no rest: {_named(model)}", _ADVICE)
+        raise refuse(where, f"it drives an idle motion that no stiffness holds, so there is no rest: {_names(model)}", _ADVICE)
 
 
-def _seen(model: LinearModel) -> dict[int, set[int]]:
+def _idle_seen(model: LinearModel) -> dict[int, set[int]]:
     """The idle motions that each output sees, by number."""
     if model.idle_output is None:
         return {}
@@ -117,7 +117,7 @@ def _seen(model: LinearModel) -> dict[int, set[int]]:
 
 def _driving(model: LinearModel) -> dict[str, set[int]]:
     """The idle motions that a wrench drives, by the wrench's name: it does work on the twists that see them."""
-    return dict(_pairs(model.outputs, _seen(model)))
+    return dict(_pairs(model.outputs, _idle_seen(model)))
 
 
 def _pairs(outputs: tuple[Channel, ...], seen: dict[int, set[int]]) -> Iterator[tuple[str, set[int]]]:
@@ -127,5 +127,5 @@ def _pairs(outputs: tuple[Channel, ...], seen: dict[int, set[int]]) -> Iterator[
             yield f"{owner}.{FORCES[COMPONENTS.index(component)]}", motions
 
 
-def _named(model: LinearModel) -> str:
+def _names(model: LinearModel) -> str:
     return ", ".join(dict.fromkeys(name.rpartition(".")[0] for name in model.idle))

@@ -8,7 +8,7 @@ from pathlib import Path
 from flexstage.analysis.complete import read
 from flexstage.base.finding import DesignError, Finding, nearest, refuse, require
 from flexstage.mechanism.address import assign
-from flexstage.mechanism.checks import checked
+from flexstage.mechanism.checks import require_valid
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.store import load
 from flexstage.models.linear.model import LinearModel
@@ -36,7 +36,7 @@ def change(mechanism: Mechanism, changes: Sequence[str]) -> Mechanism:
         except DesignError as error:
             findings += [Finding(_where(text, each.where), each.what, each.advice) for each in error.findings]
     require(findings)
-    return checked(result) if changes else mechanism
+    return require_valid(result) if changes else mechanism
 
 
 def _where(text: str, inner: str) -> str:

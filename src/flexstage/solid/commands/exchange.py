@@ -10,7 +10,7 @@ import typer
 
 from flexstage.analysis.complete import platform_modes
 from flexstage.base.finding import nearest, refuse, require
-from flexstage.mechanism.drawn import drawn
+from flexstage.mechanism.drawn import with_drawn_parts
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.store import load, outline_text
 from flexstage.show.command.design import open_design
@@ -87,7 +87,7 @@ def _material(mechanism: Mechanism, name: str | None) -> str:
 def _contents(mechanism: Mechanism, wanted: dict[str, Path | None], order: int, modes: int) -> Iterator[tuple[Path, str, bytes]]:
     """The files that are wanted, with their options, one after the other."""
     require_solver()
-    stage, fineness = drawn(mechanism), Fineness(order=order)
+    stage, fineness = with_drawn_parts(mechanism), Fineness(order=order)
     _check_contact(stage, meshed=wanted["--mesh"] is not None or wanted["--gltf"] is not None)
     if (path := wanted["--output"]) is not None:
         yield path, "--output", step_apart(stage)

@@ -11,25 +11,25 @@ from flexstage.base.finding import refuse
 from flexstage.base.number import Array
 from flexstage.mechanism.expand import Assembly, PlacedLink
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
-from flexstage.mechanism.moving_mass import carried, moving_inertia
+from flexstage.mechanism.moving_mass import carried_masses, moving_inertia
 from flexstage.models.linear.channels import (
     Motions,
     absolute,
     gauge_rows,
     imposed_strokes,
     input_channels,
-    loaded_places,
     output_channels,
     place_twists,
-    seen_places,
+    twist_places,
+    wrench_places,
 )
-from flexstage.models.linear.model import Contribution, LinearModel, assembled
+from flexstage.models.linear.model import Contribution, LinearModel, assemble
 from flexstage.parts.piezo import Piezo
 from flexstage.solid.fea.casing import casing, end_faces_apart
 from flexstage.solid.fea.component import Component, Interface, Joint, groups, is_elastic
 from flexstage.solid.fea.fineness import WARPS
 from flexstage.solid.fea.superelement import Superelement
-from flexstage.spatial.frame import COMPONENTS, Frame, rigid_inertia, seen_at, transport, turned
+from flexstage.spatial.frame import COMPONENTS, Frame, rigid_inertia, spatial_rotation, transport, twist_transform
 
 _SINGULAR = 1e-13
 
@@ -60,7 +60,7 @@ class _Model:
         """A body's twist (6, N) at a frame's origin in its axes."""
         if body == GROUND:
             return np.zeros((6, self.size))
-        return seen_at(frame, self.assembly.bodies[body].reference) @ self.twists[body]
+        return twist_transform(frame, self.assembly.bodies[body].reference) @ self.twists[body]
 
     @property
     def motions(self) -> Motions:
@@ -108,7 +108,7 @@ def _joined(mechanism: Mechanism, assembly: Assembly, parts: tuple[tuple[Compone
             twists[body] = np.eye(len(names))[blocks[body]]
     for item in placed:
         for body, mean in zip(item.component.bodies, item.element.bodies.values(), strict=True):
-            twists[body] = turned(item.component.place.rotation) @ mean @ item.operator
+            twists[body] = spatial_rotation(item.component.place.rotation) @ mean @ item.operator
     return _Model(mechanism, assembly, names, blocks, placed, twists)
 
 
@@ -169,7 +169,7 @@ def _operator(assembly: Assembly, component: Component, element: Superelement, b
     result = np.zeros((element.size, size))
     for number, item in enumerate(component.interfaces):
         joint, rows = item.joint, slice(6 * number, 6 * number + 6)
-        turn = turned(component.place.rotation.T)
+        turn = spatial_rotation(component.place.rotation.T)
         if joint.name in blocks:
             result[rows, blocks[joint.name]] = turn
         else:
@@ -222,7 +222,7 @@ def _inertia(model: _Model) -> Iterator[tuple[str, Contribution]]:
                 yield from _body_inertia(model, item, name, number)
     for name, body in model.assembly.bodies.items():
         if is_elastic(model.assembly, name):
-            for number, load in enumerate(carried(model.mechanism, body)[1:]):
+            for number, load in enumerate(carried_masses(model.mechanism, body)[1:]):
                 matrix = rigid_inertia(load.mass, load.inertia, load.centre, body.reference)
                 yield f"{name} (payload {number + 1})", Contribution(model.twists[name], matrix)
         else:
@@ -235,14 +235,14 @@ def _body_inertia(model: _Model, item: Placed, name: str, number: int) -> Iterat
     """A body's inertia with its mean twist, and what its elastic motion about that carries; the two are orthogonal."""
     place = list(item.component.bodies).index(name)
     mean, own = list(item.element.bodies.values())[place], list(item.element.body_inertia.values())[place]
-    turn = turned(item.component.place.rotation)
+    turn = spatial_rotation(item.component.place.rotation)
     yield name, Contribution(model.twists[name], turn @ own @ turn.T)
     whole = list(item.element.inertia.values())[number]
     yield f"{name} (elastic)", Contribution(item.operator, whole - mean.T @ own @ mean)
 
 
 def _check_held(model: _Model, elastic: Mapping[str, Contribution]) -> None:
-    stiffness = assembled(elastic, model.size)
+    stiffness = assemble(elastic, model.size)
     scale = 1.0 / np.sqrt(np.maximum(np.diag(stiffness), np.finfo(float).tiny))
     values, vectors = np.linalg.eigh(stiffness * scale * scale[:, None])
     if values[0] <= _SINGULAR:
@@ -258,7 +258,7 @@ def _check_held(model: _Model, elastic: Mapping[str, Contribution]) -> None:
 
 def _inputs(model: _Model) -> tuple[Array, dict[str, Array]]:
     drives = model.assembly.actuators
-    wrenches = [rows.T for rows in place_twists(loaded_places(model.assembly), model.motions)]
+    wrenches = [rows.T for rows in place_twists(wrench_places(model.assembly), model.motions)]
     force = np.hstack([np.zeros((model.size, len(drives))), *wrenches])
     return force, imposed_strokes(model.assembly, {link: _stroke(model, link) for link in drives.values()})
 
@@ -275,7 +275,7 @@ def _holder(model: _Model, link: str) -> Placed:
 
 
 def _outputs(model: _Model, imposed: Mapping[str, Array]) -> tuple[Array, Array]:
-    rows = [*place_twists(seen_places(model.assembly), model.motions), *gauge_rows(model.assembly, model.motions)]
+    rows = [*place_twists(twist_places(model.assembly), model.motions), *gauge_rows(model.assembly, model.motions)]
     inputs = len(input_channels(model.assembly))
     passed = [np.zeros((len(row), inputs)) for row in rows]
     for name, link in model.assembly.links.items():
@@ -306,7 +306,7 @@ def _rigid_outputs(model: _Model) -> Array:
     """Outputs (p, 6) when everything moves with the ground: absolute twists do."""
     centre = model.assembly.bodies[PLATFORM].reference
     result = np.zeros((len(output_channels(model.assembly)), 6))
-    result[absolute(model.assembly)] = np.vstack([transport(place.point - centre) for place in seen_places(model.assembly).values()])
+    result[absolute(model.assembly)] = np.vstack([transport(place.point - centre) for place in twist_places(model.assembly).values()])
     return result
 
 
@@ -315,9 +315,9 @@ def _carried(model: _Model) -> Array:
     centre = model.assembly.bodies[PLATFORM].reference
     total = np.zeros((model.size, 6))
     for item in model.placed:
-        total += item.operator.T @ item.element.carried @ seen_at(item.component.place, centre)
+        total += item.operator.T @ item.element.carried @ twist_transform(item.component.place, centre)
     for name, body in model.assembly.bodies.items():
-        loads = carried(model.mechanism, body)
+        loads = carried_masses(model.mechanism, body)
         for load in loads[1:] if is_elastic(model.assembly, name) else loads:
             matrix = rigid_inertia(load.mass, load.inertia, load.centre, body.reference)
             total += model.twists[name].T @ matrix @ transport(body.reference - centre)

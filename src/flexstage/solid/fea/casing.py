@@ -10,7 +10,7 @@ from flexstage.mechanism.expand import PlacedLink
 from flexstage.parts.piezo import Piezo
 from flexstage.solid.fea.component import Component
 from flexstage.solid.fea.piece import stack_medium
-from flexstage.spatial.frame import seen_at
+from flexstage.spatial.frame import twist_transform
 
 
 def casing(link: PlacedLink) -> Array | None:
@@ -59,5 +59,5 @@ def end_faces_apart(component: Component, link: PlacedLink) -> Array:
     for number, item in enumerate(component.interfaces):
         if item.joint.link == link.name:
             sign = 1.0 if item.joint.body == link.joins[1] else -1.0
-            rows[:, 6 * number : 6 * number + 6] = sign * seen_at(frame, item.joint.frame.position)
+            rows[:, 6 * number : 6 * number + 6] = sign * twist_transform(frame, item.joint.frame.position)
     return rows

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from flexstage.base.digest import digest
 from flexstage.base.finding import Finding
 from flexstage.base.progress import Progress
-from flexstage.mechanism.drawn import drawn
+from flexstage.mechanism.drawn import with_drawn_parts
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.linear.model import LinearModel
@@ -87,7 +87,7 @@ def model_with_parts(
     Calibrated hinges are read as the shapes they stand for.
     """
     ways = Ways(cache, progress, Limits(memory=memory))
-    shape = drawn(mechanism)
+    shape = with_drawn_parts(mechanism)
     reduced = reduce_parts(sound_components(shape, cache), reduction, ways)
     model = linear_model(shape, expand(shape), reduced.parts, f"solid model of {digest(shape, physics=True)[:16]}")
     return SolidModel(model, reduced.parts, reduction, reduced.notices)

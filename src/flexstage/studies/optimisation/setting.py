@@ -14,7 +14,7 @@ from flexstage.analysis.requirements import Requirement, Sense
 from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array
 from flexstage.mechanism.address import get
-from flexstage.mechanism.checks import checked
+from flexstage.mechanism.checks import require_valid
 from flexstage.studies.optimisation.problem import SPARE, Problem, Side
 from flexstage.studies.optimisation.values import Point, Values
 from flexstage.studies.optimisation.wanted import Objective, Wanted, limits
@@ -94,7 +94,7 @@ def setting(study: Study, wanted: Wanted) -> Setting:
 
 def _missing(study: Study, objectives: tuple[Objective, ...], kept: tuple[Requirement, ...]) -> Iterator[Finding]:
     """Measures that this stage does not have."""
-    bench = bench_of(checked(study.design))
+    bench = bench_of(require_valid(study.design))
     asked: list[tuple[str, Measure]] = [(f"responses.{each.name}", each.measure) for each in objectives]
     asked += [(f"limits.{each.key}", each) for each in kept]
     for where, each in asked:

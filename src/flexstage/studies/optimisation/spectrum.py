@@ -9,9 +9,9 @@ import numpy as np
 from flexstage.base.finding import refuse
 from flexstage.base.number import Array
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
-from flexstage.models.batch.choice import Choice, chosen
+from flexstage.models.batch.choice import Choice, choose
 from flexstage.models.linear.eigen import Eigen, solve
-from flexstage.models.linear.model import Contribution, LinearModel, assembled
+from flexstage.models.linear.model import Contribution, LinearModel, assemble
 
 _STEP = 1e-20
 _ROOM = 6
@@ -67,7 +67,7 @@ def spectra(mechanism: Mechanism, model: LinearModel, asked: tuple[Modes, ...], 
     first = slice(None, None, each)
     size = len(model.coordinates)
     stiffness, inertia = (
-        np.broadcast_to(assembled({name: _real(_cut(item, first)) for name, item in matrix.items()}, size), (designs, size, size))
+        np.broadcast_to(assemble({name: _real(_cut(item, first)) for name, item in matrix.items()}, size), (designs, size, size))
         for matrix in (model.stiffness, model.inertia)
     )
     solved = solve(stiffness, inertia, np.ones(stiffness.shape[-1]))
@@ -99,7 +99,7 @@ def _picked(mechanism: Mechanism, model: LinearModel, solved: Eigen, at: tuple[i
     else:
         limit = np.inf if mechanism.mode_limit is None else float(np.max(np.real(mechanism.mode_limit)))
         share = _share(model, solved.shapes[design], design * each)
-        found = np.flatnonzero(chosen(solved.values[design][None], share[None], Choice(limit=limit)).mask[0])
+        found = np.flatnonzero(choose(solved.values[design][None], share[None], Choice(limit=limit)).mask[0])
     if len(found) < wanted.count:
         raise refuse("frequency", f"there are {len(found)} such modes", "Ask for a lower number")
     return found

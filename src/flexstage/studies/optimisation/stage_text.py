@@ -13,7 +13,7 @@ from flexstage.mechanism.grammar import node_of
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.store import dumps, patch
 from flexstage.mechanism.store.file import parse_toml, read_text
-from flexstage.mechanism.store.retag import retagged
+from flexstage.mechanism.store.retag import set_tags
 from flexstage.studies.optimisation.wanted import Wanted
 from flexstage.studies.sweeps.definition import Study
 
@@ -58,7 +58,7 @@ def optimised_text(text: str, study: Study, wanted: Wanted, values: Array | Sequ
     changed = dict(_changed(study, np.asarray(values, dtype=float)))
     aims = ", ".join(f"{each.aim.value} {each.name}" for each in wanted.objectives)
     tags = dict.fromkeys(changed, f"derived optimise {study.name}, {aims}")
-    return retagged(patch(text, changed, where=where), tags, where=where)
+    return set_tags(patch(text, changed, where=where), tags, where=where)
 
 
 def _changed(study: Study, values: Array) -> Iterator[tuple[str, float]]:

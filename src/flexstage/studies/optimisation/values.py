@@ -13,7 +13,7 @@ from flexstage.analysis.judge import bench_of
 from flexstage.analysis.measures import Extreme, Measure, frequency, platform_frequency
 from flexstage.base.finding import DesignError
 from flexstage.base.number import Array, Table
-from flexstage.mechanism.checks import checked
+from flexstage.mechanism.checks import require_valid
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.studies.optimisation.spectrum import Modes, Spectrum, spectra
 from flexstage.studies.sweeps.definition import Study
@@ -137,7 +137,7 @@ class Values:
 
     def _batch(self, shares: Array, *, slopes: bool) -> list[Point]:
         designs, variables = shares.shape
-        checked(self._design(shares))
+        require_valid(self._design(shares))
         each = variables if slopes else 1
         rows = np.repeat(shares, each, axis=0)
         if slopes:

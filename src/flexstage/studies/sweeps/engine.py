@@ -20,7 +20,7 @@ from flexstage.base.finding import DesignError
 from flexstage.base.number import Array, Table
 from flexstage.mechanism.locate import canonical
 from flexstage.models.batch.choice import Choice
-from flexstage.models.batch.engine import Plan, Status, planned, platform_modes
+from flexstage.models.batch.engine import Plan, Status, plan_family, platform_modes
 from flexstage.models.batch.kernel import kernel_name
 from flexstage.models.batch.numbers import Family, drawn_family, family
 from flexstage.studies.sweeps.definition import Study
@@ -107,7 +107,7 @@ def _engine_of(study: Study) -> Engine:
     choice = Choice(_MODES, np.inf if limit is None else float(np.max(limit)))
     try:
         with threadpool_limits(1):  # sums over several threads would not be the same to the bit
-            return Engine(modes, planned(_family(study, numbers), choice, _ranges(study, numbers)), numbers)
+            return Engine(modes, plan_family(_family(study, numbers), choice, _ranges(study, numbers)), numbers)
     except DesignError:
         return Engine(Table({}))
 

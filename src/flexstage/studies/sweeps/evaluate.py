@@ -9,7 +9,7 @@ import numpy as np
 
 from flexstage.base.finding import DesignError, Finding, require
 from flexstage.base.number import Array
-from flexstage.mechanism.checks import checked
+from flexstage.mechanism.checks import require_valid
 from flexstage.studies.sweeps.definition import Study
 from flexstage.studies.sweeps.engine import Engine, engine_of
 from flexstage.studies.sweeps.loaded import falling
@@ -60,7 +60,7 @@ def nominal(study: Study) -> Array:
     >>> nominal(neck_study()).round(0).tolist()
     [106.0]
     """
-    found = study.answered(checked(study.design))
+    found = study.answered(require_valid(study.design))
     named = zip(study.columns, found, strict=True)
     require(Finding(f"responses.{name}", value, "Ask for what this stage has") for name, value in named if isinstance(value, str))
     return np.array([float(np.real(value)) for value in found if not isinstance(value, str)])
@@ -113,7 +113,7 @@ def _halved(values: Array, width: int, batch: Callable[[Array], Array | str]) ->
 def _refused(study: Study, values: Array) -> Array | str:
     """Why a description of these designs cannot be read; nothing (n, 0) where it can. One alone is told without its place in a batch."""
     try:
-        checked(study.described(values if len(values) > 1 else values[0]))
+        require_valid(study.described(values if len(values) > 1 else values[0]))
     except DesignError as error:
         return str(error)
     return np.zeros((len(values), 0))

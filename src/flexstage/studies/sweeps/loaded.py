@@ -10,7 +10,7 @@ from flexstage.analysis.stability import DOUBTFUL, stability
 from flexstage.analysis.standing import load_factors
 from flexstage.base.finding import DesignError, Finding, require
 from flexstage.base.number import Array, stack
-from flexstage.mechanism.checks import checked
+from flexstage.mechanism.checks import require_valid
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.lumped import lumped
 from flexstage.studies.sweeps.definition import Study
@@ -114,7 +114,7 @@ def _factors(study: Study, values: Array) -> Array:
     if len(values) > _AT_ONCE:
         return np.concatenate([_factors(study, values[start : start + _AT_ONCE]) for start in range(0, len(values), _AT_ONCE)])
     try:
-        mechanism = checked(study.described(values))
+        mechanism = require_valid(study.described(values))
         return np.broadcast_to(np.real(stability(mechanism, lumped(mechanism)).dead), len(values))
     except (DesignError, np.linalg.LinAlgError):
         if len(values) == 1:

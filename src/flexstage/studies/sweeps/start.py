@@ -9,7 +9,7 @@ from typing import Any
 from flexstage.base.finding import DesignError, Finding, refuse, require
 from flexstage.base.quantity import Quantity
 from flexstage.cases.parameters import Stated, parameter, with_parameters
-from flexstage.cases.registry import Variant, case, shipped
+from flexstage.cases.registry import Variant, case, shipped_case
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.node import NumberNode
 from flexstage.mechanism.store import load
@@ -38,7 +38,7 @@ def start(file: StudyFile, folder: Path) -> tuple[Mechanism, Variant | None]:
 
 def _drawn(name: str, table: Mapping[str, Any]) -> tuple[Mechanism, Variant]:
     """The case with the parameters that the table states."""
-    own, stated = shipped(name).parameters, _stated(name, table)
+    own, stated = shipped_case(name).parameters, _stated(name, table)
     changed = with_parameters(own, stated)
     names = (parameter(own, each).name for each in stated)
     return case(name, stated), Variant(name, tuple((each, parameter(changed, each).value) for each in names))
@@ -50,7 +50,7 @@ def _stated(name: str, table: Mapping[str, Any]) -> dict[str, Stated]:
     findings: list[Finding] = []
     for key, value in _leaves(table):
         try:
-            known = parameter(shipped(name).parameters, key, f"parameters.{key}")
+            known = parameter(shipped_case(name).parameters, key, f"parameters.{key}")
             number = isinstance(known.node, NumberNode) and known.node.quantity.si != "1"
             if number and not isinstance(value, str):
                 findings.append(Finding(f"parameters.{key}", f"found {value!r} without a unit", f'Write for example "{known.text}"'))

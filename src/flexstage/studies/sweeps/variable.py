@@ -133,7 +133,7 @@ def _drawn(mechanism: Mechanism, moves: list[tuple[str, Variable, Number]]) -> M
     variant = next((variable.variant for _, variable, _ in moves), None)
     if variant is None:
         return mechanism
-    return variant.drawn({name: variant.value(name) * value if variable.relative else value for name, variable, value in moves})
+    return variant.mechanism_at({name: variant.value(name) * value if variable.relative else value for name, variable, value in moves})
 
 
 def variable_findings(mechanism: Mechanism, variables: Iterable[Variable]) -> Iterator[Finding]:
@@ -188,7 +188,7 @@ def _parameter_findings(mechanism: Mechanism, variables: tuple[Variable, ...]) -
 def _moved(variant: Variant, name: str) -> frozenset[str]:
     """Addresses of the numbers that depend on a parameter."""
     value = variant.value(name)
-    stepped = variant.drawn({name: np.asarray(complex(value, abs(value) * _STEP or _STEP))})
+    stepped = variant.mechanism_at({name: np.asarray(complex(value, abs(value) * _STEP or _STEP))})
     return frozenset(
         address for address, found, _ in node_of(Mechanism).numbers(stepped) if np.iscomplexobj(found) and np.imag(found) != 0.0
     )
