@@ -25,7 +25,7 @@ from flexstage.base.number import Array
 from flexstage.mechanism.expand import Assembly, expand
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.mechanism.outline import outlines
-from flexstage.models.batch.choice import Choice, chosen
+from flexstage.models.batch.choice import Choice, choose
 from flexstage.models.ideal import ideal
 from flexstage.models.linear.kinematics import Kinematics
 from flexstage.models.linear.model import LinearModel
@@ -89,7 +89,7 @@ class Bench:
         if found.frequencies.ndim == 1:
             return found.platform_frequencies
         flat = found.frequencies.reshape(-1, found.frequencies.shape[-1])
-        mask = chosen((2.0 * np.pi * flat) ** 2, found.share.reshape(flat.shape), Choice(limit=found.limit)).mask
+        mask = choose((2.0 * np.pi * flat) ** 2, found.share.reshape(flat.shape), Choice(limit=found.limit)).mask
         ordered = np.sort(np.where(mask, flat, np.nan), axis=-1)[:, : int(np.max(np.sum(mask, axis=-1), initial=0))]
         return ordered.reshape(*found.frequencies.shape[:-1], -1)
 

@@ -66,7 +66,7 @@ def law(part: Part, material: Material | None) -> Law:
     A `Joint` has no stiffness and locks what is not free. A `Restricted` part starts from K = C^-1: locked rows and columns are deleted,
     freed ones condensed out, K_ee - K_ef K_ff^-1 K_fe. Ordinary parts lock nothing.
 
-    >>> law(Joint((Freedom.RZ,)), None).locked_freedoms == others((Freedom.RZ,))
+    >>> law(Joint((Freedom.RZ,)), None).locked == others((Freedom.RZ,))
     True
     """
     if isinstance(part, Joint):

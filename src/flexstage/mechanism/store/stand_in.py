@@ -33,7 +33,7 @@ class StandIn:
     def drawn_name(self) -> str:
         """The name that the drawn part had.
 
-        >>> StandIn(Given((), (), stands_for="neck-drawn_name"), ()).drawn_name
+        >>> StandIn(Given((), (), stands_for="neck-drawn"), ()).drawn_name
         'neck'
         """
         return self.given.stands_for.removesuffix(KEPT)
@@ -47,9 +47,9 @@ def write_stand_ins(text: str, parts: Mapping[str, StandIn], tag: str, *, where:
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.mechanism.store import dumps, loads
     >>> unit = tuple(tuple(1e-7 * (row == column) for column in range(6)) for row in range(6))
-    >>> leaf = StandIn(Given(unit, free=(), stands_for="leaf-drawn_name"), ("links.left", "links.right"))
+    >>> leaf = StandIn(Given(unit, free=(), stands_for="leaf-drawn"), ("links.left", "links.right"))
     >>> text = write_stand_ins(dumps(parallelogram()), {"leaf": leaf}, "derived test")
-    >>> loads(text).parts["leaf"].stands_for, "leaf-drawn_name" in loads(text).parts
+    >>> loads(text).parts["leaf"].stands_for, "leaf-drawn" in loads(text).parts
     ('leaf-drawn', True)
     """
     before = mechanism_from(parse_toml(text, where), shipped_catalogue())

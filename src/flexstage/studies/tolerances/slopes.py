@@ -9,7 +9,7 @@ import numpy as np
 from flexstage.analysis.bench import Bench
 from flexstage.analysis.judge import bench_of
 from flexstage.analysis.measures import Measure, frequency, platform_frequency
-from flexstage.analysis.sensitivities import projected
+from flexstage.analysis.sensitivities import project
 from flexstage.base.number import Array
 from flexstage.models.linear.eigen import Eigen
 from flexstage.studies.tolerances.definition import Tolerance
@@ -86,7 +86,7 @@ def _stepped(study: Tolerance, step: Array, modes: dict[int, tuple[float, Eigen]
         if value is not None and not isinstance(value, str):
             found[row] = np.imag(np.broadcast_to(value, len(step))) / _STEP
     for row, (value, group) in modes.items():
-        change = projected(bench.model.stiffness, group.shapes) - group.values.mean() * projected(bench.model.inertia, group.shapes)
+        change = project(bench.model.stiffness, group.shapes) - group.values.mean() * project(bench.model.inertia, group.shapes)
         mean = np.trace(change, axis1=-2, axis2=-1) / len(group.values)
         found[row] = mean / (8.0 * np.pi**2 * value)
     return found
