@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import json
 import os
 import stat
@@ -38,6 +39,29 @@ def test_unwritable_outputs_are_found_before_anything_is_computed(
     assert ended.code == 2
     assert BAD_TARGETS[option] in ended.err
     assert (tmp_path / "stage.toml").read_bytes() == before
+
+
+def test_tables_are_csv_files_of_full_precision(flexstage: Command, tmp_path: Path) -> None:
+    ended = flexstage("stiffness", "stage.toml", "--csv", "tables", "--json", "found.json")
+    assert ended.code == 0, ended.err
+    found = json.loads((tmp_path / "found.json").read_text())
+    lines = {path.name: list(csv.reader(path.read_text().splitlines())) for path in (tmp_path / "tables").iterdir()}
+    head, *entries = lines["stiffness.stiffness.csv"]
+    assert head == ["row", "column", "unit", "value"]
+    stated = found["stiffness"]
+    assert [each[:2] for each in entries] == [[row, column] for row in stated["rows"] for column in stated["columns"]]
+    assert [float(each[3]) for each in entries] == [value for line in stated["values"] for value in line]
+    assert [float(each) for _, each in lines["stiffness.centre_m.csv"][1:]] == found["centre_m"]
+
+
+@pytest.mark.parametrize("folder", ["stage.toml", "nowhere/tables", 300 * "x"])
+def test_a_folder_for_csv_files_is_tried_first(flexstage: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, folder: str) -> None:
+    monkeypatch.setattr(complete, "analyse", lambda *_: pytest.fail("computed all the same"))
+    before = sorted(tmp_path.iterdir())
+    ended = flexstage("analyse", "stage.toml", "--csv", folder)
+    assert ended.code == 2
+    assert "--csv" in ended.err
+    assert sorted(tmp_path.iterdir()) == before
 
 
 LONG = 300 * "x"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from enum import Enum
-from typing import Any
+from typing import Annotated
 
 import numpy as np
 
@@ -13,6 +13,8 @@ from flexstage.analysis.modes import average, repeated_groups
 from flexstage.base.finding import Finding, require
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
+from flexstage.base.quantity import FREQUENCY
+from flexstage.base.record import INNER, VIEW, Axes, Called
 from flexstage.mechanism.mechanism import Damping
 from flexstage.models.linear.arguments import takes_models
 from flexstage.models.linear.damping import damping_law, modal_ratios
@@ -68,29 +70,30 @@ class RandomResponse(InNotebook):
     integral was taken.
     """
 
-    frequencies: Array
-    outputs: tuple[Channel, ...]
-    inputs: tuple[Channel, ...]
-    density: Array
-    rms: Array
-    shares: Array
-    band: tuple[float, float]
+    frequencies: Annotated[Array, FREQUENCY, Called("frequency")]
+    outputs: Annotated[tuple[Channel, ...], INNER]
+    inputs: Annotated[tuple[Channel, ...], INNER]
+    density: Annotated[Array, VIEW, Axes("frequencies", "responding")]
+    rms: Annotated[Array, VIEW, Axes("responding")]
+    shares: Annotated[Array, VIEW, Called("mean_square"), Axes("responding", "disturbing")]
+    band: Annotated[tuple[float, float], FREQUENCY]
     method: str
-    provenance: str
+    provenance: Annotated[str, INNER]
 
-    def to_json(self) -> dict[str, Any]:
-        """The result as {band_hz, outputs, inputs, units, rms, mean_square, frequency_hz, density, method}."""
-        return {
-            "band_hz": list(self.band),
-            "outputs": [channel.name for channel in self.outputs],
-            "inputs": [channel.name for channel in self.inputs],
-            "units": [channel.unit for channel in self.outputs],
-            "rms": self.rms.tolist(),
-            "mean_square": self.shares.tolist(),
-            "frequency_hz": self.frequencies.tolist(),
-            "density": self.density.tolist(),
-            "method": self.method,
-        }
+    @property
+    def responding(self) -> Annotated[tuple[str, ...], VIEW, Called("outputs")]:
+        """Names of the outputs."""
+        return tuple(channel.name for channel in self.outputs)
+
+    @property
+    def disturbing(self) -> Annotated[tuple[str, ...], VIEW, Called("inputs")]:
+        """Names of the inputs."""
+        return tuple(channel.name for channel in self.inputs)
+
+    @property
+    def units(self) -> Annotated[tuple[str, ...], VIEW, Axes("responding")]:
+        """Unit of each output's rms value; its mean squares are in its square, its density in that per hertz."""
+        return tuple(channel.unit for channel in self.outputs)
 
 
 @takes_models

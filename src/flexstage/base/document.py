@@ -27,7 +27,7 @@ def plain(result: Any) -> Document:
     {'gain': None, 'reasons': {'gain': 'infinite'}}
     """
     reasons = dict[str, str]()
-    whole = result if isinstance(result, Mapping) else walk(result)
+    whole = walk(result)
     values = _plain({key: value for key, value in whole.items() if key != "reasons"}, "", reasons)
     reasons = dict(whole.get("reasons") or {}) | reasons
     return {**values, **({"reasons": reasons} if reasons else {})}

@@ -75,7 +75,7 @@ class Matrix(InNotebook):
         B1  1      -0.025
         """
         first = quiet(self.values[(0,) * (self.values.ndim - 2)])
-        columns, rows, cells = self._units()
+        columns, rows, cells = self.unit_places
         lines = [["", *(_with(name, unit) for name, unit in zip(self.columns, columns, strict=True))]]
         for name, unit, values, own in zip(self.rows, rows, first, cells, strict=True):
             texts = (_with(f"{value:.6g}", each, "{} {}") for value, each in zip(values + 0.0, own, strict=True))
@@ -83,7 +83,8 @@ class Matrix(InNotebook):
         widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
         return "\n".join("  ".join([line[0].ljust(widths[0]), *map(str.rjust, line[1:], widths[1:])]) for line in lines)
 
-    def _units(self) -> tuple[list[str], list[str], list[list[str]]]:
+    @property
+    def unit_places(self) -> tuple[list[str], list[str], list[list[str]]]:
         """Units of the columns, of the rows and of the entries: each said once, as far out as they are alike."""
         across, down = len(self.columns), len(self.rows)
         blank = [[""] * across] * down

@@ -11,7 +11,7 @@ from __future__ import annotations
 import functools
 import inspect
 import types
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, fields, is_dataclass, replace
 from enum import Enum
 from typing import Annotated, Any, TypeVar, Union, get_args, get_origin, get_type_hints
@@ -42,6 +42,16 @@ class Along:
     """The last axis of an array has the names in a field beside it."""
 
     names: str
+
+
+@dataclass(frozen=True, init=False)
+class Axes:
+    """The last axes of an array stand along fields beside it, of names or numbers; a document tells it as it is."""
+
+    fields: tuple[str, ...]
+
+    def __init__(self, *fields: str) -> None:
+        object.__setattr__(self, "fields", fields)
 
 
 @dataclass(frozen=True)
@@ -108,7 +118,19 @@ class Field:
         Heading(text='blocking force', digits=4, unit='', varying=False, infinite='inf')
         """
         own = self.annotation(Heading) or Heading()
-        return replace(own, text=own.text or self.name.replace("_", " "))
+        return replace(own, text=own.text or self.words)
+
+    @property
+    def words(self) -> str:
+        """Its name, or what it is called, in words."""
+        called = self.annotation(Called)
+        return (called.key if called else self.name).replace("_", " ")
+
+    @property
+    def axes(self) -> tuple[str, ...]:
+        """The fields that its last axes stand along."""
+        axes = self.annotation(Axes)
+        return axes.fields if axes else (self.along,) if self.along else ()
 
     def annotation(self, kind: type[_Kind]) -> _Kind | None:
         """The annotation of a kind, a quantity or a bound for example."""
@@ -154,7 +176,7 @@ def _opened(hint: Any) -> tuple[Any, tuple[Any, ...]]:
 
 
 def _is_told(kind: Any, annotations: tuple[Any, ...]) -> bool:
-    if any(not isinstance(each, Heading) for each in annotations):
+    if any(not isinstance(each, (Axes, Heading)) for each in annotations):
         return INNER not in annotations
     return not any(part == Array or (isinstance(part, type) and issubclass(part, Description)) for part in _parts(kind))
 
@@ -189,8 +211,25 @@ def walk(record: Any) -> dict[str, Any]:
     return found | ({"reasons": {keys.get(name, name): reason for name, reason in reasons.items()}} if reasons else {})
 
 
+@dataclass(frozen=True)
+class Together:
+    """Results, or mappings with results in them, that stand in one document side by side."""
+
+    results: tuple[Any, ...]
+
+
 def values_of(record: Any) -> tuple[dict[Field, Any], dict[str, str]]:
-    """The fields that are told of a result with their values, and why values are absent, by the field's name."""
+    """The fields that are told of a result with their values, and why values are absent, by the field's name.
+
+    Keys of a mapping are fields without annotations, but for its `reasons`.
+    """
+    if isinstance(record, Together):
+        each_own = [values_of(each) for each in record.results]
+        return {field: value for own, _ in each_own for field, value in own.items()}, {
+            key: why for _, own in each_own for key, why in own.items()
+        }
+    if isinstance(record, Mapping):
+        return {Field(str(key), object, ()): value for key, value in record.items() if key != "reasons"}, dict(record.get("reasons") or {})
     reasons, found = dict(getattr(record, "reasons", {})), dict[Field, Any]()
     for each in told_of(type(record)):
         try:
@@ -203,36 +242,6 @@ def values_of(record: Any) -> tuple[dict[Field, Any], dict[str, str]]:
 def by_name(value: Any) -> Any:
     """The values of a field along names, a name each."""
     return np.moveaxis(value, -1, 0) if isinstance(value, np.ndarray) else value
-
-
-@dataclass(frozen=True)
-class Rows:
-    """Records as rows: their names (none where they have none) under a head, and a value a row of every field."""
-
-    head: str
-    names: tuple[str, ...]
-    columns: Mapping[Field, tuple[Any, ...]]
-
-
-def rows_of(source: Any) -> Rows:
-    """Rows of a mapping or sequence of records of one kind, or of a record whose arrays stand along names."""
-    if isinstance(source, Mapping):
-        return Rows("", tuple(source), _columns(source.values()))
-    return Rows("", (), _columns(source)) if isinstance(source, Sequence) else next(rows_along(source))
-
-
-def rows_along(record: Any) -> Iterator[Rows]:
-    """Rows of a record: the arrays along each of its fields of names."""
-    values, _ = values_of(record)
-    for names, value in values.items():
-        columns = {each: tuple(by_name(items)) for each, items in values.items() if each.along == names.name and items is not None}
-        if columns:
-            yield Rows(names.heading.text.removesuffix("s"), tuple(value), columns)
-
-
-def _columns(records: Iterable[Any]) -> dict[Field, tuple[Any, ...]]:
-    told = [values_of(each)[0] for each in records]
-    return {each: tuple(values[each] for values in told) for each in (told[0] if told else ())}
 
 
 def paths(kind: type, before: str = "") -> Iterator[tuple[str, str, str]]:

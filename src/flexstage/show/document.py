@@ -15,7 +15,7 @@ from flexstage.analysis.statics import Statics
 from flexstage.base.digest import digest
 from flexstage.base.document import Document, plain
 from flexstage.base.finding import Finding
-from flexstage.base.record import walk
+from flexstage.base.record import Together, walk
 from flexstage.mechanism.mechanism import Damping, Mechanism, ModalDamping, RayleighDamping, StructuralDamping
 from flexstage.models.linear.frequency import Response
 from flexstage.models.theory import Model
@@ -44,7 +44,7 @@ def enveloped(kind: str, mechanism: Mechanism | None, model: Model | None, body:
         "physics_digest": None if mechanism is None else digest(mechanism, physics=True),
         "cautions": [*known.cautions, *more],
         "defaults": list(known.defaults),
-        **(body if isinstance(body, Mapping) else walk(body)),
+        **walk(body),
     }
 
 
@@ -62,17 +62,10 @@ def check_document(mechanism: Mechanism | None, errors: Iterable[Finding] = ()) 
     return {**document, "warnings": document["cautions"]}
 
 
-def analysis_body(analysis: Analysis) -> Document:
-    """Requirements first, then every analysis under its command's name; null with a reason where the model or the stage gives none.
-
-    >>> from flexstage.cases.double_triangle import double_triangle
-    >>> from flexstage.analysis.complete import Model, analyse
-    >>> body = analysis_body(analyse(double_triangle(), Model.IDEAL))
-    >>> body["modes"] is None, body["reasons"]["modes"]
-    (True, 'the ideal model has no elasticity')
-    """
+def analysis_results(analysis: Analysis) -> Mapping[str, Any]:
+    """Every result of an analysis under its command's name; None where model or stage give none."""
     damping = None if analysis.linear is None else analysis.linear.damping
-    found: dict[str, Any] = {
+    return {
         "mapping": analysis.kinematics,
         "stiffness": None if analysis.statics is None else stiffness_body(analysis.statics, analysis.deflection),
         "lost-motion": analysis.lost_motion,
@@ -85,23 +78,31 @@ def analysis_body(analysis: Analysis) -> Document:
         "budget": analysis.error_budget,
         "units": analysis.units,
     }
+
+
+def analysis_body(analysis: Analysis) -> Document:
+    """Requirements first, then every analysis under its command's name; null with a reason where the model or the stage gives none.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.analysis.complete import Model, analyse
+    >>> body = analysis_body(analyse(double_triangle(), Model.IDEAL))
+    >>> body["modes"] is None, body["reasons"]["modes"]
+    (True, 'the ideal model has no elasticity')
+    """
     reasons = {_KEYS.get(name, name): reason for name, reason in analysis.missing.items() if name != "deflection"}  # see stiffness
-    documents = {name: None if document is None else plain(document) for name, document in found.items()}
+    documents = {name: None if found is None else plain(found) for name, found in analysis_results(analysis).items()}
     return {"requirements": requirements_body(analysis.verdicts), **documents, **({"reasons": reasons} if reasons else {})}
 
 
-def stiffness_body(statics: Statics, deflection: Deflection | None = None) -> Document:
+def stiffness_body(statics: Statics, deflection: Deflection | None = None) -> Together:
     """Statics of the platform, and its deflection under dead load."""
-    body = walk(statics)
-    reasons = body.pop("reasons", {}) | ({} if deflection is not None else {"dead_load": _UNLUMPED})
-    return {**body, "dead_load": deflection, **({"reasons": reasons} if reasons else {})}
+    return Together((statics, {"dead_load": deflection, "reasons": {} if deflection is not None else {"dead_load": _UNLUMPED}}))
 
 
-def response_body(response: Response, damping: Damping | None) -> Document:
-    """A frequency response as {frequency_hz, rows, columns, unit, real, imaginary}, H_ij = output i over input j, and its damping."""
+def response_body(response: Response, damping: Damping | None) -> Together:
+    """A frequency response and its damping."""
     laws: dict[type, str] = {ModalDamping: "modal", RayleighDamping: "rayleigh", StructuralDamping: "structural"}
-    law = None if damping is None else {"law": laws[type(damping)], **walk(damping)}
-    return {**response.to_json(), "damping": law, "provenance": response.provenance}
+    return Together((response, {"damping": None if damping is None else {"law": laws[type(damping)], **walk(damping)}}))
 
 
 def requirements_body(verdicts: Iterable[Verdict]) -> list[Document]:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import io
+import re
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -13,6 +15,7 @@ from flexstage.analysis.complete import Analysis
 from flexstage.base.digest import digest
 from flexstage.base.finding import DesignError
 from flexstage.base.labelled import Matrix
+from flexstage.base.sheet import NUMBERS, Sheet, parts
 from flexstage.base.text import printable
 from flexstage.models.linear.damping import damping_law
 from flexstage.models.linear.model import Channel, LinearModel
@@ -28,9 +31,59 @@ def as_mat(analysis: Analysis) -> bytes:
     >>> as_mat(analyse(double_triangle(), Model.IDEAL))[:10]
     b'MATLAB 5.0'
     """
+    return _saved(mat_variables(analysis))
+
+
+def _saved(variables: dict[str, Any]) -> bytes:
     content = io.BytesIO()
-    scipy.io.savemat(content, mat_variables(analysis), do_compression=True, oned_as="column")
+    scipy.io.savemat(content, variables, do_compression=True, oned_as="column", long_field_names=True)
     return content.getvalue()
+
+
+def to_mat(result: Any) -> bytes:
+    """The MATLAB v5 file of a result, its parts as structs of columns, those of matrices with `values`, `rows`, `columns` and `unit`.
+
+    Names are those of the document, with `_` for what MATLAB takes in no name; SI units.
+
+    >>> import scipy.io
+    >>> scipy.io.loadmat(io.BytesIO(to_mat({"loss": {"B/1": 0.1}})), simplify_cells=True)["loss"]
+    {'name': 'B/1', 'loss': 0.1}
+    """
+    found = dict[str, Any]()
+    for path, part in parts(result):
+        under = found
+        for step in filter(None, path.split(".")):
+            under = under.setdefault(_identifier(step), {})
+        under |= _matrix(part) if isinstance(part, Matrix) else _sheet(part)
+    return _saved(found)
+
+
+def _identifier(name: str) -> str:
+    """A name as MATLAB takes it: letters, digits and _, beginning with a letter."""
+    return re.sub(r"^(?![A-Za-z])", "x", re.sub(r"\W", "_", name, flags=re.ASCII))[:63]
+
+
+def _matrix(matrix: Matrix) -> dict[str, Any]:
+    return {key.removeprefix("values").removeprefix("_") or key: value for key, value in _labelled("values", matrix).items()}
+
+
+def _sheet(sheet: Sheet) -> dict[str, Any]:
+    """Columns; where the rows are all combinations of names, the names once and arrays of as many axes."""
+    ends = [tuple(dict.fromkeys(each)) for each in sheet.names.values()]
+    whole = len(ends) > 1 and list(zip(*sheet.names.values(), strict=True)) == list(product(*ends))
+    names, shape = (ends, [len(each) for each in ends]) if whole else (list(sheet.names.values()), [-1])
+    heads = {_identifier(head): _column(each) for head, each in sheet.heads.items()}
+    axes = {head: _column(each) for head, each in zip(heads, names, strict=False)}
+    return axes | {head: each.reshape(shape) for head, each in heads.items() if head not in axes}
+
+
+def _column(values: tuple[Any, ...]) -> Any:
+    numbers = all(each is None or isinstance(each, NUMBERS) for each in values)
+    return np.array([np.nan if each is None else each for each in values]) if numbers else _cells(map(_words, values))
+
+
+def _words(value: Any) -> str:
+    return "" if value is None else str(value)
 
 
 def mat_variables(analysis: Analysis) -> dict[str, Any]:

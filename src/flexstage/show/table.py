@@ -12,7 +12,8 @@ import numpy as np
 from flexstage.base.labelled import NOISE, NOISE_RULE, Matrix, quiet, ratio_units
 from flexstage.base.number import Array
 from flexstage.base.quantity import Bound, Quantity
-from flexstage.base.record import Field, rows_of, values_of
+from flexstage.base.record import Field, values_of
+from flexstage.base.sheet import NUMBERS, Sheet, is_cell, plain_cell, rows_of
 from flexstage.show.display import DIGITS, NO_VALUE, Shown, aligned, display_unit, number, percent, preferred, shown, value_with_unit
 
 
@@ -114,20 +115,27 @@ def row_table(title: str, source: Any, *fields: str, head: str = "", notes: Iter
     >>> row_table("Drive", Drive(("B1",), 1.5e-7 * one, 0.0 * one, 1e3 * one, 500.0 * one, 4e-7 * one), "gain", "low", "high").texts()
     [['actuator', 'gain [um/V]', 'low [V]', 'high [V]'], ['B1', '0.15', '0', '1000']]
     """
-    rows = rows_of(source)
-    told = {each.name: (each, values) for each, values in rows.columns.items()}
-    chosen = [told[name] for name in fields] if fields else [each for each in told.values() if _fits(each[1])]
-    columns = [field_column(*each) for each in chosen]
-    names = [(Column(head or rows.head, numeric=False), [Cell(name, Mark.STRONG) for name in rows.names])] if rows.names else []
-    heads, cells = [each for each, _ in (*names, *columns)], [each for _, each in (*names, *columns)]
-    return build(title, heads, zip(*cells, strict=True), notes=notes, provenance=provenance)
+    sheet = rows_of(source)
+    told = {each.name: each for each in sheet.columns}
+    chosen = [told[name] for name in fields] if fields else [each for each, values in sheet.columns.items() if all(map(is_cell, values))]
+    names = {head or each: values for each, values in sheet.names.items()}
+    return sheet_table(title, Sheet(names, {each: sheet.columns[each] for each in chosen}), notes=notes, provenance=provenance)
+
+
+def sheet_table(title: str, sheet: Sheet, *, notes: Iterable[str] = (), provenance: str = "") -> Table:
+    """Rows and columns of a result, names first."""
+    names = [(Column(head, numeric=False), [Cell(str(each), Mark.STRONG) for each in values]) for head, values in sheet.names.items()]
+    columns = [*names, *(field_column(*each) for each in sheet.columns.items())]
+    return build(
+        title, [column for column, _ in columns], zip(*(cells for _, cells in columns), strict=True), notes=notes, provenance=provenance
+    )
 
 
 def record_table(title: str, record: Any, *fields: str, notes: Iterable[str] = (), provenance: str = "") -> Table:
     """A record as rows of name, value and unit; `fields` as for `row_table`."""
-    told = {each.name: (each, (value,)) for each, value in values_of(record)[0].items()}
-    chosen = [told[name] for name in fields] if fields else [each for each in told.values() if each[0].along is None and _fits(each[1])]
-    columns = [(each.heading.text, *field_column(each, values)) for each, values in chosen]
+    told = {each.name: (each, value) for each, value in values_of(record)[0].items()}
+    chosen = [told[name] for name in fields] if fields else [each for each in told.values() if not each[0].axes and is_cell(each[1])]
+    columns = [(each.heading.text, *field_column(each, (value,))) for each, value in chosen]
     rows = [(Cell(name, Mark.STRONG), cells[0], column.unit) for name, column, cells in columns]
     return build(title, ["", Column("value"), "unit"], rows, notes=notes, provenance=provenance)
 
@@ -143,7 +151,7 @@ def field_column(field: Field, values: Sequence[Any]) -> tuple[Column, list[Cell
     ['15 N/um', '2 N/mm']
     """
     heading, form = field.heading, display_unit(field.annotation(Quantity), field.heading.unit)
-    if not all(isinstance(each, _NUMBERS) and not isinstance(each, bool) for each in values if each is not None):
+    if not all(isinstance(each, (*NUMBERS, np.ndarray)) and not isinstance(each, bool) for each in values if each is not None):
         return Column(heading.text, numeric=False), [Cell(_words(each)) for each in values]
     numbers = np.array([np.nan if each is None else float(first_design(each, 0)) for each in values])
     if heading.varying:
@@ -159,24 +167,10 @@ def field_column(field: Field, values: Sequence[Any]) -> tuple[Column, list[Cell
     return Column(heading.text, "" if heading.varying or form.unit == "%" else form.unit), cells
 
 
-_NUMBERS = (int, float, np.number, np.ndarray)
-
-
-def _fits(values: Sequence[Any]) -> bool:
-    """Whether a table's cell can hold each of the values: numbers, words, or a few words."""
-    return all(each is None or isinstance(each, (*_NUMBERS, str, Enum)) or _is_words(each) for each in values)
-
-
-def _is_words(value: Any) -> bool:
-    return isinstance(value, tuple) and all(isinstance(each, (str, Enum)) for each in value)
-
-
 def _words(value: Any) -> str:
     if isinstance(value, bool):
         return "yes" if value else "no"
-    if isinstance(value, tuple):
-        return ", ".join(map(_words, value))
-    return NO_VALUE if value is None else str(value.value if isinstance(value, Enum) else value)
+    return NO_VALUE if value is None else str(plain_cell(value))
 
 
 def _audible(values: Array, least: float = 0.0) -> Array:

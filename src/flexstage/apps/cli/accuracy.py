@@ -20,7 +20,7 @@ from flexstage.models.ideal import ideal
 from flexstage.models.theory import Model
 from flexstage.show.command.answer import answer, tell_missing
 from flexstage.show.command.design import open_design
-from flexstage.show.command.options import Changes, Design, Json, ModelName, text_option
+from flexstage.show.command.options import Changes, Csv, Design, Json, ModelName, text_option
 from flexstage.show.command.values import motions
 from flexstage.show.table import Table, row_table
 from flexstage.show.tables import workspace as tables
@@ -39,7 +39,13 @@ Commands: TypeAlias = Annotated[
 
 
 def workspace(
-    design: Design, *, model: ModelName = Model.LUMPED, command: Commands = None, changes: Changes = None, json: Json = None
+    design: Design,
+    *,
+    model: ModelName = Model.LUMPED,
+    command: Commands = None,
+    changes: Changes = None,
+    json: Json = None,
+    csv: Csv = None,
 ) -> None:
     """What the stage reaches and bears.
 
@@ -51,7 +57,7 @@ def workspace(
     lost = None if linear is None or not kinematics.actuated else lost_motion(kinematics, linear)
     asked = motions(command or ()) or required_command(mechanism)
     found = study.workspace(mechanism, kinematics, linear, lost=lost, command=asked)
-    answer("workspace", mechanism, lambda: found, lambda: _workspace_tables(found), model=model, json=json)
+    answer("workspace", mechanism, lambda: found, lambda: _workspace_tables(found), model=model, json=json, csv=csv)
 
 
 def _workspace_tables(workspace: study.Workspace) -> Iterator[Table | None]:
@@ -78,6 +84,7 @@ def drift(
     ] = None,
     changes: Changes = None,
     json: Json = None,
+    csv: Csv = None,
 ) -> None:
     """Thermal drift of platform, named points and gauges.
 
@@ -93,6 +100,7 @@ def drift(
         lambda: [drift_table(found), gauge_drift_table(found)],
         model=Model.LUMPED,
         json=json,
+        csv=csv,
     )
 
 
@@ -105,6 +113,7 @@ def sensitivities(
     count: Annotated[int, typer.Option("--modes", min=1, help="Number of lowest modes.")] = 12,
     changes: Changes = None,
     json: Json = None,
+    csv: Csv = None,
 ) -> None:
     """Exact derivatives with respect to every number.
 
@@ -120,6 +129,7 @@ def sensitivities(
         lambda: [frequency_sensitivity_table(found), loss_sensitivity_table(found)],
         model=Model.LUMPED,
         json=json,
+        csv=csv,
     )
     tell_missing(found.missing)
 
@@ -132,6 +142,7 @@ def budget(
     at: Annotated[str, typer.Option(metavar="POINT", help="Point of the platform: platform, or a named point.")] = "platform",
     changes: Changes = None,
     json: Json = None,
+    csv: Csv = None,
 ) -> None:
     """Error budget in nm and nrad, one line an axis.
 
@@ -141,4 +152,4 @@ def budget(
 
     asked = motions(command or ()) or required_command(mechanism) or study.all_strokes(mechanism)
     found = budgeting.budget(mechanism, asked, at=at, temperature=parse(temperature, TEMPERATURE, where="--temperature"))
-    answer("budget", mechanism, lambda: found, lambda: error_budget_tables(found), model=Model.LUMPED, json=json)
+    answer("budget", mechanism, lambda: found, lambda: error_budget_tables(found), model=Model.LUMPED, json=json, csv=csv)

@@ -13,13 +13,13 @@ from flexstage.analysis.complete import Analysis
 from flexstage.analysis.difference import Comparison, difference, set_values
 from flexstage.base.document import Document, as_text
 from flexstage.models.theory import Model
-from flexstage.show.command.answer import caveat_lines, show, tell_missing
+from flexstage.show.command.answer import caveat_lines, show, tell_missing, write_csv
 from flexstage.show.command.design import change, open_design
 from flexstage.show.command.failure import MISSED
-from flexstage.show.command.options import Changes, Design, Json, ModelName, Report, text_option
+from flexstage.show.command.options import Changes, Csv, Design, Json, ModelName, Report, text_option
 from flexstage.show.command.output import STDOUT, save
 from flexstage.show.command.terminal import tell
-from flexstage.show.document import analysis_body, changes_body, enveloped
+from flexstage.show.document import analysis_body, analysis_results, changes_body, enveloped, requirements_body
 from flexstage.show.matlab import as_mat
 from flexstage.show.report import report as whole_report
 from flexstage.show.table import Table
@@ -37,6 +37,7 @@ def analyse(
     report: Report = None,
     changes: Changes = None,
     json: Json = None,
+    csv: Csv = None,
     mat: Annotated[Path | None, text_option("--mat", "FILE", "Write R_a, R_s, K, M, B, C, D and the state space for MATLAB.")] = None,
     strict: Annotated[bool, typer.Option("--strict", help="Exit with code 1 if a requirement is missed.")] = False,
 ) -> None:
@@ -51,6 +52,7 @@ def analyse(
         save(mat, as_mat(analysis), "--mat")
     if report is not None:
         save(report, whole_report(analysis, compared), "--report")
+    write_csv(csv, "analyse", lambda: {"requirements": requirements_body(analysis.verdicts), **analysis_results(analysis)})
     if json is not None:
         save(json, _json_text(analysis, compared), "--json")
     if STDOUT not in (json, str(report), str(mat)):

@@ -16,7 +16,7 @@ from flexstage.analysis.random_response import random_response
 from flexstage.analysis.statics import Statics, statics
 from flexstage.base.finding import refuse
 from flexstage.base.quantity import FREQUENCY
-from flexstage.base.record import walk
+from flexstage.base.record import Together, walk
 from flexstage.base.unit import parse
 from flexstage.models.ideal import ideal
 from flexstage.models.linear.damping import damping_law
@@ -25,7 +25,7 @@ from flexstage.models.linear.static import static_gain
 from flexstage.models.theory import Model
 from flexstage.show.command.answer import answer
 from flexstage.show.command.design import elastic_model, known_point, open_design
-from flexstage.show.command.options import Changes, Design, Json, ModelName, text_option
+from flexstage.show.command.options import Changes, Csv, Design, Json, ModelName, text_option
 from flexstage.show.command.values import spectra
 from flexstage.show.document import response_body, stiffness_body
 from flexstage.show.table import Table
@@ -39,7 +39,7 @@ from flexstage.show.tables.response import response_table
 from flexstage.spatial.frame import COMPONENTS
 
 
-def mapping(design: Design, *, model: ModelName = Model.IDEAL, changes: Changes = None, json: Json = None) -> None:
+def mapping(design: Design, *, model: ModelName = Model.IDEAL, changes: Changes = None, json: Json = None, csv: Csv = None) -> None:
     """Mappings R_a and R_s, mobility, redundancy.
 
     R_a: strokes per platform motion. R_s: gauge readings per platform motion.
@@ -57,6 +57,7 @@ def mapping(design: Design, *, model: ModelName = Model.IDEAL, changes: Changes 
         lambda: _mapping_tables(kinematics),
         model=model,
         json=json,
+        csv=csv,
     )
 
 
@@ -79,6 +80,7 @@ def stiffness(
     load_at: Annotated[str, typer.Option(metavar="POINT", help="Point that is loaded. Default: the one that is read.")] = "",
     changes: Changes = None,
     json: Json = None,
+    csv: Csv = None,
 ) -> None:
     """Compliance and stiffness of the platform.
 
@@ -96,6 +98,7 @@ def stiffness(
         lambda: _stiffness_tables(found, sagging),
         model=model,
         json=json,
+        csv=csv,
     )
 
 
@@ -108,7 +111,7 @@ def _stiffness_tables(found: Statics, sagging: Deflection | None) -> Iterator[Ta
     yield None if sagging is None else deflection_table(sagging)
 
 
-def lost_motion(design: Design, *, model: ModelName = Model.LUMPED, changes: Changes = None, json: Json = None) -> None:
+def lost_motion(design: Design, *, model: ModelName = Model.LUMPED, changes: Changes = None, json: Json = None, csv: Csv = None) -> None:
     """Gain, loss and its budget by part, crosstalk, correction.
 
     What elasticity takes from the ideal motion, what it stirs besides, and the gains that make up for it.
@@ -116,7 +119,7 @@ def lost_motion(design: Design, *, model: ModelName = Model.LUMPED, changes: Cha
     mechanism = open_design(design, changes, [("--json", json)])
 
     found = losses.lost_motion(ideal(mechanism), elastic_model(mechanism, model))
-    answer("lost-motion", mechanism, lambda: found, lambda: _loss_tables(found), model=model, json=json)
+    answer("lost-motion", mechanism, lambda: found, lambda: _loss_tables(found), model=model, json=json, csv=csv)
 
 
 def _loss_tables(found: LostMotion) -> Iterator[Table | None]:
@@ -129,7 +132,7 @@ def _loss_tables(found: LostMotion) -> Iterator[Table | None]:
     yield loss_tables.energy_table(found)
 
 
-def modes(design: Design, *, model: ModelName = Model.LUMPED, changes: Changes = None, json: Json = None) -> None:
+def modes(design: Design, *, model: ModelName = Model.LUMPED, changes: Changes = None, json: Json = None, csv: Csv = None) -> None:
     """Natural frequencies, names and shapes.
 
     Which modes are the platform's, which are local, and by what margin.
@@ -137,10 +140,10 @@ def modes(design: Design, *, model: ModelName = Model.LUMPED, changes: Changes =
     mechanism = open_design(design, changes, [("--json", json)])
 
     found = platform_modes(mechanism, elastic_model(mechanism, model))
-    answer("modes", mechanism, lambda: found, lambda: [mode_table(found)], model=model, json=json)
+    answer("modes", mechanism, lambda: found, lambda: [mode_table(found)], model=model, json=json, csv=csv)
 
 
-def response(
+def response(  # noqa: PLR0913 (its options)
     design: Design,
     *,
     model: ModelName = Model.LUMPED,
@@ -163,6 +166,7 @@ def response(
     ] = None,
     changes: Changes = None,
     json: Json = None,
+    csv: Csv = None,
 ) -> None:
     """Frequency response of outputs to inputs.
 
@@ -181,10 +185,11 @@ def response(
     answer(
         "response",
         mechanism,
-        lambda: response_body(found, law) | ({} if shaken is None else {"random": shaken.to_json()}),
+        lambda: Together((response_body(found, law), {} if shaken is None else {"random": shaken})),
         lambda: [response_table(found), None if shaken is None else random_table(shaken)],
         model=model,
         json=json,
+        csv=csv,
     )
 
 

@@ -18,7 +18,7 @@ from flexstage.control.hysteresis.tables import plays_table, stack_table
 from flexstage.experiment.commands.records import Arrays, Rate, RecordTexts, Units, open_records
 from flexstage.experiment.record import Record
 from flexstage.show.command.answer import answer
-from flexstage.show.command.options import Json, Report, output_option, text_option
+from flexstage.show.command.options import Csv, Json, Report, output_option, text_option
 from flexstage.show.command.output import require_writable, save
 from flexstage.show.command.terminal import warn
 
@@ -40,6 +40,7 @@ def hysteresis(  # noqa: PLR0913 (its options)
     arrays: Arrays = None,
     output: Annotated[Path | None, output_option("STACK.TOML", "Hysteresis file to write, for the loop.")] = None,
     json: Json = None,
+    csv: Csv = None,
     report: Report = None,
 ) -> None:
     """Identify the hysteresis of a stack.
@@ -61,7 +62,7 @@ def hysteresis(  # noqa: PLR0913 (its options)
     if report is not None:
         save(report, hysteresis_report(found), "--report")
     tables = [stack_table(found), plays_table(found)]
-    answer("hysteresis", None, lambda: hysteresis_body(found), lambda: tables, json=json, beside=(report, output))
+    answer("hysteresis", None, lambda: hysteresis_body(found), lambda: tables, json=json, csv=csv, beside=(report, output))
 
 
 def _open(path: Path, reader: RecordTexts) -> Record:

@@ -37,7 +37,7 @@ from flexstage.control.study.study import LoopStudy, loop_study
 from flexstage.models.theory import Model
 from flexstage.show.command.answer import answer
 from flexstage.show.command.design import open_design
-from flexstage.show.command.options import Changes, Design, Json, Report, text_option, word_option
+from flexstage.show.command.options import Changes, Csv, Design, Json, Report, text_option, word_option
 from flexstage.show.command.output import announce, require_writable, save, write
 from flexstage.show.command.progress import progress_bar
 from flexstage.show.command.values import Values, first_fit, motions
@@ -112,6 +112,7 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
     ] = None,
     changes: Changes = None,
     json: Json = None,
+    csv: Csv = None,
     report: Report = None,
     export: Annotated[
         list[Path] | None,
@@ -176,6 +177,7 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
         lambda: _tables(found),
         model=asked.model,
         json=json,
+        csv=csv,
         cautions=found.cautions,
         beside=(report,),
     )

@@ -30,7 +30,7 @@ from flexstage.models.theory import Model
 from flexstage.show.command.answer import answer
 from flexstage.show.command.design import elastic_model, open_design
 from flexstage.show.command.models import Models
-from flexstage.show.command.options import Changes, Design, Json, ModelName, Report, text_option
+from flexstage.show.command.options import Changes, Csv, Design, Json, ModelName, Report, text_option
 from flexstage.show.command.output import require_writable, save
 from flexstage.show.command.terminal import warn
 
@@ -54,6 +54,7 @@ def compare(  # noqa: PLR0913 (its options)
     resolution: Resolution = None,
     changes: Changes = None,
     json: Json = None,
+    csv: Csv = None,
     report: Report = None,
 ) -> None:
     """Theory, FEA and experiment side by side.
@@ -76,4 +77,4 @@ def compare(  # noqa: PLR0913 (its options)
     if report is not None:
         save(report, compare_report(found, seen, mechanism, shapes_on(mechanism, seen)), "--report")
     tables = compare_tables(found)[:-1]
-    answer("compare", mechanism, lambda: found, lambda: tables, model=model, json=json, beside=(report,))
+    answer("compare", mechanism, lambda: found, lambda: tables, model=model, json=json, csv=csv, beside=(report,))

@@ -32,7 +32,7 @@ from flexstage.experiment.tables import identified_table, measured_shape_table, 
 from flexstage.models.theory import Model
 from flexstage.show.command.answer import answer
 from flexstage.show.command.design import elastic_model, open_design
-from flexstage.show.command.options import Json, Report, text_option
+from flexstage.show.command.options import Csv, Json, Report, text_option
 from flexstage.show.command.output import require_writable, save
 from flexstage.show.table import Table
 
@@ -59,6 +59,7 @@ def identify(  # noqa: PLR0913 (its options)
     band: Band = None,
     resolution: Resolution = None,
     json: Json = None,
+    csv: Csv = None,
     report: Report = None,
 ) -> None:
     """Find the modes in records of a test.
@@ -74,7 +75,7 @@ def identify(  # noqa: PLR0913 (its options)
     shapes = None if mechanism is None else shapes_on(mechanism, seen)
     if report is not None:
         save(report, identify_report(seen, mechanism, shapes), "--report")
-    answer("identify", mechanism, lambda: _body(seen, shapes), lambda: _tables(seen), json=json, beside=(report,))
+    answer("identify", mechanism, lambda: _body(seen, shapes), lambda: _tables(seen), json=json, csv=csv, beside=(report,))
 
 
 def _body(seen: Identification, shapes: StageShapes | None) -> Document:

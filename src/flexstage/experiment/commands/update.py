@@ -37,7 +37,7 @@ from flexstage.mechanism.store import loads
 from flexstage.mechanism.store.file import read_text
 from flexstage.models.theory import Model
 from flexstage.show.command.answer import answer
-from flexstage.show.command.options import Design, Json, output_option, text_option
+from flexstage.show.command.options import Csv, Design, Json, output_option, text_option
 from flexstage.show.command.output import require_writable, save
 from flexstage.show.command.terminal import warn
 
@@ -74,6 +74,7 @@ def update(  # noqa: PLR0913 (its options)
     band: Band = None,
     resolution: Resolution = None,
     json: Json = None,
+    csv: Csv = None,
 ) -> None:
     """Bring a stage's numbers to agree with a test.
 
@@ -94,7 +95,7 @@ def update(  # noqa: PLR0913 (its options)
     save(output, updated_text(text, found, ", ".join(path.name for path in record), where=str(design)), "--output")
     for caution in found.warnings[len(seen.found.warnings) :]:
         warn(caution)
-    answer("update", mechanism, lambda: found, lambda: update_tables(found), model=Model.LUMPED, json=json, beside=(output,))
+    answer("update", mechanism, lambda: found, lambda: update_tables(found), model=Model.LUMPED, json=json, csv=csv, beside=(output,))
 
 
 def _known(priors: Sequence[str], model_error: str, gain_error: str, *, gain: bool) -> Known:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
@@ -12,6 +12,8 @@ from flexstage.base.labelled import Matrix, ratio_units
 from flexstage.base.memory import require_memory
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
+from flexstage.base.quantity import FREQUENCY
+from flexstage.base.record import INNER, VIEW, Axes, Called
 from flexstage.mechanism.mechanism import Damping, RayleighDamping, StructuralDamping
 from flexstage.models.linear.damping import modal_ratios, structural_stiffness
 from flexstage.models.linear.eigen import Eigen, eigen
@@ -28,9 +30,9 @@ class Response(InNotebook):
     `frequencies` (f,) in Hz; `outputs` and `inputs` carry names and units; an entry's unit is output unit / input unit. Batch axes lead.
     """
 
-    frequencies: Array
-    outputs: tuple[Channel, ...]
-    inputs: tuple[Channel, ...]
+    frequencies: Annotated[Array, FREQUENCY, Called("frequency")]
+    outputs: Annotated[tuple[Channel, ...], INNER]
+    inputs: Annotated[tuple[Channel, ...], INNER]
     values: Array
     provenance: str
 
@@ -46,32 +48,40 @@ class Response(InNotebook):
         return self.values[..., row, column]
 
     @property
-    def units(self) -> tuple[tuple[str, ...], ...]:
+    def units(self) -> Annotated[tuple[tuple[str, ...], ...], VIEW, Called("unit"), Axes("rows", "columns")]:
         """Unit of every entry, outputs x inputs."""
         return ratio_units(tuple(channel.unit for channel in self.outputs), tuple(channel.unit for channel in self.inputs))
 
     def matrix(self, index: int) -> Matrix:
         """The labelled complex matrix (..., p, m) at the frequency of that index."""
-        rows, columns = tuple(channel.name for channel in self.outputs), tuple(channel.name for channel in self.inputs)
-        return Matrix(self.values[..., index, :, :], rows, columns, self.units)
+        return Matrix(self.values[..., index, :, :], self.rows, self.columns, self.units)
 
-    def to_json(self) -> dict[str, Any]:
-        """The response as {frequency_hz, rows, columns, unit, real, imaginary}; `real` and `imaginary` are (..., f, p, m)."""
-        return {
-            "frequency_hz": self.frequencies.tolist(),
-            "rows": [channel.name for channel in self.outputs],
-            "columns": [channel.name for channel in self.inputs],
-            "unit": [list(row) for row in self.units],
-            "real": np.real(self.values).tolist(),
-            "imaginary": np.imag(self.values).tolist(),
-        }
+    @property
+    def rows(self) -> Annotated[tuple[str, ...], VIEW]:
+        """Names of the outputs."""
+        return tuple(channel.name for channel in self.outputs)
+
+    @property
+    def columns(self) -> Annotated[tuple[str, ...], VIEW]:
+        """Names of the inputs."""
+        return tuple(channel.name for channel in self.inputs)
+
+    @property
+    def real(self) -> Annotated[Array, VIEW, Axes("frequencies", "rows", "columns")]:
+        """Real part of each entry over frequency."""
+        return np.real(self.values)
+
+    @property
+    def imaginary(self) -> Annotated[Array, VIEW, Axes("frequencies", "rows", "columns")]:
+        """Imaginary part of each entry over frequency."""
+        return np.imag(self.values)
 
     def to_xarray(self) -> Any:
         """The response as an xarray DataArray with dimensions (batch..., frequency, output, input)."""
         import xarray
 
         batch = [f"batch_{number}" for number in range(self.values.ndim - 3)]
-        axes = {"output": [channel.name for channel in self.outputs], "input": [channel.name for channel in self.inputs]}
+        axes = {"output": list(self.rows), "input": list(self.columns)}
         return xarray.DataArray(self.values, dims=[*batch, "frequency", "output", "input"], coords={"frequency": self.frequencies, **axes})
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
@@ -19,28 +20,31 @@ from flexstage.show.command.output import STDOUT, announce, write
 from flexstage.show.command.terminal import styled, tell, warn
 from flexstage.show.document import enveloped
 from flexstage.show.render import to_rich
+from flexstage.show.sheets import to_csv
 from flexstage.show.table import Table
 
 _UNFOLDED = 1000
 
 
-def answer(
+def answer(  # noqa: PLR0913 (all that a command can ask for)
     kind: str,
     mechanism: Mechanism | None,
     body: Callable[[], Any],
     tables: Callable[[], Iterable[Table | None]],
     *,
     json: str | None,
+    csv: Path | None = None,
     model: Model | None = None,
     cautions: tuple[Finding, ...] = (),
     beside: tuple[Path | None, ...] = (),
 ) -> None:
-    """Write the JSON document where one was asked for (`json`), and show the tables unless stdout is the document's.
+    """Write the JSON document (`json`) and CSV files (`csv`) where asked for, and show the tables unless stdout is the document's.
 
     `kind` is that of the document, `mechanism` the description it is about (`None`: none, a record alone). `cautions` are the result's
     own, told after those about the description. `beside` are the command's other outputs: where one of them goes to stdout, tables do not,
     and cautions go to stderr.
     """
+    write_csv(csv, kind, body)
     if json is not None:
         write(json, as_text(enveloped(kind, mechanism, model, body(), cautions)) + "\n", "--json")
         if json == STDOUT:
@@ -51,6 +55,16 @@ def answer(
             warn(str(each))
         return
     show((*caveat_lines(kind, mechanism, cautions), *tables()))
+
+
+def write_csv(folder: Path | None, kind: str, body: Callable[[], Any]) -> None:
+    """Write the parts of a result into a folder, if one is named: `modes.csv` what is single, `modes.twists.csv` what is at `twists`."""
+    if folder is None:
+        return
+    folder.mkdir(exist_ok=True)
+    for path, text in to_csv(body()).items():
+        write(folder / f"{re.sub(r'[^A-Za-z0-9_.-]', '_', f'{kind}.{path}'.rstrip('.'))}.csv", text, "--csv")
+    announce(f"Wrote {folder / kind}.*.csv")
 
 
 def caveat_lines(kind: str, mechanism: Mechanism | None, more: tuple[Finding, ...] = ()) -> Iterator[str]:

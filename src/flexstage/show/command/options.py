@@ -12,6 +12,7 @@ import typer
 
 from flexstage.models.theory import Model
 from flexstage.show.command.failure import BAD_INPUT
+from flexstage.show.command.output import writable_folder
 from flexstage.show.command.terminal import tell
 
 _Kind = TypeVar("_Kind", bound=Enum)
@@ -77,6 +78,17 @@ Changes: TypeAlias = Annotated[
 ]
 
 Json: TypeAlias = Annotated[str | None, text_option("--json", "-|FILE", "Write the result as JSON: to stdout (-) or a file.")]
+
+Csv: TypeAlias = Annotated[
+    Path | None,
+    typer.Option(
+        "--csv",
+        metavar="FOLDER",
+        callback=writable_folder,
+        help="Write each table of the result as a CSV file into a folder: full precision, SI units.",
+        show_default=False,
+    ),
+]
 
 Report: TypeAlias = Annotated[Path | None, text_option("--report", "FILE", "Write a self-contained HTML report with pictures.")]
 

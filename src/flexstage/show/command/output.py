@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import tempfile
-from collections.abc import Generator, Iterable, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from pathlib import Path
@@ -97,10 +97,17 @@ def _unwritable(wanted: Iterable[tuple[str, str | Path | None]], design: Path | 
         path = Path(target)
         if (owner := taken.get(_whole(path))) is not None:
             yield Finding(option, f"{path} is {owner} too", "Choose another file")
-        elif (problem := _problem(path)) is not None:
+        elif (problem := _problem(path, _refused)) is not None:
             yield Finding(option, f"{path} cannot be written: {problem}", "Choose another file or folder")
         else:
             taken[_whole(path)] = f"the output of {option}"
+
+
+def writable_folder(folder: Path | None) -> Path | None:
+    """The folder that `--csv` names, new or there; raises a `DesignError` where nothing can be written into it."""
+    if folder is not None and (problem := _problem(folder, _folder_refused)) is not None:
+        raise refuse("--csv", f"{folder} cannot be written into: {problem}", "Choose another folder")
+    return folder
 
 
 def _whole(path: Path) -> Path:
@@ -108,10 +115,10 @@ def _whole(path: Path) -> Path:
     return Path(os.path.realpath(path))
 
 
-def _problem(path: Path) -> str | None:
-    """Why a file cannot be written; tried, not concluded from its mode."""
+def _problem(path: Path, refused: Callable[[Path], str | None]) -> str | None:
+    """Why a file or folder cannot be written; tried, not concluded from its mode."""
     try:
-        return _refused(path)
+        return refused(path)
     except OSError as error:  # a name that is too long, a loop of links, a folder that may not be looked into
         return error.strerror or str(error)
 
@@ -128,6 +135,12 @@ def _refused(path: Path) -> str | None:
         return f"there is no folder {path.parent}"
     with tempfile.TemporaryFile(dir=folder):
         return None
+
+
+def _folder_refused(folder: Path) -> str | None:
+    if folder.exists() and not folder.is_dir():
+        return "it is a file"
+    return _refused(folder / "table.csv" if folder.exists() else folder)
 
 
 def _is_device(path: Path) -> bool:

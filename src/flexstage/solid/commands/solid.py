@@ -18,7 +18,7 @@ from flexstage.mechanism.store import loads
 from flexstage.mechanism.store.file import read_text
 from flexstage.show.command.answer import answer, tell_missing
 from flexstage.show.command.design import open_design
-from flexstage.show.command.options import Changes, Design, Json, Report, output_option, text_option, word_option
+from flexstage.show.command.options import Changes, Csv, Design, Json, Report, output_option, text_option, word_option
 from flexstage.show.command.output import require_writable, save
 from flexstage.show.command.progress import ProgressBar, progress_bar
 from flexstage.show.command.terminal import tell, warn
@@ -95,7 +95,7 @@ class _Result:
     cautions: tuple[Finding, ...]
 
 
-def solid(
+def solid(  # noqa: PLR0913 (its options)
     design: Design,
     *,
     what: Scope = What.STAGE,
@@ -104,6 +104,7 @@ def solid(
     memory: Memory = None,
     changes: Changes = None,
     json: Json = None,
+    csv: Csv = None,
     report: Report = None,
 ) -> None:
     """Read a stage as elastic solids, by finite elements.
@@ -120,8 +121,16 @@ def solid(
         found = _STUDIES[what](mechanism, asked, shown)
     if report is not None:
         save(report, solid_report(mechanism, found.sections(), found.cautions), "--report")
-    cautions = found.cautions
-    answer("solid", mechanism, lambda: {"what": what.value, **found.body()}, found.tables, json=json, cautions=cautions, beside=(report,))
+    answer(
+        "solid",
+        mechanism,
+        lambda: {"what": what.value, **found.body()},
+        found.tables,
+        json=json,
+        csv=csv,
+        cautions=found.cautions,
+        beside=(report,),
+    )
 
 
 def verify(
@@ -132,6 +141,7 @@ def verify(
     memory: Memory = None,
     changes: Changes = None,
     json: Json = None,
+    csv: Csv = None,
     report: Report = None,
 ) -> None:
     """Compare theory with finite elements: which to trust?
@@ -153,7 +163,7 @@ def verify(
         save(report, solid_report(mechanism, sections, cautions), "--report")
     tell_missing(found.missing)
     body, tables = lambda: verification_body(found), lambda: _verification_tables(found)
-    answer("verify", mechanism, body, tables, json=json, cautions=cautions, beside=(report,))
+    answer("verify", mechanism, body, tables, json=json, csv=csv, cautions=cautions, beside=(report,))
 
 
 def calibrate(
@@ -164,6 +174,7 @@ def calibrate(
     order: Order = None,
     memory: Memory = None,
     json: Json = None,
+    csv: Csv = None,
 ) -> None:
     """Give hinges their 6x6 from finite elements.
 
@@ -177,7 +188,7 @@ def calibrate(
         found = calibration.calibrate(text, _hinges(asked, shown), where=str(design))
     save(output, found.text, "--output")
     cautions, tables = _inexact(found.hinges), [calibration_table(found)]
-    answer("calibrate", mechanism, lambda: calibration_body(found), lambda: tables, json=json, cautions=cautions, beside=(output,))
+    answer("calibrate", mechanism, lambda: calibration_body(found), lambda: tables, json=json, csv=csv, cautions=cautions, beside=(output,))
 
 
 def _request(accuracy: str, order: int | None, memory: str | None) -> _Request:

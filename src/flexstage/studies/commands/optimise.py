@@ -31,6 +31,7 @@ def optimise(
     output: Annotated[Path | None, options.output_option("STAGE.TOML", "Design file to write.")] = None,
     report: options.Report = None,
     json: options.Json = None,
+    csv: options.Csv = None,
 ) -> None:
     """Find the best design within ranges and limits.
 
@@ -47,12 +48,21 @@ def optimise(
     if len(wanted.objectives) > 1 and output is not None:
         raise refuse("--output", "a front has many designs", "Set a limit on one objective, optimise the other, and write that design")
     if len(wanted.objectives) > 1:
-        _front(asked, wanted, report, json)
+        _front(asked, wanted, report, json, csv)
     else:
-        _one(asked, wanted, study=study, output=output, report=report, json=json)
+        _one(asked, wanted, study=study, output=output, report=report, json=json, csv=csv)
 
 
-def _one(asked: Study, wanted: Wanted, *, study: Path, output: Path | None, report: Path | None, json: str | None) -> None:
+def _one(
+    asked: Study,
+    wanted: Wanted,
+    *,
+    study: Path,
+    output: Path | None,
+    report: Path | None,
+    json: str | None,
+    csv: Path | None,
+) -> None:
     with progress_bar() as shown:
         found = run_optimise(asked, wanted, lambda text: shown.share(text, 0.0))
     _require_solution(found)
@@ -69,12 +79,13 @@ def _one(asked: Study, wanted: Wanted, *, study: Path, output: Path | None, repo
         lambda: optimise_tables(found),
         model=Model.LUMPED,
         json=json,
+        csv=csv,
         cautions=cautions,
         beside=(output, report),
     )
 
 
-def _front(asked: Study, wanted: Wanted, report: Path | None, json: str | None) -> None:
+def _front(asked: Study, wanted: Wanted, report: Path | None, json: str | None, csv: Path | None) -> None:
     with progress_bar() as shown:
         found = pareto_front(asked, wanted, lambda text: shown.share(text, 0.0))
     _require_solution(found)
@@ -87,6 +98,7 @@ def _front(asked: Study, wanted: Wanted, report: Path | None, json: str | None) 
         lambda: front_tables(found),
         model=Model.LUMPED,
         json=json,
+        csv=csv,
         cautions=loaded_findings(asked),
         beside=(report,),
     )

@@ -10,7 +10,7 @@ from typing import Annotated
 from flexstage.base.finding import refuse
 from flexstage.models.theory import Model
 from flexstage.show.command.answer import answer
-from flexstage.show.command.options import Json, Report, Resume, Scheduler, Study, Workers, output_option
+from flexstage.show.command.options import Csv, Json, Report, Resume, Scheduler, Study, Workers, output_option
 from flexstage.show.command.output import require_writable, save
 from flexstage.show.command.progress import progress_bar
 from flexstage.studies.sweeps.effects import effects
@@ -32,6 +32,7 @@ def sweep(
     scheduler: Scheduler = None,
     report: Report = None,
     json: Json = None,
+    csv: Csv = None,
 ) -> None:
     """Compute many designs; show what varies with what.
 
@@ -55,6 +56,7 @@ def sweep(
         lambda: study_tables(found),
         model=Model.LUMPED,
         json=json,
+        csv=csv,
         cautions=loaded_findings(asked),
         beside=(report,),
     )

@@ -8,7 +8,7 @@ from typing import Annotated
 from flexstage.base.finding import refuse
 from flexstage.models.theory import Model
 from flexstage.show.command.answer import answer
-from flexstage.show.command.options import Json, Report, Resume, Scheduler, Study, Workers, output_option
+from flexstage.show.command.options import Csv, Json, Report, Resume, Scheduler, Study, Workers, output_option
 from flexstage.show.command.output import require_writable, save
 from flexstage.show.command.progress import progress_bar
 from flexstage.studies.sweeps.loaded import loaded_findings
@@ -28,6 +28,7 @@ def tolerance(
     scheduler: Scheduler = None,
     report: Report = None,
     json: Json = None,
+    csv: Csv = None,
 ) -> None:
     """Scatter dimensions and materials: yield, allowances.
 
@@ -52,6 +53,7 @@ def tolerance(
         lambda: tolerance_tables(found),
         model=Model.LUMPED,
         json=json,
+        csv=csv,
         cautions=loaded_findings(found.study),
         beside=(report,),
     )

@@ -1,0 +1,185 @@
+"""Results in parts, each a labelled matrix or a sheet of rows and columns: what CSV, pandas, xarray, MATLAB and notebooks are made from.
+
+A part stands under its path in the document (`docs/json.md`). Records in a sequence or mapping are rows of one sheet, records within them
+rows of another that repeats the names of the first; arrays along names are a row a name, bare arrays a row an entry.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, is_dataclass
+from enum import Enum
+from itertools import product
+from typing import Any, TypeAlias
+
+import numpy as np
+
+from flexstage.base.labelled import Matrix
+from flexstage.base.record import Field, values_of
+
+NUMBERS = (int, float, np.number, np.bool_)
+_MATRIX = {"rows", "columns", "unit", "values"}
+
+Record: TypeAlias = Mapping[Field, Any]
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """Rows and columns: `names` that tell the rows apart, by their head (none of a single row), and a value a row of every field."""
+
+    names: Mapping[str, tuple[Any, ...]]
+    columns: Mapping[Field, tuple[Any, ...]]
+
+    @property
+    def heads(self) -> Mapping[str, tuple[Any, ...]]:
+        """All columns by their heads: names of rows, then fields with their SI units, as keys of the document."""
+        fields = {each.key: values for each, values in self.columns.items()}
+        return {f"{head}_name" if head in fields else head: values for head, values in self.names.items()} | fields
+
+
+def parts(result: Any) -> Iterator[tuple[str, Sheet | Matrix]]:
+    """The parts of a result, or of a document, with their paths.
+
+    >>> from flexstage.base.labelled import Matrix
+    >>> found = dict(parts({"gain": 2.0, "modes": [{"frequency_hz": 100.0}, {"frequency_hz": 200.0}]}))
+    >>> found["modes"].heads
+    {'mode': (1, 2), 'frequency_hz': (100.0, 200.0)}
+    """
+    yield from [("", result)] if isinstance(result, Matrix) else _parts("", {}, [_record(result)])
+
+
+def rows_of(source: Any) -> Sheet:
+    """A mapping or sequence of records as rows, or the arrays of a record that stand along the first of its fields of names."""
+    if isinstance(source, Mapping):
+        return Sheet({"name": tuple(source)}, _columns([_record(each) for each in source.values()]))
+    if isinstance(source, Sequence):
+        return Sheet({}, _columns([_record(each) for each in source]))
+    return next(_along({}, [_record(source)]))[1]
+
+
+def _record(value: Any) -> Record:
+    return values_of(value.to_json() if hasattr(value, "to_json") else value)[0]
+
+
+def _columns(records: Sequence[Record]) -> dict[Field, tuple[Any, ...]]:
+    return {field: tuple(each.get(field) for each in records) for field in dict.fromkeys(field for each in records for field in each)}
+
+
+def _parts(path: str, names: Mapping[str, tuple[Any, ...]], records: Sequence[Record]) -> Iterator[tuple[str, Sheet | Matrix]]:
+    columns = _columns(records)
+    axes = {name for field in columns for name in field.axes}
+    alone = {field: values for field, values in columns.items() if not field.axes and field.name not in axes}
+    cells = {field: tuple(map(plain_cell, values)) for field, values in alone.items() if all(map(is_cell, values))}
+    if any(value is not None for values in cells.values() for value in values):
+        yield path, Sheet(names, cells)
+    for name, sheet in _along(names, records):
+        yield _under(path, name), sheet
+    for field, values in alone.items():
+        if field not in cells:
+            there = [(*(own[index] for own in names.values()), value) for index, value in enumerate(values) if value is not None]
+            yield from _inner(_under(path, field.key), field, tuple(names), there)
+
+
+def _under(path: str, key: str) -> str:
+    return f"{path}.{key}" if path else key
+
+
+def _inner(path: str, field: Field, heads: tuple[str, ...], rows: Sequence[tuple[Any, ...]]) -> Iterator[tuple[str, Sheet | Matrix]]:
+    """The parts of a field that a cell cannot hold; a row is the names of its owner and its value."""
+    if any(_matrix(row[-1]) is not None for row in rows):
+        for *names, value in rows:
+            if (matrix := _matrix(value)) is not None:
+                yield ".".join([path, *map(str, names)]), matrix
+    elif all(_tells_fields(row[-1]) for row in rows):
+        yield from _parts(path, _named(heads, rows), [_record(row[-1]) for row in rows])
+    else:
+        items = [(*names, name, item) for *names, value in rows for name, item in _items(value)]
+        records = all(_is_record(row[-1]) for row in items)
+        head = field.words.removesuffix("s") if records else "name" if isinstance(rows[0][-1], Mapping) else "number"
+        inner = [_record(row[-1]) if records else {field: row[-1]} for row in items]
+        heads = (*heads, head if head not in heads else f"{head} {len(heads) + 1}")
+        if records or all(is_cell(row[-1]) for row in items):
+            yield from _parts(path, _named(heads, items), inner)
+        else:
+            yield from _inner(path, field, heads, items)
+
+
+def _named(heads: Iterable[str], rows: Sequence[tuple[Any, ...]]) -> dict[str, tuple[Any, ...]]:
+    return {head: tuple(row[number] for row in rows) for number, head in enumerate(heads)}
+
+
+def _along(names: Mapping[str, tuple[Any, ...]], records: Sequence[Record]) -> Iterator[tuple[str, Sheet]]:
+    """A sheet for the arrays along the same axes, a row for each name, or combination of names, on these."""
+    for axes in dict.fromkeys(field.axes for record in records for field in record if field.axes):
+        rows, found = list[tuple[Any, ...]](), list[Record]()
+        heads = tuple(_head(records[0], name) for name in axes)
+        for index, record in enumerate(records):
+            ends = [next(value for field, value in record.items() if field.name == name) for name in axes]
+            own = {field: value for field, value in record.items() if field.axes == axes and value is not None}
+            for place in product(*(range(len(end)) for end in ends)) if own else ():
+                rows.append((*(each[index] for each in names.values()), *(end[at] for end, at in zip(ends, place, strict=True))))
+                found.append({field: _at(value, place) for field, value in own.items()})
+        if found:
+            columns = _columns(found)
+            named = columns if len(axes) > 1 else [field for field in records[0] if field.name in axes]
+            yield "_".join(each.key for each in named), Sheet(_named((*names, *heads), rows), columns)
+
+
+def _head(record: Record, name: str) -> str:
+    field = next(field for field in record if field.name == name)
+    return field.key if field.unit != "1" else field.words.removesuffix("s")
+
+
+def _at(value: Any, place: tuple[int, ...]) -> Any:
+    if isinstance(value, np.ndarray):
+        return plain_cell(value[(..., *place)])
+    for at in place:
+        value = value[at]
+    return plain_cell(value)
+
+
+def _matrix(value: Any) -> Matrix | None:
+    """The matrix that a value is, or tells in a document."""
+    if isinstance(value, Mapping) and set(value) == _MATRIX:
+        unit = value["unit"] if isinstance(value["unit"], str) else tuple(map(tuple, value["unit"]))
+        return Matrix(np.array(value["values"], dtype=float), tuple(value["rows"]), tuple(value["columns"]), unit)
+    return value if isinstance(value, Matrix) else None
+
+
+def _is_record(value: Any) -> bool:
+    return isinstance(value, Mapping) or is_dataclass(value) or hasattr(value, "to_json")
+
+
+def _tells_fields(value: Any) -> bool:
+    """Whether it is a record; a mapping of a document may tell names instead, with numbers or records."""
+    if isinstance(value, Mapping):
+        return not all(map(is_cell, value.values())) and not all(map(_is_record, value.values()))
+    return _is_record(value)
+
+
+def _items(value: Any) -> Iterable[tuple[Any, Any]]:
+    return value.items() if isinstance(value, Mapping) else enumerate(value, 1)
+
+
+def is_cell(value: Any) -> bool:
+    """Whether one cell can hold the value: nothing, a number, a word, or a few words.
+
+    >>> is_cell(None), is_cell(np.array(1.0)), is_cell(("a", "b")), is_cell(np.ones(2)), is_cell({})
+    (True, True, True, False, False)
+    """
+    if isinstance(value, (list, tuple)):
+        return all(isinstance(each, (str, Enum)) for each in value)
+    return value is None or isinstance(value, (*NUMBERS, str, Enum)) or (isinstance(value, np.ndarray) and value.ndim == 0)
+
+
+def plain_cell(value: Any) -> Any:
+    """A cell in Python's own numbers and words.
+
+    >>> plain_cell(np.float64(2.0)), plain_cell(("a", "b"))
+    (2.0, 'a, b')
+    """
+    if isinstance(value, Enum):
+        return value.value
+    if isinstance(value, (list, tuple)) and is_cell(value):
+        return ", ".join(str(plain_cell(each)) for each in value)
+    return value.item() if isinstance(value, np.generic) or (isinstance(value, np.ndarray) and value.ndim == 0) else value
