@@ -13,22 +13,19 @@ from flexstage.base.finding import Finding, nearest, require
 from flexstage.base.number import Table
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
+from flexstage.parts import amplifier
 from flexstage.parts.gauge import DisplacementGauge
 from flexstage.parts.piezo import Piezo
 
 
 @dataclass(frozen=True)
-class AmplifierSettings:
+class AmplifierSettings(amplifier.Amplifier):
     """What a design file does not say of an amplifier; what is absent limits nothing.
 
-    `bandwidth` [Hz] of its first-order lag, or `resistance` [ohm] that makes one with the stack's capacitance, f = 1/(2 pi R C); `current`
-    [A] it can give and `slew` [V/s] its fastest change of voltage, `noise_density` [V/Hz^(1/2)] one-sided and white before that lag,
-    `bits` of the converter before it.
+    Besides what every amplifier has, `slew` [V/s] its fastest change of voltage, `noise_density` [V/Hz^(1/2)] one-sided and white before
+    its lag, `bits` of the converter before it.
     """
 
-    bandwidth: float | None = None
-    resistance: float | None = None
-    current: float | None = None
     slew: float | None = None
     noise_density: float | None = None
     bits: int | None = None
@@ -159,14 +156,11 @@ def _by_name(given: _Setting | Mapping[str, _Setting] | None, names: tuple[str, 
 def _amplifier(setting: AmplifierSettings, piezo: Piezo, low: float, high: float) -> Amplifier:
     gain = _gain(piezo)
     capacitance = np.nan if piezo.capacitance is None else float(piezo.capacitance)
-    bandwidth = np.inf if setting.bandwidth is None else setting.bandwidth
-    if setting.resistance is not None:
-        bandwidth = 1.0 / (2.0 * np.pi * setting.resistance * capacitance)
     return Amplifier(
         low=low,
         high=high,
         slew=_slew(setting, gain, capacitance),
-        bandwidth=bandwidth,
+        bandwidth=float(setting.cutoff(np.array(capacitance))),
         noise_density=None if setting.noise_density is None else setting.noise_density * gain,
         step=0.0 if setting.bits is None else (high - low) / 2**setting.bits,
     )

@@ -35,7 +35,7 @@ def _line(row: ComparedMode, *, with_fea: bool) -> list[Content]:
     line: list[Content] = [Cell(str(row.number), Mark.STRONG), row.name, _hertz(row.theory), *fea, *_experiment(row.experiment)]
     line += [off_cell(row.difference, row.uncertainty), *([off_cell(row.fea_difference, row.uncertainty)] if with_fea else [])]
     line += [_assurance(row.assurance), *([_assurance(row.fea_assurance)] if with_fea else [])]
-    return [*line, _damping(row.experiment)[0]]
+    return [*line, _damping(row.experiment)]
 
 
 def _experiment(seen: Measured | None) -> list[Content]:
@@ -44,10 +44,10 @@ def _experiment(seen: Measured | None) -> list[Content]:
     return [*interval_texts(np.array([seen.frequency]), np.array([seen.frequency_interval]))[0], widening_cell(seen.widening)]
 
 
-def _damping(seen: Measured | None) -> list[Content]:
+def _damping(seen: Measured | None) -> str:
     if seen is None:
-        return [NO_VALUE, NO_VALUE]
-    return list(interval_texts(100.0 * np.array([seen.damping]), 100.0 * np.array([seen.damping_interval]))[0])
+        return NO_VALUE
+    return interval_texts(100.0 * np.array([seen.damping]), 100.0 * np.array([seen.damping_interval]))[0][0]
 
 
 def _hertz(value: float | None) -> str:
@@ -108,7 +108,7 @@ def further_table(found: Compared) -> Table | None:
         (
             Cell(str(mode.experiment.number), Mark.STRONG),
             *_experiment(mode.experiment),
-            _damping(mode.experiment)[0],
+            _damping(mode.experiment),
             mode.name or NO_VALUE,
             _hertz(mode.theory),
             _assurance(mode.assurance),

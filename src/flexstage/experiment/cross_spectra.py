@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Container, Sequence
+from dataclasses import dataclass, replace
 from enum import Enum
 from typing import Annotated
 
@@ -72,6 +72,13 @@ class Spectra:
     def resolution(self) -> Annotated[float, FREQUENCY]:
         """How far the lines lie apart."""
         return float(self.frequencies[1])
+
+    def driven(self, names: Container[str]) -> Spectra:
+        """Without inputs that are not named or were at rest all the time."""
+        power = np.sum(np.real(np.diagonal(self.xx, axis1=1, axis2=2)), axis=0)
+        kept = np.array([index for index, each in enumerate(self.inputs) if each.name in names and power[index] > 0.0], dtype=int)
+        inputs = tuple(self.inputs[index] for index in kept)
+        return replace(self, inputs=inputs, xx=self.xx[:, kept[:, None], kept], yx=self.yx[:, :, kept])
 
     def band(self, low: float, high: float) -> Spectra:
         """The lines from `low` to `high` in Hz, both included."""

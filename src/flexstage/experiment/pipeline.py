@@ -106,18 +106,9 @@ def identification(test: Measurement, search: Search = _DEFAULT, told: Told | No
     ]
     found = identify(list(test), search, _named(told, "finding modes", _SPECTRA, 1.0))
     names = {channel.name for channel in found.inputs}
-    known = pooled([_only(part, names) for part in parts])
+    known = pooled([part.driven(names) for part in parts])
     second = h2(known) if len(known.outputs) >= len(known.inputs) else None
     return Identification(test, found, known, multiple_coherence(known), second, spectral_ratio(known))
-
-
-def _only(part: Spectra, names: set[str]) -> Spectra:
-    """Without inputs that were at rest."""
-    kept = np.array([index for index, channel in enumerate(part.inputs) if channel.name in names], dtype=int)
-    power = np.real(np.sum(np.diagonal(part.xx, axis1=1, axis2=2), axis=0))
-    driven = kept[power[kept] > 0.0]
-    inputs = tuple(part.inputs[index] for index in driven)
-    return replace(part, inputs=inputs, xx=part.xx[:, driven[:, None], driven], yx=part.yx[:, :, driven])
 
 
 def _sound_record(record: Record, allow: frozenset[Allow], needs: Needs, told: Told | None) -> Record:

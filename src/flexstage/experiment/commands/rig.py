@@ -11,9 +11,10 @@ from flexstage.base.finding import Finding, require
 from flexstage.base.quantity import CURRENT, DISPLACEMENT, FREQUENCY, NOISE_DENSITY, RESISTANCE, VOLTAGE, Quantity
 from flexstage.experiment.formats.write import write
 from flexstage.experiment.virtual_rig.rig import as_record, simulated
-from flexstage.experiment.virtual_rig.setup import Amplifier, AntiAlias, NoiseDrive, Recorded, RigSetup, Sensing, Tap
+from flexstage.experiment.virtual_rig.setup import AntiAlias, NoiseDrive, Recorded, RigSetup, Sensing, Tap
 from flexstage.experiment.virtual_rig.tables import rig_table
 from flexstage.models.theory import Model
+from flexstage.parts.amplifier import Amplifier
 from flexstage.show.command.answer import caveat_lines, show
 from flexstage.show.command.design import elastic_model, open_design
 from flexstage.show.command.options import Changes, Design, ModelName, output_option, text_option, word_option

@@ -87,7 +87,8 @@ def evidence(what: Record | Responses | Sequence[Record], segments: Segments | N
     records, tones = zip(*quiet, strict=True)
     chosen = segments if segments is not None else chosen_segments(records)
     told = (_part(tell, len(records) + index, _PASSES * len(records)) for index in range(len(records)))
-    together = pooled([_driven(spectra(record, chosen, each)) for record, each in zip(records, told, strict=True)])
+    parts = [spectra(record, chosen, each) for record, each in zip(records, told, strict=True)]
+    together = pooled([part.driven([channel.name for channel in part.inputs]) for part in parts])
     return replace(_of_records(records, together, tell), tones=tuple(itertools.chain(*tones)))
 
 
@@ -175,14 +176,6 @@ def whole(records: Sequence[Record]) -> Segments:
     """
     shortest = min(record.duration for record in records)
     return Segments(min(shortest, _LONGEST / records[0].rate), 0.0, Window.BOXCAR)
-
-
-def _driven(known: Spectra) -> Spectra:
-    """Without inputs that were at rest all the time."""
-    power = np.sum(np.real(np.diagonal(known.xx, axis1=1, axis2=2)), axis=0)
-    kept = np.flatnonzero(power > 0.0)
-    inputs = tuple(known.inputs[index] for index in kept)
-    return replace(known, inputs=inputs, xx=known.xx[:, kept[:, None], kept], yx=known.yx[:, :, kept])
 
 
 def _of_responses(known: Responses) -> Evidence:

@@ -87,7 +87,7 @@ def planned(mechanism: Mechanism, model: LinearModel, setup: RigSetup) -> Plan:
         high=np.real(limits.high[places]),
         volts=volts,
         capacitances=capacitances,
-        bandwidths=_bandwidths(setup, capacitances),
+        bandwidths=setup.amplifier.cutoff(capacitances),
         densities=_of_gauges(setup.sensing.density, [gauge.noise_density for gauge in gauges.values()], 0.0),
         steps=_of_gauges(setup.sensing.resolution, [gauge.resolution for gauge in gauges.values()], 0.0),
         lags=_of_gauges(None, [gauge.bandwidth for gauge in gauges.values()], np.inf),
@@ -136,13 +136,6 @@ def _commanded(setup: RigSetup, piezos: list[Piezo], volts: Array) -> Array:
     if setup.drive.voltage is not None:
         return setup.drive.voltage / volts
     return np.array([_DEFAULT_SHARE * float(np.real(piezo.stroke)) for piezo in piezos])
-
-
-def _bandwidths(setup: RigSetup, capacitances: Array) -> Array:
-    amplifier = setup.amplifier
-    if amplifier.resistance is not None:
-        return 1.0 / (2.0 * np.pi * amplifier.resistance * capacitances)
-    return np.full(len(capacitances), np.inf if amplifier.bandwidth is None else amplifier.bandwidth)
 
 
 def _of_gauges(asked: float | None, stated: list[Number | None], otherwise: float) -> Array:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from enum import Enum
 
+from flexstage.parts.amplifier import Amplifier
+
 
 class Tap(Enum):
     """Where the recorded inputs are taken from."""
@@ -40,19 +42,6 @@ class NoiseDrive:
 
 
 @dataclass(frozen=True)
-class Amplifier:
-    """A voltage amplifier on the stack's capacitance C: first order, absent all of this it is ideal.
-
-    `bandwidth` [Hz] as stated, or that of the output `resistance` R [ohm], 1/(2 pi R C). `current` [A] is the largest it gives: a test
-    whose peaks ask for more is refused, since a saturated amplifier is not linear.
-    """
-
-    bandwidth: float | None = None
-    resistance: float | None = None
-    current: float | None = None
-
-
-@dataclass(frozen=True)
 class AntiAlias:
     """Butterworth filter of every recorded analogue channel: `order` (0: none) and `corner` [Hz] (absent: 0.4 times the sampling rate)."""
 
@@ -77,6 +66,7 @@ class Sensing:
 class RigSetup:
     """A test: `seconds` long, sampled at `rate` [Hz], with the random numbers of `seed`.
 
+    A test whose peaks ask for more than the amplifier's current is refused, since a saturated amplifier is not linear.
     Without a rate it is the least power of two that is ten times the highest platform mode. The same set-up of the same stage gives
     the same record, to the bit.
 

@@ -1,0 +1,31 @@
+"""Voltage amplifiers of piezo stacks."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.base.number import Array
+
+
+@dataclass(frozen=True)
+class Amplifier:
+    """A voltage amplifier on the stack's capacitance C: of first order, ideal where all of this is absent.
+
+    `bandwidth` [Hz] as stated, or that of the output `resistance` R [ohm], 1/(2 pi R C). `current` [A] is the largest it gives.
+    """
+
+    bandwidth: float | None = None
+    resistance: float | None = None
+    current: float | None = None
+
+    def cutoff(self, capacitances: Array) -> Array:
+        """Its bandwidth [Hz] on stacks of those capacitances [F]; infinite where nothing limits it.
+
+        >>> Amplifier(resistance=100.0).cutoff(np.array([0.4e-6])).round(1).tolist(), Amplifier().cutoff(np.ones(1)).tolist()
+        ([3978.9], [inf])
+        """
+        if self.resistance is not None:
+            return 1.0 / (2.0 * np.pi * self.resistance * capacitances)
+        return np.full(np.shape(capacitances), np.inf if self.bandwidth is None else self.bandwidth)
