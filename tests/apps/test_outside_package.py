@@ -24,16 +24,15 @@ thickness = { of = "parts.leaf.thickness", from = "0.8 mm", to = "1 mm", levels 
 """
 
 
-def installed(folder, version="1.0"):
-    """A folder that the package is installed in, as an installer leaves it."""
+def installed(folder, version="1.0", without=None):
+    """A folder that the package is installed in, as an installer leaves it; `without` what it offers in one group."""
     project = tomllib.loads((PACKAGE / "pyproject.toml").read_text())["project"]
     shutil.copytree(PACKAGE / "tapered_leaf", folder / "tapered_leaf")
     told = folder / f"tapered_leaf-{version}.dist-info"
     told.mkdir()
     (told / "METADATA").write_text(f"Metadata-Version: 2.1\nName: {project['name']}\nVersion: {version}\n")
-    lines = [
-        f"[{group}]\n" + "".join(f"{name} = {value}\n" for name, value in own.items()) for group, own in project["entry-points"].items()
-    ]
+    offers = {group: own for group, own in project["entry-points"].items() if group != without}
+    lines = [f"[{group}]\n" + "".join(f"{name} = {value}\n" for name, value in own.items()) for group, own in offers.items()]
     (told / "entry_points.txt").write_text("\n".join(lines))
     return folder
 
@@ -90,14 +89,32 @@ def test_a_sweep_in_two_processes_asks_its_law_and_its_measure(work, package):
     assert sag["least"] < sag["largest"]  # by its law: a thicker waist is stiffer
 
 
-def test_verify_draws_its_shape(work, package):
-    """Theory and finite elements of the first mode agree within what finite elements of this order are good for."""
-    told = flexstage(work, "verify", "small.toml", "--order", "2", "--json", "verify.json", path=package)
-    assert "Not compared: hinge leaf" in told
-    rows = json.loads((work / "verify.json").read_text())["rows"]
-    first = next(row for row in rows if row["figure"].startswith("platform mode 1 "))
+def test_its_shape_is_all_that_finite_elements_need(work, package):
+    """Theory and finite elements of the hinge and of the first mode agree within what either is good for; calibration takes that over."""
+    flexstage(work, "verify", "small.toml", "--order", "2", "--json", "verify.json", path=package)
+    document = json.loads((work / "verify.json").read_text())
+    first = next(row for row in document["rows"] if row["figure"].startswith("platform mode 1 "))
     assert first["fea_error"] < 0.05
     assert first["theory"] == pytest.approx(first["fea"], rel=first["fea_error"])
+    alone = {row["figure"]: row for row in document["rows"] if row["group"] == "hinge leaf"}
+    assert list(alone) == [f"compliance {axis}" for axis in ("x", "y", "z", "rx", "ry", "rz")]
+    assert alone["compliance rz"]["theory"] == pytest.approx(
+        alone["compliance rz"]["fea"], rel=0.05
+    )  # plate action, which it has no part in
+    flexstage(work, "solid", "small.toml", "--what", "hinge", "--order", "2", "--json", "hinge.json", path=package)
+    found = json.loads((work / "hinge.json").read_text())["hinges"]["leaf"]
+    assert found["roots"] == {"first": False, "second": True}
+    assert found["compliance"]["values"][5][5] == alone["compliance rz"]["fea"]
+    flexstage(work, "calibrate", "small.toml", "-o", "calibrated.toml", "--order", "2", path=package)
+    given = tomllib.loads((work / "calibrated.toml").read_text())["parts"]
+    assert (given["leaf"]["stands_for"], given["leaf-drawn"]["kind"]) == ("leaf-drawn", "taper")
+
+
+def test_without_a_shape_it_is_not_known_to_finite_elements(work, tmp_path):
+    package = installed(tmp_path, without="flexstage.shapes")
+    told = flexstage(work, "solid", "small.toml", "--what", "hinge", path=package, ok=2)
+    assert "leaf: its shape as a solid is not known: nobody offers one for this kind. Install the package that does" in told
+    flexstage(work, "check", "small.toml", path=package)
 
 
 def test_a_record_of_its_form_is_read(work, package):

@@ -12,9 +12,9 @@ from flexstage.cases.parallelogram import parallelogram
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.parts.body import Body, Inertia
 from flexstage.parts.material import Material
+from flexstage.parts.shape import Shaped
 from flexstage.solid.fea.fineness import Fineness, Reduction
-from flexstage.solid.fea.hinge import HingeSolid
-from flexstage.solid.fea.hinge_cache import HingePart
+from flexstage.solid.fea.hinge_form import HingeSolid
 from flexstage.solid.fea.roots import Roots
 from flexstage.solid.hinges import Hinges
 from flexstage.solid.stage import SolidStage, solid_stage
@@ -48,7 +48,7 @@ def softened(factor: float, *, error: float = 0.001, stubs: float = 0.0) -> Hing
     `stubs` is their share of the whole twist about x.
     """
 
-    def one(part: HingePart, material: Material, _roots: Roots) -> HingeSolid:
+    def one(part: Shaped, material: Material, _roots: Roots) -> HingeSolid:
         own = factor * compliance(part, material)
         whole = own.copy()
         whole[3, 3] = own[3, 3] / (1.0 - stubs)

@@ -16,10 +16,12 @@ from flexstage.cases.stock import STEEL
 from flexstage.parts.notch import Notch
 from flexstage.parts.profile import Filleted
 from flexstage.parts.rod import Rod
+from flexstage.parts.shape import Shaped
 from flexstage.solid.fea.cache import Cache
 from flexstage.solid.fea.estimate import Accuracy
-from flexstage.solid.fea.hinge import HingeSolid, hinge_compliance
-from flexstage.solid.fea.hinge_cache import HingeForm, HingePart, kept_hinges
+from flexstage.solid.fea.hinge import hinge_compliance
+from flexstage.solid.fea.hinge_cache import kept_hinges
+from flexstage.solid.fea.hinge_form import HingeForm, HingeSolid
 from flexstage.solid.fea.parts import Ways
 from flexstage.solid.fea.remote import Limits
 from flexstage.solid.fea.roots import Roots, own_roots
@@ -34,11 +36,11 @@ def same(one: HingeSolid, other: HingeSolid) -> bool:
     return all(np.array_equal(a, b) if isinstance(a, np.ndarray) else a == b for a, b in pairs)
 
 
-def formed(part: HingePart) -> HingeForm:
+def formed(part: Shaped) -> HingeForm:
     return HingeForm(part, STEEL, HELD if isinstance(part, Rod) else own_roots(part))
 
 
-def kept(part: HingePart, ways: Ways, notice: Callable[[Finding], None] | None = None) -> HingeSolid:
+def kept(part: Shaped, ways: Ways, notice: Callable[[Finding], None] | None = None) -> HingeSolid:
     return kept_hinges({"prop": formed(part)}, ROUGH, ways, notice)["prop"]
 
 

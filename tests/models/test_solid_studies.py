@@ -10,7 +10,6 @@ import pytest
 import flexstage as fs
 from flexstage.analysis.complete import platform_modes
 from flexstage.analysis.pairing import RELIABLE, Moving, pair_modes
-from flexstage.analysis.trust import Trust
 from flexstage.analysis.units import units
 from flexstage.base.finding import DesignError, Finding
 from flexstage.mechanism.drawn import with_drawn_parts
@@ -144,8 +143,8 @@ def test_errors_that_were_not_estimated_are_unknown() -> None:
     """Of a solid result without errors every row of the stage is without a verdict, not right to 0 %."""
     rows = tuple(stage_rows(small(), small(), Resolved(small_stage(), {}, 2)))
     assert len(rows) > 10
-    assert {row.trust for row in rows} == {Trust.UNKNOWN}
-    assert all(row.error is None and "error was not estimated" in row.reason for row in rows)
+    assert {row.trust for row in rows} == {None}
+    assert all(row.fea_error is None and "error was not estimated" in row.reason for row in rows)
     assert verdict(rows).startswith("No verdict.")
 
 
@@ -153,12 +152,12 @@ def test_a_mode_without_a_partner_has_no_theory() -> None:
     """Theory with a platform five times as heavy along one axis has none of some modes."""
     other = replace(small(), bodies={"platform": replace(small().bodies["platform"], mass=0.9, centre=(0.03, 0.02, 0.0))})
     errors = dict.fromkeys(small_stage().figures, 0.001)
-    rows = [row for row in stage_rows(other, other, Resolved(small_stage(), errors, 2)) if row.assurance is not None]
-    apart = [row for row in rows if row.assurance is not None and row.assurance < RELIABLE]
+    rows = [row for row in stage_rows(other, other, Resolved(small_stage(), errors, 2)) if row.modal_assurance is not None]
+    apart = [row for row in rows if row.modal_assurance is not None and row.modal_assurance < RELIABLE]
     assert apart
     for row in apart:
         assert row.theory is None
-        assert row.trust is Trust.UNKNOWN
+        assert row.trust is None
         assert "is needed" in row.reason
 
 

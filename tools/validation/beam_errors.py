@@ -24,8 +24,10 @@ from flexstage.parts.neck import Neck
 from flexstage.parts.notch import Notch
 from flexstage.parts.profile import Circular, Elliptic, Filleted, Straight
 from flexstage.parts.rod import Rod
+from flexstage.parts.shape import Shaped
 from flexstage.solid.fea.estimate import Accuracy
-from flexstage.solid.fea.hinge_cache import HingeForm, HingePart, kept_hinges
+from flexstage.solid.fea.hinge_cache import kept_hinges
+from flexstage.solid.fea.hinge_form import HingeForm
 from flexstage.solid.fea.parts import Ways
 from flexstage.solid.fea.roots import own_roots
 
@@ -44,7 +46,7 @@ ASKED = Accuracy(error=0.0, orders=(3, 5), meshes=1, freedoms=130_000)
 _YOUNG = 200e9
 
 
-def part_of(kind: str, share: Array) -> tuple[HingePart, float]:
+def part_of(kind: str, share: Array) -> tuple[Shaped, float]:
     """A hinge 1 mm thick, and its Poisson's ratio, from four numbers between 0 and 1; proportions are logarithmic."""
 
     def between(index: int, low: float, high: float) -> float:
@@ -74,12 +76,12 @@ def part_of(kind: str, share: Array) -> tuple[HingePart, float]:
     return Leaf("m", 20 * one, 20 * one * min(1.0, width) * between(2, 0.005, 0.05), 20 * one * width), poisson
 
 
-def sampled(kind: str, count: int, seed: int) -> list[tuple[HingePart, float]]:
+def sampled(kind: str, count: int, seed: int) -> list[tuple[Shaped, float]]:
     """Hinges of a kind."""
     return [part_of(kind, share) for share in qmc.Halton(4, scramble=True, rng=np.random.default_rng(seed)).random(count)]
 
 
-def computed(parts: list[tuple[HingePart, float]]) -> list[Array]:
+def computed(parts: list[tuple[Shaped, float]]) -> list[Array]:
     """Their direct compliances (6,) by finite elements times Young's modulus, from the cache where they are there."""
     forms = {
         str(number): HingeForm(part, Material(young=_YOUNG, poisson=poisson, density=7750.0), own_roots(part))

@@ -14,4 +14,3 @@ class Trust(Enum):
     THEORY = "theory will do"
     CALIBRATED = "calibrated theory"
     FEA = "FEA"
-    UNKNOWN = "no verdict"

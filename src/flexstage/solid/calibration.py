@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
+from typing import Annotated
 
 import numpy as np
 
 from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array, stack
+from flexstage.base.record import INNER, VIEW
 from flexstage.beams.compliance import compliance
 from flexstage.beams.mass import mass
 from flexstage.mechanism.checks.orientation import is_round
@@ -18,6 +20,7 @@ from flexstage.mechanism.mechanism import Link, Mechanism
 from flexstage.mechanism.store import loads
 from flexstage.mechanism.store.stand_in import KEPT, StandIn, write_stand_ins
 from flexstage.parts.given import Given, Origin
+from flexstage.solid.fea.hinge_form import LEAVE, NO_ESTIMATE
 from flexstage.solid.hinges import STANDARD_HINGES, Hinges, SolidHinge, solid_hinges
 from flexstage.spatial.frame import COMPONENTS, mirror, spatial_rotation
 
@@ -32,11 +35,11 @@ class Calibration:
 
     hinges: Mapping[str, SolidHinge]
     parts: Mapping[str, Given]
-    text: str
+    text: Annotated[str, INNER]
 
     @property
-    def softer(self) -> dict[str, Array]:
-        """By part, FEA's compliance over beam theory's less one (6,), along and about x, y, z."""
+    def over_beam_theory(self) -> Annotated[Mapping[str, Array], VIEW]:
+        """By part, FEA's direct compliances over beam theory's, less one, along and about x, y, z."""
         return {
             name: np.diag(stack(self.parts[name].compliance)) / np.diag(compliance(hinge.form, hinge.material)) - 1.0
             for name, hinge in self.hinges.items()
@@ -71,9 +74,8 @@ def given_parts(found: Mapping[str, SolidHinge]) -> dict[str, Given]:
     findings: list[Finding] = []
     for name, hinge in found.items():
         matrix = _clean(hinge)
-        if not hinge.found.error <= _LARGEST_ERROR:
-            what = f"its 6x6 by FEA is known to {100.0 * hinge.found.error:.2g} % only, no better than beam theory's"
-            findings.append(Finding(f"parts.{name}", what, "Ask for more accuracy"))
+        if hinge.error is None or hinge.error > _LARGEST_ERROR:
+            findings.append(_doubt(name, hinge.error))
             continue
         parts[name] = Given(
             compliance=tuple(tuple(float(f"{value:.{_DIGITS}g}") for value in row) for row in matrix),
@@ -85,6 +87,13 @@ def given_parts(found: Mapping[str, SolidHinge]) -> dict[str, Given]:
         )
     require(findings)
     return parts
+
+
+def _doubt(name: str, error: float | None) -> Finding:
+    if error is None:
+        return Finding(f"parts.{name}", f"how exact its 6x6 by FEA is is not known: {NO_ESTIMATE}", LEAVE)
+    what = f"its 6x6 by FEA is known to {100.0 * error:.2g} % only, no better than beam theory's"
+    return Finding(f"parts.{name}", what, "Ask for more accuracy")
 
 
 def with_matrices(mechanism: Mechanism, found: Mapping[str, SolidHinge]) -> Mechanism:

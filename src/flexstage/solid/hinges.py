@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, TypeAlias
+from typing import Annotated, TypeAlias
 
 import numpy as np
 
@@ -16,29 +16,24 @@ from flexstage.base.digest import digest
 from flexstage.base.finding import refuse
 from flexstage.base.labelled import Matrix, ratio_units
 from flexstage.base.number import Array
+from flexstage.base.quantity import RATIO
+from flexstage.base.record import INNER, VIEW
 from flexstage.mechanism.drawn import with_drawn_parts
 from flexstage.mechanism.expand import PlacedLink, expand
 from flexstage.mechanism.mechanism import Mechanism
-from flexstage.parts.leaf import Leaf
 from flexstage.parts.material import Material
-from flexstage.parts.neck import Neck
-from flexstage.parts.notch import Notch
-from flexstage.parts.piezo import Piezo
-from flexstage.parts.rod import Rod
 from flexstage.parts.shape import Shaped
 from flexstage.solid.fea.estimate import Accuracy
-from flexstage.solid.fea.hinge_cache import HingeForm, HingePart, kept_hinges
+from flexstage.solid.fea.hinge_cache import kept_hinges
+from flexstage.solid.fea.hinge_form import NO_ESTIMATE, HingeForm, HingeSolid
 from flexstage.solid.fea.parts import Ways
 from flexstage.solid.fea.roots import Roots, roots_of
 from flexstage.solid.read import STANDARD_WAYS, Notice
 from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNITS, mirror
 
-if TYPE_CHECKING:
-    from flexstage.solid.fea.hinge import HingeSolid
-
 _MOST_STUB = 0.9
 
-Hinges: TypeAlias = "Callable[[Mapping[str, HingeForm]], Mapping[str, HingeSolid]]"
+Hinges: TypeAlias = Callable[[Mapping[str, HingeForm]], Mapping[str, HingeSolid]]
 """Computes hinges by name: plainly, or from a cache and telling its progress."""
 
 
@@ -53,19 +48,18 @@ class DrawnHinge:
 
 @dataclass(frozen=True, eq=False)
 class SolidHinge:
-    """A distinct hinge by its name, as `drawn`, and its 6x6 about its centre in the link frame."""
+    """A distinct hinge, as `drawn`, and its 6x6 about its centre in the link frame, between the ends of its arcs."""
 
-    name: str
-    drawn: DrawnHinge
-    found: HingeSolid
+    drawn: Annotated[DrawnHinge, INNER]
+    found: Annotated[HingeSolid, INNER]
 
     @property
-    def links(self) -> tuple[str, ...]:
+    def links(self) -> Annotated[tuple[str, ...], VIEW]:
         """The drawn links that are like it."""
         return self.drawn.links
 
     @property
-    def form(self) -> HingePart:
+    def form(self) -> Shaped:
         """The part."""
         return self.drawn.form.part
 
@@ -75,22 +69,22 @@ class SolidHinge:
         return self.drawn.form.material
 
     @property
-    def roots(self) -> Roots:
+    def roots(self) -> Annotated[Roots, VIEW]:
         """Which of its ends grow on blocks."""
         return self.drawn.form.roots
 
     @property
-    def compliance(self) -> Matrix:
+    def compliance(self) -> Annotated[Matrix, VIEW]:
         """C (6, 6) with names and units."""
         return Matrix(self.found.compliance, COMPONENTS, FORCES, ratio_units(TWIST_UNITS, WRENCH_UNITS))
 
     @property
-    def errors(self) -> Array:
-        """Relative errors estimated of the direct compliances (6,) about the centre."""
-        return np.maximum(self.found.error, np.where(np.isfinite(self.found.changes), self.found.changes, 0.0))
+    def stiffness(self) -> Annotated[Matrix, VIEW]:
+        """K (6, 6) with names and units."""
+        return Matrix(self.found.stiffness, FORCES, COMPONENTS, ratio_units(WRENCH_UNITS, TWIST_UNITS))
 
     @property
-    def separable(self) -> tuple[bool, ...]:
+    def separable(self) -> Annotated[tuple[bool, ...], VIEW]:
         """Whether each direct compliance can be told from that of the stubs beside the hinge: they have at most 90 % of the whole.
 
         In torsion a wide notch is stiffer than its stubs, which are taken off as beams held from warping (Vlasov): a small difference of
@@ -100,9 +94,36 @@ class SolidHinge:
         return tuple(bool(value) for value in own >= (1.0 - _MOST_STUB) * whole)
 
     @property
-    def stiffness(self) -> Matrix:
-        """K (6, 6) with names and units."""
-        return Matrix(self.found.stiffness, FORCES, COMPONENTS, ratio_units(WRENCH_UNITS, TWIST_UNITS))
+    def error(self) -> Annotated[float | None, RATIO]:
+        """Relative error estimated of any entry of the compliance at the hinge's end."""
+        return self.found.error if np.isfinite(self.found.error) else None
+
+    @property
+    def errors(self) -> Annotated[Array | None, RATIO]:
+        """Relative errors estimated of the direct compliances (6,) about the centre."""
+        if self.error is None:
+            return None
+        return np.maximum(self.error, np.where(np.isfinite(self.found.changes), self.found.changes, 0.0))
+
+    @property
+    def reasons(self) -> Mapping[str, str]:
+        """Why its errors are not known."""
+        return {} if self.error is not None else dict.fromkeys(("error", "errors"), NO_ESTIMATE)
+
+    @property
+    def order(self) -> Annotated[int, VIEW]:
+        """Order of the elements of the last solve."""
+        return self.found.order
+
+    @property
+    def elements(self) -> Annotated[int, VIEW]:
+        """Their number."""
+        return self.found.elements
+
+    @property
+    def freedoms(self) -> Annotated[int, VIEW]:
+        """Its number of unknowns."""
+        return self.found.freedoms
 
 
 def hinges(accuracy: float = 0.01, order: int | None = None, ways: Ways = STANDARD_WAYS, notice: Notice | None = None) -> Hinges:
@@ -131,23 +152,20 @@ def distinct_hinges(mechanism: Mechanism) -> dict[str, DrawnHinge]:
     """
     shape = with_drawn_parts(mechanism)
     assembly = expand(shape)
-    found: dict[str, list[PlacedLink]] = {}
+    forms: dict[str, HingeForm] = {}
+    alike: dict[str, list[PlacedLink]] = {}
     for link in assembly.links.values():
-        if isinstance(link.part, (Notch, Neck, Leaf, Rod)) and link.material is not None:
-            key = f"{digest(link.part, physics=True)} {digest(link.material, physics=True)} {roots_of(assembly, link)}"
-            found.setdefault(key, []).append(link)
-    alike = list(found.values())
-    return {_called(shape, links, alike): _hinge(links, roots_of(assembly, links[0])) for links in alike}
+        if isinstance(link.part, Shaped) and link.material is not None:
+            form = HingeForm(link.part, link.material, roots_of(assembly, link))
+            key = f"{digest(form.part, physics=True)} {digest(form.material, physics=True)} {form.roots}"
+            forms[key] = form
+            alike.setdefault(key, []).append(link)
+    links = {key: tuple(dict.fromkeys(link.drawn for link in each)) for key, each in alike.items()}
+    names = {key: _name(shape, each, list(alike.values())) for key, each in alike.items()}
+    return {names[key]: DrawnHinge(each[0].link.part, forms[key], links[key]) for key, each in alike.items()}
 
 
-def unknown_hinges(mechanism: Mechanism) -> dict[str, str]:
-    """Why parts that are drawn have no 6x6 as a solid by themselves, by part: how their kind is held between blocks is not known."""
-    parts = {link.link.part: link.part for link in expand(with_drawn_parts(mechanism)).links.values()}
-    odd = {name: part for name, part in parts.items() if isinstance(part, Shaped) and not isinstance(part, (Notch, Neck, Leaf, Rod, Piezo))}
-    return {name: f"the 6x6 of a part of kind {part.kind} as a solid by itself is not known" for name, part in odd.items()}
-
-
-def _called(shape: Mechanism, links: list[PlacedLink], everything: list[list[PlacedLink]]) -> str:
+def _name(shape: Mechanism, links: list[PlacedLink], everything: list[list[PlacedLink]]) -> str:
     first = links[0]
     if first.part != shape.parts[first.link.part]:
         return first.name
@@ -160,28 +178,21 @@ def _called(shape: Mechanism, links: list[PlacedLink], everything: list[list[Pla
     return f"{first.link.part}-{link if clear else f'{unit}-{link}'}"
 
 
-def _hinge(links: list[PlacedLink], roots: Roots) -> DrawnHinge:
-    first = links[0]
-    assert isinstance(first.part, (Notch, Neck, Leaf, Rod))  # noqa: S101  distinct_hinges has asked
-    assert first.material is not None  # noqa: S101
-    return DrawnHinge(first.link.part, HingeForm(first.part, first.material, roots), tuple(dict.fromkeys(link.drawn for link in links)))
-
-
 def solid_hinges(mechanism: Mechanism, compute: Hinges = STANDARD_HINGES) -> dict[str, SolidHinge]:
-    """Compute the 6x6 of every distinct notch, neck, leaf and rod.
+    """Compute the 6x6 of every distinct hinge that is drawn.
 
-    Raises `DesignError` where a stage has none.
+    Raises `DesignError` where a stage has none, and for kinds whose shape nobody offers.
 
     >>> solid_hinges(Mechanism("bare"))
     Traceback (most recent call last):
         ...
-    flexstage.base.finding.DesignError: links: none of them is a notch, neck, leaf or rod. Only these have a 6x6 that can be computed.
+    flexstage.base.finding.DesignError: links: none of them is a hinge with a shape. Only these have a 6x6 that can be computed.
     """
     found = distinct_hinges(mechanism)
     if not found:
-        raise refuse("links", "none of them is a notch, neck, leaf or rod", "Only these have a 6x6 that can be computed")
+        raise refuse("links", "none of them is a hinge with a shape", "Only these have a 6x6 that can be computed")
     solved = compute({name: _turned(hinge.form)[0] for name, hinge in found.items()})
-    return {name: SolidHinge(name, hinge, _back(solved[name], turned=_turned(hinge.form)[1])) for name, hinge in found.items()}
+    return {name: SolidHinge(hinge, _back(solved[name], turned=_turned(hinge.form)[1])) for name, hinge in found.items()}
 
 
 def _turned(form: HingeForm) -> tuple[HingeForm, bool]:

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from typing import Generic, TypeVar
+from typing import Annotated, Generic, TypeVar
 
 import numpy as np
 
 from flexstage.base.finding import DesignError
+from flexstage.base.record import INNER
 from flexstage.solid.fea.fineness import Fineness, Reduction
 from flexstage.solid.read import coarser
 
@@ -37,10 +38,10 @@ class Resolved(Generic[_Result]):
     `stopped` says why the order was not raised further although the accuracy asked was not reached.
     """
 
-    result: _Result
+    result: Annotated[_Result, INNER]
     errors: Mapping[str, float]
     order: int
-    stopped: str = ""
+    stopped: Annotated[str, INNER] = ""
 
     @property
     def error(self) -> float:

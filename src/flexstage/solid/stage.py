@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 
@@ -15,6 +15,8 @@ from flexstage.analysis.workspace.load import dead_loads
 from flexstage.analysis.workspace.stroke import stroke_limits
 from flexstage.base.finding import DesignError
 from flexstage.base.number import Array
+from flexstage.base.quantity import RATIO
+from flexstage.base.record import INNER, VIEW
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.linear.static import displacement
 from flexstage.solid.fea.fineness import Reduction
@@ -29,6 +31,14 @@ _BODY = " (body)"
 
 
 @dataclass(frozen=True, eq=False)
+class BodyCost:
+    """By platform mode (k,), the share of strain energy that elastic bodies hold, and what that costs of the frequency."""
+
+    strain_energy_share: Annotated[Array, RATIO]
+    cost_in_frequency: Annotated[Array, RATIO]
+
+
+@dataclass(frozen=True, eq=False)
 class SolidStage:
     """A stage by the solid model.
 
@@ -37,12 +47,12 @@ class SolidStage:
     weakest link. `blocks` (k,) is the share of strain energy that the bodies, which other models take as rigid, hold in each mode.
     """
 
-    statics: Statics
+    statics: Annotated[Statics, INNER]
     modes: Modes
     stress: LinkStress | None
     worst: Array | None
     blocks: Array
-    read: SolidRead
+    read: Annotated[SolidRead, INNER]
 
     @property
     def figures(self) -> Mapping[str, float]:
@@ -54,6 +64,32 @@ class SolidStage:
     def flexible(self) -> Array:
         """What the elasticity of the bodies takes from each frequency (k,), to first order: sqrt(1 - share) - 1 of the energy's share."""
         return np.sqrt(1.0 - self.blocks) - 1.0
+
+    @property
+    def bodies(self) -> Annotated[BodyCost, VIEW]:
+        """What the elasticity of the bodies takes from the platform's modes."""
+        platform = list(self.modes.platform)
+        return BodyCost(self.blocks[platform], self.flexible[platform])
+
+    @property
+    def elements(self) -> Annotated[int, VIEW]:
+        """Number of finite elements of all distinct components."""
+        return self.read.elements
+
+    @property
+    def freedoms(self) -> Annotated[int, VIEW]:
+        """Their number of unknowns before they were reduced."""
+        return self.read.freedoms
+
+    @property
+    def coordinates(self) -> Annotated[int, VIEW]:
+        """Number of coordinates of the reduced model."""
+        return len(self.read.model.coordinates)
+
+    @property
+    def provenance(self) -> Annotated[str, VIEW]:
+        """What was read, and how finely."""
+        return self.read.model.provenance
 
 
 def stiffness_figures(found: Statics) -> dict[str, float]:

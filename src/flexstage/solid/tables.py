@@ -33,7 +33,6 @@ _MARKS = {
     Trust.CALIBRATED: Mark.WARN,
     Trust.UNCLEAR: Mark.WARN,
     Trust.FEA: Mark.FAIL,
-    Trust.UNKNOWN: Mark.WARN,
 }
 
 
@@ -53,7 +52,7 @@ def hinge_table(found: Mapping[str, SolidHinge]) -> Table:
                 number(form.factor * value, 5) if known else NO_VALUE
                 for form, value, known in zip(forms, np.diag(hinge.found.compliance), hinge.separable, strict=True)
             ),
-            _error(hinge.found.error),
+            _error(hinge.error),
         )
         for name, hinge in found.items()
     ]
@@ -177,20 +176,23 @@ def verification_table(name: str, rows: tuple[Row, ...]) -> Table:
         "theory": _values(rows, [row.theory for row in rows]),
         "calibrated": _values(rows, [row.calibrated for row in rows]),
         "FEA": _values(rows, [row.fea for row in rows]),
-        "FEA's error": [_error(row.error) for row in rows],
+        "FEA's error": [_error(row.fea_error) for row in rows],
         "theory off": _differences([row.difference for row in rows]),
         "calibrated off": _differences([row.calibrated_difference for row in rows]),
     }
     known = {head: texts for head, texts in columns.items() if texts is not None}
     lines = [
-        (Cell(row.figure, Mark.STRONG), *(texts[number] for texts in known.values()), Cell(row.trust.value, _MARKS[row.trust]))
-        for number, row in enumerate(rows)
+        (Cell(row.figure, Mark.STRONG), *(texts[number] for texts in known.values()), _trust(row.trust)) for number, row in enumerate(rows)
     ]
     heads = ["figure", *(Column(head) for head in known), "trust"]
-    shared = [row.assurance for row in rows if row.assurance is not None]
+    shared = [row.modal_assurance for row in rows if row.modal_assurance is not None]
     notes = [f"Modes are paired by shape: modal assurance {np.floor(1e3 * min(shared)) / 1e3:.3f} and more."] if shared else []
     notes += [f"{row.figure}: {row.reason}." for row in rows if row.reason]
     return build(f"{name[:1].upper()}{name[1:]}: theory and finite elements", heads, lines, notes=notes)
+
+
+def _trust(trust: Trust | None) -> Cell:
+    return Cell("no verdict", Mark.WARN) if trust is None else Cell(trust.value, _MARKS[trust])
 
 
 def _error(error: float | None) -> str:
@@ -228,7 +230,7 @@ def verdict_table_of(found: Verification) -> Table:
         "Theory: beam theory for hinges, the lumped model for units and stage.",
         "Calibrated: the same with the 6x6 of its hinges from FEA, and so not independent of it.",
         "FEA's error is estimated from two resolutions: it is no bound.",
-        *(f"Not compared: {name}: {reason}" for name, reason in found.missing.items()),
+        *(f"Not compared: {name}: {reason}" for name, reason in found.reasons.items()),
     ]
     return build("Which to trust", ["what", "verdict"], rows, notes=notes)
 
@@ -240,9 +242,9 @@ def calibration_table(found: Calibration) -> Table:
             Cell(name, Mark.STRONG),
             ", ".join(found.hinges[name].links),
             *(_signed(float(value)) for value in values),
-            _error(found.hinges[name].found.error),
+            _error(found.hinges[name].error),
         )
-        for name, values in found.softer.items()
+        for name, values in found.over_beam_theory.items()
     ]
     heads = ["part", "links", *(Column(axis) for axis in _AXES), Column("FEA's error")]
     return build("Compliance by FEA over beam theory", heads, rows, notes=["Positive: softer than beam theory."])

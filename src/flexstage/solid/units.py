@@ -92,13 +92,12 @@ def solid_units(mechanism: Mechanism, reduction: Reduction = STANDARD_REDUCTION,
             "none of the stage's units drives an output of its own by one actuator",
             "Ask for the whole stage instead: --what stage",
         )
-    return {unit: _unit(mechanism, (unit, copy), direction, (reduction, reduce)) for unit, (copy, direction) in found.items()}
+    return {unit: _unit(mechanism, unit, copy, direction, reduction=reduction, reduce=reduce) for unit, (copy, direction) in found.items()}
 
 
-def _unit(mechanism: Mechanism, names: tuple[str, str], direction: Array, how: tuple[Reduction, Solids]) -> SolidUnit:
-    unit, copy = names
+def _unit(mechanism: Mechanism, unit: str, copy: str, direction: Array, *, reduction: Reduction, reduce: Solids) -> SolidUnit:
     alone = isolate(mechanism, copy)
-    read = read_solid(alone, *how)
+    read = read_solid(alone, reduction, reduce)
     stiffness = statics(read.model).stiffness
     along = np.concatenate([direction, np.zeros(3)])
     driven = static_gain(read.model, _TWIST, (copy,)).values[:, 0]

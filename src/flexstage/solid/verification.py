@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
@@ -13,6 +14,8 @@ from flexstage.analysis.statics import statics
 from flexstage.analysis.trust import Trust
 from flexstage.analysis.units import UnitResult, driven_units, unit_alone, units
 from flexstage.base.finding import DesignError
+from flexstage.base.quantity import RATIO
+from flexstage.base.record import INNER, VIEW
 from flexstage.beams.compliance import compliance
 from flexstage.mechanism.drawn import calibrated_parts
 from flexstage.mechanism.expand import expand
@@ -22,7 +25,7 @@ from flexstage.models.linear.model import LinearModel
 from flexstage.models.lumped import lumped
 from flexstage.models.mapped import mapped
 from flexstage.solid.calibration import with_matrices
-from flexstage.solid.hinges import STANDARD_HINGES, Hinges, SolidHinge, distinct_hinges, solid_hinges, unknown_hinges
+from flexstage.solid.hinges import STANDARD_HINGES, Hinges, SolidHinge, solid_hinges
 from flexstage.solid.read import STANDARD_SOLIDS, Solids
 from flexstage.solid.resolution import DEFAULT, Resolution, Resolved, resolved
 from flexstage.solid.stage import SolidStage, solid_stage, stiffness_figures
@@ -37,9 +40,9 @@ class Row:
     """One number by theory and by FEA, SI.
 
     `theory` is the lumped model's (for hinges beam theory's), `mapped` the paper's axial springs where they give it, `calibrated` the
-    lumped model with the hinges' FEA 6x6; `error` the relative error estimated of FEA. `calibration` names the parts of FEA origin that
-    the theory contains. `assurance` is the modal assurance of paired modes. Absent is unknown, and `reason` says why: without `theory` and
-    `error` there is no verdict.
+    lumped model with the hinges' FEA 6x6; `fea_error` the relative error estimated of FEA. `calibration` names the parts of FEA origin that
+    the theory contains. `modal_assurance` is that of paired modes. Absent is unknown, and `reason` says why: without `theory` and
+    `fea_error` there is no verdict.
     """
 
     group: str
@@ -47,38 +50,43 @@ class Row:
     unit: str
     theory: float | None
     fea: float
-    error: float | None
+    fea_error: float | None
     mapped: float | None = None
     calibrated: float | None = None
     calibration: tuple[str, ...] = ()
-    assurance: float | None = None
-    reason: str = ""
+    modal_assurance: float | None = None
+    reason: str | None = None
 
     @property
-    def difference(self) -> float | None:
+    def difference(self) -> Annotated[float | None, RATIO]:
         """Theory over FEA less one."""
         return None if self.theory is None else _relative(self.theory, self.fea)
 
     @property
-    def calibrated_difference(self) -> float | None:
+    def calibrated_difference(self) -> Annotated[float | None, RATIO]:
         """Calibrated theory over FEA less one."""
         return None if self.calibrated is None else _relative(self.calibrated, self.fea)
 
     @property
-    def trust(self) -> Trust:
-        """Which of them to trust."""
+    def independent(self) -> Annotated[bool, VIEW]:
+        """Whether theory contains nothing of FEA origin."""
+        return not self.calibration
+
+    @property
+    def trust(self) -> Annotated[Trust | None, VIEW]:
+        """Which of them to trust; absent where there is no verdict."""
         if self.calibration:
             return Trust.DEPENDENT
-        if self.difference is None or self.error is None:
-            return Trust.UNKNOWN
+        if self.difference is None or self.fea_error is None:
+            return None
         away = abs(self.difference)
-        if self.error > max(0.5 * away, _CLOSE):
+        if self.fea_error > max(0.5 * away, _CLOSE):
             return Trust.UNCLEAR
-        if away <= self.error:
+        if away <= self.fea_error:
             return Trust.EITHER
         if away <= _CLOSE:
             return Trust.THEORY
-        if self.calibrated is not None and abs(_relative(self.calibrated, self.fea)) <= _CLOSE + self.error:
+        if self.calibrated is not None and abs(_relative(self.calibrated, self.fea)) <= _CLOSE + self.fea_error:
             return Trust.CALIBRATED
         return Trust.FEA
 
@@ -89,14 +97,14 @@ def _relative(value: float, reference: float) -> float:
 
 @dataclass(frozen=True, eq=False)
 class Verification:
-    """The rows of a verification, and the solid results behind them; `missing` says why a group is not there."""
+    """The rows of a verification, and the solid results behind them; `reasons` say why a group is not there."""
 
     mechanism: Mechanism
     rows: tuple[Row, ...]
-    hinges: Mapping[str, SolidHinge]
-    units: Resolved[dict[str, SolidUnit]] | None
-    stage: Resolved[SolidStage] | None
-    missing: Mapping[str, str]
+    hinges: Annotated[Mapping[str, SolidHinge], INNER]
+    units: Annotated[Resolved[dict[str, SolidUnit]] | None, INNER]
+    stage: Annotated[Resolved[SolidStage] | None, INNER]
+    reasons: Mapping[str, str]
 
     @property
     def groups(self) -> dict[str, tuple[Row, ...]]:
@@ -104,7 +112,7 @@ class Verification:
         return {name: tuple(row for row in self.rows if row.group == name) for name in dict.fromkeys(row.group for row in self.rows)}
 
     @property
-    def verdicts(self) -> dict[str, str]:
+    def verdicts(self) -> Annotated[Mapping[str, str], VIEW]:
         """For every group, in words, which theory to trust."""
         return {name: verdict(rows) for name, rows in self.groups.items()}
 
@@ -116,9 +124,9 @@ def verify(
 
     Theory is the description as it stands; FEA the shapes it draws. Raises `DesignError` where the stage cannot be read as a solid.
     """
-    missing = {f"hinge {name}": why for name, why in unknown_hinges(mechanism).items()}
+    missing = dict[str, str]()
     stage = stage_solid(mechanism, asked, reduce)
-    found = solid_hinges(mechanism, compute) if not missing or distinct_hinges(mechanism) else {}
+    found = solid_hinges(mechanism, compute)
     matched = with_matrices(mechanism, found)
     try:
         alone = units_solid(mechanism, asked, reduce) if driven_units(mechanism) else None
@@ -167,7 +175,7 @@ def hinge_rows(mechanism: Mechanism, found: Mapping[str, SolidHinge]) -> Iterato
             unit = "m/N" if index < 3 else "rad/(N m)"
             value = float(np.real(theory[index]))
             fea = float(hinge.found.compliance[index, index])
-            error = _known(float(hinge.errors[index]))
+            error = None if hinge.errors is None else float(hinge.errors[index])
             yield Row(f"hinge {name}", f"compliance {axis}", unit, value, fea, error, calibration=touched, reason=_unestimated(error))
 
 
@@ -201,7 +209,7 @@ def unit_rows(mechanism: Mechanism, better: Mapping[str, UnitResult], found: Res
                 unit=dimension,
                 theory=first[figure],
                 fea=value,
-                error=error,
+                fea_error=error,
                 mapped=simple.get(figure),
                 calibrated=second[figure],
                 calibration=touched,
@@ -255,11 +263,11 @@ def stage_rows(mechanism: Mechanism, matched: Mechanism, found: Resolved[SolidSt
             unit="Hz",
             theory=alike.get("theory"),
             fea=float(fea.modes.frequencies[index]),
-            error=error,
+            fea_error=error,
             mapped=alike.get("mapped"),
             calibrated=alike.get("calibrated"),
             calibration=touched,
-            assurance=best["theory"].assurance if "theory" in best else None,
+            modal_assurance=best["theory"].assurance if "theory" in best else None,
             reason=_unestimated(error) if "theory" in alike else _unpaired(best.get("theory")),
         )
 
@@ -275,8 +283,8 @@ def _known(error: float | None) -> float | None:
     return error if error is not None and np.isfinite(error) else None
 
 
-def _unestimated(error: float | None) -> str:
-    return "" if error is not None else "FEA's error was not estimated: nothing coarser was at hand that gives this figure"
+def _unestimated(error: float | None) -> str | None:
+    return None if error is not None else "FEA's error was not estimated: nothing coarser was at hand that gives this figure"
 
 
 def _mapped(mechanism: Mechanism) -> LinearModel | None:
@@ -292,7 +300,7 @@ def verdict(rows: tuple[Row, ...]) -> str:
     >>> verdict((Row("stage", "mode 1", "Hz", 105.0, 100.0, 0.001, calibrated_parts=100.5),))
     'Lumped theory is up to 5 % off (mode 1); with calibrated hinges 0.5 %: calibrate, then trust the lumped model.'
     """
-    open_rows = [row for row in rows if row.difference is None or (row.error is None and not row.calibration)]
+    open_rows = [row for row in rows if row.difference is None or (row.fea_error is None and not row.calibration)]
     judged = [row for row in rows if row not in open_rows]
     if not judged:
         return f"No verdict. {_reasons(open_rows)}"
@@ -310,7 +318,7 @@ def _reasons(rows: Iterable[Row]) -> str:
 def _judged(rows: tuple[Row, ...]) -> str:
     """What rows say whose difference is known, and, unless they are not independent, whose error is."""
     worst = max(rows, key=_away)
-    least = max((row.error for row in rows if row.error is not None), default=0.0)
+    least = max((row.fea_error for row in rows if row.fea_error is not None), default=0.0)
     off = f"up to {_percent(_away(worst))} off ({worst.figure})"
     if any(row.calibration for row in rows):
         names = ", ".join(dict.fromkeys(name for row in rows for name in row.calibration))

@@ -14,9 +14,9 @@ from scipy import sparse
 from scipy.sparse.linalg import LinearOperator, eigsh
 
 from flexstage.base.number import Array
-from flexstage.solid.fea.draw import MILLIMETRES
 from flexstage.solid.fea.field import Field, factored, field, inertia, stiffness
 from flexstage.solid.fea.mesh import Meshed
+from flexstage.solid.fea.piece import MILLIMETRES
 from tests.elsewhere.calculix.problems import Problem, Solution
 
 MODES = 6

@@ -6,7 +6,8 @@ from itertools import pairwise
 
 from netgen import occ
 
-from flexstage.solid.fea.draw import MILLIMETRES
+from flexstage.solid.fea.draw import Shape
+from flexstage.solid.fea.piece import MILLIMETRES
 from tapered_leaf.part import Taper
 
 
@@ -16,3 +17,6 @@ def taper_solid(part: Taper) -> occ.Solid:
     corners = [(-half, -end), (0.0, -waist), (half, -end), (half, end), (0.0, waist), (-half, end)]
     edges = [occ.Segment(occ.Pnt(*a, 0), occ.Pnt(*b, 0)) for a, b in pairwise([*corners, corners[0]])]
     return occ.Face(occ.Wire(edges)).Extrude(occ.Vec(0, 0, 2.0 * width)).Move(occ.Vec(0, 0, -width))
+
+
+TAPER = Shape(taper_solid)

@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
+from typing import Annotated, Any, TypeAlias
 
 import typer
 
 from flexstage.analysis.standing import require_standing
 from flexstage.base.finding import Finding, refuse
 from flexstage.base.quantity import RATIO, Quantity
+from flexstage.base.record import walk
 from flexstage.base.unit import parse
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.store import loads
@@ -22,15 +23,15 @@ from flexstage.show.command.options import Changes, Csv, Design, Json, Report, o
 from flexstage.show.command.output import require_writable, save
 from flexstage.show.command.progress import ProgressBar, progress_bar
 from flexstage.show.command.terminal import tell, warn
+from flexstage.show.document import stiffness_body
 from flexstage.show.page import Section
 from flexstage.show.table import Table
 from flexstage.show.tables.modes import mode_table
 from flexstage.show.tables.statics import direction_table, principal_table, stiffness_table
 from flexstage.solid import calibration, verification
-from flexstage.solid.document import calibration_body, hinges_body, solid_stage_body, solid_units_body, verification_body
 from flexstage.solid.fea.cache import Cache
 from flexstage.solid.fea.fineness import Reduction
-from flexstage.solid.fea.hinge_cache import HingeForm
+from flexstage.solid.fea.hinge_form import HingeForm, HingeSolid
 from flexstage.solid.fea.install import require_solver
 from flexstage.solid.fea.parts import Parts, Ways
 from flexstage.solid.fea.remote import Limits
@@ -51,9 +52,6 @@ from flexstage.solid.tables import (
     verification_table,
 )
 from flexstage.solid.what import What
-
-if TYPE_CHECKING:
-    from flexstage.solid.fea.hinge import HingeSolid  # needs the solver, refused by name where it is missing
 
 Scope: TypeAlias = Annotated[
     What,
@@ -161,9 +159,8 @@ def verify(
         stage = None if found.stage is None else stage_solid_section(found.stage)
         sections = iter([verification_section(found), hinge_section(found.hinges), units, stage])
         save(report, solid_report(mechanism, sections, cautions), "--report")
-    tell_missing(found.missing)
-    body, tables = lambda: verification_body(found), lambda: _verification_tables(found)
-    answer("verify", mechanism, body, tables, json=json, csv=csv, cautions=cautions, beside=(report,))
+    tell_missing(found.reasons)
+    answer("verify", mechanism, lambda: found, lambda: _verification_tables(found), json=json, csv=csv, cautions=cautions, beside=(report,))
 
 
 def calibrate(
@@ -188,7 +185,7 @@ def calibrate(
         found = calibration.calibrate(text, _hinges(asked, shown), where=str(design))
     save(output, found.text, "--output")
     cautions, tables = _inexact(found.hinges), [calibration_table(found)]
-    answer("calibrate", mechanism, lambda: calibration_body(found), lambda: tables, json=json, csv=csv, cautions=cautions, beside=(output,))
+    answer("calibrate", mechanism, lambda: found, lambda: tables, json=json, csv=csv, cautions=cautions, beside=(output,))
 
 
 def _request(accuracy: str, order: int | None, memory: str | None) -> _Request:
@@ -236,7 +233,7 @@ def _hinges(asked: _Request, shown: ProgressBar) -> Hinges:
 def _hinge_study(mechanism: Mechanism, asked: _Request, shown: ProgressBar) -> _Result:
     found = solid_hinges(mechanism, _hinges(asked, shown))
     return _Result(
-        body=lambda: {"hinges": hinges_body(found)},
+        body=lambda: {"hinges": found},
         tables=lambda: iter([hinge_table(found), *hinge_matrices(found)]),
         sections=lambda: iter([hinge_section(found)]),
         cautions=_inexact(found),
@@ -252,7 +249,12 @@ def _unit_study(mechanism: Mechanism, asked: _Request, shown: ProgressBar) -> _R
             yield command_table(name, unit)
             yield stress_table(f"Stress in the {name} unit at full stroke", unit.stress)
 
-    return _Result(lambda: solid_units_body(found), tables, lambda: iter([unit_section(found)]), _missed("units", found, asked.resolution))
+    return _Result(
+        body=lambda: {**walk(found), "units": found.result},
+        tables=tables,
+        sections=lambda: iter([unit_section(found)]),
+        cautions=_missed("units", found, asked.resolution),
+    )
 
 
 def _stage_study(mechanism: Mechanism, asked: _Request, shown: ProgressBar) -> _Result:
@@ -267,8 +269,12 @@ def _stage_study(mechanism: Mechanism, asked: _Request, shown: ProgressBar) -> _
         yield block_table(stage)
         yield None if stage.stress is None else stress_table("Highest stress over the strokes", stage.stress)
 
-    cautions = _missed("stage", found, asked.resolution)
-    return _Result(lambda: solid_stage_body(found), tables, lambda: iter([stage_solid_section(found)]), cautions)
+    return _Result(
+        body=lambda: {**walk(found), **walk(stage), "stiffness": stiffness_body(stage.statics)},
+        tables=tables,
+        sections=lambda: iter([stage_solid_section(found)]),
+        cautions=_missed("stage", found, asked.resolution),
+    )
 
 
 _STUDIES = {What.HINGE: _hinge_study, What.UNIT: _unit_study, What.STAGE: _stage_study}

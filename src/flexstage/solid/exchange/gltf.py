@@ -92,8 +92,9 @@ def gltf(stage: str, shown: Mapping[str, Surface], motions: Sequence[Motion]) ->
     document = gl.GLTF2(asset=gl.Asset(version="2.0", generator="flexstage"), scene=0)
     buffer = _Buffer(document)
     colours = palette(sorted((name for name, each in shown.items() if each.is_body), key=lambda name: name != PLATFORM))
+    targets = [printable(motion.name) for motion in motions]
     for name, surface in shown.items():
-        _add_node(document, buffer, (printable(name), surface), colours.get(name, _LINK), [printable(motion.name) for motion in motions])
+        _add_node(document, buffer, printable(name), surface, colour=colours.get(name, _LINK), targets=targets)
     if shown:
         _add_animations(document, buffer, motions)
     members = list(range(len(document.nodes)))
@@ -130,8 +131,7 @@ class _Buffer:
         return len(self._document.accessors) - 1
 
 
-def _add_node(document: gl.GLTF2, buffer: _Buffer, shown: tuple[str, Surface], colour: Colour, targets: list[str]) -> None:
-    name, surface = shown
+def _add_node(document: gl.GLTF2, buffer: _Buffer, name: str, surface: Surface, *, colour: Colour, targets: list[str]) -> None:
     indices = buffer.put(surface.triangles.astype(np.uint32).ravel(), gl.SCALAR, gl.ELEMENT_ARRAY_BUFFER)
     places = buffer.put(surface.vertices.astype(np.float32), gl.VEC3, gl.ARRAY_BUFFER)
     shifts = [gl.Attributes(POSITION=buffer.put(shift.astype(np.float32), gl.VEC3, gl.ARRAY_BUFFER)) for shift in surface.shifts]

@@ -73,7 +73,7 @@ def grid(mesh: Meshed) -> Grid:
     """
     import ngsolve
 
-    from flexstage.solid.fea.draw import MILLIMETRES
+    from flexstage.solid.fea.piece import MILLIMETRES
 
     elements = np.array([[vertex.nr for vertex in element.vertices] for element in mesh.mesh.Elements(ngsolve.VOL)])[:, _ORDER]
     corners = np.array(_CORNERS)[list(_ORDER)]

@@ -12,8 +12,8 @@ from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array
 from flexstage.parts.body import Imported
 from flexstage.solid.fea.component import Component, Interface, Joint
-from flexstage.solid.fea.draw import MILLIMETRES, drawn, moved
-from flexstage.solid.fea.piece import Medium, Piece
+from flexstage.solid.fea.draw import drawn, moved
+from flexstage.solid.fea.piece import MILLIMETRES, Medium, Piece
 
 _TOLERANCE = 1e-3
 """Faces match within this distance [mm]."""

@@ -9,9 +9,9 @@ import numpy as np
 from flexstage.base.digest import digest
 from flexstage.mechanism.mechanism import GROUND
 from flexstage.mechanism.near import near_pairs
-from flexstage.solid.fea.draw import MILLIMETRES, drawn, moved
+from flexstage.solid.fea.draw import drawn, moved
 from flexstage.solid.fea.near import Answer, Question, distance_text, frame_key, seen_from
-from flexstage.solid.fea.piece import Piece
+from flexstage.solid.fea.piece import MILLIMETRES, Piece
 from flexstage.solid.fea.stage_pieces import Stage
 
 TOUCHING = 1e-6

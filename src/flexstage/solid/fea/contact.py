@@ -16,10 +16,10 @@ from flexstage.mechanism.mechanism import GROUND, Mechanism
 from flexstage.mechanism.near import near_pairs
 from flexstage.solid.fea.clearance import clearance_questions
 from flexstage.solid.fea.component import components
-from flexstage.solid.fea.draw import MILLIMETRES, drawn, moved
+from flexstage.solid.fea.draw import drawn, moved
 from flexstage.solid.fea.imported import import_findings
 from flexstage.solid.fea.near import Answer, Question, answered, distance_text, frame_key, seen_from
-from flexstage.solid.fea.piece import Piece, span, thinnest
+from flexstage.solid.fea.piece import MILLIMETRES, Piece, span, thinnest
 from flexstage.solid.fea.sliver import SLIVER, sliver_findings
 from flexstage.solid.fea.stage_pieces import Stage, stage_pieces
 from flexstage.spatial.frame import Frame, identity

@@ -7,8 +7,9 @@ stopped short by 3 % of their radius: a face tangent to another leaves a wedge o
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from itertools import pairwise
-from typing import Any, TypeAlias
+from typing import Any
 
 import numpy as np
 import scipy
@@ -27,18 +28,15 @@ from flexstage.parts.profile import rise as cut_height
 from flexstage.parts.rod import Rod
 from flexstage.parts.shape import Shaped
 from flexstage.solid.fea.imported import imported_shape
-from flexstage.solid.fea.piece import Form
+from flexstage.solid.fea.piece import MILLIMETRES, Form
+from flexstage.solid.fea.specimen import Specimen, bar, cut
 from flexstage.spatial.frame import Frame
-
-MILLIMETRES = 1e3
-"""CAD units per metre."""
 
 SHORTENED = 0.03
 """By how much of their radius arcs stop short of an end face they would touch without an angle."""
 _STATIONS = 33
 
 Curve = list[occ.TopoDS_Shape]
-Draw: TypeAlias = Callable[[Any], occ.Solid]
 
 
 def drawn(form: Form) -> occ.Solid:
@@ -54,11 +52,29 @@ def drawn(form: Form) -> occ.Solid:
         return _tube(form)
     if isinstance(form, Imported):
         return imported_shape(form)
-    draw = SHAPES.get(form.kind)
-    if draw is None:
+    return _shape(form).draw(form)
+
+
+def specimen(part: Shaped, stubs: tuple[float, float], size: float) -> Specimen:
+    """Draw a hinge with stubs of given lengths [m] at its first and second end; elements at the neck are `size` times its thickness.
+
+    It is thin along y and wide along z. Raises `DesignError` for a kind whose shape nobody offers.
+
+    >>> from flexstage.parts.leaf import Leaf
+    >>> bar = specimen(Leaf("steel", 1e-3, 1e-3, 2e-3), (0.0, 0.0), 1.0)
+    >>> round(bar.solid.mass, 9), sorted(face.name for face in bar.solid.faces if face.name)
+    (2.0, ['end', 'start'])
+    """
+    shape, lengths = _shape(part), (stubs[0] * MILLIMETRES, stubs[1] * MILLIMETRES)
+    return bar(part, lengths, size, shape.draw(part)) if shape.specimen is None else shape.specimen(part, lengths, size)
+
+
+def _shape(part: Shaped) -> Shape:
+    found = SHAPES.get(part.kind)
+    if found is None:
         what = "its shape as a solid is not known: nobody offers one for this kind"
-        raise refuse(f"a part of kind {form.kind}", what, f"Install the package that does ({SHAPES.group})")
-    return draw(form)
+        raise refuse(f"the {part.kind}", what, f"Install the package that does ({SHAPES.group})")
+    return found
 
 
 def moved(solid: occ.TopoDS_Shape, frame: Frame) -> occ.TopoDS_Shape:
@@ -189,12 +205,23 @@ def _polyline(points: list[tuple[float, float]]) -> Curve:
     return [occ.Segment(occ.Pnt(*a, 0), occ.Pnt(*b, 0)) for a, b in pairwise(points)]
 
 
-_OWN: Mapping[type[Shaped], Draw] = {
-    Notch: lambda form: _extruded(form.thickness, form.profile, form.width),
-    Neck: _neck,
-    Leaf: lambda form: _box(form.length, form.thickness, form.width),
-    Rod: lambda form: _round(form.diameter, form.length),
-    Piezo: lambda form: _round(form.diameter, form.length),
+@dataclass(frozen=True)
+class Shape:
+    """A kind of part as a CAD solid in millimetres: what draws it at the origin, and what draws it as a specimen, with stubs at its ends.
+
+    Without the latter, a specimen is the part as it is drawn, with blocks at its ends.
+    """
+
+    draw: Callable[[Any], occ.Solid]
+    specimen: Callable[[Any, tuple[float, float], float], Specimen] | None = None
+
+
+_OWN: Mapping[type[Shaped], Shape] = {
+    Notch: Shape(lambda form: _extruded(form.thickness, form.profile, form.width), cut),
+    Neck: Shape(_neck, cut),
+    Leaf: Shape(lambda form: _box(form.length, form.thickness, form.width), bar),
+    Rod: Shape(lambda form: _round(form.diameter, form.length), bar),
+    Piezo: Shape(lambda form: _round(form.diameter, form.length)),
 }
-SHAPES: Register[Draw] = Register("flexstage.shapes", {part.kind: draw for part, draw in _OWN.items()})
-"""What draws a part as a CAD solid at the origin, in millimetres, by its kind."""
+SHAPES: Register[Shape] = Register("flexstage.shapes", {part.kind: shape for part, shape in _OWN.items()})
+"""Parts as solids, by their kind."""

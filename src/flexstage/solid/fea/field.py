@@ -10,8 +10,8 @@ import ngsolve
 import numpy as np
 
 from flexstage.base.number import Array
-from flexstage.solid.fea.draw import MILLIMETRES
 from flexstage.solid.fea.mesh import Meshed
+from flexstage.solid.fea.piece import MILLIMETRES
 from flexstage.spatial.frame import Frame
 
 _PER_METRE = 1.0 / MILLIMETRES

@@ -15,21 +15,21 @@ import numpy as np
 
 from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.number import Array
-from flexstage.parts.leaf import Leaf
 from flexstage.parts.material import Material
-from flexstage.parts.neck import Neck
+from flexstage.parts.part import is_actuator
 from flexstage.parts.profile import Filleted
-from flexstage.parts.profile import rise as cut_height
-from flexstage.parts.rod import Rod
+from flexstage.parts.shape import Profiled, Shaped
+from flexstage.solid.fea.draw import specimen
 from flexstage.solid.fea.estimate import Accuracy, change, remaining
 from flexstage.solid.fea.field import Field, applied, factored, field, rigid, stiffness, times
+from flexstage.solid.fea.hinge_form import LEAVE, NO_ESTIMATE, HingeSolid
 from flexstage.solid.fea.memory import Counts
 from flexstage.solid.fea.mesh import Meshed, generated
 from flexstage.solid.fea.piece import Medium, medium, span
 from flexstage.solid.fea.progress import Report, Stage, silent
-from flexstage.solid.fea.roots import Roots, own_roots
-from flexstage.solid.fea.specimen import END, START, Hinge, Specimen, seat, specimen
-from flexstage.solid.fea.stub import Section, beam, circle, rectangle
+from flexstage.solid.fea.roots import Roots, own_roots, rises
+from flexstage.solid.fea.specimen import END, START, Specimen, own_stub
+from flexstage.solid.fea.stub import beam, circle, rectangle
 from flexstage.spatial.frame import identity, transport
 
 _SYMMETRY = 1e-8
@@ -52,29 +52,6 @@ _ATTEMPTS = (
 
 
 @dataclass(frozen=True, eq=False)
-class HingeSolid:
-    """The 6x6 of a hinge by three-dimensional elasticity, about its centre in the link frame, between the ends of its arcs [SI].
-
-    `compliance` and `stiffness` (6, 6): twist of the second side against the first, (x, y, z, rx, ry, rz). `error` estimates the largest
-    relative error of the compliance *at the hinge's end*, where it acts, each entry ij against sqrt(C_ii C_jj) there; `changes` (6,) are
-    the last relative changes of the diagonal about the centre: those of y and z are larger, being small differences of lever arms.
-    `whole` (6, 6) is the compliance with the stubs of length `stub` [m]. `freedoms`, `elements` and `order` are those of the last solve;
-    `finding` says what was not reached, if anything.
-    """
-
-    compliance: Array
-    stiffness: Array
-    error: float
-    changes: Array
-    whole: Array
-    stub: float
-    freedoms: int
-    elements: int
-    order: int
-    finding: Finding | None = None
-
-
-@dataclass(frozen=True, eq=False)
 class _Solve:
     stiffness: Array
     freedoms: int
@@ -94,7 +71,7 @@ _NOBODY = Told()
 
 
 def hinge_compliance(
-    part: Hinge,
+    part: Shaped,
     material: Material,
     accuracy: Accuracy | None = None,
     stub: float | None = None,
@@ -102,12 +79,12 @@ def hinge_compliance(
     *,
     roots: Roots | None = None,
 ) -> HingeSolid:
-    """The 6x6 of a notch, neck, leaf or rod by finite elements, to the accuracy asked for (1 % unless told).
+    """The 6x6 of a hinge by finite elements, to the accuracy asked for (1 % unless told).
 
     Energies: with one outer face held and the other moved rigidly by e_i about the centre, K_ij = u_i . K u_j; C = K^-1 - sum over stubs of
     X C_stub X^T. The order is raised, then the mesh refined, until the error estimated from the last changes (`estimate.remaining`) is
-    within `accuracy.error`. `roots` say which ends grow on blocks (unless told: both of a profile that rises, none of a prismatic hinge),
-    `stub` [m] how long a stub is: the hinge's full height, and five times the `grain` of a prismatic hinge, as much wider on each side.
+    within `accuracy.error`. `roots` say which ends grow on blocks (unless told: both of a profile that rises, none of any other hinge),
+    `stub` [m] how long a stub is: the hinge's full height, or five times its `grain` where it ends on a block wider than itself.
 
     Linear elasticity; the stubs' outer faces stay plane. How much of the blocks counts as root is a convention: C_x depends on the stub's
     length by 1-3 %, C_y by some 10 %, and C_rx of a hinge several times wider than high by a factor. Raises `DesignError` for a part
@@ -149,12 +126,12 @@ def hinge_compliance(
     )
 
 
-def _refusals(part: Hinge) -> Iterator[Finding]:
+def _refusals(part: Shaped) -> Iterator[Finding]:
     """Parts without a shape, batches, fillets longer than the hinge."""
-    if not isinstance(part, Hinge):
-        yield Finding(_named(part), "has no shape, or is no hinge", "Give a notch, neck, leaf or rod")
+    if not isinstance(part, Shaped) or is_actuator(part):
+        yield Finding(_named(part), "has no shape, or is no hinge", "Give a hinge of a kind that can be drawn: a notch, neck, leaf, rod")
         return
-    profile = None if isinstance(part, (Leaf, Rod)) else part.profile
+    profile = part.profile if isinstance(part, Profiled) else None
     for owner in (part, profile):
         for name, value in vars(owner).items() if owner is not None else ():
             if np.ndim(value) > 0:
@@ -165,23 +142,23 @@ def _refusals(part: Hinge) -> Iterator[Finding]:
             yield Finding(_named(part), f"its fillets of {radius:.4g} m do not fit into its length of {total:.4g} m", "Need 2 r <= l")
 
 
-def _error(part: Hinge, found: Sequence[Array]) -> float:
+def _error(part: Shaped, found: Sequence[Array]) -> float:
     """Estimated error of the last of the compliances found, all taken at the hinge's end."""
     arm = transport(np.array([0.5 * span(part), 0.0, 0.0]))
     ends = [arm @ compliance @ arm.T for compliance in found]
     return remaining([change(first, second) for first, second in pairwise(ends)])
 
 
-def _blunted(part: Hinge, stubs: tuple[float, float]) -> float:
+def _blunted(part: Shaped, stubs: tuple[float, float]) -> float:
     """What is not known because arcs that end on a rigid face are blunted there."""
-    return _BLUNT if min(stubs) == 0.0 and _profile_height(part) > 0.0 else 0.0
+    return _BLUNT if min(stubs) == 0.0 and rises(part) else 0.0
 
 
-def _named(part: Hinge) -> str:
-    return f"the {type(part).__name__.lower()}"
+def _named(part: Shaped) -> str:
+    return f"the {part.kind}"
 
 
-def _solves(part: Hinge, stubs: tuple[float, float], own: Medium, asked: Accuracy, told: Told) -> Iterator[_Solve]:
+def _solves(part: Shaped, stubs: tuple[float, float], own: Medium, asked: Accuracy, told: Told) -> Iterator[_Solve]:
     """Solves of rising order on one mesh, then of the highest on finer ones, until the next would have too many freedoms."""
     lowest, highest = asked.orders
     for refinement in range(asked.meshes):
@@ -202,7 +179,7 @@ def _space(mesh: ngsolve.Mesh, own: Medium, order: int) -> Field:
     return field(Meshed(mesh, (own,), (START, END), np.zeros(mesh.ne, dtype=int)), [START, END], order)
 
 
-def _law(part: Hinge, space: Field) -> Array:
+def _law(part: Shaped, space: Field) -> Array:
     """Stiffness (6, 6) of the whole specimen: energies of the motions that move one outer face and hold the other."""
     form, motion = stiffness(space), rigid(space, identity(), faces=END)
     motion -= factored(space, form)(times(form, motion))
@@ -211,7 +188,7 @@ def _law(part: Hinge, space: Field) -> Array:
     return _symmetric(law)
 
 
-def hinge_mesh(part: Hinge, stub: float | None = None, factor: float = 1.0, order: int = 5) -> ngsolve.Mesh:
+def hinge_mesh(part: Shaped, stub: float | None = None, factor: float = 1.0, order: int = 5) -> ngsolve.Mesh:
     """A mesh [mm] of a hinge with its stubs, faces `start` and `end` named; no element is turned inside out at any order up to `order`.
 
     Elements are `factor` times as large as usual. Where the mesher fails or an element folds, other sizes are tried, a few times. Raises
@@ -224,7 +201,7 @@ def hinge_mesh(part: Hinge, stub: float | None = None, factor: float = 1.0, orde
     return _mesh(part, _stub_lengths(part, stub, own_roots(part)), factor, order)
 
 
-def _mesh(part: Hinge, stubs: tuple[float, float], factor: float, order: int) -> ngsolve.Mesh:
+def _mesh(part: Shaped, stubs: tuple[float, float], factor: float, order: int) -> ngsolve.Mesh:
     reason = "the mesher was not asked"
     for shrink, grading, curvature in _ATTEMPTS:
         drawn = specimen(part, stubs, factor * shrink)
@@ -262,24 +239,19 @@ def lowest_jacobian(mesh: ngsolve.Mesh) -> float:
     return float(np.min(ngsolve.Det(ngsolve.specialcf.JacobianMatrix(3))(mesh.MapToAllElements(rule, ngsolve.VOL))))
 
 
-def _profile_height(part: Hinge) -> float:
-    return 0.0 if isinstance(part, (Leaf, Rod)) else float(np.real(cut_height(part.profile)))
-
-
-def _stub_lengths(part: Hinge, stub: float | None, roots: Roots) -> tuple[float, float]:
+def _stub_lengths(part: Shaped, length: float | None, roots: Roots) -> tuple[float, float]:
     """Lengths [m] of the stubs of both ends, nought where there is none."""
-    rise = _profile_height(part)
-    usual = seat(part)[2] if isinstance(part, (Leaf, Rod)) or rise == 0.0 else float(np.real(part.thickness)) + 2.0 * rise
-    length = usual if stub is None else stub
-    return length if roots.first else 0.0, length if roots.second else 0.0
+    own = own_stub(part)[1] if length is None else length
+    return own if roots.first else 0.0, own if roots.second else 0.0
 
 
-def _stubs(part: Hinge, lengths: tuple[float, float], own: Medium) -> Array:
+def _stubs(part: Shaped, lengths: tuple[float, float], own: Medium) -> Array:
     """Compliance (6, 6) of both stubs about the hinge's centre."""
-    total = np.zeros((6, 6))
+    section, total = own_stub(part)[0], np.zeros((6, 6))
+    form = circle(float(section.height)) if section.is_round else rectangle(float(section.height), float(section.width))
     for sign, length in zip((-1.0, 1.0), lengths, strict=True):
         if length > 0.0:
-            total += _seen(beam(_stub_section(part), length, own), sign * 0.5 * (span(part) + length))
+            total += _seen(beam(form, length, own), sign * 0.5 * (span(part) + length))
     return total
 
 
@@ -289,23 +261,11 @@ def _seen(compliance: Array, away: float) -> Array:
     return shift @ compliance @ shift.T
 
 
-def _stub_section(part: Hinge) -> Section:
-    """The section where the profile has risen."""
-    rise = 2.0 * _profile_height(part)
-    if isinstance(part, (Leaf, Rod)) or rise == 0.0:
-        high, wide, _ = seat(part)
-        return circle(high) if isinstance(part, Rod) or part.width is None else rectangle(high, wide)
-    height = float(np.real(part.thickness)) + rise
-    if part.width is None:
-        return circle(height)
-    return rectangle(height, float(np.real(part.width)) + (rise if isinstance(part, Neck) else 0.0))
-
-
 def _symmetric(matrix: Array) -> Array:
     return 0.5 * (matrix + matrix.T)
 
 
-def _require_symmetric(part: Hinge, law: Array) -> None:
+def _require_symmetric(part: Shaped, law: Array) -> None:
     skew = change(law, law.T)
     if skew > _SYMMETRY:
         raise refuse(
@@ -315,7 +275,9 @@ def _require_symmetric(part: Hinge, law: Array) -> None:
         )
 
 
-def _short(part: Hinge, error: float, asked: Accuracy) -> Finding:
+def _short(part: Shaped, error: float, asked: Accuracy) -> Finding:
+    if not np.isfinite(error):
+        return Finding(_named(part), f"how exact its 6x6 is is not known: {NO_ESTIMATE}", LEAVE)
     return Finding(
         _named(part),
         f"its 6x6 is known to {100.0 * error:.2g} %, {100.0 * asked.error:.2g} % was asked, within {asked.freedoms} freedoms",

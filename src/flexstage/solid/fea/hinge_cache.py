@@ -7,43 +7,22 @@ import json
 from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, fields, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
+from typing import Any
 
 import numpy as np
 
 from flexstage.base.digest import digest
 from flexstage.base.finding import DesignError, Finding
 from flexstage.base.store import write
-from flexstage.parts.leaf import Leaf
-from flexstage.parts.material import Material
-from flexstage.parts.neck import Neck
-from flexstage.parts.notch import Notch
-from flexstage.parts.rod import Rod
 from flexstage.solid.fea.cache import folder_of
 from flexstage.solid.fea.estimate import Accuracy
+from flexstage.solid.fea.hinge_form import HingeForm, HingeSolid
 from flexstage.solid.fea.install import require_solver
 from flexstage.solid.fea.memory import Counts, needed
 from flexstage.solid.fea.parts import Ways
 from flexstage.solid.fea.remote import work_all
-from flexstage.solid.fea.roots import Roots
 from flexstage.solid.fea.store import versions
 from flexstage.solid.fea.worker import Call, Job
-
-if TYPE_CHECKING:
-    from flexstage.solid.fea.hinge import HingeSolid
-
-HingePart: TypeAlias = Notch | Neck | Leaf | Rod
-
-
-class HingeForm(NamedTuple):
-    """What a hinge is computed from: its shape, its material, and which of its ends grow on blocks."""
-
-    part: HingePart
-    material: Material
-    roots: Roots
-
-
-_ARRAYS = ("compliance", "stiffness", "changes", "whole")
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,7 +62,7 @@ class Hinging(Job):
             told = Told(call.report, call.ask)
             return _encoded(hinge_compliance(self.form.part, self.form.material, self.asked, told=told, roots=self.form.roots))
         except DesignError as error:
-            kind = f"the {type(self.form.part).__name__.lower()}"
+            kind = f"the {self.form.part.kind}"
             raise DesignError(replace(each, where=each.where.replace(kind, self.name, 1)) for each in error.findings) from None
 
 
@@ -149,8 +128,6 @@ def _encoded(found: HingeSolid) -> bytes:
 
 
 def _decoded(data: bytes) -> HingeSolid:
-    from flexstage.solid.fea.hinge import HingeSolid
-
     body: dict[str, Any] = json.loads(data)
     if body.pop("checksum") != _checksum(body):
         raise ValueError("it does not have the checksum it states")

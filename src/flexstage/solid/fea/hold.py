@@ -43,8 +43,8 @@ def is_rigid(component: Component, interface: Interface, hold: Hold) -> bool:
     return hold is Hold.RIGID or interface.joint.link in stacks or isinstance(interface.footprint, Piezo)
 
 
-def held(component: Component, space: Field, forms: tuple[ngsolve.BilinearForm, ngsolve.BilinearForm], hold: Hold) -> Held:
-    """Hold a component's interfaces; `forms` are its stiffness and inertia, and `space` must hold its rigid and grounded faces.
+def held(component: Component, space: Field, elastic: ngsolve.BilinearForm, mass: ngsolve.BilinearForm, hold: Hold) -> Held:
+    """Hold a component's interfaces; `elastic` and `mass` are its stiffness and inertia; `space` must hold its rigid and grounded faces.
 
     >>> from flexstage.solid.fea.bar import bar
     >>> from flexstage.solid.fea.field import field, inertia, stiffness
@@ -52,11 +52,10 @@ def held(component: Component, space: Field, forms: tuple[ngsolve.BilinearForm, 
     >>> from flexstage.solid.fea.mesh import meshed
     >>> space = field(meshed(bar(), Fineness(order=2)), ["foot"], 2)
     >>> elastic = stiffness(space)
-    >>> faces = held(bar(), space, (elastic, inertia(space)), Hold.AVERAGED).faces
+    >>> faces = held(bar(), space, elastic, inertia(space), Hold.AVERAGED).faces
     >>> round(float((faces.T @ times(elastic, faces))[0, 0]) * 1e-6, 6)  # E A / L, N/um
     100.0
     """
-    elastic, mass = forms
     loose = [item for item in component.interfaces if not is_rigid(component, item, hold)]
     unsupported = len(loose) == len(component.interfaces) and not component.fixed
     plain = factored(space, shifted(space, elastic, mass, _SHIFT) if unsupported else elastic)

@@ -16,8 +16,8 @@ from flexstage.base.number import Array, stack
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.parts.body import Body, Imported, Inertia
 from flexstage.parts.mass import tensor
+from flexstage.solid.fea.piece import MILLIMETRES
 
-_MILLIMETRES = 1e3
 _DIGITS = 6
 """Digits of a box [mm]: the kernel widens it by 1e-7."""
 TOLERANCE = 1e-3
@@ -46,7 +46,7 @@ def imported_shape(form: Imported) -> occ.TopoDS_Shape:
     """
     path = Path(form.file)
     require(_version_findings(path, form.sha256))
-    x, y, z = (-_MILLIMETRES * float(np.real(value)) for value in form.middle)
+    x, y, z = (-MILLIMETRES * float(np.real(value)) for value in form.middle)
     return _solid(path).Move(occ.Vec(x, y, z))
 
 
@@ -61,16 +61,16 @@ def measured(path: Path) -> Measured:
     """
     digest = _sha256(path)
     solid = _solid(path)
-    low, high = (np.round([corner.x, corner.y, corner.z], _DIGITS) / _MILLIMETRES for corner in solid.bounding_box)
-    volume = float(solid.mass) / _MILLIMETRES**3
-    centre = np.array([solid.center.x, solid.center.y, solid.center.z]) / _MILLIMETRES
+    low, high = (np.round([corner.x, corner.y, corner.z], _DIGITS) / MILLIMETRES for corner in solid.bounding_box)
+    volume = float(solid.mass) / MILLIMETRES**3
+    centre = np.array([solid.center.x, solid.center.y, solid.center.z]) / MILLIMETRES
     return Measured(digest, high - low, 0.5 * (low + high), volume, centre, _inertia(solid))
 
 
 def _inertia(solid: occ.TopoDS_Shape) -> Array:
     """The inertia tensor of unit density about the centre [m^5]."""
     matrix = solid.inertia
-    return np.array([[matrix[i, j] for j in range(3)] for i in range(3)]) / _MILLIMETRES**5
+    return np.array([[matrix[i, j] for j in range(3)] for i in range(3)]) / MILLIMETRES**5
 
 
 def stated(found: Measured, file: str, material: str, density: float) -> Imported:

@@ -13,14 +13,11 @@ from netgen.meshing import MeshingParameters
 
 from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.number import Array
-from flexstage.parts.neck import Neck
-from flexstage.parts.profile import Straight
 from flexstage.parts.shape import Shaped
 from flexstage.solid.fea.cad import Cad, cad, half_extents, region
 from flexstage.solid.fea.component import Component
-from flexstage.solid.fea.draw import MILLIMETRES
 from flexstage.solid.fea.fineness import ATTEMPTS, Fineness
-from flexstage.solid.fea.piece import Medium, Piece, span, thinnest
+from flexstage.solid.fea.piece import MILLIMETRES, Medium, Piece, bends_both_ways, span, thinnest
 from flexstage.solid.fea.progress import Report, Stage, silent
 from flexstage.solid.fea.straighten import straighten
 
@@ -185,9 +182,14 @@ def _near(pieces: tuple[Piece, ...], sizes: list[float], face: occ.Face) -> list
 
 
 def _size(piece: Piece, fineness: Fineness) -> float:
-    slender = isinstance(piece.form, Neck) and isinstance(piece.form.profile, Straight)
+    slender = isinstance(piece.form, Shaped) and _is_strut(piece.form)
     factor = fineness.block if piece.body is not None else fineness.neck * (_SLENDER if slender else 1.0)
     return factor * thinnest(piece.form) * MILLIMETRES
+
+
+def _is_strut(form: Shaped) -> bool:
+    """Whether it is a neck of one section, which ends on blocks wider than itself."""
+    return form.is_prismatic and not form.slender and bends_both_ways(form)
 
 
 def _unmeshed(component: Component, reason: str) -> Exception:

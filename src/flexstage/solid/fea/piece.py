@@ -11,11 +11,15 @@ from flexstage.base.finding import Finding
 from flexstage.base.number import Number
 from flexstage.mechanism.expand import PlacedLink
 from flexstage.parts.body import Block, Cylinder, Imported
+from flexstage.parts.freedom import Freedom
 from flexstage.parts.material import Material
 from flexstage.parts.part import Part, Restricted
 from flexstage.parts.piezo import Piezo
 from flexstage.parts.shape import Shaped
 from flexstage.spatial.frame import Frame
+
+MILLIMETRES = 1e3
+"""CAD units per metre."""
 
 Form: TypeAlias = Shaped | Block | Cylinder | Imported
 """What can be drawn: given 6x6 parts and ideal joints have no shape."""
@@ -101,6 +105,16 @@ def drawable(link: PlacedLink) -> Form | Finding:
     return Finding(
         link.name, f"a part of kind {type(part).__name__.lower()} has no shape", "Give it a form that can be drawn, or join rigid bodies"
     )
+
+
+def bends_both_ways(part: Shaped) -> bool:
+    """Whether a part is meant to bend about y as about z.
+
+    >>> from flexstage.parts.rod import Rod
+    >>> bends_both_ways(Rod("steel", 0.01, 1e-3))
+    True
+    """
+    return Freedom.RY in part.intended and Freedom.RZ in part.intended
 
 
 def span(form: Form) -> float:

@@ -86,7 +86,7 @@ def _problem(component: Component, mesh: Meshed, reduction: Reduction, report: R
     space = field(mesh, plane + [joint.name for joint in component.fixed], reduction.fineness.order)
     elastic, mass = stiffness(space), inertia(space)
     report(Stage.FACTORISING, 0.0)
-    interfaces = held(component, space, (elastic, mass), reduction.hold)
+    interfaces = held(component, space, elastic, mass, reduction.hold)
     return _Problem(component, space, elastic, mass, interfaces.faces, interfaces.warps, interfaces.solve)
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from flexstage.mechanism.expand import Assembly, PlacedLink
-from flexstage.parts.shape import Shaped
+from flexstage.parts.shape import Profiled, Shaped
 from flexstage.solid.fea.component import is_elastic
 
 
@@ -27,14 +27,23 @@ class Roots:
 
 
 def own_roots(part: Shaped) -> Roots:
-    """The roots of a hinge by itself: profiles that rise grow on the blocks they rise to, prismatic hinges stand between rigid faces.
+    """The roots of a hinge by itself: profiles that rise grow on the blocks they rise to, all others stand between rigid faces.
 
     >>> from flexstage.parts.leaf import Leaf
     >>> own_roots(Leaf("steel", length=0.01, thickness=1e-3, width=5e-3))
     Roots(first=False, second=False)
     """
-    rises = not part.is_prismatic
-    return Roots(rises, rises)
+    return Roots(rises(part), rises(part))
+
+
+def rises(part: Shaped) -> bool:
+    """Whether a profile of cuts rises to the full height of the blocks that a hinge grows on.
+
+    >>> from flexstage.parts.leaf import Leaf
+    >>> rises(Leaf("steel", length=0.01, thickness=1e-3, width=5e-3))
+    False
+    """
+    return isinstance(part, Profiled) and not part.is_prismatic
 
 
 def roots_of(assembly: Assembly, link: PlacedLink) -> Roots:

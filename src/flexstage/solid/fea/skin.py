@@ -8,8 +8,8 @@ import ngsolve
 import numpy as np
 
 from flexstage.base.number import Array
-from flexstage.solid.fea.draw import MILLIMETRES
 from flexstage.solid.fea.field import Field, strain
+from flexstage.solid.fea.piece import MILLIMETRES
 from flexstage.solid.fea.superelement import Skin
 
 _PAIRS = ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0))

@@ -16,9 +16,9 @@ from flexstage.base.number import Array
 from flexstage.solid.fea.cad import cad, half_extents
 from flexstage.solid.fea.component import Component
 from flexstage.solid.fea.content import content
-from flexstage.solid.fea.draw import MILLIMETRES, drawn
+from flexstage.solid.fea.draw import drawn
 from flexstage.solid.fea.near import Question, answered, distance_text
-from flexstage.solid.fea.piece import Form, Piece, thinnest
+from flexstage.solid.fea.piece import MILLIMETRES, Form, Piece, thinnest
 
 SLIVER = 0.05
 """Slivers are smaller than this times the thinnest piece there."""

@@ -2,8 +2,8 @@
 
 Where a profile rises to a block, the stub has the hinge's full height, and hinge and stub are one outline: half-circle arcs are drawn
 whole, so that they end square on the stub's flank, not on a face they touch. A rigid face, which an arc would touch without an angle,
-stands at the arc's true end, and the wedge between them is blunted: it carries next to nothing, and no mesh could fill it. A prismatic
-hinge ends on a stub wider than itself all round.
+stands at the arc's true end, and the wedge between them is blunted: it carries next to nothing, and no mesh could fill it. All other
+hinges end on a stub wider than themselves all round.
 """
 
 from __future__ import annotations
@@ -11,19 +11,16 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import TypeAlias
 
 import numpy as np
 from netgen import occ
 
 from flexstage.base.number import Number
-from flexstage.parts.leaf import Leaf
-from flexstage.parts.neck import Neck
-from flexstage.parts.notch import Notch
 from flexstage.parts.profile import Elliptic, Filleted, Profile, Straight, length
 from flexstage.parts.profile import rise as cut_height
-from flexstage.parts.rod import Rod
-from flexstage.solid.fea.draw import MILLIMETRES
+from flexstage.parts.shape import Profiled, Section, Shaped
+from flexstage.solid.fea.piece import MILLIMETRES, bends_both_ways
+from flexstage.solid.fea.roots import rises
 
 START, END = "start", "end"
 """Names of the specimen's two outer faces, towards -x and +x."""
@@ -40,12 +37,9 @@ _LONG = 3.0
 _FLAT, _FLAT_STRAIGHT = 1.0 / 12.0, 1.0 / 3.0
 """Least element over the smaller of width and length of a wide hinge: with arcs, and a leaf."""
 _SEAT = 5.0
-"""How far a block reaches beyond a prismatic hinge, sideways and in depth, over the hinge's `grain`."""
+"""How far a block reaches beyond a hinge that does not rise to it, sideways and in depth, over the hinge's `grain`."""
 _SEAT_SIZE = 2.0
 """Largest element of such a block over the hinge's `grain`."""
-
-Hinge: TypeAlias = Notch | Neck | Leaf | Rod
-"""What a specimen is made of."""
 
 _Curve = list[occ.TopoDS_Shape]
 
@@ -96,76 +90,83 @@ class _Side:
         return first, last
 
 
-def grain(part: Hinge) -> float:
-    """The size that the yielding of a prismatic hinge's root scales with [m]: the thickness, a neck's geometric mean, a rod's diameter.
+def grain(part: Shaped) -> float:
+    """The size that the yielding of a hinge's root scales with [m]: the thickness at its ends, geometric mean where it bends both ways.
 
+    >>> from flexstage.parts.neck import Neck
     >>> grain(Neck("steel", 1e-3, Straight(0.01), width=4e-3))
     0.002
     """
-    if isinstance(part, Rod):
-        return float(np.real(part.diameter))
-    thickness = float(np.real(part.thickness))
-    return thickness if not isinstance(part, Neck) or part.width is None else float(np.sqrt(thickness * np.real(part.width)))
+    end = part.end.first
+    if end.is_round or not bends_both_ways(part):
+        return float(end.height)
+    return float(np.sqrt(end.height * end.width))
 
 
-def seat(part: Hinge) -> tuple[float, float, float]:
-    """Height, width and depth [m] of the stub of a block that a prismatic hinge ends on; of a round one the diameter, twice, and the depth.
+def own_stub(part: Shaped) -> tuple[Section, float]:
+    """Section and length [m] of the stub of a block that a hinge ends on: as high as a profile that rises; else wider all round.
 
-    >>> seat(Leaf("steel", 0.01, 1e-3, 5e-3))
+    >>> from flexstage.parts.leaf import Leaf
+    >>> section, depth = own_stub(Leaf("steel", 0.01, 1e-3, 5e-3))
+    >>> section.height, section.width, depth
     (0.011, 0.015, 0.005)
     """
-    height = float(np.real(part.diameter if isinstance(part, Rod) else part.thickness))
-    width = height if isinstance(part, Rod) or part.width is None else float(np.real(part.width))
+    end = part.end.first
+    if rises(part):
+        return end, float(end.height)
     beyond = _SEAT * grain(part)
-    return height + 2.0 * beyond, width + 2.0 * beyond, beyond
+    return Section(end.height + 2.0 * beyond, end.width + 2.0 * beyond, end.is_round), beyond
 
 
-def specimen(part: Hinge, stubs: tuple[float, float], size: float) -> Specimen:
-    """Draw a hinge with stubs of given lengths [m] at its first and second end; elements at the neck are `size` times its thickness.
+def cut(part: Profiled, stubs: tuple[float, float], size: float) -> Specimen:
+    """A hinge with a profile and stubs of given lengths [mm], its arcs whole where there is a stub; one of a straight profile as a `bar`.
 
-    A notch, leaf or rectangular neck is thin along y and wide along z; a round one is revolved about x.
-
-    >>> bar = specimen(Leaf("steel", 1e-3, 1e-3, 2e-3), (0.0, 0.0), 1.0)
-    >>> round(bar.solid.mass, 9), sorted(face.name for face in bar.solid.faces if face.name)
-    (2.0, ['end', 'start'])
+    A notch is thin along y and wide along z; a round neck is revolved about x.
     """
-    lengths = (stubs[0] * MILLIMETRES, stubs[1] * MILLIMETRES)
-    if isinstance(part, (Leaf, Rod)) or isinstance(part.profile, Straight):
-        return _prism(part, lengths, size)
-    side = _Side(0.5 * _mm(part.thickness), part.profile, lengths)
-    if isinstance(part, Notch):
-        return _wide(side, _mm(part.width), size)
-    if part.width is None:
+    if part.is_prismatic:
+        return bar(part, stubs, size)
+    side = _Side(0.5 * _mm(part.throat.height), part.profile, stubs)
+    if part.throat.is_round:
         return _named(_revolved(side), side, 2.0 * side.rise, size)
-    across = _Side(0.5 * _mm(part.width), part.profile, side.stubs)
+    if part.end.first.width == part.throat.first.width:
+        return _wide(side, _mm(part.throat.width), size)
+    across = _Side(0.5 * _mm(part.throat.width), part.profile, stubs)
     turned = _extruded(across, 3.0 * side.height).Rotate(occ.Axis(occ.Pnt(0, 0, 0), occ.X), 90.0)
     return _named(_extruded(side, 3.0 * across.height) * turned, side, 2.0 * min(side.rise, across.rise), size)
 
 
-def _prism(part: Hinge, stubs: tuple[float, float], size: float) -> Specimen:
-    """A bar of one section, and the blocks it ends on."""
-    along = part.length if isinstance(part, (Leaf, Rod)) else length(part.profile)
-    side = _Side(0.5 * _mm(part.diameter if isinstance(part, Rod) else part.thickness), Straight(along), stubs)
-    bar = replace(side, stubs=(0.0, 0.0))
-    if isinstance(part, Rod) or part.width is None:
-        solid, thin = _revolved(bar), (_LONG if isinstance(part, Rod) else 2.0) * side.rise
-    else:
-        solid, width = _extruded(bar, _mm(part.width)), _mm(part.width)
-        flat = max(2.0 * side.rise, _FLAT_STRAIGHT * min(width, 2.0 * side.half))
-        thin = min(2.0 * side.rise, width) if isinstance(part, Neck) else flat
+def bar(part: Shaped, stubs: tuple[float, float], size: float, drawn: occ.TopoDS_Shape | None = None) -> Specimen:
+    """A part as it is `drawn` [mm] (absent: of one section), and the blocks that it ends on, of given lengths [mm]."""
+    side = _Side(0.5 * _mm(part.end.height), Straight(part.span), stubs)
+    solid = _prism(part) if drawn is None else drawn
+    thin = _thinness(part)
     if not any(stubs):
         return _named(solid, side, thin, size)
     for sign, depth in zip((-1.0, 1.0), stubs, strict=True):
         if depth > 0.0:
             solid = solid + _block(part, sign, side.half, depth)
-    drawn = _named(solid, side, thin, size)
-    return replace(drawn, largest=size * max(thin, _SEAT_SIZE * grain(part) * MILLIMETRES))
+    coarse = 2.0 * side.rise if rises(part) else _SEAT_SIZE * grain(part) * MILLIMETRES
+    return replace(_named(solid, side, thin, size), largest=size * max(thin, coarse))
 
 
-def _block(part: Hinge, sign: float, start: float, depth: float) -> occ.TopoDS_Shape:
-    """The block [mm] at one end of a prismatic hinge."""
-    high, wide, _ = (value * MILLIMETRES for value in seat(part))
-    if isinstance(part, Rod) or part.width is None:
+def _prism(part: Shaped) -> occ.TopoDS_Shape:
+    side = _Side(0.5 * _mm(part.throat.height), Straight(part.span))
+    return _revolved(side) if part.throat.is_round else _extruded(side, _mm(part.throat.width))
+
+
+def _thinness(part: Shaped) -> float:
+    """Largest element [mm] where it is thinnest: those of leaves may be flat."""
+    height, width = _mm(part.throat.height), _mm(part.throat.width)
+    if part.throat.is_round:
+        return (_LONG if part.slender else 2.0) * (0.5 * height)
+    return min(height, width) if bends_both_ways(part) else max(height, _FLAT_STRAIGHT * min(width, _mm(part.span)))
+
+
+def _block(part: Shaped, sign: float, start: float, depth: float) -> occ.TopoDS_Shape:
+    """The block [mm] at one end of a hinge."""
+    section, _ = own_stub(part)
+    high, wide = _mm(section.height), _mm(section.width)
+    if section.is_round:
         return occ.Cylinder(occ.Pnt(sign * start, 0, 0), occ.X if sign > 0.0 else -occ.X, 0.5 * high, depth)
     low, top = sorted((sign * start, sign * (start + depth)))
     return occ.Box(occ.Pnt(low, -0.5 * high, -0.5 * wide), occ.Pnt(top, 0.5 * high, 0.5 * wide))
