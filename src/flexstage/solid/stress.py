@@ -10,7 +10,7 @@ import numpy as np
 
 from flexstage.base.number import Array
 from flexstage.base.quantity import PRESSURE, RATIO
-from flexstage.base.record import Along
+from flexstage.base.record import Along, Heading
 from flexstage.mechanism.expand import Assembly, expand
 from flexstage.parts.material import Material
 from flexstage.parts.piezo import Piezo
@@ -28,12 +28,12 @@ class LinkStress:
     """
 
     names: tuple[str, ...]
-    highest: Annotated[Array, PRESSURE, Along("names")]
+    highest: Annotated[Array, PRESSURE, Along("names"), Heading("highest stress", digits=4)]
     case: Array
-    yield_stress: Annotated[Array, PRESSURE, Along("names")]
+    yield_stress: Annotated[Array, PRESSURE, Along("names"), Heading("yield", digits=5)]
 
     @property
-    def safety(self) -> Annotated[Array, RATIO, Along("names")]:
+    def safety(self) -> Annotated[Array, RATIO, Along("names"), Heading(digits=4)]:
         """Yield over highest stress (L,)."""
         return self.yield_stress / self.highest
 
@@ -42,6 +42,11 @@ class LinkStress:
         """The name with the least safety, or with the highest stress where no yield stress is known."""
         safety = self.safety
         return self.names[int(np.argmax(self.highest) if np.isnan(safety).all() else np.nanargmin(safety))]
+
+    def largest(self, count: int) -> LinkStress:
+        """The links and bodies with the highest stress, highest first, `count` of them at most."""
+        order = np.argsort(-self.highest, kind="stable")[:count]
+        return LinkStress(tuple(self.names[index] for index in order), self.highest[order], self.case[order], self.yield_stress[order])
 
     def at(self, name: str) -> float:
         """Highest stress of one link or body [Pa]."""

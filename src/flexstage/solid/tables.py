@@ -10,7 +10,7 @@ import numpy as np
 from flexstage.analysis.trust import Trust
 from flexstage.base.labelled import NOISE
 from flexstage.show.display import NO_VALUE, aligned, number, percent, preferred, value_with_unit
-from flexstage.show.table import Cell, Column, Mark, Table, build, matrix_table
+from flexstage.show.table import Cell, Column, Mark, Table, build, matrix_table, row_table
 
 if TYPE_CHECKING:
     from flexstage.solid.calibration import Calibration
@@ -131,20 +131,10 @@ def stress_table(title: str, stress: LinkStress | None, listed: int = _LISTED) -
     """The highest von Mises stress of links and bodies, highest first; `None` where there is none worth a line."""
     if stress is None or np.max(stress.highest) < _SILENT:
         return None
-    order = np.argsort(-stress.highest, kind="stable")
-    shown = [int(index) for index in order[:listed]]
-    rows = [
-        (
-            Cell(stress.names[index], Mark.STRONG),
-            number(1e-6 * float(stress.highest[index]), 4),
-            NO_VALUE if np.isnan(stress.yield_stress[index]) else number(1e-6 * float(stress.yield_stress[index])),
-            NO_VALUE if np.isnan(stress.safety[index]) else number(float(stress.safety[index]), 4),
-        )
-        for index in shown
-    ]
-    rest = [f"{len(order) - listed} more with less stress are not listed."] if len(order) > listed else []
-    heads = ["link or body", Column("highest stress", "MPa"), Column("yield", "MPa"), Column("safety")]
-    return build(title, heads, rows, notes=[f"Von Mises stress on the surface, stacks left out. {_CORNERS}", *rest])
+    notes = [f"Von Mises stress on the surface, stacks left out. {_CORNERS}"]
+    if len(stress.names) > listed:
+        notes.append(f"{len(stress.names) - listed} more with less stress are not listed.")
+    return row_table(title, stress.largest(listed), "highest", "yield_stress", "safety", head="link or body", notes=notes)
 
 
 def block_table(stage: SolidStage) -> Table:
