@@ -13,6 +13,7 @@ import pytest
 
 from tests.outside_package.stage import SMALL, design
 
+ROUGH = ("--accuracy", "10 %", "--order", "2")
 PACKAGE = Path(__file__).parents[1] / "outside_package"
 STUDY = """
 format = "flexstage study 1"
@@ -91,21 +92,20 @@ def test_a_sweep_in_two_processes_asks_its_law_and_its_measure(work, package):
 
 def test_its_shape_is_all_that_finite_elements_need(work, package):
     """Theory and finite elements of the hinge and of the first mode agree within what either is good for; calibration takes that over."""
-    flexstage(work, "verify", "small.toml", "--order", "2", "--json", "verify.json", path=package)
+    flexstage(work, "verify", "small.toml", *ROUGH, "--json", "verify.json", path=package)
     document = json.loads((work / "verify.json").read_text())
     first = next(row for row in document["rows"] if row["figure"].startswith("platform mode 1 "))
     assert first["fea_error"] < 0.05
     assert first["theory"] == pytest.approx(first["fea"], rel=first["fea_error"])
     alone = {row["figure"]: row for row in document["rows"] if row["group"] == "hinge leaf"}
     assert list(alone) == [f"compliance {axis}" for axis in ("x", "y", "z", "rx", "ry", "rz")]
-    assert alone["compliance rz"]["theory"] == pytest.approx(
-        alone["compliance rz"]["fea"], rel=0.05
-    )  # plate action, which it has no part in
-    flexstage(work, "solid", "small.toml", "--what", "hinge", "--order", "2", "--json", "hinge.json", path=package)
+    bending = alone["compliance rz"]
+    assert bending["theory"] == pytest.approx(bending["fea"], rel=0.05)  # theory without plate action
+    flexstage(work, "solid", "small.toml", "--what", "hinge", *ROUGH, "--json", "hinge.json", path=package)
     found = json.loads((work / "hinge.json").read_text())["hinges"]["leaf"]
     assert found["roots"] == {"first": False, "second": True}
-    assert found["compliance"]["values"][5][5] == alone["compliance rz"]["fea"]
-    flexstage(work, "calibrate", "small.toml", "-o", "calibrated.toml", "--order", "2", path=package)
+    assert found["compliance"]["values"][5][5] == bending["fea"]
+    flexstage(work, "calibrate", "small.toml", "-o", "calibrated.toml", *ROUGH, path=package)
     given = tomllib.loads((work / "calibrated.toml").read_text())["parts"]
     assert (given["leaf"]["stands_for"], given["leaf-drawn"]["kind"]) == ("leaf-drawn", "taper")
 
