@@ -91,7 +91,7 @@ def given_parts(found: Mapping[str, SolidHinge]) -> dict[str, Given]:
 
 def _doubt(name: str, error: float | None) -> Finding:
     if error is None:
-        return Finding(f"parts.{name}", f"how exact its 6x6 by FEA is is not known: {NO_ESTIMATE}", LEAVE)
+        return Finding(f"parts.{name}", f"the error of its 6x6 by FEA is not known: {NO_ESTIMATE}", LEAVE)
     what = f"its 6x6 by FEA is known to {100.0 * error:.2g} % only, no better than beam theory's"
     return Finding(f"parts.{name}", what, "Ask for more accuracy")
 

@@ -12,7 +12,7 @@ import typer
 from flexstage.analysis.standing import require_standing
 from flexstage.base.finding import Finding, refuse
 from flexstage.base.quantity import RATIO, Quantity
-from flexstage.base.record import walk
+from flexstage.base.record import Together
 from flexstage.base.unit import parse
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.store import loads
@@ -85,9 +85,9 @@ class _Request:
 
 @dataclass(frozen=True)
 class _Result:
-    """A result of the solid model, as a document, tables, and sections of a report; cautions about it."""
+    """Results of the solid model that stand in one document, their tables, and sections of a report; cautions about them."""
 
-    body: Callable[[], dict[str, object]]
+    results: tuple[Any, ...]
     tables: Callable[[], Iterator[Table | None]]
     sections: Callable[[], Iterator[Section | None]]
     cautions: tuple[Finding, ...]
@@ -122,7 +122,7 @@ def solid(  # noqa: PLR0913 (its options)
     answer(
         "solid",
         mechanism,
-        lambda: {"what": what.value, **found.body()},
+        lambda: Together(({"what": what.value}, *found.results)),
         found.tables,
         json=json,
         csv=csv,
@@ -233,7 +233,7 @@ def _hinges(asked: _Request, shown: ProgressBar) -> Hinges:
 def _hinge_study(mechanism: Mechanism, asked: _Request, shown: ProgressBar) -> _Result:
     found = solid_hinges(mechanism, _hinges(asked, shown))
     return _Result(
-        body=lambda: {"hinges": found},
+        results=({"hinges": found},),
         tables=lambda: iter([hinge_table(found), *hinge_matrices(found)]),
         sections=lambda: iter([hinge_section(found)]),
         cautions=_inexact(found),
@@ -250,7 +250,7 @@ def _unit_study(mechanism: Mechanism, asked: _Request, shown: ProgressBar) -> _R
             yield stress_table(f"Stress in the {name} unit at full stroke", unit.stress)
 
     return _Result(
-        body=lambda: {**walk(found), "units": found.result},
+        results=(found, {"units": found.result}),
         tables=tables,
         sections=lambda: iter([unit_section(found)]),
         cautions=_missed("units", found, asked.resolution),
@@ -270,7 +270,7 @@ def _stage_study(mechanism: Mechanism, asked: _Request, shown: ProgressBar) -> _
         yield None if stage.stress is None else stress_table("Highest stress over the strokes", stage.stress)
 
     return _Result(
-        body=lambda: {**walk(found), **walk(stage), "stiffness": stiffness_body(stage.statics)},
+        results=(found, stage, {"stiffness": stiffness_body(stage.statics)}),
         tables=tables,
         sections=lambda: iter([stage_solid_section(found)]),
         cautions=_missed("stage", found, asked.resolution),

@@ -277,7 +277,7 @@ def _require_symmetric(part: Shaped, law: Array) -> None:
 
 def _short(part: Shaped, error: float, asked: Accuracy) -> Finding:
     if not np.isfinite(error):
-        return Finding(_named(part), f"how exact its 6x6 is is not known: {NO_ESTIMATE}", LEAVE)
+        return Finding(_named(part), f"the error of its 6x6 is not known: {NO_ESTIMATE}", LEAVE)
     return Finding(
         _named(part),
         f"its 6x6 is known to {100.0 * error:.2g} %, {100.0 * asked.error:.2g} % was asked, within {asked.freedoms} freedoms",
