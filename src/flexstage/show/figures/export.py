@@ -4,10 +4,7 @@ from __future__ import annotations
 
 import io
 import re
-from collections.abc import Iterator, Sequence
 from typing import Any
-
-import numpy as np
 
 from flexstage.base.text import printable
 from flexstage.show.figures.style import DRIVE, GAUGE, GRID, INK, MUTED, PAPER, styled
@@ -19,9 +16,8 @@ _STEP = re.compile(r"([MLz])\s*(?:(-?[\d.]+)\s+(-?[\d.]+))?")
 _GEOMETRY = re.compile(r'(?<=\s)(x|y|x1|x2|y1|y2|width|height|transform|points|viewBox)="([^"]*)"')
 _STYLE = re.compile(r' style="([^"]+)"')
 SCENERY = "scenery"
-"""Collections with this `gid` are written under everything else of a figure, many times faster than matplotlib would."""
+"""Artists with this `gid` say their own `markup`, which comes under everything else of a figure."""
 
-_LINE, _CLOSE = 2, 79
 _THEME = {INK: "ink", MUTED: "muted", GRID: "rule", PAPER: "paper", DRIVE: "drive", GAUGE: "gauge"}
 
 
@@ -36,7 +32,7 @@ def to_svg(figure: Any, name: str, description: str) -> str:
     '<svg viewBox="0 0 72 72" role="im'
     """
     buffer = io.StringIO()
-    scenery = [each for axes in figure.axes for each in axes.collections if each.get_gid() == SCENERY]
+    scenery = [each for axes in figure.axes for each in axes.artists if each.get_gid() == SCENERY]
     with styled():
         for each in scenery:
             each.set_visible(False)
@@ -44,7 +40,7 @@ def to_svg(figure: Any, name: str, description: str) -> str:
         for each in scenery:
             each.set_visible(True)
     head, start, rest = compact(buffer.getvalue(), name, description).partition(">")
-    return head + start + "".join(_painted(each, f"{name}-{number}") for number, each in enumerate(scenery)) + rest
+    return head + start + "".join(each.markup(f"{name}-{number}") for number, each in enumerate(scenery)) + rest
 
 
 def to_png(figure: Any, *, dots_per_inch: int = 160) -> bytes:
@@ -60,64 +56,13 @@ def to_png(figure: Any, *, dots_per_inch: int = 160) -> bytes:
     return buffer.getvalue()
 
 
-def _painted(collection: Any, name: str) -> str:
-    """The paths of a collection as SVG, in hundredths of a point; those of one style share a class."""
-    axes, paths = collection.axes, collection.get_paths()
-    points = axes.transData.transform(np.concatenate([path.vertices for path in paths])) * 7200.0 / axes.figure.dpi
-    points[:, 1] = 7200.0 * axes.figure.get_figheight() - points[:, 1]
-    places = iter(np.rint(points).astype(int).tolist())
-    styles: dict[str, str] = {}
-    drawn: list[str] = []
-    for path, style in zip(paths, _paints(collection), strict=True):
-        course = _course([(x, y, code) for code, (x, y) in zip(path.codes.tolist(), places, strict=False)])
-        drawn.append(f'<path class="{styles.setdefault(style, f"{name}-{len(styles)}")}" d="{course}"/>')
-    rules = "".join(f".{each}{{{style}}}" for style, each in styles.items())
-    return f'<style>{rules}</style><g transform="scale(.01)" stroke-linejoin="round">{"".join(drawn)}</g>'
+def themed(colour: str) -> str:
+    """A colour as the page's variable, where it has one.
 
-
-def _paints(collection: Any) -> Iterator[str]:
-    """The style of each path: of how it is filled and edged, the lengths in hundredths of a point."""
-    count = len(collection.get_paths())
-    fills, edges, widths, dashes = (
-        list(values) * (count if len(values) == 1 else 1)
-        for values in (collection.get_facecolor(), collection.get_edgecolor(), collection.get_linewidths(), collection.get_linestyles())
-    )
-    for fill, edge, width, (_, lengths) in zip(fills or [None] * count, edges, widths, dashes, strict=True):
-        said = [f"fill:{_colour(fill)}"]
-        if fill is not None and 0.0 < fill[3] < 1.0:
-            said.append(f"fill-opacity:{fill[3]:g};shape-rendering:crispEdges")  # or the seams between neighbours show
-        if edge[3] > 0.0:
-            said.append(f"stroke:{_colour(edge)};stroke-width:{100.0 * width:g}")
-        if lengths:
-            said.append("stroke-dasharray:" + ",".join(f"{100.0 * each:g}" for each in lengths))
-        yield ";".join(said)
-
-
-def _colour(channels: Sequence[float] | None) -> str:
-    if channels is None or channels[3] == 0.0:
-        return "none"
-    text = "#" + "".join(f"{round(255.0 * each):02x}" for each in channels[:3])
-    return f"var(--{_THEME[text]},{text})" if text in _THEME else text
-
-
-def _course(points: Sequence[tuple[int, int, int]]) -> str:
-    """Points (x, y, matplotlib's code) as steps; a line that starts where the last one ended goes on.
-
-    >>> _course([(100, 50, 1), (110, 40, 2), (110, 40, 1), (110, 60, 2), (0, 0, 79)])
-    'M100 50l10-10 0 20z'
+    >>> themed("#b9c2cc"), themed(INK)
+    ('#b9c2cc', 'var(--ink,#1f2a37)')
     """
-    pieces: list[str] = []
-    here = None
-    for x, y, code in points:
-        if code == _CLOSE:
-            pieces.append("z")
-        elif code == _LINE and here is not None:
-            sign = " " if pieces[-1][0] in "l " else "l"
-            pieces.append(f"{sign}{x - here[0]} {y - here[1]}")
-        elif (x, y) != here:
-            pieces.append(f"M{x} {y}")
-        here = (x, y)
-    return "".join(pieces).replace(" -", "-")
+    return f"var(--{_THEME[colour]},{colour})" if colour in _THEME else colour
 
 
 def compact(text: str, name: str, description: str) -> str:
@@ -219,8 +164,8 @@ def _rounded(number: str, decimals: int) -> str:
 def _styling(style: str) -> str:
     """A style with the page's colours and font, without blanks."""
     style = re.sub(r"font: (?:(bold|\d+) )?([\d.]+)px [^;]+", _font, style)
-    for colour, variable in _THEME.items():
-        style = style.replace(colour, f"var(--{variable},{colour})")
+    for colour in _THEME:
+        style = style.replace(colour, themed(colour))
     style = re.sub(r"stroke-linejoin: \w+;? ?|font-family: [^;]+;? ?", "", style)
     if "fill-opacity" in style:
         style += "; shape-rendering: crispEdges"  # or the seams between neighbours show

@@ -58,19 +58,19 @@ def _best(facets: Sequence[Facet], tolerance: float) -> tuple[Array, list[int], 
     flat = [index for index, facet in enumerate(facets) if len(facet.points) > 2]
     tried = flat[:: max(1, len(flat) // _CANDIDATES)][:_CANDIDATES]
     trials = [(*_trial(facets[index], points, starts, tolerance), index) for index in tried]
-    _, normal, sides, distance, chosen = min(trials, key=lambda trial: trial[0])
+    _, ahead, back, distance, chosen = min(trials, key=lambda trial: trial[0])
+    sides = np.where(ahead & back, 2, ahead.astype(int) - back.astype(int))
     sides[chosen] = 0  # also where rounding says otherwise: every step takes at least one facet away
-    return normal, sides.tolist(), [distance[start:end] for start, end in pairwise(starts)]
+    return facets[chosen].normal, sides.tolist(), [distance[start:end] for start, end in pairwise(starts)]
 
 
-def _trial(divider: Facet, points: Array, starts: Array, tolerance: float) -> tuple[float, Array, Array, Array]:
-    """Cost, normal, sides and distances of the plane of one facet: splits are dear, imbalance is cheap."""
-    normal = divider.normal
-    distance = (points - divider.points[0]) @ normal
+def _trial(divider: Facet, points: Array, starts: Array, tolerance: float) -> tuple[int, Array, Array, Array]:
+    """Cost of the plane of one facet (splits are dear, imbalance is cheap), which facets reach before and behind it, and distances."""
+    distance = (points - divider.points[0]) @ divider.normal
     ahead = np.maximum.reduceat(distance, starts[:-1]) > tolerance
     back = np.minimum.reduceat(distance, starts[:-1]) < -tolerance
-    cost = 4.0 * np.sum(ahead & back) + abs(int(np.sum(ahead)) - int(np.sum(back)))
-    return float(cost), normal, np.where(ahead & back, 2, ahead.astype(int) - back.astype(int)), distance
+    first, second, both = (int(np.count_nonzero(each)) for each in (ahead, back, ahead & back))
+    return 4 * both + abs(first - second), ahead, back, distance
 
 
 def split(facet: Facet, distance: Array) -> tuple[Facet, Facet]:

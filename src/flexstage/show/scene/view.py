@@ -2,21 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from enum import Enum
-from functools import cache
-from typing import Any
+from functools import cache, lru_cache
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from flexstage.base.number import Array
-from flexstage.show.figures.export import SCENERY
 from flexstage.show.figures.style import DRIVE, GAUGE, INK, MUTED, PAPER
 from flexstage.show.scene.facet import Facet, Kind
 from flexstage.show.scene.hidden import visible
 from flexstage.show.scene.order import farthest_first
 from flexstage.show.scene.stage import Label, Scene
+
+if TYPE_CHECKING:
+    from flexstage.show.figures.scenery import Stroke, Style
 
 _COLOURS = {
     Kind.PLATFORM: ("#6ea8d8", 0.42),
@@ -37,8 +39,6 @@ NAMES = {
 _LABEL_COLOURS = {Kind.DRIVE: DRIVE, Kind.GAUGE: GAUGE}
 _SHADES = 9
 _ARROW = {"arrowstyle": "-|>", "color": MUTED, "lw": 0.8, "mutation_scale": 5, "shrinkA": 0.0, "shrinkB": 0.0}
-_NONE = (0.0, 0.0, 0.0, 0.0)
-_EDGE = (*(int(INK[place : place + 2], 16) / 255.0 for place in (1, 3, 5)), 1.0)
 _LIGHT = np.array([-0.35, 0.55, 0.76])
 
 
@@ -62,6 +62,7 @@ class View:
         return 1e3 * points @ self.axes[:2].T
 
 
+@cache
 def view(side: Side) -> View:
     """The view from a side.
 
@@ -75,6 +76,7 @@ def view(side: Side) -> View:
     return View(np.stack([right, np.cross(eye, right), eye]))
 
 
+@lru_cache(maxsize=2)
 def ordered(scene: Scene, seen: View) -> list[Facet]:
     """The facets that face the viewer, from the farthest to the nearest.
 
@@ -128,46 +130,28 @@ def draw(axes: Any, facets: Sequence[Facet], seen: View) -> None:
     >>> from flexstage.show.figures.style import canvas
     >>> axes = canvas(1.0, 1.0).add_subplot()
     >>> draw(axes, [], view(Side.TOP))
-    >>> len(axes.collections)
+    >>> len(axes.artists)
     0
     """
-    from matplotlib.collections import PathCollection
+    from flexstage.show.figures.scenery import Scenery  # loads matplotlib
 
     flats = [seen.flat(facet.points) for facet in facets]
     solid = [_COLOURS[facet.paint.kind][1] == 1.0 for facet in facets]
-    strokes: list[_Stroke] = []
-    for facet, flat, shows in zip(facets, flats, visible(flats, solid), strict=True):
-        if shows:
-            strokes += _strokes(facet, flat, seen)
+    shown = zip(facets, flats, visible(flats, solid), strict=True)
+    strokes = [stroke for facet, flat, shows in shown if shows for stroke in _strokes(facet, flat, seen)]
     if strokes:
-        fills, edges = (np.array([getattr(each, name) for each in strokes]) for name in ("fill", "edge"))
-        widths = [each.width for each in strokes]
-        paths = [each.path for each in strokes]
-        axes.add_collection(PathCollection(paths, facecolors=fills, edgecolors=edges, linewidths=widths, clip_on=False, gid=SCENERY))
+        axes.add_artist(Scenery(strokes))
 
 
-@dataclass(frozen=True)
-class _Stroke:
-    path: Any
-    fill: tuple[float, ...]
-    edge: tuple[float, ...]
-    width: float
-
-
-def _strokes(facet: Facet, flat: Array, seen: View) -> list[_Stroke]:
+def _strokes(facet: Facet, flat: Array, seen: View) -> Iterator[Stroke]:
     """A facet's area and its drawn edges."""
-    from matplotlib.path import Path
+    from flexstage.show.figures.scenery import Stroke
 
-    result: list[_Stroke] = []
     if len(flat) > 2:
-        fill = _shade(facet, seen)
-        codes = [Path.MOVETO, *[Path.LINETO] * (len(flat) - 1), Path.CLOSEPOLY]
-        result.append(_Stroke(Path(np.vstack([flat, flat[:1]]), codes), fill, fill if fill[3] == 1.0 else _NONE, 0.45))
+        yield Stroke(flat, _filled(facet.paint.kind, _tone(facet, seen)))
     ends = _edges(facet, seen)
     if ends:
-        codes = [Path.MOVETO, Path.LINETO] * len(ends)
-        result.append(_Stroke(Path(flat[np.ravel(ends)], codes), _NONE, _EDGE, 0.4))
-    return result
+        yield Stroke(flat, _lined(), ends)
 
 
 def _edges(facet: Facet, seen: View) -> list[tuple[int, int]]:
@@ -175,18 +159,30 @@ def _edges(facet: Facet, seen: View) -> list[tuple[int, int]]:
     return [(index, (index + 1) % count) for index, edge in enumerate(facet.edges) if edge is not None and edge @ seen.axes[2] <= 0.0]
 
 
-def _shade(facet: Facet, seen: View) -> tuple[float, ...]:
-    """The kind's colour, darker the more the facet turns away from a light above the viewer's left shoulder."""
-    light = float(facet.normal @ (_LIGHT @ seen.axes))
-    return _toned(facet.paint.kind, round((0.62 + 0.38 * max(0.0, light)) * _SHADES))
+def _tone(facet: Facet, seen: View) -> int:
+    """How light a facet is: less the more it turns away from a light above the viewer's left shoulder."""
+    return round((0.62 + 0.38 * max(0.0, float(facet.normal @ (_LIGHT @ seen.axes)))) * _SHADES)
 
 
 @cache
-def _toned(kind: Kind, tone: int) -> tuple[float, ...]:
-    from matplotlib.colors import to_rgb
+def _filled(kind: Kind, tone: int) -> Style:
+    """The kind's colour in a tone; opaque areas have an edge of their own colour, or seams show."""
+    from flexstage.show.figures.scenery import Style
 
     colour, alpha = _COLOURS[kind]
-    return (*(round(channel * tone / _SHADES, 3) for channel in to_rgb(colour)), alpha)
+    fill = (*(round(channel * tone / _SHADES, 3) for channel in _channels(colour)), alpha)
+    return Style(fill, fill, 0.45) if alpha == 1.0 else Style(fill)
+
+
+def _channels(colour: str) -> tuple[float, ...]:
+    return tuple(int(colour[place : place + 2], 16) / 255.0 for place in (1, 3, 5))
+
+
+@cache
+def _lined(colour: str = INK, width: float = 0.4, *, dashed: bool = False) -> Style:
+    from flexstage.show.figures.scenery import Style
+
+    return Style(edge=(*_channels(colour), 1.0), width=width, dashed=dashed)
 
 
 def outline(axes: Any, facets: Sequence[Facet], seen: View) -> None:
@@ -195,13 +191,12 @@ def outline(axes: Any, facets: Sequence[Facet], seen: View) -> None:
     >>> from flexstage.show.figures.style import canvas
     >>> outline(canvas(1.0, 1.0).add_subplot(), [], view(Side.TOP))
     """
-    from matplotlib.collections import PathCollection
-    from matplotlib.path import Path
+    from flexstage.show.figures.scenery import Scenery, Stroke
 
-    lines = [Path(seen.flat(facet.points)[list(edge)], [Path.MOVETO, Path.LINETO]) for facet in facets for edge in _edges(facet, seen)]
+    style = _lined(MUTED, 0.5, dashed=True)
+    lines = [Stroke(seen.flat(facet.points), style, ends) for facet in facets if (ends := _edges(facet, seen))]
     if lines:
-        style = {"facecolors": "none", "edgecolors": MUTED, "linewidths": 0.5, "linestyles": "dashed"}
-        axes.add_collection(PathCollection(lines, **style, clip_on=False, gid=SCENERY))
+        axes.add_artist(Scenery(lines))
 
 
 def write(axes: Any, labels: tuple[Label, ...], seen: View) -> None:
