@@ -17,9 +17,7 @@ from flexstage.solid.fea.component import components
 from flexstage.solid.fea.fineness import Reduction
 from flexstage.solid.fea.parts import Parts
 from flexstage.solid.read import STANDARD_SOLIDS, Solids, coarser, read_solid
-from flexstage.solid.resolution import DEFAULT, HIGHEST, Resolution, at_order, changes, resolved
-
-_AT_ORDER_TWO = 0.25
+from flexstage.solid.resolution import DEFAULT, HIGHEST, Resolution, at_order, estimates, resolved
 
 
 def fea_modes(mechanism: Mechanism, asked: Resolution = DEFAULT, reduce: Solids = STANDARD_SOLIDS) -> FeaModes:
@@ -72,6 +70,5 @@ def _figures(found: FeaModes) -> Mapping[str, float]:
 
 
 def _errors(before: FeaModes, after: FeaModes) -> tuple[float | None, ...]:
-    share = _AT_ORDER_TWO if after.order == 2 else 1.0
-    found = changes(_figures(before), _figures(after))
-    return tuple(share * found[name] if name in found else None for name in _figures(after))
+    found = estimates(_figures(before), _figures(after), after.order)
+    return tuple(found.get(name) for name in _figures(after))

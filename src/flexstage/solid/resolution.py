@@ -69,8 +69,7 @@ def resolved(
                 raise
             return replace(found, stopped=str(error))
         now = figures(result)
-        share = _AT_ORDER_TWO if order == 2 else 1.0
-        found = Resolved(result, {name: share * change for name, change in changes(before, now).items()}, order)
+        found = Resolved(result, estimates(before, now, order), order)
         if found.error <= asked.accuracy:
             return found
         before = now
@@ -85,6 +84,16 @@ def at_order(order: int) -> Reduction:
     2
     """
     return Reduction(Fineness(order=order))
+
+
+def estimates(before: Mapping[str, float], after: Mapping[str, float], order: int) -> dict[str, float]:
+    """Relative errors estimated of the figures at an order, from those of the order below.
+
+    >>> estimates({"a": 1.0}, {"a": 2.0}, order=2)
+    {'a': 0.125}
+    """
+    share = _AT_ORDER_TWO if order == 2 else 1.0
+    return {name: share * change for name, change in changes(before, after).items()}
 
 
 def changes(before: Mapping[str, float], after: Mapping[str, float]) -> dict[str, float]:
