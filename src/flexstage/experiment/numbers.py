@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -52,34 +52,6 @@ class Gathered:
     segments: int
 
 
-@dataclass(eq=False)
-class _State:
-    count: Array
-    mean: Array
-    square: Array
-    low: Array
-    high: Array
-    broken: Array
-    first_broken: Array
-    step: Array
-    last: Array
-    run: Array
-    still: Array
-    still_from: Array
-    still_at: Array
-    pair_low: Array
-    pair_high: Array
-    spectra: Array
-    tops: Array
-    bottoms: Array
-    seen: int = 0
-    segments: int = 0
-    segment: int = _SEGMENT
-    whole_from: int = 0
-    stretch: tuple[int, int] = (0, 0)
-    inputs: list[int] = field(default_factory=list[int])
-
-
 def gather(record: Record) -> Gathered:
     """One pass over a record. Memory is that of a block, whatever its length.
 
@@ -88,151 +60,158 @@ def gather(record: Record) -> Gathered:
     >>> found.stretch, found.channels[0].broken, found.channels[0].still, found.channels[0].at_high
     ((0, 3), 1, 2, 2)
     """
-    state = _fresh(record)
-    rows = max(1, _BLOCK // len(record.channels) // _SEGMENT) * _SEGMENT
-    with np.errstate(over="ignore", invalid="ignore"):  # numbers near the largest double have no square
-        for block in record.blocks(rows):
-            _advance(state, block)
-    state.stretch = _longer(state.stretch, (state.whole_from, state.seen))
-    spectra = state.spectra / max(1, state.segments)
-    return Gathered(tuple(_numbers(state, column) for column in range(len(record.channels))), state.stretch, spectra, state.segments)
-
-
-def _fresh(record: Record) -> _State:
     size = len(record.channels)
     inputs = [number for number, channel in enumerate(record.channels) if channel.role is Role.INPUT]
-    segment = _segment(record.length, len(inputs))
-    return _State(
-        count=np.zeros(size),
-        mean=np.zeros(size),
-        square=np.zeros(size),
-        low=np.full(size, np.inf),
-        high=np.full(size, -np.inf),
-        broken=np.zeros(size, dtype=int),
-        first_broken=np.full(size, -1),
-        step=np.full(size, np.inf),
-        last=np.full(size, np.nan),
-        run=np.zeros(size, dtype=int),
-        still=np.zeros(size, dtype=int),
-        still_from=np.zeros(size, dtype=int),
-        still_at=np.full(size, np.nan),
-        pair_low=np.full(size, np.inf),
-        pair_high=np.full(size, -np.inf),
-        spectra=np.zeros((segment // 2 + 1, len(inputs), len(inputs)), dtype=complex),
-        tops=np.full((0, size), -np.inf),
-        bottoms=np.full((0, size), np.inf),
-        inputs=inputs,
-        segment=segment,
-    )
+    moments, extremes, gaps, spectra = _Moments(size), _Extremes(size), _Gaps(size), _Spectra(len(inputs), record.length)
+    runs = [_Runs() for _ in range(size)]
+    rows = max(1, _BLOCK // size // _SEGMENT) * _SEGMENT
+    with np.errstate(over="ignore", invalid="ignore"):  # numbers near the largest double have no square
+        for block in record.blocks(rows):
+            finite = np.isfinite(block)
+            moments.add(block, finite)
+            extremes.add(block, finite)
+            gaps.add(finite)
+            spectra.add(block[:, inputs])
+            for run, values in zip(runs, block.T, strict=True):
+                run.add(values)
+    found = tuple(_numbers(column, moments, extremes, gaps, runs[column]) for column in range(size))
+    return Gathered(found, gaps.longest, spectra.sum / max(1, spectra.segments), spectra.segments)
 
 
-def _segment(length: int, inputs: int) -> int:
-    """Samples of a segment: 1024, in short records so few that 16 segments an input remain."""
-    most = max(2, length // (16 * max(1, inputs)))
-    return min(_SEGMENT, 1 << (most.bit_length() - 1))
+class _Moments:
+    """How many samples are numbers, their mean and the sum of squares about it, a column a channel."""
+
+    def __init__(self, size: int) -> None:
+        self.count = self.mean = self.square = np.zeros(size)
+
+    def add(self, block: Array, finite: Array) -> None:
+        count = finite.sum(axis=0)
+        mean = np.where(finite, block, 0.0).sum(axis=0) / np.maximum(count, 1)
+        square = (np.where(finite, block - mean, 0.0) ** 2).sum(axis=0)
+        total = np.maximum(self.count + count, 1)
+        shift = np.where(count > 0, mean - self.mean, 0.0)
+        self.square = self.square + square + shift**2 * self.count * count / total
+        self.mean = self.mean + shift * count / total
+        self.count = self.count + count
 
 
-def _advance(state: _State, block: Array) -> None:
-    finite = np.isfinite(block)
-    _moments(state, block, finite)
-    _extremes(state, block, finite)
-    _missing(state, finite)
-    for column in range(block.shape[1]):
-        _standstill(state, block[:, column], column)
-    _spectra(state, block[:, state.inputs])
-    state.seen += len(block)
+class _Extremes:
+    """The highest and the least values, enough of them to tell a pile from a tail."""
+
+    def __init__(self, size: int) -> None:
+        self.tops, self.bottoms = np.full((0, size), -np.inf), np.full((0, size), np.inf)
+
+    def add(self, block: Array, finite: Array) -> None:
+        tops = np.concatenate([self.tops, np.where(finite, block, -np.inf)])
+        bottoms = np.concatenate([self.bottoms, np.where(finite, block, np.inf)])
+        kept = min(_KEPT, len(tops))
+        self.tops = np.partition(tops, len(tops) - kept, axis=0)[len(tops) - kept :]
+        self.bottoms = np.partition(bottoms, kept - 1, axis=0)[:kept]
 
 
-def _moments(state: _State, block: Array, finite: Array) -> None:
-    count = finite.sum(axis=0)
-    plain = np.where(finite, block, 0.0)
-    mean = plain.sum(axis=0) / np.maximum(count, 1)
-    square = (np.where(finite, block - mean, 0.0) ** 2).sum(axis=0)
-    total = np.maximum(state.count + count, 1)
-    shift = np.where(count > 0, mean - state.mean, 0.0)
-    state.square = state.square + square + shift**2 * state.count * count / total
-    state.mean = state.mean + shift * count / total
-    state.count = state.count + count
+class _Gaps:
+    """Samples that are no numbers, the first of each channel, and the longest stretch in which all are."""
 
+    def __init__(self, size: int) -> None:
+        self.broken, self.first = np.zeros(size, dtype=int), np.full(size, -1)
+        self._seen = self._from = 0
+        self._longest = (0, 0)
 
-def _extremes(state: _State, block: Array, finite: Array) -> None:
-    """The highest and the least values so far, enough of them to tell a pile from a tail."""
-    tops = np.concatenate([state.tops, np.where(finite, block, -np.inf)])
-    bottoms = np.concatenate([state.bottoms, np.where(finite, block, np.inf)])
-    kept = min(_KEPT, len(tops))
-    state.tops = np.partition(tops, len(tops) - kept, axis=0)[len(tops) - kept :]
-    state.bottoms = np.partition(bottoms, kept - 1, axis=0)[:kept]
-    state.high, state.low = state.tops.max(axis=0), state.bottoms.min(axis=0)
+    def add(self, finite: Array) -> None:
+        broken = (~finite).sum(axis=0)
+        self.first = np.where((self.first < 0) & (broken > 0), np.argmin(finite, axis=0) + self._seen, self.first)
+        self.broken = self.broken + broken
+        for row in np.flatnonzero(~finite.all(axis=1)):
+            self._longest = _longer(self._longest, (self._from, self._seen + int(row)))
+            self._from = self._seen + int(row) + 1
+        self._seen += len(finite)
 
-
-def _missing(state: _State, finite: Array) -> None:
-    broken = (~finite).sum(axis=0)
-    first = np.argmin(finite, axis=0) + state.seen
-    state.first_broken = np.where((state.first_broken < 0) & (broken > 0), first, state.first_broken)
-    state.broken = state.broken + broken
-    for row in np.flatnonzero(~finite.all(axis=1)):
-        state.stretch = _longer(state.stretch, (state.whole_from, state.seen + int(row)))
-        state.whole_from = state.seen + int(row) + 1
+    @property
+    def longest(self) -> tuple[int, int]:
+        return _longer(self._longest, (self._from, self._seen))
 
 
 def _longer(one: tuple[int, int], other: tuple[int, int]) -> tuple[int, int]:
     return other if other[1] - other[0] > one[1] - one[0] else one
 
 
-def _standstill(state: _State, values: Array, column: int) -> None:
-    """The longest run of equal values, and the smallest step between unequal ones."""
-    whole = np.concatenate([[state.last[column]], values])
-    steps = np.abs(np.diff(whole))
-    pairs = values[steps == 0.0]
-    state.pair_low[column] = min(float(state.pair_low[column]), float(pairs.min(initial=np.inf)))
-    state.pair_high[column] = max(float(state.pair_high[column]), float(pairs.max(initial=-np.inf)))
-    moves = np.flatnonzero(~(steps == 0.0))
-    unequal = steps[moves][np.isfinite(steps[moves])]
-    state.step[column] = min(float(state.step[column]), float(unequal.min(initial=np.inf)))
-    starts = np.concatenate([[-int(state.run[column])], moves])
-    lengths = np.diff(np.concatenate([starts, [len(values)]]))
-    longest = int(np.argmax(lengths))
-    if lengths[longest] > state.still[column]:
-        state.still[column], state.still_from[column] = lengths[longest], state.seen + starts[longest]
-        state.still_at[column] = values[max(0, int(starts[longest]))]
-    state.run[column], state.last[column] = lengths[-1], values[-1]
+@dataclass
+class _Runs:
+    """Equal values in a row of one channel: the longest run, where and at what; the least and highest of pairs; the smallest step else."""
+
+    longest: int = 0
+    start: int = 0
+    value: float = np.nan
+    pair_low: float = np.inf
+    pair_high: float = -np.inf
+    step: float = np.inf
+    _last: float = np.nan
+    _run: int = 0
+    _seen: int = 0
+
+    def add(self, values: Array) -> None:
+        steps = np.abs(np.diff(np.concatenate([[self._last], values])))
+        pairs = values[steps == 0.0]
+        self.pair_low = min(self.pair_low, float(pairs.min(initial=np.inf)))
+        self.pair_high = max(self.pair_high, float(pairs.max(initial=-np.inf)))
+        moves = np.flatnonzero(~(steps == 0.0))
+        unequal = steps[moves][np.isfinite(steps[moves])]
+        self.step = min(self.step, float(unequal.min(initial=np.inf)))
+        starts = np.concatenate([[-self._run], moves])
+        lengths = np.diff(np.concatenate([starts, [len(values)]]))
+        at = int(np.argmax(lengths))
+        if lengths[at] > self.longest:
+            self.longest, self.start = int(lengths[at]), self._seen + int(starts[at])
+            self.value = float(values[max(0, int(starts[at]))])
+        self._run, self._last, self._seen = int(lengths[-1]), float(values[-1]), self._seen + len(values)
 
 
-def _spectra(state: _State, inputs: Array) -> None:
-    """Cross-spectra of the inputs, by segments with a Hann window; segments with gaps are left out."""
-    size = state.segment
-    count = len(inputs) // size
-    if inputs.shape[1] < 2 or not count:
-        return
-    pieces = inputs[: count * size].reshape(count, size, -1)
-    pieces = pieces[np.isfinite(pieces).all(axis=(1, 2))]
-    window = np.hanning(size + 1)[:-1]
-    lines = np.fft.rfft((pieces - pieces.mean(axis=1, keepdims=True)) * window[:, None], axis=1)
-    state.spectra += np.einsum("sfi,sfj->fij", lines.conj(), lines)
-    state.segments += len(pieces)
+class _Spectra:
+    """The sum of cross-spectra of the inputs, by segments with a Hann window; segments with gaps are left out.
+
+    A segment has 1024 samples, in short records so few that 16 segments an input remain.
+    """
+
+    def __init__(self, inputs: int, length: int) -> None:
+        most = max(2, length // (16 * max(1, inputs)))
+        self._size = min(_SEGMENT, 1 << (most.bit_length() - 1))
+        self.sum: Array = np.zeros((self._size // 2 + 1, inputs, inputs), dtype=complex)
+        self.segments = 0
+
+    def add(self, inputs: Array) -> None:
+        count = len(inputs) // self._size
+        if inputs.shape[1] < 2 or not count:
+            return
+        pieces = inputs[: count * self._size].reshape(count, self._size, -1)
+        pieces = pieces[np.isfinite(pieces).all(axis=(1, 2))]
+        window = np.hanning(self._size + 1)[:-1]
+        lines = np.fft.rfft((pieces - pieces.mean(axis=1, keepdims=True)) * window[:, None], axis=1)
+        self.sum += np.einsum("sfi,sfj->fij", lines.conj(), lines)
+        self.segments += len(pieces)
 
 
-def _numbers(state: _State, column: int) -> Numbers:
-    low, high = float(state.low[column]), float(state.high[column])
-    at_low, next_low = _piles(state.bottoms[:, column])
-    at_high, next_high = _piles(-state.tops[:, column])
+def _numbers(column: int, moments: _Moments, extremes: _Extremes, gaps: _Gaps, runs: _Runs) -> Numbers:
+    bottoms, tops = extremes.bottoms[:, column], extremes.tops[:, column]
+    low, high = float(bottoms.min(initial=np.inf)), float(tops.max(initial=-np.inf))
+    at_low, next_low = _piles(bottoms)
+    at_high, next_high = _piles(-tops)
     return Numbers(
-        broken=int(state.broken[column]),
-        first_broken=int(state.first_broken[column]),
-        mean=float(state.mean[column]),
-        rms=float(np.sqrt(state.square[column] / max(1.0, state.count[column]))),
+        broken=int(gaps.broken[column]),
+        first_broken=int(gaps.first[column]),
+        mean=float(moments.mean[column]),
+        rms=float(np.sqrt(moments.square[column] / max(1.0, moments.count[column]))),
         low=low,
         high=high,
         at_low=at_low,
         next_low=next_low,
-        flat_low=bool(state.pair_low[column] == low),
+        flat_low=runs.pair_low == low,
         at_high=at_high,
         next_high=next_high,
-        flat_high=bool(state.pair_high[column] == high),
-        levels=(high - low) / float(state.step[column]) if np.isfinite(state.step[column]) else 0.0,
-        still_from=int(state.still_from[column]),
-        still=int(state.still[column]),
-        still_at=float(state.still_at[column]),
+        flat_high=runs.pair_high == high,
+        levels=(high - low) / runs.step if np.isfinite(runs.step) else 0.0,
+        still_from=runs.start,
+        still=runs.longest,
+        still_at=runs.value,
     )
 
 
