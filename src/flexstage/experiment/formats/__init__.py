@@ -7,5 +7,14 @@ from flexstage.experiment.formats.mat import MAT
 from flexstage.experiment.formats.table import CSV
 from flexstage.experiment.formats.uff import UFF, UFF_ASCII
 
-FORMATS: Register[Format] = Register("flexstage.formats", {"uff": UFF, "uff-ascii": UFF_ASCII, "mat": MAT, "hdf5": HDF5, "csv": CSV})
+FORMATS: Register[Format] = Register(
+    "flexstage.formats",
+    {
+        "uff": UFF,
+        "uff-ascii": UFF_ASCII,
+        "mat": MAT,
+        "hdf5": HDF5,
+        "csv": CSV,
+    },
+)
 """Forms of record files by name."""

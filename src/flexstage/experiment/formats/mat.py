@@ -1,4 +1,4 @@
-"""MAT files: versions 4 and 5 as scipy reads them, version 7.3 block by block; records and responses written."""
+"""MAT files: versions 4 and 5 as scipy reads them, version 7.3 block by block; records and responses written in version 5."""
 
 from __future__ import annotations
 
@@ -103,8 +103,8 @@ def write_mat(path: str | os.PathLike[str], what: Record | Responses) -> None:
     """
     size = 8 * what.length * len(what.channels) if isinstance(what, Record) else 16 * what.values.size
     if size > _LARGEST:
-        what_is = f"the record has {size / 1e9:.3g} GB, MAT files of version 5 hold 2.1 GB"
-        raise refuse(os.fspath(path), what_is, "Write HDF5 (.h5), which MATLAB reads by h5read")
+        too_large = f"the record has {size / 1e9:.3g} GB, MAT files of version 5 hold 2.1 GB"
+        raise refuse(os.fspath(path), too_large, "Write HDF5 (.h5), which MATLAB reads by h5read")
     values = {name: _cells(value) if isinstance(value, tuple) else value for name, value in _fields(what)}
     with atomic_write(path) as place, place.open("wb") as stream:
         scipy.io.savemat(stream, values, oned_as="column")

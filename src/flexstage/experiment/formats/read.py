@@ -45,12 +45,9 @@ def read(path: str | os.PathLike[str], options: Options = _DEFAULT) -> Record | 
     """
     place = Path(path)
     found = _format(place, _opening(place)).read(place, options)
-    known = {
-        kind: [each for each in found if isinstance(each, type_)] for kind, type_ in ((Kind.RECORD, Record), (Kind.RESPONSES, Responses))
-    }
-    wanted = known[options.kind] if options.kind is not None else list(found)
+    wanted = [each for each in found if options.kind in (None, Kind(each.kind))]
     if not wanted:
-        held = ", ".join(kind.value for kind, those in known.items() if those) or f"no {options.kind.value if options.kind else 'record'}"
+        held = " and ".join(each.kind for each in found) or "neither a record nor responses"
         raise refuse(str(place), f"it holds {held}, not what is asked for", "Ask for the other kind (kind)")
     if len(wanted) > 1:
         listed = " and ".join(_described(each) for each in wanted)
