@@ -12,9 +12,9 @@ class InNotebook:
 
     >>> import numpy as np
     >>> from flexstage.base.labelled import Matrix
-    >>> "<td" in (Matrix(np.array([[2.0]]), ("a",), ("b",), "m")._repr_html_() or "")
+    >>> "<td" in Matrix(np.array([[2.0]]), ("a",), ("b",), "m")._repr_html_()
     True
     """
 
-    def _repr_html_(self) -> str | None:
+    def _repr_html_(self) -> str:
         return import_module("flexstage.show.notebook").to_html(self)

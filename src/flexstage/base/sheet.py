@@ -7,7 +7,7 @@ rows of another that repeats the names of the first; arrays along names are a ro
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, is_dataclass
+from dataclasses import dataclass, is_dataclass, replace
 from enum import Enum
 from itertools import product
 from typing import Any, TypeAlias
@@ -17,7 +17,7 @@ import numpy as np
 from flexstage.base.labelled import Matrix
 from flexstage.base.record import Field, values_of
 
-NUMBERS = (int, float, np.number, np.bool_)
+NUMBERS = (int, float, complex, np.number, np.bool_)
 _MATRIX = {"rows", "columns", "unit", "values"}
 
 Record: TypeAlias = Mapping[Field, Any]
@@ -62,7 +62,17 @@ def _record(value: Any) -> Record:
 
 
 def _columns(records: Sequence[Record]) -> dict[Field, tuple[Any, ...]]:
-    return {field: tuple(each.get(field) for each in records) for field in dict.fromkeys(field for each in records for field in each)}
+    columns = {field: tuple(each.get(field) for each in records) for field in dict.fromkeys(field for each in records for field in each)}
+    return {part: own for field, values in columns.items() for part, own in _real(field, values)}
+
+
+def _real(field: Field, values: tuple[Any, ...]) -> Iterator[tuple[Field, tuple[Any, ...]]]:
+    """A column, or of complex values two: their real and their imaginary parts."""
+    if any(isinstance(each, complex) for each in values):
+        for part, of in (("real", np.real), ("imaginary", np.imag)):
+            yield replace(field, name=f"{field.name}_{part}"), tuple(None if each is None else of(each) for each in values)
+    else:
+        yield field, values
 
 
 def _parts(path: str, names: Mapping[str, tuple[Any, ...]], records: Sequence[Record]) -> Iterator[tuple[str, Sheet | Matrix]]:

@@ -11,6 +11,7 @@ import numpy as np
 from flexstage.analysis.random_response import Spectrum, quadrature, spectrum_findings
 from flexstage.base.finding import Finding, nearest, require
 from flexstage.base.labelled import Matrix
+from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
 from flexstage.control.closed import Loop
 from flexstage.control.curves import around, rates_of
@@ -28,7 +29,7 @@ _HALF = 0.5
 
 
 @dataclass(frozen=True, eq=False)
-class NoiseBudget:
+class NoiseBudget(InNotebook):
     """Mean squares of outputs by source, which are uncorrelated and add up; of a sampled loop, at the samples.
 
     `squares` (p, k) [unit^2] by `outputs` and `sources`. `density` (f, p, k) is one-sided [unit^2/Hz] over `frequencies` (f,) [Hz]: what

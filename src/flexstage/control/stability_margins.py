@@ -10,6 +10,7 @@ import numpy as np
 import scipy
 
 from flexstage.base.labelled import Matrix, ratio_units
+from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
 from flexstage.control.closed import Cut, Loop, loop, opened
 from flexstage.control.curves import Curves, curves, roots, sensitivity, sign_changes
@@ -42,7 +43,7 @@ class ChannelMargins:
 
 
 @dataclass(frozen=True)
-class Margins:
+class Margins(InNotebook):
     """Margins of the loops cut open at `cut`, one at a time."""
 
     cut: Cut

@@ -14,6 +14,7 @@ from flexstage.analysis.modes import Modes, clusters
 from flexstage.analysis.pairing import RELIABLE, Moving, Pair, gyration, pair_modes
 from flexstage.analysis.solid_modes import FeaModes
 from flexstage.base.finding import Finding, nearest, require
+from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, first_design
 from flexstage.base.quantity import ANGLE, FREQUENCY, RATIO
 from flexstage.base.record import INNER, VIEW
@@ -114,7 +115,7 @@ class FurtherMode:
 
 
 @dataclass(frozen=True, eq=False)
-class Compared:
+class Compared(InNotebook):
     """Theory, FEA and experiment mode by mode.
 
     `modes` are the platform's; `further` are measured modes without a partner among them; `sensors` the outputs shapes are compared at;

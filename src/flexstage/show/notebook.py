@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
-from flexstage.analysis.deflection import Deflection
 from flexstage.analysis.drift import Drift
 from flexstage.analysis.error_budget import ErrorBudget
 from flexstage.analysis.lost_motion import LostMotion
@@ -16,7 +15,6 @@ from flexstage.analysis.statics import Statics
 from flexstage.analysis.workspace.workspace import Workspace
 from flexstage.base.digest import digest
 from flexstage.base.finding import DesignError
-from flexstage.base.labelled import Matrix
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.linear.frequency import Response
 from flexstage.models.linear.kinematics import Kinematics
@@ -24,8 +22,7 @@ from flexstage.show import render
 from flexstage.show.figures.export import to_svg
 from flexstage.show.scene.pictures import stage_picture
 from flexstage.show.scene.stage import scene
-from flexstage.show.table import Table, matrix_table
-from flexstage.show.tables.deflection import deflection_table
+from flexstage.show.table import Table, result_tables
 from flexstage.show.tables.errors import drift_table, error_budget_tables
 from flexstage.show.tables.kinematics import mapping_table, mobility_table
 from flexstage.show.tables.lost_motion import budget_table, loss_table
@@ -36,13 +33,11 @@ from flexstage.show.tables.sensitivities import frequency_sensitivity_table, los
 from flexstage.show.tables.statics import principal_table, stiffness_table
 from flexstage.show.tables.workspace import stroke_table
 
-_TABLES: Mapping[type, Callable[[Any], tuple[Table | None, ...]]] = {
-    Matrix: lambda result: (matrix_table("", result),),
+_TABLES: Mapping[type, Callable[[Any], Iterable[Table | None]]] = {
     Kinematics: lambda result: (mobility_table(result), mapping_table(result) if result.actuated else None),
     Statics: lambda result: (stiffness_table(result), principal_table(result)),
     LostMotion: lambda result: (loss_table(result), budget_table(result)),
     Modes: lambda result: (mode_table(result),),
-    Deflection: lambda result: (deflection_table(result),),
     Response: lambda result: (response_table(result),),
     RandomResponse: lambda result: (random_table(result),),
     Workspace: lambda result: (stroke_table(result),),
@@ -52,20 +47,20 @@ _TABLES: Mapping[type, Callable[[Any], tuple[Table | None, ...]]] = {
 }
 
 
-def to_html(value: Any) -> str | None:
-    """A stage's picture, or the tables that sum a result up; None for values of other types.
+def to_html(value: Any) -> str:
+    """A stage's picture, or the tables that sum a result up: those that a person made of it, else one for each of its parts.
 
     A stage that cannot be drawn is told with what is wrong with it.
 
     >>> import flexstage as fs
     >>> stage = fs.case("parallelogram")
-    >>> to_html(stage)[:13], to_html(fs.ideal(stage)).count("<table>"), to_html(7)
-    ('<svg viewBox=', 2, None)
+    >>> to_html(stage)[:13], to_html(fs.ideal(stage)).count("<table>")
+    ('<svg viewBox=', 2)
     """
     if isinstance(value, Mechanism):
         return _picture(value)
-    tables = _TABLES.get(type(value))
-    return "".join(render.to_html(table) for table in tables(value) if table is not None) if tables else None
+    tables = _TABLES.get(type(value), result_tables)
+    return "".join(render.to_html(table) for table in tables(value) if table is not None)
 
 
 def _picture(mechanism: Mechanism) -> str:

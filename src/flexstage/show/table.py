@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
 from typing import Any, TypeAlias
@@ -13,7 +13,7 @@ from flexstage.base.labelled import NOISE, NOISE_RULE, Matrix, quiet, ratio_unit
 from flexstage.base.number import Array
 from flexstage.base.quantity import Bound, Quantity
 from flexstage.base.record import Field, values_of
-from flexstage.base.sheet import NUMBERS, Sheet, is_cell, plain_cell, rows_of
+from flexstage.base.sheet import NUMBERS, Sheet, is_cell, parts, plain_cell, rows_of
 from flexstage.show.display import DIGITS, NO_VALUE, Shown, aligned, display_unit, number, percent, preferred, shown, value_with_unit
 
 
@@ -48,6 +48,8 @@ class Column:
     unit: str = ""
     numeric: bool = True
 
+
+_MANY = 60
 
 Content: TypeAlias = str | Cell
 
@@ -135,9 +137,35 @@ def record_table(title: str, record: Any, *fields: str, notes: Iterable[str] = (
     """A record as rows of name, value and unit; `fields` as for `row_table`."""
     told = {each.name: (each, value) for each, value in values_of(record)[0].items()}
     chosen = [told[name] for name in fields] if fields else [each for each in told.values() if not each[0].axes and is_cell(each[1])]
-    columns = [(each.heading.text, *field_column(each, (value,))) for each, value in chosen]
+    return _upright(title, Sheet({}, {each: (value,) for each, value in chosen}), notes, provenance)
+
+
+def _upright(title: str, sheet: Sheet, notes: Iterable[str] = (), provenance: str = "") -> Table:
+    """A single row of a sheet, set upright."""
+    columns = [(each.heading.text, *field_column(each, values)) for each, values in sheet.columns.items()]
     rows = [(Cell(name, Mark.STRONG), cells[0], column.unit) for name, column, cells in columns]
     return build(title, ["", Column("value"), "unit"], rows, notes=notes, provenance=provenance)
+
+
+def result_tables(result: Any) -> Iterator[Table]:
+    """A table for every part of a result, headed by its path in the document; of many rows the first ones.
+
+    >>> [table.title for table in result_tables({"gain": 2.0, "loss": {"B1": 0.1, "B2": 0.2}})]
+    ['', 'loss']
+    """
+    for path, part in parts(result):
+        title = path.replace(".", ", ").replace("_", " ")
+        if isinstance(part, Matrix):
+            yield matrix_table(title, part)
+        elif part.names:
+            yield _first_rows(sheet_table(title, part))
+        else:
+            yield _upright(title, part)
+
+
+def _first_rows(table: Table) -> Table:
+    rest = len(table.rows) - _MANY
+    return table if rest <= 0 else replace(table, rows=table.rows[:_MANY], notes=(*table.notes, f"{rest} further rows."))
 
 
 def field_column(field: Field, values: Sequence[Any]) -> tuple[Column, list[Cell]]:

@@ -14,6 +14,7 @@ from flexstage.analysis.statics import Statics, statics
 from flexstage.analysis.workspace.load import dead_loads
 from flexstage.analysis.workspace.stroke import stroke_limits
 from flexstage.base.finding import DesignError
+from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
 from flexstage.base.quantity import RATIO
 from flexstage.base.record import INNER, VIEW
@@ -39,7 +40,7 @@ class BodyCost:
 
 
 @dataclass(frozen=True, eq=False)
-class SolidStage:
+class SolidStage(InNotebook):
     """A stage by the solid model.
 
     `statics` and `modes` as of any model; `stress` at every link and body, the highest over all corners of the strokes counted from zero,

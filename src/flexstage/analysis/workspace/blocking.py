@@ -9,6 +9,7 @@ import numpy as np
 
 from flexstage.analysis.workspace.stroke import StrokeLimits, stacks
 from flexstage.base.labelled import Matrix, ratio_units
+from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, Number, magnitude, stack
 from flexstage.base.quantity import DISPLACEMENT, FORCE, STIFFNESS
 from flexstage.base.record import VIEW, Along, Heading
@@ -20,7 +21,7 @@ from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNIT
 
 
 @dataclass(frozen=True, eq=False)
-class StackLine:
+class StackLine(InNotebook):
     """Each stack driven alone over its full stroke against the stage, (..., n) each.
 
     `free` stroke [m] and `blocking` force [N] end the stack's own line; `stiffness` [N/m] is its own, `against` [N/m] that of the stage at
@@ -38,7 +39,7 @@ class StackLine:
 
 
 @dataclass(frozen=True, eq=False)
-class PlatformLine:
+class PlatformLine(InNotebook):
     """The platform's force-stroke line along each coordinate, commanded by the ideal mapping, (..., f) each.
 
     `travel` [m, rad] without load (both ways), `stiffness` [N/m, N m/rad] of the platform against a load along this coordinate alone,

@@ -12,6 +12,7 @@ from flexstage.analysis.stability import Stability, stability
 from flexstage.analysis.workspace.stroke import StrokeLimits
 from flexstage.analysis.workspace.wrench import corner_wrenches
 from flexstage.base.labelled import Matrix
+from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, Number, foremost
 from flexstage.base.quantity import RATIO
 from flexstage.base.record import VIEW, Along
@@ -36,7 +37,7 @@ class Ends(Enum):
 
 
 @dataclass(frozen=True, eq=False)
-class Buckling:
+class Buckling(InNotebook):
     """Euler loads, (..., L) each: `critical` [N], `compression` [N] at the worst corner (negative: tension throughout), `length` [m].
 
     `ends` says how each column was taken as held. `stage` is how the whole stage gives way: what a column's ends really do, and several

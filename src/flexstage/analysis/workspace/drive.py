@@ -9,6 +9,7 @@ import numpy as np
 
 from flexstage.analysis.workspace.stroke import stacks
 from flexstage.base.finding import Finding, require
+from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, Number, stack
 from flexstage.base.quantity import CAPACITANCE, PIEZO_GAIN, VOLTAGE
 from flexstage.base.record import Along, Heading
@@ -16,7 +17,7 @@ from flexstage.mechanism.mechanism import Mechanism
 
 
 @dataclass(frozen=True, eq=False)
-class Drive:
+class Drive(InNotebook):
     """The electrical side of the actuators: `gain` (..., n) [m/V], `low`, `high`, `bias` [V], `capacitance` [F] (NaN where not stated).
 
     Linear: the free stroke is proportional to the voltage; hysteresis and creep are left to the loop.

@@ -10,6 +10,7 @@ import numpy as np
 
 from flexstage.base.finding import refuse
 from flexstage.base.labelled import Matrix
+from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, Number, magnitude, stack
 from flexstage.base.record import VIEW, Along
 from flexstage.mechanism.expand import Assembly, expand
@@ -23,7 +24,7 @@ _LEVEL = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
-class GaugeRange:
+class GaugeRange(InNotebook):
     """Gauge readings at the worst corner of a box of commands, against half the measuring range (gauges set to mid-range), (..., g) each.
 
     `swing` [m] the largest reading, `limit` [m] half the range. `radius` [m] is each gauge's distance from the platform's axis,
@@ -54,7 +55,7 @@ class GaugeRange:
 
 
 @dataclass(frozen=True, eq=False)
-class PoseResolution:
+class PoseResolution(InNotebook):
     """Platform motion that one resolution step of every gauge amounts to, through S = V (R_s V)^+, (..., 6) [m, rad].
 
     `gauge_steps` and `gauge_noise` (..., g) [m] are what each gauge has. `worst`: all gauges off by one step with the worst signs,

@@ -11,6 +11,7 @@ import numpy as np
 from flexstage.analysis.workspace.stroke import StrokeLimits, stacks
 from flexstage.base.finding import Finding, refuse
 from flexstage.base.labelled import Matrix, ratio_units
+from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, Number, stack
 from flexstage.base.quantity import FORCE, RATIO
 from flexstage.base.record import Along
@@ -26,7 +27,7 @@ _ROUNDING = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
-class LoadRange:
+class LoadRange(InNotebook):
     """`least` and `largest` compression of each stack over the strokes; `usage` of its maximum load, `pull` over what holds it."""
 
     actuators: tuple[str, ...]
@@ -37,7 +38,7 @@ class LoadRange:
 
 
 @dataclass(frozen=True, eq=False)
-class LoadShare:
+class LoadShare(InNotebook):
     """Axial forces of the stacks under dead load, positive in compression.
 
     `loads` (actuators x own weight, payloads and forces) [N]; `share` (actuators x wrench at the platform's reference) per unit wrench;

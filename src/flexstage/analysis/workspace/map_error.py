@@ -11,6 +11,7 @@ from flexstage.analysis.workspace.polytope import reachable
 from flexstage.analysis.workspace.stroke import StrokeLimits, beside
 from flexstage.base.finding import refuse
 from flexstage.base.labelled import Matrix
+from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, foremost
 from flexstage.base.quantity import LENGTH
 from flexstage.base.record import VIEW
@@ -24,7 +25,7 @@ _ROUNDING = 64.0 * float(np.finfo(float).eps)
 
 
 @dataclass(frozen=True, eq=False)
-class MapError:
+class MapError(InNotebook):
     """Error of the linear map, finite pose less J a, at every point tried.
 
     `strokes` (k, ..., n) [m] tried, `errors` (k, ..., 6) [m, rad] there; `worst` (..., 6) the largest by axis, `worst_strokes` (..., 6, n)

@@ -12,6 +12,7 @@ import scipy
 from flexstage.analysis.workspace.stroke import StrokeLimits
 from flexstage.base.finding import refuse
 from flexstage.base.labelled import Matrix
+from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
 from flexstage.base.quantity import RATIO
 from flexstage.base.record import VIEW
@@ -22,7 +23,7 @@ _TOLERANCE = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
-class Polytope:
+class Polytope(InNotebook):
     """Reachable poses {xi : `normals` xi <= `offsets`}: normals (..., 2 n, f), offsets (..., 2 n) [m].
 
     `vertices` (..., v, f) [m, rad] (padded with NaN where redundant strokes leave designs with fewer), `volume` (...) in `volume_unit`.

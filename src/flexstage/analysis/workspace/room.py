@@ -11,6 +11,7 @@ import numpy as np
 
 from flexstage.base.finding import Finding
 from flexstage.base.labelled import Matrix
+from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, stack
 from flexstage.base.quantity import LENGTH
 from flexstage.base.record import VIEW
@@ -32,7 +33,7 @@ class Intrusion:
 
 
 @dataclass(frozen=True, eq=False)
-class Room:
+class Room(InNotebook):
     """What the stage occupies.
 
     `intrusions` into the `opening` (..., 2) [m], none where none is described; `low` and `high` corners (..., 3) [m] of the bounding box;

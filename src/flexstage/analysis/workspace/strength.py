@@ -11,6 +11,7 @@ from flexstage.analysis.workspace.stroke import StrokeLimits
 from flexstage.analysis.workspace.wrench import corner_wrenches
 from flexstage.base.finding import refuse
 from flexstage.base.labelled import Matrix
+from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, foremost
 from flexstage.base.quantity import RATIO
 from flexstage.base.record import VIEW
@@ -22,7 +23,7 @@ from flexstage.parts.part import Part, Restricted
 
 
 @dataclass(frozen=True, eq=False)
-class HingeStress:
+class HingeStress(InNotebook):
     """Largest stress in every hinge over the corners of the strokes, (..., L) each.
 
     `nominal` and `peak` (with the notch factor) von Mises stress [Pa]; `yield_stress` [Pa] (NaN where the material states none); `strokes`

@@ -10,6 +10,7 @@ import numpy as np
 
 from flexstage.base.finding import Finding, nearest, refuse, require
 from flexstage.base.labelled import Matrix
+from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, Number, magnitude, stack
 from flexstage.base.quantity import DISPLACEMENT, LENGTH, RATIO, SHARE, Bound
 from flexstage.base.record import VIEW, Along, Heading
@@ -60,7 +61,7 @@ class StrokeLimits:
 
 
 @dataclass(frozen=True, eq=False)
-class SingleAxis:
+class SingleAxis(InNotebook):
     """Strokes of the platform along one coordinate at a time, the others held at zero: from `low` to `high` (..., f) [m, rad].
 
     `limiting` names the actuator that ends each stroke (first design, `high` side).
@@ -87,7 +88,7 @@ class SingleAxis:
 
 
 @dataclass(frozen=True, eq=False)
-class Utilisation:
+class Utilisation(InNotebook):
     """What a box of commands, all coordinates at once, asks of the actuators.
 
     `demand` (..., n) [m] is the largest stroke either way over the box' corners, `available` (..., n) the stroke available both ways.

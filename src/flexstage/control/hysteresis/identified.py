@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
 from flexstage.control.hysteresis.prandtl_ishlinskii import PrandtlIshlinskii
 from flexstage.control.hysteresis.shape import Range
@@ -24,7 +25,7 @@ class Trial:
 
 
 @dataclass(frozen=True, eq=False)
-class IdentifiedHysteresis:
+class IdentifiedHysteresis(InNotebook):
     """A model identified from a record, and how well it fits.
 
     Errors and the width are parts of `stroke` [m], the range of the strokes after the first branch.

@@ -9,6 +9,7 @@ from typing import Annotated
 import numpy as np
 
 from flexstage.base.labelled import Matrix
+from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
 from flexstage.base.quantity import FREQUENCY
 from flexstage.base.record import INNER, VIEW
@@ -39,7 +40,7 @@ class IdentifiedMode:
 
 
 @dataclass(frozen=True, eq=False)
-class Identified:
+class Identified(InNotebook):
     """Modes found in records or responses, by rising frequency, each with its standard deviation.
 
     `frequencies` (k,) [Hz] are natural frequencies |pole|/(2 pi), `damping` (k,) ratios; `shapes` (p, k) complex, of the outputs, largest

@@ -12,6 +12,7 @@ import scipy
 
 from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.labelled import Matrix
+from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
 from flexstage.base.record import INNER, VIEW
 from flexstage.experiment.comparison import Compared, compare, shared_sensors
@@ -116,7 +117,7 @@ class Combination:
 
 
 @dataclass(frozen=True, eq=False)
-class Updated:
+class Updated(InNotebook):
     """Numbers before and after a test, SI, with the standard deviations of their logarithms (relative ones, where small).
 
     `addresses` (P) are full; `prior` (P,) and `covariance` (P, P) are of logarithms. `singular` (P,) and the columns of

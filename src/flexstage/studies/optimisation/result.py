@@ -9,6 +9,7 @@ from typing import Annotated
 import numpy as np
 
 from flexstage.analysis.requirements import Requirement, Verdict
+from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
 from flexstage.base.record import INNER, VIEW, Called
 from flexstage.studies.optimisation.values import Point, values_of
@@ -119,7 +120,7 @@ class Contradiction:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Outcome:
+class Outcome(InNotebook):
     """What every optimisation tells: `before` is the design as it stands; `contradictions` say why no design keeps the `limits`.
 
     `idle` names variables that move none of the measures asked for. `evaluated`: designs in all. `interrupted`: the best so far.

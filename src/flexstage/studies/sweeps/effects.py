@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
 from flexstage.studies.sweeps.interactions import (
     Interaction,
@@ -27,7 +28,7 @@ _SPARE = 4
 
 
 @dataclass(frozen=True, eq=False)
-class Effects:
+class Effects(InNotebook):
     """What d variables do to r responses over the designs that have values.
 
     `used` designs of `computed`; `mean`, `deviation`, `low`, `high` (r,) in SI. `places` (d, b) and `means` (d, b, r): the mean response

@@ -6,6 +6,7 @@ import os
 from dataclasses import dataclass
 from typing import Annotated
 
+from flexstage.base.notebook import InNotebook
 from flexstage.base.record import INNER, VIEW, Called
 from flexstage.base.store import temporary_folder
 from flexstage.studies.sweeps.plan import Sampling
@@ -27,7 +28,7 @@ class CopyCount:
 
 
 @dataclass(frozen=True, eq=False)
-class Toleranced:
+class Toleranced(InNotebook):
     """A tolerance study with the `results` of all its copies, its `slopes`, what both say (`summary`) and what they allow (`allowance`)."""
 
     study: Annotated[Tolerance, INNER]
