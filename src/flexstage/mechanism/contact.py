@@ -407,9 +407,21 @@ def _gauge_findings(assembly: Assembly, solids: Mapping[str, list[_Thing]]) -> I
         side = float(np.max(np.ptp(points, axis=0)))
         if any(np.any(_inside(thing, frame.position[None])) for thing in things):
             continue
+        if any(_is_within(_BRACKET * side, frame.position, piece) for thing in things for piece in thing.pieces):
+            continue
         beside = min(distance(frame.position[None], piece.points) for thing in things for piece in thing.pieces)
         if beside > _BRACKET * side:
             yield _off_target(name, gauge.body, beside, _miss(frame, things, beside + 2.0 * side))
+
+
+def _is_within(reach: float, point: Array, piece: Convex) -> bool:
+    """Whether the face of a piece that looks at a point holds the foot of the perpendicular, no farther away: a short yes."""
+    across, heights = piece.points @ piece.normals.T, piece.normals @ point
+    low, high = across.min(axis=0), across.max(axis=0)
+    beyond = heights - np.clip(heights, low, high)
+    face = int(np.argmax(np.abs(beyond)))
+    foot = piece.normals @ (point - beyond[face] * piece.normals[face])
+    return bool(abs(beyond[face]) <= reach and np.all((foot >= low - TOUCHING) & (foot <= high + TOUCHING)))
 
 
 def _miss(frame: Frame, things: Sequence[_Thing], reach: float) -> float:
