@@ -64,10 +64,21 @@ def package(tmp_path_factory):
     return installed(tmp_path_factory.mktemp("site"))
 
 
+@pytest.mark.parametrize("asked", [("check", "s.toml"), ("sweep", "study.toml", "-o", "no.h5")])
+def test_without_the_package_the_design_says_what_to_install(work, asked):
+    told = flexstage(work, *asked, ok=2)
+    assert 'packages: "tapered-leaf >= 1" is not installed. Install it' in told
+    assert "parts.leaf.kind" not in told  # one finding, not one of every kind
+
+
+def test_another_version_than_the_design_asks_for_is_refused(work, tmp_path):
+    told = flexstage(work, "check", "s.toml", path=installed(tmp_path / "site", version="0.9"), ok=2)
+    assert '"tapered-leaf >= 1" is asked for, and tapered-leaf 0.9 is installed' in told
+
+
 def test_without_the_package_the_kind_is_refused_with_what_to_do(work):
-    told = flexstage(work, "check", "s.toml", ok=2)
+    told = flexstage(work, "check", "small.toml", ok=2)
     assert "parts.leaf.kind" in told
-    assert "sensors.probe.kind" in told
     assert "known where that package is installed" in told
 
 

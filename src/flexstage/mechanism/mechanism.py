@@ -137,7 +137,8 @@ class Mechanism(InNotebook, Description):
     A graph of rigid `bodies` and elastic `links`, drawn directly or in `units` placed by pattern (`place`), with `gauges`. Body `ground` is
     implied, body `platform` is the moving part. `changes` are departures of link parts from the shared part, by address
     (`horizontal/front.thickness`, `B2/front.thickness`). `mode_limit` is the frequency below which the platform's modes are looked for.
-    `ground` names the material that the ground grows with (`none`: it does not grow).
+    `ground` names the material that the ground grows with (`none`: it does not grow). `packages` are those that its kinds of parts,
+    gauges and measures come from, each perhaps with versions: `tapered-leaf >= 1`.
     """
 
     name: str = field(metadata=DOCUMENT_ONLY)
@@ -161,5 +162,6 @@ class Mechanism(InNotebook, Description):
     ground: str | None = None
     changes: Mapping[str, Any] = _empty()
     requirements: Mapping[str, str] = field(default_factory=lambda: Table({}), metadata=DOCUMENT_ONLY)
+    packages: tuple[str, ...] = field(default=(), metadata=DOCUMENT_ONLY)
     tags: Mapping[str, str] = field(default_factory=lambda: Table({}), metadata=DOCUMENT_ONLY)
     sources: Mapping[str, str] = field(default_factory=lambda: Table({}), metadata=DOCUMENT_ONLY)

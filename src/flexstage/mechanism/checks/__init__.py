@@ -12,14 +12,14 @@ from flexstage.base.finding import Finding, require
 from flexstage.base.number import Table
 from flexstage.mechanism.checks.geometry import geometry_findings
 from flexstage.mechanism.checks.graph import graph_findings
-from flexstage.mechanism.checks.kind import kind_findings
+from flexstage.mechanism.checks.kind import kind_findings, package_findings
 from flexstage.mechanism.checks.name import copy_findings, name_findings
 from flexstage.mechanism.checks.orientation import orientation_findings
 from flexstage.mechanism.checks.provenance import change_findings, tag_findings
 from flexstage.mechanism.checks.value import value_findings
 from flexstage.mechanism.mechanism import Mechanism
 
-__all__ = ["check", "copy_findings", "require_valid"]
+__all__ = ["check", "copy_findings", "package_findings", "require_valid"]
 
 
 def check(mechanism: Mechanism) -> tuple[Finding, ...]:
@@ -34,6 +34,8 @@ def check(mechanism: Mechanism) -> tuple[Finding, ...]:
     for ground in (kind_findings, copy_findings):
         if findings := tuple(ground(mechanism)):
             return findings
+    if findings := tuple(package_findings(mechanism.packages)):
+        return findings
     names = tuple(name_findings(mechanism))
     changes = tuple(change_findings(mechanism))
     sound = mechanism if not changes else replace(mechanism, changes=Table({}))

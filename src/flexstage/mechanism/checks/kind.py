@@ -1,8 +1,11 @@
-"""Values are of the kind that their field asks for; files are so by their reading, descriptions written in Python may not be."""
+"""Values are of the kind that their field asks for, and the packages that offer kinds are installed."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from importlib.metadata import PackageNotFoundError, version
+
+from packaging.requirements import InvalidRequirement, Requirement
 
 from flexstage.base.finding import Finding
 from flexstage.mechanism.grammar import node_of
@@ -10,10 +13,32 @@ from flexstage.mechanism.mechanism import Mechanism
 
 
 def kind_findings(mechanism: Mechanism) -> Iterator[Finding]:
-    """Findings about values of another kind than their field's.
+    """Findings about values of another kind than their field's: files are so by their reading, descriptions written in Python may not be.
 
     >>> from flexstage.parts.rod import Rod
     >>> print(*kind_findings(Mechanism("", parts={"wire": Rod("steel", length=None, diameter=0.001)})))
     parts.wire.length: found None where a length is expected. Give a number or an array in SI units.
     """
     return node_of(Mechanism).check(mechanism, "")
+
+
+def package_findings(packages: Iterable[str]) -> Iterator[Finding]:
+    """Findings about packages that a description asks for and that are not installed, or not in the versions asked for.
+
+    >>> print(*package_findings(["numpy >= 1", "tapered-leaf >= 1"]))
+    packages: "tapered-leaf >= 1" is not installed. Install it where flexstage is, for example with: pip install "tapered-leaf >= 1".
+    """
+    for text in packages:
+        try:
+            wanted = Requirement(text)
+        except InvalidRequirement:
+            yield Finding("packages", f'"{text}" names no package', 'Write its name, and perhaps its versions: "tapered-leaf >= 1"')
+            continue
+        install = f'Install it where flexstage is, for example with: pip install "{text}"'
+        try:
+            there = version(wanted.name)
+        except PackageNotFoundError:
+            yield Finding("packages", f'"{text}" is not installed', install)
+            continue
+        if not wanted.specifier.contains(there, prereleases=True):
+            yield Finding("packages", f'"{text}" is asked for, and {wanted.name} {there} is installed', install)

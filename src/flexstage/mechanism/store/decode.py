@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 from flexstage.base.finding import DesignError, Finding, require
 from flexstage.base.number import Table
 from flexstage.mechanism.catalogue import Catalogue
-from flexstage.mechanism.checks import copy_findings
+from flexstage.mechanism.checks import copy_findings, package_findings
 from flexstage.mechanism.checks.value import number_findings
 from flexstage.mechanism.grammar import CHANGES, TAGS, node_of
 from flexstage.mechanism.locate import locate
@@ -68,6 +68,9 @@ def _check_format(reader: Reader, raw: dict[str, Any], form: str) -> None:
 
 def _mechanism(reader: Reader, raw: dict[str, Any]) -> Any:
     _check_format(reader, raw, FORMAT)
+    packages = raw.get("packages")
+    if isinstance(packages, list) and (missing := tuple(package_findings(each for each in packages if isinstance(each, str)))):
+        return reader.note(missing)  # what they offer is not known, which says nothing about the rest
     body = {key: value for key, value in raw.items() if key not in ("format", "change")}
     mechanism = reader.read(node_of(Mechanism), body, "")
     if not isinstance(mechanism, Mechanism):
