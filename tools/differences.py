@@ -194,9 +194,8 @@ def bits(value: Any) -> str:
 def compared(where: str, old: Document, new: Document, meant: Meant) -> Iterator[Finding]:
     """Two documents, path by path; `where` is "run/file"."""
     renamed = {path: path if path in new else respelled(path, meant.paths) for path in old}
-    said = {
-        renamed[path]: _spread([_said(each, meant.texts) for each in leaves], new.get(renamed[path], [])) for path, leaves in old.items()
-    }
+    said = {renamed[path]: [_said(each, meant.texts) for each in leaves] for path, leaves in old.items()}
+    said |= {now: said[now][0] for path, now in renamed.items() if now != path and _is_spread(said[now], new.get(now, []), now)}
     untouched = {now for path, now in renamed.items() if now == path and repr(said[now]) == repr(old[path])}
     old = said
     for path in (each for each in old if each in new):
@@ -224,9 +223,9 @@ def _said(value: Any, words: Mapping[str, str]) -> Any:
     return respelled(value, words) if isinstance(value, str) else value
 
 
-def _spread(old: list[Any], new: Sequence[Any]) -> list[Any]:
-    """The entries of the one list that stands where each has a place of its own now."""
-    return old[0] if len(old) == 1 != len(new) and isinstance(old[0], list) and len(old[0]) == len(new) else old
+def _is_spread(old: list[Any], new: Sequence[Any], path: str) -> bool:
+    """Whether the entries of the one list that stood here have a place each now."""
+    return "[]" in path and len(old) == 1 and isinstance(old[0], list) and len(old[0]) == len(new)
 
 
 def _judged(path: str, old: Document, new: Document, rule: Rule | None) -> Finding:
