@@ -102,6 +102,8 @@ def test_outputs_that_cannot_be_written_are_refused(
     ("arguments", "said"),
     [
         (("identify", "record.uff", "./record.uff"), "it is given 2 times"),
+        (("identify", "record.uff", "--array", "sample=u"), "--array sample=u: this says of no array what it is: samples, time, rate"),
+        (("identify", "record.uff", "--array", "samples=u"), "samples=u: universal files have no named arrays"),
         (("identify", "record.uff", "--band", "100 Hz", "100.2 Hz"), "from 100 to 100.2 Hz there are 0 of the lines"),
         (("identify", "record.uff", "--band", "100 Hz", "106 Hz"), "from 100 to 106 Hz there are 5 of the lines"),
         (("identify", "record.uff", "--band", "0 Hz", "0.1 Hz"), "the data reach from"),

@@ -320,6 +320,11 @@ def test_hdf_groups_with_attributes(tmp_path: Path) -> None:
     found = record(path, Options(arrays=Arrays(samples=("run 1/*",), rate=("sampling_rate",))))
     same(found)
     assert [each.unit for each in found.channels] == ["V", "V", "um", "um", "um"]
+    with h5py.File(path, "r+") as file:
+        del file["run 1/inputs/1"].attrs["names"], file["run 1/outputs/2"].attrs["units"]
+    found = record(path, Options(arrays=Arrays(samples=("run 1/*",), rate=("sampling_rate",))))
+    assert found.names == ("u1", "run 1/inputs/1", "y1", "y2", "y3")
+    assert [each.unit for each in found.channels] == ["V", "V", "um", "um", ""]
 
 
 def test_hdf_transposed_big_endian_float32_and_times_in_ms(tmp_path: Path) -> None:

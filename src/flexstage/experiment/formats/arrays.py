@@ -258,8 +258,9 @@ def _axes(contents: Contents, chosen: tuple[Variable, ...], time: Variable | Non
 def _channels(contents: Contents, axes: list[tuple[Variable, int]], arrays: Arrays) -> tuple[Channel, ...]:
     widths = [int(np.prod(variable.shape)) // variable.shape[axis] for variable, axis in axes]
     variables = [variable for variable, _ in axes]
-    names = _each(contents, "names", arrays.names, variables, widths) or _own_names(variables, widths)
     total = sum(widths)
+    names = _each(contents, "names", arrays.names, variables, widths) or ("",) * total
+    names = tuple(name or own for name, own in zip(names, _own_names(variables, widths), strict=True))
     units = _each(contents, "units", arrays.units, variables, widths) or ("",) * total
     roles = _each(contents, "roles", ("roles",), variables, widths) or ("",) * total
     known = {role.value: role for role in Role}
