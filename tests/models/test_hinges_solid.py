@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import cast
+
 import numpy as np
 import pytest
 
@@ -14,6 +16,7 @@ from flexstage.parts.neck import Neck
 from flexstage.parts.notch import Notch
 from flexstage.parts.profile import Circular, Filleted, Straight
 from flexstage.parts.rod import Rod
+from flexstage.solid.fea.draw import SHAPES, Shape
 from flexstage.solid.fea.estimate import Accuracy
 from flexstage.solid.fea.hinge import hinge_compliance
 from flexstage.solid.fea.piece import medium
@@ -114,6 +117,20 @@ def test_torsion_of_stubs_is_vlasovs(width):
     found = hinge_compliance(Notch("m", 1.0 * MM, width * MM, Straight(size)), STEEL, Accuracy(error=0.0, orders=(4, 4), meshes=1))
     halves = 2.0 * beam(rectangle(1.0 * MM, width * MM), 0.5 * size, medium(STEEL))[3, 3]
     assert found.compliance[3, 3] == pytest.approx(halves, rel=0.06)
+
+
+@pytest.mark.parametrize("roots", [Roots(False, False), Roots(False, True)])
+def test_a_shape_is_all_that_a_specimen_needs(monkeypatch: pytest.MonkeyPatch, roots: Roots) -> None:
+    """Drawn as packages offer shapes, without a specimen of its own, a leaf has the same 6x6 as far as two meshes agree."""
+    leaf, once = Leaf("m", 6 * MM, 1 * MM, 3 * MM), Accuracy(error=0.0, orders=(3, 3), meshes=1)
+    own = hinge_compliance(leaf, STEEL, once, roots=roots)
+    monkeypatch.setitem(cast("dict[str, Shape]", SHAPES.own), "leaf", Shape(SHAPES.own["leaf"].draw))
+    other = hinge_compliance(leaf, STEEL, once, roots=roots)
+    ours, theirs = (at_end(6 * MM, each.compliance) for each in (own, other))
+    scale = np.sqrt(np.diag(ours))
+    assert np.max(np.abs(theirs - ours) / np.outer(scale, scale)) < 0.01
+    assert other.elements != own.elements  # another drawing, another mesh
+    np.testing.assert_allclose(other.whole - other.compliance, own.whole - own.compliance, rtol=1e-9, atol=1e-15)
 
 
 @pytest.mark.parametrize(

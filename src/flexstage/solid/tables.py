@@ -11,6 +11,7 @@ from flexstage.analysis.trust import Trust
 from flexstage.base.labelled import NOISE
 from flexstage.show.display import NO_VALUE, aligned, number, percent, preferred, value_with_unit
 from flexstage.show.table import Cell, Column, Mark, Table, build, matrix_table, row_table
+from flexstage.solid.fea.hinge_form import NO_ESTIMATE
 
 if TYPE_CHECKING:
     from flexstage.solid.calibration import Calibration
@@ -62,7 +63,8 @@ def hinge_table(found: Mapping[str, SolidHinge]) -> Table:
         "Where a hinge ends on a block, it includes what the block yields at its root; the ground and bodies without outlines are rigid. "
         f"{NO_VALUE}: it cannot be told from that of the blocks beside the hinge."
     )
-    return build("Hinges as solids", ["part", "links", "ends on", *heads], rows, notes=[note])
+    notes = [note, *([f"Error {NO_VALUE}: {NO_ESTIMATE}."] if any(hinge.error is None for hinge in found.values()) else [])]
+    return build("Hinges as solids", ["part", "links", "ends on", *heads], rows, notes=notes)
 
 
 def hinge_matrices(found: Mapping[str, SolidHinge]) -> Iterator[Table]:

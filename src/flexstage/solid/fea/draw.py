@@ -209,7 +209,8 @@ def _polyline(points: list[tuple[float, float]]) -> Curve:
 class Shape:
     """A kind of part as a CAD solid in millimetres: what draws it at the origin, and what draws it as a specimen, with stubs at its ends.
 
-    Without the latter, a specimen is the part as it is drawn, with blocks at its ends.
+    Without the latter, a specimen is the part as it is drawn, with blocks at its ends. Parts with a profile of cuts want `specimen.cut`:
+    arcs that are drawn a little short meet rigid faces at angles that no mesh can fill.
     """
 
     draw: Callable[[Any], occ.Solid]

@@ -110,7 +110,7 @@ def hinge_compliance(
             break
     if last is None:
         what = f"its coarsest mesh has more than the {asked.freedoms} freedoms allowed"
-        raise refuse(_named(part), what, "Allow more freedoms")
+        raise refuse(_named(part), what, "Ask for --order 3, which begins with order two, or in Python allow more freedoms by its Accuracy")
     alone, error = found[-1], blunt + _error(part, found)
     return HingeSolid(
         compliance=alone,
