@@ -113,6 +113,7 @@ PATHS: Mapping[str, str] = {  # in JSON, MAT and HDF5
     r"^failures\[\]\.copy": "failures[].design",
 }
 GONE: Mapping[str, str] = {  # paths that stand at BASE only, and where the same is now
+    r"^stiffness\.(reasons\.)?dead_load$": "of the lumped model alone",
     r"\bcrosstalk\.": "the entries of `transfer` beside its diagonal",
     r"^(workspace\.)?strokes\.": "`limits`, actuator by actuator",
     r"\bmap_error\.worst": "the first column of its `table`",

@@ -9,6 +9,7 @@ from typing import Annotated
 import numpy as np
 
 from flexstage.base.finding import Finding, require
+from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, stack
 from flexstage.base.record import INNER, VIEW
 from flexstage.beams.compliance import compliance
@@ -30,7 +31,7 @@ _LARGEST_ERROR = 0.1
 
 
 @dataclass(frozen=True, eq=False)
-class Calibration:
+class Calibration(InNotebook):
     """The hinges that were computed, the `parts` that stand in for them, and the design file's `text` with these parts."""
 
     hinges: Mapping[str, SolidHinge]

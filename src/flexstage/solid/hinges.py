@@ -15,6 +15,7 @@ import numpy as np
 from flexstage.base.digest import digest
 from flexstage.base.finding import refuse
 from flexstage.base.labelled import Matrix, ratio_units
+from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
 from flexstage.base.quantity import RATIO
 from flexstage.base.record import INNER, VIEW
@@ -47,7 +48,7 @@ class DrawnHinge:
 
 
 @dataclass(frozen=True, eq=False)
-class SolidHinge:
+class SolidHinge(InNotebook):
     """A distinct hinge, as `drawn`, and its 6x6 about its centre in the link frame, between the ends of its arcs."""
 
     drawn: Annotated[DrawnHinge, INNER]

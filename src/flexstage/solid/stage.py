@@ -17,7 +17,7 @@ from flexstage.base.finding import DesignError
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
 from flexstage.base.quantity import RATIO
-from flexstage.base.record import INNER, VIEW
+from flexstage.base.record import INNER, VIEW, Called
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.linear.static import displacement
 from flexstage.solid.fea.fineness import Reduction
@@ -48,7 +48,7 @@ class SolidStage(InNotebook):
     weakest link. `blocks` (k,) is the share of strain energy that the bodies, which other models take as rigid, hold in each mode.
     """
 
-    statics: Annotated[Statics, INNER]
+    statics: Annotated[Statics, Called("stiffness")]
     modes: Modes
     stress: LinkStress | None
     worst: Array | None

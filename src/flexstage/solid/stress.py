@@ -8,6 +8,7 @@ from typing import Annotated
 
 import numpy as np
 
+from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
 from flexstage.base.quantity import PRESSURE, RATIO
 from flexstage.base.record import Along, Heading
@@ -20,7 +21,7 @@ from flexstage.solid.read import SolidRead
 
 
 @dataclass(frozen=True, eq=False)
-class LinkStress:
+class LinkStress(InNotebook):
     """Highest von Mises stress (L,) [Pa] on the skin of links and bodies over some load cases, stacks left out.
 
     `case` (L,) is the number of the worst case, `yield_stress` (L,) [Pa] that of the material (NaN: not stated). At sharp inner corners the

@@ -11,6 +11,7 @@ from flexstage.analysis.statics import statics
 from flexstage.analysis.unit_output import UnitOutput
 from flexstage.analysis.units import as_vector, driven_units
 from flexstage.base.finding import refuse
+from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
 from flexstage.base.quantity import COMPLIANCE, LENGTH, RATIO
 from flexstage.base.record import INNER, VIEW
@@ -30,7 +31,7 @@ _STEPS = 5
 
 
 @dataclass(frozen=True, eq=False)
-class SolidUnit(UnitOutput):
+class SolidUnit(UnitOutput, InNotebook):
     """One unit alone by the solid model.
 
     With its output guided along the direction and not loaded: `strokes` (k,) [m] up to the stack's full one with `outputs` (k,) [m],

@@ -14,6 +14,7 @@ from flexstage.analysis.statics import statics
 from flexstage.analysis.trust import Trust
 from flexstage.analysis.units import UnitResult, driven_units, unit_alone, units
 from flexstage.base.finding import DesignError
+from flexstage.base.notebook import InNotebook
 from flexstage.base.quantity import RATIO
 from flexstage.base.record import INNER, VIEW
 from flexstage.beams.compliance import compliance
@@ -96,7 +97,7 @@ def _relative(value: float, reference: float) -> float:
 
 
 @dataclass(frozen=True, eq=False)
-class Verification:
+class Verification(InNotebook):
     """The rows of a verification, and the solid results behind them; `reasons` say why a group is not there."""
 
     mechanism: Mechanism

@@ -23,7 +23,6 @@ from flexstage.show.command.options import Changes, Csv, Design, Json, Report, o
 from flexstage.show.command.output import require_writable, save
 from flexstage.show.command.progress import ProgressBar, progress_bar
 from flexstage.show.command.terminal import tell, warn
-from flexstage.show.document import stiffness_body
 from flexstage.show.page import Section
 from flexstage.show.table import Table
 from flexstage.show.tables.modes import mode_table
@@ -270,7 +269,7 @@ def _stage_study(mechanism: Mechanism, asked: _Request, shown: ProgressBar) -> _
         yield None if stage.stress is None else stress_table("Highest stress over the strokes", stage.stress)
 
     return _Result(
-        results=(found, stage, {"stiffness": stiffness_body(stage.statics)}),
+        results=(found, stage),
         tables=tables,
         sections=lambda: iter([stage_solid_section(found)]),
         cautions=_missed("stage", found, asked.resolution),
