@@ -24,6 +24,7 @@ from flexstage.beams.closed_forms import (
     schotborgh_rotation_stiffness,
     smith_toroid_rotation_stiffness,
 )
+from flexstage.beams.compliance import compliance
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.control.figures.diagram import loop_diagram
 from flexstage.control.figures.frequency import Curves, open_loop_figure
@@ -44,7 +45,7 @@ from flexstage.show.figures.budget import loss_figure
 from flexstage.show.figures.directional import directional_figure
 from flexstage.show.figures.export import to_png, to_svg
 from flexstage.show.figures.response import response_figure
-from flexstage.show.figures.style import FULL, INK, PAPER, SERIES, canvas, styled
+from flexstage.show.figures.style import FULL, INK, MUTED, PAPER, SERIES, canvas, styled
 from flexstage.show.plan import plan_figure
 from flexstage.show.scene.facet import Facet, Kind
 from flexstage.show.scene.pictures import stage_picture
@@ -54,7 +55,7 @@ from flexstage.solid.fea.fineness import Fineness, Reduction
 from flexstage.solid.read import STANDARD_SOLIDS, read_solid
 from flexstage.solid.skin_figures import skin_figure
 from flexstage.solid.surface import mode_surfaces
-from flexstage.spatial.frame import COMPONENTS
+from flexstage.spatial.frame import COMPONENTS, transport
 from flexstage.studies.optimisation.figures import convergence_figure
 from flexstage.studies.optimisation.file import load_wanted
 from flexstage.studies.optimisation.optimum import optimise
@@ -112,6 +113,76 @@ def _framed(axes: Any, facets: list[Facet], side: Side) -> None:
 def guide() -> Any:
     """The parallelogram of the page on theory."""
     return stage_picture(scene(fs.case("parallelogram")))
+
+
+def six_by_six() -> Any:
+    """The compliance of the leaf of the page on theory, at its centre and at its end, by that along it."""
+    length, steel = 30 * fs.mm, fs.Material(young=200e9, poisson=0.3, density=7750.0)
+    at_centre = compliance(fs.Leaf("steel", length=length, thickness=0.5 * fs.mm, width=10 * fs.mm), steel)
+    sizes = np.array([1.0] * 3 + [length] * 3)
+    with styled():
+        figure = canvas(FULL, 3.5)
+        for axes, place, title in zip(figure.subplots(1, 2), (0.0, 0.5 * length), ("at its centre", "at its end"), strict=True):
+            moved = transport(np.array([place, 0.0, 0.0]))
+            seen = moved @ at_centre @ moved.T * np.outer(sizes, sizes)
+            _cells(axes, seen / seen[0, 0], title)
+    return figure
+
+
+def _cells(axes: Any, values: Any, title: str) -> None:
+    """A matrix as cells, darker the larger the entry by orders of magnitude; what is zero stays empty."""
+    sizes = np.ma.masked_less(np.abs(values), 1e-6)
+    axes.pcolormesh(np.ma.log10(sizes), cmap="Blues", vmin=-2.0, vmax=7.0, edgecolors=PAPER, linewidth=1.0)
+    for row, column in np.argwhere(~sizes.mask):
+        value = values[row, column]
+        said = f"{value:.0f}" if abs(value) >= 10.0 else f"{value:.2g}"
+        axes.text(column + 0.5, row + 0.5, said, ha="center", va="center", fontsize=6.5, color=PAPER if abs(value) > 2e4 else INK)
+    axes.set_xticks(np.arange(6) + 0.5, ["Fx", "Fy", "Fz", "Mx", "My", "Mz"])
+    axes.set_yticks(np.arange(6) + 0.5, list(COMPONENTS))
+    axes.invert_yaxis()
+    axes.grid(visible=False)
+    axes.set_aspect("equal")
+    axes.set_title(title)
+
+
+def margins() -> Any:
+    """The curve of a loop in the complex plane, and what keeps it from -1."""
+    omega = np.geomspace(0.3, 30.0, 4000)
+    loop = 0.9 / (1j * omega) / (1.0 - (omega / 4.0) ** 2 + 1j * omega / 2.5) * np.exp(-0.15j * omega)
+    crossing = int(np.argmin(np.abs(np.abs(loop) - 1.0)))
+    negative = int(np.flatnonzero((loop.imag[:-1] < 0.0) & (loop.imag[1:] >= 0.0))[0])
+    nearest = int(np.argmin(np.abs(1.0 + loop)))
+    turn = np.linspace(0.0, 2.0 * np.pi, 361)
+    with styled():
+        figure = canvas(0.62 * FULL, 0.56 * FULL)
+        axes = figure.add_axes((0.02, 0.02, 0.96, 0.96))
+        axes.plot(np.cos(turn), np.sin(turn), color=MUTED, linewidth=0.7, linestyle="--")
+        axes.plot(loop.real, loop.imag, color=SERIES[0])
+        distance = abs(1.0 + loop[nearest])
+        axes.plot(-1.0 + distance * np.cos(turn), distance * np.sin(turn), color=SERIES[3], linewidth=0.8)
+        axes.plot([-1.0, loop[nearest].real], [0.0, loop[nearest].imag], color=SERIES[3], linewidth=0.8)
+        angle = np.linspace(np.pi, np.pi + float(np.angle(-loop[crossing])), 60)
+        axes.plot(0.8 * np.cos(angle), 0.8 * np.sin(angle), color=SERIES[2])
+        axes.plot([0.0, loop[crossing].real], [0.0, loop[crossing].imag], color=SERIES[2], linewidth=0.8)
+        axes.plot([loop[negative].real, 0.0], [0.0, 0.0], color=SERIES[1], linewidth=2.0)
+        axes.plot([-1.0], [0.0], marker="x", color=INK)
+        said = (
+            (-1.08, 0.07, "-1", INK),
+            (0.34, 0.07, "1 / gain margin", SERIES[1]),
+            (0.98 * np.cos(angle[20]), 0.98 * np.sin(angle[20]) - 0.06, "phase\nmargin", SERIES[2]),
+            (-1.4, 0.7, "1 / peak of S", SERIES[3]),
+            (0.86, 0.82, "|L| = 1", MUTED),
+            (-0.6, -1.5, "L(f)", SERIES[0]),
+        )
+        for x, y, text, colour in said:
+            axes.text(x, y, text, color=colour, ha="center", fontsize=7.5)
+        axes.axhline(0.0, color=MUTED, linewidth=0.5)
+        axes.axvline(0.0, color=MUTED, linewidth=0.5)
+        axes.set_xlim(-1.9, 1.2)
+        axes.set_ylim(-1.6, 1.15)
+        axes.set_aspect("equal")
+        axes.set_axis_off()
+    return figure
 
 
 def sine() -> Any:
@@ -337,6 +408,8 @@ DRAWN: Mapping[str, tuple[Callable[[], Any], str]] = {
         sine,
         "response of the platform to the stack over frequency: level, a peak at 1674 Hz, then falling",
     ),
+    "six-by-six": (six_by_six, "compliance of a leaf: at its centre nearly diagonal, at its end with couplings of forces and rotations"),
+    "margins": (margins, "a loop's curve in the complex plane, with its gain margin, its phase margin and its distance from -1"),
     "plan": (plan, "dimensioned plan of the double-triangular stage"),
     "polar": (polar, "stiffness of the double-triangular stage in the plane by direction: circles"),
     "budget": (budget, "lost motion of the six actuators by hinge"),
