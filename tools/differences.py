@@ -22,7 +22,11 @@ from scipy.io import loadmat
 
 # What is left out, by name: paths of documents, words of texts, and files inside of others.
 LEFT_PATHS = {"versions": r"(^|[._])version$|^made\[\]"}
-LEFT_WORDS = {"date": r"\d{4}-\d\d-\d\dT[\d:.]+\S*", "version": r"(?<=flexstage )\d+\.\d+\.\d+\S*|^\d+\.\d+\.\d+$"}
+LEFT_WORDS = {
+    "date": r"\d{4}-\d\d-\d\dT[\d:.]+\S*",
+    "version": r"(?<=flexstage )\d+\.\d+\.\d+\S*|^\d+\.\d+\.\d+$",
+    "end of a digest": r"(?<= of )[0-9a-f]{10,15}$",
+}
 LEFT_MEMBERS = r"\.(so|dll|dylib)$"
 
 
@@ -101,7 +105,8 @@ def read(path: Path) -> Document | list[str]:
             page.feed(data.decode())
             return _plain(page.words)
         case _ if b"\0" in data:
-            return document({"bytes": hashlib.sha256(data).hexdigest()})
+            lines = [(line.decode("latin-1"), hashlib.sha256(line).hexdigest()) for line in data.split(b"\n")]
+            return _plain(line if line.isprintable() else digest for line, digest in lines)
         case _:
             return _plain(data.decode(errors="replace").splitlines())
 
