@@ -69,6 +69,8 @@ def test_the_stage_differs_as_it_was_made_to(compared: Compared) -> None:
         assert row.difference == pytest.approx(known, abs=3.0 * (row.uncertainty or 0.0) + 1e-12)
         assert 0.0 < (row.uncertainty or 0.0) < 1e-3
         assert (row.assurance or 0.0) > 0.99
+        assert row.experiment is not None
+        assert compared.experiment.modes[row.experiment.index].number == row.experiment.number
 
 
 def test_a_difference_stands_beside_half_of_the_interval_it_is_known_to() -> None:

@@ -80,6 +80,9 @@ def test_lever_and_front_hinge_are_not_identifiable_from_frequencies_and_say_so(
     assert found.correlations.values[0, 1] < -0.9
     assert found.singular[1] < 0.01
     assert found.singular[0] > 1.0
+    for number in found.parameters:  # what is left of a number's prior variance is that of the combinations it has a part in
+        parts = [each.direction[number.address] ** 2 * each.prior_variance_left for each in found.combinations]
+        assert number.prior_variance_left == pytest.approx(sum(parts), rel=1e-9)
 
 
 def test_from_static_gains_they_are() -> None:
