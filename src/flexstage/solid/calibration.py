@@ -42,7 +42,7 @@ class Calibration(InNotebook):
     def over_beam_theory(self) -> Annotated[Mapping[str, Array], VIEW]:
         """By part, FEA's direct compliances over beam theory's, less one, along and about x, y, z."""
         return {
-            name: np.diag(stack(self.parts[name].compliance)) / np.diag(compliance(hinge.form, hinge.material)) - 1.0
+            name: np.diag(stack(self.parts[name].compliance)) / np.diag(compliance(hinge.form.part, hinge.form.material)) - 1.0
             for name, hinge in self.hinges.items()
         }
 
@@ -80,11 +80,11 @@ def given_parts(found: Mapping[str, SolidHinge]) -> dict[str, Given]:
             continue
         parts[name] = Given(
             compliance=tuple(tuple(float(f"{value:.{_DIGITS}g}") for value in row) for row in matrix),
-            free=hinge.form.intended,
+            free=hinge.form.part.intended,
             mass=_mass(hinge),
             origin=Origin.FEA,
             source=_source(hinge),
-            stands_for=hinge.drawn.shared + KEPT,
+            stands_for=hinge.shared + KEPT,
         )
     require(findings)
     return parts
@@ -108,7 +108,7 @@ def with_matrices(mechanism: Mechanism, found: Mapping[str, SolidHinge]) -> Mech
     """
     require(_departing(mechanism))
     parts = given_parts(found)
-    kept = {hinge.drawn.shared + KEPT: hinge.form for hinge in found.values()}
+    kept = {hinge.shared + KEPT: hinge.form.part for hinge in found.values()}
     others = {name: part for name, part in mechanism.parts.items() if name + KEPT not in kept}
     names = {link: name for name, hinge in found.items() for link in hinge.links}
     units = {unit: replace(drawn, links=_renamed(drawn.links, names, f"{unit}/")) for unit, drawn in mechanism.units.items()}
@@ -144,9 +144,9 @@ def _clean(hinge: SolidHinge) -> Array:
     """
     matrix, known = np.array(hinge.found.compliance), np.array(hinge.separable)
     matrix[~known] = matrix[:, ~known] = 0.0
-    matrix += np.diag(np.where(known, 0.0, np.diag(compliance(hinge.form, hinge.material))))
+    matrix += np.diag(np.where(known, 0.0, np.diag(compliance(hinge.form.part, hinge.form.material))))
     mirrors = [mirror(axis) for axis in ((0, 1, 2) if hinge.roots == hinge.roots.mirrored else (1, 2))]
-    for symmetry in [*mirrors, *([_TURN] if is_round(hinge.form) else [])]:
+    for symmetry in [*mirrors, *([_TURN] if is_round(hinge.form.part) else [])]:
         matrix = 0.5 * (matrix + symmetry @ matrix @ symmetry.T)
     return matrix
 
@@ -162,4 +162,4 @@ def _mass(hinge: SolidHinge) -> float:
     """Mass of the drawn hinge [kg]: that of a unit translation of both of its ends."""
     both = np.zeros(12)
     both[[0, 6]] = 1.0
-    return float(both @ np.real(mass(hinge.form, hinge.material)) @ both)
+    return float(both @ np.real(mass(hinge.form.part, hinge.form.material)) @ both)

@@ -22,7 +22,6 @@ from flexstage.base.record import INNER, VIEW
 from flexstage.mechanism.drawn import with_drawn_parts
 from flexstage.mechanism.expand import PlacedLink, expand
 from flexstage.mechanism.mechanism import Mechanism
-from flexstage.parts.material import Material
 from flexstage.parts.shape import Shaped
 from flexstage.solid.fea.estimate import Accuracy
 from flexstage.solid.fea.hinge_cache import kept_hinges
@@ -42,37 +41,21 @@ Hinges: TypeAlias = Callable[[Mapping[str, HingeForm]], Mapping[str, HingeSolid]
 class DrawnHinge:
     """A distinct hinge: the `shared` part that it is, its form, and the drawn `links` that are like it."""
 
-    shared: str
-    form: HingeForm
+    shared: Annotated[str, INNER]
+    form: Annotated[HingeForm, INNER]
     links: tuple[str, ...]
-
-
-@dataclass(frozen=True, eq=False)
-class SolidHinge(InNotebook):
-    """A distinct hinge, as `drawn`, and its 6x6 about its centre in the link frame, between the ends of its arcs."""
-
-    drawn: Annotated[DrawnHinge, INNER]
-    found: Annotated[HingeSolid, INNER]
-
-    @property
-    def links(self) -> Annotated[tuple[str, ...], VIEW]:
-        """The drawn links that are like it."""
-        return self.drawn.links
-
-    @property
-    def form(self) -> Shaped:
-        """The part."""
-        return self.drawn.form.part
-
-    @property
-    def material(self) -> Material:
-        """Its material."""
-        return self.drawn.form.material
 
     @property
     def roots(self) -> Annotated[Roots, VIEW]:
         """Which of its ends grow on blocks."""
-        return self.drawn.form.roots
+        return self.form.roots
+
+
+@dataclass(frozen=True, eq=False)
+class SolidHinge(DrawnHinge, InNotebook):
+    """A distinct hinge and its 6x6 about its centre in the link frame, between the ends of its arcs."""
+
+    found: Annotated[HingeSolid, INNER]
 
     @property
     def compliance(self) -> Annotated[Matrix, VIEW]:
@@ -192,18 +175,21 @@ def solid_hinges(mechanism: Mechanism, compute: Hinges = STANDARD_HINGES) -> dic
     found = distinct_hinges(mechanism)
     if not found:
         raise refuse("links", "none of them is a hinge with a shape", "Only these have a 6x6 that can be computed")
-    solved = compute({name: _turned(hinge.form)[0] for name, hinge in found.items()})
-    return {name: SolidHinge(hinge, _back(solved[name], turned=_turned(hinge.form)[1])) for name, hinge in found.items()}
+    solved = compute({name: _turn(hinge.form) for name, hinge in found.items()})
+    return {name: SolidHinge(each.shared, each.form, each.links, _turn_back(solved[name], each.roots)) for name, each in found.items()}
 
 
-def _turned(form: HingeForm) -> tuple[HingeForm, bool]:
+def _is_turned(roots: Roots) -> bool:
     """A hinge that grows on a block at its first end only is the one that does so at its second, turned end for end."""
-    turned = form.roots.first and not form.roots.second
-    return (form._replace(roots=form.roots.mirrored), True) if turned else (form, False)
+    return roots.first and not roots.second
 
 
-def _back(found: HingeSolid, *, turned: bool) -> HingeSolid:
-    if not turned:
+def _turn(form: HingeForm) -> HingeForm:
+    return form._replace(roots=form.roots.mirrored) if _is_turned(form.roots) else form
+
+
+def _turn_back(found: HingeSolid, roots: Roots) -> HingeSolid:
+    if not _is_turned(roots):
         return found
     across = mirror(0)  # hinges are symmetric but for their roots
     compliance, stiffness, whole = (across @ each @ across for each in (found.compliance, found.stiffness, found.whole))

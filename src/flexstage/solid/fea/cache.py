@@ -83,10 +83,10 @@ def find(cache: Cache, key: str, where: str) -> Found:
     except FileNotFoundError:
         return Found(None, _other_versions(path, key, where))
     except OSError as error:
-        return Found(None, (_notice(where, f"its superelement {path} cannot be read ({error.strerror})", _RECOMPUTED),))
+        return Found(None, (Finding(where, f"its superelement {path} cannot be read ({error.strerror})", _RECOMPUTED),))
     outcome = read(data, key)
     if isinstance(outcome, str):
-        return Found(None, (_notice(where, f"its superelement {path} is not used: {outcome}", _RECOMPUTED),))
+        return Found(None, (Finding(where, f"its superelement {path} is not used: {outcome}", _RECOMPUTED),))
     with contextlib.suppress(OSError):
         os.utime(path)
     return Found(outcome)
@@ -110,7 +110,7 @@ def keep(cache: Cache, key: str, where: str, data: bytes) -> tuple[Finding, ...]
         why = error.strerror if isinstance(error, OSError) else error.findings[0].what
         what = f"its superelement of {len(data) / 1e6:.3g} MB could not be kept in {path.parent} ({why})"
         advice = f"The result is complete but will be computed again; free space there, or name another folder in {FOLDER_VARIABLE}"
-        return (_notice(where, what, advice),)
+        return (Finding(where, what, advice),)
     return ()
 
 
@@ -140,8 +140,4 @@ def _other_versions(path: Path, key: str, where: str) -> tuple[Finding, ...]:
     if not others:
         return ()
     what = f"the cache {path.parent} holds its superelement of other versions only ({others}), here is {versions()}"
-    return (_notice(where, what, "It is computed anew; the others stay for the versions they belong to"),)
-
-
-def _notice(where: str, what: str, advice: str) -> Finding:
-    return Finding(where, what, advice)
+    return (Finding(where, what, "It is computed anew; the others stay for the versions they belong to"),)
