@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import fields, replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -17,12 +18,14 @@ from flexstage.parts.notch import Notch
 from flexstage.parts.profile import Filleted
 from flexstage.parts.rod import Rod
 from flexstage.parts.shape import Shaped
+from flexstage.solid.fea import piece
 from flexstage.solid.fea.cache import Cache
 from flexstage.solid.fea.estimate import Accuracy
 from flexstage.solid.fea.hinge import hinge_compliance
 from flexstage.solid.fea.hinge_cache import kept_hinges
 from flexstage.solid.fea.hinge_form import HingeForm, HingeSolid
 from flexstage.solid.fea.parts import Ways
+from flexstage.solid.fea.piece import form_digest
 from flexstage.solid.fea.remote import Limits
 from flexstage.solid.fea.roots import Roots, own_roots
 
@@ -100,3 +103,12 @@ def test_a_hinge_that_is_done_is_kept_when_another_is_interrupted(tmp_path: Path
 def test_too_little_memory_is_told_by_name() -> None:
     with pytest.raises(DesignError, match=r"prop: its coarsest mesh needs about .* GB at order 2, and 0\.001 GB are there"):
         kept(ROD, Ways(None, limits=Limits(memory=1e6)))
+
+
+def test_a_shape_that_another_package_offers_counts_with_its_version(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A part's own digest knows the package of its class alone; its shape may be of another."""
+    found = {form_digest(ROD)}
+    for version in ("1.0", "2.0"):
+        monkeypatch.setattr(piece, "OFFERED_SHAPES", SimpleNamespace(offer=lambda kind, version=version: f"{kind}s {version}"))
+        found.add(form_digest(ROD))
+    assert len(found) == 3

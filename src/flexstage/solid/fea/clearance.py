@@ -6,12 +6,11 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from flexstage.base.digest import digest
 from flexstage.mechanism.mechanism import GROUND
 from flexstage.mechanism.near import near_pairs
 from flexstage.solid.fea.draw import drawn, moved
 from flexstage.solid.fea.near import Answer, Question, distance_text, frame_key, seen_from
-from flexstage.solid.fea.piece import MILLIMETRES, Piece
+from flexstage.solid.fea.piece import MILLIMETRES, Piece, form_digest
 from flexstage.solid.fea.stage_pieces import Stage
 
 TOUCHING = 1e-6
@@ -37,7 +36,7 @@ def clearance_questions(stage: Stage, clearance: float) -> Iterator[Question]:
         if _belong(stage, first, second):
             continue
         relative = seen_from(second.frame, first.frame)
-        key = f"pair {digest(first.form, physics=True)} {digest(second.form, physics=True)} {frame_key(relative)}"
+        key = f"pair {form_digest(first.form)} {form_digest(second.form)} {frame_key(relative)}"
         yield Question(key, first.name, lambda pair=(first, second), clearance=clearance: _answers(*pair, clearance))
 
 

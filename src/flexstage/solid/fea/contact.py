@@ -10,7 +10,6 @@ from dataclasses import dataclass
 
 from netgen import occ
 
-from flexstage.base.digest import digest
 from flexstage.base.finding import DesignError, Finding
 from flexstage.mechanism.mechanism import GROUND, Mechanism
 from flexstage.mechanism.near import near_pairs
@@ -19,7 +18,7 @@ from flexstage.solid.fea.component import components
 from flexstage.solid.fea.draw import drawn, moved
 from flexstage.solid.fea.imported import import_findings
 from flexstage.solid.fea.near import Answer, Question, answered, distance_text, frame_key, seen_from
-from flexstage.solid.fea.piece import MILLIMETRES, Piece, span, thinnest
+from flexstage.solid.fea.piece import MILLIMETRES, Piece, form_digest, span, thinnest
 from flexstage.solid.fea.sliver import SLIVER, sliver_findings
 from flexstage.solid.fea.stage_pieces import Stage, stage_pieces
 from flexstage.spatial.frame import Frame, identity
@@ -59,7 +58,7 @@ def _joint_questions(stage: Stage) -> Iterator[Question]:
         ends = tuple(_end(stage, name, number) for number in (0, 1))
         piece = stage.pieces[name]
         yield Question(
-            f"joint {digest(piece.form, physics=True)} {ends[0].key} {ends[1].key}",
+            f"joint {form_digest(piece.form)} {ends[0].key} {ends[1].key}",
             name,
             lambda piece=piece, ends=ends: _link_answers(piece, ends[0], ends[1]),
         )
@@ -75,7 +74,7 @@ class _End:
 
     @property
     def key(self) -> str:
-        return " ".join(f"{digest(piece.form, physics=True)} {frame_key(piece.frame)}" for piece in self.pieces)
+        return " ".join(f"{form_digest(piece.form)} {frame_key(piece.frame)}" for piece in self.pieces)
 
 
 @dataclass(frozen=True)
@@ -172,7 +171,7 @@ def _body_questions(stage: Stage) -> Iterator[Question]:
         if body != GROUND and len(pieces) > 1:
             base = pieces[0].frame
             seen = [Piece(piece.name, piece.form, piece.medium, seen_from(piece.frame, base), body) for piece in pieces]
-            key = " ".join(f"{digest(piece.form, physics=True)} {frame_key(piece.frame)}" for piece in seen)
+            key = " ".join(f"{form_digest(piece.form)} {frame_key(piece.frame)}" for piece in seen)
             slot = SLIVER * max(thinnest(piece.form) for piece in pieces)
             near = near_pairs([stage.boxes[piece.name] for piece in pieces], slot)
             yield Question(f"body {key}", body, lambda seen=seen, near=near: _body_answers(seen, near))

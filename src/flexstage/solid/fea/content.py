@@ -7,9 +7,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from flexstage.base.digest import digest
 from flexstage.solid.fea.component import Component
-from flexstage.solid.fea.piece import Form
+from flexstage.solid.fea.piece import form_digest
 from flexstage.spatial.frame import Frame
 
 
@@ -31,18 +30,14 @@ def _pieces(component: Component) -> Iterator[str]:
     bodies = list(component.bodies)
     for piece in component.pieces:
         owner = -1 if piece.body is None else bodies.index(piece.body)
-        yield f"piece {_form(piece.form)} {piece.medium} {_frame(piece.frame)} {owner};"
+        yield f"piece {form_digest(piece.form)} {piece.medium} {_frame(piece.frame)} {owner};"
     for item in component.interfaces:
-        stamp = "" if item.footprint is None or item.stamp is None else f"{_form(item.footprint)} {_frame(item.stamp)}"
+        stamp = "" if item.footprint is None or item.stamp is None else f"{form_digest(item.footprint)} {_frame(item.stamp)}"
         yield f"joint {_frame(item.joint.frame)} {stamp} {item.yields};"
     for joint in component.fixed:
         yield f"fixed {_frame(joint.frame)};"
     for at in component.bodies.values():
         yield f"body {_numbers(at)};"
-
-
-def _form(form: Form) -> str:
-    return digest(form, physics=True)
 
 
 def _frame(frame: Frame) -> str:

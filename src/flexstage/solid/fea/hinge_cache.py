@@ -11,7 +11,6 @@ from typing import Any
 
 import numpy as np
 
-from flexstage.base.digest import digest
 from flexstage.base.finding import DesignError, Finding
 from flexstage.base.store import write
 from flexstage.solid.fea.cache import folder_of
@@ -20,6 +19,7 @@ from flexstage.solid.fea.hinge_form import HingeForm, HingeSolid
 from flexstage.solid.fea.install import require_solver
 from flexstage.solid.fea.memory import Counts, needed
 from flexstage.solid.fea.parts import Ways
+from flexstage.solid.fea.piece import form_digest
 from flexstage.solid.fea.remote import work_all
 from flexstage.solid.fea.store import versions
 from flexstage.solid.fea.worker import Call, Job
@@ -102,7 +102,7 @@ def _path(key: str, ways: Ways) -> Path | None:
 
 def _key(form: HingeForm, asked: Accuracy) -> str:
     stiffness = (float(np.real(form.material.young)), float(np.real(form.material.poisson)))
-    return hashlib.sha256(f"{digest(form.part, physics=True)} {stiffness} {form.roots} {asked}".encode()).hexdigest()[:32]
+    return hashlib.sha256(f"{form_digest(form.part)} {stiffness} {form.roots} {asked}".encode()).hexdigest()[:32]
 
 
 def _read(path: Path, tell: Callable[[Finding], None]) -> HingeSolid | None:

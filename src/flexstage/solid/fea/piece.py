@@ -7,8 +7,10 @@ from typing import TypeAlias
 
 import numpy as np
 
+from flexstage.base.digest import digest
 from flexstage.base.finding import Finding
 from flexstage.base.number import Number
+from flexstage.base.register import Register
 from flexstage.mechanism.expand import PlacedLink
 from flexstage.parts.body import Block, Cylinder, Imported
 from flexstage.parts.freedom import Freedom
@@ -20,6 +22,9 @@ from flexstage.spatial.frame import Frame
 
 MILLIMETRES = 1e3
 """CAD units per metre."""
+
+OFFERED_SHAPES: Register[object] = Register("flexstage.shapes", {})
+"""Shapes that other packages offer, without those of `draw`: the kernel that draws is not needed to ask for versions."""
 
 Form: TypeAlias = Shaped | Block | Cylinder | Imported
 """What can be drawn: given 6x6 parts and ideal joints have no shape."""
@@ -105,6 +110,15 @@ def drawable(link: PlacedLink) -> Form | Finding:
     return Finding(
         link.name, f"a part of kind {type(part).__name__.lower()} has no shape", "Give it a form that can be drawn, or join rigid bodies"
     )
+
+
+def form_digest(form: Form) -> str:
+    """Digest of what is drawn; where another package offers its shape, that package's name and version count.
+
+    >>> form_digest(Block("steel", (1.0, 1.0, 1.0))) == form_digest(Block("steel", (1.0, 1.0, 2.0)))
+    False
+    """
+    return digest(form, physics=True) + (OFFERED_SHAPES.offer(form.kind) if isinstance(form, Shaped) else "")
 
 
 def bends_both_ways(part: Shaped) -> bool:
