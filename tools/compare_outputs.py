@@ -39,7 +39,7 @@ ROOT = Path(__file__).resolve().parents[1]
 # What is meant to differ: regular expression at BASE -> what it is in the working tree.
 WORDS: Mapping[str, str] = {r"--reading": "--model", r"^reading = ": "model = "}  # of command lines and of the files that they read
 TEXTS: Mapping[str, str] = {  # of terminal, HTML and other text
-    r"(?<!gauge's )\breading\b": "model",
+    r"(?<!gauge's )\breading\b(?! that is no| closes no|, then each|\[)": "model",  # not those of the C code
     r"(for all|What|connect) readings": r"\1 models",
     "The theories a stage can be read by": "Models of theory",
     "^flexstage result 1$": "flexstage result 2",
@@ -111,6 +111,32 @@ PATHS: Mapping[str, str] = {  # in JSON, MAT and HDF5
     r"^scatter\[\]\.(shape|size|within)": r"scatter[].distribution.\1",
     r"^yield\.lines\[\]\.(kept|copies|share|interval)": r"yield.lines[].yield.\1",
     r"^failures\[\]\.copy": "failures[].design",
+    r"^plant\.(coordinates|actuators|gauges)$": r"plant.coordinates.\1",
+    r"^plant\.coordinates\.coordinates$": "plant.coordinates.names",
+    r"^plant\.(rate_hz|delay_s)$": r"plant.hardware.\1",
+    r"^plant\.modes_hz$": "plant.frequencies_hz",
+    r"^plant\.modes_left_out$": "plant.left_out",
+    r"^plant\.highest": "highest",
+    r"^controller\.state_space": "controller.system",
+    r"^(controller\.loops\.\w+)\.(?!notches)": r"\1.law.",
+    r"^(controller\.loops\..*\.law\.(?:integral|gain))$": r"\1_per_s",
+    r"^(controller\.loops\..*\.law\.(?:derivative|tracking|tracking_time))$": r"\1_s",
+    r"^(controller\.loops\..*\.law\.filter)$": r"\1_hz",
+    r"^((?:controller|disk_margin|stability)\b.*\.frequency)$": r"\1_hz",
+    r"^stability\.(growth_all_modes)$": r"\1_per_s",
+    r"^(stability\.least\.growth)$": r"\1_per_s",
+    r"^reasons\.disk$": "reasons.disk_margin",
+    r"^(reasons\.)?margins\.": r"\1margins.loops.",
+    r"^bandwidths\.": "bandwidths.coordinates.",
+    r"^hysteresis\.": "hysteresis.actuators.",
+    r"^static_errors\.(mapped|lumped)_gains": "static_errors.other_gains",
+    r"^noise\.(simulated_)": r"\1",
+    r"^runs\[\]\.course$": "runs[].course.name",
+    r"^runs\[\]\.moved$": "runs[].course.moved",
+    r"^runs\[\]\.(saturated|slewing)\.(\w+)$": r"runs[].simulated.actuators.\2.\1",
+    r"^runs\[\]\.out_of_range\.(\w+)$": r"runs[].simulated.gauges.\1.out_of_range",
+    r"^(range_v|stroke_m|rms|largest|validation|width|branches|inner)$": r"hysteresis.\1",
+    r"^model\.": "hysteresis.plays.",
 }
 GONE: Mapping[str, str] = {  # paths that stand at BASE only, and where the same is now
     r"^stiffness\.(reasons\.)?dead_load$": "of the lumped model alone",
@@ -119,6 +145,7 @@ GONE: Mapping[str, str] = {  # paths that stand at BASE only, and where the same
     r"\bmap_error\.worst": "the first column of its `table`",
     r"^parameters\[\]": "`parameters` by address",
     r"\broom\.intrusions\.": "a list",
+    r"^trials$": "`hysteresis.trials`, a record each",
 }
 COME: Mapping[str, str] = {  # paths that stand in the working tree only
     r"\bprovenance$": "each result says where it comes from",
@@ -131,6 +158,9 @@ COME: Mapping[str, str] = {  # paths that stand in the working tree only
     r"^(workspace\.)?bearing$": "null, where `loads` is",
     r"^parameters\.": "`parameters` by address",
     r"\bvariables\[\]\.(logarithmic|levels|step|parameters)$": "fields of a variable that were not told",
+    r"^(margins|peaks)\.cut$|^bandwidths\..*\.(complementary|half_rejection)_hz$|\.other_model$": "fields of the loop that were not told",
+    r"^plant\.coordinates\.(units|length_m)$|\bcourse\.duration_s$|^hysteresis\.(known_from|actuators\..*\.improvement)$": "the same",
+    r"^hysteresis\.trials\[\]": "a record each",
 }
 RULES: tuple[Rule, ...] = (  # numbers whose arithmetic or its order changed; searched() gives those of searches
     Rule(r"room\.intrusions$", "was by body, is a list", np.inf),

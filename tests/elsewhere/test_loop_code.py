@@ -77,7 +77,7 @@ def test_compiled_loops_equal_numpy(kind):
     found, expected = simulate_compiled(given, reference, disturbances), simulate(given, reference, disturbances)
     assert max(worst(found, expected).values()) < 1e-12, worst(found, expected)
     assert np.array_equal(found.saturated, expected.saturated)
-    assert np.array_equal(found.slewed, expected.slewed)
+    assert np.array_equal(found.slewing, expected.slewing)
 
 
 @needs_compiler
@@ -159,8 +159,8 @@ def test_lost_readings_are_held_and_taken_again(inverse):
     found = simulate(given, reference, disturbances | noise)
     by_status = np.abs(added) > 0.0  # NaN too: |NaN| > 0 is false
     by_status |= np.isnan(added)
-    assert found.held == pytest.approx(np.mean(by_status, axis=0))
-    assert not bare.held.any()
+    assert found.out_of_range == pytest.approx(np.mean(by_status, axis=0))
+    assert not bare.out_of_range.any()
     assert np.all(np.isfinite(found.volts))
     assert np.all(np.isfinite(found.motions))
     expected = by_hand(given, reference, found.readings)
@@ -184,10 +184,10 @@ def test_a_gauge_beyond_its_range_is_held_until_it_returns():
     reference = np.repeat([[2.2e-6], [0.0]], 1500, axis=0)
     found = simulate(given, reference)
     beyond = np.abs(found.readings[:, 0]) > given.reach[0]
-    assert 0.2 < np.mean(beyond) == found.held[0] < 0.6
+    assert 0.2 < np.mean(beyond) == found.out_of_range[0] < 0.6
     assert np.max(np.abs(found.pose)) <= given.reach[0]
     assert abs(found.motion("platform.x")[-1]) < 1e-9
-    assert not simulate(unlimited(given), reference).held.any()
+    assert not simulate(unlimited(given), reference).out_of_range.any()
 
 
 @pytest.mark.parametrize(("reading", "held"), [(3e-9, 0.0), (4e-9, 1.0)])
@@ -199,7 +199,7 @@ def test_a_reading_at_the_very_end_of_its_range_is_taken(reading, held):
     assert 3.0 * given.resolution[0] > given.half_range[0]
     entering = np.zeros((4, 1)), {"noise.S": np.full(4, reading)}
     found = [simulate(given, *entering), *([simulate_compiled(given, *entering)] if compiler() is not None else [])]
-    assert [each.held.tolist() for each in found] == [[held]] * len(found)
+    assert [each.out_of_range.tolist() for each in found] == [[held]] * len(found)
     assert [each.pose.any() for each in found] == [held == 0.0] * len(found)
 
 

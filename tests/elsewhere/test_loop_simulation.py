@@ -69,7 +69,7 @@ def test_nonlinear_loops_equal_variable_steps_of_the_continuous_plant(inverse):
     given = full_loop(inverse=inverse)
     reference, disturbances = way(given, COUNT)
     found = simulate(given, reference, disturbances)
-    assert np.any(found.slewed > 0.01)  # the limits take part
+    assert np.any(found.slewing > 0.01)  # the limits take part
     expected = integrated(given, six_axes(current=0.02).plant, reference, disturbances)
     assert max(worst(found, expected).values()) < 1e-9, worst(found, expected)
 

@@ -60,7 +60,7 @@ def test_range_and_speed_are_both_reached_and_counted():
     known = full_loop()
     found = simulate(known, stepped(known, 150e-6, 2000))
     assert np.any(found.saturated > 0.01)
-    assert np.any(found.slewed > 0.01)
+    assert np.any(found.slewing > 0.01)
     assert np.max(found.given) == np.max(known.amplifiers.high[:3])
     assert np.nanmax(found.volts) == pytest.approx(1000.0, rel=1e-12)
 

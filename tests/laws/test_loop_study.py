@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from flexstage.analysis.workspace.drive import drive
+from flexstage.base.document import plain
 from flexstage.base.finding import DesignError
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.cases.parallelogram import parallelogram
 from flexstage.control.closed import loop
-from flexstage.control.document import loop_body
 from flexstage.control.error_tables import noise_table
 from flexstage.control.reduction import reduced, resonances
 from flexstage.control.simulation.result import others
@@ -83,7 +83,7 @@ def test_a_loop_of_stated_numbers_settles_as_its_integrator_does() -> None:
     (run,) = found.runs
     assert run.figures is not None
     assert run.figures.settling[0] == pytest.approx(np.log(50.0) / 300.0, rel=0.05)  # and the delay
-    assert found.growth == pytest.approx(loop(found.settled.whole, found.control.system).system.growth)
+    assert found.growth_all_modes == pytest.approx(loop(found.settled.whole, found.controller.system).system.growth)
 
 
 def test_open_loop_errors_are_those_at_rest() -> None:
@@ -93,15 +93,15 @@ def test_open_loop_errors_are_those_at_rest() -> None:
         found = loop_study(parallelogram(), setup)
         error = found.runs[0].simulated.true_error[:, 0] / 1e-6
         late = error[len(error) // 2 :]
-        shown = found.rest.bare if not compensate else found.rest.corrected
+        shown = found.static_errors.ideal_map if not compensate else found.static_errors.lost_motion_gains
         assert float(np.asarray(shown.error.values)[0, 0]) == pytest.approx(wanted, abs=1e-5)
         assert float(np.mean(late)) == pytest.approx(wanted, abs=3e-3)  # what still rings averages out
 
 
 def test_the_inverse_of_the_stacks_own_model_is_exact_and_helps_others_fivefold() -> None:
     own, other = (swept(stacks_of(parallelogram(), HystereticStacks(width=0.15, plant=kind))) for kind in StackKind)
-    assert float(own.error(own.inverse)[0]) < 1e-9
-    assert float(other.error(other.inverse)[0]) < 0.2 * float(other.error(other.bare)[0])
+    assert float(own.rms_error_inverse[0]) < 1e-9
+    assert float(other.rms_error_inverse[0]) < 0.2 * float(other.rms_error[0])
 
 
 def test_stacks_creep_by_their_law() -> None:
@@ -159,10 +159,10 @@ def test_slow_rounding_is_told_and_its_rms_simulated() -> None:
         "gauge rounding",
     ]
     assert any("counted as white noise, and is none" in note for note in table.notes)
-    document = loop_body(found)["noise"]
-    assert document["rounding_is_white"] is False
-    assert document["simulated_interval"] == [found.resting.low, found.resting.high]
-    assert document["simulated_rms"] is found.resting.rms
+    document = plain(found)
+    assert document["noise"]["rounding_is_white"] is False
+    assert document["simulated_interval"] == [found.resting.low.tolist(), found.resting.high.tolist()]
+    assert document["simulated_rms"] == found.resting.rms.tolist()
 
 
 def test_a_loop_at_rest_strays_to_the_edge_of_its_gauges_step() -> None:
@@ -181,7 +181,7 @@ def test_steps_alone_are_simulated_too() -> None:
     assert found.still is None
     assert found.resting is not None
     assert found.resting.low[0] < 5e-9 / np.sqrt(12.0) < found.resting.high[0]
-    assert loop_body(found)["noise"]["simulated_rms"] is found.resting.rms
+    assert found.simulated_rms is found.resting.rms
 
 
 def test_rounding_in_noise_of_its_step_is_white() -> None:
@@ -189,10 +189,10 @@ def test_rounding_in_noise_of_its_step_is_white() -> None:
     found = resting(1e-11)
     assert not found.noise.slow
     assert found.resting is None
-    repeated = rest_rms(found.settled, found.control, found.closed)
+    repeated = rest_rms(found.settled, found.controller, found.closed)
     assert repeated.low[0] < found.noise.rms[0] < repeated.high[0]
     assert [column.head for column in noise_table(found).columns][-1] == "simulated"
-    assert loop_body(found)["noise"]["simulated_interval"] is None
+    assert found.simulated_interval is None
 
 
 def test_steps_tell_what_every_other_axis_does() -> None:
@@ -201,15 +201,15 @@ def test_steps_tell_what_every_other_axis_does() -> None:
     run = found.runs[0]
     told = others(run.simulated, "x")
     assert set(told) == {"y", "z", "rx", "ry", "rz"}
-    for name, (value, unit) in told.items():
-        assert unit == ("rad" if name.startswith("r") else "m")
-        assert value == np.max(np.abs(run.simulated.motion(f"relative.{name}")))
-    turned = max((value, name) for name, (value, unit) in told.items() if unit == "rad")
+    for name, each in told.items():
+        assert each.unit == ("rad" if name.startswith("r") else "m")
+        assert each.largest == np.max(np.abs(run.simulated.motion(f"relative.{name}")))
+    turned = max((each.largest, name) for name, each in told.items() if each.unit == "rad")
     assert turned[0] > 1e-9
     table = step_table(found.runs)
     (cell,) = (row[[column.head for column in table.columns].index("others move")].text for row in table.rows)
     assert cell.endswith(f"{value_with_unit(turned[0], 'rad', 3)} {turned[1]}")
-    assert loop_body(found)["runs"][0]["step"]["others"][turned[1]]["largest"] == turned[0]
+    assert plain(found)["runs"][0]["step"]["others"][turned[1]]["largest"] == turned[0]
 
 
 def test_others_count_departures_from_what_was_asked() -> None:
@@ -219,4 +219,4 @@ def test_others_count_departures_from_what_was_asked() -> None:
     seen = found.runs[0].simulated
     told = others(seen, "x")
     assert set(told) == {"y", "z", "rx", "ry", "rz"}
-    assert told["y"][0] == np.max(np.abs(seen.true_error[:, 1]))
+    assert told["y"].largest == np.max(np.abs(seen.true_error[:, 1]))

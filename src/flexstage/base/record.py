@@ -284,5 +284,5 @@ def _word(kind: Any) -> str:
 
 
 def explanation(kind: type) -> str:
-    """The docstring of a class as one line."""
-    return " ".join((inspect.getdoc(kind) or "").split())
+    """The docstring of a class as one line, without its example."""
+    return " ".join((inspect.getdoc(kind) or "").partition(">>>")[0].split())

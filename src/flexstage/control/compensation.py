@@ -9,6 +9,7 @@ import numpy as np
 from flexstage.analysis.lost_motion import LostMotion
 from flexstage.base.finding import refuse
 from flexstage.base.labelled import Matrix, ratio_units
+from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
 from flexstage.models.linear.kinematics import Kinematics
 from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
@@ -69,7 +70,7 @@ def compensated(lost: LostMotion, kinematics: Kinematics, deflection: Array | No
 
 
 @dataclass(frozen=True, eq=False)
-class StaticError:
+class StaticError(InNotebook):
     """What is missing at rest in open loop: `error` (f, f) commanded less reached, by coordinate reached (row) and commanded (column).
 
     Its diagonal is each axis' own error, the rest crosstalk; `parasitic` (6, f) is the motion outside the ideal ones; `offset` (6,) the

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
 from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array, first_design
+from flexstage.base.quantity import LENGTH
 from flexstage.models.linear.kinematics import Kinematics
 from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
 
@@ -30,7 +32,7 @@ class Coordinates:
     pose: Array
     strokes: Array
     back: Array
-    length: float
+    length: Annotated[float, LENGTH]
 
     @property
     def scale(self) -> Array:

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 import scipy
 
+from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
+from flexstage.base.quantity import FREQUENCY
 from flexstage.control.closed import Cut, Loop, opened, opened_everywhere
 from flexstage.control.curves import dense, sensitivity
 from flexstage.control.norm import Plane, level_crossings, peak, to_plane
@@ -29,11 +31,11 @@ class Edge:
     """A change that brings a loop to the edge of stability, and the frequency [Hz] of the oscillation there (NaN: there is no edge)."""
 
     value: float
-    frequency: float
+    frequency: Annotated[float, FREQUENCY]
 
 
 @dataclass(frozen=True)
-class DiskMargin:
+class DiskMargin(InNotebook):
     """How far all the loops' factors f_i = (1 + (1 - s) d_i/2)/(1 - (1 + s) d_i/2), |d_i| < alpha, may change at once, s the `skew`.
 
     Stability is guaranteed for all d_i below `guaranteed`, at every frequency if `covered` (else at those looked at); at `reached` >=
@@ -45,7 +47,7 @@ class DiskMargin:
     skew: float
     guaranteed: float
     reached: float
-    frequency: float
+    frequency: Annotated[float, FREQUENCY]
     covered: bool
 
     @property

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import TypeVar
+from typing import Annotated, TypeVar
 
 import numpy as np
 
 from flexstage.analysis.workspace.stroke import stacks, stroke_limits
 from flexstage.base.finding import Finding, nearest, require
 from flexstage.base.number import Table
+from flexstage.base.quantity import FREQUENCY, TIME
+from flexstage.base.record import INNER
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.parts import amplifier
@@ -92,10 +94,10 @@ class Hardware:
     0.0001
     """
 
-    rate: float | None = None
-    delay: float = 0.0
-    amplifiers: Mapping[str, Amplifier] = field(default_factory=lambda: Table({}))
-    sensors: Mapping[str, Sensor] = field(default_factory=lambda: Table({}))
+    rate: Annotated[float | None, FREQUENCY] = None
+    delay: Annotated[float, TIME] = 0.0
+    amplifiers: Annotated[Mapping[str, Amplifier], INNER] = field(default_factory=lambda: Table({}))
+    sensors: Annotated[Mapping[str, Sensor], INNER] = field(default_factory=lambda: Table({}))
 
     def __post_init__(self) -> None:
         """Refuse what cannot be."""

@@ -13,12 +13,12 @@ from flexstage.control.noise import NoiseBudget
 from flexstage.control.simulation.result import Simulated
 from flexstage.control.study.rest import RestErrors
 from flexstage.control.study.runs import RestRms
-from flexstage.control.study.stacks import Stacks, Sweep
+from flexstage.control.study.stacks import Sweep
 from flexstage.control.study.study import LoopStudy
 from flexstage.control.tables import motion_cell
 from flexstage.control.whites import Kind
 from flexstage.show.display import NO_VALUE, number, percent, value_with_unit
-from flexstage.show.table import Cell, Column, Mark, Table, build
+from flexstage.show.table import Cell, Column, Mark, Table, build, row_table
 from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
 
 _SILENT = 1e-12
@@ -27,11 +27,10 @@ _STANDS_OUT = 1e-3
 
 def rest_table(found: RestErrors) -> Table:
     """Errors at rest in open loop by coordinate: its own, and its largest crosstalk, by the ideal map and by corrected gains."""
-    pairs = (("by R_a", found.bare), ("corrected", found.corrected))
+    pairs = (("by R_a", found.ideal_map), ("corrected", found.lost_motion_gains))
     heads = ["command", *(head for noun, _ in pairs for head in (Column(f"error {noun}"), Column("crosstalk")))]
-    rows = [
-        (Cell(name, Mark.STRONG), *_own_and_cross([each for _, each in pairs], index)) for index, name in enumerate(found.bare.error.rows)
-    ]
+    names, errors = found.ideal_map.error.rows, [each for _, each in pairs]
+    rows = [(Cell(name, Mark.STRONG), *_own_and_cross(errors, index)) for index, name in enumerate(names)]
     return build("Static errors without the loop", heads, rows, notes=list(_rest_notes(found)))
 
 
@@ -40,13 +39,13 @@ def _rest_notes(found: RestErrors) -> Iterator[str]:
         "Commanded less reached, per unit commanded, by strokes R_a x and by those that correct lost motion; crosstalk: the largest motion "
         "elsewhere, and which."
     )
-    if found.other is not None:
+    if found.other_gains is not None:
         yield (
-            f"With the gains of the {found.other_model.value} model the largest error is {percent(found.other.largest, 3)}, by R_a "
-            f"{percent(found.bare.largest, 3)}, rotations as lengths."
+            f"With the gains of the {found.other_model.value} model the largest error is {percent(found.other_gains.largest, 3)}, by R_a "
+            f"{percent(found.ideal_map.largest, 3)}, rotations as lengths."
         )
     if np.any(np.abs(found.load) > 0.0):
-        yield f"Loads, strokes held: {_twist(found.load, found.load)}; their strokes fed forward: {_twist(found.carried, found.load)}."
+        yield f"Loads, strokes held: {_twist(found.load, found.load)}; their strokes fed forward: {_twist(found.load_left, found.load)}."
 
 
 def _own_and_cross(found: Sequence[StaticError], column: int) -> Iterator[Cell]:
@@ -82,7 +81,7 @@ def noise_table(found: LoopStudy) -> Table:
     """The rms of every coordinate at rest by kind of source, and as simulated."""
     budget, resting = found.noise, found.resting
     squares = np.asarray(budget.by_kind.values)
-    simulated = None if found.still is None else settled_rms(found)
+    simulated = None if found.still is None else found.simulated_rms
     heads = ["motion", Column("rms"), *([] if resting is None else [Column("interval"), Column("as if white")])]
     heads += [Column(kind.value) for kind in budget.kinds]
     heads += [Column("simulated")] if simulated is not None and resting is None else []
@@ -115,36 +114,7 @@ def _noise_notes(budget: NoiseBudget, still: Simulated | None, resting: RestRms 
     return [first, *more, *(f"{each[0].upper()}{each[1:]}." for each in budget.notes)]
 
 
-def settled_rms(found: LoopStudy) -> Array:
-    """Rms (f,) of the simulated true motion at rest."""
-    if found.resting is not None:
-        return found.resting.rms
-    if found.still is None:
-        return np.zeros(0)
-    return np.sqrt(np.mean(found.still.true_error**2, axis=0))
-
-
-def hysteresis_table(stacks: Stacks, sweep: Sweep) -> Table:
+def hysteresis_table(sweep: Sweep) -> Table:
     """Stacks with hysteresis: width of their loops, error in open loop without and with the inverse."""
-    bare, inverse = sweep.error(sweep.bare), sweep.error(sweep.inverse)
-    rows = [
-        (
-            Cell(name, Mark.STRONG),
-            percent(float(stacks.width[index]), 3),
-            value_with_unit(float(np.ptp(sweep.wanted[:, index])), "m", 4),
-            percent(float(bare[index]), 3),
-            percent(float(inverse[index]), 3),
-            number(float(bare[index] / inverse[index]), 3) if inverse[index] > _SILENT else "exact",
-        )
-        for index, name in enumerate(sweep.actuators)
-    ]
-    heads = [
-        "actuator",
-        Column("loop width"),
-        Column("range swept"),
-        Column("rms error, bare"),
-        Column("with inverse"),
-        Column("better by"),
-    ]
     note = "Stacks alone, in open loop: strokes that came less those wanted, as a share of the range swept."
-    return build("Hysteresis of the stacks", heads, rows, notes=[note])
+    return row_table("Hysteresis of the stacks", sweep, "width", "range", "rms_error", "rms_error_inverse", "improvement", notes=[note])

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Annotated
 
 import numpy as np
 
@@ -13,6 +13,8 @@ from flexstage.base.finding import Finding, nearest, require
 from flexstage.base.labelled import Matrix
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
+from flexstage.base.quantity import FREQUENCY
+from flexstage.base.record import INNER, VIEW, Axes, Called
 from flexstage.control.closed import Loop
 from flexstage.control.curves import around, rates_of
 from flexstage.control.electronics import Amplifier, Sensor
@@ -38,13 +40,13 @@ class NoiseBudget(InNotebook):
     kind was taken and what was not stated.
     """
 
-    outputs: tuple[Channel, ...]
+    outputs: Annotated[tuple[Channel, ...], INNER]
     sources: tuple[Source, ...]
-    squares: Array
+    squares: Annotated[Array, Called("mean_square")]
     frequencies: Array
     density: Array
-    band: tuple[float, float]
-    gauges: tuple[str, ...]
+    band: Annotated[tuple[float, float], FREQUENCY]
+    gauges: Annotated[tuple[str, ...], INNER]
     changes: Array
     notes: tuple[str, ...]
 
@@ -60,7 +62,7 @@ class NoiseBudget(InNotebook):
         return tuple(name for name, change in zip(self.gauges, self.changes, strict=True) if change < _HALF and name in felt)
 
     @property
-    def rms(self) -> Array:
+    def rms(self) -> Annotated[Array, Axes("output_names")]:
         """The rms value (p,) of each output, all sources together."""
         return np.sqrt(np.sum(self.squares, axis=1))
 
@@ -77,19 +79,25 @@ class NoiseBudget(InNotebook):
         units = tuple((f"{channel.unit}^2",) * len(columns) for channel in self.outputs)
         return Matrix(values, tuple(channel.name for channel in self.outputs), tuple(kind.value for kind in self.kinds), units)
 
-    def to_json(self) -> dict[str, Any]:
-        """The budget as {outputs, units, sources, mean_square, rms, band_hz, steps_per_sample, rounding_is_white, notes}."""
-        return {
-            "outputs": [channel.name for channel in self.outputs],
-            "units": [channel.unit for channel in self.outputs],
-            "sources": [{"kind": source.kind.value, "channel": source.channel} for source in self.sources],
-            "mean_square": self.squares.tolist(),
-            "rms": self.rms.tolist(),
-            "band_hz": list(self.band),
-            "steps_per_sample": {name: float(each) for name, each in zip(self.gauges, self.changes, strict=True) if not np.isnan(each)},
-            "rounding_is_white": not self.slow,
-            "notes": list(self.notes),
-        }
+    @property
+    def output_names(self) -> Annotated[tuple[str, ...], Called("outputs")]:
+        """The motions."""
+        return tuple(channel.name for channel in self.outputs)
+
+    @property
+    def units(self) -> Annotated[tuple[str, ...], Axes("output_names")]:
+        """Their units; mean squares are in these squared."""
+        return tuple(channel.unit for channel in self.outputs)
+
+    @property
+    def steps_per_sample(self) -> Annotated[Mapping[str, float], VIEW]:
+        """By how much each gauge that rounds moves from sample to sample, rms, in its steps."""
+        return {name: float(each) for name, each in zip(self.gauges, self.changes, strict=True) if not np.isnan(each)}
+
+    @property
+    def rounding_is_white(self) -> Annotated[bool, VIEW]:
+        """Whether rounding is white noise, as the budget counts it; otherwise take the simulated rms."""
+        return not self.slow
 
 
 def noise_budget(

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Annotated
 
 import numpy as np
 import scipy
 
 from flexstage.base.finding import refuse
 from flexstage.base.number import Array
+from flexstage.base.quantity import FREQUENCY
 from flexstage.control.resolvent import Resolvent, resolvent
 from flexstage.control.system import System
 
@@ -22,7 +24,7 @@ class Peak:
     """The largest value of a response (of its largest singular value) and the frequency [Hz] where it stands."""
 
     value: float
-    frequency: float
+    frequency: Annotated[float, FREQUENCY]
 
 
 def peak(system: System) -> Peak:

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Annotated
 
 import numpy as np
 
 from flexstage.base.finding import Finding, nearest, refuse, require
 from flexstage.base.number import Array
+from flexstage.base.quantity import FREQUENCY
+from flexstage.base.record import INNER
 from flexstage.control.coordinates import Coordinates, coordinates
 from flexstage.control.electronics import Hardware, Sensor
 from flexstage.control.sampling import ramped, sampled
@@ -36,11 +39,11 @@ class Plant:
     compliance is a static term; `note` says what was simplified.
     """
 
-    system: System
-    states: tuple[str, ...]
+    system: Annotated[System, INNER]
+    states: Annotated[tuple[str, ...], INNER]
     coordinates: Coordinates
     hardware: Hardware
-    frequencies: Array
+    frequencies: Annotated[Array, FREQUENCY]
     ratios: Array
     left_out: int
     note: str

@@ -37,9 +37,9 @@ def loop_section(found: LoopStudy) -> Section | None:
 
 
 def _facts(found: LoopStudy) -> Iterator[Fact]:
-    yield Fact("stability", "stable" if found.verdict.stable else "unstable", f"slowest decay {number(-found.growth, 3)} 1/s")
-    if found.control.tuning is not None:
-        yield Fact("loop gains pass 1 at", f"{number(found.control.tuning.bandwidth, 3)} Hz", "all of them")
+    yield Fact("stability", "stable" if found.stability.stable else "unstable", f"slowest decay {number(-found.growth_all_modes, 3)} 1/s")
+    if found.controller.tuning is not None:
+        yield Fact("loop gains pass 1 at", f"{number(found.controller.tuning.bandwidth, 3)} Hz", "all of them")
     if found.peaks is not None:
         yield Fact("peak of S", f"{number(20.0 * np.log10(found.peaks.sensitivity.value), 3)} dB", "6 dB and less is calm")
     settled = [test.figures.settling[test.index] for test in found.runs if test.figures is not None]
@@ -60,7 +60,7 @@ def _error_fact(test: Run) -> Fact:
 
 def diagram_of(found: LoopStudy) -> Diagram:
     """The block diagram of a loop, in the words of its set-up."""
-    setup, plant = found.setup, found.settled.plant
+    setup, plant = found.setup, found.plant
     rate = f"{number(1e-3 * found.settled.rate, 4)} kHz"
     stage = Box("stage", f"{setup.model.value}\n{modes_told(len(plant.frequencies))}")
     back = (
@@ -94,8 +94,8 @@ _TO_POSE = "readings\nto pose"
 def _digital(found: LoopStudy) -> Iterator[Box]:
     setup = found.setup
     if setup.controller.kind is not ControllerKind.NONE:
-        bandwidth = f"\n{number(found.control.tuning.bandwidth, 3)} Hz" if found.control.tuning is not None else ""
-        notched = ", notches" if any(found.control.notches) else ""
+        bandwidth = f"\n{number(found.controller.tuning.bandwidth, 3)} Hz" if found.controller.tuning is not None else ""
+        notched = ", notches" if found.controller.notches else ""
         kind = setup.controller.kind.value
         yield Box(
             "controller",
@@ -116,7 +116,7 @@ def _filters(found: LoopStudy) -> Iterator[Box]:
 
 
 def _sampler(found: LoopStudy, rate: str) -> str:
-    steps = {each.resolution for each in found.settled.plant.hardware.sensors.values() if each.resolution}
+    steps = {each.resolution for each in found.plant.hardware.sensors.values() if each.resolution}
     return f"{rate}\nsteps {value_with_unit(max(steps), 'm', 3)}" if steps else rate
 
 
@@ -133,11 +133,11 @@ def frequency_section(found: LoopStudy) -> Section | None:
     """Open loops, sensitivities, margins, poles, crosstalk; `None` in open loop."""
     if found.curves is None:
         return None
-    seen, plant = found.curves, found.settled.plant
+    seen, plant = found.curves, found.plant
     own = np.diagonal(seen.sensitivity, axis1=1, axis2=2)
     modes = plant.frequencies[: 2 * len(plant.coordinates.names)]
     loops = to_svg(open_loop_figure(Curves(seen.frequencies, seen.loops, seen.names), modes), "open-loops", "Open loops over frequency")
-    goal = found.control.tuning.goal.sensitivity if found.control.tuning is not None else _GOAL
+    goal = found.controller.tuning.goal.sensitivity if found.controller.tuning is not None else _GOAL
     pair = sensitivity_figure(Curves(seen.frequencies, own, seen.names), Curves(seen.frequencies, 1.0 - own, seen.names), goal)
     sensitivities = to_svg(pair, "sensitivities", "Sensitivity and complementary sensitivity over frequency")
     poles = to_svg(pole_figure(found.closed.system.poles, found.settled.step, found.closed.held.poles), "poles", "Poles of the closed loop")
@@ -179,11 +179,11 @@ def _followed(test: Run, name: str) -> Iterator[Picture]:
 
 def error_section(found: LoopStudy) -> Section | None:
     """Errors at rest without the loop, noise with it, hysteresis of the stacks."""
-    blocks: list[Block | None] = [rest_table(found.rest), noise_table(found), *_noise_pictures(found)]
-    if found.stacks is not None and found.sweep is not None:
-        drawn = to_svg(hysteresis_figure(_worst(found.sweep)), "hysteresis", "Hysteresis of a stack with and without its inverse")
-        name = found.sweep.actuators[_hardest(found.sweep)]
-        blocks += [hysteresis_table(found.stacks, found.sweep), Picture(drawn, f"Stack of {name} alone, driven to and fro in open loop.")]
+    blocks: list[Block | None] = [rest_table(found.static_errors), noise_table(found), *_noise_pictures(found)]
+    if found.hysteresis is not None:
+        drawn = to_svg(hysteresis_figure(_worst(found.hysteresis)), "hysteresis", "Hysteresis of a stack with and without its inverse")
+        name = found.hysteresis.actuators[_hardest(found.hysteresis)]
+        blocks += [hysteresis_table(found.hysteresis), Picture(drawn, f"Stack of {name} alone, driven to and fro in open loop.")]
     return section("Errors and noise", blocks)
 
 
@@ -208,7 +208,7 @@ def shares_of(found: LoopStudy) -> Shares:
 
 
 def _hardest(sweep: Sweep) -> int:
-    return int(np.argmax(sweep.error(sweep.bare)))
+    return int(np.argmax(sweep.rms_error))
 
 
 def _worst(sweep: Sweep) -> list[HysteresisLoop]:

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 import scipy
 
 from flexstage.base.finding import Finding, require
+from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
+from flexstage.base.quantity import FREQUENCY, RATE
 from flexstage.control.closed import Cut, Loop, opened
 from flexstage.control.system import System
 
@@ -27,8 +29,8 @@ class Pole:
     participation; `coordinate` the loop whose error it shows in most, rotations times the stage's length.
     """
 
-    frequency: float
-    growth: float
+    frequency: Annotated[float, FREQUENCY]
+    growth: Annotated[float, RATE]
     ratio: float
     source: str
     share: float
@@ -36,7 +38,7 @@ class Pole:
 
 
 @dataclass(frozen=True, eq=False)
-class Verdict:
+class Verdict(InNotebook):
     """Whether a loop is stable: all closed-loop poles decay, exact hold and delay included.
 
     `least` is the least stable pole, `poles` (k,) all as rates [1/s] (ln z / T of a sampled loop), least stable first. With all commands

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 import scipy
@@ -12,6 +12,8 @@ import scipy
 from flexstage.base.labelled import Matrix, ratio_units
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
+from flexstage.base.quantity import ANGLE, FREQUENCY, TIME
+from flexstage.base.record import INNER, VIEW, Along
 from flexstage.control.closed import Cut, Loop, loop, opened
 from flexstage.control.curves import Curves, curves, roots, sensitivity, sign_changes
 from flexstage.control.disk import Edge, disk_margin
@@ -34,11 +36,11 @@ class ChannelMargins:
     margin: the factors (1 + d/2)/(1 - d/2) with |d| < alpha, gains and phases *together*.
     """
 
-    channel: str
+    channel: Annotated[str, INNER]
     gain_low: Edge
     gain_high: Edge
-    phase: Edge
-    delay: Edge
+    phase: Annotated[Edge, ANGLE]
+    delay: Annotated[Edge, TIME]
     disk: Edge
 
 
@@ -47,11 +49,16 @@ class Margins(InNotebook):
     """Margins of the loops cut open at `cut`, one at a time."""
 
     cut: Cut
-    channels: tuple[ChannelMargins, ...]
+    channels: Annotated[tuple[ChannelMargins, ...], INNER]
+
+    @property
+    def loops(self) -> Annotated[Mapping[str, ChannelMargins], VIEW]:
+        """Margins by channel."""
+        return {each.channel: each for each in self.channels}
 
     def of(self, channel: str) -> ChannelMargins:
         """Those of the channel of that name."""
-        return next(each for each in self.channels if each.channel == channel)
+        return self.loops[channel]
 
     @property
     def table(self) -> Matrix:
@@ -117,7 +124,7 @@ def _felt_at_once(own: complex, step: float | None) -> bool:
 
 
 @dataclass(frozen=True)
-class Peaks:
+class Peaks(InNotebook):
     """Highest singular values of S = (I + L)^-1 and T = I - S at a cut, with rotations times the stage's length (poses) or as they are."""
 
     cut: Cut
@@ -141,7 +148,7 @@ def peaks(closed: Loop, cut: Cut) -> Peaks:
 
 
 @dataclass(frozen=True, eq=False)
-class Bandwidths:
+class Bandwidths(InNotebook):
     """Bandwidths [Hz] (n,) by coordinate, the lowest frequency at which each is first crossed (NaN: never).
 
     `tracking`: the true motion falls 3 dB below its reference; `complementary`: T_ii falls 3 dB below 1; `rejection`: |S_ii| rises through
@@ -149,10 +156,10 @@ class Bandwidths:
     """
 
     coordinates: tuple[str, ...]
-    tracking: Array
-    complementary: Array
-    rejection: Array
-    half_rejection: Array
+    tracking: Annotated[Array, FREQUENCY, Along("coordinates")]
+    complementary: Annotated[Array, FREQUENCY, Along("coordinates")]
+    rejection: Annotated[Array, FREQUENCY, Along("coordinates")]
+    half_rejection: Annotated[Array, FREQUENCY, Along("coordinates")]
 
 
 def bandwidths(closed: Loop) -> Bandwidths:

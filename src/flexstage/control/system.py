@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 import scipy
 
 from flexstage.base.finding import Finding, nearest, require
 from flexstage.base.number import Array
+from flexstage.base.quantity import TIME
+from flexstage.base.record import INNER, VIEW, Called
 from flexstage.models.linear.model import Channel
 from flexstage.models.linear.state_space import StateSpace
 
@@ -25,25 +27,25 @@ class System:
     `DesignError` where shapes and names do not fit.
     """
 
-    A: Array
-    B: Array
-    C: Array
-    D: Array
-    inputs: tuple[Channel, ...]
-    outputs: tuple[Channel, ...]
-    step: float | None = None
+    A: Annotated[Array, VIEW]
+    B: Annotated[Array, VIEW]
+    C: Annotated[Array, VIEW]
+    D: Annotated[Array, VIEW]
+    inputs: Annotated[tuple[Channel, ...], INNER]
+    outputs: Annotated[tuple[Channel, ...], INNER]
+    step: Annotated[float | None, TIME] = None
 
     def __post_init__(self) -> None:
         """Refuse what does not fit together."""
         require(_findings(self))
 
     @property
-    def input_names(self) -> tuple[str, ...]:
+    def input_names(self) -> Annotated[tuple[str, ...], Called("inputs")]:
         """Names of the inputs."""
         return tuple(channel.name for channel in self.inputs)
 
     @property
-    def output_names(self) -> tuple[str, ...]:
+    def output_names(self) -> Annotated[tuple[str, ...], Called("outputs")]:
         """Names of the outputs."""
         return tuple(channel.name for channel in self.outputs)
 

@@ -2,22 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
-from flexstage.control.controllers.law import Law
+from flexstage.base.sheet import rows_of
 from flexstage.control.controllers.notch import Notch
-from flexstage.control.controllers.pi import PI
-from flexstage.control.controllers.pid import PID
-from flexstage.control.controllers.resonant import IntegralResonant
 from flexstage.control.disk import DiskMargin
-from flexstage.control.simulation.result import Simulated, StepFigures, others
+from flexstage.control.simulation.result import Excursion
 from flexstage.control.study.choices import ControllerKind
-from flexstage.control.study.runs import Run
+from flexstage.control.study.runs import Run, StepAnswer
 from flexstage.control.study.study import LoopStudy
 from flexstage.show.display import NO_VALUE, number, percent, value_with_unit
-from flexstage.show.table import Cell, Column, Content, Mark, Table, build
+from flexstage.show.table import Cell, Column, Content, Mark, Table, build, field_column
 
 _SMALL, _NOTHING = 1e-12, 1e-16
 _BANDWIDTH_NOTE = "Follows to: the true motion is 3 dB below its reference. Rejects to: |S| passes 1, disturbances above it are made worse."
@@ -29,11 +26,11 @@ _MARGIN_NOTE = (
 
 def loop_table(found: LoopStudy) -> Table:
     """What the loop is, and whether it is stable."""
-    plant, hardware = found.settled.plant, found.settled.plant.hardware
+    plant, hardware = found.plant, found.plant.hardware
     delay = f"{number(1e6 * hardware.delay, 4)} us"
     modes = f"{modes_told(len(plant.frequencies))} up to {number(float(plant.frequencies[-1]), 4)} Hz, {plant.left_out} as a static term"
     rows = [
-        ("stability", Cell("stable" if found.verdict.stable else "unstable", Mark.PASS if found.verdict.stable else Mark.FAIL)),
+        ("stability", Cell("stable" if found.stability.stable else "unstable", Mark.PASS if found.stability.stable else Mark.FAIL)),
         ("controller", _controller(found)),
         ("coordinates", ", ".join(plant.coordinates.names)),
         ("clock", f"{number(found.settled.rate, 5)} Hz, outputs {delay} after the samples, held"),
@@ -44,11 +41,11 @@ def loop_table(found: LoopStudy) -> Table:
         seen = found.peaks
         peak = f"S {number(seen.sensitivity.value, 4)} at {number(seen.sensitivity.frequency, 4)} Hz"
         rows.append(("highest peaks", f"{peak}, T {number(seen.complementary.value, 4)} at {number(seen.complementary.frequency, 4)} Hz"))
-    notes = [f"{found.verdict.sentence[0].upper()}{found.verdict.sentence[1:]}.", f"{plant.note[0].upper()}{plant.note[1:]}."]
+    notes = [f"{found.stability.sentence[0].upper()}{found.stability.sentence[1:]}.", f"{plant.note[0].upper()}{plant.note[1:]}."]
     if found.peaks is not None:
         notes.append("S: what the loop leaves of a disturbance, above 1 it adds to it. T: what it follows of a reference.")
-    if found.control.tuning is not None:
-        notes.insert(0, f"Tuned: {found.control.tuning.reason}.")
+    if found.controller.tuning is not None:
+        notes.insert(0, f"Tuned: {found.controller.tuning.reason}.")
     return build("Loop", ["what", "value"], [(Cell(name, Mark.STRONG), value) for name, value in rows], notes=notes)
 
 
@@ -66,39 +63,22 @@ def _controller(found: LoopStudy) -> str:
     if asked.kind is ControllerKind.NONE:
         return "none: open loop"
     where = f"{asked.kind.value.upper() if len(asked.kind.value) < 4 else asked.kind.value} in {asked.coordinates.value} coordinates"
-    frequencies = sorted({round(each.frequency, 1) for group in found.control.notches for each in group})
+    frequencies = sorted({round(each.frequency, 1) for each in found.controller.notches})
     return f"{where}, notches at {', '.join(f'{each:g}' for each in frequencies)} Hz" if frequencies else where
 
 
 def law_table(found: LoopStudy) -> Table | None:
     """The controller's numbers, loop by loop; `None` of one that is not made of single loops."""
-    control = found.control
-    if not control.laws:
+    loops = found.controller.loops
+    if not loops:
         return None
-    notches = control.notches or ((),) * len(control.laws)
-    heads = sorted({name for law in control.laws for name in _numbers(law)}, key=_HEADS.index)
-    rows = [
-        (Cell(name, Mark.STRONG), *(_numbers(law).get(head, "") for head in heads), _notches(group))
-        for name, law, group in zip(control.loop_names, control.laws, notches, strict=True)
-    ]
-    columns = ["loop", *(Column(head, _UNITS.get(head, "")) for head in heads), "notches"]
+    numbers = rows_of([each.law for each in loops.values()]).columns.items()
+    known = [field_column(each, values) for each, values in numbers if any(value is not None for value in values)]
+    notches = [_notches(each.notches) for each in loops.values()]
+    rows = zip([Cell(name, Mark.STRONG) for name in loops], *(cells for _, cells in known), notches, strict=True)
+    columns = ["loop", *(column for column, _ in known), "notches"]
     note = "From the loop's error to its command, both in metres: rotations times the stage's length."
-    return build("Controller", columns, rows, notes=[note])
-
-
-_HEADS = ("proportional", "integral", "derivative", "filter", "gain", "feed-through", "tracking")
-_UNITS = {"integral": "1/s", "derivative": "ms", "filter": "Hz", "gain": "1/s", "tracking": "1/s"}
-
-
-def _numbers(law: Law) -> dict[str, str]:
-    if isinstance(law, PI):
-        return {"proportional": number(law.proportional), "integral": number(law.integral)}
-    if isinstance(law, PID):
-        first = {"proportional": number(law.proportional), "integral": number(law.integral)}
-        return first | {"derivative": number(1e3 * law.derivative), "filter": number(law.filter)}
-    if isinstance(law, IntegralResonant):
-        return {"gain": number(law.gain), "feed-through": number(law.feedthrough), "tracking": number(law.tracking)}
-    return {}
+    return build("Controller", columns, list(rows), notes=[note])
 
 
 def _notches(group: Sequence[Notch]) -> str:
@@ -130,7 +110,7 @@ def margin_table(found: LoopStudy) -> Table | None:
         Column("delay margin", "ms"),
         Column("disk margin"),
     ]
-    return build("Bandwidth and margins", heads, rows, notes=[_BANDWIDTH_NOTE, _MARGIN_NOTE, *_together(found.disk)])
+    return build("Bandwidth and margins", heads, rows, notes=[_BANDWIDTH_NOTE, _MARGIN_NOTE, *_together(found.disk_margin)])
 
 
 def _together(found: DiskMargin | None) -> Iterator[str]:
@@ -155,7 +135,7 @@ def step_table(tests: Sequence[Run]) -> Table | None:
     >>> step_table([]) is None
     True
     """
-    stepped = [(test, test.figures) for test in tests if test.figures is not None]
+    stepped = [(test, test.step) for test in tests if test.step is not None]
     if not stepped:
         return None
     heads = [
@@ -171,27 +151,23 @@ def step_table(tests: Sequence[Run]) -> Table | None:
         "Settled: the true error stays within 2 % of the step. Others: the largest motion in metres and the largest in radians along all "
         "other axes of the platform, at any time, and along which."
     )
-    return build("Steps", heads, [tuple(_step(test, figures)) for test, figures in stepped], notes=[note])
+    return build("Steps", heads, [tuple(_step(test, step)) for test, step in stepped], notes=[note])
 
 
-def _step(test: Run, figures: StepFigures) -> Iterator[Content]:
-    seen, index = test.simulated, test.index
-    unit = seen.coordinates[index].unit
-    size = float(seen.reference[-1, index])
+def _step(test: Run, step: StepAnswer) -> Iterator[Content]:
     yield Cell(test.course.name, Mark.STRONG)
-    yield value_with_unit(size, unit, 4)
-    settling = float(figures.settling[index])
-    yield Cell("not", Mark.FAIL) if np.isinf(settling) else number(1e3 * settling, 4)
-    yield percent(float(figures.overshoot[index]), 3)
-    yield _length(float(figures.residual[index]), size, unit)
-    yield _others(seen, seen.coordinates[index].name)
+    yield value_with_unit(step.size, step.unit, 4)
+    yield Cell("not", Mark.FAIL) if np.isinf(step.settling) else number(1e3 * step.settling, 4)
+    yield percent(step.overshoot, 3)
+    yield _length(step.residual, step.size, step.unit)
+    yield _others(step.others)
     yield limits_text(test)
 
 
-def _others(seen: Simulated, moved: str) -> Cell:
+def _others(known: Mapping[str, Excursion]) -> Cell:
     """The largest motion of each unit, and its axis; what is far below an atom is rounding."""
-    known = others(seen, moved)
-    largest = {unit: max((value, name) for name, (value, each) in known.items() if each == unit) for _, unit in known.values()}
+    units = dict.fromkeys(each.unit for each in known.values())
+    largest = {unit: max((each.largest, name) for name, each in known.items() if each.unit == unit) for unit in units}
     told = [f"{value_with_unit(value, unit, 3)} {name}" for unit, (value, name) in largest.items() if value > _NOTHING]
     if not told:
         return Cell("0" if known else NO_VALUE, Mark.FAINT)
@@ -209,8 +185,8 @@ def limits_text(test: Run) -> str:
         f"{name} {noun} {percent(float(share), 3)}"
         for noun, names, shares in (
             ("saturated", seen.actuators, seen.saturated),
-            ("slewing", seen.actuators, seen.slewed),
-            ("out of range", seen.gauges, seen.held),
+            ("slewing", seen.actuators, seen.slewing),
+            ("out of range", seen.gauges, seen.out_of_range),
         )
         for name, share in zip(names, shares, strict=True)
         if share > 0.0

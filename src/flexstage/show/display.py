@@ -89,6 +89,7 @@ _FIELD_UNITS = {
     "um/s/Hz^0.5": 1e6,
     "um/s^2/Hz^0.5": 1e6,
     "mm/s": 1e3,
+    "ms": 1e3,
     "V/ms": 1e-3,
     "nm/V": 1e9,
     "um/N": 1e6,

@@ -10,7 +10,6 @@ import typer
 from flexstage.base.finding import refuse
 from flexstage.base.quantity import VOLTAGE
 from flexstage.base.unit import parse
-from flexstage.control.hysteresis.document import hysteresis_body
 from flexstage.control.hysteresis.report import hysteresis_report
 from flexstage.control.hysteresis.stack import dumps_hysteresis
 from flexstage.control.hysteresis.stack_test import Channels, stack_test
@@ -20,7 +19,6 @@ from flexstage.experiment.record import Record
 from flexstage.show.command.answer import answer
 from flexstage.show.command.options import Csv, Json, Report, output_option, text_option
 from flexstage.show.command.output import require_writable, save
-from flexstage.show.command.terminal import warn
 
 
 def hysteresis(  # noqa: PLR0913 (its options)
@@ -55,14 +53,13 @@ def hysteresis(  # noqa: PLR0913 (its options)
     reader = RecordTexts(units=units, rate=rate, kind="record", arrays=arrays)
     opened = [_open(each, reader) for each in records]
     found = stack_test(opened[0], Channels(volts, stroke), step=None if step is None else opened[1], limits=between)
-    for caution in found.found.cautions:
-        warn(caution)
     if output is not None:
         save(output, dumps_hysteresis(found.stack), "--output")
     if report is not None:
         save(report, hysteresis_report(found), "--report")
     tables = [stack_table(found), plays_table(found)]
-    answer("hysteresis", None, lambda: hysteresis_body(found), lambda: tables, json=json, csv=csv, beside=(report, output))
+    cautions = found.hysteresis.cautions
+    answer("hysteresis", None, lambda: found, lambda: tables, json=json, csv=csv, cautions=cautions, beside=(report, output))
 
 
 def _open(path: Path, reader: RecordTexts) -> Record:

@@ -21,7 +21,6 @@ from flexstage.base.quantity import (
 )
 from flexstage.control import error_tables as errors
 from flexstage.control import tables
-from flexstage.control.document import loop_body
 from flexstage.control.export.code.controller import controller_code
 from flexstage.control.export.code.text import identifier
 from flexstage.control.export.files import controller_files, export_findings, plant_file
@@ -173,7 +172,7 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
     answer(
         "loop",
         mechanism,
-        lambda: loop_body(found),
+        lambda: found,
         lambda: _tables(found),
         model=asked.model,
         json=json,
@@ -301,9 +300,9 @@ def _export(found: LoopStudy, target: Path) -> None:
 def _contents(found: LoopStudy, target: Path) -> Mapping[Path, str | bytes]:
     """What is written for one option, by file."""
     if target.suffix == ".mat":
-        return {target: plant_file(found.settled.plant)}
-    machine = driven_machine(found.settled, found.control, found.stacks)
-    about = f"{found.settled.mechanism.name or 'stage'}: {found.verdict.sentence}"
+        return {target: plant_file(found.plant)}
+    machine = driven_machine(found.settled, found.controller, found.stacks)
+    about = f"{found.settled.mechanism.name or 'stage'}: {found.stability.sentence}"
     if target.suffix == ".c":
         return controller_files(target, machine, about)
     return {target: fmu(controller_code(machine, target.stem, about))}
@@ -315,7 +314,7 @@ def _tables(found: LoopStudy) -> Iterator[Table | None]:
     yield tables.margin_table(found)
     yield tables.step_table(found.runs)
     yield tables.tracking_table(found.runs)
-    yield errors.rest_table(found.rest)
+    yield errors.rest_table(found.static_errors)
     yield errors.noise_table(found)
-    if found.stacks is not None and found.sweep is not None:
-        yield errors.hysteresis_table(found.stacks, found.sweep)
+    if found.hysteresis is not None:
+        yield errors.hysteresis_table(found.hysteresis)

@@ -10,12 +10,15 @@ import numpy as np
 
 from flexstage.base.finding import Finding
 from flexstage.base.number import Array
+from flexstage.base.record import Heading
 from flexstage.control.sampling import bilinear
 from flexstage.control.system import System
 from flexstage.models.linear.model import Channel
 
 ENTRIES = (Channel("error", "m"), Channel("pose", "m"), Channel("applied", "m"))
 EXIT = (Channel("command", "m"),)
+FIVE_DIGITS = Heading(digits=5)
+"""How a law's numbers are shown."""
 
 
 class Law(Protocol):

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
 from flexstage.base.finding import Finding, require
+from flexstage.base.quantity import FREQUENCY
 from flexstage.control.sampling import bilinear
 from flexstage.control.system import System
 from flexstage.models.linear.model import Channel
@@ -29,7 +31,7 @@ class Notch:
     [1.0, 0.02]
     """
 
-    frequency: float
+    frequency: Annotated[float, FREQUENCY]
     depth: float = 0.0
     damping: float = _WIDTH
 

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
 from flexstage.base.finding import Finding, require
-from flexstage.control.controllers.law import back_rate, gain_findings, law_system, slow_findings
+from flexstage.base.quantity import RATE, TIME
+from flexstage.control.controllers.law import FIVE_DIGITS, back_rate, gain_findings, law_system, slow_findings
 from flexstage.control.system import System
 
 
@@ -24,9 +26,9 @@ class PI:
     (0.015, np.complex128(0.5-1j))
     """
 
-    proportional: float = 0.0
-    integral: float = 0.0
-    tracking: float | None = None
+    proportional: Annotated[float, FIVE_DIGITS] = 0.0
+    integral: Annotated[float, RATE, FIVE_DIGITS] = 0.0
+    tracking: Annotated[float | None, TIME] = None
 
     def __post_init__(self) -> None:
         """Refuse gains that cannot be."""

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
 from flexstage.base.finding import Finding, require
-from flexstage.control.controllers.law import back_rate, gain_findings, law_system, slow_findings
+from flexstage.base.quantity import FREQUENCY, RATE, SHORT_TIME, TIME
+from flexstage.control.controllers.law import FIVE_DIGITS, back_rate, gain_findings, law_system, slow_findings
 from flexstage.control.controllers.pi import PI, tracking_findings
 from flexstage.control.system import System
 
@@ -26,11 +28,11 @@ class PID:
     True
     """
 
-    proportional: float
-    integral: float
-    derivative: float
-    filter: float
-    tracking: float | None = None
+    proportional: Annotated[float, FIVE_DIGITS]
+    integral: Annotated[float, RATE, FIVE_DIGITS]
+    derivative: Annotated[float, SHORT_TIME, FIVE_DIGITS]
+    filter: Annotated[float, FREQUENCY, FIVE_DIGITS]
+    tracking: Annotated[float | None, TIME] = None
 
     def __post_init__(self) -> None:
         """Refuse gains that cannot be."""

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
 from flexstage.base.finding import Finding, refuse, require
-from flexstage.control.controllers.law import back_rate, gain_findings, law_system, slow_findings
+from flexstage.base.quantity import RATE, TIME
+from flexstage.base.record import Heading
+from flexstage.control.controllers.law import FIVE_DIGITS, back_rate, gain_findings, law_system, slow_findings
 from flexstage.control.system import System
 
 
@@ -26,10 +29,10 @@ class IntegralResonant:
     0.5
     """
 
-    gain: float
-    feedthrough: float
-    tracking: float = 0.0
-    tracking_time: float | None = None
+    gain: Annotated[float, RATE, FIVE_DIGITS]
+    feedthrough: Annotated[float, Heading("feed-through", digits=5)]
+    tracking: Annotated[float, RATE, FIVE_DIGITS] = 0.0
+    tracking_time: Annotated[float | None, TIME] = None
 
     def __post_init__(self) -> None:
         """Refuse gains that cannot be."""

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 import scipy
 
 from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.number import Array, freeze
+from flexstage.base.quantity import TIME
 from flexstage.control.system import System
 from flexstage.models.linear.model import Channel
 
@@ -22,7 +24,7 @@ class LogCreep:
     """
 
     rate: float
-    reference: float = 0.1
+    reference: Annotated[float, TIME] = 0.1
 
     def __post_init__(self) -> None:
         """Refuse a reference time that is none."""

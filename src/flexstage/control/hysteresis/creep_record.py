@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
 from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array
+from flexstage.base.quantity import LENGTH, TIME
 from flexstage.control.hysteresis.creep import LogCreep
 
 _STILL = 0.01
@@ -25,8 +27,8 @@ class IdentifiedCreep:
     """
 
     law: LogCreep
-    stroke: float
-    span: tuple[float, float]
+    stroke: Annotated[float, LENGTH]
+    span: Annotated[tuple[float, float], TIME]
     rms: float
 
 

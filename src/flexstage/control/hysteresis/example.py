@@ -57,7 +57,7 @@ def example_test() -> StackTest:
     """The test of both records; identified once.
 
     >>> test = example_test()
-    >>> round(test.found.width, 2), round(test.creep.law.rate, 3)
+    >>> round(test.hysteresis.width, 2), round(test.creep.law.rate, 3)
     (0.15, 0.02)
     """
     return stack_test(example_record(), step=example_step())

@@ -22,7 +22,7 @@ def stack_figure(test: StackTest) -> Any:
     >>> len(stack_figure(example_test()).axes)
     3
     """
-    found = test.found
+    found = test.hysteresis
     form = shown("m", float(np.max(np.abs(found.strokes))))
     rows = _drawn(found.volts, test.kept)
     with styled():

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Annotated
 
+from flexstage.base.finding import Finding
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
+from flexstage.base.quantity import LENGTH, PIEZO_GAIN, VOLTAGE
+from flexstage.base.record import INNER, VIEW
 from flexstage.control.hysteresis.prandtl_ishlinskii import PrandtlIshlinskii
 from flexstage.control.hysteresis.shape import Range
 
@@ -25,6 +28,16 @@ class Trial:
 
 
 @dataclass(frozen=True, eq=False)
+class Plays:
+    """Thresholds and weights (n,) of a stack's plays; the envelopes `before` (V to V) and `after` (m to m) them, knots and values."""
+
+    thresholds: Annotated[Array, VOLTAGE]
+    weights: Annotated[Array, PIEZO_GAIN]
+    before: Annotated[tuple[Array, Array], VIEW]
+    after: Annotated[tuple[Array, Array], VIEW]
+
+
+@dataclass(frozen=True, eq=False)
 class IdentifiedHysteresis(InNotebook):
     """A model identified from a record, and how well it fits.
 
@@ -35,9 +48,9 @@ class IdentifiedHysteresis(InNotebook):
     `modelled` (k,) are the samples used.
     """
 
-    model: PrandtlIshlinskii
-    range: Range
-    stroke: float
+    model: Annotated[PrandtlIshlinskii, INNER]
+    range: Annotated[Range, VOLTAGE]
+    stroke: Annotated[float, LENGTH]
     rms: float
     largest: float
     validation: float
@@ -47,29 +60,14 @@ class IdentifiedHysteresis(InNotebook):
     inner: int
     known_from: int
     trials: tuple[Trial, ...]
-    cautions: tuple[str, ...]
+    cautions: Annotated[tuple[Finding, ...], INNER]
     volts: Array
     strokes: Array
     modelled: Array
 
-    def to_json(self) -> dict[str, Any]:
-        """The result as {range_v, stroke_m, rms, largest, validation, width, drift, branches, inner, trials, cautions, model}."""
-        return {
-            "range_v": list(self.range),
-            "stroke_m": self.stroke,
-            "rms": self.rms,
-            "largest": self.largest,
-            "validation": self.validation,
-            "width": self.width,
-            "drift": self.drift,
-            "branches": self.branches,
-            "inner": self.inner,
-            "trials": [[each.plays, each.pieces, each.reach, each.error] for each in self.trials],
-            "cautions": list(self.cautions),
-            "model": {
-                "thresholds_v": self.model.thresholds[0].tolist(),
-                "weights_m_per_v": self.model.weights[0].tolist(),
-                "before": [self.model.before.knots[0].tolist(), self.model.before.values[0].tolist()],
-                "after": [self.model.after.knots[0].tolist(), self.model.after.values[0].tolist()],
-            },
-        }
+    @property
+    def plays(self) -> Annotated[Plays, VIEW]:
+        """The model in numbers."""
+        before, after = self.model.before, self.model.after
+        ends = [(each.knots[0], each.values[0]) for each in (before, after)]
+        return Plays(self.model.thresholds[0], self.model.weights[0], *ends)

@@ -143,23 +143,25 @@ def _judged(search: _Search, best: Trial, limits: Range | None) -> IdentifiedHys
         inner=inner,
         known_from=known,
         trials=tuple(search.trials),
-        cautions=tuple(_cautions(search, (rms, inner), limits)),
+        cautions=tuple(_cautions(search, rms, inner, limits)),
         volts=search.volts,
         strokes=search.strokes,
         modelled=modelled,
     )
 
 
-def _cautions(search: _Search, found: tuple[float, int], limits: Range | None) -> Iterator[str]:
-    rms, inner = found
+def _cautions(search: _Search, rms: float, inner: int, limits: Range | None) -> Iterator[Finding]:
     low, high = search.range
     if not inner:
-        yield "The record has no inner loops: how it goes on after reversals within the range is concluded from the major loop alone"
+        what = "it has no inner loops: how it goes on after reversals within the range is concluded from the major loop alone"
+        yield Finding("record", what, "Record loops within the range as well")
     if rms > _LARGE:
-        yield f"The error, {rms:.1%} rms of the stroke, is large: the record may be too fast, or the stack no rate-independent hysteresis"
+        what = f"the error, {rms:.1%} rms of the stroke, is large: it may be too fast, or the stack no rate-independent hysteresis"
+        yield Finding("record", what, "Record slower, and compare")
     if limits and high - low < _COVERED * (limits[1] - limits[0]):
         part = (high - low) / (limits[1] - limits[0])
-        yield f"The record covers {low:g} V to {high:g} V, {part:.0%} of the actuator's range: beyond, the model goes on straight"
+        what = f"it covers {low:g} V to {high:g} V, {part:.0%} of the actuator's range: beyond, the model goes on straight"
+        yield Finding("record", what, "Record the whole range, or stay within what it covers")
 
 
 def _result_findings(found: IdentifiedHysteresis) -> Iterator[Finding]:

@@ -8,6 +8,7 @@ from flexstage.control.hysteresis.stack_test import StackTest
 from flexstage.control.hysteresis.tables import plays_table, stack_table
 from flexstage.show.figures.export import to_svg
 from flexstage.show.page import Head, Picture, Prose, page, section
+from flexstage.show.tables.caveats import caution_table
 
 _METHOD = (
     "A generalised Prandtl-Ishlinskii model: plays of fixed thresholds, weights of 0 or more by least squares, a monotone envelope of the "
@@ -26,6 +27,7 @@ def hysteresis_report(test: StackTest) -> str:
     drawn = to_svg(stack_figure(test), "stack", "Loops of the stack with the model, the model's error, and the volts of the inverse")
     caption = "Grey the record, blue the model and its error; green the volts that the inverse gives for the recorded strokes."
     sections = [
+        section("Cautions", [caution_table(test.hysteresis.cautions)]),
         section("Hysteresis", [Picture(drawn, caption), stack_table(test), Prose(_METHOD)]),
         section("Model", [plays_table(test)]),
     ]

@@ -5,11 +5,14 @@ from __future__ import annotations
 from collections.abc import Generator, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from typing import Annotated
 
 import numpy as np
 
 from flexstage.base.finding import DesignError, Finding, nearest, refuse, require
+from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
+from flexstage.base.record import VIEW
 from flexstage.control.hysteresis.creep_record import IdentifiedCreep, identify_creep
 from flexstage.control.hysteresis.identified import IdentifiedHysteresis
 from flexstage.control.hysteresis.identify import identify_hysteresis
@@ -29,15 +32,15 @@ class Channels:
 
 
 @dataclass(frozen=True, eq=False)
-class StackTest:
-    """What a test of a stack says: its hysteresis `found`, its `creep` where a step was recorded, and the channels used.
+class StackTest(InNotebook):
+    """What a test of a stack says: its `hysteresis`, its `creep` where a step was recorded, and the channels used.
 
     `undone` (k,) are the volts [V] by which the inverse makes the recorded strokes: those that were applied, if the model were exact.
     """
 
-    found: IdentifiedHysteresis
+    hysteresis: IdentifiedHysteresis
     undone: Array
-    channels: tuple[Channel, Channel]
+    channels: Channels
     source: str
     creep: IdentifiedCreep | None = None
 
@@ -45,18 +48,19 @@ class StackTest:
     def stack(self) -> StackHysteresis:
         """What the test says, as it stands in a file."""
         law = None if self.creep is None else self.creep.law
-        return stack_hysteresis(self.found.model, creep=law, volts=self.found.range, rms=self.found.rms, source=self.source)
+        found = self.hysteresis
+        return stack_hysteresis(found.model, creep=law, volts=found.range, rms=found.rms, source=self.source)
 
     @property
     def kept(self) -> Array:
         """Samples (m,) at which nothing depends on the unknown past any more: those that errors are told of."""
-        return np.arange(self.found.known_from, len(self.undone))
+        return np.arange(self.hysteresis.known_from, len(self.undone))
 
     @property
-    def undone_rms(self) -> float:
+    def inverse_rms(self) -> Annotated[float, VIEW]:
         """Rms difference of the volts from the inverse to those applied, as a part of the range."""
-        wrong = (self.undone - self.found.volts)[self.kept]
-        return float(np.sqrt(np.mean(wrong**2))) / (self.found.range[1] - self.found.range[0])
+        wrong, (low, high) = (self.undone - self.hysteresis.volts)[self.kept], self.hysteresis.range
+        return float(np.sqrt(np.mean(wrong**2))) / (high - low)
 
 
 def stack_test(record: Record, channels: Channels = Channels(), *, step: Record | None = None, limits: Range | None = None) -> StackTest:
@@ -69,7 +73,7 @@ def stack_test(record: Record, channels: Channels = Channels(), *, step: Record 
     >>> volts = 500.0 * (1.0 - np.cos(np.linspace(0.0, 6.0 * np.pi, 400)))
     >>> strokes = np.where(np.gradient(volts) > 0.0, 0.15 * volts, 0.15 * volts + 4e-5 * volts * (1000.0 - volts))
     >>> test = stack_test(in_memory([Channel("u", "V"), Channel("y", "um")], 100.0, np.column_stack([volts, strokes])))
-    >>> round(test.found.width, 2), test.found.rms < 0.02
+    >>> round(test.hysteresis.width, 2), test.hysteresis.rms < 0.02
     (0.07, True)
     """
     chosen = _chosen(record, channels)
@@ -81,7 +85,8 @@ def stack_test(record: Record, channels: Channels = Channels(), *, step: Record 
         times, *both = _samples(step, _chosen(step, channels))
         with _told_of(step):
             creep = identify_creep(times, *both)
-    return StackTest(found, inverse(found.model).run(found.strokes), chosen, record.source, creep)
+    used = Channels(*(each.name for each in chosen))
+    return StackTest(found, inverse(found.model).run(found.strokes), used, record.source, creep)
 
 
 @contextmanager

@@ -18,25 +18,25 @@ def stack_table(test: StackTest) -> Table:
     >>> stack_table(example_test()).texts()[1]
     ['volts', '0 to 1000 V', 'u']
     """
-    found = test.found
+    found = test.hysteresis
     plays, pieces = found.model.thresholds.shape[1], found.model.before.knots.shape[1] - 1
     rows = [
-        ("volts", f"{number(found.range[0])} to {number(found.range[1])} V", test.channels[0].name),
-        ("stroke", value_with_unit(found.stroke, "m"), test.channels[1].name),
+        ("volts", f"{number(found.range[0])} to {number(found.range[1])} V", test.channels.volts or ""),
+        ("stroke", value_with_unit(found.stroke, "m"), test.channels.stroke or ""),
         ("loop width", percent(found.width, 3), "of the stroke, largest distance of the branches"),
         ("branches", str(found.branches), f"{found.inner} of them inner ones"),
         ("model", f"{plays} plays", f"envelope of {pieces} piece{'s' if pieces > 1 else ''}; chosen among {len(found.trials)}"),
         ("error, rms", _error(found.rms), value_with_unit(found.rms * found.stroke, "m", 3)),
         ("error, largest", _error(found.largest, 5.0), value_with_unit(found.largest * found.stroke, "m", 3)),
         ("error, kept parts", _error(found.validation), "rms over parts of the record that were not fitted"),
-        ("inverse", _error(test.undone_rms), "rms of its volts against those applied, of their range"),
+        ("inverse", _error(test.inverse_rms), "rms of its volts against those applied, of their range"),
         ("drift", percent(found.drift, 3), "of the stroke over the record"),
     ]
     if test.creep is not None:
         span = f"{number(test.creep.span[0], 3)} to {number(test.creep.span[1], 3)} s after the step"
         rows.append(("creep", f"{percent(test.creep.law.rate, 3)} a decade", span))
     strong = [(Cell(name, Mark.STRONG), value, remark) for name, value, remark in rows]
-    return build("Hysteresis of the stack", ["", "value", ""], strong, notes=found.cautions, provenance=test.source)
+    return build("Hysteresis of the stack", ["", "value", ""], strong, provenance=test.source)
 
 
 def _error(share: float, allowed: float = 1.0) -> Cell:
@@ -50,11 +50,11 @@ def plays_table(test: StackTest) -> Table:
     >>> plays_table(example_test()).texts()[0]
     ['threshold [V]', 'weight [nm/V]', 'sum of weights [nm/V]']
     """
-    model = test.found.model
+    plays = test.hysteresis.plays
     columns = (
-        aligned(model.thresholds[0].tolist()),
-        aligned((1e9 * model.weights[0]).tolist(), 4),
-        aligned((1e9 * np.cumsum(model.weights[0])).tolist(), 4),
+        aligned(plays.thresholds.tolist()),
+        aligned((1e9 * plays.weights).tolist(), 4),
+        aligned((1e9 * np.cumsum(plays.weights)).tolist(), 4),
     )
     heads = [Column("threshold", "V"), Column("weight", "nm/V"), Column("sum of weights", "nm/V")]
     return build("Plays", heads, list(zip(*columns, strict=True)))

@@ -3,33 +3,36 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
 from flexstage.base.finding import nearest, refuse
 from flexstage.base.labelled import Matrix
+from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
+from flexstage.base.record import INNER, Along
 from flexstage.control.simulation.machine import Machine
 from flexstage.models.linear.model import Channel
 from flexstage.spatial.frame import COMPONENTS
 
 
 @dataclass(frozen=True, eq=False)
-class Simulated:
+class Simulated(InNotebook):
     """A loop over time: all series have a row a sample, `times` (n,) [s].
 
     `reference`, `pose` (estimated) and `error` (n, f) [m, rad] by `coordinates`; `motions` (n, p) by `channels`, the true ones; by
     `actuators`, all as strokes [m] from the bias: `command` of the controller, `asked` of the amplifiers (behind inverse and converter),
     `given` by them (behind their limits), `stroke` (n, m) that reaches the stage; `volts` (NaN where a stack states none); `readings`
-    (n, g) [m] by `gauges`, as they give them. `saturated` and `slewed` (m,) are the shares of samples at a limit of range, or of speed
-    alone, `held` (g,) those in which a gauge was beyond its range or lost, and the loop went on by its last good reading.
+    (n, g) [m] by `gauges`, as they give them. `saturated` and `slewing` (m,) are the shares of samples at a limit of range, or of speed
+    alone, `out_of_range` (g,) those in which a gauge was beyond its range or lost, and the loop went on by its last good reading.
     """
 
     times: Array
-    coordinates: tuple[Channel, ...]
+    coordinates: Annotated[tuple[Channel, ...], INNER]
     actuators: tuple[str, ...]
     gauges: tuple[str, ...]
-    channels: tuple[Channel, ...]
+    channels: Annotated[tuple[Channel, ...], INNER]
     reference: Array
     pose: Array
     error: Array
@@ -40,9 +43,9 @@ class Simulated:
     stroke: Array
     volts: Array
     readings: Array
-    saturated: Array
-    slewed: Array
-    held: Array
+    saturated: Annotated[Array, Along("actuators")]
+    slewing: Annotated[Array, Along("actuators")]
+    out_of_range: Annotated[Array, Along("gauges")]
 
     def motion(self, name: str) -> Array:
         """The true motion (n,) of that channel (`platform.x`) [m, rad]; raises `DesignError` where it was not kept."""
@@ -63,8 +66,16 @@ class Simulated:
         return self.reference - np.stack([self.motion(name) for name in kept], axis=-1)
 
 
-def others(found: Simulated, moved: str) -> dict[str, tuple[float, str]]:
-    """The largest motion along every axis but the one that is `moved`, and its unit: what it departs from its reference, or from rest.
+@dataclass(frozen=True)
+class Excursion:
+    """The largest motion along an axis [`unit`]."""
+
+    largest: float
+    unit: str
+
+
+def others(found: Simulated, moved: str) -> dict[str, Excursion]:
+    """The largest motion along every axis but the one that is `moved`: what it departs from its reference, or from rest.
 
     All of the platform's axes that were kept count, whether the loop controls them or not, and whatever their unit.
 
@@ -77,13 +88,12 @@ def others(found: Simulated, moved: str) -> dict[str, tuple[float, str]]:
     """
     known = {channel.name: channel.unit for channel in found.channels}
     largest = np.max(np.abs(found.true_error), axis=0).tolist()
-    result = {
-        channel.name: (value, channel.unit) for channel, value in zip(found.coordinates, largest, strict=True) if channel.name != moved
-    }
+    pairs = zip(found.coordinates, largest, strict=True)
+    result = {channel.name: Excursion(value, channel.unit) for channel, value in pairs if channel.name != moved}
     for name in COMPONENTS:
         kept = next((each for each in (f"relative.{name}", f"platform.{name}") if each in known), None)
         if kept is not None and name != moved and name not in result:
-            result[name] = (float(np.max(np.abs(found.motion(kept)))), known[kept])
+            result[name] = Excursion(float(np.max(np.abs(found.motion(kept)))), known[kept])
     return result
 
 
@@ -131,8 +141,8 @@ def simulated(given: Machine, reference: Array, found: Series) -> Simulated:
         volts=amplifiers.bias + found.given / amplifiers.gain,
         readings=found.readings,
         saturated=np.mean(at_end, axis=0),
-        slewed=np.mean(limited & ~at_end, axis=0),
-        held=np.mean(~(np.abs(found.readings) <= given.reach), axis=0),
+        slewing=np.mean(limited & ~at_end, axis=0),
+        out_of_range=np.mean(~(np.abs(found.readings) <= given.reach), axis=0),
     )
 
 

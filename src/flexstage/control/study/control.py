@@ -5,11 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
+from typing import Annotated
 
 import numpy as np
 
 from flexstage.analysis.complete import platform_modes
 from flexstage.base.number import Array
+from flexstage.base.quantity import FREQUENCY
+from flexstage.base.record import INNER, VIEW
 from flexstage.control.controllers.decentralised import Decentralised, channels
 from flexstage.control.controllers.law import Law
 from flexstage.control.controllers.loops import Loops, actuator_loops, loop_modes, modal_loops, platform_loops
@@ -42,6 +45,14 @@ _SENSITIVITY = 2.0
 _FILTER = 1e3
 
 
+@dataclass(frozen=True)
+class SingleLoop:
+    """One of several loops: its `law`, with the numbers that its kind has, and the `notches` behind it."""
+
+    law: Law
+    notches: tuple[Notch, ...]
+
+
 @dataclass(frozen=True, eq=False)
 class Control:
     """A controller as a system, and where it is from: what it is made of, and how it was tuned (`None`: it was not).
@@ -50,24 +61,33 @@ class Control:
     """
 
     system: System
-    made_of: Decentralised | LQG | None
-    tuning: Tuning | None
-    gains: Array
+    made_of: Annotated[Decentralised | LQG | None, INNER]
+    tuning: Annotated[Tuning | None, INNER]
+    gains: Annotated[Array, VIEW]
 
     @property
-    def notches(self) -> tuple[tuple[Notch, ...], ...]:
-        """Notch filters by loop."""
-        return self.made_of.notches if isinstance(self.made_of, Decentralised) else ()
+    def loops(self) -> Annotated[Mapping[str, SingleLoop], VIEW]:
+        """Single loops by name; none of a controller that is not made of any."""
+        made = self.made_of
+        if not isinstance(made, Decentralised):
+            return {}
+        notches = made.notches or ((),) * len(made.laws)
+        return {name: SingleLoop(law, group) for name, law, group in zip(made.loops.names, made.laws, notches, strict=True)}
 
     @property
-    def laws(self) -> tuple[Law, ...]:
-        """Laws by loop."""
-        return self.made_of.laws if isinstance(self.made_of, Decentralised) else ()
+    def notches(self) -> tuple[Notch, ...]:
+        """Notch filters of all loops."""
+        return tuple(notch for each in self.loops.values() for notch in each.notches)
 
     @property
-    def loop_names(self) -> tuple[str, ...]:
-        """Names of the single loops; none of a controller that is not made of any."""
-        return self.made_of.loops.names if isinstance(self.made_of, Decentralised) else ()
+    def tuned(self) -> Annotated[str | None, VIEW]:
+        """How it was tuned."""
+        return None if self.tuning is None else self.tuning.reason
+
+    @property
+    def bandwidth(self) -> Annotated[float | None, FREQUENCY]:
+        """To which bandwidth it was tuned, that of the slowest loop."""
+        return None if self.tuning is None else self.tuning.bandwidth
 
 
 def controlled(given: Settled, gains: Array) -> Control:
@@ -79,8 +99,8 @@ def controlled(given: Settled, gains: Array) -> Control:
     >>> from flexstage.control.study.settle import settled
     >>> from flexstage.control.study.setup import LoopSetup
     >>> given = settled(parallelogram(), LoopSetup(controller=Controlling(integral=300.0)))
-    >>> controlled(given, given.plant.coordinates.strokes).laws
-    (PI(proportional=0.0, integral=300.0, tracking=None),)
+    >>> controlled(given, given.plant.coordinates.strokes).loops["x"].law
+    PI(proportional=0.0, integral=300.0, tracking=None)
     """
     asked = given.setup.controller
     forward = gains if Compensation.REFERENCE in given.setup.compensate else None

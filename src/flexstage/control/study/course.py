@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Annotated
 
 import numpy as np
 
@@ -13,6 +14,8 @@ from flexstage.analysis.workspace.stroke import StrokeLimits
 from flexstage.base.finding import Finding, nearest, refuse, require
 from flexstage.base.labelled import Matrix
 from flexstage.base.number import Array
+from flexstage.base.quantity import TIME
+from flexstage.base.record import INNER
 from flexstage.control.coordinates import Coordinates
 from flexstage.control.study.setup import Commanded, FileMotion, Motion, RasterMotion, SineMotion, SpiralMotion, StepMotion
 from flexstage.control.trajectory.check import reach_findings, speed_findings
@@ -34,13 +37,13 @@ _MOST_SAMPLES = 5_000_000
 
 @dataclass(frozen=True, eq=False)
 class Course:
-    """A trajectory by name, as `long` [s] as it is looked at; `moved` are the coordinates it is about, `plane` two to be shown in plan."""
+    """A trajectory by name, and its `duration` [s]; `moved` are the coordinates it is about, `plane` two to be shown in plan."""
 
     name: str
-    trajectory: Trajectory
+    trajectory: Annotated[Trajectory, INNER]
     moved: tuple[str, ...]
-    long: float
-    plane: tuple[str, str] | None = None
+    duration: Annotated[float, TIME]
+    plane: Annotated[tuple[str, str] | None, INNER] = None
 
     @property
     def is_step(self) -> bool:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
@@ -10,28 +11,31 @@ from flexstage.analysis.complete import read
 from flexstage.analysis.deflection import deflection
 from flexstage.analysis.lost_motion import LostMotion, lost_motion
 from flexstage.base.finding import DesignError
+from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, first_design
+from flexstage.base.quantity import LENGTH
+from flexstage.base.record import VIEW
 from flexstage.control.compensation import StaticError, compensated, static_error, uncompensated
 from flexstage.control.study.settle import Settled
 from flexstage.models.theory import Model
 
 
 @dataclass(frozen=True, eq=False)
-class RestErrors:
-    """Errors at rest of the stage by its model: commanded by R_a (`bare`), and by the gains of the same model (`corrected`).
+class RestErrors(InNotebook):
+    """Errors at rest of the stage by its model: commanded by R_a (`ideal_map`), and by the gains of the same model (`lost_motion_gains`).
 
-    `other` is what gains of the `other_model` leave on it (`None` where that model does not have the stage). `load` (6,) is the twist
-    of the platform under all its loads, strokes held, `carried` (6,) what of it no stroke takes back, `strokes` (n,) [m] those that take
-    back the rest.
+    `other_gains` is what gains of the `other_model` leave on it (`None` where that model does not have the stage). `load` (6,) [m, rad]
+    is the twist of the platform under all its loads, strokes held, `load_left` (6,) what of it no stroke takes back, `load_strokes` (n,)
+    [m] those that take back the rest.
     """
 
-    bare: StaticError
-    corrected: StaticError
-    other: StaticError | None
+    ideal_map: StaticError
+    lost_motion_gains: StaticError
+    other_gains: StaticError | None
     other_model: Model
-    load: Array
-    carried: Array
-    strokes: Array
+    load: Annotated[Array, VIEW]
+    load_left: Annotated[Array, VIEW]
+    load_strokes: Annotated[Array, LENGTH]
 
 
 def rest_errors(given: Settled, lost: LostMotion) -> RestErrors:
@@ -43,7 +47,7 @@ def rest_errors(given: Settled, lost: LostMotion) -> RestErrors:
     >>> from flexstage.control.study.setup import LoopSetup
     >>> given = settled(double_triangle(), LoopSetup())
     >>> found = rest_errors(given, lost_motion(given.kinematics, given.model))
-    >>> round(found.bare.error.at("z", "z").item(), 3), found.corrected.largest < 1e-9
+    >>> round(found.ideal_map.error.at("z", "z").item(), 3), found.lost_motion_gains.largest < 1e-9
     (0.032, True)
     """
     kinematics = given.kinematics
@@ -51,13 +55,13 @@ def rest_errors(given: Settled, lost: LostMotion) -> RestErrors:
     carrying = compensated(lost, kinematics, load)
     other, model = _other(given)
     return RestErrors(
-        bare=static_error(uncompensated(kinematics), kinematics, lost.gain, load),
-        corrected=static_error(compensated(lost, kinematics), kinematics, lost.gain, load),
-        other=None if other is None else static_error(compensated(other, kinematics), kinematics, lost.gain, load),
+        ideal_map=static_error(uncompensated(kinematics), kinematics, lost.gain, load),
+        lost_motion_gains=static_error(compensated(lost, kinematics), kinematics, lost.gain, load),
+        other_gains=None if other is None else static_error(compensated(other, kinematics), kinematics, lost.gain, load),
         other_model=model,
         load=load,
-        carried=static_error(carrying, kinematics, lost.gain, load).offset,
-        strokes=carrying.offset,
+        load_left=static_error(carrying, kinematics, lost.gain, load).offset,
+        load_strokes=carrying.offset,
     )
 
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, fields, replace
+from typing import Annotated
 
 import numpy as np
 import scipy
@@ -14,11 +15,13 @@ from flexstage.analysis.workspace.stroke import stacks as piezo_stacks
 from flexstage.base.finding import Finding, require
 from flexstage.base.labelled import Matrix
 from flexstage.base.number import Array
+from flexstage.base.quantity import TIME
+from flexstage.base.record import INNER, VIEW
 from flexstage.control.closed import Loop
 from flexstage.control.creeping import with_creep
 from flexstage.control.simulation.machine import Machine, machine
 from flexstage.control.simulation.noise import noises
-from flexstage.control.simulation.result import Simulated, StepFigures, step_figures, tracking
+from flexstage.control.simulation.result import Excursion, Simulated, StepFigures, others, step_figures, tracking
 from flexstage.control.simulation.run import simulate
 from flexstage.control.study.choices import Compensation
 from flexstage.control.study.control import Control
@@ -35,14 +38,54 @@ _REPEATED = 6
 
 
 @dataclass(frozen=True, eq=False)
+class StepAnswer:
+    """What a step of `size` [`unit`] came to, along its own coordinate: `settling` time [s], infinite where it does not settle.
+
+    `overshoot` is a share of the step, `residual` [`unit`] the true error at the end, `others` what every other axis of the platform did,
+    `largest` (f,) [m, rad] the largest true error of each coordinate.
+    """
+
+    size: float
+    unit: str
+    settling: Annotated[float, TIME]
+    overshoot: float
+    residual: float
+    others: Mapping[str, Excursion]
+    largest: Annotated[Array, VIEW]
+
+
+@dataclass(frozen=True, eq=False)
 class Run:
     """A course and what came of it: `figures` of a step, `tracking` errors (rms and peak, as seen by the gauges and true)."""
 
     course: Course
     simulated: Simulated
-    figures: StepFigures | None
+    figures: Annotated[StepFigures | None, INNER]
     tracking: Matrix
-    cautions: tuple[Finding, ...] = ()
+    cautions: Annotated[tuple[Finding, ...], INNER] = ()
+
+    @property
+    def seconds(self) -> Annotated[float, VIEW]:
+        """How long it was simulated [s]."""
+        times = self.simulated.times
+        return float(times[-1] + (times[1] - times[0]))
+
+    @property
+    def step(self) -> Annotated[StepAnswer | None, VIEW]:
+        """The answer where the course is a step."""
+        if self.figures is None:
+            return None
+        seen, index = self.simulated, self.index
+        channel = seen.coordinates[index]
+        return StepAnswer(
+            size=float(seen.reference[-1, index]),
+            unit=channel.unit,
+            settling=float(self.figures.settling[index]),
+            overshoot=float(self.figures.overshoot[index]),
+            residual=float(self.figures.residual[index]),
+            others=others(seen, channel.name),
+            largest=np.max(np.abs(seen.true_error), axis=0),
+        )
 
     @property
     def index(self) -> int:
@@ -153,7 +196,7 @@ def rest_rms(given: Settled, control: Control, closed: Loop) -> RestRms:
 
 def _long(course: Course, rest: float) -> float:
     """A course, and a rest: of a step to see it settle, of a trajectory a fifth at most."""
-    return course.long + (rest if course.is_step else min(rest, 0.2 * course.long))
+    return course.duration + (rest if course.is_step else min(rest, 0.2 * course.duration))
 
 
 def rest_time(closed: Loop, *, ringing: bool = False) -> float:
@@ -205,7 +248,7 @@ def _run(given: Settled, course: Course, computed: Machine, cautions: tuple[Find
 
 def _lost(course: Course, found: Simulated, computed: Machine) -> Iterator[Finding]:
     """Gauges that went beyond their range."""
-    for name, share, reach in zip(found.gauges, found.held, computed.reach, strict=True):
+    for name, share, reach in zip(found.gauges, found.out_of_range, computed.reach, strict=True):
         if share > 0.0:
             what = f"{name} measures {1e6 * reach:.4g} um both ways and is beyond it in {100.0 * share:.3g} % of the samples"
             advice = "The loop goes on by its last good reading: command less, or take a gauge of a longer range"

@@ -5,8 +5,8 @@ Every field carries its quantity: that alone makes the file's reader and its sch
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from typing import Annotated, ClassVar, TypeAlias
+from dataclasses import asdict, dataclass, field
+from typing import Annotated, Any, ClassVar, TypeAlias
 
 from flexstage.base.quantity import (
     ACCELERATION,
@@ -241,3 +241,8 @@ class LoopSetup:
     controller: Controlling = field(default_factory=Controlling)
     hysteresis: HystereticStacks | None = None
     trajectory: Commanded = field(default_factory=StepMotion)
+
+    def to_json(self) -> dict[str, Any]:
+        """The keys of its file with plain values, SI."""
+        kind, word = self.trajectory.TOLD_BY
+        return asdict(self) | {"trajectory": {kind: word, **asdict(self.trajectory)}}

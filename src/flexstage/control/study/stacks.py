@@ -6,11 +6,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 from itertools import pairwise
+from typing import Annotated
 
 import numpy as np
 
 from flexstage.analysis.workspace.drive import Drive, drive
 from flexstage.base.number import Array
+from flexstage.base.quantity import LENGTH, SHARE
+from flexstage.base.record import Along, Heading
 from flexstage.control.hysteresis.bouc_wen import BoucWen, bouc_wen
 from flexstage.control.hysteresis.creep import Creep, LogCreep, exponentials
 from flexstage.control.hysteresis.identify import identify_hysteresis
@@ -32,6 +35,7 @@ _STROKE, _VOLTS = 150e-6, (0.0, 1000.0)
 _SWEPT = 0.6
 _CREEPS = (0.01, 100.0)
 """Times [s] over which creep is followed: before, it counts to the stroke; a simulation lasts no longer."""
+_EXACT = 1e-12
 _TURNS = (1.0, -1.0, 0.7, -0.7, 0.4, -0.4, 0.0)
 
 
@@ -52,16 +56,40 @@ class Stacks:
 
 @dataclass(frozen=True, eq=False)
 class Sweep:
-    """Strokes (k, n) [m] that came where `wanted` ones were asked for, over and over again less far: `bare` and with the `inverse`."""
+    """Strokes (k, n) [m] that came where `wanted` ones were asked for, over and over again less far: `bare` and with the `inverse`.
+
+    `width` (n,) is that of each stack's loop as a share of its stroke.
+    """
 
     actuators: tuple[str, ...]
+    width: Annotated[Array, SHARE, Along("actuators"), Heading("loop width", digits=3)]
     wanted: Array
     bare: Array
     inverse: Array
 
-    def error(self, came: Array) -> Array:
+    @property
+    def range(self) -> Annotated[Array, LENGTH, Along("actuators"), Heading("range swept", digits=4, varying=True)]:
+        """The range swept (n,) [m]."""
+        return np.ptp(self.wanted, axis=0)
+
+    @property
+    def rms_error(self) -> Annotated[Array, SHARE, Along("actuators"), Heading("rms error, bare", digits=3)]:
         """Rms (n,) of what came less what was wanted, as a share of the range swept."""
-        return np.sqrt(np.mean((came - self.wanted) ** 2, axis=0)) / np.ptp(self.wanted, axis=0)
+        return self._error(self.bare)
+
+    @property
+    def rms_error_inverse(self) -> Annotated[Array, SHARE, Along("actuators"), Heading("with inverse", digits=3)]:
+        """The same with the inverse."""
+        return self._error(self.inverse)
+
+    @property
+    def improvement(self) -> Annotated[Array, Along("actuators"), Heading("better by", digits=3, infinite="exact")]:
+        """Without inverse over with it (n,); infinite where the inverse is exact but for rounding."""
+        exact = self.rms_error_inverse <= _EXACT
+        return np.where(exact, np.inf, self.rms_error / np.where(exact, 1.0, self.rms_error_inverse))
+
+    def _error(self, came: Array) -> Array:
+        return np.sqrt(np.mean((came - self.wanted) ** 2, axis=0)) / self.range
 
 
 def stacks_of(mechanism: Mechanism, given: HystereticStacks) -> Stacks:
@@ -136,7 +164,7 @@ def swept(given: Stacks) -> Sweep:
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> found = swept(stacks_of(double_triangle(), HystereticStacks(width=0.15)))
-    >>> bool(np.all(found.error(found.inverse) < 0.2 * found.error(found.bare)))
+    >>> bool(np.all(found.rms_error_inverse < 0.2 * found.rms_error))
     True
     """
     electric, model, plant = given.electric, given.model, given.plant
@@ -149,7 +177,7 @@ def swept(given: Stacks) -> Sweep:
     back = hysteresis_inverse(model)
     volts = back.run(wanted + at_rest, inverse_state(model, start))
     came = [_driven(plant, each, bias) for each in (bias + wanted / gain, volts)]
-    return Sweep(electric.actuators, wanted, came[0], came[1])
+    return Sweep(electric.actuators, given.width, wanted, came[0], came[1])
 
 
 def _driven(plant: Hysteresis, volts: Array, bias: Array) -> Array:

@@ -4,18 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import TypeVar
+from typing import Annotated, TypeVar
 
 import numpy as np
 
 from flexstage.analysis.lost_motion import LostMotion, lost_motion
 from flexstage.base.finding import Finding, refuse
 from flexstage.base.labelled import Matrix
+from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, Table, first_design
+from flexstage.base.quantity import FREQUENCY, RATE
+from flexstage.base.record import INNER, VIEW
 from flexstage.control.closed import Cut, Loop, loop
 from flexstage.control.curves import Curves, curves
 from flexstage.control.disk import DiskMargin, disk_margins
 from flexstage.control.noise import NoiseBudget, noise_budget
+from flexstage.control.plants import Plant
 from flexstage.control.simulation.result import Simulated
 from flexstage.control.stability import Verdict, require_stable, verdict
 from flexstage.control.stability_margins import Bandwidths, Margins, Peaks, bandwidths, crosstalk, margins, peaks
@@ -35,43 +39,65 @@ _NO_LOOP = "the stage is commanded in open loop"
 
 
 @dataclass(frozen=True, eq=False)
-class LoopStudy:
+class LoopStudy(InNotebook):
     """A loop and everything that follows from it.
 
-    `closed` is the loop with the modes it feels, `growth` [1/s] that of the slowest motion with all modes below half the rate.
-    `margins`, `peaks`, `disk` (of all loops at once), `bandwidths`, `curves` are at the pose; missing, as `missing` says, of a stage in
-    open loop. `rest` are the errors at rest of the stage without its loop. `noise` is the budget at rest, `still` (where there is any
-    noise) a simulation of it, `resting` what several find where rounding is no white noise, so that the budget does not hold. `stacks` are
-    those with hysteresis, if the set-up states any, and `sweep` what they do in open loop. `runs` are the simulations. `cautions` are
-    what one should know of all this.
+    `closed` is the loop with the modes it feels, `growth_all_modes` [1/s] that of the slowest motion with all below half the rate.
+    `margins`, `peaks`, `disk_margin` (of all loops at once), `bandwidths`, `curves` are at the pose; absent, as `reasons` say, of a stage
+    in open loop. `static_errors` are those at rest of the stage without its loop. `noise` is the budget at rest, `still` (where there is
+    any noise) a simulation of it, `resting` what several find where rounding is no white noise, so that the budget does not hold. `stacks`
+    are those with hysteresis, if the set-up states any, `hysteresis` what they do in open loop. `runs` are the simulations. `cautions`
+    are what one should know of all this.
     """
 
-    settled: Settled
-    lost: LostMotion
-    control: Control
-    closed: Loop
-    verdict: Verdict
-    growth: float
+    settled: Annotated[Settled, INNER]
+    lost: Annotated[LostMotion, INNER]
+    controller: Control
+    closed: Annotated[Loop, INNER]
+    stability: Verdict
+    growth_all_modes: Annotated[float, RATE]
     margins: Margins | None
     peaks: Peaks | None
     bandwidths: Bandwidths | None
-    curves: Curves | None
+    curves: Annotated[Curves | None, INNER]
     crosstalk: Matrix
-    disk: DiskMargin | None
-    rest: RestErrors
+    disk_margin: DiskMargin | None
+    static_errors: RestErrors
     noise: NoiseBudget
-    still: Simulated | None
-    resting: RestRms | None
-    stacks: Stacks | None
-    sweep: Sweep | None
+    still: Annotated[Simulated | None, INNER]
+    resting: Annotated[RestRms | None, INNER]
+    stacks: Annotated[Stacks | None, INNER]
+    hysteresis: Sweep | None
     runs: tuple[Run, ...]
-    cautions: tuple[Finding, ...]
-    missing: Mapping[str, str]
+    cautions: Annotated[tuple[Finding, ...], INNER]
+    reasons: Mapping[str, str]
 
     @property
-    def setup(self) -> LoopSetup:
-        """The set-up that was asked for."""
+    def setup(self) -> Annotated[LoopSetup, VIEW]:
+        """The set-up file's keys with what was asked for, SI; null: settled by the stage."""
         return self.settled.setup
+
+    @property
+    def plant(self) -> Annotated[Plant, VIEW]:
+        """The plant with the modes that the loop feels."""
+        return self.settled.plant
+
+    @property
+    def highest_platform_mode(self) -> Annotated[float, FREQUENCY]:
+        """The highest of the platform's modes, of as many as the loop has coordinates."""
+        return self.settled.highest
+
+    @property
+    def simulated_rms(self) -> Annotated[Array | None, VIEW]:
+        """Rms (f,) of the true motion at rest by simulation, by coordinate; null where there is no noise."""
+        if self.resting is not None:
+            return self.resting.rms
+        return None if self.still is None else np.sqrt(np.mean(self.still.true_error**2, axis=0))
+
+    @property
+    def simulated_interval(self) -> Annotated[tuple[Array, Array] | None, VIEW]:
+        """Low and high (f,) ends that hold it by 95 %, where rounding is not white."""
+        return None if self.resting is None else (self.resting.low, self.resting.high)
 
 
 def loop_study(mechanism: Mechanism, setup: LoopSetup | None = None, *, tell: Told | None = None) -> LoopStudy:
@@ -81,7 +107,7 @@ def loop_study(mechanism: Mechanism, setup: LoopSetup | None = None, *, tell: To
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> found = loop_study(parallelogram())
-    >>> found.verdict.stable, found.runs[0].course.name
+    >>> found.stability.stable, found.runs[0].course.name
     (True, 'x')
     """
     said = _Steps(tell)
@@ -92,7 +118,7 @@ def loop_study(mechanism: Mechanism, setup: LoopSetup | None = None, *, tell: To
     require_stable(closed, "margins, noise and simulations")
     found, growth = verdict(closed), _whole_growth(given, control)
     rest = rest_errors(given, lost)
-    carried = rest.strokes if Compensation.LOAD in given.setup.compensate else None
+    carried = rest.load_strokes if Compensation.LOAD in given.setup.compensate else None
     stacks = None if given.setup.hysteresis is None else stacks_of(mechanism, given.setup.hysteresis)
     is_closed = setup is None or setup.controller.kind is not ControllerKind.NONE
     tested = said.of(0.6, "simulating", lambda: runs(given, control, closed, stacks, carried))
@@ -102,25 +128,25 @@ def loop_study(mechanism: Mechanism, setup: LoopSetup | None = None, *, tell: To
     return LoopStudy(
         settled=given,
         lost=lost,
-        control=control,
+        controller=control,
         closed=closed,
-        verdict=found,
-        growth=growth,
+        stability=found,
+        growth_all_modes=growth,
         margins=said.of(0.8, "margins", lambda: margins(closed, Cut.POSE)) if is_closed else None,
         peaks=peaks(closed, Cut.POSE) if is_closed else None,
         bandwidths=bandwidths(closed) if is_closed else None,
         curves=curves(closed, Cut.POSE) if is_closed else None,
         crosstalk=crosstalk(closed),
-        disk=disk_margins(closed, Cut.POSE) if is_closed else None,
-        rest=rest,
+        disk_margin=disk_margins(closed, Cut.POSE) if is_closed else None,
+        static_errors=rest,
         noise=noise,
         still=still,
         resting=resting,
         stacks=stacks,
-        sweep=None if stacks is None else swept(stacks),
+        hysteresis=None if stacks is None else swept(stacks),
         runs=tested,
         cautions=(*_cautions(given), *_slow_rounding(noise), *(each for run in tested for each in run.cautions)),
-        missing=Table({} if is_closed else dict.fromkeys(("margins", "peaks", "disk", "bandwidths", "curves"), _NO_LOOP)),
+        reasons=Table({} if is_closed else dict.fromkeys(("margins", "peaks", "disk_margin", "bandwidths", "curves"), _NO_LOOP)),
     )
 
 
