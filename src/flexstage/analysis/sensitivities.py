@@ -115,7 +115,7 @@ def sensitivities(
     actuators = attempt.of("lost_motion", lambda: ideal(mechanism).mapping.rows) or ()
     chunks = list(steppable(mechanism, names))
     batches = (step_parameters(mechanism, tuple(names[position] for position in chunk)) for chunk in chunks)
-    pieces = [_piece(batch, len(chunk), (solved, groups), gains=bool(actuators)) for batch, chunk in zip(batches, chunks, strict=True)]
+    pieces = [_piece(batch, len(chunk), solved, groups, gains=bool(actuators)) for batch, chunk in zip(batches, chunks, strict=True)]
     back = np.argsort([position for chunk in chunks for position in chunk])
     slopes = [np.concatenate([piece[0][number] for piece in pieces])[back] for number in range(len(groups))]
     losses = np.concatenate([piece[1] for piece in pieces])[back]
@@ -195,10 +195,9 @@ def step_parameters(mechanism: Mechanism, names: tuple[str, ...]) -> Mechanism:
     return replace(result, requirements={})
 
 
-def _piece(batch: Mechanism, count: int, modes: tuple[Eigen, list[list[int]]], *, gains: bool) -> tuple[list[Array], Array]:
+def _piece(batch: Mechanism, count: int, solved: Eigen, groups: list[list[int]], *, gains: bool) -> tuple[list[Array], Array]:
     """Per cluster the slopes of lambda (p, c), and the derivative of every actuator's loss (p, n); n = 0 without `gains`."""
     model = lumped(batch)
-    solved, groups = modes
     slopes = [_slopes(model, solved, group, count) for group in groups]
     if not gains:
         return slopes, np.zeros((count, 0))

@@ -110,13 +110,12 @@ def _shapes(beam: Beam, inner: tuple[int, int, int]) -> tuple[Array, Array, Arra
     stiffness: list[Array] = []
     for axis in range(3):
         angles, rates = _of_step(beam, 3 + axis)
-        _step(turn, bend, (axis, 3 + axis), angles, rates)
+        _step(turn, bend, angles, rates, axis=axis, column=3 + axis)
     for axis, across, sign in ((1, 2, 1.0), (2, 1, -1.0)):
         flexible = beam.flexibility[..., 3 + axis]
         lever = points.whole(flexible * half**2)[..., None]
-        _step(
-            turn, bend, (axis, across), sign * _integral(beam, flexible * half, odd=True) / lever, sign * _both(flexible) * position / lever
-        )
+        angles = sign * _integral(beam, flexible * half, odd=True) / lever
+        _step(turn, bend, angles, sign * _both(flexible) * position / lever, axis=axis, column=across)
     column = ENDS
     for axis, count in enumerate(inner):
         flexible = beam.flexibility[..., 3 + axis]
@@ -165,9 +164,8 @@ def _of_step(beam: Beam, axis: int) -> tuple[Array, Array]:
     return np.concatenate([0.5 - share, 0.5 + share], axis=-1), _both(flexible / (2.0 * running[..., -1:]))
 
 
-def _step(turn: Array, bend: Array, place: tuple[int, int], angles: Array, rates: Array) -> None:
-    """Enter a shape of the relative motion `place` (axis turned, column): plus for the second end, minus for the first."""
-    axis, column = place
+def _step(turn: Array, bend: Array, angles: Array, rates: Array, *, axis: int, column: int) -> None:
+    """Enter a shape of the relative motion `column` that turns about `axis`: plus for the second end, minus for the first."""
     for target, values in ((turn, angles), (bend, rates)):
         target[..., axis, column] -= values
         target[..., axis, column + 6] += values

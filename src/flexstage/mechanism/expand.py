@@ -283,14 +283,14 @@ def _points(drawn: tuple[_DrawnBody, ...]) -> Iterator[tuple[str, tuple[str, Arr
 def _links(mechanism: Mechanism, placed: tuple[_Copy, ...]) -> Iterator[PlacedLink]:
     for name, drawn in _drawn_links("links.", mechanism.links).items():
         first, second = (owner_of(mechanism.bodies, body) for body in drawn.link.joins)
-        yield _placed_link(mechanism, drawn, identity(), (name, (first, second)))
+        yield _placed_link(mechanism, drawn, identity(), name, (first, second))
     units = {name: _drawn_links(f"{name}/", unit.links) for name, unit in mechanism.units.items()}
     for copy, unit, frame in placed:
         own = mechanism.units[unit].bodies
         for name, drawn in units[unit].items():
             ends = [body if body not in own else own[body].of or f"{copy}/{body}" for body in drawn.link.joins]
             first, second = (owner_of(mechanism.bodies, end) for end in ends)
-            yield _placed_link(mechanism, drawn, frame, (f"{copy}/{name}", (first, second)))
+            yield _placed_link(mechanism, drawn, frame, f"{copy}/{name}", (first, second))
 
 
 def _drawn_links(owner: str, links: Mapping[str, Link]) -> dict[str, _DrawnLink]:
@@ -301,8 +301,7 @@ def _link_frame(link: Link) -> Frame:
     return Frame(axes(link.along, link.bends), stack(link.at))
 
 
-def _placed_link(mechanism: Mechanism, drawn: _DrawnLink, outer: Frame, names: tuple[str, tuple[str, str]]) -> PlacedLink:
-    name, joins = names
+def _placed_link(mechanism: Mechanism, drawn: _DrawnLink, outer: Frame, name: str, joins: tuple[str, str]) -> PlacedLink:
     link, part = apply_changes(mechanism, drawn.link, (drawn.address, name))
     material = material_of(part)
     frame = drawn.frame if link is drawn.link else _link_frame(link)

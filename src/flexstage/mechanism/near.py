@@ -8,7 +8,7 @@ import numpy as np
 
 from flexstage.base.number import first_design
 from flexstage.mechanism.outline import Outline
-from flexstage.spatial.convex import separations
+from flexstage.spatial.convex import Boxes, separations
 
 
 def near_pairs(boxes: Sequence[Outline], within: float) -> list[tuple[int, int]]:
@@ -21,11 +21,13 @@ def near_pairs(boxes: Sequence[Outline], within: float) -> list[tuple[int, int]]
     """
     if not boxes:
         return []
-    turns = np.array([first_design(np.real(box.frame.rotation), 2) for box in boxes])
-    centres = np.array([first_design(np.real(box.frame.position), 1) for box in boxes])
-    halves = np.array([0.5 * first_design(np.real(box.size), 1) for box in boxes])
-    reach = (np.abs(turns) @ halves[..., None])[..., 0]
-    apart = np.abs(centres[:, None] - centres) - reach[:, None] - reach
+    drawn = Boxes(
+        np.array([first_design(np.real(box.frame.rotation), 2) for box in boxes]),
+        np.array([first_design(np.real(box.frame.position), 1) for box in boxes]),
+        np.array([0.5 * first_design(np.real(box.size), 1) for box in boxes]),
+    )
+    reach = (np.abs(drawn.turns) @ drawn.halves[..., None])[..., 0]
+    apart = np.abs(drawn.centres[:, None] - drawn.centres) - reach[:, None] - reach
     first, second = np.nonzero(np.triu(np.all(apart <= within, axis=-1), k=1))
-    kept = separations((turns[first], centres[first], halves[first]), (turns[second], centres[second], halves[second])) <= within
+    kept = separations(drawn.pick(first), drawn.pick(second)) <= within
     return [(int(one), int(other)) for one, other in zip(first[kept], second[kept], strict=True)]

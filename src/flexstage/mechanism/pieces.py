@@ -84,7 +84,7 @@ def _loft(form: Shaped, trim: float) -> Iterator[Convex]:
     shapes = [_circle(0.5 * y, count) if is_round else _rectangle(0.5 * y, 0.5 * z) for y, z in zip(heights, widths, strict=True)]
     for (here, one), (there, other) in pairwise(zip(inside, shapes, strict=True)):
         if there > here:
-            yield frustum((here, there), (one, other))
+            yield frustum(here, there, one, other)
 
 
 def _rectangle(y: float, z: float) -> Array:
@@ -120,20 +120,20 @@ def _tube(size: float, diameter: float, bore: float) -> Iterator[Convex]:
     half, count = 0.5 * size, _corners(0.5 * diameter)
     rim = _circle(0.5 * diameter, count)
     if bore == 0.0:
-        yield frustum((-half, half), (rim, rim))
+        yield frustum(-half, half, rim, rim)
         return
     grown = 0.5 * bore / np.cos(np.pi / count)
     inner = _circle(min(grown, 0.5 * (grown + 0.5 * diameter)), count)
     for here, there in pairwise([*range(count), 0]):
         sector = np.array([rim[here], rim[there], inner[there], inner[here]])
-        yield frustum((-half, half), (sector, sector))
+        yield frustum(-half, half, sector, sector)
 
 
 def _hinge(form: Profiled, trim: float) -> Iterator[Convex]:
     """Slabs between stations along the hinge; the height between two is the tangent's of its cuts, or the lower end's."""
     section = _section(form)
     for (here, there), (low, high) in _slabs(form.profile, trim):
-        yield frustum((here, there), (section(low), section(high)))
+        yield frustum(here, there, section(low), section(high))
 
 
 def _section(form: Profiled) -> Callable[[float], Array]:

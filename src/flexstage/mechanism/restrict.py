@@ -32,7 +32,7 @@ def restrict(mechanism: Mechanism, kept: Mapping[str, tuple[Freedoms, Freedoms]]
         if name in mechanism.parts:
             result = replace(result, parts={**result.parts, name: _restrict(mechanism.parts[name], elastic, free)})
         else:
-            result = _restrict_link(result, mechanism, name, (elastic, free))
+            result = _restrict_link(result, mechanism, name, elastic, free)
     return result
 
 
@@ -41,13 +41,13 @@ def _restrict(part: Part, elastic: Freedoms, free: Freedoms) -> Part:
     return Joint(free) if isinstance(inner, Joint) else Restricted(inner, elastic, free)
 
 
-def _restrict_link(result: Mechanism, original: Mechanism, address: str, freedoms: tuple[Freedoms, Freedoms]) -> Mechanism:
+def _restrict_link(result: Mechanism, original: Mechanism, address: str, elastic: Freedoms, free: Freedoms) -> Mechanism:
     unit, _, link = address.partition("/")
     if unit not in result.units or link not in result.units[unit].links:
         raise refuse(address, "neither a part nor a link", f"Parts are {', '.join(original.parts)}")
     drawn = result.units[unit]
     own = f"{drawn.links[link].part} of {address}"
-    part = _restrict(original.parts[original.units[unit].links[link].part], *freedoms)
+    part = _restrict(original.parts[original.units[unit].links[link].part], elastic, free)
     links = {**drawn.links, link: replace(drawn.links[link], part=own)}
     return replace(result, parts={**result.parts, own: part}, units={**result.units, unit: replace(drawn, links=links)})
 

@@ -79,7 +79,7 @@ def ideal(mechanism: Mechanism) -> Kinematics:
         coordinates=tuple(COMPONENTS[index] for index in freedoms),
         gauges=tuple(graph.assembly.gauges),
         actuation=strokes,
-        sensing=_sensing(graph, _sense(graph, (solution, columns, rest), bodies)),
+        sensing=_sensing(graph, _sense(graph, solution, columns, rest, bodies)),
         motion=bodies[..., :6, :],
         body_coordinates=graph.order.coordinates,
         bodies=bodies,
@@ -183,9 +183,8 @@ def _without_idle(graph: _Graph, solution: Elimination, columns: list[int], rest
     return wanted - idle @ np.linalg.solve(transposed @ spun, transposed @ before)
 
 
-def _sense(graph: _Graph, eliminated: tuple[Elimination, list[int], list[int]], bodies: Array) -> Array:
+def _sense(graph: _Graph, solution: Elimination, columns: list[int], rest: list[int], bodies: Array) -> Array:
     """The bodies' motions (..., N, f) as gauges see them: idle motions that one sees store the least energy in the links they strain."""
-    solution, columns, rest = eliminated
     size = graph.order.size
     wanted, idle = solution.basis[..., :size, columns], solution.basis[..., :size, rest]
     still = np.real(first_design(idle, 2))

@@ -244,7 +244,7 @@ def _keep(stage: _Stage, inertia: Mapping[str, Contribution]) -> _Kept:
     named = _loose_coordinates(stage, loose, independent)
     left = [index for index in range(len(independent)) if index not in named]
     full = np.eye(stage.order.size) if basis is None else basis
-    idle = _idle(stage, inertia, full, (left, named), tuple(names[independent[index]] for index in named))
+    idle = _idle(stage, inertia, full, tuple(names[independent[index]] for index in named), left=left, named=named)
     kept, driven = (
         None if motion is None else motion + idle.momentless(_momentum(inertia, motion)) for motion in (full[..., left], driven)
     )
@@ -280,10 +280,9 @@ def _blocked_findings(stage: _Stage, locked: list[tuple[str, Freedom]], missed: 
 
 
 def _idle(
-    stage: _Stage, inertia: Mapping[str, Contribution], basis: Array, parts: tuple[list[int], list[int]], names: tuple[str, ...]
+    stage: _Stage, inertia: Mapping[str, Contribution], basis: Array, names: tuple[str, ...], *, left: list[int], named: list[int]
 ) -> _Idle:
     """The idle motions, each with a unit in one of the `named` coordinates, the `left` ones following: K_ll n_l = -K_ln."""
-    left, named = parts
     stiffness = assemble({name: _through(item, basis) for name, item in stage.strains.items()}, basis.shape[-1])
     inner = stiffness[..., left, :][..., left]
     root = np.sqrt(np.abs(np.diagonal(np.real(inner), axis1=-2, axis2=-1)))

@@ -19,7 +19,7 @@ import scipy
 from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array, Number, stack
 from flexstage.parts.body import Cylinder, Imported, Solid, solid_frame
-from flexstage.spatial.convex import separations
+from flexstage.spatial.convex import Boxes, separations
 from flexstage.spatial.frame import Frame, axes
 
 _FLUSH = 1e-9
@@ -119,8 +119,10 @@ def common_moments(solids: Sequence[Drawn]) -> Iterator[tuple[Number, Moments]]:
         except _InexactError as crossing:
             problems += _refusals(seen, pair, crossing.volume)
             continue
-        if found and _differ(seen, pair):
-            problems += _mixtures(seen, pair, sum(float(np.max(region.sign * np.real(region.moments.volume))) for region in found))
+        if found and _differ(seen[pair[0]], seen[pair[1]]):
+            problems += _mixtures(
+                seen[pair[0]], seen[pair[1]], sum(float(np.max(region.sign * np.real(region.moments.volume))) for region in found)
+            )
         elif found:
             groups.append((pair, found))
     require(problems)
@@ -160,40 +162,38 @@ def _near(seen: Sequence[Drawn]) -> dict[tuple[int, int], Array]:
     """Pairs whose boxes overlap, and in which designs of a batch."""
     frames = [solid_frame(drawn.solid).within(drawn.frame) for drawn in seen]
     boxes = [
-        (np.real(frame.rotation), np.real(frame.position), 0.5 * np.real(_size(drawn.solid)))
+        Boxes(np.real(frame.rotation), np.real(frame.position), 0.5 * np.real(_size(drawn.solid)))
         for frame, drawn in zip(frames, seen, strict=True)
     ]
-    reach = [np.sqrt(np.sum(half * half, axis=-1)) for _, _, half in boxes]
-    middle = np.array([_first(centre, 1) for _, centre, _ in boxes]).reshape(-1, 3)
-    loose = np.array([_spread(centre) + float(np.max(far)) for (_, centre, _), far in zip(boxes, reach, strict=True)])
+    reach = [np.sqrt(np.sum(box.halves * box.halves, axis=-1)) for box in boxes]
+    middle = np.array([_first(box.centres, 1) for box in boxes]).reshape(-1, 3)
+    loose = np.array([_spread(box.centres) + float(np.max(far)) for box, far in zip(boxes, reach, strict=True)])
     apart = middle[:, None] - middle
     close = np.einsum("ijk,ijk->ij", apart, apart) < (loose[:, None] + loose) ** 2
     first, second = np.nonzero(np.triu(close, k=1))
     pairs = list(zip(first.tolist(), second.tolist(), strict=True))
-    if all(turn.ndim == 2 and centre.ndim == half.ndim == 1 for turn, centre, half in boxes):
-        turns, centres, halves = (np.array(each) for each in zip(*boxes, strict=True))
-        gaps = separations((turns[first], centres[first], halves[first]), (turns[second], centres[second], halves[second]))
+    if all(box.turns.ndim == 2 and box.centres.ndim == box.halves.ndim == 1 for box in boxes):
+        drawn = Boxes(*(np.array([getattr(box, name) for box in boxes]) for name in ("turns", "centres", "halves")))
+        gaps = separations(drawn.pick(first), drawn.pick(second))
     else:
         gaps = [_gaps(boxes[one], boxes[other]) for one, other in pairs]
     meet = ((pair, gap < -_FLUSH * (reach[pair[0]] + reach[pair[1]])) for pair, gap in zip(pairs, gaps, strict=True))
     return {pair: np.asarray(where) for pair, where in meet if np.any(where)}
 
 
-def _gaps(first: tuple[Array, Array, Array], second: tuple[Array, Array, Array]) -> Array:
+def _gaps(first: Boxes, second: Boxes) -> Array:
     """How far two boxes are apart at least, in each design."""
-    shape = np.broadcast_shapes(
-        *(turn.shape[:-2] for turn, _, _ in (first, second)), *(each.shape[:-1] for _, *box in (first, second) for each in box)
-    )
+    both = (first, second)
+    shape = np.broadcast_shapes(*(each.shape[:-1] for box in both for each in (box.turns[..., 0], box.centres, box.halves)))
     return separations(_flat(first, shape), _flat(second, shape)).reshape(shape)
 
 
-def _flat(box: tuple[Array, Array, Array], shape: tuple[int, ...]) -> tuple[Array, Array, Array]:
-    """A box' axes, centre and half sizes with one batch axis."""
-    turn, centre, half = box
-    return (
-        np.broadcast_to(turn, (*shape, 3, 3)).reshape(-1, 3, 3),
-        np.broadcast_to(centre, (*shape, 3)).reshape(-1, 3),
-        np.broadcast_to(half, (*shape, 3)).reshape(-1, 3),
+def _flat(box: Boxes, shape: tuple[int, ...]) -> Boxes:
+    """A box with one batch axis."""
+    return Boxes(
+        np.broadcast_to(box.turns, (*shape, 3, 3)).reshape(-1, 3, 3),
+        np.broadcast_to(box.centres, (*shape, 3)).reshape(-1, 3),
+        np.broadcast_to(box.halves, (*shape, 3)).reshape(-1, 3),
     )
 
 
@@ -243,8 +243,8 @@ def _product(first: Sequence[tuple[float, _Cell]], second: Sequence[tuple[float,
     return found if np.any(np.abs(total) > (_FLUSH * scale) * scale**2) else []
 
 
-def _differ(seen: Sequence[Drawn], pair: tuple[int, int]) -> bool:
-    return bool(np.any(np.real(np.asarray(seen[pair[0]].density) - seen[pair[1]].density)))
+def _differ(first: Drawn, second: Drawn) -> bool:
+    return bool(np.any(np.real(np.asarray(first.density) - second.density)))
 
 
 def _refusals(seen: Sequence[Drawn], numbers: tuple[int, ...], volume: float) -> Iterator[Finding]:
@@ -254,8 +254,7 @@ def _refusals(seen: Sequence[Drawn], numbers: tuple[int, ...], volume: float) ->
     yield Finding(first.name, what, "Cut one of them so that they only touch, draw one within the other, or state the body's mass")
 
 
-def _mixtures(seen: Sequence[Drawn], pair: tuple[int, int], volume: float) -> Iterator[Finding]:
-    first, second = (seen[number] for number in pair)
+def _mixtures(first: Drawn, second: Drawn, volume: float) -> Iterator[Finding]:
     there = f"{second.name} of {second.solid.material} by {_volume(volume)}"
     what = f"it is of {first.solid.material} and overlaps {there}: which of them fills it is not known"
     yield Finding(first.name, what, "Cut one of them (a block may have a hole, a cylinder a bore), or state the body's mass")

@@ -45,14 +45,27 @@ def cuboid(low: Sequence[float], high: Sequence[float]) -> Convex:
     return Convex(corners, np.eye(3), np.eye(3))
 
 
-def frustum(stations: tuple[float, float], sections: tuple[Array, Array]) -> Convex:
-    """The hull of two polygons (n, 2) in the planes x = `stations`, counter-clockwise in (y, z) with parallel sides.
+@dataclass(frozen=True)
+class Boxes:
+    """Boxes by their `turns` (..., 3, 3), the rotations whose columns are their axes, `centres` and half sizes `halves` (..., 3) [m]."""
+
+    turns: Array
+    centres: Array
+    halves: Array
+
+    def pick(self, which: Array) -> Boxes:
+        """Some of them, in that order."""
+        return Boxes(self.turns[which], self.centres[which], self.halves[which])
+
+
+def frustum(here: float, there: float, one: Array, other: Array) -> Convex:
+    """The hull of two polygons (n, 2) in the planes x = `here` and x = `there`, counter-clockwise in (y, z) with parallel sides.
 
     >>> square = np.array([[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]])
-    >>> frustum((0.0, 2.0), (square, square)).points.max(axis=0).tolist()
+    >>> frustum(0.0, 2.0, square, square).points.max(axis=0).tolist()
     [2.0, 1.0, 1.0]
     """
-    first, last = (np.column_stack([np.full(len(section), station), section]) for station, section in zip(stations, sections, strict=True))
+    first, last = (np.column_stack([np.full(len(section), station), section]) for station, section in ((here, one), (there, other)))
     wide = first if np.ptp(first) >= np.ptp(last) else last
     rim, slant = np.roll(wide, -1, axis=0) - wide, last - first
     sides = np.cross(rim, slant)
@@ -112,19 +125,19 @@ def distance(first: Array, second: Array) -> float:
     return 0.0 if -rest[3] <= 1e-15 or size <= 1e-15 else scale * float(-rest[3]) / size
 
 
-def separations(ones: tuple[Array, Array, Array], others: tuple[Array, Array, Array]) -> Array:
-    """A lower bound (k,) of the distances of boxes, given as rotations (k, 3, 3), centres and half sizes (k, 3) [m]; below 0: they meet.
+def separations(ones: Boxes, others: Boxes) -> Array:
+    """A lower bound (k,) [m] of the distances of k boxes from k others; below 0: they meet.
 
-    >>> box = np.eye(3)[None], np.zeros((1, 3)), np.full((1, 3), 0.5)
-    >>> other = np.eye(3)[None], np.array([[2.0, 0.0, 0.0]]), np.full((1, 3), 0.5)
+    >>> box = Boxes(np.eye(3)[None], np.zeros((1, 3)), np.full((1, 3), 0.5))
+    >>> other = Boxes(np.eye(3)[None], np.array([[2.0, 0.0, 0.0]]), np.full((1, 3), 0.5))
     >>> separations(box, other).tolist()
     [1.0]
     """
-    (turn, centre, half), (face, middle, size) = ones, others
+    turn, face = ones.turns, others.turns
     edges = [np.cross(turn[..., i], face[..., j]) for i, j in product(range(3), range(3))]
     directions = np.stack([*(turn[..., i] for i in range(3)), *(face[..., i] for i in range(3)), *edges], axis=1)
     lengths = np.linalg.norm(directions, axis=-1, keepdims=True)
     units = np.divide(directions, lengths, out=np.zeros_like(directions), where=lengths > 1e-6)
-    between = np.abs(np.einsum("kai,ki->ka", units, middle - centre))
-    own = np.einsum("kaj,kj->ka", np.abs(units @ turn), half) + np.einsum("kaj,kj->ka", np.abs(units @ face), size)
+    between = np.abs(np.einsum("kai,ki->ka", units, others.centres - ones.centres))
+    own = np.einsum("kaj,kj->ka", np.abs(units @ turn), ones.halves) + np.einsum("kaj,kj->ka", np.abs(units @ face), others.halves)
     return np.max(np.where(lengths[..., 0] > 1e-6, between - own, -np.inf), axis=1)

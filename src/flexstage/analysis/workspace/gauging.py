@@ -213,18 +213,17 @@ def _places(assembly: Assembly, name: str, box: Array, limit: Array) -> tuple[Ar
     if {placed.body, placed.base} != {PLATFORM, GROUND}:
         return radius, np.full_like(radius, np.nan), np.full_like(radius, np.nan)
     outward = np.where(radius[..., None] > 0.0, arm[..., :2] / np.where(radius > 0.0, radius, 1.0)[..., None], np.array([1.0, 0.0]))
-    gauge = (placed.frame.rotation[..., :, 0], outward, arm[..., 2])
     angles = np.linspace(0.0, 2.0 * np.pi, _ANGLES, endpoint=False)
-    largest = _largest_radius(box, gauge, limit, angles)
+    largest = _largest_radius(box, limit, angles, direction=placed.frame.rotation[..., :, 0], outward=outward, height=arm[..., 2])
     return radius, largest[..., 0], np.min(largest, axis=-1)
 
 
-def _largest_radius(box: Array, gauge: tuple[Array, Array, Array], limit: Array, angles: Array) -> Array:
+def _largest_radius(box: Array, limit: Array, angles: Array, *, direction: Array, outward: Array, height: Array) -> Array:
     """Largest radius (..., angles) at which the swing sum_j |A_j + r B_j| stays within the limit, the gauge carried around the axis.
 
-    Convex and piecewise linear in r: Newton's steps from above end in as many steps as there are pieces.
+    At the first angle it measures along `direction` and lies at `height` in the direction `outward` from the axis. Convex and piecewise
+    linear in r: Newton's steps from above end in as many steps as there are pieces.
     """
-    direction, outward, height = gauge
     turned = _around(direction, angles)
     out = _around(np.concatenate([outward, np.zeros_like(outward[..., :1])], axis=-1), angles)
     up = np.asarray(height)[..., None, None] * np.array([0.0, 0.0, 1.0])
