@@ -7,6 +7,8 @@ import io
 import numpy as np
 import pytest
 import scipy.io
+from hypothesis import given
+from hypothesis import strategies as st
 
 from flexstage.analysis.lost_motion import LostMotion, lost_motion
 from flexstage.analysis.random_response import Spectrum, random_response
@@ -29,20 +31,33 @@ def lost() -> LostMotion:
     return lost_motion(ideal(STAGE), MODEL)
 
 
-def numbers(value: object) -> int:
-    """How many numbers a document holds."""
+NAMES = st.text("ab/.1", min_size=1, max_size=3)
+LEAVES = st.none() | st.booleans() | st.floats(allow_nan=False, allow_infinity=False) | st.text("ab", max_size=2)
+DOCUMENTS = st.recursive(LEAVES, lambda inner: st.lists(inner, max_size=3) | st.dictionaries(NAMES, inner, max_size=3), max_leaves=12)
+
+
+def numbers(value: object) -> list[float]:
+    """The numbers that a document holds."""
     if isinstance(value, dict):
-        return sum(map(numbers, value.values()))
-    return sum(map(numbers, value)) if isinstance(value, list) else isinstance(value, float)
+        return numbers(list(value.values()))
+    return [each for item in value for each in numbers(item)] if isinstance(value, list) else [value] if isinstance(value, float) else []
 
 
-def test_no_number_is_lost(lost: LostMotion) -> None:
-    held = 0
-    for _, part in parts(lost):
-        held += (
-            part.values.size if isinstance(part, Matrix) else sum(isinstance(each, float) for own in part.columns.values() for each in own)
-        )
-    assert held == numbers(plain(lost))
+def cells(result: object) -> list[float]:
+    """The numbers that the parts of a result hold."""
+    found = [part for _, part in parts(result)]
+    columns = [list(values) for part in found if isinstance(part, Sheet) for values in part.columns.values()]
+    return numbers(columns + [part.values.tolist() for part in found if isinstance(part, Matrix)])
+
+
+def test_no_number_of_a_result_is_lost(lost: LostMotion) -> None:
+    assert sorted(cells(lost)) == sorted(numbers(plain(lost)))
+
+
+@given(st.dictionaries(NAMES, DOCUMENTS, max_size=4))
+def test_no_number_of_a_document_is_lost(document: dict[str, object]) -> None:
+    assert sorted(cells(document)) == sorted(numbers(document))
+    assert len(to_csv(document)) == len(list(parts(document)))
 
 
 def test_records_in_records_repeat_their_owners_name(lost: LostMotion) -> None:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
 from flexstage.analysis.complete import Analysis
+from flexstage.base.quantity import SHARE
 from flexstage.mechanism.address import get, quantity_of
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS, WRENCH_UNITS
@@ -33,15 +34,9 @@ class Change:
     new: float | None
 
     @property
-    def relative(self) -> float:
-        """New over old less one; NaN where that has no meaning.
-
-        >>> round(Change("mode 1", "Hz", 100.0, 90.0).relative, 12)
-        -0.1
-        """
-        if self.old is None or self.new is None or self.old == 0.0:
-            return math.nan
-        return self.new / self.old - 1.0
+    def relative(self) -> Annotated[float | None, SHARE]:
+        """New over old less one; None where that has no meaning."""
+        return None if self.old is None or self.new is None or self.old == 0.0 else self.new / self.old - 1.0
 
 
 @dataclass(frozen=True, eq=False)

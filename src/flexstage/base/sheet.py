@@ -6,6 +6,7 @@ rows of another that repeats the names of the first; arrays along names are a ro
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, is_dataclass, replace
 from enum import Enum
@@ -21,6 +22,13 @@ NUMBERS = (int, float, complex, np.number, np.bool_)
 _MATRIX = {"rows", "columns", "unit", "values"}
 
 Record: TypeAlias = Mapping[Field, Any]
+_Row: TypeAlias = tuple[Any, ...]
+
+
+class _Sort(Enum):
+    """What a value is that no cell holds: a record, or names or numbers with values."""
+
+    MATRIX, RECORD, CELL, NAMES, NUMBERS = range(5)
 
 
 @dataclass(frozen=True)
@@ -37,15 +45,21 @@ class Sheet:
         return {f"{head}_name" if head in fields else head: values for head, values in self.names.items()} | fields
 
 
-def parts(result: Any) -> Iterator[tuple[str, Sheet | Matrix]]:
-    """The parts of a result, or of a document, with their paths.
+_Part: TypeAlias = tuple[str, Sheet | Matrix]
+
+
+def parts(result: Any) -> Iterator[_Part]:
+    """The parts of a result, or of a document, each with a path of its own.
 
     >>> from flexstage.base.labelled import Matrix
     >>> found = dict(parts({"gain": 2.0, "modes": [{"frequency_hz": 100.0}, {"frequency_hz": 200.0}]}))
     >>> found["modes"].heads
     {'mode': (1, 2), 'frequency_hz': (100.0, 200.0)}
     """
-    yield from [("", result)] if isinstance(result, Matrix) else _parts("", {}, [_record(result)])
+    taken = Counter[str]()
+    for path, part in [("", result)] if isinstance(result, Matrix) else _parts("", {}, [_record(result)]):
+        taken[path] += 1
+        yield path if taken[path] == 1 else f"{path}.{taken[path]}", part
 
 
 def rows_of(source: Any) -> Sheet:
@@ -75,7 +89,7 @@ def _real(field: Field, values: tuple[Any, ...]) -> Iterator[tuple[Field, tuple[
         yield field, values
 
 
-def _parts(path: str, names: Mapping[str, tuple[Any, ...]], records: Sequence[Record]) -> Iterator[tuple[str, Sheet | Matrix]]:
+def _parts(path: str, names: Mapping[str, tuple[Any, ...]], records: Sequence[Record]) -> Iterator[_Part]:
     columns = _columns(records)
     axes = {name for field in columns for name in field.axes}
     alone = {field: values for field, values in columns.items() if not field.axes and field.name not in axes}
@@ -94,24 +108,41 @@ def _under(path: str, key: str) -> str:
     return f"{path}.{key}" if path else key
 
 
-def _inner(path: str, field: Field, heads: tuple[str, ...], rows: Sequence[tuple[Any, ...]]) -> Iterator[tuple[str, Sheet | Matrix]]:
-    """The parts of a field that a cell cannot hold; a row is the names of its owner and its value."""
-    if any(_matrix(row[-1]) is not None for row in rows):
-        for *names, value in rows:
-            if (matrix := _matrix(value)) is not None:
-                yield ".".join([path, *map(str, names)]), matrix
-    elif all(_tells_fields(row[-1]) for row in rows):
-        yield from _parts(path, _named(heads, rows), [_record(row[-1]) for row in rows])
-    else:
-        items = [(*names, name, item) for *names, value in rows for name, item in _items(value)]
-        records = all(_is_record(row[-1]) for row in items)
-        head = field.words.removesuffix("s") if records else "name" if isinstance(rows[0][-1], Mapping) else "number"
-        inner = [_record(row[-1]) if records else {field: row[-1]} for row in items]
-        heads = (*heads, head if head not in heads else f"{head} {len(heads) + 1}")
-        if records or all(is_cell(row[-1]) for row in items):
-            yield from _parts(path, _named(heads, items), inner)
+def _inner(path: str, field: Field, heads: tuple[str, ...], rows: Sequence[_Row], *, entries: bool = False) -> Iterator[_Part]:
+    """The parts of a field that a cell cannot hold; a row is the names of its owner and its value.
+
+    `entries`: the values are those of a list or mapping, where a mapping is a record.
+    """
+    for sort, alike in _sorted(rows, entries=entries):
+        if sort is _Sort.MATRIX:
+            yield from ((".".join([path, *map(str, names)]), matrix) for *names, value in alike if (matrix := _matrix(value)) is not None)
+        elif sort is _Sort.RECORD:
+            yield from _parts(path, _named(heads, alike), [_record(row[-1]) for row in alike])
+        elif sort is _Sort.CELL:
+            yield from _parts(path, _named(heads, alike), [{field: row[-1]} for row in alike])
         else:
-            yield from _inner(path, field, heads, items)
+            items = [(*names, name, item) for *names, value in alike for name, item in _items(value)]
+            plural = not any(is_cell(row[-1]) for row in items)
+            head = field.words.removesuffix("s") if plural else "name" if sort is _Sort.NAMES else "number"
+            yield from _inner(path, field, (*heads, head if head not in heads else f"{head} {len(heads) + 1}"), items, entries=True)
+
+
+def _sorted(rows: Iterable[_Row], *, entries: bool) -> Iterable[tuple[_Sort, list[_Row]]]:
+    found: dict[_Sort, list[_Row]] = {}
+    for row in rows:
+        found.setdefault(_sort(row[-1], entry=entries), []).append(row)
+    return found.items()
+
+
+def _sort(value: Any, *, entry: bool) -> _Sort:
+    if _matrix(value) is not None:
+        return _Sort.MATRIX
+    if is_cell(value):
+        return _Sort.CELL
+    if not isinstance(value, Mapping):
+        return _Sort.RECORD if _is_record(value) else _Sort.NUMBERS
+    names = all(map(is_cell, value.values())) or all(map(_is_record, value.values()))
+    return _Sort.NAMES if names and not entry else _Sort.RECORD
 
 
 def _named(heads: Iterable[str], rows: Sequence[tuple[Any, ...]]) -> dict[str, tuple[Any, ...]]:
@@ -158,13 +189,6 @@ def _matrix(value: Any) -> Matrix | None:
 
 def _is_record(value: Any) -> bool:
     return isinstance(value, Mapping) or is_dataclass(value) or hasattr(value, "to_json")
-
-
-def _tells_fields(value: Any) -> bool:
-    """Whether it is a record; a mapping of a document may tell names instead, with numbers or records."""
-    if isinstance(value, Mapping):
-        return not all(map(is_cell, value.values())) and not all(map(_is_record, value.values()))
-    return _is_record(value)
 
 
 def _items(value: Any) -> Iterable[tuple[Any, Any]]:

@@ -9,7 +9,6 @@ import flexstage
 from flexstage.analysis.cautions import Caveats, caveats
 from flexstage.analysis.complete import Analysis
 from flexstage.analysis.deflection import Deflection
-from flexstage.analysis.difference import Change
 from flexstage.analysis.requirements import Verdict
 from flexstage.analysis.statics import Statics
 from flexstage.base.digest import digest
@@ -124,15 +123,3 @@ def _verdict(verdict: Verdict) -> Document:
         "margin": None if verdict.value is None else verdict.margin,
         **({"reason": verdict.reason} if verdict.reason else {}),
     }
-
-
-def changes_body(changes: Iterable[Change]) -> list[Document]:
-    """Changes as {name, unit, old, new, relative}, SI.
-
-    >>> changes_body([Change("platform mode 1", "Hz", 100.0, 90.0)])[0]["old"]
-    100.0
-    """
-    return [
-        {"name": each.name, "unit": each.unit, "old": each.old, "new": each.new, "relative": each.relative if each.old else None}
-        for each in changes
-    ]

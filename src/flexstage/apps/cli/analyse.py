@@ -19,7 +19,7 @@ from flexstage.show.command.failure import MISSED
 from flexstage.show.command.options import Changes, Csv, Design, Json, ModelName, Report, text_option
 from flexstage.show.command.output import STDOUT, save
 from flexstage.show.command.terminal import tell
-from flexstage.show.document import analysis_body, analysis_results, changes_body, enveloped, requirements_body
+from flexstage.show.document import analysis_body, analysis_results, enveloped, requirements_body
 from flexstage.show.matlab import as_mat
 from flexstage.show.report import report as whole_report
 from flexstage.show.table import Table
@@ -80,7 +80,7 @@ def _json_text(analysis: Analysis, compared: Comparison | None) -> str:
     body: Document = analysis_body(analysis)
     if compared is not None:
         values = set_values(compared.stated, analysis.mechanism, compared.addresses)
-        body = {"changes": {"set": changes_body(values), "figures": changes_body(compared.figures)}, **body}
+        body = {"changes": {"set": values, "figures": compared.figures}, **body}
     return as_text(enveloped("analyse", analysis.mechanism, analysis.model, body)) + "\n"
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from itertools import chain, count
 from pathlib import Path
 from typing import Any
 
@@ -24,6 +25,7 @@ from flexstage.show.sheets import to_csv
 from flexstage.show.table import Table
 
 _UNFOLDED = 1000
+_LONGEST = 200
 
 
 def answer(  # noqa: PLR0913 (all that a command can ask for)
@@ -62,8 +64,12 @@ def write_csv(folder: Path | None, kind: str, body: Callable[[], Any]) -> None:
     if folder is None:
         return
     folder.mkdir(exist_ok=True)
+    taken = set[str]()
     for path, text in to_csv(body()).items():
-        write(folder / f"{re.sub(r'[^A-Za-z0-9_.-]', '_', f'{kind}.{path}'.rstrip('.'))}.csv", text, "--csv")
+        name = re.sub(r"[^A-Za-z0-9_.-]", "_", f"{kind}.{path}".rstrip("."))[:_LONGEST]
+        name = next(each for each in chain((name,), (f"{name}.{number}" for number in count(2))) if each not in taken)
+        taken.add(name)
+        write(folder / f"{name}.csv", text, "--csv")
     announce(f"Wrote {folder / kind}.*.csv")
 
 

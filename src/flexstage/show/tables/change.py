@@ -55,11 +55,11 @@ def _text(value: object) -> str:
 def _row(change: Change) -> tuple[Cell, ...]:
     known = [value for value in (change.old, change.new) if value is not None]
     form = shown(change.unit, max((abs(value) for value in known), default=0.0))
-    still = change.old is not None and abs(change.relative) < _SILENT
+    still = change.relative is not None and abs(change.relative) < _SILENT
     mark = Mark.FAINT if still else Mark.PLAIN
     difference = None if change.old is None or change.new is None else change.new - change.old
     texts = [NO_VALUE if value is None else number(value * form.factor) for value in (change.old, change.new)]
     moved = NO_VALUE if difference is None else "0" if still else number(difference * form.factor, 4)
-    relative = "0" if still else NO_VALUE if change.relative != change.relative else percent(change.relative, 3)
+    relative = "0" if still else NO_VALUE if change.relative is None else percent(change.relative, 3)
     unit = "" if form.unit == "1" else form.unit
     return Cell(change.name, Mark.STRONG), *(Cell(text, mark) for text in (*texts, moved, relative)), Cell(unit, mark)
