@@ -136,12 +136,8 @@ def estimator_figure(first: Responses, others: Sequence[Responses], band: tuple[
     inside = _inside(first.frequencies, band)
     rows = range(min(LARGEST, len(first.outputs)))
     with styled():
-        across = min(3, len(rows))
-        down = -(-len(rows) // across)
-        figure = canvas(FULL, 0.75 + 1.6 * down)
-        grid = panels(figure, down, across, Margins(left=0.6, top=0.5, across=0.45, down=0.4))
-        for place, row in enumerate(rows):
-            axes = grid[place // across, place % across]
+        figure, grid = _grid(len(rows), 1.6, Margins(left=0.6, top=0.5, across=0.45, down=0.4))
+        for row, axes in zip(rows, grid.flat, strict=False):
             column = int(np.argmax(np.sum(np.abs(first.values[inside, row]) ** 2, axis=0)))
             for index, each in enumerate((first, *others)):
                 own = _inside(each.frequencies, band)  # estimates may stand on other lines than the first
@@ -151,10 +147,7 @@ def estimator_figure(first: Responses, others: Sequence[Responses], band: tuple[
             _decades(axes)
             axes.set_xlim(*band)
             axes.tick_params(labelsize=6.5, labelbottom=True)
-        _legend(figure, grid[0, 0])
-        for axes in grid[-1]:
-            axes.set_xlabel("frequency [Hz]")
-        _clear(grid, len(rows))
+        _finish(figure, grid, len(rows))
     return figure
 
 
@@ -174,12 +167,8 @@ def coherence_figure(found: Identified, multiple: Array | None, lines: Array | N
     inside = _inside(data.frequencies, band)
     rows = range(min(LARGEST, len(found.outputs)))
     with styled():
-        across = min(3, len(rows))
-        down = -(-len(rows) // across)
-        figure = canvas(FULL, 0.75 + 1.25 * down)
-        grid = panels(figure, down, across, Margins(left=0.5, top=0.5, across=0.45, down=0.35))
-        for place, row in enumerate(rows):
-            axes = grid[place // across, place % across]
+        figure, grid = _grid(len(rows), 1.25, Margins(left=0.5, top=0.5, across=0.45, down=0.35))
+        for row, axes in zip(rows, grid.flat, strict=False):
             for column in range(min(LARGEST, len(found.inputs)) if data.coherence is not None else 0):
                 x, share = _means(data.frequencies[inside], data.coherence[inside, row, column])  # pyright: ignore[reportOptionalSubscript]
                 axes.plot(x, share, color=SERIES[column % len(SERIES)], linewidth=0.7, label=f"with {found.inputs[column].name}")
@@ -192,10 +181,7 @@ def coherence_figure(found: Identified, multiple: Array | None, lines: Array | N
             axes.set_xlim(*band)
             axes.set_ylim(0.0, 1.04)
             axes.tick_params(labelsize=6.5)
-        _legend(figure, grid[0, 0])
-        for axes in grid[-1]:
-            axes.set_xlabel("frequency [Hz]")
-        _clear(grid, len(rows))
+        _finish(figure, grid, len(rows))
     return figure
 
 
@@ -282,11 +268,19 @@ def _means(x: Array, y: Array) -> tuple[Array, Array]:
     return np.array([np.mean(x[part]) for part in parts]), np.array([np.mean(y[part]) for part in parts])
 
 
-def _legend(figure: Any, axes: Any) -> None:
-    handles, labels = axes.get_legend_handles_labels()
+def _grid(count: int, height: float, margins: Margins) -> tuple[Any, Any]:
+    """A figure with panels so high [in], three abreast."""
+    across = min(3, count)
+    down = -(-count // across)
+    figure = canvas(FULL, 0.75 + height * down)
+    return figure, panels(figure, down, across, margins)
+
+
+def _finish(figure: Any, grid: Any, used: int) -> None:
+    """The legend of the first panel above all, frequencies below; panels beyond those used are not shown."""
+    handles, labels = grid[0, 0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="upper left", ncols=7, handlelength=1.2, columnspacing=1.2, borderaxespad=0.2, fontsize=7.0)
-
-
-def _clear(grid: Any, used: int) -> None:
-    for axes in grid.ravel()[used:]:
+    for axes in grid[-1]:
+        axes.set_xlabel("frequency [Hz]")
+    for axes in grid.flat[used:]:
         axes.set_visible(False)
