@@ -30,7 +30,7 @@ from pathlib import Path
 
 import numpy as np
 
-from flexstage.base.child import cores, environment
+from flexstage.base.jobs import cores, environment
 from flexstage.base.number import Table
 from flexstage.models.batch.engine import platform_modes
 from flexstage.studies.sweeps.definition import Study

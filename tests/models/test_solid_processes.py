@@ -36,6 +36,7 @@ linux = pytest.mark.skipif(sys.platform != "linux", reason="looks at processes i
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
     """An own folder for temporary files: empty again, and nobody working in it, after every reduction."""
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    monkeypatch.setenv("TMPDIR", str(tmp_path))
     yield tmp_path
     assert not list(tmp_path.iterdir())
     assert not working_in(tmp_path)
@@ -45,10 +46,10 @@ def working_in(folder: Path) -> list[int]:
     found = []
     for process in Path("/proc").glob("[0-9]*"):
         try:
-            words = (process / "cmdline").read_bytes().split(b"\0")
+            words, environment = ((process / name).read_bytes() for name in ("cmdline", "environ"))
         except OSError:
             continue
-        if any(word.startswith(os.fsencode(folder)) for word in words) and b"flexstage.solid.fea.worker" in words:
+        if b"flexstage.base.jobs" in words and os.fsencode(f"TMPDIR={folder}\0") in environment + b"\0":
             found.append(int(process.name))
     return found
 
@@ -152,8 +153,8 @@ def test_reductions_repeat_bit_by_bit(folder: Path) -> None:
 
 
 @linux
-def test_no_room_for_the_result_is_a_finding(folder: Path) -> None:
-    (finding,) = told(mined("lever", code("import os; os.symlink('/dev/full', 'result.part')")))
+def test_no_room_on_the_disk_is_a_finding(folder: Path) -> None:
+    (finding,) = told(mined("lever", code("open('/dev/full', 'wb', 0).write(b'full')")))
     assert finding.what == f"no room is left in the folder for temporary files, {folder}"
 
 

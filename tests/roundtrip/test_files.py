@@ -16,9 +16,9 @@ import pytest
 import scipy.io
 
 from flexstage.base import files
-from flexstage.base.child import environment
 from flexstage.base.files import hdf, mat, new_hdf, require_regular
 from flexstage.base.finding import DesignError
+from flexstage.base.jobs import environment
 from flexstage.experiment.formats.read import read
 
 
@@ -62,7 +62,7 @@ def test_an_interrupt_ends_the_reading_of_a_file_that_runs_in_circles(tmp_path: 
     threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT)).start()
     with pytest.raises(KeyboardInterrupt):
         hdf(path)
-    assert not [each for each in psutil.Process().children() if "flexstage.base.files" in each.cmdline()]
+    assert not [each for each in psutil.Process().children() if any("flexstage.base.jobs" in word for word in each.cmdline())]
 
 
 def test_a_crash_of_the_library_is_told_by_its_signal(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -11,8 +11,8 @@ from pathlib import Path
 
 import pytest
 
-from flexstage.base.child import environment
 from flexstage.base.finding import DesignError
+from flexstage.base.jobs import environment
 from flexstage.base.native import Recipe, compiled, compiler, loaded, unfit
 
 pytestmark = pytest.mark.skipif(compiler() is None, reason="no compiler of C")

@@ -1,34 +1,29 @@
 """Files that others wrote: only regular ones; HDF5 and MAT files in a process of their own, with limits of processor time and memory.
 
-The libraries that read these files can crash, run in circles beyond the reach of any exception, or take all memory. They run in a child,
-this very module, which is asked by a line of JSON and answers by one, numbers behind it. A child serves many files; one that dies, hangs or
-is interrupted is replaced. Limits are kept by the system, where it has them. Data that stand in other files are refused.
+The libraries that read these files can crash, run in circles beyond the reach of any exception, or take all memory. They run in a worker,
+which serves many files; one that dies, hangs or is interrupted is replaced. Limits are kept by the system, where it has them. Data that
+stand in other files are refused.
 """
 
 from __future__ import annotations
 
 import atexit
 import contextlib
-import json
 import math
 import os
 import signal
 import stat
-import struct
-import subprocess
-import sys
 import threading
-import time
 from collections.abc import Generator, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, BinaryIO, TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 import scipy
 
-from flexstage.base.child import command, environment
 from flexstage.base.finding import refuse
+from flexstage.base.jobs import Line, Worker, limit_memory, limit_processor
 from flexstage.base.memory import gigabytes, require_memory
 from flexstage.base.number import Array
 
@@ -36,11 +31,10 @@ Attribute: TypeAlias = str | float | tuple[str, ...]
 PATIENCE = 8.0
 """Processor time that one question about a file may take [s], and `_SLOW` more for every byte of what is asked."""
 MEMORY = 1_000_000_000
-"""What the child may take beside what is asked of it [B]."""
+"""What the worker may take beside what is asked of it [B]."""
 _SLOW = 1e-7
 _COPIES = 3
 _TEXTS = 100_000
-_LENGTH = struct.Struct("<Q")
 _NUMBERS = "fiub"
 _COMPLEX_FIELDS = (("r", "i"), ("real", "imag"))
 
@@ -103,13 +97,11 @@ class Hdf:
         lengths = [max(0, min(stop, length) - max(start, 0)) for (start, stop), length in zip(spans, array.shape, strict=False)]
         needed = math.prod((*lengths, *array.shape[len(lengths) :])) * array.size
         require_memory(f"{self.path}: {name}", "its numbers", _COPIES * needed, _less)
-        asked = {"task": "array", "path": str(self.path.absolute()), "name": name, "spans": list(map(list, spans)), "column": column}
-        return _ask(self.path, asked, needed)[1][0]
+        return _ask(_Question("array", self.path, name, tuple(spans), column), needed)
 
     def texts(self, name: str, column: str = "") -> tuple[str, ...]:
         """An array of texts, or one column of a table."""
-        asked = {"task": "texts", "path": str(self.path.absolute()), "name": name, "column": column}
-        return tuple(map(str, _ask(self.path, asked, self.path.stat().st_size)[0]))
+        return tuple(_ask(_Question("texts", self.path, name, column=column), self.path.stat().st_size))
 
 
 def hdf(path: Path) -> Hdf:
@@ -125,19 +117,7 @@ def hdf(path: Path) -> Hdf:
     ({'fs': 50.0}, [2.0])
     """
     require_regular(path)
-    told, _ = _ask(path, {"task": "look", "path": str(path.absolute())}, path.stat().st_size)
-    groups = {name: _attributes(attributes) for name, attributes in told["groups"]}
-    arrays = {each["name"]: _array(each) for each in told["arrays"]}
-    return Hdf(path, groups, arrays)
-
-
-def _array(told: dict[str, Any]) -> HdfArray:
-    own = (told["name"], tuple(told["shape"]), told["kind"], told["size"], told["stored"], told["columns"])
-    return HdfArray(*own, _attributes(told["attributes"]), tuple(told["texts"]), tuple(told["references"]))
-
-
-def _attributes(told: Mapping[str, Any]) -> dict[str, Attribute]:
-    return {name: tuple(value) if isinstance(value, list) else value for name, value in told.items()}
+    return Hdf(path, *_ask(_Question("look", path), path.stat().st_size))
 
 
 def mat(path: Path) -> list[tuple[str, Array | tuple[str, ...]]]:
@@ -152,8 +132,7 @@ def mat(path: Path) -> list[tuple[str, Array | tuple[str, ...]]]:
     require_regular(path)
     size = path.stat().st_size
     require_memory(str(path), "its numbers", _COPIES * size, _less)
-    told, arrays = _ask(path, {"task": "mat", "path": str(path.absolute())}, size)
-    return [(name, tuple(value) if isinstance(value, list) else arrays[value]) for name, value in told]
+    return _ask(_Question("mat", path), size)
 
 
 def _less(there: float) -> str:
@@ -193,53 +172,42 @@ def new_hdf(place: Path, size: int) -> Generator[Any]:
             raise OSError(str(error)) from None
 
 
-# --- the child as the caller sees it ---
+@dataclass(frozen=True)
+class _Question:
+    """What is asked about a file: for one of the tasks below, spans (start, stop) of an array, a column of a table."""
+
+    task: str
+    path: Path
+    name: str = ""
+    spans: tuple[tuple[int, int], ...] = ()
+    column: str = ""
 
 
 class Child:
-    """A process that answers questions about files; started by the first one, and anew after one that ended it."""
+    """The worker of this process that answers questions about files; started by the first one, and anew after one that ended it."""
 
     def __init__(self) -> None:
-        self._process: subprocess.Popen[bytes] | None = None
+        self._worker: Worker | None = None
         self._owner = 0
         self._lock = threading.Lock()
 
-    def ask(self, question: dict[str, Any]) -> tuple[dict[str, Any], list[Array]]:
-        """The answer and its arrays; raises `EOFError` where the child ended over it, which is then replaced by the next question."""
+    def ask(self, question: _Question, seconds: float, memory: float) -> Any:
+        """The answer; raises as `Worker.call` does, and the next question finds a new worker then."""
         with self._lock:
-            process = self._running()
-            try:
-                return _exchange(process, question)
-            except EOFError:
-                self.end(1.0)
-                raise
-            except BaseException:
-                self.end()
-                raise
+            known = self._worker
+            if known is None or self._owner != os.getpid() or known.process.poll() is not None:
+                known = self._worker = Worker(_answer)
+                self._owner = os.getpid()
+            return known.call(question, seconds, memory)
 
     def code(self) -> int:
-        """How the last process ended."""
-        return self._process.returncode if self._process is not None else 0
+        """How the last worker ended."""
+        return self._worker.process.returncode if self._worker is not None else 0
 
-    def _running(self) -> subprocess.Popen[bytes]:
-        known = self._process
-        if known is None or self._owner != os.getpid() or known.poll() is not None:
-            words, pipe = command("flexstage.base.files"), subprocess.PIPE
-            known = subprocess.Popen(words, env=environment(), stdin=pipe, stdout=pipe, stderr=subprocess.DEVNULL)
-            self._process, self._owner = known, os.getpid()
-        return known
-
-    def end(self, patience: float = 0.0) -> None:
-        """End the process, which may take some time to end by itself [s]."""
-        process = self._process
-        if process is not None and self._owner == os.getpid():
-            with contextlib.suppress(subprocess.TimeoutExpired):
-                process.wait(patience)
-            process.kill()
-            process.wait()
-            for stream in _pipes(process):
-                with contextlib.suppress(OSError):
-                    stream.close()
+    def end(self) -> None:
+        """End the worker."""
+        if self._worker is not None and self._owner == os.getpid():
+            self._worker.end()
 
 
 CHILD = Child()
@@ -247,57 +215,17 @@ CHILD = Child()
 atexit.register(CHILD.end)
 
 
-def _pipes(process: subprocess.Popen[bytes]) -> tuple[Any, Any]:
-    return process.stdin, process.stdout
-
-
-def _exchange(process: subprocess.Popen[bytes], question: dict[str, Any]) -> tuple[dict[str, Any], list[Array]]:
-    into, out = _pipes(process)
+def _ask(question: _Question, size: int) -> Any:
+    """What the worker says about a file, at most `size` bytes of numbers; raises `DesignError` with what keeps it from being read."""
+    path, seconds = str(question.path), PATIENCE + _SLOW * size
     try:
-        into.write(json.dumps(question).encode() + b"\n")
-        into.flush()
-    except OSError:
-        raise EOFError from None
-    length = _LENGTH.unpack(_exactly(out, _LENGTH.size))[0]
-    answer: dict[str, Any] = json.loads(_exactly(out, length))
-    arrays = [np.empty(shape, np.dtype(kind)) for kind, shape in answer["arrays"]]
-    for each in arrays:
-        _into(out, each)
-    return answer, arrays
-
-
-def _exactly(stream: Any, size: int) -> bytes:
-    found = stream.read(size)
-    if len(found) < size:
-        raise EOFError
-    return found
-
-
-def _bytes(array: Array) -> memoryview:
-    plain: Any = np.ascontiguousarray(array).reshape(-1).view(np.uint8)
-    return memoryview(plain)
-
-
-def _into(stream: Any, array: Array) -> None:
-    rest = _bytes(array)
-    while rest:
-        count = stream.readinto(rest)
-        if not count:
-            raise EOFError
-        rest = rest[count:]
-
-
-def _ask(path: Path, question: dict[str, Any], size: int) -> tuple[Any, list[Array]]:
-    """What the child says about a file, at most `size` bytes of numbers; raises `DesignError` with what keeps it from being read."""
-    seconds, memory = PATIENCE + _SLOW * size, MEMORY + _COPIES * size
-    try:
-        answer, arrays = CHILD.ask(question | {"seconds": seconds, "memory": memory})
-    except (EOFError, ValueError, KeyError, TypeError):
-        raise refuse(str(path), f"it is damaged: {_ended(CHILD.code(), seconds)}", "Copy or export it anew") from None
-    if "wrong" in answer:
-        where, what, advice = answer["wrong"]
-        raise refuse(f"{path}: {where}" if where else str(path), what, advice)
-    return answer["result"], arrays
+        answer = CHILD.ask(replace(question, path=question.path.absolute()), seconds, MEMORY + _COPIES * size)
+    except EOFError:
+        raise refuse(path, f"it is damaged: {_ended(CHILD.code(), seconds)}", "Copy or export it anew") from None
+    if isinstance(answer, _WrongError):
+        where, what, advice = answer.args
+        raise refuse(f"{path}: {where}" if where else path, what, advice)
+    return answer
 
 
 def _ended(code: int, seconds: float) -> str:
@@ -307,80 +235,59 @@ def _ended(code: int, seconds: float) -> str:
     return "the library that reads it crashed" + (f" (signal {-code})" if code < 0 else "")
 
 
-# --- the child itself ---
+# --- the worker itself ---
 
 
 class _WrongError(Exception):
     """What is wrong: where in the file, what, and what to do."""
 
 
-def serve(questions: BinaryIO, answers: BinaryIO) -> None:
-    """Answer questions, one a line, until there are no more; a question that takes too long ends the process."""
-    for line in questions:
-        question = json.loads(line)
-        _limit(question["seconds"], question["memory"])
-        arrays: list[Array] = []
-        try:
-            answer: dict[str, Any] = {"result": _TASKS[question["task"]](question, arrays)}
-        except Exception as error:  # noqa: BLE001 damaged files make the libraries stumble in ways of all kinds
-            arrays, answer = [], {"wrong": _wrong(question, error)}
-        _send(answers, answer, arrays)
-
-
-def _limit(seconds: float, memory: int) -> None:
-    """Let the system end this process beyond so much processor time, and refuse it more memory; nothing where it cannot."""
-    with contextlib.suppress(ImportError):
-        import resource
-
-        limits = {resource.RLIMIT_CPU: math.ceil(time.process_time() + seconds), resource.RLIMIT_AS: memory}
-        for kind, limit in limits.items():
-            with contextlib.suppress(ValueError, OSError):  # the system knows the limit and does not keep it, or has a lower one
-                resource.setrlimit(kind, (limit, resource.getrlimit(kind)[1]))
-
-
-def _send(answers: BinaryIO, answer: dict[str, Any], arrays: list[Array]) -> None:
-    text = json.dumps(answer | {"arrays": [[each.dtype.str, each.shape] for each in arrays]}).encode()
-    answers.write(_LENGTH.pack(len(text)) + text)
-    answers.writelines(map(_bytes, arrays))
-    answers.flush()
+def _answer(_line: Line, question: _Question, seconds: float, memory: float) -> Any:
+    """The answer to a question, or what is wrong: damaged files make the libraries stumble in ways of all kinds."""
+    limit_processor(seconds)
+    limit_memory(memory)
+    try:
+        return _TASKS[question.task](question)
+    except MemoryError:
+        return _WrongError("", f"reading it takes more than {gigabytes(memory)} of memory", "Export it anew, or in parts")
+    except Exception as error:  # noqa: BLE001
+        return _wrong(question, error)
 
 
 def _said(error: Exception) -> str:
     return " ".join(str(getattr(error, "strerror", None) or error or type(error).__name__).split())[:300]
 
 
-def _wrong(question: dict[str, Any], error: Exception) -> tuple[str, str, str]:
+def _wrong(question: _Question, error: Exception) -> _WrongError:
     if isinstance(error, _WrongError):
-        return error.args[0], error.args[1], error.args[2]
-    if isinstance(error, MemoryError):
-        return "", f"reading it takes more than {gigabytes(question['memory'])} of memory", "Export it anew, or in parts"
+        return error
     said = _said(error)
-    if question["task"] == "mat":
-        size = Path(question["path"]).stat().st_size
+    if question.task == "mat":
+        size = question.path.stat().st_size
         advice = "It breaks off or is damaged: copy or save it anew (MAT files of version 5 cannot be read in part)"
-        return "", f"it cannot be read as a MAT file ({said}); it has {size} bytes", advice
+        return _WrongError("", f"it cannot be read as a MAT file ({said}); it has {size} bytes", advice)
     if "truncated file" in said:
         numbers = said.partition("truncated file: ")[2].rstrip(")") or said
-        return "", f"the file breaks off ({numbers})", "HDF5 cannot be read in part: copy or export it anew"
-    return "", f"it cannot be read as HDF5 ({said})", "Check the file, or export it anew"
+        return _WrongError("", f"the file breaks off ({numbers})", "HDF5 cannot be read in part: copy or export it anew")
+    return _WrongError("", f"it cannot be read as HDF5 ({said})", "Check the file, or export it anew")
 
 
 _ELSEWHERE = "its data stand in another file", "Only the file that is named is read: copy all data into it"
 
 
 @contextlib.contextmanager
-def _opened(question: dict[str, Any]) -> Generator[Any]:
+def _opened(question: _Question) -> Generator[Any]:
     import h5py
 
-    with h5py.File(question["path"], "r", locking=False) as file:
+    with h5py.File(question.path, "r", locking=False) as file:
         yield file
 
 
-def _look(question: dict[str, Any], _arrays: list[Array]) -> dict[str, Any]:
+def _look(question: _Question) -> tuple[dict[str, dict[str, Attribute]], dict[str, HdfArray]]:
     """All groups and arrays of a file, each once."""
     with _opened(question) as file:
-        groups: list[tuple[str, dict[str, Any]]] = []
-        found: list[dict[str, Any]] = []
+        groups: dict[str, dict[str, Attribute]] = {}
+        found: dict[str, HdfArray] = {}
         waiting, seen = [("", file)], set[Any]()
         while waiting:
             name, thing = waiting.pop()
@@ -388,11 +295,12 @@ def _look(question: dict[str, Any], _arrays: list[Array]) -> dict[str, Any]:
                 continue
             seen.add(thing.id)
             if hasattr(thing, "external"):  # committed types have a dtype and no data
-                found.append(_told(file, name, thing))
+                if thing.shape is not None and (array := _array(file, name, thing)).kind:
+                    found[name] = array
             elif hasattr(thing, "keys"):
-                groups.append((name, _plain_attributes(thing)))
+                groups[name] = _attributes(thing)
                 waiting += reversed([(f"{name}/{key}".lstrip("/"), each) for key, each in _members(name, thing)])
-        return {"groups": groups, "arrays": [each for each in found if each["kind"]]}
+        return groups, found
 
 
 def _members(name: str, group: Any) -> Iterator[tuple[str, Any]]:
@@ -408,24 +316,16 @@ def _members(name: str, group: Any) -> Iterator[tuple[str, Any]]:
             yield key, group[key]
 
 
-def _told(file: Any, name: str, data: Any) -> dict[str, Any]:
+def _array(file: Any, name: str, data: Any) -> HdfArray:
     """An array: everything but its numbers. Raises where they stand in other files."""
     if data.external or data.is_virtual:
         raise _WrongError(name, *_ELSEWHERE)
     kind, columns = _kind(data)
-    shape, size = data.shape or (), data.dtype.itemsize
-    short = math.prod(shape) <= _TEXTS
-    texts = _texts(data[()]) if kind == "t" and short else ()
-    references = [(file[each].name or "").lstrip("/") for each in np.ravel(data[()].T) if each] if kind == "r" and short else ()
-    own = {
-        "name": name,
-        "shape": shape,
-        "kind": "" if data.shape is None else kind,
-        "size": size,
-        "stored": data.id.get_storage_size(),
-        "columns": columns,
-    }
-    return own | {"attributes": _plain_attributes(data), "texts": texts, "references": references}
+    short = math.prod(data.shape) <= _TEXTS
+    texts = tuple(_texts(data[()])) if kind == "t" and short else ()
+    references = tuple((file[each].name or "").lstrip("/") for each in np.ravel(data[()].T) if each) if kind == "r" and short else ()
+    stored = data.id.get_storage_size()
+    return HdfArray(name, data.shape, kind, data.dtype.itemsize, stored, columns, _attributes(data), texts, references)
 
 
 def _kind(data: Any) -> tuple[str, dict[str, str]]:
@@ -446,19 +346,19 @@ def _text_kind(kind: str) -> str:
     return "t" if kind in "OSU" else kind if kind in _NUMBERS + "c" else ""
 
 
-def _plain_attributes(thing: Any) -> dict[str, Any]:
+def _attributes(thing: Any) -> dict[str, Attribute]:
     plain = {str(name): _plain(thing.attrs[name]) for name in thing.attrs}
     return {name: value for name, value in plain.items() if value is not None}
 
 
-def _plain(value: Any) -> str | float | list[str] | None:
-    """A text, a number, a list of texts; None for others."""
+def _plain(value: Any) -> Attribute | None:
+    """A text, a number, several texts; None for others."""
     if isinstance(value, (bytes, str)):
         return _text(value)
     array = np.asarray(value)
     if array.dtype.kind in "OSU":
         listed = _texts(array)
-        return listed if array.ndim else listed[0]
+        return tuple(listed) if array.ndim else listed[0]
     return float(array.ravel()[0]) if array.dtype.kind in _NUMBERS and array.size == 1 else None
 
 
@@ -470,17 +370,16 @@ def _text(value: Any) -> str:
     return value.decode("utf-8", "replace") if isinstance(value, bytes) else str(value)
 
 
-def _one_array(question: dict[str, Any], arrays: list[Array]) -> None:
+def _one_array(question: _Question) -> Array:
     with _opened(question) as file:
-        found = file[question["name"]]
-        values = found[tuple(slice(*span) for span in question["spans"])]
-    values = np.asarray(values[question["column"]] if question["column"] else values)
+        values = file[question.name][tuple(slice(*span) for span in question.spans)]
+    values = np.asarray(values[question.column] if question.column else values)
     names = values.dtype.names
     if names in _COMPLEX_FIELDS:
         whole = np.empty(values.shape, dtype=complex)
         np.real(whole)[...], np.imag(whole)[...] = values[names[0]], values[names[1]]  # to the bit: a sum would lose the sign of zeros
         values = whole
-    arrays.append(_numbers(values))
+    return _numbers(values)
 
 
 def _numbers(values: Array) -> Array:
@@ -489,21 +388,16 @@ def _numbers(values: Array) -> Array:
     return values
 
 
-def _some_texts(question: dict[str, Any], _arrays: list[Array]) -> list[str]:
+def _some_texts(question: _Question) -> list[str]:
     with _opened(question) as file:
-        found = file[question["name"]]
-        values = found[()]
-    return _texts(values[question["column"]] if question["column"] else values)
+        values = file[question.name][()]
+    return _texts(values[question.column] if question.column else values)
 
 
-def _mat(question: dict[str, Any], arrays: list[Array]) -> list[tuple[str, list[str] | int]]:
-    content = scipy.io.loadmat(question["path"], appendmat=False)
+def _mat(question: _Question) -> list[tuple[str, Array | tuple[str, ...]]]:
+    content = scipy.io.loadmat(question.path, appendmat=False)
     flat = [each for name, value in content.items() if not name.startswith("__") for each in _flat(name, value)]
-    told: list[tuple[str, list[str] | int]] = []
-    for name, value in flat:
-        told.append((name, value if isinstance(value, list) else len(arrays)))
-        arrays += [] if isinstance(value, list) else [_numbers(value)]
-    return told
+    return [(name, tuple(value) if isinstance(value, list) else _numbers(value)) for name, value in flat]
 
 
 def _flat(name: str, value: Any) -> Iterator[tuple[str, Any]]:
@@ -523,16 +417,3 @@ def _flat(name: str, value: Any) -> Iterator[tuple[str, Any]]:
 
 
 _TASKS = {"look": _look, "array": _one_array, "texts": _some_texts, "mat": _mat}
-
-
-def main() -> None:
-    """Serve on the standard streams; what libraries print goes nowhere, and an interrupt ends the process at once."""
-    signal.signal(signal.SIGINT, signal.SIG_DFL)
-    answers = os.fdopen(os.dup(1), "wb")
-    with open(os.devnull, "wb") as nowhere:  # noqa: PTH123
-        os.dup2(nowhere.fileno(), 1)
-    serve(sys.stdin.buffer, answers)
-
-
-if __name__ == "__main__":
-    main()

@@ -1,34 +1,28 @@
-"""Jobs of the solid model in processes of their own: as many at once as cores and memory allow, with time limits, watched and cleaned up.
+"""Jobs of the solid model in processes of their own: as many at once as cores and memory allow, with time limits.
 
-One loop in the caller's thread starts, watches and ends them, so that it works from bare scripts, notebooks and tests alike, and so that
-an interruption, wherever it comes, ends every process and removes every file of a job that is not finished.
+One loop in the caller's thread starts, watches and ends them, so that an interruption, wherever it comes, ends every process.
 """
 
 from __future__ import annotations
 
-import contextlib
-import json
-import pickle
-import shutil
+import errno
+import queue
 import signal
-import subprocess
 import tempfile
 import time
 from collections import deque
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
-from pathlib import Path
-from typing import IO, Generic, TypeVar, cast
+from typing import Any, Generic, TypeVar
 
-from flexstage.base.child import command, cores, environment
-from flexstage.base.finding import Finding, refuse, require
+from flexstage.base.finding import DesignError, Finding, refuse, require
+from flexstage.base.jobs import Heard, Word, Worker, cores
 from flexstage.base.memory import available
 from flexstage.base.progress import Progress, Step, seconds_left
-from flexstage.base.store import temporary
 from flexstage.solid.fea.memory import Counts
 from flexstage.solid.fea.progress import Stage, gathered
 from flexstage.solid.fea.store import versions
-from flexstage.solid.fea.worker import FINDINGS, PROGRESS, RESULT, TASK, Job, Outcome, Task, findings_in
+from flexstage.solid.fea.worker import Job, Task, work
 
 _MOST_WORKERS = 2
 _PAUSE = 0.02
@@ -88,28 +82,19 @@ class _Child(Generic[AnyJob]):
     job: AnyJob
     attempt: int
     begun: float
-    folder: Path
-    process: subprocess.Popen[bytes]
+    worker: Worker
     stage: Stage = Stage.STARTING
     fraction: float = 0.0
     since: float = field(default_factory=time.monotonic)
     counts: Counts | None = None
     granted: float | None = None
-    offset: int = 0
 
-    def listen(self) -> None:
-        """Take in the whole lines that came since."""
-        path = self.folder / PROGRESS
-        text = path.read_bytes()[self.offset :] if path.is_file() else b""
-        for line in text.splitlines(keepends=True):
-            if not line.endswith(b"\n"):
-                return
-            self.offset += len(line)
-            said = json.loads(line)
-            if "counts" in said:
-                self.counts, self.granted = Counts(*said["counts"]), None
-            else:
-                self.stage, self.fraction, self.since = Stage[said["stage"]], said["fraction"], time.monotonic()
+    def note(self, told: Counts | tuple[Stage, float]) -> None:
+        """Note what it tells."""
+        if isinstance(told, Counts):
+            self.counts, self.granted = told, None
+        else:
+            (self.stage, self.fraction), self.since = told, time.monotonic()
 
     @property
     def waits(self) -> bool:
@@ -121,38 +106,10 @@ class _Child(Generic[AnyJob]):
         """Memory it is going to need [bytes]."""
         return 0.0 if self.counts is None else self.job.needed(self.counts)
 
-    @property
-    def held(self) -> float:
-        """Memory it has already [bytes], where the system tells."""
-        try:
-            import psutil
-
-            return float(psutil.Process(self.process.pid).memory_info().rss)
-        except Exception:  # noqa: BLE001 the system does not tell, in whatever way
-            return 0.0
-
-    @property
-    def voice(self) -> IO[bytes]:
-        """Its standard input."""
-        return cast("IO[bytes]", self.process.stdin)
-
     def permit(self) -> None:
         """Let it assemble."""
         self.granted, self.since = self.wanted, time.monotonic()
-        with contextlib.suppress(OSError):  # it died meanwhile: seen at the next look
-            self.voice.write(b"!")
-
-    def last_words(self) -> str:
-        """The last line it wrote to its log."""
-        lines = (self.folder / "log").read_text(encoding="utf-8", errors="replace").strip().splitlines()
-        return lines[-1][:300] if lines else "it said nothing"
-
-    def remove(self) -> None:
-        """End the process, remove its folder."""
-        self.process.kill()
-        self.process.wait()
-        self.voice.close()
-        shutil.rmtree(self.folder, ignore_errors=True)
+        self.worker.ask()
 
 
 class _Run(Generic[AnyJob]):
@@ -163,6 +120,7 @@ class _Run(Generic[AnyJob]):
     ) -> None:
         self.waiting, self.done, self.limits, self.progress = waiting, done, limits, progress
         self.children: list[_Child[AnyJob]] = []
+        self.heard: Heard = queue.SimpleQueue()
         self.findings: list[Finding] = []
         total = sum(job.weight for job, _, _ in waiting)
         self.shares = {job.name: job.weight / total for job, _, _ in waiting}
@@ -174,38 +132,50 @@ class _Run(Generic[AnyJob]):
         while self.waiting or self.children:
             while self.waiting and len(self.children) < workers(self.limits):
                 self._start(*self.waiting.popleft())
+            self._hear()
             for child in tuple(self.children):
-                self._look(child)
+                self._check_time(child)
             self._permit()
             self._tell()
-            time.sleep(_PAUSE)
 
     def end(self) -> None:
-        """Leave no process and no file behind."""
+        """Leave no process behind."""
         for child in self.children:
-            child.remove()
+            child.worker.end()
 
     def _start(self, job: AnyJob, attempt: int, begun: float) -> None:
         memory = available() if self.limits.memory is None else self.limits.memory
         task = Task(job, attempt, memory, self.limits.seconds, versions())
-        self.children.append(_Child(job, attempt, begun if attempt else time.monotonic(), *_started(task)))
+        try:
+            worker = Worker(work, self.heard)
+        except OSError as error:
+            raise _unstarted(job.name, error) from error
+        self.children.append(_Child(job, attempt, begun if attempt else time.monotonic(), worker))
+        worker.ask(task)
 
-    def _look(self, child: _Child[AnyJob]) -> None:
-        code = child.process.poll()
-        child.listen()
-        if code is None:
-            self._check_time(child)
-        elif code == Outcome.DONE:
-            self.done(child.job, (child.folder / RESULT).read_bytes())
-            self._close(child)
-        elif code == Outcome.REFUSED and (child.folder / FINDINGS).is_file():
-            self._close(child, *findings_in(child.folder))
-        elif code == Outcome.DISK_FULL:
-            self._close(child, _disk_full(child.job.name))
-        elif code == Outcome.MEMORY_FULL:
-            self._close(child, _memory_full(child))
-        elif not self._again(child):
-            self._close(child, _failed(child, code))
+    def _hear(self) -> None:
+        """Take in what the workers said, waiting a moment for it."""
+        try:
+            worker, word, value = self.heard.get(timeout=_PAUSE)
+        except queue.Empty:
+            return
+        for child in self.children:
+            if child.worker is worker:
+                self._take(child, word, value)
+                return
+
+    def _take(self, child: _Child[AnyJob], word: Word, value: Any) -> None:
+        match word:
+            case Word.TOLD:
+                child.note(value)
+            case Word.DONE:
+                self.done(child.job, value)
+                self._close(child)
+            case Word.FAILED:
+                self._close(child, *_failures(child, value))
+            case Word.ENDED:
+                if value == 1 or not self._again(child):
+                    self._close(child, _failed(child, value))
 
     def _check_time(self, child: _Child[AnyJob]) -> None:
         now = time.monotonic()
@@ -218,10 +188,10 @@ class _Run(Generic[AnyJob]):
     def _again(self, child: _Child[AnyJob]) -> bool:
         """Begin with the next attempt at a mesh, where one took the process down or did not end."""
         attempt = round(child.fraction * child.job.attempts) + 1
-        if child.stage is not Stage.MESHING or attempt >= child.job.attempts or child.process.poll() == 1:
+        if child.stage is not Stage.MESHING or attempt >= child.job.attempts:
             return False
         self.children.remove(child)
-        child.remove()
+        child.worker.end()
         self.waiting.appendleft((child.job, attempt, child.begun))
         return True
 
@@ -229,7 +199,7 @@ class _Run(Generic[AnyJob]):
         self.findings += findings
         self.finished.append(child.job.name)
         self.children.remove(child)
-        child.remove()
+        child.worker.end()
 
     def _permit(self) -> None:
         """Permit what fits beside those that run; refuse what does not fit even alone."""
@@ -246,7 +216,7 @@ class _Run(Generic[AnyJob]):
     def _room(self, child: _Child[AnyJob], others: list[_Child[AnyJob]]) -> float:
         if self.limits.memory is not None:
             return self.limits.memory - sum(each.granted or 0.0 for each in others)
-        return available() + child.held - sum(max(0.0, (each.granted or 0.0) - each.held) for each in others)
+        return available() + child.worker.resident() - sum(max(0.0, (each.granted or 0.0) - each.worker.resident()) for each in others)
 
     def _tell(self) -> None:
         running = {child.job.name: (child.stage, child.fraction) for child in self.children}
@@ -258,36 +228,21 @@ class _Run(Generic[AnyJob]):
             self.progress(Step(text, self.fraction, seconds_left(self.fraction, now - self.begun)))
 
 
-def _started(task: Task) -> tuple[Path, subprocess.Popen[bytes]]:
-    folder: Path | None = None
-    try:
-        folder = temporary()
-        (folder / TASK).write_bytes(pickle.dumps(task))
-        with (folder / "log").open("wb") as log:
-            process = subprocess.Popen(
-                command("flexstage.solid.fea.worker", folder),
-                stdin=subprocess.PIPE,
-                bufsize=0,
-                stdout=log,
-                stderr=log,
-                cwd=folder,
-                env=environment(),
-                start_new_session=True,  # an interruption from the keyboard reaches the parent alone, which ends the child
-            )
-    except BaseException as error:
-        if folder is not None:
-            shutil.rmtree(folder, ignore_errors=True)
-        if isinstance(error, OSError):
-            raise _unstarted(task.job.name, error) from error
-        raise
-    return folder, process
+def _failures(child: _Child[AnyJob], error: Exception) -> tuple[Finding, ...]:
+    """What keeps a job from being done that its process lived to tell."""
+    if isinstance(error, DesignError):
+        return error.findings
+    if isinstance(error, MemoryError):
+        return (_memory_full(child),)
+    if isinstance(error, OSError) and error.errno in {errno.ENOSPC, errno.EDQUOT}:
+        return (_disk_full(child.job.name),)
+    return (_fault(child, f"{type(error).__name__}: {error}"),)
 
 
 def _failed(child: _Child[AnyJob], code: int) -> Finding:
     doing = child.stage.value
     if code == 1:
-        advice = "This is a fault of flexstage or its solver: please report it with the design; other sizes of elements may get around it"
-        return Finding(child.job.name, f"its process failed while {doing} ({child.last_words()})", advice)
+        return _fault(child, child.worker.last_words())
     tried = f", at {child.attempt + 1} sizes of elements" if child.attempt else ""
     advice = "Ask for elements of another size or order, and report it with the design if it happens again"
     if child.stage in {Stage.DRAWING, Stage.MESHING}:
@@ -295,6 +250,11 @@ def _failed(child: _Child[AnyJob], code: int) -> Finding:
     elif code == -signal.SIGKILL:
         advice = "Something ended it, as systems do when memory runs out: ask for larger elements or a lower order, or state less memory"
     return Finding(child.job.name, f"its process crashed while {doing} ({_reason(code)}){tried}", advice)
+
+
+def _fault(child: _Child[AnyJob], said: str) -> Finding:
+    advice = "This is a fault of flexstage or its solver: please report it with the design; other sizes of elements may get around it"
+    return Finding(child.job.name, f"its process failed while {child.stage.value} ({said})", advice)
 
 
 def _reason(code: int) -> str:

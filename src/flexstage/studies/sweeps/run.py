@@ -15,8 +15,8 @@ from filelock import FileLock, Timeout
 
 from flexstage.analysis.measures import platform_frequency
 from flexstage.base import memory
-from flexstage.base.child import cores
 from flexstage.base.finding import DesignError, refuse, require
+from flexstage.base.jobs import cores
 from flexstage.base.number import Array
 from flexstage.studies.sweeps.definition import Study, name_findings
 from flexstage.studies.sweeps.engine import engine_covers, engine_of
