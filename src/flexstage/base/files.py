@@ -63,7 +63,7 @@ def require_regular(path: Path) -> None:
 class HdfArray:
     """An array of an HDF5 file: its path, its shape, the kind of its numbers (as numpy's, `t` for texts, `r` for references).
 
-    `size` bytes has a number, `stored` have all of them in the file; `columns` are kinds by name where it is a table; `attributes` its own;
+    `size` bytes has a number, `columns` are kinds by name where it is a table; `attributes` its own;
     `texts` what it says; `references` paths of what it refers to.
     """
 
@@ -71,7 +71,6 @@ class HdfArray:
     shape: tuple[int, ...]
     kind: str
     size: int
-    stored: int
     columns: Mapping[str, str]
     attributes: Mapping[str, Attribute]
     texts: tuple[str, ...] = ()
@@ -324,8 +323,7 @@ def _array(file: Any, name: str, data: Any) -> HdfArray:
     short = math.prod(data.shape) <= _TEXTS
     texts = tuple(_texts(data[()])) if kind == "t" and short else ()
     references = tuple((file[each].name or "").lstrip("/") for each in np.ravel(data[()].T) if each) if kind == "r" and short else ()
-    stored = data.id.get_storage_size()
-    return HdfArray(name, data.shape, kind, data.dtype.itemsize, stored, columns, _attributes(data), texts, references)
+    return HdfArray(name, data.shape, kind, data.dtype.itemsize, columns, _attributes(data), texts, references)
 
 
 def _kind(data: Any) -> tuple[str, dict[str, str]]:
