@@ -45,11 +45,11 @@ def optimise(study: Study, wanted: Wanted, progress: Progress | None = None) -> 
     problem, begins = set_up.problem, set_up.starts()
     counted = Count(progress, "searching")
     traces = [Trace() for _ in begins]
-    interrupted = _searched(set_up, problem, (begins, traces), counted)
+    interrupted = _searched(set_up, begins, traces, counted)
     point = best_of(problem, traces)
     broken, against, near = interrupted, (), None
     if not interrupted:
-        against, near, interrupted = _concluded(set_up, problem, (point, traces), counted)
+        against, near, interrupted = _concluded(set_up, point, traces, counted)
     starts = tuple(_start(problem, begin, trace, point) for begin, trace in zip(begins, traces, strict=True))
     return Optimum(
         study=study,
@@ -68,24 +68,23 @@ def optimise(study: Study, wanted: Wanted, progress: Progress | None = None) -> 
     )
 
 
-def _searched(set_up: Setting, problem: Problem, walks: tuple[Array, list[Trace]], counted: Count) -> bool:
+def _searched(set_up: Setting, begins: Array, traces: list[Trace], counted: Count) -> bool:
     """Search from all starts; whether that was interrupted. The traces keep what was found."""
     try:
-        together([search(problem, start, trace) for start, trace in zip(*walks, strict=True)], set_up.values, counted)
+        together([search(set_up.problem, start, trace) for start, trace in zip(begins, traces, strict=True)], set_up.values, counted)
     except KeyboardInterrupt:
         return True
     return False
 
 
 def _concluded(
-    set_up: Setting, problem: Problem, found: tuple[Point | None, list[Trace]], counted: Count
+    set_up: Setting, point: Point | None, traces: list[Trace], counted: Count
 ) -> tuple[tuple[Contradiction, ...], Rounded | None, bool]:
     """Limits that contradict where there is no design, else the design rounded; whether that was interrupted."""
-    point, traces = found
     try:
         if point is not None:
             counted.about = "rounding"
-            return (), rounded(set_up, problem, point), False
+            return (), rounded(set_up, set_up.problem, point), False
         counted.about = "looking for limits that contradict"
         ends = [trace.point.shares for trace in traces if trace.point is not None]
         return contradictions(set_up, ends, counted), None, False

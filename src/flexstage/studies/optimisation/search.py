@@ -77,17 +77,17 @@ def search(problem: Problem, start: Array, trace: Trace | None = None, *, enough
             break
         answer = yield np.clip(point.shares + move.change, 0.0, 1.0)
         trace.evaluated += 1
-        ratio = _ratio(problem, (point, answer), move, penalty)
+        ratio = _ratio(problem, point, answer, move, penalty)
         if isinstance(answer, Point) and ratio < _CURVED and problem.violation(answer) > max(move.excess, _KEPT):
             again = step(problem, point, hessian, Bounds(radius, penalty), answer)
             second = yield np.clip(point.shares + again.change, 0.0, 1.0)
             trace.evaluated += 1
-            other = _ratio(problem, (point, second), move, penalty)
+            other = _ratio(problem, point, second, move, penalty)
             answer, ratio = (second, other) if other > ratio else (answer, ratio)
         radius = _resized(radius, ratio, move)
         if isinstance(answer, str) or ratio <= 1e-4:
             continue
-        hessian = _updated(problem, hessian, (point, answer), move.weights, fresh=fresh)
+        hessian = _updated(problem, hessian, point, answer, move.weights, fresh=fresh)
         point, fresh = answer, False
         trace.point = point
         trace.history.append(point)
@@ -98,9 +98,8 @@ def _merit(problem: Problem, point: Point, penalty: float) -> float:
     return problem.worth(point) + penalty * problem.violation(point)
 
 
-def _ratio(problem: Problem, ends: tuple[Point, Point | str], move: Step, penalty: float) -> float:
+def _ratio(problem: Problem, before: Point, after: Point | str, move: Step, penalty: float) -> float:
     """What a step gained over what the model promised; -1 where there is no design."""
-    before, after = ends
     return -1.0 if isinstance(after, str) else (_merit(problem, before, penalty) - _merit(problem, after, penalty)) / move.gain
 
 
@@ -124,9 +123,8 @@ def _resized(radius: float, ratio: float, move: Step) -> float:
     return min(1.0, 2.0 * radius) if ratio > 0.7 and move.held else radius
 
 
-def _updated(problem: Problem, hessian: Array, ends: tuple[Point, Point], weights: tuple[Weights, ...], *, fresh: bool) -> Array:
+def _updated(problem: Problem, hessian: Array, before: Point, now: Point, weights: tuple[Weights, ...], *, fresh: bool) -> Array:
     """The BFGS update of the Lagrangian's curvature, damped so that it stays positive definite."""
-    before, now = ends
     change = now.shares - before.shares
     late, early = lagrangian(problem, now, weights, before), lagrangian(problem, before, weights)
     if late is None or early is None or not np.any(change):

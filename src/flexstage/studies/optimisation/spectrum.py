@@ -10,7 +10,7 @@ from flexstage.base.finding import refuse
 from flexstage.base.number import Array
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.models.batch.choice import Choice, choose
-from flexstage.models.linear.eigen import Eigen, solve
+from flexstage.models.linear.eigen import solve
 from flexstage.models.linear.model import Contribution, LinearModel, assemble
 
 _STEP = 1e-20
@@ -71,13 +71,16 @@ def spectra(mechanism: Mechanism, model: LinearModel, asked: tuple[Modes, ...], 
         for matrix in (model.stiffness, model.inertia)
     )
     solved = solve(stiffness, inertia, np.ones(stiffness.shape[-1]))
-    picked = [[_picked(mechanism, model, solved, (design, each), wanted) for wanted in asked] for design in range(designs)]
+    picked = [
+        [_picked(mechanism, model, wanted, solved.values[design], solved.shapes[design], row=design * each) for wanted in asked]
+        for design in range(designs)
+    ]
     result = []
     for design in range(designs):
         own = picked[design]
         union = np.unique(np.concatenate(own)) if own else np.zeros(0, dtype=int)
         values, shapes = solved.values[design, union], solved.shapes[design][:, union]
-        slopes = _slopes(model, (values, shapes), slice(design * each, (design + 1) * each), variables)
+        slopes = _slopes(model, values, shapes, slice(design * each, (design + 1) * each), variables)
         places = [np.searchsorted(union, each_) for each_ in own]
         frequencies = np.sqrt(values) / (2.0 * np.pi)
         weighted = inertia[design] @ shapes
@@ -89,17 +92,16 @@ def _real(item: Contribution) -> Contribution:
     return Contribution(np.real(item.operator), np.real(item.law))
 
 
-def _picked(mechanism: Mechanism, model: LinearModel, solved: Eigen, at: tuple[int, int], wanted: Modes) -> Array:
+def _picked(mechanism: Mechanism, model: LinearModel, wanted: Modes, values: Array, shapes: Array, *, row: int) -> Array:
     """Indices of the modes asked for and of some above them."""
-    design, each = at
-    if not np.all(np.isfinite(solved.values[design])):
+    if not np.all(np.isfinite(values)):
         raise refuse("frequency", "some motion has no stiffness", "Narrow the ranges")
     if not wanted.platform:
-        found = np.arange(min(wanted.count + _ROOM, solved.values.shape[-1]))
+        found = np.arange(min(wanted.count + _ROOM, len(values)))
     else:
         limit = np.inf if mechanism.mode_limit is None else float(np.max(np.real(mechanism.mode_limit)))
-        share = _share(model, solved.shapes[design], design * each)
-        found = np.flatnonzero(choose(solved.values[design][None], share[None], Choice(limit=limit)).mask[0])
+        share = _share(model, shapes, row)
+        found = np.flatnonzero(choose(values[None], share[None], Choice(limit=limit)).mask[0])
     if len(found) < wanted.count:
         raise refuse("frequency", f"there are {len(found)} such modes", "Ask for a lower number")
     return found
@@ -115,8 +117,7 @@ def _share(model: LinearModel, shapes: Array, row: int) -> Array:
     return np.sum(seen * (law @ seen), axis=0)
 
 
-def _slopes(model: LinearModel, modes: tuple[Array, Array], rows: slice, variables: int) -> Array:
-    values, shapes = modes
+def _slopes(model: LinearModel, values: Array, shapes: Array, rows: slice, variables: int) -> Array:
     count = len(values)
     if not variables:
         return np.zeros((0, count, count))

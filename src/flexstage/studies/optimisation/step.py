@@ -39,11 +39,12 @@ class _Rows:
     aims: list[bool]
     owners: list[tuple[int, int | Array]]
 
-    def add(self, owner: tuple[int, int | Array], plane: tuple[float, Array], *, aim: bool) -> None:
-        self.owners.append(owner)
-        self.constants.append(plane[0])
-        self.gradients.append(plane[1])
-        self.aims.append(aim)
+    def add(self, side: int, piece: int | Array, constant: float, gradient: Array, *, level: float | None) -> None:
+        """Add a plane of a side: a limit's, or with its `level` the objective's."""
+        self.owners.append((side, piece))
+        self.constants.append(constant - (level or 0.0))
+        self.gradients.append(gradient)
+        self.aims.append(level is not None)
 
 
 @dataclass(frozen=True)
@@ -72,12 +73,12 @@ def step(problem: Problem, point: Point, hessian: Array, bounds: Bounds, tried: 
     radius, penalty = bounds.radius, bounds.penalty
     level = problem.worth(point)
     rows = _first(problem, models, level, radius)
-    ends = np.maximum(-point.shares, -radius), np.minimum(1.0 - point.shares, radius)
-    found, multipliers = _solved(rows, hessian, ends, penalty)
+    low, high = np.maximum(-point.shares, -radius), np.minimum(1.0 - point.shares, radius)
+    found, multipliers = _solved(rows, hessian, low, high, penalty)
     for _ in range(_CUTS):
         if not _deepened(problem, models, rows, found, level):
             break
-        found, multipliers = _solved(rows, hessian, ends, penalty)
+        found, multipliers = _solved(rows, hessian, low, high, penalty)
     size = len(point.shares)
     change, rise, excess = found[:size], float(found[size]), float(found[size + 1])
     merit = rise + 0.5 * float(change @ hessian @ change) + penalty * (excess - problem.violation(point))
@@ -92,23 +93,18 @@ def _first(problem: Problem, models: list[Linear], level: float, radius: float) 
         aim = number < len(problem.objective)
         if not model.diagonal:
             for own in np.eye(len(model.constant)):
-                rows.add((number, own), _levelled(model.cut(own), level if aim else 0.0), aim=aim)
+                rows.add(number, own, *model.cut(own), level=level if aim else None)
             continue
         reach = radius * np.sum(np.abs(model.slope), axis=0)
         near = model.constant + reach >= (np.max(model.constant - reach) if aim else 0.0)
         keys = np.round(np.column_stack([model.constant, model.slope.T]), _SAME)
         first = np.unique(keys, axis=0, return_index=True)[1]
         for piece in sorted(int(each) for each in first if near[each]):
-            plane = (float(model.constant[piece]), model.slope[:, piece])
-            rows.add((number, piece), _levelled(plane, level if aim else 0.0), aim=aim)
+            rows.add(number, piece, float(model.constant[piece]), model.slope[:, piece], level=level if aim else None)
     return rows
 
 
-def _levelled(plane: tuple[float, Array], level: float) -> tuple[float, Array]:
-    return plane[0] - level, plane[1]
-
-
-def _solved(rows: _Rows, hessian: Array, ends: tuple[Array, Array], penalty: float) -> tuple[Array, Array]:
+def _solved(rows: _Rows, hessian: Array, low: Array, high: Array, penalty: float) -> tuple[Array, Array]:
     """The model's minimiser (d, t, s) and the multipliers of its planes."""
     size = len(hessian)
     whole = np.zeros((size + 2, size + 2))
@@ -118,7 +114,7 @@ def _solved(rows: _Rows, hessian: Array, ends: tuple[Array, Array], penalty: flo
     aims = np.array(rows.aims, dtype=bool)
     planes = np.column_stack([np.array(rows.gradients).reshape(-1, size), -aims.astype(float), -(~aims).astype(float)])
     normals = np.vstack([planes, unit[:size], -unit[:size], -unit[size + 1]])
-    bounds = np.concatenate([-np.array(rows.constants), ends[1], -ends[0], [0.0]])
+    bounds = np.concatenate([-np.array(rows.constants), high, -low, [0.0]])
     found = quadratic(whole, np.concatenate([np.zeros(size), [1.0, penalty]]), normals, bounds)
     return found.at, found.multipliers[: len(aims)]
 
@@ -134,7 +130,7 @@ def _deepened(problem: Problem, models: list[Linear], rows: _Rows, found: Array,
         values, vectors = model.after(found[:size])
         for value, vector in zip(values, vectors.T, strict=True):
             if value > ceiling + _CLOSE:
-                rows.add((number, vector), _levelled(model.cut(vector), level if aim else 0.0), aim=aim)
+                rows.add(number, vector, *model.cut(vector), level=level if aim else None)
                 added = True
     return added
 

@@ -94,21 +94,21 @@ def designs_figure(study: Study, results: Results) -> Any:
     with styled():
         figure = canvas(FULL, 3.0)
         ax = panels(figure, 1, 1, Margins(left=0.45, right=0.45, bottom=0.55, top=0.3))[0, 0]
-        _lines(ax, heights, (heights[:, results.variables.shape[1]], study.kept(results.responses[chosen])))
-        _axes(ax, study, (low, high))
+        _lines(ax, heights, heights[:, results.variables.shape[1]], study.kept(results.responses[chosen]))
+        _axes(ax, study, low, high)
     return figure
 
 
-def _lines(ax: Any, heights: Array, colours: tuple[Array, Array]) -> None:
+def _lines(ax: Any, heights: Array, shade: Array, kept: Array) -> None:
     from matplotlib.collections import LineCollection
 
-    places, (shade, kept) = np.arange(heights.shape[1]), colours
+    places = np.arange(heights.shape[1])
     segments = np.stack([np.broadcast_to(places, heights.shape), heights], axis=-1)
     ax.add_collection(LineCollection(list(segments[~kept]), colors=GRID, linewidth=0.5))
     ax.add_collection(LineCollection(list(segments[kept]), cmap="viridis", array=shade[kept], clim=(0.0, 1.0), linewidth=0.5, alpha=0.7))
 
 
-def _axes(ax: Any, study: Study, ends: tuple[Array, Array]) -> None:
+def _axes(ax: Any, study: Study, lows: Array, highs: Array) -> None:
     named: list[tuple[str, Variable | Measure]] = [*((each.name, each) for each in study.variables), *study.columns.items()]
     names = [name for name, _ in named]
     ax.set_xlim(-0.2, len(names) - 0.8)
@@ -116,7 +116,7 @@ def _axes(ax: Any, study: Study, ends: tuple[Array, Array]) -> None:
     ax.set_yticks([])
     ax.set_xticks(range(len(names)), ["" for _ in names])
     ax.grid(visible=False)
-    for place, ((name, each), low, high) in enumerate(zip(named, *ends, strict=True)):
+    for place, ((name, each), low, high) in enumerate(zip(named, lows, highs, strict=True)):
         form = display(each, np.array([low, high]))
         ax.axvline(place, color=INK, linewidth=0.8)
         ax.text(place, -0.05, f"{form.of(low):.4g}\n{form.label(name)}", ha="center", va="top", fontsize=7)

@@ -64,7 +64,7 @@ def gather(path: Path, study: Study, size: int) -> None:
     if path.exists() and not pieces:
         return
     with atomic_write(path) as place:
-        _written(place, path, pieces, (study, size))
+        _written(place, path, pieces, study, size)
     _settle(path.parent)  # the new name is on the disk before what it stands for goes
     for each in pieces.values():
         each.unlink(missing_ok=True)
@@ -107,15 +107,15 @@ def _settle(folder: Path) -> None:
         os.close(descriptor)
 
 
-def _written(place: Path, path: Path, pieces: dict[int, Path], what: tuple[Study, int]) -> None:
+def _written(place: Path, path: Path, pieces: dict[int, Path], study: Study, size: int) -> None:
     """The whole file."""
     done = gathered(path)
-    fresh = {start: each for start, each in pieces.items() if not len(done) or not done[start // what[1]]}
+    fresh = {start: each for start, each in pieces.items() if not len(done) or not done[start // size]}
     old = opened(path) if path.exists() else None
     failures: Failures = [] if old is None else stored_failures(old)
     failures += [(start + row, reason) for start, each in fresh.items() for row, reason in read_failures(each).items()]
-    with new_hdf(place, needed(what[0], failures)) as file:
-        _frame(file, *what)
+    with new_hdf(place, needed(study, failures)) as file:
+        _frame(file, study, size)
         _fill(file, old, fresh)
         _put_failures(file, sorted(failures))
 

@@ -165,18 +165,20 @@ def strongest(at: Array, values: Array, shares: Array, *, grid: bool) -> tuple[I
     """
     upper = [(pair, number) for pair in combinations(range(at.shape[1]), 2) for number in range(values.shape[1])]
     strong = [(float(shares[*pair, number]), pair, number) for pair, number in upper if shares[*pair, number] >= _LEAST]
-    return tuple(_seen(at, values, each, grid=grid) for each in sorted(strong, reverse=True)[:_MOST])
+    return tuple(
+        _seen(at, values[:, number], pair, share, number, grid=grid) for share, pair, number in sorted(strong, reverse=True)[:_MOST]
+    )
 
 
-def _seen(at: Array, values: Array, which: tuple[float, tuple[int, int], int], *, grid: bool) -> Interaction:
-    share, (over, by), number = which
+def _seen(at: Array, values: Array, pair: tuple[int, int], share: float, number: int, *, grid: bool) -> Interaction:
+    over, by = pair
     width = max(2, min(_WIDEST, len(at) // (_FEWEST * _LEVELS)))
     along = np.unique(at[:, over], return_inverse=True)[1] if grid else ranked(at[:, over], width)
     levels = np.unique(at[:, by], return_inverse=True)[1] if grid else ranked(at[:, by], _LEVELS)
     level = levels * _LEVELS // (int(levels.max()) + 1)
     width = int(along.max()) + 1
     cells = level * width + along
-    means = _means(cells, values[:, number], _LEVELS * width).reshape(_LEVELS, width)
+    means = _means(cells, values, _LEVELS * width).reshape(_LEVELS, width)
     return Interaction(over, by, number, share, _means(along, at[:, over], width), _means(level, at[:, by], _LEVELS), means)
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from itertools import combinations
 from typing import Annotated
 
+from flexstage.base.notebook import InNotebook
 from flexstage.base.record import INNER, VIEW, Called
 from flexstage.studies.sweeps.definition import Asked, Study
 from flexstage.studies.sweeps.effects import Effects
@@ -52,12 +53,11 @@ class ResponseEffects(Asked):
 
 
 @dataclass(frozen=True, eq=False)
-class Sweep:
-    """A sweep: its study, the results of all designs so far (they are in the results file), and what variables do to responses."""
+class StudyResult(InNotebook):
+    """What a study of many designs tells: its `study`, and the `results` of all designs so far."""
 
     study: Annotated[Study, INNER]
     results: Annotated[Results, INNER]
-    effects: Annotated[Effects, INNER]
 
     @property
     def name(self) -> Annotated[str, VIEW, Called("study")]:
@@ -75,6 +75,18 @@ class Sweep:
         return self.study.plan.seed
 
     @property
+    def failures(self) -> Annotated[tuple[Failure, ...], VIEW]:
+        """Designs without values."""
+        return self.results.failed
+
+
+@dataclass(frozen=True, eq=False)
+class Sweep(StudyResult):
+    """A sweep: what variables do to responses. The designs themselves are in the results file."""
+
+    effects: Annotated[Effects, INNER]
+
+    @property
     def designs(self) -> Annotated[DesignCount, VIEW]:
         """How many there are."""
         return DesignCount(self.results.planned, len(self.results.designs), len(self.results.failures))
@@ -88,11 +100,6 @@ class Sweep:
     def responses(self) -> Annotated[tuple[ResponseEffects, ...], VIEW]:
         """What is asked, with the measures that limits are on."""
         return tuple(self._response(index, name) for index, name in enumerate(self.effects.responses))
-
-    @property
-    def failures(self) -> Annotated[tuple[Failure, ...], VIEW]:
-        """Designs without values."""
-        return self.results.failed
 
     @property
     def method(self) -> Annotated[str, VIEW]:

@@ -76,7 +76,7 @@ def sweep(study: Study, path: str | os.PathLike[str], how: Run = DEFAULT, progre
         _tell(progress, study, size * int(np.sum(done)))
         require_room(target, study)
         try:
-            for count, _ in enumerate(_gathering(_pieces(study, ranges, folder, how), target, (study, size)), 1 + int(np.sum(done))):
+            for count, _ in enumerate(_gathering(_pieces(study, ranges, folder, how), target, study, size), 1 + int(np.sum(done))):
                 _tell(progress, study, size * count)
         except BaseException:
             with contextlib.suppress(DesignError):  # the first reason is told; pieces stay as they are
@@ -156,15 +156,15 @@ def _pieces(study: Study, ranges: list[tuple[int, int]], folder: Path, how: Run)
     return worked(study, engine, ranges, folder, how.workers or cores())
 
 
-def _gathering(pieces: Iterator[int], target: Path, what: tuple[Study, int]) -> Iterator[int]:
+def _gathering(pieces: Iterator[int], target: Path, study: Study, size: int) -> Iterator[int]:
     """The pieces as they come, gathered seldom enough to cost a twentieth of the time."""
-    gather(target, *what)
+    gather(target, study, size)
     last, cost = time.monotonic(), 0.0
     for start in pieces:
         yield start
         now = time.monotonic()
         if now - last > max(_LEAST, _SELDOM * cost):
-            gather(target, *what)
+            gather(target, study, size)
             last = time.monotonic()
             cost = last - now
 

@@ -90,11 +90,6 @@ def allowance(study: Tolerance, results: Results, slope: Slopes, found: Summary)
     margin = np.array([line.margin for line in found.lines])
     share = np.stack(shares, axis=-1) if shares else np.zeros((len(study.scatters), 0))
     room = _room(margin, np.array(reach))
-    return _allowed(study, found, (margin, np.array(reach), by_slope, share, room), values[:, columns])
-
-
-def _allowed(study: Tolerance, found: Summary, parts: tuple[Array, Array, Array, Array, Array], values: Array) -> Allowance:
-    margin, reach, by_slope, share, room = parts
     labels = tuple(line.column for line in found.lines)
     left = room**2 - (1.0 - share)
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -106,7 +101,7 @@ def _allowed(study: Tolerance, found: Summary, parts: tuple[Array, Array, Array,
         names=tuple(each.name for each in study.scatters),
         lines=labels,
         margin=margin,
-        reach=reach,
+        reach=np.array(reach),
         by_slope=by_slope,
         share=share,
         together=together,
@@ -114,7 +109,7 @@ def _allowed(study: Tolerance, found: Summary, parts: tuple[Array, Array, Array,
         alone=np.min(alone, axis=1, initial=np.inf),
         binds=tuple(labels[int(np.argmin(row))] if labels and np.isfinite(np.min(row)) else "" for row in alone),
         equal=np.min(equal, axis=1, initial=np.inf),
-        then=_then(found.lines, together, values),
+        then=_then(found.lines, together, values[:, columns]),
     )
 
 

@@ -58,7 +58,7 @@ def reach(design: Mechanism, source: str) -> Reached:
     links = tuple(expand(design).links.values())
     for address in _addresses(design, source.strip()):
         for component, number in _numbers(design, address):
-            components.setdefault(component, []).extend(_copies(design, locate(design, number), (links, shared)))
+            components.setdefault(component, []).extend(_copies(design, locate(design, number), links, shared))
     return Reached({name: tuple(dict.fromkeys(found)) for name, found in components.items()}, shared)
 
 
@@ -141,9 +141,8 @@ def _numbers(design: Mechanism, address: str) -> Iterator[tuple[str, str]]:
         raise refuse(address, "this is not a number", "Address one of its numbers")
 
 
-def _copies(design: Mechanism, place: Place, known: tuple[tuple[PlacedLink, ...], dict[str, str]]) -> Iterator[str]:
+def _copies(design: Mechanism, place: Place, links: tuple[PlacedLink, ...], shared: dict[str, str]) -> Iterator[str]:
     """The same number of every copy of a part or of a link drawn in a unit, else the number itself."""
-    links, shared = known
     found = [(link, rest) for link in links if (rest := _rest(place, link)) is not None]
     of_part = not place.in_link and (bool(place.owners) or place.path[0] == "parts")
     for link, rest in found:

@@ -6,12 +6,10 @@ import os
 from dataclasses import dataclass
 from typing import Annotated
 
-from flexstage.base.notebook import InNotebook
 from flexstage.base.record import INNER, VIEW, Called
 from flexstage.base.store import temporary_folder
-from flexstage.studies.sweeps.plan import Sampling
+from flexstage.studies.sweeps.result import StudyResult
 from flexstage.studies.sweeps.run import DEFAULT, Progress, Run, sweep
-from flexstage.studies.sweeps.store import Failure, Results
 from flexstage.studies.tolerances.allowance import Allowance, allowance
 from flexstage.studies.tolerances.definition import Tolerance
 from flexstage.studies.tolerances.scatter import Scatter
@@ -28,29 +26,13 @@ class CopyCount:
 
 
 @dataclass(frozen=True, eq=False)
-class Toleranced(InNotebook):
+class Toleranced(StudyResult):
     """A tolerance study with the `results` of all its copies, its `slopes`, what both say (`summary`) and what they allow (`allowance`)."""
 
     study: Annotated[Tolerance, INNER]
-    results: Annotated[Results, INNER]
     slopes: Annotated[Slopes, INNER]
     summary: Annotated[Summary, INNER]
     allowance: Annotated[Allowance, INNER]
-
-    @property
-    def name(self) -> Annotated[str, VIEW, Called("study")]:
-        """The study's name."""
-        return self.study.name
-
-    @property
-    def sampling(self) -> Annotated[Sampling, VIEW]:
-        """How copies are drawn."""
-        return self.study.plan.sampling
-
-    @property
-    def seed(self) -> Annotated[int, VIEW]:
-        """The seed of everything random."""
-        return self.study.plan.seed
 
     @property
     def copies(self) -> Annotated[CopyCount, VIEW]:
@@ -81,11 +63,6 @@ class Toleranced(InNotebook):
     def crosstalk(self) -> Annotated[tuple[Crosstalk, ...], VIEW]:
         """Pose errors of the real stage, commanded and measured through the drawn one's mapping."""
         return self.summary.crosstalk
-
-    @property
-    def failures(self) -> Annotated[tuple[Failure, ...], VIEW]:
-        """Copies without values."""
-        return self.results.failed
 
     def _response(self, column: int, name: str) -> ResponseSpread:
         spread, entries = self.summary.spread, [each.name for each in self.study.scatters]

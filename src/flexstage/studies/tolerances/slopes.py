@@ -57,7 +57,7 @@ def slopes(study: Tolerance) -> Slopes:
         step = np.zeros((len(chosen), len(size)), dtype=complex)
         step[np.arange(len(chosen)), chosen] = 1j * _STEP
         gradient[:, chosen] = _stepped(study, step, modes)
-    return Slopes(values, gradient, _smooth(study, (values, gradient), size))
+    return Slopes(values, gradient, _smooth(study, values, gradient, size))
 
 
 def _numbers(study: Tolerance, values: Array) -> Array:
@@ -92,9 +92,8 @@ def _stepped(study: Tolerance, step: Array, modes: dict[int, tuple[float, Eigen]
     return found
 
 
-def _smooth(study: Tolerance, here: tuple[Array, Array], size: Array) -> Array:
+def _smooth(study: Tolerance, values: Array, gradient: Array, size: Array) -> Array:
     """Which responses change by opposite amounts in opposite directions, as their derivatives say."""
-    values, gradient = here
     way = np.random.default_rng(study.plan.seed).standard_normal((_DIRECTIONS, len(size))) * size * _NEAR
     there = _numbers(study, np.concatenate([way, -way])) - values
     odd, even = 0.5 * (there[:_DIRECTIONS] - there[_DIRECTIONS:]), 0.5 * (there[:_DIRECTIONS] + there[_DIRECTIONS:])
