@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from importlib.metadata import PackageNotFoundError, version
 
-from packaging.requirements import InvalidRequirement, Requirement
-
 from flexstage.base.finding import Finding
 from flexstage.mechanism.grammar import node_of
 from flexstage.mechanism.mechanism import Mechanism
@@ -29,6 +27,8 @@ def package_findings(packages: Iterable[str]) -> Iterator[Finding]:
     packages: "tapered-leaf >= 1" is not installed. Install it where flexstage is, for example with: pip install "tapered-leaf >= 1".
     """
     for text in packages:
+        from packaging.requirements import InvalidRequirement, Requirement  # takes 0.1 s, and few designs name any
+
         try:
             wanted = Requirement(text)
         except InvalidRequirement:
