@@ -104,7 +104,7 @@ def test_other_versions_are_told_apart(change: dict[str, object]) -> None:
 
 
 def test_another_component_is_told_apart() -> None:
-    assert read(DATA, "another") == "it holds another component"
+    assert read(DATA, "another") == "it holds something else"
 
 
 def test_nothing_in_a_file_is_run() -> None:

@@ -1,6 +1,6 @@
-"""The cache of superelements: files by content, so that a component is reduced once on a machine and a stopped run resumes.
+"""The cache of superelements and hinges: files by content, so that each is computed once on a machine and a stopped run resumes.
 
-What cannot be read or kept is told, never fatal: the component is then computed, or not kept.
+What cannot be read or kept is told, never fatal: it is then computed, or not kept.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ import os
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -21,9 +22,19 @@ from flexstage.solid.fea.component import Component
 from flexstage.solid.fea.content import content
 from flexstage.solid.fea.fineness import Reduction
 from flexstage.solid.fea.store import read, versions
-from flexstage.solid.fea.superelement import Superelement
 
-_SUFFIX = ".superelement"
+
+@dataclass(frozen=True)
+class Kind:
+    """A kind of files in the cache: how their names end, what is in them, and the method whose code counts as their version."""
+
+    suffix: str
+    noun: str
+    method: str
+
+
+SUPERELEMENTS = Kind(".superelement", "superelement", "reduce")
+HINGES = Kind(".hinge", "6x6", "hinge")
 
 
 @dataclass(frozen=True)
@@ -39,9 +50,9 @@ class Cache:
 
 @dataclass(frozen=True, eq=False)
 class Found:
-    """What the cache holds of a component: its superelement or nothing, and what is to be said about it."""
+    """What the cache holds, a superelement, a 6x6 or nothing, and what is to be said about it."""
 
-    element: Superelement | None
+    element: Any
     notices: tuple[Finding, ...] = ()
 
 
@@ -71,22 +82,22 @@ def key_of(component: Component, reduction: Reduction, springs: Array | None = N
     return state.hexdigest()[:32]
 
 
-def find(cache: Cache, key: str, where: str) -> Found:
-    """Look a component up. `where` names it in what is said about files that are damaged or of other versions.
+def find(cache: Cache, key: str, where: str, kind: Kind = SUPERELEMENTS) -> Found:
+    """Look a component or a hinge up. `where` names it in what is said about files that are damaged or of other versions.
 
     >>> find(Cache(Path("/nowhere")), "key", "lever").element is None
     True
     """
-    path = _path(cache, key)
+    path = _path(cache, key, kind)
     try:
         data = path.read_bytes()
     except FileNotFoundError:
-        return Found(None, _other_versions(path, key, where))
+        return Found(None, _other_versions(path, key, where, kind))
     except OSError as error:
-        return Found(None, (Finding(where, f"its superelement {path} cannot be read ({error.strerror})", _RECOMPUTED),))
-    outcome = read(data, key)
+        return Found(None, (Finding(where, f"its {kind.noun} {path} cannot be read ({error.strerror})", _RECOMPUTED),))
+    outcome = read(data, key, versions(kind.method))
     if isinstance(outcome, str):
-        return Found(None, (Finding(where, f"its superelement {path} is not used: {outcome}", _RECOMPUTED),))
+        return Found(None, (Finding(where, f"its {kind.noun} {path} is not used: {outcome}", _RECOMPUTED),))
     with contextlib.suppress(OSError):
         os.utime(path)
     return Found(outcome)
@@ -95,29 +106,29 @@ def find(cache: Cache, key: str, where: str) -> Found:
 _RECOMPUTED = "It is computed anew and replaced"
 
 
-def keep(cache: Cache, key: str, where: str, data: bytes) -> tuple[Finding, ...]:
-    """Keep a superelement's bytes, whole or not at all. Tells why it could not.
+def keep(cache: Cache, key: str, where: str, data: bytes, kind: Kind = SUPERELEMENTS) -> tuple[Finding, ...]:
+    """Keep the bytes of a file, whole or not at all. Tells why it could not.
 
     >>> keep(Cache(Path("/proc/nowhere")), "key", "lever", b"")[0].where
     'lever'
     """
-    path = _path(cache, key)
+    path = _path(cache, key, kind)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        _swept(cache, path.parent, len(data))
+        _swept(cache, path.parent, len(data), kind)
         write(path, data)
     except (OSError, DesignError) as error:
         why = error.strerror if isinstance(error, OSError) else error.findings[0].what
-        what = f"its superelement of {len(data) / 1e6:.3g} MB could not be kept in {path.parent} ({why})"
+        what = f"its {kind.noun} of {len(data) / 1e6:.3g} MB could not be kept in {path.parent} ({why})"
         advice = f"The result is complete but will be computed again; free space there, or name another folder in {FOLDER_VARIABLE}"
         return (Finding(where, what, advice),)
     return ()
 
 
-def _swept(cache: Cache, folder: Path, coming: int) -> None:
+def _swept(cache: Cache, folder: Path, coming: int, kind: Kind) -> None:
     """Remove what was not used for longest, until there is room."""
     total = float(coming)
-    for _, size, path in sorted(_files(folder, _SUFFIX), reverse=True):
+    for _, size, path in sorted(_files(folder, kind.suffix), reverse=True):
         total += size
         if total > cache.limit:
             path.unlink(missing_ok=True)
@@ -131,13 +142,13 @@ def _files(folder: Path, suffix: str) -> Iterator[tuple[float, int, Path]]:
             yield state.st_mtime, state.st_size, path
 
 
-def _path(cache: Cache, key: str) -> Path:
-    return folder_of(cache) / f"{key}-{versions().digest}{_SUFFIX}"
+def _path(cache: Cache, key: str, kind: Kind) -> Path:
+    return folder_of(cache) / f"{key}-{versions(kind.method).digest}{kind.suffix}"
 
 
-def _other_versions(path: Path, key: str, where: str) -> tuple[Finding, ...]:
-    others = len(list(path.parent.glob(f"{key}-*{_SUFFIX}"))) if path.parent.is_dir() else 0
+def _other_versions(path: Path, key: str, where: str, kind: Kind) -> tuple[Finding, ...]:
+    others = len(list(path.parent.glob(f"{key}-*{kind.suffix}"))) if path.parent.is_dir() else 0
     if not others:
         return ()
-    what = f"the cache {path.parent} holds its superelement of other versions only ({others}), here is {versions()}"
+    what = f"the cache {path.parent} holds its {kind.noun} of other versions only ({others}), here is {versions(kind.method)}"
     return (Finding(where, what, "It is computed anew; the others stay for the versions they belong to"),)

@@ -5,18 +5,18 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 from flexstage.base.finding import Finding, refuse
 from flexstage.base.number import Array
 from flexstage.base.progress import Progress
-from flexstage.solid.fea.cache import Cache, find, keep, key_of
+from flexstage.solid.fea.cache import SUPERELEMENTS, Cache, Kind, find, keep, key_of
 from flexstage.solid.fea.component import Component
 from flexstage.solid.fea.fineness import Reduction
 from flexstage.solid.fea.install import require_solver
-from flexstage.solid.fea.reducing import Reducing
+from flexstage.solid.fea.reducing import Reducing, StoredJob
 from flexstage.solid.fea.remote import Limits, work_all
-from flexstage.solid.fea.store import read
+from flexstage.solid.fea.store import read, versions
 from flexstage.solid.fea.superelement import Superelement
 
 Parts: TypeAlias = tuple[tuple[Component, Superelement], ...]
@@ -54,41 +54,51 @@ def reduce_parts(
     ()
     """
     jobs = [Reducing(key_of(part, reduction, springs.get(part.name)), part, reduction, springs.get(part.name)) for part in parts]
-    store = _Store(ways.cache)
-    first: dict[str, Reducing] = {}
+    elements, notices = obtain(jobs, SUPERELEMENTS, ways)
+    return ReducedParts(tuple((job.component, elements[job.key]) for job in jobs), notices)
+
+
+def obtain(jobs: Sequence[StoredJob], kind: Kind, ways: Ways) -> tuple[dict[str, Any], tuple[Finding, ...]]:
+    """Results of jobs by key, from the cache, else computed, each once and kept as soon as it is done; what is to be said of the cache.
+
+    >>> obtain((), SUPERELEMENTS, Ways())
+    ({}, ())
+    """
+    store = _Store(ways.cache, kind)
+    first: dict[str, StoredJob] = {}
     for job in jobs:
         first.setdefault(job.key, job)
     missing = [job for job in first.values() if not store.holds(job)]
     if missing:
         require_solver()
         work_all(missing, store.take, ways.limits, ways.progress)
-    return ReducedParts(tuple((job.component, store.elements[job.key]) for job in jobs), tuple(store.notices))
+    return store.results, tuple(store.notices)
 
 
 class _Store:
-    """Superelements at hand, by key, on top of a cache."""
+    """Results at hand, by key, on top of a cache."""
 
-    def __init__(self, cache: Cache | None) -> None:
-        self.cache = cache
-        self.elements: dict[str, Superelement] = {}
+    def __init__(self, cache: Cache | None, kind: Kind) -> None:
+        self.cache, self.kind = cache, kind
+        self.results: dict[str, Any] = {}
         self.notices: list[Finding] = []
 
-    def holds(self, job: Reducing) -> bool:
-        """Whether a superelement is in the cache; it is at hand then."""
+    def holds(self, job: StoredJob) -> bool:
+        """Whether a result is in the cache; it is at hand then."""
         if self.cache is None:
             return False
-        found = find(self.cache, job.key, job.name)
+        found = find(self.cache, job.key, job.name, self.kind)
         self.notices += found.notices
         if found.element is not None:
-            self.elements[job.key] = found.element
+            self.results[job.key] = found.element
         return found.element is not None
 
-    def take(self, job: Reducing, data: bytes) -> None:
-        """Take a superelement as a worker wrote it, and keep it."""
-        element = read(data, job.key)
-        if isinstance(element, str):
+    def take(self, job: StoredJob, data: bytes) -> None:
+        """Take a result as a worker wrote it, and keep it."""
+        result = read(data, job.key, versions(self.kind.method))
+        if isinstance(result, str):
             advice = "See that the folder for temporary files (environment variable TMPDIR) keeps what is written to it, and run it again"
-            raise refuse(job.name, f"what its process wrote cannot be used: {element}", advice)
-        self.elements[job.key] = element
+            raise refuse(job.name, f"what its process wrote cannot be used: {result}", advice)
+        self.results[job.key] = result
         if self.cache is not None:
-            self.notices += keep(self.cache, job.key, job.name, data)
+            self.notices += keep(self.cache, job.key, job.name, data, self.kind)

@@ -42,10 +42,16 @@ def _surface(form: Form) -> float:
 
 
 @dataclass(frozen=True, eq=False)
-class ComponentJob(Job):
-    """A component to mesh, and what is made of it stored for `key`."""
+class StoredJob(Job):
+    """A job whose result is stored for `key`."""
 
     key: str
+
+
+@dataclass(frozen=True, eq=False)
+class ComponentJob(StoredJob):
+    """A component to mesh."""
+
     component: Component
 
     attempts = len(ATTEMPTS)

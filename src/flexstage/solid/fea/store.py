@@ -1,4 +1,4 @@
-"""Storing superelements: one line of JSON that says what follows, then the arrays as npz. Nothing in it is code."""
+"""Storing superelements and the 6x6 of hinges: one line of JSON that says what follows, then the arrays as npz. Nothing in it is code."""
 
 from __future__ import annotations
 
@@ -15,7 +15,9 @@ from typing import Any
 import numpy as np
 
 from flexstage import __version__
+from flexstage.base.finding import Finding
 from flexstage.base.number import Array
+from flexstage.solid.fea.hinge_form import HingeSolid
 from flexstage.solid.fea.install import SOLVER_VERSION
 from flexstage.solid.fea.superelement import Skin, Superelement
 
@@ -23,7 +25,7 @@ FORMAT = 1
 """To be raised when the form of the file changes."""
 
 _IMPORTED = re.compile(r"^\s*from flexstage\.solid\.fea\.(\w+) import", re.MULTILINE)
-_RECORDS = {record.__name__: record for record in (Superelement, Skin)}
+_RECORDS = {record.__name__: record for record in (Superelement, Skin, HingeSolid, Finding)}
 
 
 @dataclass(frozen=True)
@@ -73,8 +75,8 @@ def method_files(method: str = "reduce") -> tuple[Path, ...]:
     return tuple(found[name] for name in sorted(found))
 
 
-def written(element: Superelement, key: str, made: Versions) -> bytes:
-    """A superelement as the bytes of a file, for the content `key` and the versions it was made by.
+def written(element: Superelement | HingeSolid, key: str, made: Versions) -> bytes:
+    """A superelement or a 6x6 as the bytes of a file, for the content `key` and the versions it was made by.
 
     >>> small = Superelement(0, 0, {}, {}, {}, {}, {}, {}, {}, np.zeros((0, 6)), np.zeros((0, 6)), Skin(*[np.zeros(0)] * 5), 3, 1)
     >>> read(written(small, "key", versions()), "key").freedoms
@@ -84,28 +86,29 @@ def written(element: Superelement, key: str, made: Versions) -> bytes:
     tree = _flat(element, "", arrays)
     body = io.BytesIO()
     np.savez(body, allow_pickle=False, **{str(number): value for number, value in enumerate(arrays.values())})
-    head = {"what": "flexstage superelement", "key": key, **_stamp(made), "tree": tree}
+    head = {"what": f"flexstage {type(element).__name__.lower()}", "key": key, **_stamp(made), "tree": tree}
     return _sealed(head, body.getvalue())
 
 
-def read(data: bytes, key: str) -> Superelement | str:
-    """The superelement in a file's bytes; else what is wrong with them: damaged, of another version, of other content.
+def read(data: bytes, key: str, made: Versions | None = None) -> Any:
+    """What was `written` into a file's bytes; else, in words, what is wrong with them: damaged, of another version, of other content.
 
     >>> read(b"nonsense", "key")
-    'it is damaged: it does not begin as a superelement does'
+    'it is damaged: it does not begin as such files do'
     """
     line, _, body = data.partition(b"\n")
     try:
         head = json.loads(line)
         stated = head.pop("checksum")
     except (ValueError, KeyError, AttributeError, RecursionError):
-        return "it is damaged: it does not begin as a superelement does"
+        return "it is damaged: it does not begin as such files do"
     if _checksum(head, body) != stated:
         return f"it is damaged: its {len(data):,} bytes do not have the checksum it states"
-    if {name: head.get(name) for name in _stamp(versions())} != _stamp(versions()):
+    stamp = _stamp(made or versions())
+    if {name: head.get(name) for name in stamp} != stamp:
         return f"it is of another version: flexstage {head.get('flexstage')} with NGSolve {head.get('solver')}, format {head.get('format')}"
     if head.get("key") != key:
-        return "it holds another component"
+        return "it holds something else"
     with np.load(io.BytesIO(body), allow_pickle=False) as arrays:
         return _built(head["tree"], arrays)
 
@@ -136,7 +139,7 @@ def _flat(value: object, path: str, arrays: dict[str, Array]) -> Any:
         return {"record": type(value).__name__, "fields": parts}
     if value is None or isinstance(value, (int, float, str)):
         return value
-    raise TypeError(f"a superelement's {path} cannot be stored: {type(value).__name__}")
+    raise TypeError(f"{path} cannot be stored: {type(value).__name__}")
 
 
 def _built(tree: Any, arrays: Mapping[str, Array]) -> Any:
