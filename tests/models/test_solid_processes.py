@@ -9,16 +9,21 @@ import subprocess
 import sys
 import tempfile
 import time
+from collections import deque
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
 
 from flexstage.base.finding import DesignError, Finding
+from flexstage.base.jobs import Worker
 from flexstage.base.progress import Step
 from flexstage.base.scale import mm
+from flexstage.solid.fea import remote
 from flexstage.solid.fea.cad import cad
 from flexstage.solid.fea.memory import Counts, entries, freedoms, needed
 from flexstage.solid.fea.progress import Stage
@@ -211,6 +216,28 @@ def test_what_does_not_fit_together_is_done_one_after_the_other(folder: Path) ->
     work_all(jobs, lambda each, _data: done.append(each.name), Limits(memory=alone, workers=2), progress)
     assert sorted(done) == ["one", "two"]
     assert max(len(names) for names in running) == 1
+
+
+def test_a_process_tells_the_memory_it_has() -> None:
+    worker, size = Worker(setattr), 50_000_000
+    worker.call("block", b"")
+    before = worker.resident()
+    worker.call("block", b"1" * size)
+    assert worker.resident() - before >= size
+    worker.end()
+    assert worker.resident() == 0.0
+
+
+@pytest.mark.parametrize(("has", "room"), [(0.0, 5.0), (2.0, 7.0), (6.0, 11.0), (7.0, 11.0)])
+def test_memory_that_processes_have_is_not_counted_twice(monkeypatch: pytest.MonkeyPatch, has: float, room: float) -> None:
+    """Ten are left on the machine, the one that asks has one already, another was granted six, of which it has some."""
+
+    def child(granted: float | None, resident: float) -> Any:
+        return SimpleNamespace(granted=granted, worker=SimpleNamespace(resident=lambda: resident))
+
+    monkeypatch.setattr(remote, "available", lambda: 10.0)
+    run: Any = remote._Run(deque(), print, Limits(), print)
+    assert run._room(child(None, 1.0), [child(6.0, has)]) == room
 
 
 @pytest.mark.parametrize("order", [1, 2, 3, 4])
