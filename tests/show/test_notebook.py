@@ -40,8 +40,11 @@ def test_a_result_without_tables_of_its_own_shows_all_its_parts() -> None:
     page = found._repr_html_() if found else ""
     assert page.count("<table>") == len(list(parts(found)))
     assert "weakest" in page
-    identified = fs.experiment.identify(one_mode_record())._repr_html_()
+    record = one_mode_record()
+    identified = fs.experiment.identify(record)._repr_html_()
     assert "frequency" in identified
+    assert "duration" in record._repr_html_()
+    assert "rms" in fs.experiment.examine(record)._repr_html_()
 
 
 def test_a_stage_shows_its_picture() -> None:

@@ -5,12 +5,13 @@ Everything is looked at in one pass; all that is found is told at once. Nothing 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
 from flexstage.base.finding import DesignError, Finding, nearest
+from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
 from flexstage.experiment.numbers import Gathered, Numbers, explained, gather
 from flexstage.experiment.options import Allow, matches
@@ -52,11 +53,11 @@ class Fault:
 
 
 @dataclass(frozen=True, eq=False)
-class Examination:
+class Examination(InNotebook):
     """What was found: all faults, and the numbers of every channel by name."""
 
     faults: tuple[Fault, ...]
-    numbers: dict[str, Numbers]
+    numbers: Mapping[str, Numbers]
     stretch: tuple[int, int]
 
     @property

@@ -16,6 +16,7 @@ import numpy as np
 
 from flexstage.base.finding import Finding, nearest, require
 from flexstage.base.labelled import ratio_units
+from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
 from flexstage.base.quantity import FREQUENCY, TIME
 from flexstage.base.record import INNER, VIEW
@@ -132,7 +133,7 @@ class Watched:
 
 
 @dataclass(frozen=True, eq=False)
-class Record:
+class Record(InNotebook):
     """Channels sampled together at a constant rate.
 
     `rate` in Hz; `start` is the time of the first sample in s; `samples` hold (n, channels) numbers in the channels' own units; `name` and
@@ -234,7 +235,7 @@ class Record:
 
 
 @dataclass(frozen=True, eq=False)
-class Responses:
+class Responses(InNotebook):
     """Frequency responses as an analyser stored them: H_ij = output i over input j, for e^{+j omega t}.
 
     `frequencies` (f,) in Hz, rising; `values` (f, outputs, inputs), complex, in output unit over input unit; `coherence` of the same
