@@ -9,7 +9,6 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections import deque
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -236,7 +235,7 @@ def test_memory_that_processes_have_is_not_counted_twice(monkeypatch: pytest.Mon
         return SimpleNamespace(granted=granted, worker=SimpleNamespace(resident=lambda: resident))
 
     monkeypatch.setattr(remote, "available", lambda: 10.0)
-    run: Any = remote._Run(deque(), print, Limits(), print)
+    run: Any = remote._Run((), print, Limits(), print)
     assert run._room(child(None, 1.0), [child(6.0, has)]) == room
 
 

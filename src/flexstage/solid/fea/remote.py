@@ -11,7 +11,7 @@ import signal
 import tempfile
 import time
 from collections import deque
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Generic, TypeVar
 
@@ -54,7 +54,7 @@ def work_all(jobs: Iterable[AnyJob], done: Callable[[AnyJob, bytes], None], limi
 
     >>> work_all([], print, Limits())
     """
-    run = _Run(deque((job, 0, time.monotonic()) for job in jobs), done, limits, progress or _nobody)
+    run = _Run(tuple(jobs), done, limits, progress or _nobody)
     try:
         run.finish()
     finally:
@@ -115,15 +115,14 @@ class _Child(Generic[AnyJob]):
 class _Run(Generic[AnyJob]):
     """The jobs of one call: those to come, those running, those done."""
 
-    def __init__(
-        self, waiting: deque[tuple[AnyJob, int, float]], done: Callable[[AnyJob, bytes], None], limits: Limits, progress: Progress
-    ) -> None:
-        self.waiting, self.done, self.limits, self.progress = waiting, done, limits, progress
+    def __init__(self, jobs: Sequence[AnyJob], done: Callable[[AnyJob, bytes], None], limits: Limits, progress: Progress) -> None:
+        self.done, self.limits, self.progress = done, limits, progress
+        self.waiting = deque((job, 0, time.monotonic()) for job in jobs)
         self.children: list[_Child[AnyJob]] = []
         self.heard: Heard = queue.SimpleQueue()
         self.findings: list[Finding] = []
-        total = sum(job.weight for job, _, _ in waiting)
-        self.shares = {job.name: job.weight / total for job, _, _ in waiting}
+        total = sum(job.weight for job in jobs)
+        self.shares = {job.name: job.weight / total for job in jobs}
         self.finished: list[str] = []
         self.begun, self.told, self.text, self.fraction = time.monotonic(), 0.0, "", 0.0
 
