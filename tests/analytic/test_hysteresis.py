@@ -157,8 +157,8 @@ def test_no_rate_independent_hysteresis_is_refused():
 def test_cautions_say_what_a_record_does_not_show():
     volts = legs([0, 1000, 0, 1000, 0], 80)
     found = identify_hysteresis(volts, preisach(STROKE, RANGE, 0.15).run(volts), limits=(-200.0, 1100.0))
-    assert "no inner loops" in found.cautions[0]
-    assert "covers 0 V to 1000 V, 77% of the actuator's range" in found.cautions[1]
+    assert "no inner loops" in found.cautions[0].what
+    assert "covers 0 V to 1000 V, 77% of the actuator's range" in found.cautions[1].what
     assert (found.branches, found.inner) == (4, 0)
 
 

@@ -69,11 +69,11 @@ def loop(given: Plant, controller: System) -> Loop:
     require(_findings(given, controller))
     wanted = [name for name in controller.input_names if not name.startswith("applied.")]
     wired = picked(controller, wanted, _commands(given))
-    parts = (held(given), wired)
+    plant_held = held(given)
     inputs = (*_channels("reference", given), *_noises(given), *_disturbances(given))
-    outputs = (*parts[0].output_names[len(given.gauges) :], *given.gauges, *_names("pose", given), *_names("error", given))
-    system = connected(*_wiring(given, parts), inputs, (*outputs, *_commands(given), *given.actuators))
-    return Loop(given, *parts, system, _states(given, parts))
+    outputs = (*plant_held.output_names[len(given.gauges) :], *given.gauges, *_names("pose", given), *_names("error", given))
+    system = connected(*_wiring(given, plant_held, wired), inputs, (*outputs, *_commands(given), *given.actuators))
+    return Loop(given, plant_held, wired, system, _states(given, plant_held, wired))
 
 
 def opened(closed: Loop, cut: Cut, channel: str | None = None) -> System:
@@ -113,7 +113,7 @@ def opened_everywhere(closed: Loop) -> System:
 def _cut(closed: Loop, chosen: list[str]) -> System:
     """Open at these signals, the sign turned: what comes back is subtracted."""
     given = closed.plant
-    systems, links = _wiring(given, (closed.held, closed.controller))
+    systems, links = _wiring(given, closed.held, closed.controller)
     outer = dict(zip((*_names("pose", given), *_commands(given)), (*_units(given, Cut.POSE), *_units(given, Cut.COMMAND)), strict=True))
     swapped = {name: f"cut.{name.partition('.')[2]}" for name in chosen}
     zero = {channel.name for channel in (*_channels("reference", given), *_noises(given), *_disturbances(given))}
@@ -124,9 +124,8 @@ def _cut(closed: Loop, chosen: list[str]) -> System:
     return replace(found, C=-found.C, D=-found.D)
 
 
-def _wiring(given: Plant, parts: tuple[System, System]) -> tuple[tuple[System, ...], dict[str, dict[str, float]]]:
+def _wiring(given: Plant, plant: System, controller: System) -> tuple[tuple[System, ...], dict[str, dict[str, float]]]:
     """Plant, estimate and controller with every input's terms; nothing but a pose and a command crosses between them."""
-    plant, controller = parts
     entry = renamed(controller, {name: f"to.{name}" for name in controller.input_names})
     entry = replace(entry, outputs=controller.outputs)
     links: dict[str, dict[str, float]] = {name: {name: 1.0} for name in plant.input_names if name not in given.actuators}
@@ -180,12 +179,12 @@ def _disturbances(given: Plant) -> tuple[Channel, ...]:
     return tuple(channel for channel in given.system.inputs if channel.name not in given.actuators)
 
 
-def _states(given: Plant, parts: tuple[System, System]) -> tuple[str, ...]:
+def _states(given: Plant, plant: System, controller: System) -> tuple[str, ...]:
     """Those of the plant, strokes under way (newest first), those of the controller."""
-    late = len(parts[0].A) - len(given.states)
+    late = len(plant.A) - len(given.states)
     width = len(given.actuators)
     registers = (f"held.{given.actuators[number % width]}.{number // width + 1}" for number in range(late))
-    return (*given.states, *registers, *(f"controller.{number + 1}" for number in range(len(parts[1].A))))
+    return (*given.states, *registers, *(f"controller.{number + 1}" for number in range(len(controller.A))))
 
 
 def _findings(given: Plant, controller: System) -> list[Finding]:

@@ -57,8 +57,8 @@ def coordinates(kinematics: Kinematics) -> Coordinates:
     seen = np.real(first_design(kinematics.sensing @ kinematics.motion, 2))
     require(
         [
-            *_missing("actuators", strokes / scale, kinematics, ("make", "Add actuators, or lock the freedoms they cannot move")),
-            *_missing("gauges", seen / scale, kinematics, ("tell", "Add gauges, or turn them so that every motion changes a reading")),
+            *_missing("actuators", strokes / scale, kinematics, "make", "Add actuators, or lock the freedoms they cannot move"),
+            *_missing("gauges", seen / scale, kinematics, "tell", "Add gauges, or turn them so that every motion changes a reading"),
         ]
     )
     return Coordinates(
@@ -73,9 +73,8 @@ def coordinates(kinematics: Kinematics) -> Coordinates:
     )
 
 
-def _missing(kind: str, map_: Array, kinematics: Kinematics, words: tuple[str, str]) -> list[Finding]:
+def _missing(kind: str, map_: Array, kinematics: Kinematics, verb: str, advice: str) -> list[Finding]:
     """Motions (columns, all lengths) that a map does not see, by the right null space."""
-    verb, advice = words
     count = len(kinematics.coordinates)
     if not count:
         return [Finding("loop", "the platform has no ideal motion to be controlled", "Free the freedoms that its links should have")]

@@ -36,11 +36,11 @@ def sampled(system: System, step: float, delay: float = 0.0) -> System:
     late, before = _held(system, part * step)
     direct = system.D if part == 0.0 else np.zeros_like(system.D)
     held = np.zeros_like(system.D) if part == 0.0 else system.D
-    size, width = system.B.shape
     count = whole + (part > 0.0)
     if not count:
         return replace(system, A=early, B=start, step=step)
-    return _registered(system, (early @ late, early @ before, start, held, direct), (size, width, count, part > 0.0), step)
+    found = _registered(system, early @ late, early @ before, start, held=held, direct=direct, count=count, between=part > 0.0)
+    return replace(found, step=step)
 
 
 def ramped(system: System, step: float) -> System:
@@ -86,9 +86,11 @@ def _held(system: System, time: float) -> tuple[Array, Array]:
     return result[:size, :size], result[:size, size:]
 
 
-def _registered(system: System, parts: tuple[Array, Array, Array, Array, Array], sizes: tuple[int, int, int, bool], step: float) -> System:
+def _registered(
+    system: System, whole: Array, older: Array, newer: Array, *, held: Array, direct: Array, count: int, between: bool
+) -> System:
     """The states, then the inputs of the last `count` samples, newest first."""
-    (whole, older, newer, held, direct), (size, width, count, between) = parts, sizes
+    size, width = system.B.shape
     registers = count * width
     A = np.zeros((size + registers, size + registers))
     B = np.zeros((size + registers, width))
@@ -104,7 +106,7 @@ def _registered(system: System, parts: tuple[Array, Array, Array, Array, Array],
         A[:size, slots[-2]] += newer
     elif between:
         B[:size] += newer
-    return System(A, B, C, np.zeros_like(system.D), system.inputs, system.outputs, step)
+    return System(A, B, C, np.zeros_like(system.D), system.inputs, system.outputs)
 
 
 def bilinear(system: System, step: float, prewarp: float | None = None) -> System:

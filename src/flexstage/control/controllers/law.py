@@ -33,17 +33,17 @@ class Law(Protocol):
         ...
 
 
-def law_system(matrices: tuple[Array, Array, Array, Array], step: float | None) -> System:
+def law_system(A: Array, B: Array, C: Array, D: Array, step: float | None) -> System:
     """A law's A (n, n), B (n, 3), C (1, n), D (1, 3) as a system: continuous, or by Tustin's rule.
 
     What was applied acts one sample later in a sampled law, because it is known only after the command.
 
     >>> one, none = np.eye(1), np.zeros((1, 3))
-    >>> found = law_system((0.0 * one, np.array([[2.0, 0.0, 4.0]]), one, none), 0.1)
+    >>> found = law_system(0.0 * one, np.array([[2.0, 0.0, 4.0]]), one, none, 0.1)
     >>> found.D.round(12).tolist()  # half a step of the error's rate 2 at once, nothing of what was applied
     [[0.1, 0.0, 0.0]]
     """
-    found = System(*matrices, ENTRIES, EXIT)
+    found = System(A, B, C, D, ENTRIES, EXIT)
     if step is None:
         return found
     found = bilinear(found, step)

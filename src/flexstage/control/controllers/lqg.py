@@ -113,7 +113,7 @@ def _regulator(model: System, coordinates: Coordinates, weights: Weights) -> tup
     cross = weights.pose * np.vstack([seen.T @ scale @ model.D, np.zeros((count, len(model.inputs)))])
     cost = np.asarray(scipy.linalg.block_diag(weights.pose * seen.T @ seen, np.diag(rates**2)))
     effort = np.eye(len(model.inputs)) + weights.pose * (scale @ model.D).T @ (scale @ model.D)
-    solution = _riccati((A, B, cost, effort, cross), sampled=sampled)
+    solution = _riccati(A, B, cost, effort, cross, sampled=sampled)
     if sampled:
         gain = np.linalg.solve(effort + B.T @ solution @ B, B.T @ solution @ A + cross.T)
     else:
@@ -141,14 +141,13 @@ def observer_gain(model: System, coordinates: Coordinates, expected: Disturbance
     # densities stand for the intensities G^2/2 of a continuous model and the variances G^2/(2 T) of a sampled one.
     unit = np.trace(output) / len(output)
     state, output, cross = state / unit, output / unit, cross / unit
-    solution = _riccati((model.A.T, C.T, state, output, cross), sampled=model.step is not None)
+    solution = _riccati(model.A.T, C.T, state, output, cross, sampled=model.step is not None)
     if model.step is None:
         return np.linalg.solve(output, C @ solution + cross.T).T @ weight
     return np.linalg.solve(output + C @ solution @ C.T, C @ solution).T @ weight
 
 
-def _riccati(parts: tuple[Array, Array, Array, Array, Array], *, sampled: bool) -> Array:
-    A, B, cost, effort, cross = parts
+def _riccati(A: Array, B: Array, cost: Array, effort: Array, cross: Array, *, sampled: bool) -> Array:
     try:
         found = (scipy.linalg.solve_discrete_are if sampled else scipy.linalg.solve_continuous_are)(A, B, cost, effort, s=cross)
     except np.linalg.LinAlgError as error:

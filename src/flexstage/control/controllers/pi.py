@@ -47,9 +47,9 @@ class PI:
         require(slow_findings("PI", self.tracking, step))
         direct = np.array([[self.proportional, 0.0, 0.0]])
         if not self.integral:
-            return law_system((np.zeros((0, 0)), np.zeros((0, 3)), np.zeros((1, 0)), direct), step)
+            return law_system(np.zeros((0, 0)), np.zeros((0, 3)), np.zeros((1, 0)), direct, step)
         entry = np.array([[self.integral, 0.0, back_rate(self.tracking_time, step)]])
-        return law_system((np.zeros((1, 1)), entry, np.eye(1), direct), step)
+        return law_system(np.zeros((1, 1)), entry, np.eye(1), direct, step)
 
 
 def tracking_findings(kind: str, tracking: float | None) -> list[Finding]:

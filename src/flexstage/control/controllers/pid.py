@@ -57,7 +57,7 @@ class PID:
         A, B = np.diag([0.0, -corner]), np.array([[self.integral, 0.0, back_rate(self.tracking_time, step)], [corner, 0.0, 0.0]])
         C, D = np.array([[1.0, -high]]), np.array([[self.proportional + high, 0.0, 0.0]])
         kept = [number for number, used in enumerate((self.integral, self.derivative)) if used]
-        return law_system((A[np.ix_(kept, kept)], B[kept], C[:, kept], D), step)
+        return law_system(A[np.ix_(kept, kept)], B[kept], C[:, kept], D, step)
 
     def _sampling(self, step: float | None) -> list[Finding]:
         if step is None or not self.derivative or self.filter < 0.5 / step:

@@ -49,7 +49,7 @@ class IntegralResonant:
         A, C = np.diag([-pole, 0.0]), np.ones((1, 2))
         B = np.array([[0.0, self.gain, 0.0], [self.tracking, 0.0, self._back(step)]])
         kept = [number for number, used in enumerate((self.gain, self.tracking)) if used]
-        return law_system((A[np.ix_(kept, kept)], B[kept], C[:, kept], np.zeros((1, 3))), step)
+        return law_system(A[np.ix_(kept, kept)], B[kept], C[:, kept], np.zeros((1, 3)), step)
 
     def _back(self, step: float | None) -> float:
         if not self.tracking:

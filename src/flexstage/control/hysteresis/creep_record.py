@@ -55,7 +55,7 @@ def identify_creep(times: Array, volts: Array, strokes: Array, *, reference: flo
     columns = np.column_stack([np.ones_like(decades), decades])
     stroke, slope = np.linalg.lstsq(columns, means, rcond=None)[0].tolist()
     rms = float(np.sqrt(np.mean((means - columns @ np.array([stroke, slope])) ** 2)))
-    require(_law_findings((stroke, slope), rms, float(decades[-1])))
+    require(_law_findings(stroke, slope, rms, float(decades[-1])))
     return IdentifiedCreep(LogCreep(slope / stroke, reference), stroke, (reference, float(after[-1])), rms / abs(stroke))
 
 
@@ -103,8 +103,7 @@ def _means(decades: Array, risen: Array) -> tuple[Array, Array]:
     return along, strokes
 
 
-def _law_findings(line: tuple[float, float], rms: float, decades: float) -> Iterator[Finding]:
-    stroke, slope = line
+def _law_findings(stroke: float, slope: float, rms: float, decades: float) -> Iterator[Finding]:
     if stroke == 0.0 or not np.isfinite(slope / stroke):
         yield Finding("stroke", "it does not answer the step", "Check that volts and stroke belong together")
     elif rms > _SCATTER * abs(slope) * decades and rms > 1e-4 * abs(stroke):

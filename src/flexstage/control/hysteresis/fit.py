@@ -121,7 +121,7 @@ def fitted(volts: Array, strokes: Array, form: Form, rows: Array, *, rounds: int
         plays, used = _used(fit, volts, rows)
         before = fit.slopes
         fit = _with_weights(fit, plays[used], strokes[used])
-        fit = _with_slopes(fit, volts, plays, (strokes, used))
+        fit = _with_slopes(fit, volts, plays, strokes, used)
         if np.max(np.abs(fit.slopes - before)) < _SETTLED:
             break
     plays, used = _used(fit, volts, rows)
@@ -142,9 +142,8 @@ def _with_weights(fit: Fit, plays: Array, strokes: Array) -> Fit:
     return Fit(fit.form, fit.slopes, size * solved[:-1], float(size * span * solved[-1]))
 
 
-def _with_slopes(fit: Fit, volts: Array, plays: Array, target: tuple[Array, Array]) -> Fit:
+def _with_slopes(fit: Fit, volts: Array, plays: Array, strokes: Array, rows: Array) -> Fit:
     """Slopes for given weights, from the volts at which each play last moved, and the side it then moved to."""
-    strokes, rows = target
     moved = np.sign(np.diff(plays, axis=0, prepend=plays[:1]))
     last = np.maximum.accumulate(np.where(moved != 0.0, np.arange(len(plays))[:, None], 0), axis=0)[rows]
     side = np.take_along_axis(moved, last, axis=0)

@@ -79,12 +79,12 @@ def attempt(seen: View, task: Task, frequency: float, calm: float = 0.0) -> Atte
     if task.kind is Kind.LQG:
         return _observed(seen, task, frequency)
     stated: _Options = ((task.notches,),) * len(seen.loops.names)
-    first = _decentralised(seen, task, (frequency, calm), stated)
+    first = _decentralised(seen, task, frequency, calm, stated)
     if first is None or not task.automatic or task.kind is Kind.RESONANT or first.reaches(frequency, task.goal):
         return first
     best = first
     for options in _choices(_placed(seen, first, frequency)):
-        found = _decentralised(seen, task, (frequency, calm), options)
+        found = _decentralised(seen, task, frequency, calm, options)
         if found is not None and found.judgement.score < best.judgement.score:
             best = found
         if best.reaches(frequency, task.goal):
@@ -100,12 +100,15 @@ def _choices(options: _Options) -> Iterator[_Options]:
             yield tuple(sets[min(number, len(sets) - 1) :][:1] for sets in options)
 
 
-def _decentralised(seen: View, task: Task, wanted: tuple[float, float], options: _Options) -> Attempt | None:
-    at = seen.at(wanted[0])
+def _decentralised(seen: View, task: Task, frequency: float, calm: float, options: _Options) -> Attempt | None:
+    at = seen.at(frequency)
     found: list[_Chosen] = []
     for loop, sets in enumerate(options):
         alike = _alike(seen, options, loop)
-        one = found[alike] if alike < loop else _chosen(seen, task.kind, (loop, *wanted, complex(at[loop])), sets)
+        if alike < loop:
+            found.append(found[alike])
+            continue
+        one = _chosen(seen, task.kind, sets, loop=loop, frequency=frequency, calm=calm, gain=complex(at[loop]))
         if one is None:
             return None
         found.append(one)
@@ -134,12 +137,11 @@ class _Chosen:
     response: Array
 
 
-def _chosen(seen: View, kind: Kind, at: tuple[int, float, float, complex], options: _Sets) -> _Chosen | None:
+def _chosen(seen: View, kind: Kind, options: _Sets, *, loop: int, frequency: float, calm: float, gain: complex) -> _Chosen | None:
     """Law and notches whose loop by itself is stable, passes 1 where it shall, and has the lowest peak of S, wherever the modes may lie.
 
     Peaks up to `calm` count as equal; the highest gain at the lowest frequency, so the strongest integrator, is then the best.
     """
-    loop, frequency, calm, gain = at
     static = float(seen.static[loop] @ seen.loops.drive[:, loop])
     first = next((each.frequency for each in resonances(seen, loop)), None)
     best, lowest = None, (np.inf, 0.0)
@@ -203,7 +205,7 @@ def _observed(seen: View, task: Task, frequency: float) -> Attempt | None:
     """Weights by coordinate, changed until every loop passes 1 at the frequency; an observer that trusts its model less and less."""
     best, wanted = None, np.full(len(seen.loops.names), frequency)
     for trust in _TRUST:
-        found, wanted = _balanced(seen, _designer(seen, task, trust), (frequency, wanted))
+        found, wanted = _balanced(seen, _designer(seen, task, trust), frequency, wanted)
         if found is None:
             continue
         tried = Attempt(found, judged(seen, found.system(seen.step)), ((),) * len(wanted))
@@ -222,9 +224,8 @@ def _designer(seen: View, task: Task, trust: float) -> Callable[[Array], LQG]:
     return lambda wanted: with_observer(model, coordinates, Weights(tuple(map(float, wanted))), observer, task.feedforward)
 
 
-def _balanced(seen: View, design: Callable[[Array], LQG], at: tuple[float, Array]) -> tuple[LQG | None, Array]:
+def _balanced(seen: View, design: Callable[[Array], LQG], frequency: float, wanted: Array) -> tuple[LQG | None, Array]:
     """The design whose loops all pass 1 at the frequency, or the nearest to it that a few rounds give; and its weights' bandwidths."""
-    frequency, wanted = at
     found = None
     low = np.flatnonzero(seen.frequencies < _AROUND * frequency)[::2]
     near = replace(seen, frequencies=seen.frequencies[low], responses=seen.responses[:1, low])
