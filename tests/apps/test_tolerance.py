@@ -36,12 +36,18 @@ def test_tolerance_shows_and_writes(study_file, tmp_path, flexstage):
     told = json.loads((tmp_path / "r.json").read_text())
     assert told["copies"] == {"computed": 40, "failed": 0}
     assert sum(told["responses"][0]["share_by_derivatives"].values()) == pytest.approx(1.0)
+    study = load_tolerance(study_file)
+    kept = read_results(tmp_path / "r.h5")
+    for each in told["responses"]:
+        values = kept.column(each["name"])[: study.copies]
+        expected = (values.mean(), values.std(ddof=1), np.median(values))
+        assert (each["mean"], each["deviation"], each["percentiles"]["50"]) == pytest.approx(expected, rel=1e-12)
+    first = told["yield"]["lines"][0]
+    assert first["yield"]["share"] == first["yield"]["kept"] / 40 <= first["yield"]["interval"][1]
     assert [each["kind"] for each in told["crosstalk"]] == ["open"]  # one gauge does not tell six motions
     page = (tmp_path / "r.html").read_text()
     assert page.startswith("<!doctype html>")
     assert page.count("<svg") == 4
-    study = load_tolerance(study_file)
-    kept = read_results(tmp_path / "r.h5")
     assert kept.complete
     np.testing.assert_array_equal(kept.responses[:40], piece(study, 0, 40).responses)
     study_file.write_text(STUDY.replace("5 um", "6 um"))

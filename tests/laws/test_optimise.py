@@ -11,6 +11,7 @@ import pytest
 from flexstage.analysis.judge import measured
 from flexstage.analysis.measures import Extreme
 from flexstage.analysis.requirements import Sense, measure
+from flexstage.base.document import plain
 from flexstage.studies.optimisation.front import pareto_front
 from flexstage.studies.optimisation.optimum import optimise
 from flexstage.studies.optimisation.problem import Problem, Side
@@ -208,6 +209,12 @@ def test_rounded_designs_are_on_their_steps_and_the_best_around(tmp_path):
     shares = np.array([((0.25 * count - 1.0) / 7.0, log) for count in range(4, 33) for log in logs])
     kept = [point for point in values.values.plain(shares) if isinstance(point, Point) and values.problem.excess(point) <= 1e-8]
     assert found.value(found.rounded.point) == pytest.approx(max(point.values[0] for point in kept), rel=1e-9)
+    told = plain(found)
+    values, objective = (told["rounded"][key] for key in ("variables", "objectives"))
+    mechanism = study.described(np.array([values[each.name] for each in study.variables]))
+    measured_again = [float(each) for each in measured(mechanism, (*(each.measure for each in wanted.objectives), *found.limits))]
+    assert [*objective.values(), *(each["value"] for each in told["rounded"]["limits"])] == pytest.approx(measured_again, rel=1e-6)
+    assert all(each["passed"] and each["margin"] >= 0.0 for each in told["rounded"]["limits"])
 
 
 def test_steps_that_leave_no_design_are_said_to(tmp_path):

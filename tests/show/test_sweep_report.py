@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from flexstage.base.document import plain
 from flexstage.studies.sweeps.effects import effects
 from flexstage.studies.sweeps.file import loads_study
 from flexstage.studies.sweeps.report import sweep_report
@@ -53,6 +54,23 @@ def test_where_all_designs_fail_reasons_are_told(sampling):
     assert tables.count("is too thin") == 1
     assert "<svg" not in page
     assert "No design meets" in tables
+
+
+def test_what_a_sweep_tells_is_what_its_designs_have():
+    """Told response by response under its unit, with the failed designs."""
+    study, results = swept(mass_and_stiffness(lambda _: 0.1, lambda values: 1e7 * values[:, 1]), {3: "too thin"})
+    told = plain(Sweep(study, results, effects(results, study.plan)))
+    assert told["designs"] == {"planned": 16, "computed": 16, "failed": 1}
+    assert told["failures"] == [{"design": 3, "reason": "too thin"}]
+    assert [(each["name"], each["from"], each["to"], each["unit"]) for each in told["variables"]] == [
+        ("leaf", 0.8e-3, 1.2e-3, "m"),
+        ("young", 0.9, 1.1, "1"),
+    ]
+    for each, values in zip(told["responses"], results.responses.T, strict=True):
+        expected = (values.min(), values.mean(), values.std(), values.max())
+        assert [each[key] for key in ("least", "mean", "deviation", "largest")] == pytest.approx(expected)
+        assert each["unit"] == study.columns[each["name"]].quantity.si
+    assert told["responses"][2]["first_order"] == pytest.approx({"leaf": 0.0, "young": 1.0})
 
 
 def test_limits_that_contradict_are_named():

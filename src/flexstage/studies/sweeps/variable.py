@@ -55,7 +55,7 @@ class Variable:
 
     @property
     def unit(self) -> Annotated[str, VIEW]:
-        """The SI unit of its range; of a relative one that of the numbers, of which the range says factors."""
+        """The SI unit of its range; 1 of a relative one."""
         return self.quantity.si
 
     def at(self, shares: Array) -> Array:

@@ -38,7 +38,7 @@ class Scatter:
 
     @property
     def unit(self) -> Annotated[str, VIEW]:
-        """The SI unit of the numbers; sizes of a relative scatter are shares of what the design states."""
+        """The SI unit of the deviations; 1 of relative ones, which are shares of what the design states."""
         return self.quantity.si
 
     def variables(self) -> tuple[Deviation, ...]:
