@@ -21,7 +21,7 @@ import numpy as np
 from scipy.io import loadmat
 
 # What is left out, by name: paths of documents, words of texts, and files inside of others.
-LEFT_PATHS = {"versions": r"(^|[._])version$|^made\[\]"}
+LEFT_PATHS = {"versions": r"(^|[._@])version$|^@?made(\[\])?$"}
 LEFT_WORDS = {
     "date": r"\d{4}-\d\d-\d\dT[\d:.]+\S*",
     "version": r"(?<=flexstage )\d+\.\d+\.\d+\S*|^\d+\.\d+\.\d+$",
