@@ -177,6 +177,8 @@ def field_column(field: Field, values: Sequence[Any]) -> tuple[Column, list[Cell
     [Cell(text='3 %', mark=<Mark.PLAIN: 'plain'>, bar=0.03), Cell(text='0 %', mark=<Mark.PLAIN: 'plain'>, bar=0.0)]
     >>> [cell.text for cell in field_column(Field("axial", float, (STIFFNESS, Heading(varying=True))), [15e6, 2e3])[1]]
     ['15 N/um', '2 N/mm']
+    >>> [cell.text for cell in field_column(Field("after", float, ()), [2.1e11, 1.6e-3])[1]]
+    ['2.1e11', '0.0016']
     """
     heading, form = field.heading, display_unit(field.annotation(Quantity), field.heading.unit)
     if not all(isinstance(each, (*NUMBERS, np.ndarray)) and not isinstance(each, bool) for each in values if each is not None):
@@ -186,6 +188,8 @@ def field_column(field: Field, values: Sequence[Any]) -> tuple[Column, list[Cell
         cells = [Cell(value_with_unit(each, field.unit, heading.digits or DIGITS)) for each in _audible(numbers).tolist()]
     elif form.unit == "%":
         cells = [Cell(percent(each, heading.digits or 4), bar=each) for each in _audible(numbers, 1.0).tolist()]
+    elif field.annotation(Quantity) is None:  # numbers of who knows what beside one another: none is noise against the others
+        cells = [Cell(text, _faint(text)) for text in (number(each, heading.digits or DIGITS) for each in numbers.tolist())]
     else:
         cells = figures(numbers, form, heading.digits)
     bound = field.annotation(Bound) or Bound()
