@@ -224,10 +224,11 @@ def values_of(record: Any) -> tuple[dict[Field, Any], dict[str, str]]:
     Keys of a mapping are fields without annotations, but for its `reasons`.
     """
     if isinstance(record, Together):
-        each_own = [values_of(each) for each in record.results]
-        return {field: value for own, _ in each_own for field, value in own.items()}, {
-            key: why for _, own in each_own for key, why in own.items()
-        }
+        values, why = dict[Field, Any](), dict[str, str]()
+        for each in record.results:
+            own, absent = values_of(each)
+            values, why = values | own, why | absent
+        return values, why
     if isinstance(record, Mapping):
         return {Field(str(key), object, ()): value for key, value in record.items() if key != "reasons"}, dict(record.get("reasons") or {})
     reasons, found = dict(getattr(record, "reasons", {})), dict[Field, Any]()
