@@ -42,6 +42,7 @@ TEXTS: Mapping[str, str] = {  # of terminal, HTML and other text
     r"(?<!gauge's )\breading\b(?! that is no| closes no|, then each|\[)": "model",  # not those of the C code
     r"(for all|What|connect) readings": r"\1 models",
     "The theories a stage can be read by": "Models of theory",
+    "theory that the stage is read by as": "of the stage as",
     "^flexstage result 1$": "flexstage result 2",
     r"^(# [a-z0-9-]+: .*\.)$": "#:schema ./flexstage.schema.json\n\\1",
     r"^(# flexstage check \S+ .*)$": "\\1\n# flexstage schema > flexstage.schema.json lets an editor check this file while you type.",

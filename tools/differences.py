@@ -230,7 +230,8 @@ def _said(value: Any, words: Mapping[str, str]) -> Any:
 
 def _is_spread(old: list[Any], new: Sequence[Any], path: str) -> bool:
     """Whether the entries of the one list that stood here have a place each now."""
-    return "[]" in path and len(old) == 1 and isinstance(old[0], list) and len(old[0]) == len(new)
+    alone = "[]" in path and len(old) == 1 and isinstance(old[0], list) and len(old[0]) == len(new)
+    return alone and all(isinstance(one, list) == isinstance(other, list) for one, other in zip(old[0], new, strict=True))
 
 
 def _judged(path: str, old: Document, new: Document, rule: Rule | None) -> Finding:

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexstage.base.finding import Finding, refuse, require
-from flexstage.base.number import Array, freeze
-from flexstage.control.hysteresis.protocol import Hysteresis
+from flexstage.base.number import Array
+from flexstage.control.hysteresis.protocol import Hysteresis, freeze_by_axis
 from flexstage.control.hysteresis.shape import Range, settled_loop
 
 
@@ -36,10 +36,7 @@ class BoucWen(Hysteresis):
 
     def __post_init__(self) -> None:
         """Make all (axes,) and read-only, and check them."""
-        names = ("gain", "lag", "beta", "gamma", "offset")
-        arrays = np.broadcast_arrays(*(np.atleast_1d(np.asarray(getattr(self, name), dtype=float)) for name in names))
-        for name, value in zip(names, arrays, strict=True):
-            object.__setattr__(self, name, freeze(value))
+        freeze_by_axis(self)
         require(_findings(self))
 
     @property

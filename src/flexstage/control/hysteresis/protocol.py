@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Protocol
+from dataclasses import fields
+from typing import Any, Protocol
 
 import numpy as np
 
 from flexstage.base.finding import refuse
-from flexstage.base.number import Array
+from flexstage.base.number import Array, freeze
 
 
 class Stepper(Protocol):
@@ -75,3 +76,16 @@ class Hysteresis(Protocol):
     def stepper(self, state: Array) -> Stepper:
         """A kernel for simulations that starts from `state`."""
         ...
+
+
+def freeze_by_axis(model: Any) -> None:
+    """Make all numbers of a dataclass (axes,) and read-only.
+
+    >>> from flexstage.control.hysteresis.bouc_wen import BoucWen
+    >>> BoucWen(np.array([1e-7, 2e-7]), 1e-6, 2e-3, 1e-3).lag.tolist()
+    [1e-06, 1e-06]
+    """
+    names = [each.name for each in fields(model)]
+    arrays = np.broadcast_arrays(*(np.atleast_1d(np.asarray(getattr(model, name), dtype=float)) for name in names))
+    for name, value in zip(names, arrays, strict=True):
+        object.__setattr__(model, name, freeze(value))
