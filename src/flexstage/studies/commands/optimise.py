@@ -19,8 +19,6 @@ from flexstage.studies.optimisation.result import Front, Optimum
 from flexstage.studies.optimisation.stage_text import design_path, design_text, optimised_text
 from flexstage.studies.optimisation.tables import contradiction_text, front_tables, optimise_tables
 from flexstage.studies.optimisation.values import values_of
-from flexstage.studies.optimisation.wanted import Wanted
-from flexstage.studies.sweeps.definition import Study
 from flexstage.studies.sweeps.file import load_study
 from flexstage.studies.sweeps.loaded import loaded_findings, require_holding
 
@@ -47,60 +45,29 @@ def optimise(
         raise refuse("--output", f"{output} is the design that the study starts from", "Choose another file")
     if len(wanted.objectives) > 1 and output is not None:
         raise refuse("--output", "a front has many designs", "Set a limit on one objective, optimise the other, and write that design")
-    if len(wanted.objectives) > 1:
-        _front(asked, wanted, report, json, csv)
-    else:
-        _one(asked, wanted, study=study, output=output, report=report, json=json, csv=csv)
-
-
-def _one(
-    asked: Study,
-    wanted: Wanted,
-    *,
-    study: Path,
-    output: Path | None,
-    report: Path | None,
-    json: str | None,
-    csv: Path | None,
-) -> None:
+    run = run_optimise if len(wanted.objectives) == 1 else pareto_front
     with progress_bar() as shown:
-        found = run_optimise(asked, wanted, lambda text: shown.share(text, 0.0))
+        found = run(asked, wanted, lambda text: shown.share(text, 0.0))
     _require_solution(found)
-    cautions = () if found.final is None else require_holding(asked, values_of(asked, found.final.shares))
-    if output is not None and found.final is not None:
-        text = design_text(asked, study.parent)
-        save(output, optimised_text(text, asked, wanted, values_of(asked, found.final.shares), where=str(study)), "--output")
+    if isinstance(found, Optimum) and found.final is not None:
+        values = values_of(asked, found.final.shares)
+        cautions = require_holding(asked, values)
+        if output is not None:
+            save(output, optimised_text(design_text(asked, study.parent), asked, wanted, values, where=str(study)), "--output")
+    else:
+        cautions = loaded_findings(asked)
     if report is not None:
-        save(report, optimise_report(found), "--report")
+        save(report, optimise_report(found) if isinstance(found, Optimum) else front_report(found), "--report")
     answer(
         "optimise",
         asked.design,
         lambda: found,
-        lambda: optimise_tables(found),
+        lambda: optimise_tables(found) if isinstance(found, Optimum) else front_tables(found),
         model=Model.LUMPED,
         json=json,
         csv=csv,
         cautions=cautions,
         beside=(output, report),
-    )
-
-
-def _front(asked: Study, wanted: Wanted, report: Path | None, json: str | None, csv: Path | None) -> None:
-    with progress_bar() as shown:
-        found = pareto_front(asked, wanted, lambda text: shown.share(text, 0.0))
-    _require_solution(found)
-    if report is not None:
-        save(report, front_report(found), "--report")
-    answer(
-        "optimise",
-        asked.design,
-        lambda: found,
-        lambda: front_tables(found),
-        model=Model.LUMPED,
-        json=json,
-        csv=csv,
-        cautions=loaded_findings(asked),
-        beside=(report,),
     )
 
 
