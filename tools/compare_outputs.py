@@ -49,6 +49,7 @@ TEXTS: Mapping[str, str] = {  # of terminal, HTML and other text
 }
 PATHS: Mapping[str, str] = {  # in JSON, MAT and HDF5
     r"\breading$": "model",
+    r"^(frequency|gain|loss)(?=\.(rows|columns|unit|values))": r"\1_slopes",
     r"^([a-z-]+\.)?method$": r"\1provenance",
     r"\bplatform_modes": "platform",
     r"^((?:[a-z-]+\.)?)gain_matrix": r"\1gain",
@@ -106,7 +107,6 @@ PATHS: Mapping[str, str] = {  # in JSON, MAT and HDF5
     r"^(units\.[^.]+\.)?stress\.(?!names\.)([^.]+)\.safety$": r"\1stress.names.\2.safety",
     r"^parts\.([^.]+)\.over_beam_theory$": r"over_beam_theory.\1",
     r"^parts\.([^.]+)\.(links|roots|compliance|stiffness|separable|errors?|order|elements|freedoms)\b": r"hinges.\1.\2",
-    r"^(frequency|gain|loss)(?=\.(rows|columns|unit|values))": r"\1_slopes",
     r"\bground_source$": "ground.source",
     r"^(drift\.)?ground$": r"\1ground.material",
     r"^scatter\[\]\.(shape|size|within)": r"scatter[].distribution.\1",

@@ -215,12 +215,12 @@ _SUPERSCRIPT = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
 def typeset(text: str) -> str:
     """Text with units and numbers as a printer sets them: micro sign, true minus, powers; for HTML and figures.
 
-    >>> typeset("-1.2e-5 N/um"), typeset("J/m^2"), typeset("nm/Hz^0.5"), typeset("+-5 um")
-    ('−1.2·10⁻⁵ N/µm', 'J/m²', 'nm/√Hz', '±5 µm')
+    >>> typeset("-1.2e-5 N/um"), typeset("J/m^2"), typeset("nm/Hz^0.5"), typeset("+-5 um"), typeset("digest 9bc8e8")
+    ('−1.2·10⁻⁵ N/µm', 'J/m²', 'nm/√Hz', '±5 µm', 'digest 9bc8e8')
     """
     text = re.sub(r"\+-(?=\d)", "±", text)
     text = re.sub(r"(?<![A-Za-z0-9])u(?=(?:m|rad|J|F|s|V)\b)", "µ", text)
-    text = re.sub(r"(?<=\d)e(-?\d+)\b", lambda found: f"·10{found[1].translate(_SUPERSCRIPT)}", text)
+    text = re.sub(r"(?<![\w.])(\d+\.?\d*)e(-?\d+)\b", lambda found: f"{found[1]}·10{found[2].translate(_SUPERSCRIPT)}", text)
     text = re.sub(r"(\w+)\^0\.5\b", r"√\1", text)
     text = re.sub(r"\^(-?\d+)", lambda found: found[1].translate(_SUPERSCRIPT), text)
     return re.sub(r"(?<![\w.)])-(?=\d|inf)", "−", text)
