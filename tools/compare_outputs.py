@@ -136,7 +136,7 @@ PATHS: Mapping[str, str] = {  # in JSON, MAT and HDF5
     r"^runs\[\]\.moved$": "runs[].course.moved",
     r"^runs\[\]\.(saturated|slewing)\.(\w+)$": r"runs[].simulated.actuators.\2.\1",
     r"^runs\[\]\.out_of_range\.(\w+)$": r"runs[].simulated.gauges.\1.out_of_range",
-    r"^(range_v|stroke_m|rms|largest|validation|width|branches|inner)$": r"hysteresis.\1",
+    r"^(range_v|stroke_m|rms|largest|validation|width|drift|branches|inner)$": r"hysteresis.\1",
     r"^model\.": "hysteresis.plays.",
 }
 GONE: Mapping[str, str] = {  # paths that stand at BASE only, and where the same is now
