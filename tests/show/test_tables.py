@@ -206,3 +206,5 @@ def test_records_are_rows_and_what_is_absent_has_a_dash() -> None:
     one = Buckling(("a",), np.ones(1), np.ones(1), np.ones(1), (Ends.FREE,), "", Stability(*[np.array(2.0)] * 4, (), ""))
     assert record_table("Stage", one, "least", "weakest").texts()[1:] == [["least", "2", ""], ["weakest", "a", ""]]
     assert record_table("Stage", replace(one, links=()), "weakest").texts()[1:] == [["weakest", "-", ""]]
+    unknown = _Pressed(("a", "b"), np.array([1.0, np.nan]), np.array([np.nan, 0.5]), (Ends.FREE, Ends.FREE))
+    assert [row[1:3] for row in row_table("Bars", unknown).texts()[1:]] == [["1", "-"], ["-", "50 %"]]

@@ -192,6 +192,7 @@ def field_column(field: Field, values: Sequence[Any]) -> tuple[Column, list[Cell
         cells = [Cell(text, _faint(text)) for text in (number(each, heading.digits or DIGITS) for each in numbers.tolist())]
     else:
         cells = figures(numbers, form, heading.digits)
+    cells = [Cell(NO_VALUE, Mark.FAINT) if np.isnan(each) else cell for cell, each in zip(cells, numbers, strict=True)]
     bound = field.annotation(Bound) or Bound()
     outside = [each > bound.high + NOISE * abs(bound.high) or each < bound.low - NOISE * abs(bound.low) for each in numbers]
     cells = [replace(cell, mark=Mark.FAIL) if out else cell for cell, out in zip(cells, outside, strict=True)]
