@@ -53,6 +53,8 @@ PATHS: Mapping[str, str] = {  # in JSON, MAT and HDF5
     r"^([a-z-]+\.)?method$": r"\1provenance",
     r"\bplatform_modes": "platform",
     r"^((?:[a-z-]+\.)?)gain_matrix": r"\1gain",
+    r"\bin_plane_tensor_free$": "free",
+    r"\bin_plane_tensor$": "held",
     r"\bin_plane_tensor_free": "free.tensor",
     r"\bin_plane_tensor": "held.tensor",
     r"\bcentre_of_stiffness_m": "centre_m",
@@ -144,6 +146,7 @@ GONE: Mapping[str, str] = {  # paths that stand at BASE only, and where the same
     r"\bcrosstalk\.": "the entries of `transfer` beside its diagonal",
     r"^(workspace\.)?strokes\.": "`limits`, actuator by actuator",
     r"\bmap_error\.worst": "the first column of its `table`",
+    r"\bprincipal(_free)?$": "null, where `held` or `free` is",
     r"^parameters\[\]": "`parameters` by address",
     r"\broom\.intrusions\.": "a list",
     r"^trials$": "`hysteresis.trials`, a record each",
@@ -165,6 +168,7 @@ COME: Mapping[str, str] = {  # paths that stand in the working tree only
 }
 RULES: tuple[Rule, ...] = (  # numbers whose arithmetic or its order changed; searched() gives those of searches
     Rule(r"room\.intrusions$", "was by body, is a list", np.inf),
+    Rule(r"\bbuckling\.", "products of a beam's shapes are summed as products of matrices"),
 )
 
 KERNEL = os.environ.get("OPENBLAS_CORETYPE", "Haswell")
