@@ -20,7 +20,7 @@ unexport PYTHONDONTWRITEBYTECODE
 
 COMPILE := $(BIN)/uv pip compile -q --universal --python-version 3.11 --generate-hashes --no-header --no-annotate --no-emit-index-url
 
-.PHONY: help demo test check-all bench lint style format types contracts docs examples validation pictures lock setup-runtime setup-dev setup-oracles
+.PHONY: help demo quick test check-all bench lint style format types contracts docs examples validation pictures lock setup-runtime setup-dev setup-oracles
 
 help: ## list the targets
 	@sed -n 's/^\([a-z-]*\):.*## /  make \1\t/p' $(MAKEFILE_LIST) | expand -t 20
@@ -33,6 +33,9 @@ demo: setup-runtime ## analyse the shipped stage: tables here, the report in dem
 	@mkdir -p demo
 	@test -f demo/stage.toml || $(BIN)/flexstage new demo/stage.toml
 	$(BIN)/flexstage analyse demo/stage.toml --report demo/report.html
+
+quick: setup-dev ## a minute: closed forms, laws at 20 examples, the public surface; no finite elements
+	FLEXSTAGE_TESTS=quick $(PYTEST) tests/analytic tests/laws tests/hygiene/test_surface.py tests/hygiene/test_contracts.py -k "not solid and not buildable"
 
 test: setup-dev ## the tests, but for the examples of the documentation
 	$(PYTEST) --ignore=tests/docs

@@ -19,6 +19,8 @@ from threadpoolctl import threadpool_limits
 providers._get_local_constants = lambda: providers._local_constants
 
 FULL = os.environ.get("FLEXSTAGE_TESTS") == "full"
+QUICK = os.environ.get("FLEXSTAGE_TESTS") == "quick"
+_FEW = 20
 
 # Laws build whole mechanisms: drawing one is slow by nature, and no test has a time limit. They are drawn once for all laws, by the first
 # one that asks (tests/laws/shared.py), which takes a `given` within another.
@@ -27,12 +29,13 @@ _SLOW = [HealthCheck.too_slow, HealthCheck.data_too_large, HealthCheck.nested_gi
 _PHASES = (Phase.explicit, Phase.reuse, Phase.generate)
 settings.register_profile("default", max_examples=200, deadline=None, derandomize=True, suppress_health_check=_SLOW, phases=_PHASES)
 settings.register_profile("full", max_examples=2000, deadline=None, derandomize=True, suppress_health_check=_SLOW)
-settings.load_profile("full" if FULL else "default")
+settings.register_profile("quick", settings.get_profile("default"), max_examples=_FEW)
+settings.load_profile("full" if FULL else "quick" if QUICK else "default")
 
 
 def examples(quick: int, full: int) -> settings:
-    """Settings of a test whose random examples are costly: so many in the quick tests, and in the full ones."""
-    return settings(max_examples=full if FULL else quick)
+    """Settings of a test whose random examples are costly: so many in the usual tests, and in the full ones."""
+    return settings(max_examples=full if FULL else min(quick, _FEW) if QUICK else quick)
 
 
 @pytest.fixture(scope="session", autouse=True)

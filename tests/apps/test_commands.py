@@ -14,7 +14,9 @@ from types import SimpleNamespace
 import pytest
 import typer
 from netgen import occ
+from threadpoolctl import threadpool_info, threadpool_limits
 
+import flexstage as fs
 from flexstage.apps import doctor
 from flexstage.apps.cli import analyses, commands, run
 from flexstage.apps.cli.commands import COMMANDS
@@ -242,6 +244,18 @@ def test_numpy_gets_one_thread_unless_told_otherwise(tmp_path: Path) -> None:
     for environment, expected in ((free, "1"), (free | {"OPENBLAS_NUM_THREADS": "2"}, "2")):
         done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=True, env=environment)
         assert done.stdout.splitlines()[-1] == expected
+
+
+def test_in_python_one_thread_serves_small_matrices_and_the_callers_are_restored(monkeypatch: pytest.MonkeyPatch) -> None:
+    def counts() -> set[int]:
+        return {each["num_threads"] for each in threadpool_info() if each["user_api"] == "blas"}
+
+    seen: list[set[int]] = []
+    monkeypatch.setattr("flexstage.analysis.complete.judge", lambda *_: seen.append(counts()) or divmod(1, 0))
+    with threadpool_limits(2):
+        with pytest.raises(ZeroDivisionError):
+            fs.analyse(double_triangle())
+        assert (seen, counts()) == ([{1}], {2})
 
 
 def test_the_doctor_runs_without_typer(tmp_path: Path) -> None:

@@ -25,6 +25,7 @@ from flexstage.analysis.workspace.buckling import Buckling, buckling
 from flexstage.analysis.workspace.stroke import stroke_limits
 from flexstage.analysis.workspace.workspace import Workspace, workspace
 from flexstage.base.number import Table
+from flexstage.base.threads import one_thread
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.models.ideal import ideal
 from flexstage.models.linear.frequency import Response
@@ -85,6 +86,7 @@ def read(mechanism: Mechanism, model: Model) -> LinearModel | None:
     return linear
 
 
+@one_thread
 def analyse(mechanism: Mechanism, model: Model = Model.LUMPED) -> Analysis:
     """Every analysis of one model.
 

@@ -22,6 +22,7 @@ from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, Table
 from flexstage.base.quantity import FREQUENCY
 from flexstage.base.record import VIEW, Along, Called
+from flexstage.base.threads import one_thread
 from flexstage.mechanism.address import addresses, get, quantity_of, set_value
 from flexstage.mechanism.locate import locate
 from flexstage.mechanism.mechanism import Mechanism
@@ -92,6 +93,7 @@ class Sensitivities(InNotebook):
         return Matrix(self.loss * self.values[:, None], self.parameters, self.actuators, "1")
 
 
+@one_thread
 def sensitivities(
     mechanism: Mechanism, parameters: tuple[str, ...] | None = None, *, modes: int = 12, cluster: float = 1e-6
 ) -> Sensitivities:

@@ -21,6 +21,7 @@ from flexstage.analysis.workspace.stroke import SingleAxis, StrokeLimits, Utilis
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Number, Table
 from flexstage.base.record import VIEW
+from flexstage.base.threads import one_thread
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.ideal import ideal
@@ -67,6 +68,7 @@ class Workspace(InNotebook):
 
 
 @takes_models
+@one_thread
 def workspace(
     mechanism: Mechanism,
     kinematics: Kinematics,

@@ -15,6 +15,7 @@ from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, Table, first_design
 from flexstage.base.quantity import FREQUENCY, RATE
 from flexstage.base.record import INNER, VIEW
+from flexstage.base.threads import one_thread
 from flexstage.control.closed import Cut, Loop, loop
 from flexstage.control.curves import Curves, curves
 from flexstage.control.disk import DiskMargin, disk_margins
@@ -100,6 +101,7 @@ class LoopStudy(InNotebook):
         return None if self.resting is None else (self.resting.low, self.resting.high)
 
 
+@one_thread
 def loop_study(mechanism: Mechanism, setup: LoopSetup | None = None, *, tell: Told | None = None) -> LoopStudy:
     """Close the loop of a stage as a set-up says; with everything left out it says what is usual.
 

@@ -15,6 +15,7 @@ from flexstage.base.labelled import Matrix
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
 from flexstage.base.record import INNER, VIEW
+from flexstage.base.threads import one_thread
 from flexstage.experiment.comparison import Compared, compare, shared_sensors
 from flexstage.experiment.identification.confidence import NORMAL_95
 from flexstage.experiment.identification.identified import Identified
@@ -240,6 +241,7 @@ class Updated(InNotebook):
         return f"{told.value} from {self.data}{rest}"
 
 
+@one_thread
 def update(mechanism: Mechanism, experiment: Identified, names: Sequence[str], known: Known = DEFAULT) -> Updated:
     """The values of the numbers at `names` that make the lumped model agree best with a test, given what is known before.
 

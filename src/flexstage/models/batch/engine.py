@@ -15,6 +15,7 @@ from functools import cached_property
 import numpy as np
 
 from flexstage.base.number import Array
+from flexstage.base.threads import one_thread
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.batch.blocks import Scheme, scheme
 from flexstage.models.batch.choice import Choice, choose
@@ -103,6 +104,7 @@ class PlatformModes:
     gradient: Array
 
 
+@one_thread
 def plan(mechanism: Mechanism, addresses: tuple[str, ...], choice: Choice | None = None, ranges: tuple[Array, Array] | None = None) -> Plan:
     """Plan a family of designs around a mechanism, with other numbers at the addresses.
 
@@ -165,6 +167,7 @@ def _start(scheme_: Scheme, modes: Whole, choice: Choice, count: int) -> Start:
     return Start(block, choice, edge, degree=max(1, min(_DEGREE, int(np.log(_GROWTH) / np.log(spread)))), value=_VALUE)
 
 
+@one_thread
 def platform_modes(plan_: Plan, values: Array, *, slopes: bool = False, method: Method = Method.FASTEST) -> PlatformModes:
     """The platform's modes of designs given by the numbers (b, P) at the plan's addresses, and with `slopes` their derivatives by these.
 

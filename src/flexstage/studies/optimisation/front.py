@@ -11,6 +11,7 @@ import numpy as np
 from flexstage.analysis.requirements import Sense
 from flexstage.base.finding import refuse
 from flexstage.base.number import Array
+from flexstage.base.threads import one_thread
 from flexstage.studies.optimisation.contradiction import contradictions
 from flexstage.studies.optimisation.optimum import Count, Progress, best_of
 from flexstage.studies.optimisation.problem import SPARE, Problem, Side
@@ -25,6 +26,7 @@ _KEEP = 1e-6
 """By how much (relative) an objective may give way while the other is improved at an end of the front."""
 
 
+@one_thread
 def pareto_front(study: Study, wanted: Wanted, progress: Progress | None = None) -> Front:
     """The front of two objectives within ranges and limits (epsilon-constraint method: Haimes, Lasdon & Wismer 1971).
 

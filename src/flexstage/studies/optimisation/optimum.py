@@ -9,6 +9,7 @@ import numpy as np
 
 from flexstage.base.finding import refuse
 from flexstage.base.number import Array
+from flexstage.base.threads import one_thread
 from flexstage.studies.optimisation.binding import binding
 from flexstage.studies.optimisation.contradiction import contradictions
 from flexstage.studies.optimisation.problem import SPARE, Problem
@@ -26,6 +27,7 @@ Progress = Callable[[str], None]
 """Told what is being done, with how many designs were evaluated."""
 
 
+@one_thread
 def optimise(study: Study, wanted: Wanted, progress: Progress | None = None) -> Optimum:
     """The best design within the variables' ranges that keeps all limits.
 

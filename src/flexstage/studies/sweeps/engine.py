@@ -12,7 +12,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy
-from threadpoolctl import threadpool_limits
 
 from flexstage import __version__
 from flexstage.analysis.measures import platform_frequency
@@ -106,8 +105,7 @@ def _engine_of(study: Study) -> Engine:
     limit, numbers = study.design.mode_limit, study.numbers
     choice = Choice(_MODES, np.inf if limit is None else float(np.max(limit)))
     try:
-        with threadpool_limits(1):  # sums over several threads would not be the same to the bit
-            return Engine(modes, plan_family(_family(study, numbers), choice, _ranges(study, numbers)), numbers)
+        return Engine(modes, plan_family(_family(study, numbers), choice, _ranges(study, numbers)), numbers)
     except DesignError:
         return Engine(Table({}))
 

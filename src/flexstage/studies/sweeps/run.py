@@ -18,6 +18,7 @@ from flexstage.base import memory
 from flexstage.base.finding import DesignError, refuse, require
 from flexstage.base.jobs import cores
 from flexstage.base.number import Array
+from flexstage.base.threads import one_thread
 from flexstage.studies.sweeps.definition import Study, name_findings
 from flexstage.studies.sweeps.engine import engine_covers, engine_of
 from flexstage.studies.sweeps.evaluate import nominal
@@ -50,6 +51,7 @@ class Run:
 DEFAULT = Run()
 
 
+@one_thread
 def sweep(study: Study, path: str | os.PathLike[str], how: Run = DEFAULT, progress: Progress | None = None) -> Results:
     """Compute all designs of a study into the results file at `path`.
 
