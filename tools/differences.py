@@ -25,7 +25,7 @@ LEFT_PATHS = {"versions": r"(^|[._@])version$|^@?made(\[\])?$"}
 LEFT_WORDS = {
     "date": r"\d{4}-\d\d-\d\dT[\d:.]+\S*",
     "version": r"(?<=flexstage )\d+\.\d+\.\d+\S*|^\d+\.\d+\.\d+$",
-    "digest": r"(?<= of )[0-9a-f]{10,16}$|^[0-9a-f]{16}$|^[0-9a-f]+·10[⁰-⁹¹²³]+$",  # cut off, as a number, or of a document in which fields came
+    "digest": r"(?<= of )[0-9a-f]{10,16}$|^[0-9a-f]{16}$|^[0-9a-f]+·10[⁰-⁹¹²³]+$",  # cut off, as number, or of a document
 }
 LEFT_MEMBERS = r"\.(so|dll|dylib)$"
 
