@@ -19,7 +19,7 @@ from flexstage.control.controllers.notch import Notch, notch_of_mode
 from flexstage.control.controllers.pi import PI
 from flexstage.control.controllers.pid import PID
 from flexstage.control.controllers.resonant import IntegralResonant, resonant, resonant_damping
-from flexstage.control.controllers.seen import seen_plant
+from flexstage.control.controllers.pose_plant import seen_plant
 from flexstage.control.coordinates import coordinates
 from flexstage.control.electronics import Hardware
 from flexstage.control.plants import plant

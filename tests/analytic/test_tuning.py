@@ -24,7 +24,7 @@ from flexstage.control.stability_margins import peaks
 from flexstage.control.tuning.attempt import Task, attempt
 from flexstage.control.tuning.goal import Goal, Kind, peak_for_margins
 from flexstage.control.tuning.laws import Place, laws
-from flexstage.control.tuning.tuned import tuned
+from flexstage.control.tuning.tune import tuned
 from flexstage.control.tuning.view import resonances, view
 from flexstage.models.ideal import ideal
 from flexstage.models.lumped import lumped

@@ -16,7 +16,7 @@ from flexstage.control.controllers.loops import platform_loops
 from flexstage.control.controllers.lqg import Disturbances, Weights, lqg
 from flexstage.control.controllers.notch import Notch
 from flexstage.control.controllers.pid import PID
-from flexstage.control.controllers.seen import seen_plant
+from flexstage.control.controllers.pose_plant import seen_plant
 from flexstage.control.coordinates import coordinates
 from flexstage.control.electronics import Hardware
 from flexstage.control.plants import plant

@@ -26,7 +26,7 @@ from flexstage.control.norm import peak
 from flexstage.control.plants import held, plant
 from flexstage.control.stability_margins import margins
 from flexstage.control.system import System, picked
-from flexstage.control.whites import mean_squares
+from flexstage.control.white_noise import mean_squares
 from flexstage.models.ideal import ideal
 from flexstage.models.linear.model import Channel
 from flexstage.models.lumped import lumped

@@ -20,7 +20,7 @@ from flexstage.control.example import integral, integral_loop
 from flexstage.control.noise import Disturbed, noise_budget
 from flexstage.control.plants import plant, sensing
 from flexstage.control.system import picked
-from flexstage.control.whites import Kind, held_noise, mean_squares, white_system
+from flexstage.control.white_noise import Kind, held_noise, mean_squares, white_system
 from tests.conftest import examples
 from tests.laws.loops import random_loop, stable_loop
 from tests.laws.shared import ideal, lumped

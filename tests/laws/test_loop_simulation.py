@@ -15,7 +15,7 @@ from flexstage.cases.parallelogram import parallelogram
 from flexstage.control.controllers.decentralised import Decentralised
 from flexstage.control.controllers.loops import platform_loops
 from flexstage.control.controllers.pi import PI
-from flexstage.control.creeping import with_creep
+from flexstage.control.creep_plant import with_creep
 from flexstage.control.example import integral_loop
 from flexstage.control.hysteresis.creep import Creep
 from flexstage.control.simulation.kernel import Compensator

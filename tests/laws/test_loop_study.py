@@ -18,7 +18,7 @@ from flexstage.control.reduction import reduced, resonances
 from flexstage.control.simulation.result import others
 from flexstage.control.study.choices import Compensation, ControllerKind, StackKind
 from flexstage.control.study.runs import rest_rms
-from flexstage.control.study.settle import settled, usual_rate
+from flexstage.control.study.resolve import settled, usual_rate
 from flexstage.control.study.setup import (
     Amplifying,
     Controlling,

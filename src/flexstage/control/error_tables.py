@@ -16,7 +16,7 @@ from flexstage.control.study.runs import RestRms
 from flexstage.control.study.stacks import Sweep
 from flexstage.control.study.study import LoopStudy
 from flexstage.control.tables import motion_cell
-from flexstage.control.whites import Kind
+from flexstage.control.white_noise import Kind
 from flexstage.show.display import NO_VALUE, number, percent, value_with_unit
 from flexstage.show.table import Cell, Column, Mark, Table, build, row_table
 from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS

@@ -21,7 +21,7 @@ from flexstage.control.electronics import Amplifier, Sensor
 from flexstage.control.resolvent import resolvent
 from flexstage.control.stability import require_stable
 from flexstage.control.system import System, picked
-from flexstage.control.whites import Kind, Source, bounded_amplifiers, mean_squares, white_system
+from flexstage.control.white_noise import Kind, Source, bounded_amplifiers, mean_squares, white_system
 from flexstage.mechanism.mechanism import GROUND
 from flexstage.models.linear.model import Channel
 from flexstage.spatial.frame import COMPONENTS

@@ -76,7 +76,7 @@ def lqg(model: System, coordinates: Coordinates, weights: Weights, expected: Dis
     its noises (Kwakernaak & Sivan, Linear Optimal Control Systems, 1972). One-sided densities G hold over the whole band, so that a sample
     has the variance G^2/(2 T). Raises `DesignError` for gauges without noise and a model of which nothing can be controlled.
 
-    >>> from flexstage.control.controllers.seen import seen_plant
+    >>> from flexstage.control.controllers.pose_plant import seen_plant
     >>> from flexstage.control.example import integral_loop
     >>> plant = integral_loop().plant
     >>> found = lqg(seen_plant(plant), plant.coordinates, Weights(20.0), Disturbances(1e-9, {"S": 1e-12}))
@@ -90,7 +90,7 @@ def lqg(model: System, coordinates: Coordinates, weights: Weights, expected: Dis
 def with_observer(model: System, coordinates: Coordinates, weights: Weights, observer: Array, feedforward: Array | None = None) -> LQG:
     """The regulator of least cost with an observer's gain that is known.
 
-    >>> from flexstage.control.controllers.seen import seen_plant
+    >>> from flexstage.control.controllers.pose_plant import seen_plant
     >>> from flexstage.control.example import integral_loop
     >>> plant = integral_loop().plant
     >>> with_observer(seen_plant(plant), plant.coordinates, Weights(20.0), np.zeros((8, 1))).tracking.__round__(5)  # 1/(2 pi 20)
@@ -124,7 +124,7 @@ def _regulator(model: System, coordinates: Coordinates, weights: Weights) -> tup
 def observer_gain(model: System, coordinates: Coordinates, expected: Disturbances) -> Array:
     """M (s, f) of the sampled filter, L of the continuous one; where D feels the strokes' noise, noises of state and output go together.
 
-    >>> from flexstage.control.controllers.seen import seen_plant
+    >>> from flexstage.control.controllers.pose_plant import seen_plant
     >>> from flexstage.control.example import integral_loop
     >>> plant = integral_loop().plant
     >>> observer_gain(seen_plant(plant), plant.coordinates, Disturbances(1e-9, {"S": 1e-12})).shape
@@ -188,7 +188,7 @@ def _continuous(control: LQG) -> System:
 def with_feedforward_states(control: System, given: LQG) -> System:
     """The controller with the reference fed forward: strokes F r at rest and K x(F r) for the states they bring along.
 
-    >>> from flexstage.control.controllers.seen import seen_plant
+    >>> from flexstage.control.controllers.pose_plant import seen_plant
     >>> from flexstage.control.example import integral_loop
     >>> plant = integral_loop().plant
     >>> found = lqg(seen_plant(plant), plant.coordinates, Weights(20.0), Disturbances(1e-9, {"S": 1e-12}), np.eye(1))

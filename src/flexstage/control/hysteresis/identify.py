@@ -10,7 +10,7 @@ from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array
 from flexstage.control.hysteresis.branches import MAJOR, branches_of, record_findings
 from flexstage.control.hysteresis.fit import Fit, drift_of, fitted, form_of, known_from, played
-from flexstage.control.hysteresis.identified import IdentifiedHysteresis, Trial
+from flexstage.control.hysteresis.result import IdentifiedHysteresis, Trial
 from flexstage.control.hysteresis.inverse import inverse_findings
 from flexstage.control.hysteresis.shape import Range, settled_loop
 

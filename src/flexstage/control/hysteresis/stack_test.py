@@ -14,7 +14,7 @@ from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
 from flexstage.base.record import VIEW
 from flexstage.control.hysteresis.creep_record import IdentifiedCreep, identify_creep
-from flexstage.control.hysteresis.identified import IdentifiedHysteresis
+from flexstage.control.hysteresis.result import IdentifiedHysteresis
 from flexstage.control.hysteresis.identify import identify_hysteresis
 from flexstage.control.hysteresis.inverse import inverse
 from flexstage.control.hysteresis.shape import Range

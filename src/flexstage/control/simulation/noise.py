@@ -14,7 +14,7 @@ from flexstage.base.stream import generator
 from flexstage.control.electronics import Amplifier, Sensor
 from flexstage.control.plants import Plant
 from flexstage.control.resolvent import resolvent
-from flexstage.control.whites import gauge_noise
+from flexstage.control.white_noise import gauge_noise
 
 
 class Stream(IntEnum):

@@ -11,7 +11,7 @@ from flexstage.base.finding import refuse
 from flexstage.base.number import Array
 from flexstage.control.simulation.actuation import Actuation
 from flexstage.control.simulation.fused import Fused, Parts, Row, fused, parts
-from flexstage.control.simulation.inflow import Inflow, inflow
+from flexstage.control.simulation.disturbances import Inflow, inflow
 from flexstage.control.simulation.kernel import holding, rounding
 from flexstage.control.simulation.machine import Machine
 from flexstage.control.simulation.result import Series, Simulated, simulated

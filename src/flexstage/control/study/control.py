@@ -21,12 +21,12 @@ from flexstage.control.controllers.notch import Notch, notch_of_mode
 from flexstage.control.controllers.pi import PI
 from flexstage.control.controllers.pid import PID
 from flexstage.control.study.choices import Axes, Compensation, ControllerKind, Notching
-from flexstage.control.study.settle import Settled
+from flexstage.control.study.resolve import Settled
 from flexstage.control.study.setup import Controlling, NotchAt
 from flexstage.control.system import System, static
 from flexstage.control.tuning.attempt import Task
 from flexstage.control.tuning.goal import Goal, Kind, Tuning
-from flexstage.control.tuning.tuned import tuned
+from flexstage.control.tuning.tune import tuned
 from flexstage.models.linear.model import Channel
 
 _KINDS: Mapping[ControllerKind, Kind] = MappingProxyType(
@@ -96,7 +96,7 @@ def controlled(given: Settled, gains: Array) -> Control:
     Raises `DesignError` for a bandwidth that cannot be reached, with the highest that can and why; for numbers that make no controller.
 
     >>> from flexstage.cases.parallelogram import parallelogram
-    >>> from flexstage.control.study.settle import settled
+    >>> from flexstage.control.study.resolve import settled
     >>> from flexstage.control.study.setup import LoopSetup
     >>> given = settled(parallelogram(), LoopSetup(controller=Controlling(integral=300.0)))
     >>> controlled(given, given.plant.coordinates.strokes).loops["x"].law

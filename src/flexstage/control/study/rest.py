@@ -16,7 +16,7 @@ from flexstage.base.number import Array, first_design
 from flexstage.base.quantity import LENGTH
 from flexstage.base.record import VIEW
 from flexstage.control.compensation import StaticError, compensated, static_error, uncompensated
-from flexstage.control.study.settle import Settled
+from flexstage.control.study.resolve import Settled
 from flexstage.models.theory import Model
 
 
@@ -43,7 +43,7 @@ def rest_errors(given: Settled, lost: LostMotion) -> RestErrors:
 
     >>> from flexstage.analysis.lost_motion import lost_motion
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> from flexstage.control.study.settle import settled
+    >>> from flexstage.control.study.resolve import settled
     >>> from flexstage.control.study.setup import LoopSetup
     >>> given = settled(double_triangle(), LoopSetup())
     >>> found = rest_errors(given, lost_motion(given.kinematics, given.model))

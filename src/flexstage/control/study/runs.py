@@ -18,7 +18,7 @@ from flexstage.base.number import Array
 from flexstage.base.quantity import TIME
 from flexstage.base.record import INNER, VIEW
 from flexstage.control.closed import Loop
-from flexstage.control.creeping import with_creep
+from flexstage.control.creep_plant import with_creep
 from flexstage.control.simulation.machine import Machine, machine
 from flexstage.control.simulation.noise import noises
 from flexstage.control.simulation.result import Excursion, Simulated, StepFigures, others, step_figures, tracking
@@ -26,7 +26,7 @@ from flexstage.control.simulation.run import simulate
 from flexstage.control.study.choices import Compensation
 from flexstage.control.study.control import Control
 from flexstage.control.study.course import Course, course_cautions, course_findings, courses, sampled_course
-from flexstage.control.study.settle import Settled
+from flexstage.control.study.resolve import Settled
 from flexstage.control.study.stacks import Stacks
 
 _TIME_CONSTANTS = 8.0
@@ -104,7 +104,7 @@ def runs(given: Settled, control: Control, closed: Loop, stacks: Stacks | None =
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.control.closed import loop
     >>> from flexstage.control.study.control import controlled
-    >>> from flexstage.control.study.settle import settled
+    >>> from flexstage.control.study.resolve import settled
     >>> from flexstage.control.study.setup import Controlling, LoopSetup
     >>> given = settled(parallelogram(), LoopSetup(controller=Controlling(integral=300.0)))
     >>> control = controlled(given, given.plant.coordinates.strokes)

@@ -28,7 +28,7 @@ from flexstage.control.study.choices import Compensation, ControllerKind
 from flexstage.control.study.control import Control, controlled
 from flexstage.control.study.rest import RestErrors, rest_errors
 from flexstage.control.study.runs import RestRms, Run, at_rest, rest_rms, runs
-from flexstage.control.study.settle import Settled, settled
+from flexstage.control.study.resolve import Settled, settled
 from flexstage.control.study.setup import LoopSetup
 from flexstage.control.study.stacks import Stacks, Sweep, stacks_of, swept
 from flexstage.experiment.pipeline import Told

@@ -68,7 +68,7 @@ def open_gains(seen: View, control: System) -> Array:
 def closed_growth(plant: System, control: System) -> float:
     """Growth [1/s] of the slowest free motion of a plant (commands to pose) under a controller.
 
-    >>> from flexstage.control.controllers.seen import seen_plant
+    >>> from flexstage.control.controllers.pose_plant import seen_plant
     >>> from flexstage.control.example import integral_loop
     >>> closed = integral_loop()
     >>> abs(closed_growth(seen_plant(closed.plant), closed.controller) / closed.system.growth - 1.0) < 1e-6

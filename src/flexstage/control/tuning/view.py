@@ -9,7 +9,7 @@ import numpy as np
 
 from flexstage.base.number import Array
 from flexstage.control.controllers.loops import Loops
-from flexstage.control.controllers.seen import seen_plant
+from flexstage.control.controllers.pose_plant import seen_plant
 from flexstage.control.plants import Plant
 from flexstage.control.resolvent import resolvent
 from flexstage.control.system import System

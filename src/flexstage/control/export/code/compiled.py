@@ -14,7 +14,7 @@ from flexstage.base.native import Recipe, loaded
 from flexstage.base.number import Array
 from flexstage.control.export.code.program import FLAGS, Program, Signal
 from flexstage.control.export.code.whole import loop_code
-from flexstage.control.simulation.inflow import inflow
+from flexstage.control.simulation.disturbances import inflow
 from flexstage.control.simulation.machine import Machine
 from flexstage.control.simulation.result import Series, Simulated, simulated
 from flexstage.control.simulation.run import require_bounded
