@@ -25,7 +25,7 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 from flexstage.solid.fea.fineness import Fineness
-from flexstage.solid.fea.mesh import Meshed
+from flexstage.solid.fea.mesh import PieceMesh
 from tests.elsewhere.calculix.deck import deck, printed_solution, program
 from tests.elsewhere.calculix.ours import Law, solved
 from tests.elsewhere.calculix.problems import CURVED, Geometry, Problem, Solution, hinge, mesh_of, read_mesh, shape
@@ -82,13 +82,13 @@ def _peak(process: int) -> float:
     return sum(float(line.split()[1]) / KILOBYTES for line in lines if line.startswith("VmHWM"))
 
 
-def ours(mesh: Meshed, order: int, folder: Path) -> Cost:
+def ours(mesh: PieceMesh, order: int, folder: Path) -> Cost:
     """Our process on a mesh written to a file."""
     mesh.mesh.ngmesh.Save(str(folder / "mesh.vol"))
     return cost([sys.executable, str(Path(__file__).resolve()), str(folder), str(order)], folder)
 
 
-def theirs(problem: Problem, mesh: Meshed, folder: Path) -> tuple[Cost, Solution]:
+def theirs(problem: Problem, mesh: PieceMesh, folder: Path) -> tuple[Cost, Solution]:
     """CalculiX's process on a mesh, with what it found."""
     (folder / "job.inp").write_text(deck(problem, mesh))
     spent = cost([str(program()), "-i", str(folder / "job")], folder)
@@ -110,7 +110,7 @@ def found_by_child(folder: Path) -> Solution:
         return Solution(stored["compliance"], stored["frequencies"])
 
 
-def row(name: str, mesh: Meshed, spent: Cost, found: Solution, reference: Solution) -> None:
+def row(name: str, mesh: PieceMesh, spent: Cost, found: Solution, reference: Solution) -> None:
     """Print one line of the table."""
     compliance, frequency = found.difference(reference)
     print(f"{name:26} {mesh.mesh.ne:9} {spent} {compliance:11.1e} {frequency:11.1e}")

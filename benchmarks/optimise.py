@@ -59,7 +59,7 @@ class Counted:
             if self.count >= MOST:
                 raise EnoughError
             self.count += 1
-            found = self.set_up.values.plain(np.clip(shares, 0.0, 1.0)[None])[0]
+            found = self.set_up.values.evaluate(np.clip(shares, 0.0, 1.0)[None])[0]
             problem = self.set_up.problem
             sides = (*problem.objective, *problem.limits)
             row = np.array([side.at(found) for side in sides]) if isinstance(found, Point) else np.full(len(sides), 10.0)
@@ -122,7 +122,7 @@ def gradient_error(set_up: Setting) -> float:
     shares = np.full(len(set_up.study.variables), 0.45) + 0.02 * np.arange(len(set_up.study.variables))
     exact = set_up.values(shares[None])[0]
     size = len(shares)
-    around = set_up.values.plain(shares + DIFFERENCE * np.vstack([np.eye(size), -np.eye(size)]))
+    around = set_up.values.evaluate(shares + DIFFERENCE * np.vstack([np.eye(size), -np.eye(size)]))
     values = np.array([point.values for point in around if isinstance(point, Point)])
     if isinstance(exact, str):
         raise RuntimeError(exact)

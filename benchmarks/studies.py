@@ -39,7 +39,7 @@ from flexstage.studies.sweeps.evaluate import piece
 from flexstage.studies.sweeps.file import load_study
 from flexstage.studies.sweeps.gather import gather
 from flexstage.studies.sweeps.run import piece_size
-from flexstage.studies.sweeps.store import computed, folder_of, read_results, write_piece
+from flexstage.studies.sweeps.store import done_pieces, folder_of, read_results, write_piece
 
 STUDY = """
 format = "flexstage study 1"
@@ -163,7 +163,7 @@ def floors(study: Study) -> tuple[float, float, float]:
     start = time.process_time()
     engine = engine_of(study)
     fitting = time.process_time() - start
-    values = study.drawn(0, min(ALONE, study.plan.designs))
+    values = study.sample(0, min(ALONE, study.plan.designs))
     platform_modes(engine.plan, values[:DENSE])
     start = time.process_time()
     piece(study, 0, DENSE, Engine(Table({})))
@@ -207,7 +207,7 @@ def report(study: Study, place: Path, kills: int, workers: int) -> None:
         last = sweep(place / "study.toml", broken, workers)
         code = last.wait()
     same = code == 0 and broken.read_bytes() == bytes_before == whole.read_bytes()
-    every = bool(computed(broken, piece_size(study), designs).all()) and len(read_results(broken).designs) == designs
+    every = bool(done_pieces(broken, piece_size(study), designs).all()) and len(read_results(broken).designs) == designs
     print(f"  kills survived          {survived:9d} of {kills}, in {time.monotonic() - start:.0f} s")
     print(f"  opened while it ran     {told.opened:9d} times, {len(told.wrong)} of them wrong {told.wrong[:3] or ''}")
     print(f"  every design once       {'yes' if every else 'NO':>9}; the same bytes as unbroken: {'yes' if same else 'NO'}")

@@ -44,6 +44,8 @@ TEXTS: Mapping[str, str] = {  # of terminal, HTML and other text
     "The theories a stage can be read by": "Models of theory",
     "theory that the stage is read by as": "of the stage as",
     "^flexstage result 1$": "flexstage result 2",
+    r"(^|>)Room($|<)": r"\1Clearance\2",
+    "Forces, strength and room": "Forces, strength and clearance",
     r"^(# [a-z0-9-]+: .*\.)$": "#:schema ./flexstage.schema.json\n\\1",
     r"^(# flexstage check \S+ .*)$": "\\1\n# flexstage schema > flexstage.schema.json lets an editor check this file while you type.",
 }
@@ -62,6 +64,7 @@ PATHS: Mapping[str, str] = {  # in JSON, MAT and HDF5
     r"\bprincipal\.": "held.",
     r"\b(held|free)\.stiffness_n_per_m": r"\1.principal_n_per_m",
     r"\bstiffest_direction_rad": "angle_rad",
+    r"^(workspace\.)?room\b": r"\1clearance",
     r"\bredundant$": "redundant[].constraints",
     r"\bsingle_axis_corrected": "corrected",
     r"\bsingle_axis": "single",
@@ -148,7 +151,7 @@ GONE: Mapping[str, str] = {  # paths that stand at BASE only, and where the same
     r"\bmap_error\.worst": "the first column of its `table`",
     r"\bprincipal(_free)?$": "null, where `held` or `free` is",
     r"^parameters\[\]": "`parameters` by address",
-    r"\broom\.intrusions\.": "a list",
+    r"\b(?:room|clearance)\.intrusions\.": "a list",
     r"^trials$": "`hysteresis.trials`, a record each",
 }
 COME: Mapping[str, str] = {  # paths that stand in the working tree only
@@ -156,9 +159,9 @@ COME: Mapping[str, str] = {  # paths that stand in the working tree only
     r"^(workspace\.)?limits\.": "strokes, actuator by actuator",
     r"\bcorner\.command|\bpolytope\.poses\.(rows|columns|unit)": "names of rows and columns",
     r"\b(platform_lines\.coordinates|stress\.links|units\.[^.]+\.unit|actuators)$": "names of rows and columns",
-    r"\b(resolution\.inverse|room\.extreme|buckling\.stage\.(strokes_m|stiffens))": "fields of the result that were not told",
+    r"\b(resolution\.inverse|clearance\.extreme|buckling\.stage\.(strokes_m|stiffens))": "fields of the result that were not told",
     r"^(budget\.)?ground\.": "which material the ground was taken as",
-    r"\broom\.intrusions\[\]": "a list",
+    r"\bclearance\.intrusions\[\]": "a list",
     r"^(workspace\.)?bearing$": "null, where `loads` is",
     r"^parameters\.": "`parameters` by address",
     r"\bvariables\[\]\.(logarithmic|levels|step|parameters)$": "fields of a variable that were not told",
@@ -167,7 +170,7 @@ COME: Mapping[str, str] = {  # paths that stand in the working tree only
     r"^hysteresis\.trials\[\]": "a record each",
 }
 RULES: tuple[Rule, ...] = (  # numbers whose arithmetic or its order changed; searched() gives those of searches
-    Rule(r"room\.intrusions$", "was by body, is a list", np.inf),
+    Rule(r"(room|clearance)\.intrusions$", "was by body, is a list", np.inf),
     Rule(r"^printed/01-schema", "designs name the packages that they need", np.inf),
     Rule(r"\bbuckling\.", "products of a beam's shapes are summed as products of matrices"),
 )

@@ -32,9 +32,9 @@ from flexstage.control.figures.noise import noise_share_figure
 from flexstage.control.figures.time import path_figure
 from flexstage.control.hysteresis.example import example_test
 from flexstage.control.hysteresis.figures import stack_figure
-from flexstage.control.sections import diagram_of, shares_of
+from flexstage.control.sections import diagram_of, noise_shares
 from flexstage.control.study.choices import Compensation, Criterion
-from flexstage.control.study.setup import Floor, Gauging, LoopSetup, RasterMotion, Shaking
+from flexstage.control.study.setup import Floor, GaugeSetup, LoopSetup, RasterMotion, VibrationSetup
 from flexstage.control.study.study import LoopStudy, loop_study
 from flexstage.experiment import NoiseDrive, RigSetup, Search, Sensing
 from flexstage.experiment.comparison_figures import compare_figure
@@ -45,12 +45,12 @@ from flexstage.show.figures.budget import loss_figure
 from flexstage.show.figures.directional import directional_figure
 from flexstage.show.figures.export import to_png, to_svg
 from flexstage.show.figures.response import response_figure
-from flexstage.show.figures.style import FULL, INK, MUTED, PAPER, SERIES, canvas, styled
+from flexstage.show.figures.style import FULL, INK, MUTED, PAPER, SERIES, canvas, style_context
 from flexstage.show.plan import plan_figure
 from flexstage.show.scene.facet import Facet, Kind
 from flexstage.show.scene.pictures import stage_picture
-from flexstage.show.scene.stage import Scene, displaced, largest_motion, scene
-from flexstage.show.scene.view import Side, draw, ordered, outline, triad, view, write
+from flexstage.show.scene.stage import Scene, displace, largest_motion, scene
+from flexstage.show.scene.view import Side, draw, order_facets, outline, triad, view, write
 from flexstage.solid.fea.fineness import Fineness, Reduction
 from flexstage.solid.read import STANDARD_SOLIDS, read_solid
 from flexstage.solid.skin_figures import skin_figure
@@ -83,7 +83,7 @@ _SIDES = ((Side.ISOMETRIC, (0, 0)), (Side.TOP, (0, 1)), (Side.FRONT, (1, 0)), (S
 def stage() -> Any:
     """The double-triangular stage from three sides and above the corner, all to one scale but for the corner."""
     drawn = scene(double_triangle())
-    with styled():
+    with style_context():
         figure = canvas(FULL, 0.82 * FULL)
         panels = figure.subplots(2, 2, height_ratios=(2.6, 1.0))
         for side, place in _SIDES:
@@ -93,7 +93,7 @@ def stage() -> Any:
 
 def _side(axes: Any, drawn: Scene, side: Side) -> None:
     seen = view(side)
-    facets = ordered(drawn, seen)
+    facets = order_facets(drawn, seen)
     _framed(axes, facets, side)
     draw(axes, facets, seen)
     if side in (Side.ISOMETRIC, Side.TOP):
@@ -102,7 +102,7 @@ def _side(axes: Any, drawn: Scene, side: Side) -> None:
 
 
 def _framed(axes: Any, facets: list[Facet], side: Side) -> None:
-    flat = np.concatenate([view(side).flat(facet.points) for facet in facets])
+    flat = np.concatenate([view(side).project(facet.points) for facet in facets])
     gap = 12.0
     axes.set_xlim(flat[:, 0].min() - gap, flat[:, 0].max() + gap)
     axes.set_ylim(flat[:, 1].min() - gap, flat[:, 1].max() + gap)
@@ -120,7 +120,7 @@ def six_by_six() -> Any:
     length, steel = 30 * fs.mm, fs.Material(young=200e9, poisson=0.3, density=7750.0)
     at_centre = compliance(fs.Leaf("steel", length=length, thickness=0.5 * fs.mm, width=10 * fs.mm), steel)
     sizes = np.array([1.0] * 3 + [length] * 3)
-    with styled():
+    with style_context():
         figure = canvas(FULL, 3.5)
         for axes, place, title in zip(figure.subplots(1, 2), (0.0, 0.5 * length), ("at its centre", "at its end"), strict=True):
             moved = transport(np.array([place, 0.0, 0.0]))
@@ -153,7 +153,7 @@ def margins() -> Any:
     negative = int(np.flatnonzero((loop.imag[:-1] < 0.0) & (loop.imag[1:] >= 0.0))[0])
     nearest = int(np.argmin(np.abs(1.0 + loop)))
     turn = np.linspace(0.0, 2.0 * np.pi, 361)
-    with styled():
+    with style_context():
         figure = canvas(0.62 * FULL, 0.56 * FULL)
         axes = figure.add_axes((0.02, 0.02, 0.96, 0.96))
         axes.plot(np.cos(turn), np.sin(turn), color=MUTED, linewidth=0.7, linestyle="--")
@@ -196,14 +196,14 @@ def modes() -> Any:
     """The platform's modes, exaggerated, over its outline at rest; of repeated ones the first."""
     drawn, model = scene(double_triangle()), fs.lumped(double_triangle())
     found = fs.modes(model)
-    kept = [facet for facet in ordered(drawn, view(Side.ISOMETRIC)) if facet.paint.kind not in (Kind.GAUGE, Kind.GROUND)]
+    kept = [facet for facet in order_facets(drawn, view(Side.ISOMETRIC)) if facet.paint.kind not in (Kind.GAUGE, Kind.GROUND)]
     groups = [group for group in clusters(found.frequencies, 1e-6) if set(group) <= set(found.platform)]
-    with styled():
+    with style_context():
         figure = canvas(FULL, 0.58 * FULL)
         for axes, group in zip(figure.subplots(2, 2).flat, groups, strict=True):
             index = group[0]
             twists = _twists(drawn, model, found.shapes[:, index])
-            _mode(axes, kept, displaced(kept, drawn, twists, _SWAY / largest_motion(drawn, twists)))
+            _mode(axes, kept, displace(kept, drawn, twists, _SWAY / largest_motion(drawn, twists)))
             times = ", twice" if len(group) == 2 else ""
             axes.set_title(f"{found.names[index]}, {found.frequencies[index]:.1f} Hz{times}")
     return figure
@@ -239,7 +239,7 @@ def budget() -> Any:
 
 def hinge_errors() -> Any:
     """How far beam theory and the closed forms are off, over t/R, for circular notches and toroidal necks."""
-    with styled():
+    with style_context():
         figure = canvas(FULL, 2.9)
         notch, neck = figure.subplots(1, 2, sharey=True)
         _curves(notch, notch_errors(), "circular notch, 2-D elements")
@@ -369,10 +369,10 @@ def crosstalk() -> Any:
 @cache
 def _loop() -> LoopStudy:
     """The loop of the shipped stage on a floor of class VC-D, along a raster."""
-    shaken = Shaking(criterion=Criterion.VC_D)
+    shaken = VibrationSetup(criterion=Criterion.VC_D)
     setup = LoopSetup(
         floor=Floor(shaken, shaken, shaken),
-        gauges=Gauging(noise=0.1 * fs.nm),
+        gauges=GaugeSetup(noise=0.1 * fs.nm),
         compensate=(Compensation.LOST_MOTION, Compensation.REFERENCE),
         trajectory=RasterMotion(length=20e-6, pitch=2e-6, speed=0.2e-3, acceleration=0.02),
     )
@@ -398,7 +398,7 @@ def loop_raster() -> Any:
 
 def loop_noise() -> Any:
     """Whose the noise at rest is."""
-    return noise_share_figure(shares_of(_loop()))
+    return noise_share_figure(noise_shares(_loop()))
 
 
 DRAWN: Mapping[str, tuple[Callable[[], Any], str]] = {

@@ -7,7 +7,7 @@ read the same table from `__init__.pyi`.
 
 from importlib import import_module
 
-from flexstage.base.lazy import lazily
+from flexstage.base.lazy import lazy_attributes
 
 __version__ = "0.2.0"
 
@@ -50,7 +50,7 @@ HOMES = {
     "analysis.budget": "budget",
     "show.report": "report",
 }
-_of_core, _names = lazily(__name__, HOMES)
+_of_core, _names = lazy_attributes(__name__, HOMES)
 
 
 def __getattr__(name: str) -> object:

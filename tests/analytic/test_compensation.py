@@ -13,13 +13,13 @@ from flexstage.base.finding import DesignError
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.cases.registry import CASES, case
 from flexstage.control.closed import loop
-from flexstage.control.compensation import compensated, finite_error, finite_strokes, static_error, uncompensated
+from flexstage.control.compensation import finite_error, finite_strokes, ideal_compensation, lost_motion_compensation, static_error
 from flexstage.control.controllers.decentralised import Decentralised
 from flexstage.control.controllers.loops import platform_loops
 from flexstage.control.controllers.pi import PI
 from flexstage.control.electronics import Hardware
 from flexstage.control.plants import plant
-from flexstage.control.system import picked
+from flexstage.control.system import select
 from flexstage.mechanism.mechanism import Damping, ModalDamping
 from flexstage.models.finite import FinitePose, forward_kinematics, inverse_kinematics
 from flexstage.models.ideal import ideal
@@ -53,13 +53,13 @@ def stage(request):
 def test_open_loop_errs_by_the_lost_motion(stage):
     """Commanded through R_a, the loop's own plant at rest misses R_a^+ Lambda R_a per axis, crosstalk included, to 1e-9."""
     _, kinematics, model, lost = stage
-    given = uncompensated(kinematics)
+    given = ideal_compensation(kinematics)
     found = static_error(given, kinematics, lost.gain)
     predicted = kinematics.inverse @ lost.loss.values @ kinematics.actuation
     scale = _scale(kinematics)
     np.testing.assert_allclose(found.error.values * scale, predicted * scale, atol=1e-12)
     one = plant(model, kinematics, Hardware(), modes=len(kinematics.coordinates), damping=DAMPING)
-    moved = picked(one.system, one.actuators, [f"platform.{name}" for name in COMPONENTS]).transfer(np.zeros(1))[0].real
+    moved = select(one.system, one.actuators, [f"platform.{name}" for name in COMPONENTS]).transfer(np.zeros(1))[0].real
     reached = kinematics.projection @ moved @ given.gains.values
     np.testing.assert_allclose((np.eye(len(reached)) - reached) * scale, predicted * scale, atol=1e-9)
     assert found.largest > 1e-4
@@ -68,7 +68,7 @@ def test_open_loop_errs_by_the_lost_motion(stage):
 def test_gains_correct_it(stage):
     """With the gains of the lost-motion analysis the same plant misses less than 1e-9 of the command."""
     _, kinematics, model, lost = stage
-    given = compensated(lost, kinematics)
+    given = lost_motion_compensation(lost, kinematics)
     error = static_error(given, kinematics, lost.gain)
     assert np.max(np.abs(error.error.values * _scale(kinematics))) < 1e-9
     length = np.array([kinematics.length if name[0] == "r" else 1.0 for name in kinematics.coordinates])
@@ -90,13 +90,13 @@ def test_what_gains_by_another_model_leave():
     scale = _scale(kinematics)
     left = {}
     for gains, on in (("mapped", "lumped"), ("lumped", "mapped"), ("lumped", "lumped")):
-        found = static_error(compensated(losts[gains], kinematics), kinematics, losts[on].gain)
+        found = static_error(lost_motion_compensation(losts[gains], kinematics), kinematics, losts[on].gain)
         solved = np.eye(6) - _solved(plants[on], losts[gains].correction.values)
         np.testing.assert_allclose(found.error.values * scale, solved * scale, atol=1e-12)
         assert found.largest == pytest.approx(np.max(np.abs(solved * scale)), abs=1e-12)
         left[gains, on] = found.largest
     # the mapped model loses nothing: its gains are R_a, and leave on the lumped stage all that is lost
-    assert left["mapped", "lumped"] == pytest.approx(static_error(uncompensated(kinematics), kinematics, losts["lumped"].gain).largest)
+    assert left["mapped", "lumped"] == pytest.approx(static_error(ideal_compensation(kinematics), kinematics, losts["lumped"].gain).largest)
     assert left["lumped", "lumped"] < 1e-9 < left["mapped", "lumped"]
     assert left["lumped", "mapped"] > 1e-3
 
@@ -107,9 +107,11 @@ def test_strokes_hold_up_a_payload():
     kinematics, model = ideal(stage), lumped(stage)
     lost, sunk = lost_motion(kinematics, model), deflection(stage, model).total
     pose = np.array([3e-6, -2e-6, 5e-6, 1e-5, -2e-5, 3e-5])
-    given = compensated(lost, kinematics, sunk)
+    given = lost_motion_compensation(lost, kinematics, sunk)
     assert static_error(given, kinematics, lost.gain, sunk).offset == pytest.approx(np.zeros(6), abs=1e-15)
-    np.testing.assert_allclose(static_error(compensated(lost, kinematics), kinematics, lost.gain, sunk).offset, sunk, rtol=1e-12)
+    np.testing.assert_allclose(
+        static_error(lost_motion_compensation(lost, kinematics), kinematics, lost.gain, sunk).offset, sunk, rtol=1e-12
+    )
     np.testing.assert_allclose(_solved(model, given.strokes(pose)) + sunk, pose, atol=1e-9 * 5e-6)
     assert abs(sunk[2]) > 1e-7
 
@@ -120,7 +122,7 @@ def test_a_push_is_taken_back_by_the_strokes_of_its_compliance():
     kinematics, model = ideal(stage), lumped(stage)
     wrench = np.array([3.0, -2.0, 10.0, 0.1, 0.2, -0.3])
     pushed = _solved(model, np.zeros(6), wrench)
-    given = compensated(lost_motion(kinematics, model), kinematics, pushed)
+    given = lost_motion_compensation(lost_motion(kinematics, model), kinematics, pushed)
     assert np.max(np.abs(_solved(model, given.strokes(np.zeros(6)), wrench))) < 1e-9 * np.max(np.abs(pushed))
 
 
@@ -129,7 +131,7 @@ def test_finite_strokes_leave_what_is_of_second_order():
     stage = double_triangle()
     kinematics = ideal(stage)
     lost = lost_motion(kinematics, lumped(stage))
-    given = compensated(lost, kinematics)
+    given = lost_motion_compensation(lost, kinematics)
     poses = 50e-6 * np.array([[1.0, 0.0, 0.0, 0.0, 0.0, 4.0], [0.0, 1.0, 0.5, 3.0, -3.0, 0.0]])
     moved = forward_kinematics(stage, kinematics, given.strokes(poses)).pose
     left = finite_error(given, kinematics, lost.gain, poses, moved.vector)
@@ -148,13 +150,13 @@ def test_fed_forward_gains_leave_nothing_to_the_controller():
     stage = double_triangle()
     kinematics, model = ideal(stage), lumped(stage)
     one = plant(model, kinematics, Hardware(rate=10e3, delay=1e-4), modes=6, damping=DAMPING)
-    gains = {"R_a": uncompensated(kinematics), "corrected": compensated(lost_motion(kinematics, model), kinematics)}
+    gains = {"R_a": ideal_compensation(kinematics), "corrected": lost_motion_compensation(lost_motion(kinematics, model), kinematics)}
     errors = {}
     for name, given in gains.items():
         control = Decentralised(platform_loops(one.coordinates), (PI(0.01),) * 6, feedforward=given.gains.values)
         closed = loop(one, control.system(1e-4)).system
         names = one.coordinates.names
-        found = picked(closed, [f"reference.{each}" for each in names], [f"error.{each}" for each in names]).transfer(np.zeros(1))[0]
+        found = select(closed, [f"reference.{each}" for each in names], [f"error.{each}" for each in names]).transfer(np.zeros(1))[0]
         errors[name] = np.max(np.abs(found * _scale(kinematics)))
     assert errors["R_a"] > 1e-3
     assert errors["corrected"] < 1e-9
@@ -166,9 +168,9 @@ def test_what_does_not_fit_is_said():
     kinematics = ideal(stage)
     lost = lost_motion(kinematics, lumped(stage))
     with pytest.raises(DesignError, match=r"deflection: it has the shape \(3,\)"):
-        compensated(lost, kinematics, np.zeros(3))
+        lost_motion_compensation(lost, kinematics, np.zeros(3))
     foreign = lost_motion(ideal(other), lumped(other))
     with pytest.raises(DesignError, match="plant: it has 6 motions by"):
-        static_error(uncompensated(kinematics), kinematics, foreign.gain)
+        static_error(ideal_compensation(kinematics), kinematics, foreign.gain)
     with pytest.raises(DesignError, match="strokes: 2 are given for 6 actuators"):
-        finite_strokes(uncompensated(kinematics), kinematics, np.zeros(2))
+        finite_strokes(ideal_compensation(kinematics), kinematics, np.zeros(2))

@@ -18,12 +18,12 @@ from flexstage.control.controllers.lqg import Disturbances, Weights, lqg
 from flexstage.control.controllers.notch import Notch, notch_of_mode
 from flexstage.control.controllers.pi import PI
 from flexstage.control.controllers.pid import PID
-from flexstage.control.controllers.resonant import IntegralResonant, resonant, resonant_damping
-from flexstage.control.controllers.pose_plant import seen_plant
+from flexstage.control.controllers.pose_plant import pose_plant
+from flexstage.control.controllers.resonant import IntegralResonant, resonant_damping, resonant_law
 from flexstage.control.coordinates import coordinates
 from flexstage.control.electronics import Hardware
 from flexstage.control.plants import plant
-from flexstage.control.system import System, connected, picked, renamed
+from flexstage.control.system import System, connect, rename, select
 from flexstage.models.ideal import ideal
 from flexstage.models.linear.model import Channel
 from flexstage.models.lumped import lumped
@@ -83,7 +83,7 @@ def test_a_notch_of_a_mode_takes_its_poles_away():
 @pytest.mark.parametrize("damping", [0.05, 0.2, 0.4, 0.8])
 def test_integral_resonant_control_damps_as_the_literature_says(damping):
     """Poles of an undamped mode under it: ratio (w_p/w_z - 1)/2 at sqrt(w_p w_z), and that is the most over all gains."""
-    control = resonant(110.9, damping)
+    control = resonant_law(110.9, damping)
     assert resonant_damping(110.9, control.feedthrough) == pytest.approx(damping, rel=1e-12)
     pair = _damped(control)
     zeros = 110.9 / (1.0 + 2.0 * damping)
@@ -96,7 +96,7 @@ def test_integral_resonant_control_damps_as_the_literature_says(damping):
 def _damped(control: IntegralResonant) -> complex:
     """The oscillating pole of a mode under the law's positive feedback (tracking aside)."""
     parts = [_oscillator(110.9), control.system()]
-    closed = connected(parts, {"u": {"command": 1.0}, "error": {}, "applied": {}}, (Channel("none", "m"),), ["pose"])
+    closed = connect(parts, {"u": {"command": 1.0}, "error": {}, "applied": {}}, (Channel("none", "m"),), ["pose"])
     return max(closed.poles, key=lambda pole: pole.imag)
 
 
@@ -108,9 +108,9 @@ def test_integral_resonant_control_is_an_integrator_around_a_fed_through_plant()
     """Q = k/(s + k d) around G has the poles of k/s around G - d."""
     control = IntegralResonant(600.0, 2.5)
     integrator = System(np.zeros((1, 1)), np.eye(1), 600.0 * np.eye(1), np.zeros((1, 1)), (Channel("pose", "m"),), (Channel("u", "m"),))
-    first = connected([_oscillator(90.0, 0.01, 2.5), integrator], {}, (Channel("none", "m"),), ["pose"])
+    first = connect([_oscillator(90.0, 0.01, 2.5), integrator], {}, (Channel("none", "m"),), ["pose"])
     parts = [_oscillator(90.0, 0.01), control.system()]
-    second = connected(parts, {"u": {"command": 1.0}, "error": {}, "applied": {}}, (Channel("none", "m"),), ["pose"])
+    second = connect(parts, {"u": {"command": 1.0}, "error": {}, "applied": {}}, (Channel("none", "m"),), ["pose"])
     np.testing.assert_allclose(np.sort_complex(first.poles), np.sort_complex(second.poles), rtol=1e-9)
 
 
@@ -133,7 +133,7 @@ def test_modal_loops_decouple_a_stage_of_massless_units():
     model, kinematics = mapped(stage), ideal(stage)
     found = modes(model)
     loops = modal_loops(coordinates(kinematics), found.platform_shapes[:, list(found.platform)])
-    response = seen_plant(plant(model, kinematics, Hardware())).transfer(FREQUENCIES)
+    response = pose_plant(plant(model, kinematics, Hardware())).transfer(FREQUENCIES)
     seen = loops.sense @ response @ loops.drive
     oscillators = [_oscillator(each, 0.01).transfer(FREQUENCIES)[:, 0, 0] for each in found.platform_frequencies]
     expected = np.array(oscillators).T[:, :, None] * np.eye(6)
@@ -177,7 +177,7 @@ def stage_plants():
 def test_regulator_and_observer_keep_their_poles_apart(stage_plants, number):
     """Poles of the closed loop are those of the regulator with its integrators and those of the observer (separation)."""
     given = stage_plants[number]
-    model = seen_plant(given)
+    model = pose_plant(given)
     control = lqg(model, given.coordinates, Weights(30.0, 0.1), Disturbances(1e-9, dict.fromkeys(given.gauges, 1e-11)))
     step, states = model.step, len(model.A)
     closed = loop(given, control.system(step)).system.poles
@@ -197,23 +197,23 @@ def test_regulator_and_observer_keep_their_poles_apart(stage_plants, number):
 def test_fed_forward_strokes_bring_the_pose_without_the_integrators(stage_plants, number):
     """With F = (static gain)^-1 a reference is reached at rest, and neither integrators nor observer have anything to add."""
     given = stage_plants[number]
-    model = seen_plant(given)
+    model = pose_plant(given)
     static = model.transfer(np.array([0.0]))[0].real
     noise = Disturbances(1e-9, dict.fromkeys(given.gauges, 1e-11))
     control = lqg(model, given.coordinates, Weights(30.0), noise, np.linalg.inv(static))
     whole = loop(given, control.system(model.step)).system
     columns = [f"reference.{name}" for name in given.coordinates.names]
-    found = picked(whole, columns, [f"command.{name}" for name in given.actuators]).transfer(np.array([1e-3]))[0]
+    found = select(whole, columns, [f"command.{name}" for name in given.actuators]).transfer(np.array([1e-3]))[0]
     np.testing.assert_allclose(found, np.linalg.inv(static), rtol=1e-3)
     last = np.eye(len(whole.A))[-2:]
-    integrators = replace(picked(whole, columns, ["error.x", "error.y"]), C=last, D=np.zeros((2, 2)))
+    integrators = replace(select(whole, columns, ["error.x", "error.y"]), C=last, D=np.zeros((2, 2)))
     assert np.max(np.abs(integrators.transfer(np.array([1e-5]))[0])) < 1e-7 / (2.0 * np.pi * 30.0)
 
 
 def test_what_was_applied_reaches_the_observer(stage_plants):
     """Saturated commands: the observer's pose follows the strokes applied, not those commanded."""
     given = stage_plants[1]
-    model = seen_plant(given)
+    model = pose_plant(given)
     control = lqg(model, given.coordinates, Weights(30.0), Disturbances(1e-9, dict.fromkeys(given.gauges, 1e-11)))
     system, states = control.system(model.step), len(model.A)
     columns = [system.input_names.index(f"applied.{name}") for name in given.actuators]
@@ -224,7 +224,7 @@ def test_what_was_applied_reaches_the_observer(stage_plants):
 def test_renamed_law_is_the_same_law():
     """A law's channels are free to be called otherwise."""
     law = PI(0.5, 100.0).system()
-    np.testing.assert_array_equal(renamed(law, {"error": "e"}).transfer(FREQUENCIES), law.transfer(FREQUENCIES))
+    np.testing.assert_array_equal(rename(law, {"error": "e"}).transfer(FREQUENCIES), law.transfer(FREQUENCIES))
 
 
 BAD = {
@@ -237,7 +237,7 @@ BAD = {
     "depth is -0.5": lambda: Notch(100.0, -0.5),
     "not above the plant's static gain 1": lambda: resonant_damping(100.0, 0.9),
     "its feed-through is -2": lambda: IntegralResonant(100.0, -2.0),
-    "its damping is 0": lambda: resonant(100.0, 0.0),
+    "its damping is 0": lambda: resonant_law(100.0, 0.0),
     "1 laws for 2 loops (x, y)": lambda: Decentralised(platform_loops(coordinates(ideal(xy_stage()))), (PI(),)),
     "are (1, 1), where": lambda: Decentralised(platform_loops(coordinates(ideal(xy_stage()))), (PI(), PI()), (), np.eye(1)),
     "3 modes are given for 2 coordinates (x, y)": lambda: modal_loops(coordinates(ideal(xy_stage())), np.eye(6)[:, :3]),
@@ -256,7 +256,7 @@ def test_bad_controllers_are_named_with_their_numbers(said):
 def test_what_lqg_cannot_do_is_said(stage_plants):
     """Gauges without noise, another rate, a bandwidth above half the sampling rate."""
     given = stage_plants[1]
-    model, noise = seen_plant(given), dict.fromkeys(given.gauges, 1e-11)
+    model, noise = pose_plant(given), dict.fromkeys(given.gauges, 1e-11)
     with pytest.raises(DesignError, match=r"its noise density is not stated") as error:
         lqg(model, given.coordinates, Weights(3000.0), Disturbances(0.0, {}))
     assert len(error.value.findings) == 4

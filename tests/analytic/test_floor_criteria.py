@@ -7,7 +7,7 @@ import pytest
 
 from flexstage.control.study.choices import Criterion
 from flexstage.control.study.floor import criterion_spectrum, floor_spectra
-from flexstage.control.study.setup import Floor, Shaking
+from flexstage.control.study.setup import Floor, VibrationSetup
 
 TABLE = {  # Amick et al. 2005, Table 1: um/s
     "ISO workshop": 800.0,
@@ -51,7 +51,9 @@ def test_the_finer_ones_begin_at_one_hertz() -> None:
 
 
 def test_stated_densities_are_taken_as_they_are() -> None:
-    found = floor_spectra(Floor(x=Shaking(displacement=(2e-9,)), y=Shaking(acceleration=(1e-6, 1e-7), frequencies=(1.0, 10.0))))
+    found = floor_spectra(
+        Floor(x=VibrationSetup(displacement=(2e-9,)), y=VibrationSetup(acceleration=(1e-6, 1e-7), frequencies=(1.0, 10.0)))
+    )
     assert sorted(found) == ["ground.x", "ground.y"]
     np.testing.assert_allclose(found["ground.x"].at(np.array([3.0])), 4e-18)
     np.testing.assert_allclose(found["ground.y"].at(np.array([10.0 - 1e-9])), 1e-14 / (20.0 * np.pi) ** 4, rtol=1e-6)

@@ -11,15 +11,15 @@ import pytest
 from flexstage.base.finding import DesignError
 from flexstage.control.hysteresis.bouc_wen import bouc_wen
 from flexstage.control.hysteresis.branches import branches_of
-from flexstage.control.hysteresis.creep import Creep, LogCreep, exponentials, stacked_creep
+from flexstage.control.hysteresis.creep import Creep, LogCreep, exponentials, stack_creeps
 from flexstage.control.hysteresis.creep_record import identify_creep
 from flexstage.control.hysteresis.envelope import Envelope, straight
 from flexstage.control.hysteresis.identify import identify_hysteresis
 from flexstage.control.hysteresis.inverse import inverse
 from flexstage.control.hysteresis.prandtl_ishlinskii import PrandtlIshlinskii
 from flexstage.control.hysteresis.preisach import preisach
-from flexstage.control.hysteresis.scaled import Stacks, scaled
-from flexstage.control.hysteresis.shape import settled_loop
+from flexstage.control.hysteresis.scaled import Stacks, scale_to_stacks
+from flexstage.control.hysteresis.shape import major_loop
 from flexstage.control.system import System
 from flexstage.models.linear.model import Channel
 
@@ -169,7 +169,7 @@ def test_small_turns_are_noise():
 
 def test_a_play_encloses_its_area():
     """One play of threshold r and weight p over a range R: area p 2 r (R - 2 r), width 2 r p at the middle."""
-    loop = settled_loop(PrandtlIshlinskii([0.0, 100.0], [0.0, 1e-7]), RANGE, count=1001)
+    loop = major_loop(PrandtlIshlinskii([0.0, 100.0], [0.0, 1e-7]), RANGE, count=1001)
     area = np.trapezoid((loop.down - loop.up)[:, 0], loop.volts)
     assert area == pytest.approx(1e-7 * 200.0 * 800.0, rel=1e-12)
     assert loop.width[0] * loop.stroke[0] == pytest.approx(2e-5, rel=1e-12)
@@ -185,21 +185,21 @@ def test_exponentials_follow_the_logarithm():
 
 def test_creep_is_exact_between_samples():
     """Held inputs: equal to the closed form of the step response, and to the same system sampled by the loop's own means."""
-    from flexstage.control.sampling import sampled
+    from flexstage.control.sampling import discretise
 
-    creep = stacked_creep((Creep([1.0], [0.1, 0.05], [2.0, 0.3]), Creep([0.9], [0.2], [5.0])))
+    creep = stack_creeps((Creep([1.0], [0.1, 0.05], [2.0, 0.3]), Creep([0.9], [0.2], [5.0])))
     times = 0.25 * np.arange(40)
     assert creep.run(np.ones((40, 2)), 0.25) == pytest.approx(creep.step_response(times), abs=1e-14)
     inputs = np.random.default_rng(4).normal(size=(40, 2))
     names = (Channel("u1", "m"), Channel("u2", "m")), (Channel("y1", "m"), Channel("y2", "m"))
-    found = sampled(creep.system(*names), 0.25)
+    found = discretise(creep.system(*names), 0.25)
     assert isinstance(found, System)
     state, wanted = np.zeros(len(found.A)), []
     for value in inputs:
         wanted.append(found.C @ state + found.D @ value)
         state = found.A @ state + found.B @ value
     assert creep.run(inputs, 0.25) == pytest.approx(np.array(wanted), abs=1e-13)
-    settled = creep.run(np.tile(inputs[:1], (5, 1)), 0.25, creep.settled(inputs[0]))
+    settled = creep.run(np.tile(inputs[:1], (5, 1)), 0.25, creep.settle(inputs[0]))
     assert settled == pytest.approx(np.tile(settled[:1], (5, 1)), abs=1e-14)
 
 
@@ -255,10 +255,12 @@ def test_a_stacks_loop_is_scaled_to_others():
     """Over other volts and with another stroke: the same loop, point by point, inner ones too."""
     bend = Envelope([-100.0, 400.0, 900.0], [-120.0, 450.0, 1000.0])
     model = PrandtlIshlinskii([0.0, 80.0, 200.0], [1e-7, 3e-8, 2e-8], bend, straight([1.0], 4e-6))
-    others = scaled(model, (-100.0, 900.0), Stacks(np.array([-100.0, -200.0]), np.array([900.0, 300.0]), np.array([150e-6, 60e-6])))
+    others = scale_to_stacks(
+        model, (-100.0, 900.0), Stacks(np.array([-100.0, -200.0]), np.array([900.0, 300.0]), np.array([150e-6, 60e-6]))
+    )
     shape = legs([0, 1000, 0, 700, 200, 900, 0])
     found = others.run(np.stack([shape - 100.0, 0.5 * shape - 200.0], axis=1))
-    own, size = model.run(shape - 100.0), settled_loop(model, (-100.0, 900.0))
+    own, size = model.run(shape - 100.0), major_loop(model, (-100.0, 900.0))
     assert found[30:, 0] / 150e-6 == pytest.approx(found[30:, 1] / 60e-6, abs=1e-12)
     assert found[30:, 0] / 150e-6 == pytest.approx((own[30:] - size.up[0]) / size.stroke[0], abs=1e-12)
 
@@ -266,8 +268,8 @@ def test_a_stacks_loop_is_scaled_to_others():
 def test_stacks_that_are_none_are_refused():
     model = PrandtlIshlinskii([0.0], [1e-7])
     with pytest.raises(DesignError, match="stack 1: 5 V to 5 V and a stroke of 0 m are none"):
-        scaled(model, RANGE, Stacks(np.array([0.0, 5.0]), np.array([1.0, 5.0]), np.array([1e-4, 0.0])))
+        scale_to_stacks(model, RANGE, Stacks(np.array([0.0, 5.0]), np.array([1.0, 5.0]), np.array([1e-4, 0.0])))
     with pytest.raises(DesignError, match="has 2 axes"):
-        scaled(PrandtlIshlinskii(np.zeros((2, 1)), np.ones((2, 1))), RANGE, Stacks(np.zeros(1), np.ones(1), np.ones(1)))
+        scale_to_stacks(PrandtlIshlinskii(np.zeros((2, 1)), np.ones((2, 1))), RANGE, Stacks(np.zeros(1), np.ones(1), np.ones(1)))
     with pytest.raises(DesignError, match="is no range"):
-        scaled(model, (1.0, 0.0), Stacks(np.zeros(1), np.ones(1), np.ones(1)))
+        scale_to_stacks(model, (1.0, 0.0), Stacks(np.zeros(1), np.ones(1), np.ones(1)))

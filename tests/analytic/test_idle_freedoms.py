@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from flexstage.analysis.modes import modes
-from flexstage.analysis.workspace.load import applied, dead_loads
+from flexstage.analysis.workspace.load import applied_forces, dead_loads
 from flexstage.base.finding import DesignError
 from flexstage.mechanism.mechanism import Force, Link, Mechanism
 from flexstage.models.linear.static import displacement, static_gain
@@ -94,10 +94,10 @@ def test_loads_that_turn_a_rod_about_itself_have_no_rest():
     middle, across = head - 0.5 * LENGTH * along, np.array([1.0, 0.0, 0.0])
     model = lumped(stage)
     borne = Force("rod0", tuple(middle), tuple(across))
-    assert np.all(np.isfinite(displacement(model, applied(stage, model, borne))))
+    assert np.all(np.isfinite(displacement(model, applied_forces(stage, model, borne))))
     beside = tuple(middle + 1e-4 * np.cross(along, across))
     with pytest.raises(DesignError, match=r"a force on rod0: it drives an idle motion that no stiffness holds.*rod0"):
-        applied(stage, model, replace(borne, at=beside))
+        applied_forces(stage, model, replace(borne, at=beside))
     hanging = replace(stage, gravity=(0.0, 0.0, -9.80665))
     assert len(dead_loads(hanging, lumped(hanging))) == 1
     lopsided = replace(hanging, bodies={**hanging.bodies, "rod0": replace(hanging.bodies["rod0"], centre=tuple(middle + 1e-4 * across))})

@@ -12,17 +12,17 @@ from flexstage.base.finding import DesignError
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.cases.parallelogram import parallelogram
 from flexstage.cases.registry import CASES
-from flexstage.control.closed import Cut, loop, opened
+from flexstage.control.closed import Cut, loop, open_at
 from flexstage.control.coordinates import Coordinates
 from flexstage.control.curves import sensitivity
 from flexstage.control.disk import DiskMargin, disk_margin, disk_margins
 from flexstage.control.electronics import AmplifierSettings, GaugeSettings, Hardware, hardware
 from flexstage.control.example import integral
-from flexstage.control.plants import Plant, held, plant
-from flexstage.control.sampling import ramped
+from flexstage.control.plants import Plant, plant, zero_order_hold
+from flexstage.control.sampling import first_order_hold
 from flexstage.control.stability import verdict
 from flexstage.control.stability_margins import bandwidths, crosstalk, delay_margin, margins, peaks
-from flexstage.control.system import System, picked
+from flexstage.control.system import System, select
 from flexstage.models.ideal import ideal
 from flexstage.models.linear.model import Channel
 from flexstage.models.linear.static import static_gain
@@ -79,7 +79,7 @@ def test_a_loop_that_neither_grows_nor_decays_is_not_stable():
 def test_skewed_disks():
     """With skew 1 the disk margin is 1/||S||, with -1 it is 1/||T|| (the same paper): the peaks of S and T."""
     closed = _closed([25.0], [1.0, 10.0, 10.0, 10.0])
-    own, found = sensitivity(opened(closed, Cut.POSE)), peaks(closed, Cut.POSE)
+    own, found = sensitivity(open_at(closed, Cut.POSE)), peaks(closed, Cut.POSE)
     assert np.isclose(disk_margin(own, 1.0).value, 1.0 / found.sensitivity.value, rtol=1e-10)
     assert np.isclose(disk_margin(own, -1.0).value, 1.0 / found.complementary.value, rtol=1e-10)
 
@@ -96,7 +96,7 @@ def test_gain_and_phase_of_a_disk():
 def test_two_loops_that_are_one(skew):
     """A factor on either side of one loop: (1 + a)^2/(1 - a)^2 = (1 + b)/(1 - b) with b = 2a/(1 + a^2), so that |b| <= 2|a|/(1 - |a|^2)."""
     plain = _closed([25.0], [1.0, 10.0, 10.0, 10.0])
-    both, one = disk_margins(plain, None, skew), disk_margin(sensitivity(opened(plain, Cut.POSE)), skew)
+    both, one = disk_margins(plain, None, skew), disk_margin(sensitivity(open_at(plain, Cut.POSE)), skew)
     assert both.covered
     assert both.reached < one.value
     if skew == 0.0:
@@ -171,10 +171,10 @@ def _sampled(rate, delay=0.0):
 def test_sampling_is_of_first_order():
     """A sample of delay: the continuous loop in proportion to T. That counted: an integral of held samples, exact but for aliases."""
     at = np.array([3.0, 30.0, 200.0])
-    exact = opened(_sampled(None), Cut.POSE).transfer(at)[:, 0, 0]
+    exact = open_at(_sampled(None), Cut.POSE).transfer(at)[:, 0, 0]
     first, second = [], []
     for rate in (2e4, 4e4, 8e4):
-        found = opened(_sampled(rate, 1.0 / rate), Cut.POSE).transfer(at)[:, 0, 0]
+        found = open_at(_sampled(rate, 1.0 / rate), Cut.POSE).transfer(at)[:, 0, 0]
         first.append(np.abs(found - exact))
         second.append(np.abs(found - exact * np.exp(-2j * np.pi * at / rate)))
     for few, many in pairwise(first):
@@ -189,8 +189,8 @@ def test_hold_of_the_plant_alone():
     errors = []
     for rate in (2e4, 4e4):
         one = _sampled(rate, 30e-6).plant
-        found = picked(held(one), ["B"], ["gap.S"]).transfer(at)[:, 0, 0]
-        exact = picked(one.system, ["B"], ["gap.S"]).transfer(at)[:, 0, 0] * np.exp(-2j * np.pi * at * (0.5 / rate + 30e-6))
+        found = select(zero_order_hold(one), ["B"], ["gap.S"]).transfer(at)[:, 0, 0]
+        exact = select(one.system, ["B"], ["gap.S"]).transfer(at)[:, 0, 0] * np.exp(-2j * np.pi * at * (0.5 / rate + 30e-6))
         errors.append(np.abs(found / exact - 1.0))
     assert np.all(np.abs(errors[0] / errors[1] - 4.0) < 0.2)
 
@@ -199,7 +199,7 @@ def test_straight_lines_between_samples_are_met_exactly():
     """An oscillator without damping follows u = t by t - sin(w t)/w, however long the steps are."""
     omega, step = 3.0, 0.7
     A, B = np.array([[0.0, 1.0], [-(omega**2), 0.0]]), np.array([[0.0], [omega**2]])
-    found = ramped(System(A, B, np.array([[1.0, 0.0]]), np.zeros((1, 1)), METRE[:1], METRE[1:]), step)
+    found = first_order_hold(System(A, B, np.array([[1.0, 0.0]]), np.zeros((1, 1)), METRE[:1], METRE[1:]), step)
     state, times, answers = np.zeros(2), step * np.arange(12), []
     for time in times:
         answers.append(found.C @ state + found.D[:, 0] * time)
@@ -218,7 +218,7 @@ def test_every_stage_closes(name):
     table = crosstalk(closed)
     own = table.part(table.columns, table.columns).values
     assert np.allclose(own, np.eye(len(own)), atol=2e-2)
-    estimated = picked(closed.system, [f"reference.{n}" for n in one.coordinates.names], [f"pose.{n}" for n in one.coordinates.names])
+    estimated = select(closed.system, [f"reference.{n}" for n in one.coordinates.names], [f"pose.{n}" for n in one.coordinates.names])
     assert np.allclose(estimated.transfer(np.zeros(1))[0], np.eye(len(own)), atol=1e-7)
 
 
@@ -230,7 +230,7 @@ def test_plants_keep_static_gains(theory):
     for modes in (6, None):
         one = plant(model, ideal(stage), hardware(stage, rate=10e3), modes=modes)
         outputs = [*(f"gap.{name}" for name in one.gauges), "relative.x", "platform.x"]
-        found = picked(one.system, one.actuators, outputs).transfer(np.zeros(1))[0]
+        found = select(one.system, one.actuators, outputs).transfer(np.zeros(1))[0]
         wanted = static_gain(model, (*one.gauges, "platform.x", "platform.x"), one.actuators).values
         assert np.allclose(found, wanted, rtol=1e-8, atol=1e-10)
 
@@ -239,7 +239,7 @@ def test_platform_rides_on_the_ground():
     """The ground moved slowly: the platform goes with it, and nothing moves against it."""
     stage = parallelogram()
     one = plant(lumped(stage), ideal(stage), hardware(stage), modes=4, points=("corner",))
-    found = picked(one.system, ["ground.x", "ground.rz"], ["platform.x", "relative.x", "corner.y", "relative.corner.y", "gap.S"])
+    found = select(one.system, ["ground.x", "ground.rz"], ["platform.x", "relative.x", "corner.y", "relative.corner.y", "gap.S"])
     still = found.transfer(np.zeros(1))[0].real
     assert np.allclose(still[:, 0], [1.0, 0.0, 0.0, 0.0, 0.0], atol=1e-9)
     assert np.allclose(still[[1, 3, 4], 1], 0.0, atol=1e-9)
@@ -276,11 +276,11 @@ def test_what_cannot_be_controlled_is_refused():
     with pytest.raises(DesignError, match=r"it is continuous, the hardware sampled every 0.0001 s"):
         loop(whole, replace(integral(whole, 1.0), step=None))
     with pytest.raises(DesignError, match=r"it has no output command\.B6"):
-        loop(whole, picked(integral(whole, 1.0), ["error.x"], [f"command.B{number}" for number in range(1, 6)]))
+        loop(whole, select(integral(whole, 1.0), ["error.x"], [f"command.B{number}" for number in range(1, 6)]))
     with pytest.raises(DesignError, match="resistance needs its stack's capacitance, which is not stated"):
         hardware(_without_capacitance(stage), amplifiers=AmplifierSettings(resistance=50.0))
     with pytest.raises(DesignError, match=r"the loop has no such pose"):
-        opened(loop(whole, integral(whole, 1.0)), Cut.POSE, "w")
+        open_at(loop(whole, integral(whole, 1.0)), Cut.POSE, "w")
 
 
 def _without_capacitance(stage):

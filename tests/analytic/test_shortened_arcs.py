@@ -40,4 +40,4 @@ def test_the_drawn_solid_is_the_shortened_one(name):
     """Its volume is the section's integral, arc and stop included."""
     radius, thickness = SHIPPED[name]
     notch = Notch("steel", thickness=thickness * 1e-3, width=10e-3, profile=Circular(radius * 1e-3))
-    assert draw.drawn(notch).mass == pytest.approx(10.0 * integral(radius, thickness, -1, draw.SHORTENED), rel=1e-9)
+    assert draw.draw_form(notch).mass == pytest.approx(10.0 * integral(radius, thickness, -1, draw.SHORTENED), rel=1e-9)

@@ -9,9 +9,9 @@ from netgen import occ
 
 from flexstage.parts.body import Block
 from flexstage.solid.fea.component import Component, Joint
-from flexstage.solid.fea.field import applied, factored, field, stiffness
+from flexstage.solid.fea.field import apply_form, factorise, field, stiffness
 from flexstage.solid.fea.fineness import Fineness
-from flexstage.solid.fea.mesh import Meshed, meshed
+from flexstage.solid.fea.mesh import PieceMesh, mesh_component
 from flexstage.solid.fea.piece import Medium, Piece
 from flexstage.spatial.frame import Frame, identity
 
@@ -53,14 +53,14 @@ def continued(space, given):
     function = ngsolve.GridFunction(space.space)
     function.Set(given, definedon=space.meshed.mesh.Boundaries("start|end|held"))
     start = function.vec.FV().NumPy().copy()
-    correction = factored(space, stiffness(space))(applied(stiffness(space, assemble=False), start[:, None]))[:, 0]
+    correction = factorise(space, stiffness(space))(apply_form(stiffness(space, assemble=False), start[:, None]))[:, 0]
     function.vec.FV().NumPy()[:] = start - correction
     return function
 
 
 @pytest.mark.parametrize("order", [1, 2, 3])
 def test_patch_of_two_media(order):
-    space = field(meshed(bar(), Fineness(neck=0.6, block=0.6, order=order)), ["start", "end"], order)
+    space = field(mesh_component(bar(), Fineness(neck=0.6, block=0.6, order=order)), ["start", "end"], order)
     found, exact = continued(space, pulled()), pulled()
     mesh = space.meshed.mesh
     points = mesh.MapToAllElements(ngsolve.IntegrationRule(ngsolve.TET, 4), ngsolve.VOL)
@@ -89,7 +89,7 @@ def smooth():
 
 def energy_error(mesh, order):
     """Energy norm of the error of the finite elements' solution, relative to the solution's."""
-    space = field(Meshed(mesh, (STIFF,), ("held",), np.zeros(mesh.ne, dtype=int)), ["held"], order)
+    space = field(PieceMesh(mesh, (STIFF,), ("held",), np.zeros(mesh.ne, dtype=int)), ["held"], order)
     exact = smooth()
     found = continued(space, exact)
     coordinates = (ngsolve.x, ngsolve.y, ngsolve.z)

@@ -10,9 +10,9 @@ from scipy.linalg import eigh
 
 from flexstage.solid.fea.bar import bar
 from flexstage.solid.fea.fineness import WARPS, Fineness, Hold, Reduction
-from flexstage.solid.fea.mesh import meshed
+from flexstage.solid.fea.mesh import mesh_component
 from flexstage.solid.fea.piece import Medium
-from flexstage.solid.fea.reduce import reduced_mesh
+from flexstage.solid.fea.reduce import reduce_mesh
 from flexstage.solid.fea.superelement import Superelement
 
 AXIAL = 100e6
@@ -20,11 +20,11 @@ AXIAL = 100e6
 WAVE = np.sqrt(100e9 / 1000.0)
 """Speed of sound sqrt(E / rho) [m/s]."""
 LENGTH = 0.1
-MESH = meshed(bar(), Fineness(order=2))
+MESH = mesh_component(bar(), Fineness(order=2))
 
 
 def element(modes: int, hold: Hold = Hold.RIGID) -> Superelement:
-    return reduced_mesh(bar(), MESH, Reduction(Fineness(order=2), modes=modes, hold=hold))
+    return reduce_mesh(bar(), MESH, Reduction(Fineness(order=2), modes=modes, hold=hold))
 
 
 @pytest.mark.parametrize("modes", [0, 6])
@@ -64,10 +64,10 @@ def test_a_face_that_yields_lies_between() -> None:
     solid = replace(part.pieces[0], medium=Medium(young=100e9, poisson=0.3, density=1000.0))
     free = replace(part, pieces=(solid,), interfaces=(replace(part.interfaces[0], yields=True),))
     plan = Reduction(Fineness(order=2), modes=0)
-    mesh = meshed(free, plan.fineness)
-    found = reduced_mesh(free, mesh, plan)
+    mesh = mesh_component(free, plan.fineness)
+    found = reduce_mesh(free, mesh, plan)
     assert found.warps == WARPS
-    stiff = np.linalg.inv(reduced_mesh(replace(free, interfaces=part.interfaces), mesh, plan).stiffness["bar"])[0, 0] * AXIAL
+    stiff = np.linalg.inv(reduce_mesh(replace(free, interfaces=part.interfaces), mesh, plan).stiffness["bar"])[0, 0] * AXIAL
     pull = np.zeros(found.size)
     pull[0] = 1.0
     pull[[6 + 3, 6 + 5]] = 1.0 / 12.0  # the mean of (y / h)^2 and of (z / h)^2 over the end: what spreads the pull evenly

@@ -11,7 +11,7 @@ from flexstage.experiment.identification.cluster import stabilisation
 from flexstage.experiment.identification.confidence import deviations
 from flexstage.experiment.identification.identify import identify
 from flexstage.experiment.identification.likelihood import Fit, Modal
-from flexstage.experiment.identification.lines import edges, expanded, nodes
+from flexstage.experiment.identification.lines import edges, legendre_coefficients, nodes
 from flexstage.experiment.identification.lscf import lscf
 from flexstage.experiment.identification.smear import Smear
 from flexstage.experiment.record import Channel, Responses, Role, in_memory
@@ -153,7 +153,7 @@ def test_cells_hold_a_resonance_to_six_digits():
     low, high = limits[:-1], limits[1:]
     exact = 1.0 / (1j * nodes(low, high)[:, None, :] - poles[:, None])
     x = np.linspace(-1.0, 1.0, 21)
-    taken = expanded(exact) @ np.polynomial.legendre.legvander(x, 7).T
+    taken = legendre_coefficients(exact) @ np.polynomial.legendre.legvander(x, 7).T
     points = 0.5 * (low + high)[:, None] + 0.5 * (high - low)[:, None] * x
     true = 1.0 / (1j * points[:, None, :] - poles[:, None])
     assert np.max(np.abs(taken - true) / np.abs(true)) < 1e-6

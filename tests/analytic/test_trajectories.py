@@ -14,7 +14,7 @@ from flexstage.base.finding import DesignError
 from flexstage.base.labelled import Matrix
 from flexstage.control.trajectory.check import reach_findings, require_reach, speed_findings
 from flexstage.control.trajectory.path import Trajectory, reference
-from flexstage.control.trajectory.pieces import joined, smooth
+from flexstage.control.trajectory.pieces import join, smooth
 from flexstage.control.trajectory.profile import Limits, profile
 from flexstage.control.trajectory.raster import Raster, Scan
 from flexstage.control.trajectory.sine import Sine
@@ -61,7 +61,7 @@ def test_jerk_alone_has_the_closed_form():
 
 
 def test_smooth_moves_have_their_stated_extremes():
-    move = joined([(0.5, smooth(np.zeros(1), np.array([3.0]), 0.5))])
+    move = join([(0.5, smooth(np.zeros(1), np.array([3.0]), 0.5))])
     assert move.largest(1)[0] == pytest.approx(15.0 / 8.0 * 3.0 / 0.5, rel=1e-14)
     assert move.largest(2)[0] == pytest.approx(10.0 / 3.0**0.5 * 3.0 / 0.25, rel=1e-14)
     times = np.linspace(0.0, 0.5, 20001)

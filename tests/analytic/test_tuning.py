@@ -12,7 +12,7 @@ from flexstage.analysis.modes import modes
 from flexstage.base.finding import DesignError
 from flexstage.cases.parallelogram import parallelogram
 from flexstage.cases.registry import case
-from flexstage.control.closed import Cut, loop, opened
+from flexstage.control.closed import Cut, loop, open_at
 from flexstage.control.controllers.loops import actuator_loops, loop_modes, modal_loops, platform_loops
 from flexstage.control.controllers.lqg import Disturbances
 from flexstage.control.controllers.notch import Notch
@@ -24,7 +24,7 @@ from flexstage.control.stability_margins import peaks
 from flexstage.control.tuning.attempt import Task, attempt
 from flexstage.control.tuning.goal import Goal, Kind, peak_for_margins
 from flexstage.control.tuning.laws import Place, laws
-from flexstage.control.tuning.tune import tuned
+from flexstage.control.tuning.tune import tune
 from flexstage.control.tuning.view import resonances, view
 from flexstage.models.ideal import ideal
 from flexstage.models.lumped import lumped
@@ -56,7 +56,7 @@ def _peak(rate: float, omega: float, ratio: float = 0.01) -> float:
 @pytest.mark.parametrize("allowed", [1.5, 2.0, 4.0])
 def test_integral_control_reaches_what_an_oscillator_lets_it(oscillator, allowed):
     """The highest bandwidth is that whose peak of S is the one allowed, found here by halving: near 2 zeta f (1 - 1/M)."""
-    found = tuned(oscillator, platform_loops(oscillator.coordinates), Task(Kind.PI, Goal(None, allowed, 0.0), automatic=False))
+    found = tune(oscillator, platform_loops(oscillator.coordinates), Task(Kind.PI, Goal(None, allowed, 0.0), automatic=False))
     omega = 2.0 * np.pi * oscillator.frequencies[0]
     low, high = 0.0, 0.02 * omega
     for _ in range(50):
@@ -72,8 +72,8 @@ def test_integral_control_reaches_what_an_oscillator_lets_it(oscillator, allowed
 def test_notches_and_modes_that_are_off(oscillator):
     """A notch on the mode gives many times the bandwidth; the more the mode may be off, the less."""
     loops = platform_loops(oscillator.coordinates)
-    bare = tuned(oscillator, loops, Task(Kind.PI, Goal(spread=0.0), automatic=False)).bandwidth
-    notched = [tuned(oscillator, loops, Task(Kind.PI, Goal(spread=spread))) for spread in (0.0, 0.02, 0.05)]
+    bare = tune(oscillator, loops, Task(Kind.PI, Goal(spread=0.0), automatic=False)).bandwidth
+    notched = [tune(oscillator, loops, Task(Kind.PI, Goal(spread=spread))) for spread in (0.0, 0.02, 0.05)]
     reached = [each.bandwidth for each in notched]
     assert reached[0] > 20.0 * bare
     assert reached[0] > 1.2 * reached[1] > 1.2 * reached[2] > 3.0 * bare
@@ -85,10 +85,10 @@ def test_what_is_asked_for_is_reached(sampled, kind):
     """Every kind: the loop's own gain is 1 where asked, the verdict is stable, the peak of S that of the margins."""
     asked = {Kind.PI: 150.0, Kind.PID: 200.0, Kind.RESONANT: 30.0, Kind.LQG: 200.0}[kind]
     noise = Disturbances(1e-9, dict.fromkeys(sampled.gauges, 1e-11))
-    found = tuned(sampled, platform_loops(sampled.coordinates), Task(kind, Goal(asked, 2.0, 0.0), expected=noise))
+    found = tune(sampled, platform_loops(sampled.coordinates), Task(kind, Goal(asked, 2.0, 0.0), expected=noise))
     closed = loop(sampled, found.controller.system(sampled.hardware.step))
     assert verdict(closed).stable
-    assert abs(opened(closed, Cut.POSE).transfer(np.array([asked]))[0, 0, 0]) == pytest.approx(1.0, rel=0.01)
+    assert abs(open_at(closed, Cut.POSE).transfer(np.array([asked]))[0, 0, 0]) == pytest.approx(1.0, rel=0.01)
     assert found.bandwidth == pytest.approx(asked, rel=0.01)
     peak = peaks(closed, Cut.POSE).sensitivity
     assert peak.value <= 2.0 * 1.01
@@ -100,7 +100,7 @@ def test_the_reason_has_the_numbers(sampled):
     """Asked too much: the peak and the highest that is reached are those of the margins, the notch's frequency that of the mode."""
     loops = platform_loops(sampled.coordinates)
     with pytest.raises(DesignError) as error:
-        tuned(sampled, loops, Task(Kind.PI, Goal(30.0, 2.0, 0.0), automatic=False))
+        tune(sampled, loops, Task(Kind.PI, Goal(30.0, 2.0, 0.0), automatic=False))
     said = str(error.value)
     form = r"at 30 Hz the peak of S with PI is ([\d.]+) dB at (\d+) Hz, ([\d.]+) dB above the 6.0 dB allowed; ([\d.]+) Hz is the highest"
     level, place, above, highest = map(float, re.search(form, said).groups())
@@ -115,7 +115,7 @@ def test_the_reason_has_the_numbers(sampled):
         assert (peaks(loop(sampled, control), Cut.POSE).sensitivity.value <= 2.0 * 1.01) is good
     notch, better = map(float, re.search(r"with a notch at ([\d.]+) Hz ([\d.]+) Hz is reached", said).groups())
     assert notch == pytest.approx(sampled.frequencies[1], abs=0.06)
-    assert tuned(sampled, loops, Task(Kind.PI, Goal(0.97 * better, 2.0, 0.0))).bandwidth == pytest.approx(0.97 * better, rel=0.01)
+    assert tune(sampled, loops, Task(Kind.PI, Goal(0.97 * better, 2.0, 0.0))).bandwidth == pytest.approx(0.97 * better, rel=0.01)
 
 
 def _rate(tried, highest: float) -> float:
@@ -125,7 +125,7 @@ def _rate(tried, highest: float) -> float:
 def test_an_unstable_attempt_is_called_so(sampled):
     """Beyond the edge of stability the growth is said; where hold and delay take part, faster samples are advised."""
     with pytest.raises(DesignError, match=r"with PI is unstable: it grows by .* 1/s; .* is the highest reachable with PI") as error:
-        tuned(sampled, platform_loops(sampled.coordinates), Task(Kind.PI, Goal(900.0, spread=0.0), automatic=False))
+        tune(sampled, platform_loops(sampled.coordinates), Task(Kind.PI, Goal(900.0, spread=0.0), automatic=False))
     assert "hold and delay take 24 deg at 900 Hz" in str(error.value)  # 360 x 900 Hz x (50 + 25) us
 
 
@@ -143,7 +143,7 @@ def test_stages_of_fewer_freedoms(name):
     if len(one.actuators) == count:
         kinds.append(actuator_loops(one.coordinates))
     for loops in kinds:
-        tuning = tuned(one, loops, Task(Kind.PI, Goal(0.1 * first)))
+        tuning = tune(one, loops, Task(Kind.PI, Goal(0.1 * first)))
         assert tuning.bandwidth == pytest.approx(0.1 * first, rel=0.01)
         assert verdict(loop(one, tuning.controller.system(one.hardware.step))).stable
 
@@ -201,7 +201,7 @@ BAD = {
 def test_bad_tasks_are_named_with_their_numbers(sampled, said):
     """What cannot be is refused before anything is tried."""
     with pytest.raises(DesignError) as error:
-        tuned(sampled, platform_loops(sampled.coordinates), BAD[said])
+        tune(sampled, platform_loops(sampled.coordinates), BAD[said])
     assert said in str(error.value)
 
 
@@ -231,10 +231,10 @@ def test_no_motion_creeps_to_its_place(shipped):
     """Of a slow disturbance integrators that pass 1 at 25 Hz leave f/25 Hz in every axis; the laws of lowest peak leave five times that."""
     one, _ = shipped
     loops, task = platform_loops(one.coordinates), Task(Kind.PI, Goal(25.0))
-    calmest, found = attempt(view(one, loops, task.goal.spread), task, 25.0), tuned(one, loops, task)
+    calmest, found = attempt(view(one, loops, task.goal.spread), task, 25.0), tune(one, loops, task)
     left = []
     for each in (calmest, found):
-        gains = opened(loop(one, each.controller.system(1e-4)), Cut.POSE).transfer(np.array([0.25]))[0]
+        gains = open_at(loop(one, each.controller.system(1e-4)), Cut.POSE).transfer(np.array([0.25]))[0]
         left.append(np.max(np.abs(np.diag(np.linalg.inv(np.eye(6) + loops.sense @ gains @ np.linalg.inv(loops.sense))))))
     assert found.judgement.peak <= 2.0
     assert left[1] < 0.25 / 25.0 < left[0] / 5.0

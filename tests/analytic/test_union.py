@@ -16,7 +16,7 @@ from flexstage.mechanism.expand import expand
 from flexstage.parts.body import Block, Body, Cylinder, Inertia, Solid
 from flexstage.parts.mass import MassProperties, mass_properties
 from flexstage.parts.material import Material
-from flexstage.solid.fea.draw import drawn, moved
+from flexstage.solid.fea.draw import draw_form, move_solid
 from flexstage.solid.fea.stage_pieces import stage_pieces
 
 DENSITY = 1000.0
@@ -138,7 +138,7 @@ def test_unions_have_the_volume_and_centre_that_cad_gives_them(throw: Callable[[
     found = weighed(*solids)
     stage = replace(case("parallelogram"), bodies={"platform": Body(solids={f"s{n}": solid for n, solid in enumerate(solids)})})
     shown = replace(stage, materials={**stage.materials, "steel": MATERIALS["steel"]}, gauges={}, requirements={})
-    shapes = [moved(drawn(piece.form), piece.frame) for piece in stage_pieces(shown).bodies["platform"]]
+    shapes = [move_solid(draw_form(piece.form), piece.frame) for piece in stage_pieces(shown).bodies["platform"]]
     fused = occ.Fuse(shapes)
     assert np.isclose(float(found.mass) / DENSITY * 1e9, fused.mass, rtol=1e-6)  # the CAD kernel integrates with its own tolerance
     centre = np.array([fused.center.x, fused.center.y, fused.center.z])

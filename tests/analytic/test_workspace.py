@@ -12,11 +12,11 @@ from flexstage.analysis.cautions import caveats
 from flexstage.analysis.judge import judge
 from flexstage.analysis.workspace.blocking import platform_lines, stack_lines
 from flexstage.analysis.workspace.buckling import Ends, buckling
+from flexstage.analysis.workspace.clearance import clearance
 from flexstage.analysis.workspace.drive import drive
 from flexstage.analysis.workspace.gauging import _pseudo_inverse
 from flexstage.analysis.workspace.load import load_share
 from flexstage.analysis.workspace.map_error import linear_map_error
-from flexstage.analysis.workspace.room import room
 from flexstage.analysis.workspace.small import small_motion
 from flexstage.analysis.workspace.strength import hinge_stress
 from flexstage.analysis.workspace.stroke import StrokeLimits, mapping_at, single_axis, stroke_limits
@@ -225,12 +225,12 @@ def test_stacks_are_pulled_below_no_voltage():
     assert least[0] == pytest.approx(-largest[0], rel=1e-9)
     assert largest[0] == pytest.approx(0.5 * share.stroke.values[0, 0] * 20e-6, rel=1e-9)
     assert share.use(limits)[0] == pytest.approx(-least[0] / 0.001, rel=1e-9)
-    assert ["times what its limits allow" in each.what for each in share.pulled(limits)] == [True]
+    assert ["times what its limits allow" in each.what for each in share.tension_findings(limits)] == [True]
     unknown = replace(even, tensile_limit=None)
-    told = load_share(guide(unknown), lumped(guide(unknown))).pulled(limits)
+    told = load_share(guide(unknown), lumped(guide(unknown))).tension_findings(limits)
     assert ["neither preload nor tensile limit" in each.what for each in told] == [True]
     positive = replace(even, voltage_low=0.0)
-    assert not list(load_share(guide(positive), lumped(guide(positive))).pulled(stroke_limits(guide(positive)).from_zero))
+    assert not list(load_share(guide(positive), lumped(guide(positive))).tension_findings(stroke_limits(guide(positive)).from_zero))
 
 
 def test_a_point_turns_about_itself():
@@ -267,7 +267,7 @@ def test_discs_and_boxes_against_the_opening():
     clear = fs.Cylinder("steel", 0.02, 0.01, at=(half + 0.01, 0.0, 0.0))
     corner = fs.Cylinder("steel", 0.02, 0.01, at=(half + 0.0095 * np.sqrt(0.5), half + 0.0095 * np.sqrt(0.5), 0.0))
     lying = fs.Cylinder("steel", 0.02, 0.1, at=(0.0, half + 0.008, 0.0), along=X)
-    found = room(solids(disc, clear, corner, lying, opening=fs.Opening((0.11, 0.11))))
+    found = clearance(solids(disc, clear, corner, lying, opening=fs.Opening((0.11, 0.11))))
     assert [item.name for item in found.intrusions] == ["platform.s0", "platform.s2", "platform.s3"]
     np.testing.assert_allclose([item.depth for item in found.intrusions], [0.001, 0.0005, 0.002], rtol=1e-9)
 
@@ -276,7 +276,7 @@ def test_an_oblong_opening_is_as_long_and_wide_as_it_says():
     """110 mm along x, 70 mm along y: blocks that stand 1 mm and 2 mm into it, and two beside it."""
     places = [(0.064, 0.0, 0.0), (0.0, 0.043, 0.0), (-0.065, 0.0, 0.0), (0.0, -0.045, 0.0)]
     blocks = [fs.Block("steel", (0.02, 0.02, 0.01), at=place) for place in places]
-    found = room(solids(*blocks, opening=fs.Opening((0.11, 0.07))))
+    found = clearance(solids(*blocks, opening=fs.Opening((0.11, 0.07))))
     assert [item.name for item in found.intrusions] == ["platform.s0", "platform.s1"]
     np.testing.assert_allclose([item.depth for item in found.intrusions], [0.001, 0.002], rtol=1e-9)
 
@@ -288,17 +288,17 @@ def test_holes_and_bores_leave_the_opening_clear():
     narrow = fs.Cylinder("steel", 0.2, 0.01, bore=0.15)
     wheel = fs.Cylinder("steel", 0.2, 0.01, along=X, bore=0.18)
     wall = fs.Block("steel", (0.2, 0.2, 0.01), hole=(0.19, 0.19), along=Z, up=X)
-    found = room(solids(plate, ring, narrow, opening=fs.Opening((0.11, 0.11))))
+    found = clearance(solids(plate, ring, narrow, opening=fs.Opening((0.11, 0.11))))
     assert [item.name for item in found.intrusions] == ["platform.s2"]
     for standing in (wheel, wall):
-        (intrusion,) = room(solids(standing, opening=fs.Opening((0.11, 0.11)))).intrusions
+        (intrusion,) = clearance(solids(standing, opening=fs.Opening((0.11, 0.11)))).intrusions
         assert intrusion.depth == pytest.approx(0.055 + 0.005, rel=1e-9)
 
 
 def test_bounding_box_and_envelope():
     """A rod along (1, 1, 0) of length 0.1 and diameter 0.02: (0.1 + 0.02) / sqrt 2 along x and y, 0.02 along z."""
     lying = fs.Cylinder("steel", 0.02, 0.1, along=(1.0, 1.0, 0.0))
-    found = room(solids(lying, envelope=(0.1, 0.08, 0.02)))
+    found = clearance(solids(lying, envelope=(0.1, 0.08, 0.02)))
     np.testing.assert_allclose(found.size, [0.12 / np.sqrt(2.0)] * 2 + [0.02], rtol=1e-12)
     assert [finding.where for finding in found.findings] == ["envelope.y"]
     assert "84.85 mm" in found.findings[0].what

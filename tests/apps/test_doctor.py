@@ -12,7 +12,7 @@ from packaging.requirements import Requirement
 
 import flexstage
 from flexstage.apps import doctor
-from flexstage.apps.doctor import Row, Verdict, examine, examine_package, writable
+from flexstage.apps.doctor import Row, Verdict, examine, examine_folder, examine_package
 from flexstage.base.native import compiler
 
 
@@ -101,7 +101,7 @@ def test_package_that_does_not_import(site: Path, code: str, said: str) -> None:
 def test_unwritable_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     file = tmp_path / "file"
     file.touch()
-    row = writable("current folder", file)
+    row = examine_folder("current folder", file)
     assert row.verdict is Verdict.BAD
     assert str(file) in row.found
     assert row.remedy

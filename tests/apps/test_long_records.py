@@ -23,7 +23,7 @@ from flexstage.experiment.formats.read import read
 from flexstage.experiment.health import examine
 from flexstage.experiment.identification import lines
 from flexstage.experiment.identification.lines import record_lines
-from flexstage.experiment.pipeline import identification, sound
+from flexstage.experiment.pipeline import identification, usable_measurement
 from flexstage.experiment.record import Record, Samples
 from tests.models.long_records import written
 from tests.models.synthetic_records import Truth
@@ -130,7 +130,7 @@ def opened(path: Path, seconds: float) -> tuple[Record, Truth]:
 def test_never_more_than_a_block_is_read(tmp_path: Path, small_blocks: int) -> None:
     whole, known = opened(tmp_path / "a.h5", 160.0)
     counted, shares = Counted(whole.samples, 12), [0.0]
-    seen = identification(sound([replace(whole, samples=counted)]), told=lambda _, share: shares.append(share))
+    seen = identification(usable_measurement([replace(whole, samples=counted)]), told=lambda _, share: shares.append(share))
     modes_are_found(seen.found.frequencies, known)
     assert counted.most <= small_blocks < whole.length * 12
     assert shares == sorted(shares)

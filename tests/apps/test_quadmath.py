@@ -13,7 +13,7 @@ from packaging.requirements import Requirement
 
 from flexstage.apps import doctor
 from flexstage.apps.doctor import Verdict, examine_package
-from flexstage.apps.quadmath import COMMAND, lacking, provide
+from flexstage.apps.quadmath import COMMAND, missing_place, provide
 
 NEED = Requirement("ngsolve; extra == 'solid'")
 
@@ -33,10 +33,10 @@ def beside(site: Path) -> Path:
 
 
 def test_the_library_is_put_where_it_is_wanted(site: Path) -> None:
-    assert lacking([site]) == beside(site)
+    assert missing_place([site]) == beside(site)
     assert provide([site]) == ""
     assert beside(site).read_bytes() == b"the library"
-    assert lacking([site]) is None
+    assert missing_place([site]) is None
 
 
 def test_providing_twice_changes_nothing(site: Path) -> None:

@@ -119,7 +119,7 @@ def test_all_that_is_wrong_is_told_at_once(flexstage: Command) -> None:
 
 @pytest.mark.parametrize("name", ["record.uff", "record.mat", "record.h5", "record.csv"])
 def test_an_interrupted_test_leaves_nothing(flexstage: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str) -> None:
-    computed = Simulated._computed
+    computed = Simulated._compute_block
 
     def interrupted(self: Simulated, number: int) -> object:
         if number == 2:

@@ -10,7 +10,7 @@ import pytest
 
 from flexstage.base.finding import DesignError
 from flexstage.studies.sweeps.file import loads_study
-from flexstage.studies.sweeps.gather import needed
+from flexstage.studies.sweeps.gather import file_size
 from flexstage.studies.sweeps.run import Run, sweep
 from flexstage.studies.sweeps.store import folder_of, read_results
 from tests.conftest import FULL
@@ -61,7 +61,7 @@ def test_a_disk_that_takes_no_more_keeps_what_is_there(tmp_path, whole):
 
 def test_room_is_asked_for_before_anything_is_computed(tmp_path, monkeypatch):
     study = loads_study(STUDY)
-    usage = type("Usage", (), {"free": 2 * needed(study) - 1})
+    usage = type("Usage", (), {"free": 2 * file_size(study) - 1})
     monkeypatch.setattr("shutil.disk_usage", lambda _: usage)
     with pytest.raises(DesignError, match=r"results need .* MB more .* MB are free"):
         sweep(study, tmp_path / "r.h5", Run(workers=1))
@@ -69,7 +69,7 @@ def test_room_is_asked_for_before_anything_is_computed(tmp_path, monkeypatch):
 
 
 def test_the_room_asked_for_is_enough(whole):
-    assert len(whole) <= needed(loads_study(STUDY))
+    assert len(whole) <= file_size(loads_study(STUDY))
 
 
 @pytest.mark.parametrize("damage", [lambda text: text[: len(text) // 2], lambda _: b"", lambda text: os.urandom(len(text))])

@@ -26,7 +26,7 @@ import numpy as np
 from scipy.optimize import linear_sum_assignment
 
 from flexstage.experiment.cross_spectra import spectra
-from flexstage.experiment.identification.evidence import chosen_segments
+from flexstage.experiment.identification.evidence import choose_segments
 from flexstage.experiment.record import Record
 from flexstage.experiment.transfer import h1
 
@@ -93,7 +93,7 @@ class Peer:
 def handed_over(record: Record, frequencies: np.ndarray) -> Data:
     values = record.samples.read(0, record.samples.length)
     count = len(record.inputs)
-    found = h1(spectra(record, chosen_segments([record])))
+    found = h1(spectra(record, choose_segments([record])))
     return Data(record.rate, values[:, :count], values[:, count:], found.frequencies, found.values, frequencies)
 
 

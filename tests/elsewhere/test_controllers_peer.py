@@ -16,7 +16,7 @@ from flexstage.control.controllers.loops import platform_loops
 from flexstage.control.controllers.lqg import Disturbances, Weights, lqg
 from flexstage.control.controllers.notch import Notch
 from flexstage.control.controllers.pid import PID
-from flexstage.control.controllers.pose_plant import seen_plant
+from flexstage.control.controllers.pose_plant import pose_plant
 from flexstage.control.coordinates import coordinates
 from flexstage.control.electronics import Hardware
 from flexstage.control.plants import plant
@@ -47,7 +47,7 @@ def test_linear_quadratic_gains_are_the_peer_s(given):
     """Regulator with integrators and observer, continuous and sampled, of the shipped two-axis stage with four modes."""
     stage = xy_stage()
     one = plant(lumped(stage), ideal(stage), given, modes=4)
-    model = seen_plant(one)
+    model = pose_plant(one)
     found = lqg(model, one.coordinates, Weights(30.0, 0.2), Disturbances(2e-9, dict.fromkeys(one.gauges, 1e-11)))
     states, step = len(model.A), model.step or 1.0
     A = np.block([[model.A, np.zeros((states, 2))], [-step * model.C, np.eye(2) * (model.step is not None)]])

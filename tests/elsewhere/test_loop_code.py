@@ -25,7 +25,7 @@ from flexstage.control.hysteresis.bouc_wen import BoucWen, bouc_wen
 from flexstage.control.hysteresis.envelope import Envelope
 from flexstage.control.hysteresis.prandtl_ishlinskii import PrandtlIshlinskii
 from flexstage.control.hysteresis.preisach import Preisach
-from flexstage.control.simulation.machine import Machine, machine, unlimited
+from flexstage.control.simulation.machine import Machine, machine, without_limits
 from flexstage.control.simulation.result import Simulated
 from flexstage.control.simulation.run import simulate
 from flexstage.control.system import static
@@ -57,7 +57,7 @@ def full(*, inverse: bool = False) -> Machine:
 
 KINDS: dict[str, Callable[[], Machine]] = {
     "Bouc-Wen, unrounded": lambda: replace(full(), hysteresis=bouc_wens(), compensation=plays(), resolution=np.zeros(6)),
-    "linear": lambda: unlimited(full()),
+    "linear": lambda: without_limits(full()),
     "limits": lambda: replace(full(), hysteresis=None),
     "hysteresis": full,
     "inverse": lambda: full(inverse=True),
@@ -96,7 +96,7 @@ def test_loops_without_states_of_their_own_compile_as_well(free):
     example = integral_loop()
     through = static(np.eye(1), (Channel("reference.x", "m"),), (Channel("command.B", "m"),), example.step)
     given = machine(example.plant, through, motions=())
-    given = unlimited(given) if free else given
+    given = without_limits(given) if free else given
     reference = np.full((300, 1), 1e-6)
     found, expected = simulate_compiled(given, reference), simulate(given, reference)
     assert np.max(np.abs(found.pose - expected.pose)) < 1e-12 * 1e-6
@@ -187,7 +187,7 @@ def test_a_gauge_beyond_its_range_is_held_until_it_returns():
     assert 0.2 < np.mean(beyond) == found.out_of_range[0] < 0.6
     assert np.max(np.abs(found.pose)) <= given.reach[0]
     assert abs(found.motion("platform.x")[-1]) < 1e-9
-    assert not simulate(unlimited(given), reference).out_of_range.any()
+    assert not simulate(without_limits(given), reference).out_of_range.any()
 
 
 @pytest.mark.parametrize(("reading", "held"), [(3e-9, 0.0), (4e-9, 1.0)])

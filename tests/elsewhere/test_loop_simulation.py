@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from scipy.signal import dlsim
 
-from flexstage.control.simulation.machine import machine, unlimited
+from flexstage.control.simulation.machine import machine, without_limits
 from flexstage.control.simulation.result import Simulated
 from flexstage.control.simulation.run import simulate
 from flexstage.models.linear.model import Channel
@@ -43,7 +43,7 @@ def relative(found: np.ndarray, expected: np.ndarray) -> float:
 @pytest.mark.parametrize("delay", [0.0, 80e-6, 100e-6, 230e-6])
 def test_linear_loops_equal_scipys_difference_equations(delay):
     wired = six_axes(delay=delay)
-    given = unlimited(machine(wired.plant, wired.controller))
+    given = without_limits(machine(wired.plant, wired.controller))
     count, random = 1500, np.random.default_rng(5)
     inputs = 1e-6 * np.cumsum(random.standard_normal((count, len(wired.system.inputs))), axis=0)
     named = dict(zip(wired.system.input_names, inputs.T, strict=True))

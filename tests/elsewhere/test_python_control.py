@@ -16,16 +16,16 @@ from scipy.signal import dlsim, dlti
 from flexstage.base.finding import DesignError
 from flexstage.cases.parallelogram import parallelogram
 from flexstage.cases.tip_tilt import tip_tilt
-from flexstage.control.closed import Cut, Loop, loop, opened
+from flexstage.control.closed import Cut, Loop, loop, open_at
 from flexstage.control.curves import sensitivity
 from flexstage.control.disk import disk_margin
 from flexstage.control.electronics import AmplifierSettings, GaugeSettings, hardware
 from flexstage.control.example import integral
 from flexstage.control.exchange import from_control, to_control
 from flexstage.control.norm import peak
-from flexstage.control.plants import held, plant
+from flexstage.control.plants import plant, zero_order_hold
 from flexstage.control.stability_margins import margins
-from flexstage.control.system import System, picked
+from flexstage.control.system import System, select
 from flexstage.control.white_noise import mean_squares
 from flexstage.models.ideal import ideal
 from flexstage.models.linear.model import Channel
@@ -56,7 +56,7 @@ def _like(system: System, response):
 @pytest.mark.parametrize("rate", [8e3, None])
 def test_responses(rate):
     closed = _loop(rate, 100.0, tip_tilt, 6)
-    for ours in (closed.system, opened(closed, Cut.POSE), closed.plant.system):
+    for ours in (closed.system, open_at(closed, Cut.POSE), closed.plant.system):
         theirs, at = to_control(ours), np.geomspace(0.5, 3500.0, 200)
         found = np.moveaxis(np.asarray(theirs.frequency_response(2.0 * np.pi * at).frdata), -1, 0)
         mine = ours.transfer(at)
@@ -70,11 +70,11 @@ def test_responses(rate):
 def test_closed_by_feedback(rate, gain):
     """The closed loop of python-control's `feedback` around our open loop is ours."""
     closed = _loop(rate, gain, tip_tilt, 6)
-    open_loop = to_control(opened(closed, Cut.POSE))
+    open_loop = to_control(open_at(closed, Cut.POSE))
     at = np.geomspace(0.5, 3500.0, 100)
     found = control.feedback(open_loop, control.ss([], [], [], np.eye(3), open_loop.dt))
     theirs = np.moveaxis(np.asarray(found.frequency_response(2.0 * np.pi * at).frdata), -1, 0)
-    mine = np.eye(3) - sensitivity(opened(closed, Cut.POSE)).transfer(at)
+    mine = np.eye(3) - sensitivity(open_at(closed, Cut.POSE)).transfer(at)
     assert np.max(np.abs(theirs - mine)) < CLOSE * np.max(np.abs(mine))
 
 
@@ -83,7 +83,7 @@ def test_margins(gain):
     """A continuous loop: every margin by the roots of polynomials."""
     closed = _loop(None, gain)
     own = margins(closed, Cut.POSE).of("x")
-    gains, phases, _, at_gain, at_phase, _ = control.stability_margins(to_control(opened(closed, Cut.POSE)), returnall=True, method="poly")
+    gains, phases, _, at_gain, at_phase, _ = control.stability_margins(to_control(open_at(closed, Cut.POSE)), returnall=True, method="poly")
     place, least = int(np.argmin(np.where(np.asarray(gains) > 1.0, gains, np.inf))), int(np.argmin(np.abs(phases)))
     assert abs(gains[place] / own.gain_high.value - 1.0) < CLOSE
     assert abs(at_gain[place] / (2.0 * np.pi) / own.gain_high.frequency - 1.0) < CLOSE
@@ -96,7 +96,7 @@ def test_margins(gain):
 def test_margins_of_samples(gain):
     """A sampled loop: theirs by interpolation (their polynomials in z lose four digits), and their response at our frequencies."""
     closed = _loop(8e3, gain)
-    own, loops = margins(closed, Cut.POSE).of("x"), to_control(opened(closed, Cut.POSE))
+    own, loops = margins(closed, Cut.POSE).of("x"), to_control(open_at(closed, Cut.POSE))
     gain_high, phase, _, at_gain, at_phase, _ = control.stability_margins(loops, method="frd")
     assert abs(gain_high / own.gain_high.value - 1.0) < 1e-7
     assert abs(np.radians(phase) - own.phase.value) < 1e-7
@@ -112,9 +112,9 @@ def test_disk_margins(rate):
     """Theirs from frequencies given, ours from the norm: with the norm's own frequency among them."""
     closed = _loop(rate, 200.0)
     for skew in (-0.5, 0.0, 1.0):
-        own = disk_margin(sensitivity(opened(closed, Cut.POSE)), skew)
+        own = disk_margin(sensitivity(open_at(closed, Cut.POSE)), skew)
         at = 2.0 * np.pi * np.unique(np.append(np.geomspace(1.0, 3900.0, 300), own.frequency))
-        alpha, _, _ = control.disk_margins(to_control(opened(closed, Cut.POSE)), at, skew)
+        alpha, _, _ = control.disk_margins(to_control(open_at(closed, Cut.POSE)), at, skew)
         assert abs(alpha / own.value - 1.0) < CLOSE
 
 
@@ -125,7 +125,7 @@ def test_norms(rate):
     Theirs by the Gramian: `control.norm` looks for a negative eigenvalue in it, and finds one of rounding or none as the machine rounds.
     """
     closed = _loop(rate, 200.0)
-    system = picked(closed.system, ["noise.B"], ["relative.x"])
+    system = select(closed.system, ["noise.B"], ["relative.x"])
     if rate is None:
         theirs = to_control(system)
         square = theirs.C @ control.lyap(theirs.A, theirs.B @ theirs.B.T) @ theirs.C.T
@@ -143,8 +143,8 @@ def test_hold():
         plant(lumped(stage), ideal(stage), hardware(stage, rate=8e3, delay=delay, amplifiers=AmplifierSettings(bandwidth=900.0)), modes=2)
         for delay in (0.0, 1.0 / 8e3)
     ]
-    ours = [picked(held(each), ["B"], ["gap.S"]) for each in plants]
-    theirs = control.sample_system(to_control(picked(plants[0].system, ["B"], ["gap.S"])), 1.0 / 8e3, method="zoh")
+    ours = [select(zero_order_hold(each), ["B"], ["gap.S"]) for each in plants]
+    theirs = control.sample_system(to_control(select(plants[0].system, ["B"], ["gap.S"])), 1.0 / 8e3, method="zoh")
     at = np.geomspace(1.0, 3900.0, 100)
     response = theirs.frequency_response(2.0 * np.pi * at).frdata[0, 0]
     assert np.allclose(ours[0].transfer(at)[:, 0, 0], response, rtol=1e-8)
@@ -154,7 +154,7 @@ def test_hold():
 def test_stepped_by_scipy():
     """The closed loop's step, as scipy.signal and python-control march it."""
     closed = _loop(8e3, 200.0)
-    system = picked(closed.system, ["reference.x"], ["relative.x", "command.B"])
+    system = select(closed.system, ["reference.x"], ["relative.x", "command.B"])
     reference = np.ones(400)
     _, found, _ = dlsim(dlti(system.A, system.B, system.C, system.D, dt=system.step), reference)
     theirs = control.forced_response(to_control(system), inputs=reference, squeeze=False)

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from flexstage.base.finding import DesignError
 from flexstage.control.hysteresis.envelope import Envelope
 from flexstage.control.hysteresis.inverse import inverse, inverse_state
-from flexstage.control.hysteresis.prandtl_ishlinskii import PrandtlIshlinskii, stacked
+from flexstage.control.hysteresis.prandtl_ishlinskii import PrandtlIshlinskii, stack_models
 from tests.conftest import examples
 from tests.laws.hystereses import VOLTS, fractions, levels, models, on_grid, turns, walked
 
@@ -115,7 +115,7 @@ def test_closed_loops_dissipate(model, places):
 @given(st.lists(models(), min_size=1, max_size=6), turns)
 def test_axes_side_by_side_are_the_axes_alone(each, points):
     """Stacked models of unlike sizes, stepped together, give each what it gives alone."""
-    together = stacked(each).run(np.tile(points[:, None], (1, len(each))))
+    together = stack_models(each).run(np.tile(points[:, None], (1, len(each))))
     for column, model in zip(together.T, each, strict=True):
         assert nearly(column, model.run(points), SIZE, 1e-14)
 
@@ -147,7 +147,7 @@ def test_what_has_no_inverse_is_refused(model, words):
 
 
 def test_every_reason_is_told():
-    both = stacked([PrandtlIshlinskii([0.0], [-1.0]), PrandtlIshlinskii([0.0, 1.0], [1.0, -2.0])])
+    both = stack_models([PrandtlIshlinskii([0.0], [-1.0]), PrandtlIshlinskii([0.0, 1.0], [1.0, -2.0])])
     with pytest.raises(DesignError) as error:
         inverse(both)
     assert [finding.where for finding in error.value.findings] == ["hysteresis of axis 0"] * 2 + ["hysteresis of axis 1"]

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from flexstage.base.finding import DesignError
 from flexstage.control.hysteresis.bouc_wen import BoucWen, bouc_wen
 from flexstage.control.hysteresis.preisach import Preisach, preisach
-from flexstage.control.hysteresis.shape import settled_loop
+from flexstage.control.hysteresis.shape import major_loop
 from tests.conftest import examples
 from tests.laws.hystereses import VOLTS, fractions, levels, on_grid, turns, walked
 
@@ -117,7 +117,7 @@ def test_preisach_remembers_as_much_as_there_is(plant, nested):
 
 def test_loops_of_the_wanted_width_are_made():
     for plant in (bouc_wen(2e-4, (-100.0, 900.0), 0.15), preisach(2e-4, (-100.0, 900.0), 0.15)):
-        loop = settled_loop(plant, (-100.0, 900.0), count=251, cycles=4)
+        loop = major_loop(plant, (-100.0, 900.0), count=251, cycles=4)
         assert loop.stroke[0] == pytest.approx(2e-4, rel=1e-5)
         assert loop.width[0] == pytest.approx(0.15, rel=1e-4)
 

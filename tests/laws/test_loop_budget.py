@@ -17,9 +17,9 @@ from flexstage.cases.xy_stage import xy_stage
 from flexstage.control.closed import loop
 from flexstage.control.electronics import AmplifierSettings, GaugeSettings, Sensor, hardware
 from flexstage.control.example import integral, integral_loop
-from flexstage.control.noise import Disturbed, noise_budget
-from flexstage.control.plants import plant, sensing
-from flexstage.control.system import picked
+from flexstage.control.noise import DisturbanceResponse, noise_budget
+from flexstage.control.plants import plant, sensor_filter
+from flexstage.control.system import select
 from flexstage.control.white_noise import Kind, held_noise, mean_squares, white_system
 from tests.conftest import examples
 from tests.laws.loops import random_loop, stable_loop
@@ -55,7 +55,7 @@ def test_rounding_is_its_integral(seed):
     rates = np.log(closed.system.poles[np.abs(closed.system.poles) > 1e-9].astype(complex)) / step
     nodes, weights = quadrature(np.concatenate([[0.0], _panels(1e-6, 0.5 / step, rates)]))
     for name in closed.plant.gauges:
-        size = np.abs(picked(closed.system, [f"noise.{name}"], outputs).transfer(nodes)[:, :, 0]) ** 2
+        size = np.abs(select(closed.system, [f"noise.{name}"], outputs).transfer(nodes)[:, :, 0]) ** 2
         resolution = closed.plant.hardware.sensors[name].resolution
         assert np.allclose(
             weights @ size * 2.0 * step * resolution**2 / 12.0, _square(closed, Kind.ROUNDING, name, found), atol=0.0, rtol=1e-8
@@ -76,7 +76,7 @@ def test_amplifier_noise_is_its_integral(seed):
     ends += [np.abs(number / step + sign * near) for number in range(1, 8) for sign in (-1.0, 1.0)]
     nodes, weights = quadrature(np.unique(np.concatenate(ends)))
     for name in closed.plant.actuators:
-        size = np.abs(Disturbed(closed, (name,), outputs).at(nodes)[:, :, 0]) ** 2
+        size = np.abs(DisturbanceResponse(closed, (name,), outputs).at(nodes)[:, :, 0]) ** 2
         density = closed.plant.hardware.amplifiers[name].noise_density
         assert np.allclose(weights @ size * density**2, _square(closed, Kind.AMPLIFIER, name, found), atol=0.0, rtol=1e-4)
 
@@ -103,8 +103,8 @@ def test_gauge_noise_is_its_integral(rate):
     near = ends[1][ends[1] < 2500.0]
     ends += [np.abs(number * rate + sign * near) for number in range(1, 6) for sign in (-1.0, 1.0)] if rate else []
     nodes, weights = quadrature(np.unique(np.concatenate(ends)))
-    through = sensing(closed.plant).transfer(nodes)
-    size = np.abs(picked(closed.system, ["noise.S"], OUTPUTS).transfer(nodes) @ through)[:, :, 0] ** 2
+    through = sensor_filter(closed.plant).transfer(nodes)
+    size = np.abs(select(closed.system, ["noise.S"], OUTPUTS).transfer(nodes) @ through)[:, :, 0] ** 2
     square = weights @ size * closed.plant.hardware.sensors["S"].noise_density ** 2
     assert np.allclose(square, _square(closed, Kind.GAUGE, "S", found), atol=0.0, rtol=2e-6)
 
@@ -116,7 +116,7 @@ def test_what_enters_at_the_samples_is_its_integral():
     found = noise_budget(closed, {}, (1e-3, 2500.0), OUTPUTS)
     rates = np.log(closed.system.poles[np.abs(closed.system.poles) > 1e-9].astype(complex)) / closed.step
     nodes, weights = quadrature(np.concatenate([[0.0], _panels(1e-6, 2500.0, rates)]))
-    sizes = np.abs(picked(closed.system, ["noise.S", "noise.B"], OUTPUTS).transfer(nodes)) ** 2
+    sizes = np.abs(select(closed.system, ["noise.S", "noise.B"], OUTPUTS).transfer(nodes)) ** 2
     step, rounding = closed.plant.hardware.amplifiers["B"].step, 2.0 * closed.step / 12.0
     known = ((Kind.GAUGE, "S", 9e-24), (Kind.ROUNDING, "S", rounding * 4e-20), (Kind.CONVERTER, "B", rounding * step**2))
     for place, (kind, name, density) in enumerate(known):
@@ -184,7 +184,7 @@ def _by_states(closed, column, process):
     moved = expm(joined * closed.step)
     noise = held_noise(joined, np.vstack([np.zeros((size, 1)), B]), closed.step)
     whole = closed.system
-    inner = picked(whole, ["noise.S"], ["relative.x"])
+    inner = select(whole, ["noise.S"], ["relative.x"])
     gauge, motion = (stage.D[stage.output_names.index(name), column] * C for name in ("gap.S", "relative.x"))
     total = np.zeros((len(whole.A) + len(A),) * 2)
     total[: len(whole.A), : len(whole.A)], total[len(whole.A) :, len(whole.A) :] = whole.A, moved[size:, size:]
@@ -264,7 +264,7 @@ def test_what_is_not_stated_is_said():
     silent = replace(bare, amplifiers=Table({}))
     still = noise_budget(replace(closed, plant=replace(closed.plant, hardware=silent)), {}, (1.0, 100.0))
     assert any("a reading at rest may stay off by half a step, 0.25 nm" in note for note in still.notes)
-    assert still.slow == ("S",)
+    assert still.slowly_rounding == ("S",)
     assert not any("half a step" in note for note in noise_budget(closed, {}, (1.0, 100.0)).notes)
     assert Kind.GAUGE not in found.kinds
 
@@ -272,7 +272,7 @@ def test_what_is_not_stated_is_said():
 def test_mean_square_of_a_resonance():
     """S omega/(4 zeta) two-sided: white force through a resonance of gain 1."""
     closed = stable_loop(3, rate=None)
-    system = picked(closed.system, ["noise.B1"], ["relative.x"])
+    system = select(closed.system, ["noise.B1"], ["relative.x"])
     natural, ratio = 30.0, 0.02
     matrix = np.array([[0.0, 1.0], [-(natural**2), -2.0 * ratio * natural]])
     resonance = replace(system, A=matrix, B=np.array([[0.0], [natural**2]]), C=np.array([[1.0, 0.0]]), D=np.zeros((1, 1)))

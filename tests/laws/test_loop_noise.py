@@ -18,7 +18,7 @@ from flexstage.control.example import integral
 from flexstage.control.noise import noise_budget
 from flexstage.control.plants import plant
 from flexstage.control.simulation.machine import machine
-from flexstage.control.simulation.noise import noises, series
+from flexstage.control.simulation.noise import noise_series, series
 from flexstage.control.simulation.run import simulate
 from tests.laws.shared import ideal, lumped
 
@@ -54,12 +54,12 @@ def test_series_are_gaussian_and_their_own():
 
 def test_names_and_seeds_of_noise():
     one = small_loop().plant
-    found, more = noises(one, {}, 100, seed=4), noises(one, {"ground.x": SPECTRA["white"]}, 100, seed=4)
+    found, more = noise_series(one, {}, 100, seed=4), noise_series(one, {"ground.x": SPECTRA["white"]}, 100, seed=4)
     assert all(np.array_equal(found[name], more[name]) for name in found)  # what else there is does not matter
     with pytest.raises(DesignError, match=r"ground\.q: the ground has no such motion"):
-        noises(one, {"ground.q": SPECTRA["white"]}, 100)
+        noise_series(one, {"ground.q": SPECTRA["white"]}, 100)
     with pytest.raises(DesignError, match="it is continuous"):
-        noises(replace(one, hardware=replace(one.hardware, rate=None, delay=0.0)), {}, 100)
+        noise_series(replace(one, hardware=replace(one.hardware, rate=None, delay=0.0)), {}, 100)
 
 
 def small_loop(resolution: float = 2e-10):
@@ -86,7 +86,7 @@ def test_the_simulated_variance_is_that_of_the_budget(kind):
     known = known if kind == "all" else replace(known, resolution=np.zeros(1))
     squares = []
     for seed in range(8):
-        every = noises(closed.plant, floor, count, seed)
+        every = noise_series(closed.plant, floor, count, seed)
         own = {name: values for name, values in every.items() if name.startswith(KINDS[kind])}
         found = simulate(known, np.zeros((count, 1)), own).motions[1000:]
         squares.append(np.mean(found**2, axis=0))
@@ -115,11 +115,11 @@ def test_readings_move_from_sample_to_sample_as_the_budget_says(density):
     floor, count = {"ground.x": Spectrum(np.array([1e-18, 1e-21]), np.array([5.0, 1500.0]))}, 4000
     budget = noise_budget(closed, floor, (0.5 * RATE / count, 0.5 * RATE), ("relative.x",))
     known = replace(machine(plant, closed.controller, motions=("relative.x",)), resolution=np.zeros(1))
-    readings = (simulate(known, np.zeros((count, 1)), noises(plant, floor, count, seed)).readings[500:, 0] for seed in range(8))
+    readings = (simulate(known, np.zeros((count, 1)), noise_series(plant, floor, count, seed)).readings[500:, 0] for seed in range(8))
     squares = [np.mean(np.diff(each) ** 2) for each in readings]
     expected = (budget.changes[0] * sensors["S"].resolution) ** 2
     assert abs(np.mean(squares) - expected) < 4.0 * np.std(squares, ddof=1) / 8.0**0.5 + 0.01 * expected
-    assert bool(budget.slow) == (expected < 1e-20)  # half a step of 0.2 nm
+    assert bool(budget.slowly_rounding) == (expected < 1e-20)  # half a step of 0.2 nm
 
 
 @pytest.mark.parametrize("change", [0.25, 0.5])
@@ -137,4 +137,4 @@ def test_rounding_errors_of_successive_samples_correlate_as_the_criterion_says(c
 
 def test_rounding_is_white_from_half_a_step_on():
     budget = noise_budget(small_loop(), {}, (1.0, 100.0), ("relative.x",))
-    assert [replace(budget, changes=np.array([change])).slow for change in (0.0, 0.49, 0.51, np.nan)] == [("S",), ("S",), (), ()]
+    assert [replace(budget, changes=np.array([change])).slowly_rounding for change in (0.0, 0.49, 0.51, np.nan)] == [("S",), ("S",), (), ()]

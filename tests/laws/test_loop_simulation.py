@@ -15,11 +15,11 @@ from flexstage.cases.parallelogram import parallelogram
 from flexstage.control.controllers.decentralised import Decentralised
 from flexstage.control.controllers.loops import platform_loops
 from flexstage.control.controllers.pi import PI
-from flexstage.control.creep_plant import with_creep
+from flexstage.control.creep_plant import add_creep
 from flexstage.control.example import integral_loop
 from flexstage.control.hysteresis.creep import Creep
 from flexstage.control.simulation.kernel import Compensator
-from flexstage.control.simulation.machine import Machine, machine, unlimited
+from flexstage.control.simulation.machine import Machine, machine, without_limits
 from flexstage.control.simulation.result import step_figures, tracking
 from flexstage.control.simulation.run import simulate
 from flexstage.control.system import System, static
@@ -90,7 +90,7 @@ def test_blocks_leave_no_trace(monkeypatch):
 @examples(5, 50)
 @given(st.floats(-3.0, 3.0), st.floats(-3.0, 3.0))
 def test_linear_loops_add_up(one, other):
-    known = unlimited(full_loop())
+    known = without_limits(full_loop())
     reference, disturbances = way(known, 200)
     nothing = np.zeros_like(reference)
     together = simulate(known, one * reference, {name: other * values for name, values in disturbances.items()})
@@ -107,7 +107,7 @@ def test_constant_commands_lead_to_the_static_motion():
         tuple(Channel(f"command.{name}", "m") for name in actuators),
         wired.step,
     )
-    known = unlimited(machine(wired.plant, through))
+    known = without_limits(machine(wired.plant, through))
     reference = np.tile(1e-6 * np.arange(1.0, 7.0), (20_000, 1))
     found = simulate(known, reference)
     plant = wired.plant.system
@@ -169,7 +169,7 @@ def test_the_compensator_stays_where_it_is_until_something_is_applied():
     wanted, out = model.step(model.start(np.full(6, 500.0)), np.full(6, 620.0))[1], np.empty(6)
     for _ in range(3):
         assert one.volts(wanted, out) == pytest.approx(np.full(6, 620.0), rel=1e-12)
-    one.applied(np.full(6, 900.0))  # a travel back comes by another branch
+    one.move_to(np.full(6, 900.0))  # a travel back comes by another branch
     assert one.volts(wanted, out) != pytest.approx(np.full(6, 620.0), rel=1e-3)
 
 
@@ -180,11 +180,11 @@ def test_creep_is_run_between_stack_and_stage():
     entering = tuple(Channel(f"reference.{name}", unit) for name, unit in zip(loop.names, loop.units, strict=True))
     through = static(loop.strokes, entering, tuple(Channel(f"command.{name}", "m") for name in loop.actuators), wired.step)
     reference, _ = way(full_loop(), 400)
-    whole = simulate(unlimited(machine(with_creep(wired.plant, creep), through)), reference)
+    whole = simulate(without_limits(machine(add_creep(wired.plant, creep), through)), reference)
     crept = creep.run(whole.stroke, 1e-4)
     # Creep and the amplifiers' lag may change places: fed with what creep makes of the held strokes, the plain plant moves nearly alike
     # (its hold keeps the value a sample takes at its start; the creep goes on within it).
-    fine = simulate(unlimited(machine(wired.plant, replace(through, D=np.eye(6)))), crept)
+    fine = simulate(without_limits(machine(wired.plant, replace(through, D=np.eye(6)))), crept)
     assert np.max(np.abs(fine.motions - whole.motions)) < 5e-3 * np.max(np.abs(whole.motions))
     assert np.max(np.abs(whole.stroke - crept)) > 0.02 * np.max(np.abs(crept))
 
@@ -215,7 +215,7 @@ def test_settling_and_overshoot_of_a_known_answer():
 
 def test_what_goes_the_other_way_first_is_undershoot():
     """Answers given by hand, to a step up and to one down: a fifth the wrong way, then three tenths beyond."""
-    known = unlimited(machine(integral_loop().plant, integral_loop().controller, motions=("platform.x",)))
+    known = without_limits(machine(integral_loop().plant, integral_loop().controller, motions=("platform.x",)))
     found = simulate(known, np.zeros((6, 1)))
     answer = np.array([0.0, -0.2, 0.6, 1.3, 0.99, 1.0])[:, None]
     for size in (2e-6, -2e-6):
@@ -228,7 +228,7 @@ def test_what_goes_the_other_way_first_is_undershoot():
 
 
 def test_jerk_limited_steps_ring_less_than_steps_at_once():
-    known = unlimited(full_loop())
+    known = without_limits(full_loop())
     times = known.step * np.arange(4000)
     reference = np.zeros((4000, 6))
     step = Step({"x": 10e-6}, limits=Limits(1e-3, 0.5, 50.0))
@@ -242,7 +242,7 @@ def test_jerk_limited_steps_ring_less_than_steps_at_once():
 def test_unstable_loops_are_told_with_the_time():
     wired = integral_loop(gain=20_000.0)
     with pytest.raises(DesignError, match=r"loop: its numbers have grown beyond bounds .* s after the start: the loop is unstable"):
-        simulate(unlimited(machine(wired.plant, wired.controller)), np.full((20_000, 1), 1e-6))
+        simulate(without_limits(machine(wired.plant, wired.controller)), np.full((20_000, 1), 1e-6))
 
 
 @pytest.mark.parametrize(

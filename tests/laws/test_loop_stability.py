@@ -11,12 +11,12 @@ from hypothesis import strategies as st
 from scipy.linalg import expm
 
 from flexstage.base.finding import DesignError
-from flexstage.control.closed import Cut, loop, opened, opened_everywhere
+from flexstage.control.closed import Cut, loop, open_at, open_everywhere
 from flexstage.control.curves import sensitivity
 from flexstage.control.disk import disk_margins
 from flexstage.control.stability import require_stable, verdict
 from flexstage.control.stability_margins import bandwidths, crosstalk, delay_margin, margins, peaks
-from flexstage.control.system import picked
+from flexstage.control.system import select
 from tests.conftest import examples
 from tests.laws.loops import random_loop, stable_loop
 
@@ -28,7 +28,7 @@ def _brute(closed, samples):
     """Rate of growth [1/s] of the loop stepped by hand: plant between the changes of its input by exponentials, a queue for the delay."""
     plant, controller = closed.plant, closed.controller
     step, delay, count = plant.hardware.step, plant.hardware.delay, len(plant.actuators)
-    stage = picked(plant.system, plant.actuators, [f"gap.{name}" for name in plant.gauges])
+    stage = select(plant.system, plant.actuators, [f"gap.{name}" for name in plant.gauges])
     whole = int(delay / step)
     part = delay / step - whole
     first, second = (_exact(stage, share * step) for share in (part, 1.0 - part))
@@ -97,7 +97,7 @@ def test_verdict_is_nyquists_count(seed, lagged):
     """Poles outside the circle: those of the open loop less the turns of det(I + L); the integrators are kept inside."""
     closed = random_loop(seed, lagged=lagged)
     for cut in Cut:
-        open_loop, radius = opened(closed, cut), np.exp(0.05 * closed.step)
+        open_loop, radius = open_at(closed, cut), np.exp(0.05 * closed.step)
         outside = np.sum(np.abs(open_loop.poles) > radius)
         turns = _encirclements(open_loop, radius)
         assert abs(turns - round(turns)) < 1e-6
@@ -113,22 +113,22 @@ def test_sensitivities_add_up(seed, rate):
     names = closed.plant.coordinates.names
     at = np.array([0.7, 13.0, 190.0, 480.0])
     response = {
-        kind: picked(closed.system, [f"reference.{n}" for n in names], [f"{kind}.{n}" for n in names]).transfer(at)
+        kind: select(closed.system, [f"reference.{n}" for n in names], [f"{kind}.{n}" for n in names]).transfer(at)
         for kind in ("pose", "error")
     }
     identity = np.eye(len(names))
     assert np.allclose(response["pose"] + response["error"], identity, atol=1e-9 * np.max(np.abs(response["pose"])))
-    loops = {cut: opened(closed, cut).transfer(at) for cut in Cut}
+    loops = {cut: open_at(closed, cut).transfer(at) for cut in Cut}
     assert np.allclose(response["error"] @ (identity + loops[Cut.POSE]), identity, atol=1e-8)
-    assert np.allclose(sensitivity(opened(closed, Cut.POSE)).transfer(at), response["error"], rtol=1e-7, atol=1e-9)
-    determinants = [np.linalg.det(np.eye(each.shape[-1]) + each) for each in (*loops.values(), opened_everywhere(closed).transfer(at))]
+    assert np.allclose(sensitivity(open_at(closed, Cut.POSE)).transfer(at), response["error"], rtol=1e-7, atol=1e-9)
+    determinants = [np.linalg.det(np.eye(each.shape[-1]) + each) for each in (*loops.values(), open_everywhere(closed).transfer(at))]
     for other in determinants[1:]:
         assert np.allclose(other, determinants[0], rtol=1e-7)
 
 
 def _scaled(closed, cut, channel, factor):
     """The poles of a loop with one channel's signal multiplied."""
-    alone = opened(closed, cut, channel)
+    alone = open_at(closed, cut, channel)
     return replace(alone, A=alone.A - alone.B * factor / (1.0 + factor * alone.D[0, 0]) @ alone.C)
 
 
@@ -147,7 +147,7 @@ def test_margins_end_at_the_edge(seed, rate, cut):
         low, high = max(each.gain_low.value, 1e-3), min(each.gain_high.value, 1e3)
         for factor in np.geomspace(low * (1.0 + 1e-6), high * (1.0 - 1e-6), 7):
             assert _scaled(closed, cut, each.channel, factor).growth < 1e-6
-        turned = opened(closed, cut, each.channel).transfer(np.array([each.phase.frequency, each.delay.frequency]))[:, 0, 0]
+        turned = open_at(closed, cut, each.channel).transfer(np.array([each.phase.frequency, each.delay.frequency]))[:, 0, 0]
         if np.isfinite(each.phase.value):
             assert min(abs(turned[0] * np.exp(sign * 1j * each.phase.value) + 1.0) for sign in (1.0, -1.0)) < 1e-7
             assert abs(turned[1] * np.exp(-2j * np.pi * each.delay.frequency * each.delay.value) + 1.0) < 1e-7
@@ -176,7 +176,7 @@ def test_delay_margin_of_a_continuous_loop(seed):
     closed = stable_loop(seed, rate=None)
     found = delay_margin(closed)
     if np.isfinite(found.value):
-        turned = opened(closed, Cut.POSE).transfer(np.array([found.frequency]))[0] * np.exp(-2j * np.pi * found.frequency * found.value)
+        turned = open_at(closed, Cut.POSE).transfer(np.array([found.frequency]))[0] * np.exp(-2j * np.pi * found.frequency * found.value)
         assert np.min(np.abs(np.linalg.eigvals(turned) + 1.0)) < 1e-7
 
 
@@ -216,7 +216,7 @@ def test_disk_margins_hold(seed, rate):
             assert (2.0 + alpha) / max(2.0 - alpha, 1e-12) <= each.gain_high.value * (1.0 + 1e-6)
             assert (2.0 - alpha) / (2.0 + alpha) >= each.gain_low.value * (1.0 - 1e-6)
             assert 2.0 * np.arctan(0.5 * alpha) <= each.phase.value * (1.0 + 1e-6)
-        open_loop = opened(closed, cut)
+        open_loop = open_at(closed, cut)
         low, high = max(together.gain_low, 0.0), min(together.gain_high, 1e3)
         for _ in range(10):
             factors = random.uniform(low, high, len(open_loop.D))
@@ -233,7 +233,7 @@ def test_peaks_are_the_highest(seed, rate):
     closed = stable_loop(seed, rate=rate, coordinates=3)
     grid = np.geomspace(1e-2, 500.0 if rate else 5000.0, 1000)
     for cut, size in ((Cut.POSE, np.array([1.0, 1.0, 0.1])), (Cut.COMMAND, np.ones(len(closed.plant.actuators)))):
-        found, system = peaks(closed, cut), sensitivity(opened(closed, cut))
+        found, system = peaks(closed, cut), sensitivity(open_at(closed, cut))
 
         def highest(points, turned, system=system, size=size):
             own = size[:, None] * system.transfer(points) / size

@@ -14,36 +14,36 @@ from flexstage.cases.double_triangle import double_triangle
 from flexstage.cases.parallelogram import parallelogram
 from flexstage.control.closed import loop
 from flexstage.control.error_tables import noise_table
-from flexstage.control.reduction import reduced, resonances
-from flexstage.control.simulation.result import others
+from flexstage.control.reduction import reduce_modes, resonances
+from flexstage.control.simulation.result import other_motions
 from flexstage.control.study.choices import Compensation, ControllerKind, StackKind
+from flexstage.control.study.resolve import default_rate, resolve
 from flexstage.control.study.runs import rest_rms
-from flexstage.control.study.resolve import settled, usual_rate
 from flexstage.control.study.setup import (
-    Amplifying,
-    Controlling,
+    AmplifierSetup,
+    ControllerSetup,
     Floor,
-    Gauging,
+    GaugeSetup,
     HystereticStacks,
     LoopSetup,
     Motion,
-    Shaking,
     SineMotion,
     StepMotion,
+    VibrationSetup,
 )
-from flexstage.control.study.stacks import stacks_of, swept
+from flexstage.control.study.stacks import stacks_of, sweep_stacks
 from flexstage.control.study.study import LoopStudy, loop_study
 from flexstage.control.tables import step_table
 from flexstage.parts.gauge import Gauge
-from flexstage.show.display import value_with_unit
+from flexstage.show.display import format_value
 
-CALM = Controlling(integral=300.0)
+CALM = ControllerSetup(integral=300.0)
 
 
 def test_every_number_of_the_set_up_reaches_the_hardware() -> None:
-    amplifier = Amplifying(bandwidth=900.0, current=0.1, slew=1e3, noise=2e-6, bits=16)
-    gauges = Gauging(noise=1e-10, resolution=2e-9, bandwidth=3e3, filter_order=2, filter_corner=4e3)
-    given = settled(parallelogram(), LoopSetup(rate=12e3, delay=1e-4, amplifier=amplifier, gauges=gauges)).plant.hardware
+    amplifier = AmplifierSetup(bandwidth=900.0, current=0.1, slew=1e3, noise=2e-6, bits=16)
+    gauges = GaugeSetup(noise=1e-10, resolution=2e-9, bandwidth=3e3, filter_order=2, filter_corner=4e3)
+    given = resolve(parallelogram(), LoopSetup(rate=12e3, delay=1e-4, amplifier=amplifier, gauges=gauges)).plant.hardware
     (power,), (sensor,) = given.amplifiers.values(), given.sensors.values()
     span = power.high - power.low
     volts = float(drive(parallelogram()).gain[0])
@@ -57,20 +57,20 @@ def test_every_number_of_the_set_up_reaches_the_hardware() -> None:
 
 def test_rates_are_round_and_fast_enough() -> None:
     for highest in (3.0, 173.0, 999.0, 1000.0, 1001.0, 5e3, 7.7e4):
-        rate = usual_rate(highest)
+        rate = default_rate(highest)
         assert rate >= max(10e3, 10.0 * highest)
         assert f"{rate:.0e}"[0] in "125"
         assert float(f"{rate:.0e}") == rate
 
 
 def test_a_reduced_plant_keeps_its_static_gains_and_the_loop_its_poles() -> None:
-    given = settled(double_triangle(), LoopSetup())
+    given = resolve(double_triangle(), LoopSetup())
     few, whole = given.plant.system, given.whole.system
     assert len(few.A) < 0.4 * len(whole.A)
     at_rest = [each.transfer(np.zeros(1))[0] for each in (few, whole)]
     np.testing.assert_allclose(at_rest[0], at_rest[1], rtol=1e-7, atol=1e-9 * np.max(np.abs(at_rest[1])))
     assert float(np.min(resonances(given.plant))) >= 0.01
-    assert reduced(given.plant, 0.01) is given.plant
+    assert reduce_modes(given.plant, 0.01) is given.plant
     lines = np.geomspace(1.0, 0.45 * given.rate, 200)
     pair = [
         given.plant.coordinates.scale[:, None] * (given.plant.coordinates.pose @ each.transfer(lines)[:, :6, :6]) for each in (few, whole)
@@ -79,7 +79,7 @@ def test_a_reduced_plant_keeps_its_static_gains_and_the_loop_its_poles() -> None
 
 
 def test_a_loop_of_stated_numbers_settles_as_its_integrator_does() -> None:
-    found = loop_study(parallelogram(), LoopSetup(controller=CALM, gauges=Gauging(resolution=0.0), seconds=0.1))
+    found = loop_study(parallelogram(), LoopSetup(controller=CALM, gauges=GaugeSetup(resolution=0.0), seconds=0.1))
     (run,) = found.runs
     assert run.figures is not None
     assert run.figures.settling[0] == pytest.approx(np.log(50.0) / 300.0, rel=0.05)  # and the delay
@@ -89,7 +89,7 @@ def test_a_loop_of_stated_numbers_settles_as_its_integrator_does() -> None:
 def test_open_loop_errors_are_those_at_rest() -> None:
     """A step in open loop ends where the static errors say, by the map alone and corrected."""
     for compensate, wanted in (((), 0.012938), ((Compensation.LOST_MOTION,), 0.0)):
-        setup = LoopSetup(controller=Controlling(kind=ControllerKind.NONE), compensate=compensate, gauges=Gauging(resolution=0.0))
+        setup = LoopSetup(controller=ControllerSetup(kind=ControllerKind.NONE), compensate=compensate, gauges=GaugeSetup(resolution=0.0))
         found = loop_study(parallelogram(), setup)
         error = found.runs[0].simulated.true_error[:, 0] / 1e-6
         late = error[len(error) // 2 :]
@@ -99,7 +99,7 @@ def test_open_loop_errors_are_those_at_rest() -> None:
 
 
 def test_the_inverse_of_the_stacks_own_model_is_exact_and_helps_others_fivefold() -> None:
-    own, other = (swept(stacks_of(parallelogram(), HystereticStacks(width=0.15, plant=kind))) for kind in StackKind)
+    own, other = (sweep_stacks(stacks_of(parallelogram(), HystereticStacks(width=0.15, plant=kind))) for kind in StackKind)
     assert float(own.rms_error_inverse[0]) < 1e-9
     assert float(other.rms_error_inverse[0]) < 0.2 * float(other.rms_error[0])
 
@@ -107,7 +107,7 @@ def test_the_inverse_of_the_stacks_own_model_is_exact_and_helps_others_fivefold(
 def test_stacks_creep_by_their_law() -> None:
     """In open loop a step goes on by as much a decade as is stated, from a tenth of a second on."""
     still, creeping = (HystereticStacks(width=0.01, creep=creep) for creep in (None, 0.02))
-    asked = LoopSetup(controller=Controlling(kind=ControllerKind.NONE), trajectory=StepMotion(by=Motion(x=1e-6)), seconds=1.5)
+    asked = LoopSetup(controller=ControllerSetup(kind=ControllerKind.NONE), trajectory=StepMotion(by=Motion(x=1e-6)), seconds=1.5)
     first, second = (
         loop_study(parallelogram(), LoopSetup(**{**asked.__dict__, "hysteresis": each})).runs[0].simulated for each in (still, creeping)
     )
@@ -118,14 +118,14 @@ def test_stacks_creep_by_their_law() -> None:
 
 def test_loads_that_are_carried_take_of_the_strokes() -> None:
     """290 of 300 um are there for a command, but not beside the 16 um that carry the platform's weight."""
-    slow, far = Controlling(integral=5.0), StepMotion(by=Motion(z=290e-6))
+    slow, far = ControllerSetup(integral=5.0), StepMotion(by=Motion(z=290e-6))
     assert loop_study(double_triangle(), LoopSetup(controller=slow, trajectory=far, compensate=(), seconds=0.01)).runs
     with pytest.raises(DesignError, match="trajectory z: it leaves what the strokes reach"):
         loop_study(double_triangle(), LoopSetup(controller=slow, trajectory=far, compensate=(Compensation.LOAD,), seconds=0.01))
 
 
 def test_the_same_seed_gives_the_same_noise() -> None:
-    setup = LoopSetup(controller=CALM, gauges=Gauging(noise=1e-9), trajectory=SineMotion(frequency=50.0), seconds=0.05)
+    setup = LoopSetup(controller=CALM, gauges=GaugeSetup(noise=1e-9), trajectory=SineMotion(frequency=50.0), seconds=0.05)
     first, again = (loop_study(parallelogram(), setup).runs[0].simulated.true_error for _ in range(2))
     other = loop_study(parallelogram(), LoopSetup(**{**setup.__dict__, "seed": 1})).runs[0].simulated.true_error
     np.testing.assert_array_equal(first, again)
@@ -134,16 +134,16 @@ def test_the_same_seed_gives_the_same_noise() -> None:
 
 def resting(density: float) -> LoopStudy:
     """A gauge of 0.5 nm on a floor that sways at 1 to 5 Hz, which the loop follows."""
-    swaying = Floor(x=Shaking(acceleration=(0.023, 0.023), frequencies=(1.0, 5.0)))
+    swaying = Floor(x=VibrationSetup(acceleration=(0.023, 0.023), frequencies=(1.0, 5.0)))
     return loop_study(
-        parallelogram(), LoopSetup(controller=CALM, floor=swaying, gauges=Gauging(noise=density, resolution=5e-10), seconds=0.05)
+        parallelogram(), LoopSetup(controller=CALM, floor=swaying, gauges=GaugeSetup(noise=density, resolution=5e-10), seconds=0.05)
     )
 
 
 def test_slow_rounding_is_told_and_its_rms_simulated() -> None:
     """The loop waits until the reading moves by a step: rounding is no white noise, and what the budget says is far off."""
     found = resting(1e-14)
-    assert found.noise.slow == ("S",)
+    assert found.noise.slowly_rounding == ("S",)
     assert found.noise.changes[0] < 0.01
     assert found.resting is not None
     assert 2.0 * found.noise.rms[0] < found.resting.low[0] < found.resting.rms[0] < found.resting.high[0] < 5e-10
@@ -168,7 +168,7 @@ def test_slow_rounding_is_told_and_its_rms_simulated() -> None:
 def test_a_loop_at_rest_strays_to_the_edge_of_its_gauges_step() -> None:
     """Held u steps off the middle, a loop without noise ends where the reading changes, (1/2 - |u|) away: over all u, 1/sqrt(12) rms."""
     step = 5e-9
-    found = loop_study(parallelogram(), LoopSetup(controller=CALM, gauges=Gauging(noise=1e-14, resolution=step), seconds=0.05)).resting
+    found = loop_study(parallelogram(), LoopSetup(controller=CALM, gauges=GaugeSetup(noise=1e-14, resolution=step), seconds=0.05)).resting
     assert found is not None
     assert found.low[0] < step / np.sqrt(12.0) < found.high[0]
     assert found.rms[0] > 0.1 * step
@@ -187,7 +187,7 @@ def test_steps_alone_are_simulated_too() -> None:
 def test_rounding_in_noise_of_its_step_is_white() -> None:
     """Noise of half a step and more leaves the budget as it is, and simulations hold it."""
     found = resting(1e-11)
-    assert not found.noise.slow
+    assert not found.noise.slowly_rounding
     assert found.resting is None
     repeated = rest_rms(found.settled, found.controller, found.closed)
     assert repeated.low[0] < found.noise.rms[0] < repeated.high[0]
@@ -199,7 +199,7 @@ def test_steps_tell_what_every_other_axis_does() -> None:
     """A stage of one loop turns and sways as well: the table names the most of both, the document all."""
     found = loop_study(parallelogram(), LoopSetup(controller=CALM, seconds=0.05))
     run = found.runs[0]
-    told = others(run.simulated, "x")
+    told = other_motions(run.simulated, "x")
     assert set(told) == {"y", "z", "rx", "ry", "rz"}
     for name, each in told.items():
         assert each.unit == ("rad" if name.startswith("r") else "m")
@@ -208,15 +208,15 @@ def test_steps_tell_what_every_other_axis_does() -> None:
     assert turned[0] > 1e-9
     table = step_table(found.runs)
     (cell,) = (row[[column.head for column in table.columns].index("others move")].text for row in table.rows)
-    assert cell.endswith(f"{value_with_unit(turned[0], 'rad', 3)} {turned[1]}")
+    assert cell.endswith(f"{format_value(turned[0], 'rad', 3)} {turned[1]}")
     assert plain(found)["runs"][0]["step"]["others"][turned[1]]["largest"] == turned[0]
 
 
 def test_others_count_departures_from_what_was_asked() -> None:
     """Of six loops: along the axis itself nothing, along others the error."""
-    setup = LoopSetup(controller=Controlling(integral=5.0), trajectory=StepMotion(by=Motion(x=1e-6)), seconds=0.02)
+    setup = LoopSetup(controller=ControllerSetup(integral=5.0), trajectory=StepMotion(by=Motion(x=1e-6)), seconds=0.02)
     found = loop_study(double_triangle(), setup)
     seen = found.runs[0].simulated
-    told = others(seen, "x")
+    told = other_motions(seen, "x")
     assert set(told) == {"y", "z", "rx", "ry", "rz"}
     assert told["y"].largest == np.max(np.abs(seen.true_error[:, 1]))

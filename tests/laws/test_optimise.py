@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from flexstage.analysis.judge import measured
+from flexstage.analysis.judge import measure_all
 from flexstage.analysis.measures import Extreme
 from flexstage.analysis.requirements import Sense, measure
 from flexstage.base.document import plain
@@ -16,7 +16,7 @@ from flexstage.studies.optimisation.front import pareto_front
 from flexstage.studies.optimisation.optimum import optimise
 from flexstage.studies.optimisation.problem import Problem, Side
 from flexstage.studies.optimisation.quadratic import quadratic
-from flexstage.studies.optimisation.search import Trace, search, together
+from flexstage.studies.optimisation.search import Trace, run_searches, search
 from flexstage.studies.optimisation.setting import setting
 from flexstage.studies.optimisation.values import Point, Scalars, Values
 from tests.conftest import FULL
@@ -67,8 +67,8 @@ def test_values_are_those_of_the_judge():
     measures = tuple(measure(study.design, key, "here") for key in DEMANDS)
     shares = np.array([0.2, 0.7, 0.9])
     point = Values(study, measures)(shares[None])[0]
-    design = study.described(np.array([each.at(share) for each, share in zip(study.variables, shares, strict=True)]))
-    np.testing.assert_allclose(point.values, np.array(measured(design, measures), dtype=float), rtol=1e-9)
+    design = study.mechanism_for(np.array([each.at(share) for each, share in zip(study.variables, shares, strict=True)]))
+    np.testing.assert_allclose(point.values, np.array(measure_all(design, measures), dtype=float), rtol=1e-9)
 
 
 @pytest.mark.parametrize("seed", range(20 if FULL else 5))
@@ -142,7 +142,7 @@ def test_curved_limits_are_followed():
     """Along the edge of a disc a search comes to the end in a few steps, not in many short ones."""
     trace = Trace()
     problem = Problem((Side(0, Sense.AT_MOST, 0.0, 1.0),), (Side(1, Sense.AT_MOST, 1.0, 1.0),))
-    together([search(problem, np.array([0.95, 0.2]), trace)], lambda shares: [_on_a_circle(share) for share in shares])
+    run_searches([search(problem, np.array([0.95, 0.2]), trace)], lambda shares: [_on_a_circle(share) for share in shares])
     np.testing.assert_allclose(trace.point.shares, [np.sqrt(0.5), np.sqrt(0.5)], atol=1e-4)
     assert trace.converged
     assert trace.evaluated < 25
@@ -189,7 +189,7 @@ def test_contradicting_limits_are_named_and_nothing_else(tmp_path):
     assert [{each.key for each in one.limits} for one in found.contradictions] == [{"stiffness.z", "frequency.platform.1"}]
     problem = setting(study, wanted).problem
     grid = np.array(list(itertools.product(np.linspace(0.0, 1.0, 13), repeat=2)))
-    least = min(problem.excess(point) for point in setting(study, wanted).values.plain(grid))
+    least = min(problem.excess(point) for point in setting(study, wanted).values.evaluate(grid))
     assert 0.0 < found.contradictions[0].violation <= least
     for left_out in ("stiffness.z", "frequency.platform.1"):
         rest = tuple(each for each in study.limits if each.key != left_out)
@@ -207,12 +207,12 @@ def test_rounded_designs_are_on_their_steps_and_the_best_around(tmp_path):
     values = setting(study, wanted)
     logs = [np.log(0.25e-3 * count / 1e-3) / np.log(8.0) for count in range(4, 33)]
     shares = np.array([((0.25 * count - 1.0) / 7.0, log) for count in range(4, 33) for log in logs])
-    kept = [point for point in values.values.plain(shares) if isinstance(point, Point) and values.problem.excess(point) <= 1e-8]
+    kept = [point for point in values.values.evaluate(shares) if isinstance(point, Point) and values.problem.excess(point) <= 1e-8]
     assert found.value(found.rounded.point) == pytest.approx(max(point.values[0] for point in kept), rel=1e-9)
     told = plain(found)
     values, objective = (told["rounded"][key] for key in ("variables", "objectives"))
-    mechanism = study.described(np.array([values[each.name] for each in study.variables]))
-    measured_again = [float(each) for each in measured(mechanism, (*(each.measure for each in wanted.objectives), *found.limits))]
+    mechanism = study.mechanism_for(np.array([values[each.name] for each in study.variables]))
+    measured_again = [float(each) for each in measure_all(mechanism, (*(each.measure for each in wanted.objectives), *found.limits))]
     assert [*objective.values(), *(each["value"] for each in told["rounded"]["limits"])] == pytest.approx(measured_again, rel=1e-6)
     assert all(each["passed"] and each["margin"] >= 0.0 for each in told["rounded"]["limits"])
 
@@ -299,6 +299,6 @@ def test_designs_that_cannot_be_are_stepped_around():
         return Point(share, (Scalars(value, np.array([[2.0 * (share[0] - 0.9)]]), Extreme.LEAST),))
 
     trace = Trace()
-    together([search(Problem((Side(0, Sense.AT_MOST, 0.0, 1.0),), ()), np.array([0.1]), trace)], walled)
+    run_searches([search(Problem((Side(0, Sense.AT_MOST, 0.0, 1.0),), ()), np.array([0.1]), trace)], walled)
     assert 0.59 < trace.point.shares[0] < 0.6
     assert not trace.converged

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import flexstage as fs
-from flexstage.analysis.judge import measured
+from flexstage.analysis.judge import measure_all
 from flexstage.base.finding import DesignError
 from flexstage.cases.double_triangle import SM_REF_B, double_triangle
 from flexstage.cases.parameters import parameters
@@ -18,7 +18,7 @@ from flexstage.models.batch.numbers import drawn_family
 from flexstage.studies.sweeps.engine import engine_of
 from flexstage.studies.sweeps.evaluate import piece
 from flexstage.studies.sweeps.file import loads_study
-from flexstage.studies.sweeps.variable import varied_by
+from flexstage.studies.sweeps.variable import apply_columns
 
 STUDY = """
 format = "flexstage study 1"
@@ -77,7 +77,7 @@ def test_studies_vary_parameters_and_addresses_together():
     found = piece(study, 0, 4)
     assert not found.failures
     for values, responses in zip(found.variables, found.responses, strict=True):
-        alone = measured(study.described(values), tuple(study.columns.values()))
+        alone = measure_all(study.mechanism_for(values), tuple(study.columns.values()))
         np.testing.assert_allclose(responses, [float(value) for value in alone], rtol=1e-12)
 
 
@@ -85,12 +85,12 @@ def test_addresses_are_written_on_top_of_parameters():
     study = loads_study(STUDY)
     values = np.array([[0.025, 0.9, 1.01], [0.027, 1.1, 0.99]])
     for row in values:
-        alone = study.described(row)
+        alone = study.mechanism_for(row)
         size = alone.bodies["platform"].solids["plate"].size
         assert size[0] == SM_REF_B.plate.side * row[2]
         assert size[2] == SM_REF_B.plate.thickness * row[1]
         assert alone.units["vertical"].links["front"].at[0] == 0.08
-        batch = study.described(values).bodies["platform"].solids["plate"].size
+        batch = study.mechanism_for(values).bodies["platform"].solids["plate"].size
         assert size[0] in batch[0]
 
 
@@ -130,12 +130,12 @@ def test_bad_parameters_of_cases_are_told_all_at_once():
 def test_many_designs_are_drawn_from_parameters_with_derivatives():
     """The engine's frequencies are those of the lumped model, its derivatives those of finite differences."""
     study = loads_study(STUDY.replace('responses.mass = "mass"', 'responses.f = "frequency.platform.1"'))
-    values = study.drawn(0, 1)
+    values = study.sample(0, 1)
     names = tuple(each.name for each in study.variables)
-    family = plan_family(drawn_family(lambda columns: varied_by(study.design, study.variables, columns), names, values[0]))
+    family = plan_family(drawn_family(lambda columns: apply_columns(study.design, study.variables, columns), names, values[0]))
     np.testing.assert_allclose(engine_of(study).answers(values)[0], platform_modes(family, values).frequencies[:, :1], rtol=1e-9)
     found = platform_modes(family, values, slopes=True)
-    alone = fs.modes(fs.lumped(study.described(values[0])))
+    alone = fs.modes(fs.lumped(study.mechanism_for(values[0])))
     np.testing.assert_allclose(found.frequencies[0], alone.frequencies[:6], rtol=1e-7)
     steps = 1e-6 * values * np.eye(3)
     above, below = (platform_modes(family, values + sign * steps).frequencies for sign in (1.0, -1.0))

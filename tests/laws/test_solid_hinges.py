@@ -15,9 +15,9 @@ from flexstage.parts.notch import Notch
 from flexstage.parts.profile import Circular, Elliptic, Filleted, Straight
 from flexstage.parts.rod import Rod
 from flexstage.solid.fea.estimate import Accuracy, change
-from flexstage.solid.fea.field import applied, factored, field, rigid, stiffness
+from flexstage.solid.fea.field import apply_form, factorise, field, rigid, stiffness
 from flexstage.solid.fea.hinge import hinge_compliance, hinge_mesh
-from flexstage.solid.fea.mesh import Meshed
+from flexstage.solid.fea.mesh import PieceMesh
 from flexstage.solid.fea.piece import medium
 from flexstage.solid.fea.specimen import END, START
 from flexstage.spatial.frame import identity
@@ -86,7 +86,7 @@ SAMPLES = [
 def spaces(part, order=2):
     mesh = hinge_mesh(part, order=order)
     mesh.Curve(order)
-    whole = Meshed(mesh, (medium(STEEL),), (START, END), np.zeros(mesh.ne, dtype=int))
+    whole = PieceMesh(mesh, (medium(STEEL),), (START, END), np.zeros(mesh.ne, dtype=int))
     return field(whole, [], order), field(whole, [START, END], order)
 
 
@@ -96,8 +96,8 @@ def test_stiffness_is_symmetric(part):
     _, held = spaces(part)
     form, moved = stiffness(held), rigid(held, identity(), faces=END)
     free = stiffness(held, assemble=False)
-    motion = moved - factored(held, form)(applied(free, moved))
-    law = motion.T @ applied(free, motion)
+    motion = moved - factorise(held, form)(apply_form(free, moved))
+    law = motion.T @ apply_form(free, motion)
     assert change(law, law.T) < 1e-8
     assert change(np.linalg.inv(law), hinge_compliance(part, STEEL, ONCE).whole) < 1e-6
 
@@ -116,7 +116,7 @@ def test_rigid_motion_is_free_of_stress(part):
         assert np.max(np.abs(stress)) < 1e-9 * STEEL.young
     form = stiffness(space, assemble=False)
     distorted = motions * np.linspace(1.0, 2.0, space.size)[:, None]
-    assert np.linalg.norm(applied(form, motions)) < 1e-9 * np.linalg.norm(applied(form, distorted))
+    assert np.linalg.norm(apply_form(form, motions)) < 1e-9 * np.linalg.norm(apply_form(form, distorted))
 
 
 @pytest.mark.parametrize("part", SAMPLES)

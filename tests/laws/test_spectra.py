@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from flexstage.base.finding import DesignError
 from flexstage.experiment import cross_spectra as module
-from flexstage.experiment.cross_spectra import Segments, Window, pooled, spectra
+from flexstage.experiment.cross_spectra import Segments, Window, pool, spectra
 from flexstage.experiment.record import Channel, InMemory, Record, Role, in_memory
 from flexstage.experiment.transfer import (
     h1,
@@ -147,7 +147,7 @@ def test_single_records_pooled_are_one_record():
     for index, gain in enumerate((2.0, -3.0)):
         drive = random.standard_normal((6400, 1))
         parts.append(spectra(in_memory((channels[index], channels[2]), RATE, np.hstack([drive, gain * drive])), Segments(1.0)))
-    together = pooled(parts)
+    together = pool(parts)
     assert [channel.name for channel in together.inputs] == ["u0", "u1"]
     np.testing.assert_allclose(h1(together).values[5].ravel(), [2.0, -3.0], atol=1e-9)
 

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from flexstage.analysis.judge import measured
+from flexstage.analysis.judge import measure_all
 from flexstage.analysis.requirements import measure
 from flexstage.analysis.sensitivities import step_parameters
 from flexstage.cases.double_triangle import double_triangle
@@ -21,7 +21,7 @@ from flexstage.studies.sweeps.evaluate import piece
 from flexstage.studies.sweeps.file import load_study, loads_study
 from flexstage.studies.sweeps.loaded import loaded_findings
 from flexstage.studies.sweeps.plan import Plan, Sampling, shares
-from flexstage.studies.sweeps.variable import varied
+from flexstage.studies.sweeps.variable import apply
 
 STUDY = """
 format = "flexstage study 1"
@@ -61,7 +61,7 @@ def test_a_batch_is_its_designs_one_by_one():
     study = loads_study(STUDY)
     found = piece(study, 0, 12)
     for values, responses in zip(found.variables, found.responses, strict=True):
-        alone = measured(varied(study.design, study.variables, values), tuple(study.columns.values()))
+        alone = measure_all(apply(study.design, study.variables, values), tuple(study.columns.values()))
         np.testing.assert_allclose(responses, [float(value) for value in alone], rtol=1e-12)
 
 
@@ -96,7 +96,7 @@ def test_designs_that_differ_in_their_load_alone_are_those_one_by_one(tmp_path: 
     study = upright(tmp_path, 'responses = { b = "buckling", s = "safety", z = "deflection.z", f = "frequency.1" }')
     found = piece(study, 0, 4)
     for values, responses in zip(found.variables, found.responses, strict=True):
-        alone = measured(varied(study.design, study.variables, values), tuple(study.columns.values()))
+        alone = measure_all(apply(study.design, study.variables, values), tuple(study.columns.values()))
         np.testing.assert_allclose(responses, [float(value) for value in alone], rtol=1e-9)
 
 
@@ -111,7 +111,7 @@ def test_designs_that_fall_under_their_weight_have_no_values(tmp_path: Path, res
 
 def test_variables_reach_the_numbers_they_name():
     study = loads_study(STUDY)
-    changed = varied(study.design, study.variables, np.array([1.05, 0.9e-3]))
+    changed = apply(study.design, study.variables, np.array([1.05, 0.9e-3]))
     assert get(changed, "materials.aluminium.young") == pytest.approx(1.05 * get(study.design, "materials.aluminium.young"), rel=1e-15)
     assert get(changed, "parts.leaf.thickness") == 0.9e-3
 
@@ -145,10 +145,10 @@ def test_measures_are_analytic(key):
     stage, step = double_triangle(), 1e-3
     names = ("parts.neck.thickness", "bodies.platform.solids.plate.size.x", "parts.lever_notch.thickness")
     asked = (measure(stage, key, "here"),)
-    slopes = np.imag(measured(replace(step_parameters(stage, names), requirements=stage.requirements), asked)[0]) / 1e-20
+    slopes = np.imag(measure_all(replace(step_parameters(stage, names), requirements=stage.requirements), asked)[0]) / 1e-20
     for slope, name in zip(np.broadcast_to(slopes, 3), names, strict=True):
         value = get(stage, name)
-        values = measured(set_value(stage, name, value * (1.0 + step * np.array([-1.0, -0.5, 0.5, 1.0]))), asked)[0] * np.ones(4)
+        values = measure_all(set_value(stage, name, value * (1.0 + step * np.array([-1.0, -0.5, 0.5, 1.0]))), asked)[0] * np.ones(4)
         coarse, fine = (values[3] - values[0]) / (2.0 * step), (values[2] - values[1]) / step
         found = (4.0 * fine - coarse) / 3.0
         size = 1.0 if key.partition(".")[0] in {"loss", "crosstalk", "load"} else abs(values[1])

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from flexstage.analysis.judge import measured
+from flexstage.analysis.judge import measure_all
 from flexstage.analysis.requirements import measure
 from flexstage.base.number import Table
 from flexstage.cases.double_triangle import double_triangle
@@ -17,7 +17,7 @@ from flexstage.studies.sweeps.definition import Study
 from flexstage.studies.sweeps.engine import Engine, engine_of
 from flexstage.studies.sweeps.evaluate import piece
 from flexstage.studies.sweeps.plan import Plan, Sampling
-from flexstage.studies.sweeps.variable import Variable, varied
+from flexstage.studies.sweeps.variable import Variable, apply
 from tests.conftest import FULL
 
 STAGE = double_triangle()
@@ -48,7 +48,7 @@ def test_frequencies_are_those_of_dense_matrices(moved, seed):
     asked = study(moved, seed=seed)
     found = piece(asked, 0, 2)
     for values, responses in zip(found.variables, found.responses, strict=True):
-        alone = measured(varied(STAGE, asked.variables, values), tuple(asked.columns.values()))
+        alone = measure_all(apply(STAGE, asked.variables, values), tuple(asked.columns.values()))
         np.testing.assert_allclose(responses, [float(value) for value in alone], rtol=1e-6)
 
 
@@ -122,16 +122,16 @@ def test_numbers_that_depart_go_before_shared_ones_in_either_order():
         asked = study(order, keys=("frequency.platform.2",))
         found = piece(asked, 0, 2)
         for values, response in zip(found.variables, found.responses, strict=True):
-            stage = varied(STAGE, asked.variables, values)
+            stage = apply(STAGE, asked.variables, values)
             share = dict(zip((each.name for each in asked.variables), values, strict=True))["B2/front.thickness"]
             assert get(stage, "B2/front.thickness") == pytest.approx(share * get(STAGE, "B2/front.thickness"))
-            assert response[0] == pytest.approx(float(measured(stage, tuple(asked.columns.values()))[0]), rel=1e-6)
+            assert response[0] == pytest.approx(float(measure_all(stage, tuple(asked.columns.values()))[0]), rel=1e-6)
 
 
 def test_a_study_that_describes_designs_in_its_own_way_is_read_by_it():
     class Heavier(Study):
         def described(self, values):
-            return varied(STAGE, self.variables, 2.0 * values)
+            return apply(STAGE, self.variables, 2.0 * values)
 
     asked = study((("materials.steel.density",),))
     own = Heavier(**{name: getattr(asked, name) for name in asked.__dataclass_fields__})
@@ -147,7 +147,7 @@ def test_dense_batches_choose_modes_design_by_design():
     )
     values = np.array([[0.3], [1.0], [3.0]])
     asked = tuple(measure(STAGE, f"frequency.platform.{number}", "here") for number in (1, 6))
-    together = measured(varied(STAGE, (variable,), values), asked)
+    together = measure_all(apply(STAGE, (variable,), values), asked)
     for row, value in enumerate(values):
-        alone = measured(varied(STAGE, (variable,), value), asked)
+        alone = measure_all(apply(STAGE, (variable,), value), asked)
         assert [float(each[row]) for each in together] == pytest.approx([float(each) for each in alone], rel=1e-9)

@@ -120,7 +120,7 @@ steel = { of = "materials", normal = "0.02 %" }
     for column, variable in enumerate(study.deviations):
         step = np.zeros((2, len(size)))
         step[:, column] = variable.deviation * np.array([1.0, -1.0])
-        there = np.stack([np.broadcast_to(found, 2) for found in study.answered(study.described(step))], axis=-1)
+        there = np.stack([np.broadcast_to(found, 2) for found in study.evaluate(study.mechanism_for(step))], axis=-1)
         wanted = (there[0] - there[1]) / (2.0 * variable.deviation)
         np.testing.assert_allclose(slope.gradient[:, column], wanted, rtol=1e-4, atol=1e-4 * linear.max() / size[column])
 

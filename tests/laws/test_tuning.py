@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from flexstage.analysis.modes import modes
-from flexstage.control.closed import Cut, loop, opened
+from flexstage.control.closed import Cut, loop, open_at
 from flexstage.control.controllers.loops import Loops, actuator_loops, loop_modes, modal_loops, platform_loops
 from flexstage.control.controllers.lqg import Disturbances
 from flexstage.control.electronics import Hardware
@@ -18,7 +18,7 @@ from flexstage.control.stability import verdict
 from flexstage.control.stability_margins import peaks
 from flexstage.control.tuning.attempt import Task, attempt
 from flexstage.control.tuning.goal import Goal, Kind
-from flexstage.control.tuning.judge import judged
+from flexstage.control.tuning.judge import judge_loop
 from flexstage.control.tuning.view import view
 from flexstage.mechanism.mechanism import PLATFORM, Probe
 from flexstage.mechanism.pattern import Pose
@@ -65,11 +65,11 @@ def test_what_is_judged_reached_is_reached(case, kind, part):
     system = found.controller.system(one.hardware.step)
     closed = loop(one, system)
     assert verdict(closed).stable == found.judgement.stable
-    again = judged(seen, system)
+    again = judge_loop(seen, system)
     np.testing.assert_allclose([again.peak, *again.bandwidths], [found.judgement.peak, *found.judgement.bandwidths], rtol=1e-6)
     if not found.reaches(asked, goal):
         return
-    gains = opened(closed, Cut.POSE).transfer(np.array([asked]))[0]
+    gains = open_at(closed, Cut.POSE).transfer(np.array([asked]))[0]
     own = np.diag(loops.sense @ gains @ np.linalg.inv(loops.sense))
     np.testing.assert_allclose(np.abs(own), 1.0, rtol=0.01)
     assert peaks(closed, Cut.POSE).sensitivity.value <= goal.sensitivity * 1.02

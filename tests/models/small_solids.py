@@ -12,7 +12,7 @@ from flexstage.parts.rod import Rod
 from flexstage.solid.fea.cache import key_of
 from flexstage.solid.fea.component import Component, components
 from flexstage.solid.fea.fineness import Fineness, Reduction
-from flexstage.solid.fea.reducing import Reducing
+from flexstage.solid.fea.reducing import Reduce
 
 COARSE = Reduction(Fineness(neck=2.5, block=2.5, grading=0.6, order=2), modes=2)
 
@@ -37,8 +37,8 @@ def rod(length: float = 6 * mm) -> Component:
     return components(propped(length))[0]
 
 
-def job(component: Component) -> Reducing:
-    return Reducing(key_of(component, COARSE), component, COARSE)
+def job(component: Component) -> Reduce:
+    return Reduce(key_of(component, COARSE), component, COARSE)
 
 
 class Bomb:
@@ -51,8 +51,8 @@ class Bomb:
         return self.function, self.arguments
 
 
-def mined(name: str, bomb: Bomb, component: Component | None = None) -> Reducing:
+def mined(name: str, bomb: Bomb, component: Component | None = None) -> Reduce:
     """A job that goes off where it is loaded."""
     part = replace(component or rod(), name=name)
     plain = job(part)
-    return Reducing(plain.key, replace(part, place=bomb), COARSE)
+    return Reduce(plain.key, replace(part, place=bomb), COARSE)

@@ -20,7 +20,7 @@ from flexstage.cases.parallelogram import parallelogram
 from flexstage.mechanism.drawn import calibrated_parts, with_drawn_parts
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.restrict import isolate
-from flexstage.solid.calibration import with_matrices
+from flexstage.solid.calibration import substitute_parts
 from flexstage.solid.fea.hinge_form import HingeForm, HingeSolid
 from flexstage.solid.fea.piece import span
 from flexstage.solid.fea.roots import Roots
@@ -171,7 +171,7 @@ def test_rows_that_calibrated_parts_touch_are_not_independent() -> None:
 
 @pytest.mark.parametrize("stage", [parallelogram(), double_triangle()])
 def test_with_matrices_is_what_the_file_says(stage: fs.Mechanism) -> None:
-    same = with_matrices(stage, solid_hinges(stage, softened(1.1)))
+    same = substitute_parts(stage, solid_hinges(stage, softened(1.1)))
     read = fs.loads(fs.solid.calibrate(fs.dumps(stage), softened(1.1)).text)
     assert digest(same, physics=True) == digest(read, physics=True)
 

@@ -9,7 +9,7 @@ import pytest
 
 from flexstage.cases.double_triangle import SM_REF_B, double_triangle
 from flexstage.mechanism.near import near_pairs
-from flexstage.solid.fea.draw import drawn, moved
+from flexstage.solid.fea.draw import draw_form, move_solid
 from flexstage.solid.fea.piece import Piece
 from flexstage.solid.fea.stage_pieces import Stage, stage_pieces
 from tests.hygiene.source import ROOT
@@ -54,7 +54,7 @@ def found() -> dict[tuple[str, str], float]:
     """Least distance [mm] of any two kinds."""
     least: dict[tuple[str, str], float] = {}
     for first, second in apart(stage_pieces(double_triangle())):
-        shapes = [moved(drawn(piece.form), piece.frame) for piece in (first, second)]
+        shapes = [move_solid(draw_form(piece.form), piece.frame) for piece in (first, second)]
         one, other = sorted((kind(first), kind(second)))
         least[one, other] = min(least.get((one, other), NEAR * 1e3), float(shapes[0].Distance(shapes[1])))
     return least

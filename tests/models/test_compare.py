@@ -16,7 +16,7 @@ from flexstage.base.finding import DesignError
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.experiment.comparison import Compared, ComparedMode, Measured, compare
 from flexstage.experiment.identification.identified import Identified
-from flexstage.experiment.pipeline import identification, sound
+from flexstage.experiment.pipeline import identification, usable_measurement
 from flexstage.experiment.record import Channel, InMemory, Record, in_memory
 from flexstage.experiment.shapes_on_stage import stage_shapes
 from flexstage.experiment.virtual_rig.plan import volts_per_metre
@@ -35,7 +35,7 @@ BUILT = assign(STAGE, "horizontal/front.thickness=1.8mm")
 
 
 def identified(record: Record) -> Identified:
-    return identification(sound([record])).found
+    return identification(usable_measurement([record])).found
 
 
 @pytest.fixture(scope="module")

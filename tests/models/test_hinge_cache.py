@@ -22,7 +22,7 @@ from flexstage.solid.fea import piece
 from flexstage.solid.fea.cache import Cache
 from flexstage.solid.fea.estimate import Accuracy
 from flexstage.solid.fea.hinge import hinge_compliance
-from flexstage.solid.fea.hinge_cache import kept_hinges
+from flexstage.solid.fea.hinge_cache import hinges_from_cache
 from flexstage.solid.fea.hinge_form import HingeForm, HingeSolid
 from flexstage.solid.fea.parts import Ways
 from flexstage.solid.fea.piece import form_digest
@@ -44,7 +44,7 @@ def formed(part: Shaped) -> HingeForm:
 
 
 def kept(part: Shaped, ways: Ways, notice: Callable[[Finding], None] | None = None) -> HingeSolid:
-    return kept_hinges({"prop": formed(part)}, ROUGH, ways, notice)["prop"]
+    return hinges_from_cache({"prop": formed(part)}, ROUGH, ways, notice)["prop"]
 
 
 def test_kept_computed_and_plain_hinges_are_the_same(tmp_path: Path) -> None:
@@ -79,7 +79,7 @@ def test_hinges_are_computed_side_by_side_each_once(tmp_path: Path) -> None:
     other = Rod("steel", 10 * mm, 3 * mm)
     forms = {"short": formed(ROD), "long": formed(other), "alike": formed(ROD)}
     ways = Ways(Cache(tmp_path), steps.append, Limits(workers=2))
-    found = kept_hinges(forms, ROUGH, ways)
+    found = hinges_from_cache(forms, ROUGH, ways)
     assert list(found) == ["short", "long", "alike"]
     assert found["alike"] is found["short"]
     assert found["long"].compliance[0, 0] > 1.1 * found["short"].compliance[0, 0]
@@ -96,7 +96,7 @@ def test_a_hinge_that_is_done_is_kept_when_another_is_interrupted(tmp_path: Path
 
     forms = {"short": formed(ROD), "long": formed(Rod("steel", 10 * mm, 3 * mm))}
     with pytest.raises(KeyboardInterrupt):
-        kept_hinges(forms, ROUGH, Ways(Cache(tmp_path), interrupted, Limits(workers=1)))
+        hinges_from_cache(forms, ROUGH, Ways(Cache(tmp_path), interrupted, Limits(workers=1)))
     assert len(list(tmp_path.iterdir())) == 1
 
 

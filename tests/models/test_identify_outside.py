@@ -10,7 +10,7 @@ import pytest
 from flexstage.experiment.identification.identified import Identified
 from flexstage.experiment.identification.identify import identify
 from flexstage.experiment.identification.peaks import Doubt
-from flexstage.experiment.identification.tones import quieted
+from flexstage.experiment.identification.tones import remove_tones
 from flexstage.experiment.record import InMemory, Record
 from tests.conftest import FULL
 from tests.models.synthetic_records import Truth, record, truth
@@ -78,14 +78,14 @@ def test_the_mains_and_a_pump(seed: int) -> None:
 @pytest.mark.parametrize("noise", [0.0, 0.1])
 def test_what_is_left_of_a_tone_is_less_than_the_noise(noise: float) -> None:
     made = record(truth(), 3, seconds=30.0, noise=noise)
-    quiet, tones = quieted(shaken(made, 150.02, 10.0, (2,)))
+    quiet, tones = remove_tones(shaken(made, 150.02, 10.0, (2,)))
     assert {round(tone.frequency, 4) for tone in tones} == {150.02}
     assert np.std((quiet.values - made.values)[:, 8]) < (1e-5 if noise == 0.0 else 0.01 * noise) * np.std(made.values[:, 8])
 
 
 def test_a_record_without_tones_stays_as_it_is() -> None:
     for seed in range(2 * SEEDS):
-        assert quieted(record(truth(seed=1000 + seed), seed, seconds=30.0))[1] == ()
+        assert remove_tones(record(truth(seed=1000 + seed), seed, seconds=30.0))[1] == ()
 
 
 def test_a_stage_driven_by_tones_keeps_them() -> None:
@@ -94,14 +94,14 @@ def test_a_stage_driven_by_tones_keeps_them() -> None:
     lines = np.fft.rfft(made.values, axis=0)
     lines[random.random(len(lines)) > 0.05] = 0.0
     tuned = replace(made, samples=InMemory(np.fft.irfft(lines, made.length, axis=0)))
-    assert quieted(tuned)[1] == ()
+    assert remove_tones(tuned)[1] == ()
 
 
 def test_an_oscillation_that_fades_stays() -> None:
     made, time = record(truth(), 5, seconds=30.0), np.arange(30 * 2048) / 2048.0
     values = made.values.copy()
     values[:, 8] += 5.0 * np.std(values[:, 8]) * np.exp(-0.01 * time) * np.sin(2.0 * np.pi * 150.02 * time)
-    quiet, tones = quieted(replace(made, samples=InMemory(values)))
+    quiet, tones = remove_tones(replace(made, samples=InMemory(values)))
     assert [(round(tone.frequency, 2), round(tone.fades, 1)) for tone in tones] == [(150.02, 0.3)]
     np.testing.assert_array_equal(quiet.values, values)
 

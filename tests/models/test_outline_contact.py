@@ -24,7 +24,7 @@ from flexstage.parts.part import Part
 from flexstage.parts.profile import Circular, Elliptic, Filleted, length, rise
 from flexstage.parts.rod import Rod
 from flexstage.solid.fea.contact import contact_findings as cad_findings
-from flexstage.solid.fea.draw import drawn, moved
+from flexstage.solid.fea.draw import draw_form, move_solid
 from flexstage.solid.fea.stage_pieces import stage_pieces
 
 STEEL = Material(young=200e9, poisson=0.3, density=7750.0)
@@ -79,7 +79,7 @@ def random_stage(seed: int) -> Mechanism:
 def clashes(mechanism: Mechanism) -> dict[frozenset[str], float]:
     """Pairs of drawn solids that overlap and belong to nothing in common, with the thickness of their common volume [mm]."""
     stage = stage_pieces(mechanism)
-    shapes = {name: moved(drawn(piece.form), piece.frame) for name, piece in stage.pieces.items()}
+    shapes = {name: move_solid(draw_form(piece.form), piece.frame) for name, piece in stage.pieces.items()}
     found: dict[frozenset[str], float] = {}
     for one, other in combinations(stage.pieces, 2):
         ends = [

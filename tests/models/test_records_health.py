@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from flexstage.base.finding import DesignError
-from flexstage.experiment.health import Needs, examine, responses_findings, usable
+from flexstage.experiment.health import Needs, examine, responses_findings, usable_record
 from flexstage.experiment.options import Allow
-from flexstage.experiment.pipeline import sound as sound_records
+from flexstage.experiment.pipeline import usable_measurement as sound_records
 from flexstage.experiment.record import Channel, Record, Responses, Role, in_memory
 
 RATE, LENGTH = 2048.0, 8192
@@ -112,8 +112,8 @@ def test_a_fault_is_cured_only_when_allowed(plant: Callable[[np.ndarray], None])
     kind, name, _ = PLANTED[plant]
     whole = planted(plant)
     with pytest.raises(DesignError):
-        usable(whole, frozenset(Allow) - {kind})
-    left = usable(whole, frozenset({kind}))
+        usable_record(whole, frozenset(Allow) - {kind})
+    left = usable_record(whole, frozenset({kind}))
     assert (name in left.names) == (kind in (Allow.CLIPPED, Allow.GAPS))
     assert np.isfinite(left.values).all()
     if plant is broken:
@@ -126,7 +126,7 @@ def test_a_fault_is_cured_only_when_allowed(plant: Callable[[np.ndarray], None])
 def test_sound_records_are_left_as_they_are() -> None:
     for seed in range(20):
         whole = record(sound(seed))
-        assert usable(whole, frozenset(Allow), STAGE) is whole
+        assert usable_record(whole, frozenset(Allow), STAGE) is whole
 
 
 def test_signals_that_look_odd_but_are_sound() -> None:
@@ -150,24 +150,24 @@ def test_all_faults_are_told_at_once() -> None:
     channels = (*CHANNELS[:5], Channel("S3", "furlong", Role.OUTPUT))
     whole = replace(planted(all_of_them), channels=channels)
     with pytest.raises(DesignError) as refused:
-        usable(whole, needs=Needs(resolution=0.1, highest=1500.0))
+        usable_record(whole, needs=Needs(resolution=0.1, highest=1500.0))
     kinds = {fault.kind for fault in examine(whole, Needs(resolution=0.1, highest=1500.0)).faults}
     assert kinds == {Allow.DEAD, Allow.CLIPPED, Allow.GAPS, Allow.DEPENDENT, Allow.UNITS, Allow.SHORT, Allow.SLOW}
     assert len(refused.value.findings) == 7
-    left = usable(whole, frozenset(kinds), Needs(resolution=0.1, highest=1500.0))
+    left = usable_record(whole, frozenset(kinds), Needs(resolution=0.1, highest=1500.0))
     assert left.names == ("u1", "u2", "S2", "S3")
 
 
 def test_a_dead_channel_that_is_left_out_takes_its_gaps_along() -> None:
     whole = planted(nothing_but_nan)
-    assert usable(whole, frozenset({Allow.DEAD})).length == LENGTH
+    assert usable_record(whole, frozenset({Allow.DEAD})).length == LENGTH
 
 
 def test_units_that_are_missing_or_unknown() -> None:
     channels = (*CHANNELS[:4], Channel("S2", "", Role.OUTPUT), Channel("S3", "furlong", Role.OUTPUT))
     findings = examine(record(sound(), channels)).findings
     assert [finding.what for finding in findings] == ["no unit is stated", '"furlong" is not a known unit']
-    assert usable(record(sound(), channels), frozenset({Allow.UNITS})).names == CHANNELS_NAMES
+    assert usable_record(record(sound(), channels), frozenset({Allow.UNITS})).names == CHANNELS_NAMES
 
 
 def test_what_is_wrong_with_all_channels_is_told_once() -> None:
@@ -190,23 +190,23 @@ def test_names_and_units_are_held_against_the_stage() -> None:
         (Allow.NAMES, "the stage has no output of this name"),
         (Allow.UNITS, "its unit is V, that of the stage's output m"),
     ]
-    assert usable(whole, frozenset({Allow.NAMES, Allow.UNITS}), STAGE).names == ("u1", "u2", "u3", "S1", "S3")
+    assert usable_record(whole, frozenset({Allow.NAMES, Allow.UNITS}), STAGE).names == ("u1", "u2", "u3", "S1", "S3")
 
 
 def test_roles_must_be_known() -> None:
     channels = (*CHANNELS[:3], *CHANNELS[3:5], Channel("spare", "V"))
     whole = record(sound(), channels)
     assert [fault.kind for fault in examine(whole).faults] == [Allow.NAMES]
-    assert usable(whole, frozenset({Allow.NAMES})).names == CHANNELS_NAMES[:5]
+    assert usable_record(whole, frozenset({Allow.NAMES})).names == CHANNELS_NAMES[:5]
     outputs = whole.select(("S1", "S2"))
     with pytest.raises(DesignError, match=r"none of its channels .* is an input"):
-        usable(outputs, frozenset(Allow))
+        usable_record(outputs, frozenset(Allow))
 
 
 def test_nothing_is_left_out_until_nothing_is_left() -> None:
     whole = planted(zero).select(("u1", "S2"))
     with pytest.raises(DesignError, match=r"none of its channels .* is an output"):
-        usable(whole, frozenset({Allow.DEAD}))
+        usable_record(whole, frozenset({Allow.DEAD}))
 
 
 def test_too_short_and_too_slow() -> None:
@@ -237,7 +237,7 @@ def test_a_force_windowed_hammer_is_refused_by_its_name(name: str, unit: str) ->
     assert [fault.finding.what.partition(",")[0] for fault in told] == [f"it looks force-windowed: exact zeros from {at:.6g} s on"]
     assert "2.19 % of the record" in told[0].finding.what
     with pytest.raises(DesignError, match="force-windowed"):
-        usable(hit, frozenset(Allow))
+        usable_record(hit, frozenset(Allow))
 
 
 def test_a_drive_that_rests_is_no_hammer() -> None:

@@ -22,8 +22,8 @@ from flexstage.experiment.identification.identify import Search, identify
 from flexstage.experiment.record import Record
 from flexstage.experiment.transfer import h1, multiple_coherence, noise_density
 from flexstage.experiment.virtual_rig.chain import butterworth, chain, density_shape
-from flexstage.experiment.virtual_rig.plan import planned
-from flexstage.experiment.virtual_rig.rig import as_record, simulated
+from flexstage.experiment.virtual_rig.plan import plan_test
+from flexstage.experiment.virtual_rig.rig import as_record, simulate_test
 from flexstage.mechanism.mechanism import Mechanism, ModalDamping, StructuralDamping
 from flexstage.models.linear.damping import modal_ratios
 from flexstage.models.linear.eigen import eigen
@@ -60,7 +60,7 @@ def outputs(record: Record) -> Array:
 def test_variances_are_those_of_the_random_response() -> None:
     mechanism, model = stage()
     setup = replace(BARE, seconds=240.0)
-    test = simulated(mechanism, model, setup)
+    test = simulate_test(mechanism, model, setup)
     grid = np.concatenate([np.linspace(0.25, 820.0, 400), np.linspace(820.5, 1023.5, 800)])
     shape = np.maximum(density_shape(grid, test.plan.band), 1e-30)
     area = np.trapezoid(density_shape(np.linspace(0.0, 1024.0, 20_001), test.plan.band), np.linspace(0.0, 1024.0, 20_001))
@@ -134,7 +134,7 @@ def test_the_lag_of_a_gauge_is_that_of_its_bandwidth() -> None:
     mechanism, model = stage()
     slow = replace(mechanism, sensors={name: replace(each, bandwidth=300.0) for name, each in mechanism.sensors.items()})
     setup = replace(BARE, rate=2048.0)
-    with_lag, without = (chain(model, planned(each, model, setup), model.damping) for each in (slow, mechanism))
+    with_lag, without = (chain(model, plan_test(each, model, setup), model.damping) for each in (slow, mechanism))
     count = min(len(with_lag.outputs), len(without.outputs))
     assert with_lag.size == without.size
     lag = 1.0 / (1.0 + 1j * with_lag.frequencies[:count] / 300.0)
@@ -145,7 +145,7 @@ def test_the_lag_of_a_gauge_is_that_of_its_bandwidth() -> None:
 def test_blocks_are_longer_than_the_chain_remembers() -> None:
     """Whatever the stage rings on for: a block after an impulse, and a block before it, nothing is left."""
     mechanism, model = stage()
-    found = chain(model, planned(mechanism, model, replace(BARE, rate=2048.0)), ModalDamping(0.002))
+    found = chain(model, plan_test(mechanism, model, replace(BARE, rate=2048.0)), ModalDamping(0.002))
     answers = np.abs(np.fft.irfft(found.outputs, 3 * found.size, axis=0))
     assert np.max(answers[found.size : 2 * found.size]) < 1e-9 * np.max(answers)
 
@@ -257,7 +257,7 @@ def test_any_stretch_is_the_same_however_it_is_read() -> None:
 def test_records_go_on_over_the_ends_of_blocks() -> None:
     """A jump where blocks meet would be noise in the second differences of a smooth motion."""
     mechanism, model = stage()
-    test = simulated(mechanism, model, replace(BARE, seconds=100.0, drive=NoiseDrive(band=(0.0, 20.0))))
+    test = simulate_test(mechanism, model, replace(BARE, seconds=100.0, drive=NoiseDrive(band=(0.0, 20.0))))
     bends = np.max(np.abs(np.diff(test.read(0, test.length), n=4, axis=0)), axis=1)
     ends = [number * test.block - each for number in range(1, test.length // test.block) for each in (1, 2, 3)]
     assert ends

@@ -26,7 +26,7 @@ from flexstage.solid.fea.model import model as solid
 from flexstage.solid.fea.model import model_with_parts
 from flexstage.solid.fea.parts import Ways, reduce_parts
 from flexstage.solid.fea.remote import Limits
-from flexstage.solid.fea.store import versions, written
+from flexstage.solid.fea.store import to_bytes, versions
 from tests.models.small_solids import COARSE, Bomb, propped
 from tests.roundtrip.test_superelements import superelement
 
@@ -34,7 +34,7 @@ ELEMENT = superelement(0)
 
 
 def data(key: str) -> bytes:
-    return written(ELEMENT, key, versions())
+    return to_bytes(ELEMENT, key, versions())
 
 
 def names(folder: Path) -> list[str]:
@@ -103,7 +103,7 @@ def test_other_versions_are_told_and_stay(tmp_path: Path, monkeypatch: pytest.Mo
     found = find(cache, "key", "lever")
     assert found.element is None
     assert "of other versions only (1), here is flexstage 99.0" in found.notices[0].what
-    keep(cache, "key", "lever", written(ELEMENT, "key", newer))
+    keep(cache, "key", "lever", to_bytes(ELEMENT, "key", newer))
     assert find(cache, "key", "lever").element is not None
     assert len(names(tmp_path)) == 2
 

@@ -17,9 +17,9 @@ from flexstage.mechanism.mechanism import Link, Mechanism
 from flexstage.parts.body import Body
 from flexstage.solid.fea.cad import cad
 from flexstage.solid.fea.component import Component, components
-from flexstage.solid.fea.field import factored, field, rigid, stiffness
+from flexstage.solid.fea.field import factorise, field, rigid, stiffness
 from flexstage.solid.fea.fineness import Fineness
-from flexstage.solid.fea.mesh import Meshed, meshed
+from flexstage.solid.fea.mesh import PieceMesh, mesh_component
 from flexstage.solid.fea.straighten import jacobians, straighten
 from flexstage.spatial.frame import identity
 
@@ -33,13 +33,13 @@ def alone(part: str) -> Component:
     return components(stage)[0]
 
 
-def compliance(component: Component, mesh: Meshed, order: int) -> np.ndarray:
+def compliance(component: Component, mesh: PieceMesh, order: int) -> np.ndarray:
     """Compliance (6, 6) of the second end face, rigid, against the first, about the middle."""
     moving = component.interfaces[0].joint.name
     space = field(mesh, [moving, *(joint.name for joint in component.fixed)], order)
     form = stiffness(space)
     motion = rigid(space, identity(), faces=moving)
-    total = motion - factored(space, form)(_times(form, motion))
+    total = motion - factorise(space, form)(_times(form, motion))
     return np.linalg.inv(total.T @ _times(form, total))
 
 
@@ -54,13 +54,13 @@ def _times(form: ngsolve.BilinearForm, columns: np.ndarray) -> np.ndarray:
 
 
 @pytest.fixture(scope="module")
-def lever() -> tuple[Component, Meshed]:
+def lever() -> tuple[Component, PieceMesh]:
     """The heaviest component of the shipped stage: 19 pieces, a notch 50 times as wide as it is thick."""
     component = next(part for part in components(STAGE) if part.name == "B4/tip")
-    return component, meshed(component, Fineness())
+    return component, mesh_component(component, Fineness())
 
 
-def test_no_element_is_folded_and_the_volume_is_that_drawn(lever: tuple[Component, Meshed]) -> None:
+def test_no_element_is_folded_and_the_volume_is_that_drawn(lever: tuple[Component, PieceMesh]) -> None:
     component, mesh = lever
     lowest, highest = jacobians(mesh.mesh)
     assert np.all(lowest > 0.0)
@@ -69,7 +69,7 @@ def test_no_element_is_folded_and_the_volume_is_that_drawn(lever: tuple[Componen
     assert volume == pytest.approx(cad(component).shape.mass, rel=1e-5)
 
 
-def test_few_elements_are_straightened(lever: tuple[Component, Meshed]) -> None:
+def test_few_elements_are_straightened(lever: tuple[Component, PieceMesh]) -> None:
     """Of the same mesh, all curved, at most one element in five hundred is folded; those that must stay curved are refused."""
     mesh = lever[1].mesh
     order = Fineness().order
@@ -87,7 +87,7 @@ def test_few_elements_are_straightened(lever: tuple[Component, Meshed]) -> None:
             mesh.SetDeformation(shape)
 
 
-def test_the_lever_needs_few_elements(lever: tuple[Component, Meshed]) -> None:
+def test_the_lever_needs_few_elements(lever: tuple[Component, PieceMesh]) -> None:
     """Walls around a hinge's end are meshed as the walls they are: 32 000 elements before."""
     assert lever[1].mesh.ne < 14_000
 
@@ -96,7 +96,7 @@ def test_the_lever_needs_few_elements(lever: tuple[Component, Meshed]) -> None:
 def test_bending_is_within_one_percent_of_a_higher_order(part: str) -> None:
     """Order three against order four; torsion of the straight neck, of few elements, within 1.5 %."""
     component = alone(part)
-    third, fourth = (np.diag(compliance(component, meshed(component, Fineness(order=order)), order)) for order in (3, 4))
+    third, fourth = (np.diag(compliance(component, mesh_component(component, Fineness(order=order)), order)) for order in (3, 4))
     np.testing.assert_allclose(third[[0, 1, 2, 4, 5]], fourth[[0, 1, 2, 4, 5]], rtol=1e-2)
     np.testing.assert_allclose(third[3], fourth[3], rtol=1.5e-2)
     assert np.all(third < fourth)
@@ -107,4 +107,4 @@ def test_a_neck_too_thin_to_follow_is_named_at_once() -> None:
     link = Link(("ground", "platform"), "notch", (0.0, 0.0, 0.0), (1.0, 0.0, 0.0), bends=(0.0, 0.0, 1.0))
     stage = Mechanism("hinge", STAGE.materials, {"notch": notch}, {"platform": Body(mass=1.0)}, {"hinge": link})
     with pytest.raises(DesignError, match=r"hinge: its 0\.001 mm are too thin to mesh over 50\.3 x"):
-        meshed(components(stage)[0], Fineness())
+        mesh_component(components(stage)[0], Fineness())

@@ -26,9 +26,9 @@ from flexstage.solid.fea import remote
 from flexstage.solid.fea.cad import cad
 from flexstage.solid.fea.memory import Counts, entries, freedoms, needed
 from flexstage.solid.fea.progress import Stage
-from flexstage.solid.fea.reducing import Reducing, fewest_elements
+from flexstage.solid.fea.reducing import Reduce, fewest_elements
 from flexstage.solid.fea.remote import Limits, work_all
-from flexstage.solid.fea.store import read
+from flexstage.solid.fea.store import from_bytes
 from flexstage.solid.fea.superelement import Superelement
 from flexstage.spatial.frame import Frame
 from tests.models.small_solids import COARSE, Bomb, job, mined, rod
@@ -67,17 +67,17 @@ def until(holds: Callable[[], object]) -> None:
 FREE = Limits()
 
 
-def told(*jobs: Reducing, limits: Limits = FREE) -> tuple[Finding, ...]:
+def told(*jobs: Reduce, limits: Limits = FREE) -> tuple[Finding, ...]:
     with pytest.raises(DesignError) as caught:
         work_all(jobs, lambda _job, _data: None, limits)
     return caught.value.findings
 
 
-def results(*jobs: Reducing, limits: Limits = FREE) -> dict[str, Superelement]:
+def results(*jobs: Reduce, limits: Limits = FREE) -> dict[str, Superelement]:
     found: dict[str, Superelement] = {}
 
-    def take(done: Reducing, data: bytes) -> None:
-        element = read(data, done.key)
+    def take(done: Reduce, data: bytes) -> None:
+        element = from_bytes(data, done.key)
         assert isinstance(element, Superelement)
         found[done.name] = element
 
@@ -185,10 +185,10 @@ def test_a_mesh_without_end_is_refused_before_it_is_made(folder: Path) -> None:
 
 @pytest.mark.parametrize("neck", [pytest.param(0.5, marks=pytest.mark.full), 1.0, 2.5])
 def test_no_mesh_has_fewer_elements_than_expected(neck: float) -> None:
-    from flexstage.solid.fea.mesh import meshed
+    from flexstage.solid.fea.mesh import mesh_component
 
     fineness = replace(COARSE.fineness, neck=neck)
-    assert fewest_elements(rod(), fineness) <= meshed(rod(), fineness).mesh.ne
+    assert fewest_elements(rod(), fineness) <= mesh_component(rod(), fineness).mesh.ne
 
 
 @linux
@@ -242,9 +242,9 @@ def test_memory_that_processes_have_is_not_counted_twice(monkeypatch: pytest.Mon
 @pytest.mark.parametrize("order", [1, 2, 3, 4])
 def test_freedoms_and_entries_are_those_of_the_solver(order: int) -> None:
     from flexstage.solid.fea.field import field, stiffness
-    from flexstage.solid.fea.mesh import meshed
+    from flexstage.solid.fea.mesh import mesh_component
 
-    mesh = meshed(rod(), COARSE.fineness)
+    mesh = mesh_component(rod(), COARSE.fineness)
     space = field(mesh, (), order)
     counts = Counts(mesh.mesh.nv, mesh.mesh.nedge, mesh.mesh.nface, mesh.mesh.ne)
     assert freedoms(counts, order) == space.size
@@ -280,7 +280,7 @@ import signal
 signal.signal(signal.SIGINT, signal.default_int_handler)  # what a shell runs in the background ignores it, children too
 import sys
 sys.path.insert(0, {root!r})
-from flexstage.solid.fea.reducing import Reducing, fewest_elements
+from flexstage.solid.fea.reducing import Reduce, fewest_elements
 from flexstage.solid.fea.remote import Limits, work_all
 from tests.models.small_solids import Bomb, job, mined, rod
 work_all([{job}], lambda each, data: print(each.name, len(data) > 1000), Limits())

@@ -16,7 +16,7 @@ from flexstage.mechanism.drawn import with_drawn_parts
 from flexstage.models.linear.static import displacement
 from flexstage.solid.fea.fineness import Reduction
 from flexstage.solid.read import read_solid, solids
-from flexstage.solid.resolution import Resolution, Resolved, resolved
+from flexstage.solid.resolution import Converged, Resolution, converge
 from flexstage.solid.stage import solid_stage
 from flexstage.solid.stress import link_stress
 from flexstage.solid.surface import magnification, mode_surfaces, stress_surfaces
@@ -111,9 +111,9 @@ def test_resolution_rises_until_the_accuracy_is_met() -> None:
     def work(way: Reduction) -> float:
         return 1.0 + 0.1**way.fineness.order
 
-    assert resolved(work, lambda value: {"a": value}, Resolution(0.05)).order == 3
-    assert resolved(work, lambda value: {"a": value}, Resolution(0.001)).order == 4
-    assert resolved(work, lambda value: {"a": value}, Resolution(0.5, order=5)).order == 5
+    assert converge(work, lambda value: {"a": value}, Resolution(0.05)).order == 3
+    assert converge(work, lambda value: {"a": value}, Resolution(0.001)).order == 4
+    assert converge(work, lambda value: {"a": value}, Resolution(0.5, order=5)).order == 5
 
 
 def test_resolution_keeps_what_it_has_when_more_does_not_fit() -> None:
@@ -122,11 +122,11 @@ def test_resolution_keeps_what_it_has_when_more_does_not_fit() -> None:
             raise fs.DesignError([Finding("lever", "needs 9 GB", "Ask for less")])
         return float(way.fineness.order)
 
-    found = resolved(work, lambda value: {"a": value}, Resolution(0.001))
+    found = converge(work, lambda value: {"a": value}, Resolution(0.001))
     assert found.order == 3
     assert "9 GB" in found.stopped
     with pytest.raises(DesignError, match="9 GB"):
-        resolved(work, lambda value: {"a": value}, Resolution(order=4))
+        converge(work, lambda value: {"a": value}, Resolution(order=4))
 
 
 def test_given_parts_are_drawn_as_what_they_stand_for() -> None:
@@ -141,7 +141,7 @@ def test_given_parts_are_drawn_as_what_they_stand_for() -> None:
 
 def test_errors_that_were_not_estimated_are_unknown() -> None:
     """Of a solid result without errors every row of the stage is without a verdict, not right to 0 %."""
-    rows = tuple(stage_rows(small(), small(), Resolved(small_stage(), {}, 2)))
+    rows = tuple(stage_rows(small(), small(), Converged(small_stage(), {}, 2)))
     assert len(rows) > 10
     assert {row.trust for row in rows} == {None}
     assert all(row.fea_error is None and "error was not estimated" in row.reason for row in rows)
@@ -152,7 +152,7 @@ def test_a_mode_without_a_partner_has_no_theory() -> None:
     """Theory with a platform five times as heavy along one axis has none of some modes."""
     other = replace(small(), bodies={"platform": replace(small().bodies["platform"], mass=0.9, centre=(0.03, 0.02, 0.0))})
     errors = dict.fromkeys(small_stage().figures, 0.001)
-    rows = [row for row in stage_rows(other, other, Resolved(small_stage(), errors, 2)) if row.modal_assurance is not None]
+    rows = [row for row in stage_rows(other, other, Converged(small_stage(), errors, 2)) if row.modal_assurance is not None]
     apart = [row for row in rows if row.modal_assurance is not None and row.modal_assurance < RELIABLE]
     assert apart
     for row in apart:

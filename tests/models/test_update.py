@@ -11,12 +11,12 @@ import pytest
 from flexstage.base.finding import DesignError
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.cases.parallelogram import parallelogram
-from flexstage.experiment.pipeline import identification, sound
+from flexstage.experiment.pipeline import identification, usable_measurement
 from flexstage.experiment.record import Channel
-from flexstage.experiment.updating.fit import Problem, fitted
+from flexstage.experiment.updating.fit import Problem, gauss_newton
 from flexstage.experiment.updating.free import Known, free
-from flexstage.experiment.updating.gains import _led_back, measured_gains
-from flexstage.experiment.updating.rows import ModeRow, begun, followed, frequency_slopes, gain_slopes, gains_of
+from flexstage.experiment.updating.gains import _extrapolate_to_zero, measured_gains
+from flexstage.experiment.updating.rows import ModeRow, follow_modes, frequency_slopes, gain_slopes, start_design, static_gains
 from flexstage.experiment.updating.tables import update_table
 from flexstage.experiment.updating.text import updated_text
 from flexstage.experiment.updating.update import Told, Updated, update
@@ -65,7 +65,7 @@ def test_a_neck_five_per_cent_thicker_is_found_to_half_a_per_cent() -> None:
 def test_a_neck_is_found_in_a_record_of_the_virtual_rig() -> None:
     built = changed(neck=1.05)
     test = rig(built, lumped(built), RigSetup(seconds=20.0, seed=5, sensing=Sensing(density=5e-9)))
-    found = update(STAGE, identification(sound([test])).found, [NECK])
+    found = update(STAGE, identification(usable_measurement([test])).found, [NECK])
     assert found.changes[0] == pytest.approx(0.05, abs=0.005)
     assert found.told == (Told.WELL,)
 
@@ -99,10 +99,10 @@ def test_from_static_gains_they_are() -> None:
 def test_gains_from_a_record_in_volts() -> None:
     built = changed(lever=1.05)
     setup = RigSetup(seconds=20.0, seed=2, sensing=Sensing(density=1e-9), recorded=Recorded.VOLTAGE)
-    experiment = identification(sound([rig(built, lumped(built), setup)])).found
+    experiment = identification(usable_measurement([rig(built, lumped(built), setup)])).found
     gauges = tuple(channel.name for channel in experiment.outputs)
     gains = measured_gains(built, lumped(built), experiment, gauges)
-    theory = gains_of(begun(built, ()), gains)
+    theory = static_gains(start_design(built, ()), gains)
     np.testing.assert_allclose(gains.values, theory, atol=4.0 * float(np.max(gains.deviations)))
     assert np.max(gains.deviations) < 0.01 * np.max(theory)
     found = update(STAGE, experiment, [LEVER], Known(gain_error=1e-3))
@@ -136,8 +136,8 @@ def test_chi_square_tells_of_what_is_not_modelled() -> None:
 def test_more_prior_is_left_where_it_is_narrower() -> None:
     experiment = made(changed(neck=1.05))
     wide, narrow = (update(STAGE, experiment, [NECK], Known(priors={"neck.thickness": share})) for share in (0.1, 0.001))
-    assert wide.left[0] < 0.01
-    assert narrow.left[0] > 0.9
+    assert wide.remaining_variance[0] < 0.01
+    assert narrow.remaining_variance[0] > 0.9
     assert narrow.verdicts == ("not identifiable from frequencies",)
     assert narrow.changes[0] < 0.01
 
@@ -159,26 +159,26 @@ def test_slopes_are_those_of_differences_also_through_a_split_pair() -> None:
     stage = set_value(STAGE, "B1/front.thickness", 1.002 * get(STAGE, NECK))
     names = (NECK, "B1/front.thickness", "materials.steel.density")
     freed = free(stage, names)
-    here = begun(
+    here = start_design(
         freed.mechanism, (ModeRow("tilt", (0, 1), (), 0.0, 0.0), ModeRow("z", (2,), (), 0.0, 0.0), ModeRow("xy", (4, 5), (), 0.0, 0.0))
     )
     gains = measured_gains(STAGE, lumped(STAGE), made(STAGE, noise=EXACT), ("S1", "S4"))
     exact, exact_gains = frequency_slopes(here, freed.names), gain_slopes(here, freed.names, gains)
     step = 1e-5
     for index, name in enumerate(freed.names):
-        ends = [followed(here, freed.moved(sign * step * np.eye(len(names))[index])) for sign in (1.0, -1.0)]
+        ends = [follow_modes(here, freed.multiply(sign * step * np.eye(len(names))[index])) for sign in (1.0, -1.0)]
         moved = np.log(ends[0].frequencies / ends[1].frequencies) / (2.0 * step)
         np.testing.assert_allclose(exact[:, index] * get(freed.mechanism, name), moved, atol=1e-8)
-        moved_gains = (gains_of(ends[0], gains) - gains_of(ends[1], gains)) / (2.0 * step)
+        moved_gains = (static_gains(ends[0], gains) - static_gains(ends[1], gains)) / (2.0 * step)
         np.testing.assert_allclose(exact_gains[..., index] * get(freed.mechanism, name), moved_gains, atol=1e-7)
 
 
 def test_crossing_modes_stay_with_their_rows() -> None:
     """Yaw, above z, is brought below it by a smaller radius of the units that hold it."""
     rows = (ModeRow("z", (2,), (0,), 1.0, 0.0), ModeRow("yaw", (3,), (1,), 1.0, 0.0))
-    here, radius = begun(STAGE, rows), get(STAGE, "place.B1-B3.pattern.radius")
+    here, radius = start_design(STAGE, rows), get(STAGE, "place.B1-B3.pattern.radius")
     for share in np.linspace(0.98, 0.82, 9):
-        here = followed(here, set_value(STAGE, "place.B1-B3.pattern.radius", share * radius))
+        here = follow_modes(here, set_value(STAGE, "place.B1-B3.pattern.radius", share * radius))
     assert here.modes == ((3,), (2,))
     assert here.frequencies[1] < here.frequencies[0]
 
@@ -254,12 +254,12 @@ def test_gains_need_units_actuators_and_low_lines() -> None:
 def test_a_search_without_end_is_refused() -> None:
     uphill = Problem(lambda place, _: place, lambda place: 3.0 - place, lambda _: np.array([[-1.0]]))
     with pytest.raises(DesignError, match="still move by"):
-        fitted(uphill, np.zeros(1), np.zeros(1))
+        gauss_newton(uphill, np.zeros(1), np.zeros(1))
 
 
 def test_steps_that_lead_up_are_halved() -> None:
     """Theory 20 atan 4 u and data 0: from 1.5 a whole Gauss-Newton step leads to -9.4, and from there back; the end is 0."""
-    found = fitted(
+    found = gauss_newton(
         Problem(lambda u, _: u, lambda u: -20.0 * np.arctan(4.0 * u), lambda u: np.diag(80.0 / (1.0 + 16.0 * u**2))),
         np.array([1.5]),
         np.array([1.5]),
@@ -275,7 +275,7 @@ def test_designs_that_cannot_be_read_shorten_the_step() -> None:
         return place
 
     steeper = Problem(state, lambda u: 100.0 * (1.75 - u - 5.0 * u**2), lambda u: 100.0 * (1.0 + 10.0 * u[:, None]))  # first step: to 1.75
-    assert fitted(steeper, np.zeros(1), np.zeros(1)).parameters[0] == pytest.approx(0.5, abs=1e-3)
+    assert gauss_newton(steeper, np.zeros(1), np.zeros(1)).parameters[0] == pytest.approx(0.5, abs=1e-3)
 
 
 def test_gains_are_led_back_past_the_lowest_mode() -> None:
@@ -283,7 +283,7 @@ def test_gains_are_led_back_past_the_lowest_mode() -> None:
     lines = np.linspace(0.02, 0.35, 60)
     mode, rest, curve = (np.array([[0.9, -0.2]]), np.array([[0.1, 0.5]]), np.array([[0.05, -0.3]]))
     values = mode / (1.0 - lines[:, None, None] ** 2) + rest + curve * lines[:, None, None] ** 2
-    found, deviations = _led_back(lines, values)
+    found, deviations = _extrapolate_to_zero(lines, values)
     np.testing.assert_allclose(found, mode + rest, atol=1e-12)
     assert np.max(deviations) < 1e-12
 
@@ -303,6 +303,6 @@ def test_nothing_is_said_of_numbers_where_theory_and_test_contradict_each_other(
 
 
 def test_a_design_with_other_coordinates_is_no_step() -> None:
-    here = begun(STAGE, (ModeRow("z", (2,), (0,), 126.0, 1e-4),))
+    here = start_design(STAGE, (ModeRow("z", (2,), (0,), 126.0, 1e-4),))
     with pytest.raises(DesignError, match="its numbers moved so far that the model has"):
-        followed(here, parallelogram())
+        follow_modes(here, parallelogram())

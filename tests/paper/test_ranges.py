@@ -7,12 +7,12 @@ import pytest
 
 from flexstage.analysis.judge import judge
 from flexstage.analysis.workspace.blocking import stack_lines
+from flexstage.analysis.workspace.clearance import clearance
 from flexstage.analysis.workspace.drive import drive
 from flexstage.analysis.workspace.gauging import gauge_inverse, gauge_range, pose_resolution
 from flexstage.analysis.workspace.load import load_share
 from flexstage.analysis.workspace.map_error import linear_map_error
 from flexstage.analysis.workspace.polytope import reachable
-from flexstage.analysis.workspace.room import room
 from flexstage.analysis.workspace.strength import hinge_stress
 from flexstage.analysis.workspace.stroke import single_axis, stacks, stroke_limits, utilisation
 from flexstage.cases.double_triangle import SM_REF_A, SM_REF_B, double_triangle
@@ -128,12 +128,12 @@ def test_lever_hinge_stress_of_set_a_is_that_of_its_rotation():
 
 
 def test_the_shipped_stage_fits_its_envelope_and_opening():
-    assert room(double_triangle(SM_REF_B)).findings == ()
+    assert clearance(double_triangle(SM_REF_B)).findings == ()
 
 
 def test_the_calculation_set_cannot_be_built():
     """A5: set A neither fits the envelope nor leaves the opening clear."""
-    told = [finding.where for finding in room(double_triangle(SM_REF_A)).findings]
+    told = [finding.where for finding in clearance(double_triangle(SM_REF_A)).findings]
     assert "envelope.y" in told
     assert any(name.startswith("B") for name in told)
 

@@ -7,7 +7,7 @@ import sys
 import pytest
 
 from flexstage.base.finding import DesignError
-from flexstage.base.store import Waiting, atomic_write, put_together, sweep, temporary, write, written
+from flexstage.base.store import PendingFile, atomic_write, make_temporary_folder, move_all, remove_leftovers, write, write_temporary
 
 
 def test_a_file_keeps_its_mode(tmp_path):
@@ -53,10 +53,10 @@ def test_a_protected_file_is_refused(tmp_path, monkeypatch):
 def test_files_are_put_together_or_not_at_all(tmp_path, name):
     """Whichever of three cannot be put, all are as they were: those that were there, and those that were not."""
     (tmp_path / "a").write_text("old")
-    waiting = [written(tmp_path / each, "new") for each in ("a", "b", "c")]
+    waiting = [write_temporary(tmp_path / each, "new") for each in ("a", "b", "c")]
     (tmp_path / name).mkdir()  # a file cannot be renamed onto a folder
     with pytest.raises(DesignError, match="cannot be written"):
-        put_together(waiting)
+        move_all(waiting)
     assert sorted(each.name for each in tmp_path.iterdir()) == sorted(["a", name])
     assert (tmp_path / "a").read_text() == "old"
 
@@ -65,8 +65,8 @@ def test_only_renames_lie_between_the_first_file_and_the_last(tmp_path, monkeypa
     """A kill while files wait for the disk leaves all as they were; one of the renames fails, and those before it are undone."""
     (tmp_path / "a").write_text("old")
     (tmp_path / "c").write_text("old")
-    waiting = [written(tmp_path / each, "new") for each in ("a", "b", "c")]
-    steps, fsync, rename = [], os.fsync, Waiting.rename
+    waiting = [write_temporary(tmp_path / each, "new") for each in ("a", "b", "c")]
+    steps, fsync, rename = [], os.fsync, PendingFile.rename
 
     def settled(number):
         steps.append("disk")
@@ -80,9 +80,9 @@ def test_only_renames_lie_between_the_first_file_and_the_last(tmp_path, monkeypa
         assert self.target.read_text() == "new"
 
     monkeypatch.setattr(os, "fsync", settled)
-    monkeypatch.setattr(Waiting, "rename", renamed)
+    monkeypatch.setattr(PendingFile, "rename", renamed)
     with pytest.raises(DesignError):
-        put_together(waiting)
+        move_all(waiting)
     assert steps == ["disk"] * 3 + ["rename"] * 3
     assert {each.name: each.read_text() for each in tmp_path.iterdir()} == {"a": "old", "c": "old"}
 
@@ -90,8 +90,8 @@ def test_only_renames_lie_between_the_first_file_and_the_last(tmp_path, monkeypa
 LEAVER = """
 import os, signal, sys
 from pathlib import Path
-from flexstage.base.store import atomic_write, temporary
-temporary()
+from flexstage.base.store import atomic_write, make_temporary_folder
+make_temporary_folder()
 with atomic_write("results.h5") as place:
     place.write_text("half")
     print(flush=True)
@@ -124,7 +124,7 @@ def test_what_a_killed_process_left_is_swept(tmp_path, monkeypatch):
     others.append(tmp_path / ".a.00000000-999999999-abc.part")  # of another machine, which alone knows its processes
     others[-1].touch()
     write(tmp_path / "other.toml", "")
-    temporary().rmdir()
+    make_temporary_folder().rmdir()
     assert sorted(left_in(tmp_path)) == sorted([*others, tmp_path / "other.toml"])
 
 
@@ -132,12 +132,12 @@ def test_what_a_living_process_writes_is_left_alone(tmp_path, monkeypatch):
     process = leaver(tmp_path, monkeypatch, "lives")
     there = left_in(tmp_path)
     assert len(there) == 2
-    sweep(tmp_path)
-    sweep(tmp_path / "temporary")
+    remove_leftovers(tmp_path)
+    remove_leftovers(tmp_path / "temporary")
     assert left_in(tmp_path) == there
     for each in there:  # a process that began after its number was used is another one
         os.utime(each, (0, 0))
-    sweep(tmp_path)
-    sweep(tmp_path / "temporary")
+    remove_leftovers(tmp_path)
+    remove_leftovers(tmp_path / "temporary")
     assert left_in(tmp_path) == []
     process.communicate()

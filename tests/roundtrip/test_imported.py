@@ -23,7 +23,7 @@ from flexstage.parts.material import Material
 from flexstage.solid.exchange.step import stage_parts
 from flexstage.solid.fea.contact import contact_findings
 from flexstage.solid.fea.fineness import Fineness, Reduction
-from flexstage.solid.fea.imported import import_findings, measured, stated
+from flexstage.solid.fea.imported import import_findings, measure, with_properties
 from flexstage.solid.fea.model import model as solid
 from flexstage.solid.fea.stage_pieces import stage_pieces
 
@@ -42,7 +42,7 @@ def part(tmp_path: Path) -> Path:
 
 def imported(path: Path) -> Imported:
     """The file's block where BLOCK is: the file's x along z, its y along x, its z along y."""
-    solid = stated(measured(path), str(path), "steel", STEEL.density)
+    solid = with_properties(measure(path), str(path), "steel", STEEL.density)
     return replace(solid, at=(0.01, -0.015, -0.005), along=(0.0, 0.0, 1.0), up=(0.0, 1.0, 0.0))
 
 
@@ -125,7 +125,7 @@ def test_the_content_counts_and_the_path_does_not(part: Path) -> None:
 def test_files_that_are_none(tmp_path: Path, name: str, content: bytes, said: str) -> None:
     (tmp_path / name).write_bytes(content)
     with pytest.raises(DesignError, match=said):
-        measured(tmp_path / name)
+        measure(tmp_path / name)
 
 
 def test_two_solids_are_too_many(tmp_path: Path) -> None:
@@ -133,7 +133,7 @@ def test_two_solids_are_too_many(tmp_path: Path) -> None:
     boxes = [occ.Box(occ.Pnt(x, 0, 0), occ.Pnt(x + 1, 1, 1)) for x in (0, 5)]
     occ.Compound(boxes).WriteStep(str(path))
     with pytest.raises(DesignError, match="it holds 2 solids"):
-        measured(path)
+        measure(path)
 
 
 def test_a_solid_read_from_the_file_is_as_stiff_and_heavy_as_the_drawn_one(part: Path) -> None:

@@ -12,7 +12,7 @@ from flexstage.base.finding import DesignError
 from flexstage.control.study.checks import setup_findings
 from flexstage.control.study.choices import Axes, Compensation, ControllerKind, Criterion
 from flexstage.control.study.file import FORMAT, example, load_setup, loads_setup, setup_schema
-from flexstage.control.study.setup import FileMotion, LoopSetup, NotchAt, RasterMotion, Shaking
+from flexstage.control.study.setup import FileMotion, LoopSetup, NotchAt, RasterMotion, VibrationSetup
 from flexstage.mechanism.store import schema
 from tests.roundtrip.test_schema import Rules
 
@@ -74,8 +74,8 @@ lines = 5
 """)
     assert (found.rate, found.delay) == (5000.0, 50e-6)
     assert found.compensate == (Compensation.LOAD, Compensation.HYSTERESIS)
-    assert found.floor.x == Shaking(criterion=Criterion.VC_D)
-    assert found.floor.z == Shaking(frequencies=(1.0, 10.0), velocity=(1e-6, 1e-7))
+    assert found.floor.x == VibrationSetup(criterion=Criterion.VC_D)
+    assert found.floor.z == VibrationSetup(frequencies=(1.0, 10.0), velocity=(1e-6, 1e-7))
     assert (found.controller.kind, found.controller.coordinates) == (ControllerKind.PID, Axes.MODAL)
     assert found.controller.notches == (NotchAt(106.0),)
     assert found.trajectory == RasterMotion(lines=5)

@@ -13,7 +13,7 @@ import pytest
 
 from flexstage.base.finding import DesignError
 from flexstage.base.jobs import environment
-from flexstage.base.native import Recipe, compiled, compiler, loaded, unfit
+from flexstage.base.native import Recipe, compile_source, compiler, folder_defect, load_library
 
 pytestmark = pytest.mark.skipif(compiler() is None, reason="no compiler of C")
 owners = pytest.mark.skipif(not hasattr(os, "geteuid"), reason="files have no owners here")
@@ -25,7 +25,7 @@ def recipe(number: int = 42) -> Recipe:
 
 
 def ask(number: int = 42) -> int:
-    return loaded(recipe(number), lambda library: library.number() == number).number()
+    return load_library(recipe(number), lambda library: library.number() == number).number()
 
 
 @pytest.fixture
@@ -95,7 +95,7 @@ def test_another_library_under_its_name_is_not_loaded(cache: Path) -> None:
     assert ask() == 42
     (path,) = libraries(cache)
     whole = path.read_bytes()
-    put(path, compiled(recipe(666)))
+    put(path, compile_source(recipe(666)))
     assert ask_apart() == 42
     assert path.read_bytes() == whole
 
@@ -118,12 +118,12 @@ def test_a_folder_that_others_may_write_to_is_not_used(cache: Path, mode: int) -
     ask(7)
     cache.chmod(mode)
     before = libraries(cache)
-    assert "others may write" in unfit(cache)
+    assert "others may write" in folder_defect(cache)
     assert ask(8) == 8
     assert libraries(cache) == before
     cache.chmod(0o700)
     cache.parent.chmod(mode & 0o777)
-    assert "others may write" in unfit(cache)
+    assert "others may write" in folder_defect(cache)
     assert not list(Path(tempfile.gettempdir()).iterdir())
 
 
@@ -134,7 +134,7 @@ def test_a_folder_of_somebody_else_is_not_used(cache: Path, monkeypatch: pytest.
     other = os.geteuid() + 4321
     with monkeypatch.context() as patch:
         patch.setattr(os, "geteuid", lambda: other)
-        assert "belongs to user" in unfit(cache)
+        assert "belongs to user" in folder_defect(cache)
         assert ask(10) == 10
     assert libraries(cache) == before
 
@@ -154,18 +154,18 @@ def test_a_file_that_others_may_write_to_is_not_loaded(cache: Path, monkeypatch:
 def test_where_nothing_can_be_kept_it_is_built_each_time(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "file").write_text("")
     monkeypatch.setenv("FLEXSTAGE_CACHE", str(tmp_path / "file" / "cache"))
-    assert "cannot be made" in unfit(tmp_path / "file" / "cache")
+    assert "cannot be made" in folder_defect(tmp_path / "file" / "cache")
     assert ask(12) == 12
     assert [path.name for path in tmp_path.iterdir()] == ["file"]
 
 
 def test_what_never_works_is_refused_and_leaves_nothing(cache: Path, tmp_path: Path) -> None:
     with pytest.raises(DesignError, match=r"what .* makes of an example does not work"):
-        loaded(recipe(), lambda library: library.number() == 43)
+        load_library(recipe(), lambda library: library.number() == 43)
     with pytest.raises(DesignError, match=r"does not work .*undefined symbol"):
-        loaded(recipe(), lambda library: library.no_such_function() == 42)
+        load_library(recipe(), lambda library: library.no_such_function() == 42)
     with pytest.raises(DesignError, match=r"(?s)refuses an example.*error"):
-        loaded(Recipe("an example", {"one.c": "int number(void) {"}, FLAGS), lambda _: True)
+        load_library(Recipe("an example", {"one.c": "int number(void) {"}, FLAGS), lambda _: True)
     assert not list((tmp_path / "temporary").iterdir())
     assert not list(cache.glob(".building-*"))
 

@@ -14,7 +14,7 @@ from flexstage.analysis.lost_motion import LostMotion, lost_motion
 from flexstage.analysis.random_response import Spectrum, random_response
 from flexstage.base.document import plain
 from flexstage.base.labelled import Matrix
-from flexstage.base.record import Together
+from flexstage.base.record import SideBySide
 from flexstage.base.sheet import Sheet, parts
 from flexstage.cases.registry import case
 from flexstage.models.ideal import ideal
@@ -91,6 +91,6 @@ def test_units_of_a_matrix_stand_where_they_are_alike() -> None:
 
 
 def test_results_stand_together_with_all_their_reasons() -> None:
-    both = Together(({"gain": 1.0, "reasons": {"a": "first"}}, {"loss": {"B1": 0.5}, "reasons": {"b": "second"}}))
+    both = SideBySide(({"gain": 1.0, "reasons": {"a": "first"}}, {"loss": {"B1": 0.5}, "reasons": {"b": "second"}}))
     assert plain(both) == {"gain": 1.0, "loss": {"B1": 0.5}, "reasons": {"a": "first", "b": "second"}}
     assert to_csv(both) == {"": "gain\r\n1.0\r\n", "loss": "name,loss\r\nB1,0.5\r\n"}

@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from flexstage.base.number import Array
-from flexstage.solid.fea.store import read, versions, written
+from flexstage.solid.fea.store import from_bytes, to_bytes, versions
 from flexstage.solid.fea.superelement import Skin, Superelement
 
 KEY = "0123456789abcdef"
@@ -71,43 +71,43 @@ def assert_same(one: object, other: object) -> None:
 @given(st.integers(0, 2**32), st.integers(6, 20))
 def test_what_is_read_is_what_was_written(seed: int, size: int) -> None:
     element = superelement(seed, size)
-    assert_same(read(written(element, KEY, versions()), KEY), element)
+    assert_same(from_bytes(to_bytes(element, KEY, versions()), KEY), element)
 
 
-DATA = written(superelement(0), KEY, versions())
+DATA = to_bytes(superelement(0), KEY, versions())
 
 
 @given(st.integers(0, len(DATA) - 1), st.integers(1, 255))
 def test_no_changed_byte_goes_unnoticed(place: int, change: int) -> None:
     data = bytearray(DATA)
     data[place] ^= change
-    outcome = read(bytes(data), KEY)
+    outcome = from_bytes(bytes(data), KEY)
     assert isinstance(outcome, str)
     assert outcome.startswith("it is damaged")
 
 
 @given(st.integers(0, len(DATA) - 1))
 def test_nothing_cut_off_goes_unnoticed(kept: int) -> None:
-    assert isinstance(read(DATA[:kept], KEY), str)
+    assert isinstance(from_bytes(DATA[:kept], KEY), str)
 
 
 @given(st.binary(max_size=200))
 def test_nonsense_is_refused(data: bytes) -> None:
-    assert isinstance(read(data, KEY), str)
+    assert isinstance(from_bytes(data, KEY), str)
 
 
 @pytest.mark.parametrize("change", [{"format": 0}, {"flexstage": "0.0.9"}, {"solver": "6.2.2000"}, {"method": "0" * 16}])
 def test_other_versions_are_told_apart(change: dict[str, object]) -> None:
-    outcome = read(written(superelement(0), KEY, replace(versions(), **change)), KEY)
+    outcome = from_bytes(to_bytes(superelement(0), KEY, replace(versions(), **change)), KEY)
     assert isinstance(outcome, str)
     assert outcome.startswith("it is of another version: flexstage 0.")
 
 
 def test_another_component_is_told_apart() -> None:
-    assert read(DATA, "another") == "it holds something else"
+    assert from_bytes(DATA, "another") == "it holds something else"
 
 
 def test_nothing_in_a_file_is_run() -> None:
     element = replace(superelement(0), carried=np.array([object()], dtype=object))
     with pytest.raises(ValueError, match="Object arrays cannot be saved"):
-        written(element, KEY, versions())
+        to_bytes(element, KEY, versions())

@@ -13,7 +13,7 @@ from flexstage.base import quantity as quantities
 from flexstage.base.labelled import NOISE, quiet
 from flexstage.base.quantity import Quantity
 from flexstage.base.unit import convert
-from flexstage.show.display import _LADDERS, aligned, field_unit, number, shown, typeset, value_with_unit
+from flexstage.show.display import _LADDERS, align_numbers, display_unit_of, field_unit, format_value, number, to_typography
 
 FIELDS = [value for value in vars(quantities).values() if isinstance(value, Quantity) and value.si != "mixed"]
 FINITE = st.floats(min_value=-1e12, max_value=1e12, allow_nan=False).filter(lambda value: value == 0.0 or abs(value) > 1e-12)
@@ -47,7 +47,7 @@ def test_a_number_keeps_its_digits(value: float, digits: int) -> None:
 
 @given(st.lists(FINITE, min_size=1, max_size=6))
 def test_a_column_keeps_its_digits(values: list[float]) -> None:
-    texts = aligned(values)
+    texts = align_numbers(values)
     largest = max(abs(value) for value in values)
     for text, value in zip(texts, values, strict=True):
         assert abs(float(text) - value) <= 0.51e-4 * max(abs(value), 0.1 * largest)
@@ -55,9 +55,9 @@ def test_a_column_keeps_its_digits(values: list[float]) -> None:
 
 @given(st.floats(min_value=1e-9, max_value=1e9), st.sampled_from(sorted(_LADDERS)))
 def test_a_value_is_shown_readably(value: float, si: str) -> None:
-    text = value_with_unit(value, si)
+    text = format_value(value, si)
     figure = float(text.split()[0])
-    form = shown(si, value)
+    form = display_unit_of(si, value)
     assert math.isclose(figure, value * form.factor, rel_tol=1e-4)
     smallest = _LADDERS[si][0][1]
     if value * smallest >= 1.0:
@@ -89,5 +89,5 @@ def test_not_a_number_is_a_dash() -> None:
 
 
 def test_typesetting_leaves_names_alone() -> None:
-    assert typeset("units.horizontal um5 put-on B1-B3") == "units.horizontal um5 put-on B1-B3"
-    assert typeset("x +-50 um at -3e-5 urad/N") == "x ±50 µm at −3·10⁻⁵ µrad/N"
+    assert to_typography("units.horizontal um5 put-on B1-B3") == "units.horizontal um5 put-on B1-B3"
+    assert to_typography("x +-50 um at -3e-5 urad/N") == "x ±50 µm at −3·10⁻⁵ µrad/N"

@@ -11,10 +11,10 @@ import pytest
 from flexstage.analysis.statics import directional
 from flexstage.show.figures.budget import energy_figure, error_figure, loss_figure
 from flexstage.show.figures.directional import directional_figure
-from flexstage.show.figures.export import compact, to_png, to_svg
+from flexstage.show.figures.export import compact_svg, to_png, to_svg
 from flexstage.show.figures.response import response_figure
 from flexstage.show.figures.spectrum import spectrum_figure
-from flexstage.show.figures.style import canvas, styled
+from flexstage.show.figures.style import canvas, style_context
 from flexstage.show.figures.workspace import workspace_figure
 from tests.show.stages import analysed
 
@@ -72,7 +72,7 @@ def test_the_polar_plot_shows_principal_axes() -> None:
 def test_compaction_keeps_points_within_a_tenth() -> None:
     points = np.random.default_rng(3).uniform(0.0, 400.0, (40, 2))
     path = "M " + " L ".join(f"{x:.6f} {y:.6f}" for x, y in points) + " z"
-    short = compact(f'<svg width="1pt" viewBox="0 0 9 9"><path d="{path}"/></svg>', "n", "d")
+    short = compact_svg(f'<svg width="1pt" viewBox="0 0 9 9"><path d="{path}"/></svg>', "n", "d")
     found = re.search(r' d="M([^"]*)z"', short)
     assert found is not None
     numbers = [float(each) for each in re.findall(r"-?(?:\d+\.?\d*|\.\d+)", found[1])]
@@ -82,7 +82,7 @@ def test_compaction_keeps_points_within_a_tenth() -> None:
 
 
 def test_a_dollar_sign_is_a_dollar_sign() -> None:
-    with styled():
+    with style_context():
         figure = canvas(1.0, 1.0)
         figure.add_subplot().set_xlabel("$x^2$ & <b>")
     assert "$x^2$ &amp; &lt;b&gt;" in to_svg(figure, "n", "d")

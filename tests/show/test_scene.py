@@ -12,12 +12,12 @@ from hypothesis import strategies as st
 from flexstage.base.number import Array
 from flexstage.cases.double_triangle import SM_REF_A, double_triangle
 from flexstage.show.plan import plan_figure
-from flexstage.show.scene.facet import Facet, Kind, Paint, extruded, loft, rectangle
-from flexstage.show.scene.hidden import visible
+from flexstage.show.scene.facet import Facet, Kind, Paint, extrude, loft, rectangle
+from flexstage.show.scene.hidden import are_visible
 from flexstage.show.scene.inner import outer
-from flexstage.show.scene.order import farthest_first, partition
-from flexstage.show.scene.stage import displaced, largest_motion, scene
-from flexstage.show.scene.view import Side, ordered, unsplit, view
+from flexstage.show.scene.order import partition, sort_by_depth
+from flexstage.show.scene.stage import displace, largest_motion, scene
+from flexstage.show.scene.view import Side, order_facets, rejoin, view
 from flexstage.spatial.rotation import exponential
 from tests.show.stages import NAMES, analysed
 
@@ -27,7 +27,7 @@ SIZES = st.tuples(*[st.floats(0.1, 0.6)] * 3)
 
 
 def box(centre: Array, size: tuple[float, float, float], turn: Array, name: str) -> list[Facet]:
-    rings = extruded(0.5 * size[0] * np.array([-1.0, 1.0]), [rectangle(size[1], size[2])] * 2)
+    rings = extrude(0.5 * size[0] * np.array([-1.0, 1.0]), [rectangle(size[1], size[2])] * 2)
     return loft(rings @ exponential(turn).T + centre, Paint(Kind.BODY, (name, name), name))
 
 
@@ -56,7 +56,7 @@ def depth(facet: Facet, eye: Array, ray: Array) -> float:
 @given(BOXES, VECTOR.filter(lambda eye: np.linalg.norm(eye) > 0.1), VECTOR)
 def test_depth_order_agrees_with_ray_casting(facets: list[Facet], eye: Array, ray: Array) -> None:
     eye = eye / np.linalg.norm(eye)
-    pieces = list(farthest_first(partition(facets, 2.0), eye))
+    pieces = list(sort_by_depth(partition(facets, 2.0), eye))
     met = [piece for piece in pieces if abs(piece.normal @ eye) > 1e-3 and covers(piece, eye, ray)]
     depths = [depth(piece, eye, ray) for piece in met]
     assert all(later >= earlier - 1e-6 for earlier, later in pairwise(depths))
@@ -65,7 +65,7 @@ def test_depth_order_agrees_with_ray_casting(facets: list[Facet], eye: Array, ra
 @settings(max_examples=60)
 @given(BOXES)
 def test_cuts_keep_areas(facets: list[Facet]) -> None:
-    pieces = list(farthest_first(partition(facets, 2.0), np.array([0.0, 0.0, 1.0])))
+    pieces = list(sort_by_depth(partition(facets, 2.0), np.array([0.0, 0.0, 1.0])))
     for facet in facets:
         own = [area(piece) for piece in pieces if piece is facet or piece.whole is facet]
         assert sum(own) == pytest.approx(area(facet), rel=1e-9)
@@ -83,7 +83,7 @@ def test_solids_are_closed_and_face_outward(facets: list[Facet]) -> None:
 
 
 def painted(polygons: list[Array], shown: list[bool]) -> Array:
-    """Index of the last polygon drawn at points of a raster that lies between that of `visible`."""
+    """Index of the last polygon drawn at points of a raster that lies between that of `are_visible`."""
     x, y = np.meshgrid(np.linspace(-0.93, 0.91, 71), np.linspace(-0.92, 0.94, 73))
     result = np.full(x.shape, -1)
     for index, polygon in enumerate(polygons):
@@ -96,7 +96,7 @@ def painted(polygons: list[Array], shown: list[bool]) -> Array:
 
 
 def _box(name: str, low: tuple[float, float, float], high: tuple[float, float, float]) -> list[Facet]:
-    corners = 0.5 * (np.array(low) + high) + extruded(np.array([-0.5, 0.5]), [rectangle(1.0, 1.0)] * 2) * (np.array(high) - low)
+    corners = 0.5 * (np.array(low) + high) + extrude(np.array([-0.5, 0.5]), [rectangle(1.0, 1.0)] * 2) * (np.array(high) - low)
     return loft(corners, Paint(Kind.PLATFORM, ("platform", "platform"), name))
 
 
@@ -116,7 +116,7 @@ def test_faces_between_outlines_of_a_body_are_left_out() -> None:
 @given(st.lists(st.tuples(UNIT, UNIT, st.floats(0.05, 0.8), st.floats(0.05, 0.8)), min_size=1, max_size=9))
 def test_hidden_pieces_do_not_show(items: list[tuple[float, float, float, float]]) -> None:
     polygons = [np.array([x, y]) + rectangle(width, height) for x, y, width, height in items]
-    shown = visible(polygons, [True] * len(polygons))
+    shown = are_visible(polygons, [True] * len(polygons))
     whole, less = painted(polygons, [True] * len(polygons)), painted(polygons, shown)
     # The raster decides within its pitch: what it drops may show by less than that, at an edge.
     assert np.mean(whole != less) < 0.01
@@ -128,9 +128,9 @@ def test_translucent_pieces_are_made_whole_only_where_nothing_stands_before_them
     above = loft(np.array([0.5, 0.6])[:, None, None] * [0.0, 0.0, 1.0] + _square(0.2), Paint(Kind.BODY, ("a", "a"), "a"))
     seen = view(Side.TOP)
     for solids, last in ((below, "p"), (above, "a")):
-        order = farthest_first(partition([*plate, *solids], 2.0), seen.axes[2])
+        order = sort_by_depth(partition([*plate, *solids], 2.0), seen.axes[2])
         facing = [facet for facet in order if facet.normal[2] > 0.5]
-        assert unsplit(facing, seen)[-1].paint.name == last
+        assert rejoin(facing, seen)[-1].paint.name == last
 
 
 def _square(size: float) -> Array:
@@ -143,7 +143,7 @@ def test_a_stage_moved_as_one_keeps_its_shape(name: str) -> None:
     turn = np.array([0.2, -0.1, 0.3])
     twists = {body: np.concatenate([np.cross(turn, reference), turn]) for body, reference in still.references.items()}
     moving = [facet for facet in still.facets if set(facet.paint.carriers) <= set(twists)]
-    moved = displaced(moving, still, twists, 1e-3)
+    moved = displace(moving, still, twists, 1e-3)
     for before, after in zip(moving, moved, strict=True):
         assert np.allclose(after.points - before.points, 1e-3 * np.cross(turn, before.points), atol=1e-15)
     assert largest_motion(still, twists) > 0.0
@@ -172,7 +172,7 @@ def test_massless_bodies_are_bars_between_their_joints() -> None:
 def test_only_facets_that_face_the_viewer_are_drawn(side: Side) -> None:
     seen = view(side)
     assert np.allclose(seen.axes @ seen.axes.T, np.eye(3))
-    facets = ordered(scene(double_triangle()), seen)
+    facets = order_facets(scene(double_triangle()), seen)
     assert facets
     assert all(len(facet.points) == 2 or facet.normal @ seen.axes[2] > 0.0 for facet in facets)
 

@@ -26,7 +26,7 @@ young = {{ of = "materials.aluminium.young", from = "-10 %", to = "+10 %", level
 
 def swept(responses, failures=None, sampling="grid"):
     study = loads_study(STUDY.format(sampling=sampling))
-    values = study.drawn(0, 16)
+    values = study.sample(0, 16)
     return study, Results(np.arange(16), values, responses(study, values), failures or {}, *columns_of(study), 16, {}, "")
 
 

@@ -31,7 +31,7 @@ from flexstage.show.tables.lost_motion import budget_table, loss_table
 from flexstage.show.tables.modes import mode_table
 from flexstage.show.tables.statics import principal_table, stiffness_table
 from flexstage.show.tables.strength import buckling_table
-from flexstage.show.tables.workspace import map_error_table, room_table
+from flexstage.show.tables.workspace import clearance_table, map_error_table
 from flexstage.spatial.frame import COMPONENTS
 from tests.show.stages import HOSTILE, NAMES, analysed, hostile, reported
 
@@ -61,7 +61,7 @@ REACH = {
     "map_error": "Error of the linear map",
     "gauges": "Gauge ranges",
     "resolution": "Pose resolution of the gauges",
-    "room": "Room",
+    "clearance": "Clearance",
     "platform_lines": "Forces of the platform",
     "stack_lines": "Stacks against the stage",
     "stress": "Stress in the hinges",
@@ -165,7 +165,7 @@ def test_only_a_stated_opening_is_spoken_of() -> None:
     for name in ("double-triangle", "parallelogram"):
         reach = analysed(name).workspace
         stated = case(name).opening is not None
-        assert any("clear opening" in note for note in room_table(reach.room).notes) == stated
+        assert any("clear opening" in note for note in clearance_table(reach.clearance).notes) == stated
     assert {case(name).opening is None for name in ("double-triangle", "parallelogram")} == {True, False}
 
 

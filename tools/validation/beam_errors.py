@@ -26,7 +26,7 @@ from flexstage.parts.profile import Circular, Elliptic, Filleted, Straight
 from flexstage.parts.rod import Rod
 from flexstage.parts.shape import Shaped
 from flexstage.solid.fea.estimate import Accuracy
-from flexstage.solid.fea.hinge_cache import kept_hinges
+from flexstage.solid.fea.hinge_cache import hinges_from_cache
 from flexstage.solid.fea.hinge_form import HingeForm
 from flexstage.solid.fea.parts import Ways
 from flexstage.solid.fea.roots import own_roots
@@ -87,7 +87,7 @@ def computed(parts: list[tuple[Shaped, float]]) -> list[Array]:
         str(number): HingeForm(part, Material(young=_YOUNG, poisson=poisson, density=7750.0), own_roots(part))
         for number, (part, poisson) in enumerate(parts)
     }
-    return [_YOUNG * np.diag(found.compliance) for found in kept_hinges(forms, ASKED, Ways()).values()]
+    return [_YOUNG * np.diag(found.compliance) for found in hinges_from_cache(forms, ASKED, Ways()).values()]
 
 
 def stacked(slots: list[Slot]) -> Slot:

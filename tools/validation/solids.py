@@ -13,10 +13,10 @@ from flexstage.analysis.modes import Modes
 from flexstage.analysis.pairing import Moving, Pair, pair_modes
 from flexstage.cases.registry import case
 from flexstage.mechanism.restrict import isolate
-from flexstage.solid.calibration import with_matrices
+from flexstage.solid.calibration import substitute_parts
 from flexstage.solid.fea.fineness import Fineness, Reduction
 from flexstage.solid.units import SolidUnit
-from flexstage.solid.verification import units_matched
+from flexstage.solid.verification import units_with_calibrated_hinges
 from tests.paper.test_lost_motion import COMMANDS, FEA, THEORY
 from tools.validation.row import Row, Scale, Section, Tolerance, relative, table
 
@@ -32,10 +32,10 @@ def sections() -> list[Section]:
 
 
 def _units(stage: fs.Mechanism, units: dict[str, SolidUnit]) -> Section:
-    better = units_matched(stage)
+    better = units_with_calibrated_hinges(stage)
     axial, loss = _axial(stage), units["vertical"].loss
     bare = _rigid(stage)
-    rigid, alone = fs.solid.solid_units(bare, THIRD)["vertical"], units_matched(bare)["vertical"]
+    rigid, alone = fs.solid.solid_units(bare, THIRD)["vertical"], units_with_calibrated_hinges(bare)["vertical"]
     rows = (
         Row("K_a,h", "paper 2.2, less 1 to 3 %", "10.30", 1e-6 * axial, "N/um", Tolerance(0.01, Scale.RELATIVE, -0.02)),
         Row("K_a,h", _CALIBRATED, f"{1e-6 * better['horizontal'].axial:.3f}", 1e-6 * axial, "N/um", relative(0.005)),
@@ -95,7 +95,7 @@ def _stage(stage: fs.Mechanism) -> Section:
     model = fs.solid.model(stage, THIRD)
     tensor = fs.statics(model).held.principal
     fea = platform_modes(stage, model)
-    better = with_matrices(stage, fs.solid.solid_hinges(stage))
+    better = substitute_parts(stage, fs.solid.solid_hinges(stage))
     models = [fs.lumped(each) for each in (stage, better)]
     theory, calibrated = (pair_modes(Moving(fea, model), Moving(platform_modes(stage, each), each)) for each in models)
     rows = (

@@ -14,9 +14,9 @@ from flexstage.analysis.modes import Modes, modes
 from flexstage.analysis.stability import Stability, stability
 from flexstage.analysis.standing import standing, under_load
 from flexstage.analysis.workspace.buckling import Buckling, buckling
+from flexstage.analysis.workspace.clearance import Clearance, bounds, clearance
 from flexstage.analysis.workspace.load import LoadShare, load_share
 from flexstage.analysis.workspace.map_error import linear_map_error
-from flexstage.analysis.workspace.room import Room, bounds, room
 from flexstage.analysis.workspace.strength import HingeStress, hinge_stress
 from flexstage.analysis.workspace.stroke import StrokeLimits, mapping_at, stroke_limits
 from flexstage.base.finding import refuse
@@ -118,9 +118,9 @@ class Bench:
         return load_share(self.mechanism, self.model)
 
     @cached_property
-    def room(self) -> Room:
+    def clearance(self) -> Clearance:
         """What the stage occupies."""
-        return room(self.mechanism)
+        return clearance(self.mechanism)
 
     @cached_property
     def size(self) -> Array:

@@ -10,7 +10,7 @@ from flexstage.analysis.lost_motion import lost_motion
 from flexstage.analysis.standing import standing
 from flexstage.analysis.workspace.gauging import pose_resolution
 from flexstage.analysis.workspace.map_error import map_error_at
-from flexstage.base.finding import nearest, refuse
+from flexstage.base.finding import refuse, suggest_nearest
 from flexstage.base.number import Number
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
@@ -38,7 +38,7 @@ def budget(
     """
     assembly = expand(mechanism)
     if at != PLATFORM and at not in assembly.points:
-        raise refuse(at, "no point of this name is in the description", nearest(at, (PLATFORM, *assembly.points)))
+        raise refuse(at, "no point of this name is in the description", suggest_nearest(at, (PLATFORM, *assembly.points)))
     body, point = (PLATFORM, assembly.bodies[PLATFORM].reference) if at == PLATFORM else assembly.points[at]
     if body != PLATFORM:
         raise refuse(at, f"is a point of {body}", "An error budget is that of a point of the platform")

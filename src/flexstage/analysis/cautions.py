@@ -13,8 +13,8 @@ import numpy as np
 from flexstage.analysis.measures import drift
 from flexstage.analysis.requirements import requirements
 from flexstage.analysis.standing import load_factors, standing
+from flexstage.analysis.workspace.clearance import bounds, clearance
 from flexstage.analysis.workspace.load import load_share
-from flexstage.analysis.workspace.room import bounds, room
 from flexstage.analysis.workspace.small import small_motion
 from flexstage.analysis.workspace.strength import hinge_stress
 from flexstage.analysis.workspace.stroke import StrokeLimits, single_axis, stroke_limits
@@ -291,7 +291,7 @@ def _points(mechanism: Mechanism) -> Iterator[Finding]:
 def _tension_findings(mechanism: Mechanism) -> tuple[Finding, ...]:
     """Stacks in tension beyond what they bear; nothing where their forces are not known."""
     try:
-        return tuple(load_share(mechanism, lumped(mechanism)).pulled(stroke_limits(mechanism).from_zero))
+        return tuple(load_share(mechanism, lumped(mechanism)).tension_findings(stroke_limits(mechanism).from_zero))
     except DesignError:
         return ()
 
@@ -349,6 +349,6 @@ def _room(mechanism: Mechanism) -> tuple[Finding, ...]:
     if mechanism.envelope is None and mechanism.opening is None:
         return ()
     try:
-        return room(mechanism).findings
+        return clearance(mechanism).findings
     except DesignError as error:
         return error.findings

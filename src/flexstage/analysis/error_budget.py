@@ -11,7 +11,7 @@ import numpy as np
 from flexstage.analysis.lost_motion import LostMotion
 from flexstage.analysis.workspace.gauging import PoseResolution
 from flexstage.analysis.workspace.map_error import MapError
-from flexstage.base.finding import Finding, nearest, require
+from flexstage.base.finding import Finding, require, suggest_nearest
 from flexstage.base.labelled import Matrix
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, Number, stack
@@ -111,7 +111,7 @@ def command_columns(kinematics: Kinematics, command: Mapping[str, Number]) -> li
     """
     known = kinematics.coordinates
     require(
-        Finding(f"command {name}", f"the stage's ideal motions are {', '.join(known) or 'none'}", nearest(name, known))
+        Finding(f"command {name}", f"the stage's ideal motions are {', '.join(known) or 'none'}", suggest_nearest(name, known))
         for name in command
         if name not in known
     )

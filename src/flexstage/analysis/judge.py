@@ -27,11 +27,11 @@ def judge(mechanism: Mechanism) -> tuple[Verdict, ...]:
     [True, True, True, True, True, True, True, True]
     """
     lines = requirements(mechanism)
-    bench = Bench(mechanism, _box(lines))
-    return tuple(_judged(bench, line) for line in lines)
+    bench = Bench(mechanism, _required_strokes(lines))
+    return tuple(_verdict(bench, line) for line in lines)
 
 
-def measured(mechanism: Mechanism, measures: tuple[Measure, ...]) -> tuple[Array | str, ...]:
+def measure_all(mechanism: Mechanism, measures: tuple[Measure, ...]) -> tuple[Array | str, ...]:
     """Values (...) in SI of measures by the lumped model, for one design or a batch; where a stage has none, the reason in words.
 
     What asks for all required strokes at once (corner, gauge.range) takes those of the description's `[require]` lines.
@@ -39,11 +39,11 @@ def measured(mechanism: Mechanism, measures: tuple[Measure, ...]) -> tuple[Array
     >>> from flexstage.analysis.requirements import measure
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> stage = double_triangle()
-    >>> round(float(measured(stage, (measure(stage, "frequency.platform.1", "here"),))[0]), 1)
+    >>> round(float(measure_all(stage, (measure(stage, "frequency.platform.1", "here"),))[0]), 1)
     106.0
     """
     bench = bench_of(mechanism)
-    return tuple(measured_on(bench, each) for each in measures)
+    return tuple(value_or_reason(bench, each) for each in measures)
 
 
 def bench_of(mechanism: Mechanism) -> Bench:
@@ -53,20 +53,20 @@ def bench_of(mechanism: Mechanism) -> Bench:
     >>> bench_of(double_triangle()).command["x"]
     5e-05
     """
-    return Bench(mechanism, _box(requirements(mechanism)))
+    return Bench(mechanism, _required_strokes(requirements(mechanism)))
 
 
-def _box(lines: tuple[Requirement, ...]) -> dict[str, float]:
+def _required_strokes(lines: tuple[Requirement, ...]) -> dict[str, float]:
     return {line.name: line.limit for line in lines if line.kind is stroke}
 
 
-def measured_on(bench: Bench, asked: Measure) -> Array | str:
+def value_or_reason(bench: Bench, asked: Measure) -> Array | str:
     """The value (...) of one measure, or the reason in words.
 
     >>> from flexstage.analysis.requirements import measure
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> stage = double_triangle()
-    >>> round(float(measured_on(bench_of(stage), measure(stage, "mass", "here"))), 2)
+    >>> round(float(value_or_reason(bench_of(stage), measure(stage, "mass", "here"))), 2)
     14.0
     """
     try:
@@ -75,8 +75,8 @@ def measured_on(bench: Bench, asked: Measure) -> Array | str:
         return str(error)
 
 
-def _judged(bench: Bench, line: Requirement) -> Verdict:
-    value = measured_on(bench, line)
+def _verdict(bench: Bench, line: Requirement) -> Verdict:
+    value = value_or_reason(bench, line)
     if isinstance(value, str):
         return Verdict(line, None, value)
     drawn = Verdict(line, value)

@@ -119,16 +119,16 @@ def corner(bench: Bench, _: Measure) -> Array:
 @partial(MeasureKind, "frequency.<n>", FREQUENCY, softening=0.5)
 def frequency(bench: Bench, asked: Measure) -> Array:
     """N-th natural frequency, any body."""
-    return _numbered(bench.modes.frequencies, asked)
+    return _nth(bench.modes.frequencies, asked)
 
 
 @partial(MeasureKind, "frequency.platform.<n>", FREQUENCY, softening=0.5)
 def platform_frequency(bench: Bench, asked: Measure) -> Array:
     """N-th natural frequency of the platform."""
-    return _numbered(bench.platform_frequencies, asked)
+    return _nth(bench.platform_frequencies, asked)
 
 
-def _numbered(frequencies: Array, asked: Measure) -> Array:
+def _nth(frequencies: Array, asked: Measure) -> Array:
     count = frequencies.shape[-1]
     if int(asked.name) > count:
         raise refuse(f"require.{asked.key}", f"there are {count} such modes", "Ask for a lower number")
@@ -282,7 +282,7 @@ def opening(bench: Bench, _: Measure) -> Array:
     """How far anything stands into the clear opening."""
     if bench.mechanism.opening is None:
         raise refuse("opening", "the description has no clear opening", 'Add for example opening = { size = ["110 mm", "110 mm"] }')
-    depths = [item.depth for item in bench.room.intrusions]
+    depths = [item.depth for item in bench.clearance.intrusions]
     return np.max(np.stack(np.broadcast_arrays(*depths)), axis=0) if depths else np.asarray(0.0)
 
 
@@ -314,7 +314,7 @@ def load(bench: Bench, _: Measure) -> Array:
     if np.any(np.isnan(use)) or np.any(np.isnan(share.maximum)):
         raise refuse("load", "not every stack states its maximum load", 'Add for example maximum_load = "5000 N" to the stack')
     if use.ndim == 1:
-        require(each for each in share.pulled(limits) if "neither" in each.what)
+        require(each for each in share.tension_findings(limits) if "neither" in each.what)
     return use
 
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from flexstage.base.labelled import Matrix
 from flexstage.base.notebook import InNotebook
-from flexstage.base.number import Array, descending, first_design, foremost
+from flexstage.base.number import Array, argsort_descending, first_design, index_of_largest
 from flexstage.base.quantity import FREQUENCY
 from flexstage.base.record import INNER, VIEW
 from flexstage.models.batch.choice import NEGLIGIBLE
@@ -80,7 +80,7 @@ class Modes(InNotebook):
     def _mode(self, index: int) -> Mode:
         frequency, share = (float(first_design(each, 1)[index]) for each in (self.frequencies, self.share))
         energies = first_design(self.energies, 2)[:, index]
-        bodies = {self.bodies[place]: float(energies[place]) for place in descending(energies, 1e-6) if energies[place] >= 0.01}
+        bodies = {self.bodies[place]: float(energies[place]) for place in argsort_descending(energies, 1e-6) if energies[place] >= 0.01}
         platform, local = index in self.platform, index in self.local
         return Mode(index + 1, frequency, self.names[index], share, self.in_plane[index], platform, local, bodies)
 
@@ -275,7 +275,7 @@ def _together(bodies: tuple[str, ...], energies: Array, components: Array, group
 
 def _main(bodies: tuple[str, ...], energies: Array) -> Array:
     """Which body modes (k) are named after: the platform where it has half of the largest share (b, k) and more."""
-    main = foremost(energies.T, _EQUAL)
+    main = index_of_largest(energies.T, _EQUAL)
     if _PLATFORM not in bodies:
         return main
     platform = bodies.index(_PLATFORM)
@@ -287,7 +287,7 @@ def _choose(share: Array, frequencies: Array, limit: float, count: int, groups: 
     groups = [group for group in groups if frequencies[group[0]] < limit and np.mean(share[group]) >= NEGLIGIBLE]
     means = np.array([np.mean(share[group]) for group in groups])
     chosen: list[int] = []
-    for place in descending(means):
+    for place in argsort_descending(means):
         if len(chosen) >= count:
             break
         chosen += groups[place]
@@ -302,7 +302,9 @@ def _name_modes(bodies: tuple[str, ...], energies: Array, components: Array) -> 
     in_plane = np.sum(parts[:, _IN_PLANE], axis=1) > (0.5 + _EQUAL) * np.sum(parts, axis=1)
     names = (
         _NAMES[component] if bodies[body] == _PLATFORM else f"{_set(_equal(bodies, shares))} local"
-        for body, component, shares in zip(main, foremost(parts, _EQUAL * np.max(parts, axis=1, keepdims=True)), energies.T, strict=True)
+        for body, component, shares in zip(
+            main, index_of_largest(parts, _EQUAL * np.max(parts, axis=1, keepdims=True)), energies.T, strict=True
+        )
     )
     return tuple(names), tuple(in_plane.tolist())
 

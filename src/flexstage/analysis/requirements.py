@@ -10,7 +10,7 @@ from enum import Enum
 import numpy as np
 
 from flexstage.analysis.measures import MEASURES, Measure, MeasureKind, direction_of, measure_kind
-from flexstage.base.finding import DesignError, Finding, nearest, refuse
+from flexstage.base.finding import DesignError, Finding, refuse, suggest_nearest
 from flexstage.base.number import Array
 from flexstage.base.quantity import Quantity
 from flexstage.base.unit import parse
@@ -74,7 +74,7 @@ def known_keys(mechanism: Mechanism) -> tuple[str, ...]:
     ['loss', 'loss.B1', 'loss.B2']
     """
     names = _names(expand(mechanism))
-    return tuple(key for form in MEASURES for key in _spelt(form, names))
+    return tuple(key for form in MEASURES for key in _keys_of_form(form, names))
 
 
 def requirements(mechanism: Mechanism) -> tuple[Requirement, ...]:
@@ -114,7 +114,7 @@ def _names(assembly: Assembly) -> dict[str, tuple[str, ...]]:
     }
 
 
-def _spelt(form: str, names: Mapping[str, tuple[str, ...]]) -> Iterator[str]:
+def _keys_of_form(form: str, names: Mapping[str, tuple[str, ...]]) -> Iterator[str]:
     match = re.search(r"<(\w+)>", form)
     if match is None:
         yield form
@@ -139,7 +139,7 @@ def _read(where: str, key: str, text: str, names: Mapping[str, tuple[str, ...]],
     match = _LINE.fullmatch(text)
     if match is None:
         raise refuse(where, f'found "{text}"', 'Write "at least" or "at most" and a value, for example "at least 50 um at chuck"')
-    point, quantity = _placed(where, kind, name, match["point"], points)
+    point, quantity = _point_and_quantity(where, kind, name, match["point"], points)
     limit = parse(match["value"], quantity, where=where)
     return Requirement(key, kind, name, quantity, point, text=text, sense=Sense(match["sense"]), limit=limit)
 
@@ -157,11 +157,11 @@ def measure(mechanism: Mechanism, text: str, where: str) -> Measure:
     if match is None:
         raise refuse(where, f'found "{text}"', 'Write the name of a measure, for example "stroke.x at chuck"')
     kind, name = _kind(match["key"], _names(assembly), where)
-    point, quantity = _placed(where, kind, name, match["point"], (PLATFORM, *assembly.points))
+    point, quantity = _point_and_quantity(where, kind, name, match["point"], (PLATFORM, *assembly.points))
     return Measure(match["key"], kind, name, quantity, point)
 
 
-def _free(placeholder: str, name: str, where: str) -> bool:
+def _accepts_name(placeholder: str, name: str, where: str) -> bool:
     """Whether a name that is in no list may stand in the place: a number, or a direction."""
     if placeholder == "direction" and name.removeprefix("r").startswith("("):
         direction_of(name, where)
@@ -169,13 +169,13 @@ def _free(placeholder: str, name: str, where: str) -> bool:
     return placeholder == "n" and _COUNT.fullmatch(name) is not None
 
 
-def _placed(where: str, kind: MeasureKind, name: str, point: str | None, points: tuple[str, ...]) -> tuple[str, Quantity]:
+def _point_and_quantity(where: str, kind: MeasureKind, name: str, point: str | None, points: tuple[str, ...]) -> tuple[str, Quantity]:
     """The point a measure is taken at, and its quantity: that about an axis for rotations."""
     if point and not kind.pointed:
         raise refuse(where, f"is not asked at a point, found at {point}", f'Leave out "at {point}"')
     point = point or PLATFORM
     if point not in points:
-        raise refuse(where, f"found at {point}, and no point has this name", nearest(point, points))
+        raise refuse(where, f"found at {point}, and no point has this name", suggest_nearest(point, points))
     return point, kind.about if kind.about is not None and name.startswith("r") else kind.quantity
 
 
@@ -186,8 +186,8 @@ def _kind(key: str, names: Mapping[str, tuple[str, ...]], where: str) -> tuple[M
         name = key.removeprefix(stem)
         if key == stem and not placeholder:
             return measure_kind(form), ""
-        if placeholder and key.startswith(stem) and (name in names[placeholder] or _free(placeholder, name, where)):
+        if placeholder and key.startswith(stem) and (name in names[placeholder] or _accepts_name(placeholder, name, where)):
             return measure_kind(form), name
-    known = [spelt for form in MEASURES for spelt in _spelt(form, names)]
-    advice = f"{nearest(key, known)}. A measure that another package offers is known where that package is installed"
+    known = [spelt for form in MEASURES for spelt in _keys_of_form(form, names)]
+    advice = f"{suggest_nearest(key, known)}. A measure that another package offers is known where that package is installed"
     raise refuse(where, f'there is no measure called "{key}"', advice)

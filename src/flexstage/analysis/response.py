@@ -8,7 +8,7 @@ import numpy as np
 
 from flexstage.analysis.modes import average, repeated_groups
 from flexstage.base.finding import refuse
-from flexstage.base.number import Array, distinct, first_design
+from flexstage.base.number import Array, distinct_values, first_design
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Damping
 from flexstage.models.linear.arguments import takes_models
 from flexstage.models.linear.damping import damping_law, modal_ratios
@@ -85,7 +85,7 @@ def default_frequencies(model: LinearModel, band: tuple[float, float] | None = N
     around = (natural[:, None] * (1.0 + width[:, None] * np.tan(_ANGLES))).ravel()
     coarse = np.geomspace(low, high, 1 + max(2, round(40.0 * float(np.log10(high / low)))))
     inner = np.concatenate([natural, around])
-    return distinct(np.concatenate([coarse, inner[(inner > low) & (inner < high * (1.0 - 1e-9))]]))
+    return distinct_values(np.concatenate([coarse, inner[(inner > low) & (inner < high * (1.0 - 1e-9))]]))
 
 
 def _check(frequencies: Array) -> Array:

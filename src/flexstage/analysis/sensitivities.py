@@ -16,7 +16,7 @@ from flexstage.analysis.attempt import Attempts
 from flexstage.analysis.lost_motion import lost_motion
 from flexstage.analysis.modes import clusters
 from flexstage.analysis.standing import standing
-from flexstage.base.finding import Finding, nearest, require
+from flexstage.base.finding import Finding, require, suggest_nearest
 from flexstage.base.labelled import Matrix
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, Table
@@ -152,7 +152,9 @@ def not_numbers(mechanism: Mechanism, names: tuple[str, ...]) -> Iterator[Findin
         if not isinstance(place.node, NumberNode):
             inner = [each for each in addresses(mechanism) if each.startswith(f"{place.address}.")]
             yield Finding(
-                name, "this is not a single number", f"Address one of its numbers. {nearest(name, inner)}" if inner else "Address a number"
+                name,
+                "this is not a single number",
+                f"Address one of its numbers. {suggest_nearest(name, inner)}" if inner else "Address a number",
             )
         elif get(mechanism, name) is None:
             yield Finding(name, "the description does not state it", "State it, or choose another number")

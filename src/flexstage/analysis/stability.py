@@ -141,7 +141,7 @@ class _Pieces:
 
     @staticmethod
     def of(mechanism: Mechanism, model: LinearModel) -> _Pieces:
-        assembly = expand(_shown(mechanism))
+        assembly = expand(_with_drawn_parts(mechanism))
         twists = {name: _rows(model, name, COMPONENTS) for name in assembly.bodies}
         known: dict[tuple[int, int], Geometric] = {}
         parts: dict[str, Geometric] = {}
@@ -229,7 +229,7 @@ class _Pieces:
         return tuple(name for name, size in sizes.items() if size > 0.5 * largest > 0.0)[:_NAMED]
 
 
-def _shown(mechanism: Mechanism) -> Mechanism:
+def _with_drawn_parts(mechanism: Mechanism) -> Mechanism:
     """The description with the drawn parts that computed matrices stand for: those have a length."""
     try:
         return with_drawn_parts(mechanism)

@@ -48,11 +48,11 @@ def examine(folder: Path, self_test: Callable[[], Row] | None = None) -> tuple[R
 
     `self_test` computes something known and returns its row; whatever it raises becomes a row too.
     """
-    rows = [*_installed(), _threads(), writable("current folder", folder), _figure_cache(), *native_code()]
-    return tuple(rows + [_tested(self_test)] * (self_test is not None))
+    rows = [*_examine_installed(), _threads(), examine_folder("current folder", folder), _figure_cache(), *native_code()]
+    return tuple(rows + [_run_self_test(self_test)] * (self_test is not None))
 
 
-def _installed() -> Iterator[Row]:
+def _examine_installed() -> Iterator[Row]:
     """Python, flexstage itself, and the packages it needs."""
     try:
         wanted, lines = metadata("flexstage")["Requires-Python"], requires("flexstage") or []
@@ -94,7 +94,7 @@ def examine_package(need: Any) -> Row | None:
         return Row(need.name, present, wanted, Verdict.BAD, remedy)
     if not (said := _import_error(need.name.replace("-", "_"))):
         return Row(need.name, present, wanted, Verdict.GOOD)
-    if need.name == "ngsolve" and quadmath.lacking(sys.path):
+    if need.name == "ngsolve" and quadmath.missing_place(sys.path):
         remedy = f"{quadmath.COMMAND}; or on Debian: apt-get install libquadmath0"
     return Row(need.name, f"{present}, does not import: {said}", wanted, Verdict.BAD, remedy)
 
@@ -125,10 +125,10 @@ def _threads() -> Row:
     return Row("BLAS", f"{most} thread{'s' * (most > 1)}", wanted, Verdict.NOTE if remedy else Verdict.GOOD, remedy)
 
 
-def writable(what: str, folder: Path) -> Row:
+def examine_folder(what: str, folder: Path) -> Row:
     """Can a file be written in a folder? Tried, not concluded from its mode.
 
-    >>> writable("folder", Path("no such folder")).verdict
+    >>> examine_folder("folder", Path("no such folder")).verdict
     <Verdict.BAD: 'bad'>
     """
     try:
@@ -142,7 +142,7 @@ def _figure_cache() -> Row:
     """The folder where matplotlib keeps its list of fonts: made anew for every figure when it cannot be written."""
     chosen = os.environ.get("MPLCONFIGDIR")
     path = Path(chosen) if chosen else Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache", "matplotlib")
-    row = writable("cache of figures", path.absolute())
+    row = examine_folder("cache of figures", path.absolute())
     if row.verdict is Verdict.GOOD:
         return row
     return Row(row.what, row.found, row.wanted, Verdict.NOTE, f"mkdir -p {path}, or set MPLCONFIGDIR to a folder of your own")
@@ -156,7 +156,7 @@ def native_code() -> Iterator[Row]:
     """
     try:
         from flexstage.base.finding import DesignError
-        from flexstage.base.native import compiler, folder, unfit
+        from flexstage.base.native import compiler, folder, folder_defect
     except ImportError:
         return
     what, wanted = "compiled code", "a compiler of C, a folder of your own"
@@ -165,7 +165,7 @@ def native_code() -> Iterator[Row]:
         yield Row(what, "no compiler of C", wanted, Verdict.NOTE, remedy)
         return
     try:
-        why, place = unfit(folder()), str(folder())
+        why, place = folder_defect(folder()), str(folder())
     except DesignError as error:
         why, place = str(error), ""
     if why:
@@ -175,7 +175,7 @@ def native_code() -> Iterator[Row]:
         yield Row(what, f"kept in {place}", wanted, Verdict.GOOD)
 
 
-def _tested(self_test: Callable[[], Row] | None) -> Row:
+def _run_self_test(self_test: Callable[[], Row] | None) -> Row:
     try:
         return self_test() if self_test else Row("self-test", "none", "none", Verdict.NOTE)
     except Exception as error:  # noqa: BLE001 (the doctor reports whatever is wrong)

@@ -20,13 +20,13 @@ _WANTING = "ngsolve_openblas/libgfortran.so*"
 _CARRIERS = ("numpy.libs", "scipy.libs")
 
 
-def lacking(folders: Iterable[Path | str]) -> Path | None:
+def missing_place(folders: Iterable[Path | str]) -> Path | None:
     """Where the library has to be put within these `site-packages` folders; None if nothing there wants it or it is there.
 
-    >>> lacking([]) is None
+    >>> missing_place([]) is None
     True
     """
-    return next(_places([Path(folder) for folder in folders]), None)
+    return next(_find_missing([Path(folder) for folder in folders]), None)
 
 
 def provide(folders: Iterable[Path | str]) -> str:
@@ -36,7 +36,7 @@ def provide(folders: Iterable[Path | str]) -> str:
     ''
     """
     known = [Path(folder) for folder in folders]
-    place = lacking(known)
+    place = missing_place(known)
     if place is None:
         return ""
     copies = (found for folder in known for carrier in _CARRIERS for found in sorted((folder / carrier).glob("libquadmath-*.so*")))
@@ -50,7 +50,7 @@ def provide(folders: Iterable[Path | str]) -> str:
     return ""
 
 
-def _places(folders: Iterable[Path]) -> Iterator[Path]:
+def _find_missing(folders: Iterable[Path]) -> Iterator[Path]:
     for folder in folders:
         for library in folder.glob(_WANTING):
             # Some builds (64-bit ARM) do not want it: the name of what a library wants stands in its dynamic section.

@@ -104,7 +104,7 @@ def dimension_of(unit: str) -> Dimension:
             outer, outer_power = stack.pop()
             product, power = outer.times(product, outer_power), Fraction(1)
         else:
-            factor = _ONE if sign else _named(token["name"])
+            factor = _ONE if sign else _dimension_of_unit(token["name"])
             product, power, complete = product.times(factor, power * Fraction(token["power"] or 1)), Fraction(1), True
     if stack or not complete:
         raise ValueError("the unit cannot be read")
@@ -130,7 +130,7 @@ def _tokens(unit: str) -> Iterator[re.Match[str]]:
         position = match.end()
 
 
-def _named(name: str) -> Dimension:
+def _dimension_of_unit(name: str) -> Dimension:
     registry = _registry()
     try:
         unit = registry.Unit(name)

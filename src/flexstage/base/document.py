@@ -45,10 +45,10 @@ def as_text(result: Any) -> str:
     }
     """
     text = json.dumps(plain(result), indent=1, ensure_ascii=False, allow_nan=False)
-    return "\n".join(line if line.isprintable() else "".join(map(_escaped, line)) for line in text.split("\n"))
+    return "\n".join(line if line.isprintable() else "".join(map(_escape, line)) for line in text.split("\n"))
 
 
-def _escaped(letter: str) -> str:
+def _escape(letter: str) -> str:
     """A letter as it stands in JSON; what is not printable as its escape, which means the same and steers no terminal."""
     return letter if letter.isprintable() else json.dumps(letter)[1:-1]
 

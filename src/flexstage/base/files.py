@@ -51,7 +51,7 @@ def require_regular(path: Path) -> None:
     except FileNotFoundError:
         raise refuse(str(path), "there is no such file", "Check the path") from None
     except (OSError, ValueError) as error:
-        raise refuse(str(path), f"it cannot be read ({_said(error)})", "Name a file that can be read") from None
+        raise refuse(str(path), f"it cannot be read ({_error_text(error)})", "Name a file that can be read") from None
     if stat.S_ISREG(mode):
         return
     kinds = {stat.S_ISDIR: "a folder", stat.S_ISFIFO: "a pipe", stat.S_ISSOCK: "a socket"}
@@ -95,7 +95,7 @@ class Hdf:
         array = self.arrays[name]
         lengths = [max(0, min(stop, length) - max(start, 0)) for (start, stop), length in zip(spans, array.shape, strict=False)]
         needed = math.prod((*lengths, *array.shape[len(lengths) :])) * array.size
-        require_memory(f"{self.path}: {name}", "its numbers", _COPIES * needed, _less)
+        require_memory(f"{self.path}: {name}", "its numbers", _COPIES * needed, _advise_less)
         return _ask(_Question("array", self.path, name, tuple(spans), column), needed)
 
     def texts(self, name: str, column: str = "") -> tuple[str, ...]:
@@ -130,11 +130,11 @@ def mat(path: Path) -> list[tuple[str, Array | tuple[str, ...]]]:
     """
     require_regular(path)
     size = path.stat().st_size
-    require_memory(str(path), "its numbers", _COPIES * size, _less)
+    require_memory(str(path), "its numbers", _COPIES * size, _advise_less)
     return _ask(_Question("mat", path), size)
 
 
-def _less(there: float) -> str:
+def _advise_less(there: float) -> str:
     return f"Read less of it, export it in parts, or free memory: {gigabytes(there / _COPIES)} of numbers would fit"
 
 
@@ -220,14 +220,14 @@ def _ask(question: _Question, size: int) -> Any:
     try:
         answer = CHILD.ask(replace(question, path=question.path.absolute()), seconds, MEMORY + _COPIES * size)
     except EOFError:
-        raise refuse(path, f"it is damaged: {_ended(CHILD.code(), seconds)}", "Copy or export it anew") from None
+        raise refuse(path, f"it is damaged: {_how_it_ended(CHILD.code(), seconds)}", "Copy or export it anew") from None
     if isinstance(answer, _WrongError):
         where, what, advice = answer.args
         raise refuse(f"{path}: {where}" if where else path, what, advice)
     return answer
 
 
-def _ended(code: int, seconds: float) -> str:
+def _how_it_ended(code: int, seconds: float) -> str:
     """How reading a file ended that gave no answer."""
     if -code == getattr(signal, "SIGXCPU", None):
         return f"reading it took more than {seconds:.3g} s of the processor"
@@ -250,17 +250,17 @@ def _answer(_line: Line, question: _Question, seconds: float, memory: float) -> 
     except MemoryError:
         return _WrongError("", f"reading it takes more than {gigabytes(memory)} of memory", "Export it anew, or in parts")
     except Exception as error:  # noqa: BLE001
-        return _wrong(question, error)
+        return _answer_to_error(question, error)
 
 
-def _said(error: Exception) -> str:
+def _error_text(error: Exception) -> str:
     return " ".join(str(getattr(error, "strerror", None) or error or type(error).__name__).split())[:300]
 
 
-def _wrong(question: _Question, error: Exception) -> _WrongError:
+def _answer_to_error(question: _Question, error: Exception) -> _WrongError:
     if isinstance(error, _WrongError):
         return error
-    said = _said(error)
+    said = _error_text(error)
     if question.task == "mat":
         size = question.path.stat().st_size
         advice = "It breaks off or is damaged: copy or save it anew (MAT files of version 5 cannot be read in part)"
@@ -275,7 +275,7 @@ _ELSEWHERE = "its data stand in another file", "Only the file that is named is r
 
 
 @contextlib.contextmanager
-def _opened(question: _Question) -> Generator[Any]:
+def _open(question: _Question) -> Generator[Any]:
     import h5py
 
     with h5py.File(question.path, "r", locking=False) as file:
@@ -284,7 +284,7 @@ def _opened(question: _Question) -> Generator[Any]:
 
 def _look(question: _Question) -> tuple[dict[str, dict[str, Attribute]], dict[str, HdfArray]]:
     """All groups and arrays of a file, each once."""
-    with _opened(question) as file:
+    with _open(question) as file:
         groups: dict[str, dict[str, Attribute]] = {}
         found: dict[str, HdfArray] = {}
         waiting, seen = [("", file)], set[Any]()
@@ -369,7 +369,7 @@ def _text(value: Any) -> str:
 
 
 def _one_array(question: _Question) -> Array:
-    with _opened(question) as file:
+    with _open(question) as file:
         values = file[question.name][tuple(slice(*span) for span in question.spans)]
     values = np.asarray(values[question.column] if question.column else values)
     names = values.dtype.names
@@ -387,25 +387,25 @@ def _numbers(values: Array) -> Array:
 
 
 def _some_texts(question: _Question) -> list[str]:
-    with _opened(question) as file:
+    with _open(question) as file:
         values = file[question.name][()]
     return _texts(values[question.column] if question.column else values)
 
 
 def _mat(question: _Question) -> list[tuple[str, Array | tuple[str, ...]]]:
     content = scipy.io.loadmat(question.path, appendmat=False)
-    flat = [each for name, value in content.items() if not name.startswith("__") for each in _flat(name, value)]
+    flat = [each for name, value in content.items() if not name.startswith("__") for each in _flatten(name, value)]
     return [(name, tuple(value) if isinstance(value, list) else _numbers(value)) for name, value in flat]
 
 
-def _flat(name: str, value: Any) -> Iterator[tuple[str, Any]]:
+def _flatten(name: str, value: Any) -> Iterator[tuple[str, Any]]:
     """Arrays, texts and lists of texts, those of a structure by their paths; nothing of what else there is."""
     array = np.asarray(value)
     if array.dtype.kind == "U":
         yield name, [text.rstrip() for text in array.ravel().tolist()] or [""]
     elif array.dtype.names and array.size == 1:
         for key in array.dtype.names:
-            yield from _flat(f"{name}.{key}", array.ravel()[0][key])
+            yield from _flatten(f"{name}.{key}", array.ravel()[0][key])
     elif array.dtype.kind == "O":
         members = [np.asarray(each) for each in array.ravel()]
         if members and all(each.dtype.kind == "U" for each in members):

@@ -52,10 +52,10 @@ def refuse(where: str, what: str, advice: str) -> DesignError:
     return DesignError([Finding(where, what, advice)])
 
 
-def joined(findings: Iterable[Finding]) -> tuple[Finding, ...]:
+def join_findings(findings: Iterable[Finding]) -> tuple[Finding, ...]:
     """Findings that say the same of several objects of one file (`file: name`) as one, which names them all.
 
-    >>> print(*joined([Finding("a.csv: S1", "no unit", "State it"), Finding("a.csv: S2", "no unit", "State it")]))
+    >>> print(*join_findings([Finding("a.csv: S1", "no unit", "State it"), Finding("a.csv: S2", "no unit", "State it")]))
     a.csv: S1, S2: no unit. State it.
     """
     groups: dict[tuple[str, str, str], list[str]] = {}
@@ -66,10 +66,10 @@ def joined(findings: Iterable[Finding]) -> tuple[Finding, ...]:
     return tuple(Finding(where, what, advice) for where, (_, what, advice) in zip(wheres, groups, strict=True))
 
 
-def nearest(name: str, names: Iterable[str]) -> str:
+def suggest_nearest(name: str, names: Iterable[str]) -> str:
     """Advice that names what is near to a misspelt name, or what there is.
 
-    >>> nearest("plattform", ["ground", "platform"]), nearest("xyz", ["ground", "platform"])
+    >>> suggest_nearest("plattform", ["ground", "platform"]), suggest_nearest("xyz", ["ground", "platform"])
     ('The nearest name is platform', 'There are ground, platform')
     """
     known = sorted(set(names))

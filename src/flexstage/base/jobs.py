@@ -140,17 +140,17 @@ class Worker:
         self.process.kill()
         self._listener.join()
         with contextlib.suppress(OSError):
-            _pipe(self.process.stdin).close()
+            _as_pipe(self.process.stdin).close()
         self._log.close()
 
     def _send(self, value: Any) -> None:
         with contextlib.suppress(OSError):  # it died meanwhile: heard soon
-            _write(_pipe(self.process.stdin), value)
+            _write(_as_pipe(self.process.stdin), value)
 
     def _listen(self) -> None:
-        with _pipe(self.process.stdout) as answers, contextlib.suppress(EOFError):
+        with _as_pipe(self.process.stdout) as answers, contextlib.suppress(EOFError):
             while True:
-                self.heard.put((self, *pickle.loads(_frame(answers))))  # noqa: S301 (written by this module)
+                self.heard.put((self, *pickle.loads(_read_frame(answers))))  # noqa: S301 (written by this module)
         self.heard.put((self, Word.ENDED, self.process.wait()))
 
 
@@ -273,15 +273,15 @@ def _listen(asked: queue.SimpleQueue[bytes]) -> None:
     """Pass on what is asked until standard input closes: then nobody waits, and this process ends whatever it does."""
     with contextlib.suppress(EOFError):
         while True:
-            asked.put(_frame(sys.stdin.buffer))
+            asked.put(_read_frame(sys.stdin.buffer))
     os._exit(0)
 
 
-def _frame(stream: IO[bytes]) -> bytes:
-    return _exactly(stream, _LENGTH.unpack(_exactly(stream, _LENGTH.size))[0])
+def _read_frame(stream: IO[bytes]) -> bytes:
+    return _read_exactly(stream, _LENGTH.unpack(_read_exactly(stream, _LENGTH.size))[0])
 
 
-def _exactly(stream: IO[bytes], size: int) -> bytes:
+def _read_exactly(stream: IO[bytes], size: int) -> bytes:
     found = stream.read(size)
     if len(found) < size:
         raise EOFError
@@ -295,5 +295,5 @@ def _write(stream: IO[bytes], value: Any) -> None:
     stream.flush()
 
 
-def _pipe(stream: IO[bytes] | None) -> IO[bytes]:
+def _as_pipe(stream: IO[bytes] | None) -> IO[bytes]:
     return cast("IO[bytes]", stream)

@@ -5,7 +5,7 @@ from importlib import import_module
 from sys import modules
 
 
-def lazily(package: str, homes: Mapping[str, str]) -> tuple[Callable[[str], object], Callable[[], list[str]]]:
+def lazy_attributes(package: str, homes: Mapping[str, str]) -> tuple[Callable[[str], object], Callable[[], list[str]]]:
     """`__getattr__` and `__dir__` of a package whose names live in the modules that `homes` gives: module below the package -> names.
 
     Raises `AttributeError` for other names. No name may be that of a module of the package: an import would put the module in its place.

@@ -37,10 +37,10 @@ def available() -> float:
     >>> available() > 0.0
     True
     """
-    return _USABLE * min((*_machine(), *_control_group(), *_process_limits()), default=float("inf"))
+    return _USABLE * min((*_machine_memory(), *_control_group(), *_process_limits()), default=float("inf"))
 
 
-def _machine() -> Iterator[float]:
+def _machine_memory() -> Iterator[float]:
     with suppress(ImportError, OSError):  # a system that does not tell
         import psutil
 
@@ -57,10 +57,10 @@ def _control_group(root: Path = Path("/sys/fs/cgroup"), own: Path = Path("/proc/
         for folder in (group, *group.parents):
             if not folder.is_relative_to(root):
                 break
-            yield from _left(folder)
+            yield from _group_memory_left(folder)
 
 
-def _left(folder: Path) -> Iterator[float]:
+def _group_memory_left(folder: Path) -> Iterator[float]:
     try:
         most = (folder / "memory.max").read_text(encoding="utf-8").strip()
         used = float((folder / "memory.current").read_text(encoding="utf-8"))

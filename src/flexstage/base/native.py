@@ -2,8 +2,8 @@
 
 A library runs with all rights of who loads it. So it is taken only from a folder that belongs to the user and that nobody else may write
 to, and only if its content is what its name says: `<what>-<key>-<digest>.so`, where the key stands for all it is made of. What was cut off,
-emptied or altered is built anew. Where no such folder is to be had, each process builds for itself. Libraries for others (`compiled`) never
-come from there.
+emptied or altered is built anew. Where no such folder is to be had, each process builds for itself. Libraries for others
+(`compile_source`) never come from there.
 """
 
 from __future__ import annotations
@@ -73,7 +73,7 @@ def compiler() -> Compiler | None:
 def require_compiler(what: str) -> Compiler:
     """The compiler; raises `DesignError` where `what` needs one and none is there.
 
-    >>> require_compiler("the compiled loop").version == compiler().version if compiler() else True
+    >>> require_compiler("the compile_source loop").version == compiler().version if compiler() else True
     True
     """
     found = compiler()
@@ -94,44 +94,44 @@ def key(recipe: Recipe, found: Compiler) -> str:
     return hashlib.sha256(content.encode()).hexdigest()[:24]
 
 
-def compiled(recipe: Recipe) -> bytes:
+def compile_source(recipe: Recipe) -> bytes:
     """A shared library, compiled now and from the sources alone. Raises `DesignError` where there is no compiler or it refuses.
 
     >>> one = Recipe("an example", {"one.c": "int one(void); int one(void) { return 1; }"}, ("-fPIC", "-shared"))
-    >>> len(compiled(one)) > 1000 if compiler() else True
+    >>> len(compile_source(one)) > 1000 if compiler() else True
     True
     """
     found = require_compiler(recipe.what)
     with temporary_folder() as empty:
-        return _compiled(recipe, found, empty)
+        return _compile(recipe, found, empty)
 
 
-def loaded(recipe: Recipe, answers: Answers) -> ctypes.CDLL:
+def load_library(recipe: Recipe, answers: Answers) -> ctypes.CDLL:
     """A library in this process: the kept one where it is sound, loads and `answers`, else built anew, once.
 
     Raises `DesignError` where there is no compiler, where it refuses, and where what it has just built does not load or does not answer.
 
     >>> one = Recipe("an example", {"one.c": "int one(void); int one(void) { return 1; }"}, ("-fPIC", "-shared"))
-    >>> loaded(one, lambda library: library.one() == 1).one() if compiler() else 1
+    >>> load_library(one, lambda library: library.one() == 1).one() if compiler() else 1
     1
     """
     found = require_compiler(recipe.what)
     place = folder()
     name = f"{recipe.what.replace(' ', '_')}-{key(recipe, found)}"
-    if not unfit(place):
+    if not folder_defect(place):
         with suppress(OSError, AttributeError, NotImplementedError):  # a full or read-only disk, or one without locks or programs
-            return _kept(place, name, answers) or _renewed(place, name, answers, lambda empty: _compiled(recipe, found, empty))
+            return _cached(place, name, answers) or _renew(place, name, answers, lambda empty: _compile(recipe, found, empty))
     with temporary_folder() as private:
-        _compiled(recipe, found, private)
+        _compile(recipe, found, private)
         try:
-            return _opened(private / _MADE, answers)
+            return _open(private / _MADE, answers)
         except (OSError, AttributeError) as error:
             what = f"what {found.command[0]} makes of {recipe.what} does not work ({error})"
             raise refuse("compiler", what, "Set CC to another compiler") from None
 
 
 def folder() -> Path:
-    """Where libraries are kept, if nobody else may write to it (see `unfit`).
+    """Where libraries are kept, if nobody else may write to it (see `folder_defect`).
 
     >>> folder().name
     'native'
@@ -139,13 +139,13 @@ def folder() -> Path:
     return (cache_folder() / "native").resolve()
 
 
-def unfit(folder: Path) -> str:
+def folder_defect(folder: Path) -> str:
     """Why libraries are not taken from a folder; empty where they are. It is made, for its user alone, if it is not there yet.
 
     It belongs to the user and nobody else may write to it. The folders above it belong to the user or to the system, and nobody else may
     write to them, but for sticky ones such as /tmp. Where a system knows no owners, the user's own folder for caches is trusted.
 
-    >>> unfit(Path(os.devnull, "folder"))[:17]
+    >>> folder_defect(Path(os.devnull, "folder"))[:17]
     'it cannot be made'
     """
     above = tuple(reversed(folder.parents))
@@ -154,12 +154,12 @@ def unfit(folder: Path) -> str:
             place.mkdir(mode=0o700, exist_ok=True)
         if not hasattr(os, "geteuid"):
             return ""
-        return next(filter(None, (_open_to_others(place, is_above=place != folder) for place in (*above, folder))), "")
+        return next(filter(None, (_who_may_write(place, is_above=place != folder) for place in (*above, folder))), "")
     except OSError as error:
         return f"it cannot be made ({error.strerror or error})"
 
 
-def _open_to_others(place: Path, *, is_above: bool) -> str:
+def _who_may_write(place: Path, *, is_above: bool) -> str:
     """By whom else a folder or a file could be changed."""
     status, user = place.lstat(), os.geteuid()
     if status.st_uid != user and not (is_above and status.st_uid == 0):
@@ -169,18 +169,18 @@ def _open_to_others(place: Path, *, is_above: bool) -> str:
     return ""
 
 
-def _kept(folder: Path, name: str, answers: Answers) -> ctypes.CDLL | None:
+def _cached(folder: Path, name: str, answers: Answers) -> ctypes.CDLL | None:
     """The library of that name in a folder, where it is whole and works."""
     for path in folder.glob(f"{name}-*.so"):
         with suppress(OSError, AttributeError):
-            if _is_sound(path) and (library := _opened(path, answers)):
+            if _is_sound(path) and (library := _open(path, answers)):
                 return library
     return None
 
 
 def _is_sound(path: Path) -> bool:
     """Whether a file is one of the user's own, and its content what its name says."""
-    if not stat.S_ISREG(path.lstat().st_mode) or (hasattr(os, "geteuid") and _open_to_others(path, is_above=False)):
+    if not stat.S_ISREG(path.lstat().st_mode) or (hasattr(os, "geteuid") and _who_may_write(path, is_above=False)):
         return False
     return path.stem.rpartition("-")[2] == _digest(path.read_bytes())
 
@@ -189,21 +189,21 @@ def _digest(content: bytes) -> str:
     return hashlib.sha256(content).hexdigest()[:32]
 
 
-def _renewed(folder: Path, name: str, answers: Answers, build: Callable[[Path], bytes]) -> ctypes.CDLL:
+def _renew(folder: Path, name: str, answers: Answers, build: Callable[[Path], bytes]) -> ctypes.CDLL:
     """The library, built into a folder: by one process, while others wait for it."""
     with FileLock(folder / "lock", timeout=_SECONDS, mode=0o600):
-        if (library := _kept(folder, name, answers)) is not None:
+        if (library := _cached(folder, name, answers)) is not None:
             return library
-        _tidy(folder, name)
+        _remove_old(folder, name)
         with tempfile.TemporaryDirectory(dir=folder, prefix=_BUILDING) as building:
             path = folder / f"{name}-{_digest(build(Path(building)))}.so"
             made = Path(building, _MADE)
             made.chmod(0o700)
             made.replace(path)
-        return _opened(path, answers)
+        return _open(path, answers)
 
 
-def _tidy(folder: Path, name: str) -> None:
+def _remove_old(folder: Path, name: str) -> None:
     """Remove what is no use: libraries of this name that did not work, old ones, and what builders that were killed left behind."""
     for path in folder.glob(f"{_BUILDING}*"):
         shutil.rmtree(path, ignore_errors=True)
@@ -212,14 +212,14 @@ def _tidy(folder: Path, name: str) -> None:
         path.unlink(missing_ok=True)
 
 
-def _opened(path: Path, answers: Answers) -> ctypes.CDLL:
+def _open(path: Path, answers: Answers) -> ctypes.CDLL:
     library = ctypes.CDLL(str(path))
     if not answers(library):
         raise OSError(errno.ENOEXEC, "it does not compute what is known")
     return library
 
 
-def _compiled(recipe: Recipe, found: Compiler, folder: Path) -> bytes:
+def _compile(recipe: Recipe, found: Compiler, folder: Path) -> bytes:
     """Compiled within an empty folder, by relative names: no path gets into the library."""
     for name, text in recipe.sources.items():
         (folder / name).write_text(text, encoding="utf-8")

@@ -115,12 +115,12 @@ def first_design(values: Array, axes: int) -> Array:
 _ALIKE = 1e-9
 
 
-def foremost(values: Array, slack: Array | float = 0.0) -> Array:
+def index_of_largest(values: Array, slack: Array | float = 0.0) -> Array:
     """Index of the largest real value along the last axis; of those within a billionth of it, or within `slack`, the first.
 
     So a tie of what is alike is broken by its order, not by rounding.
 
-    >>> int(foremost(np.array([1.0, 3.0 - 1e-15, 3.0])))
+    >>> int(index_of_largest(np.array([1.0, 3.0 - 1e-15, 3.0])))
     1
     """
     top = np.max(values, axis=-1, keepdims=True)
@@ -128,10 +128,10 @@ def foremost(values: Array, slack: Array | float = 0.0) -> Array:
     return np.where(np.any(alike, axis=-1), np.argmax(alike, axis=-1), np.argmax(values, axis=-1))
 
 
-def descending(values: Array, alike: float = _ALIKE) -> list[int]:
+def argsort_descending(values: Array, alike: float = _ALIKE) -> list[int]:
     """Indices from the largest value to the smallest; values that are `alike`, by that share of the largest, stay in their order.
 
-    >>> descending(np.array([1.0, 3.0 - 1e-15, 3.0]))
+    >>> argsort_descending(np.array([1.0, 3.0 - 1e-15, 3.0]))
     [1, 2, 0]
     """
     order = np.argsort(-values, kind="stable")
@@ -142,10 +142,10 @@ def descending(values: Array, alike: float = _ALIKE) -> list[int]:
     return [int(index) for group in groups for index in np.sort(group)]
 
 
-def distinct(values: Array) -> Array:
+def distinct_values(values: Array) -> Array:
     """Values above 0 in ascending order, each once: of those within a billionth of one another, the least.
 
-    >>> distinct(np.array([2.0, 1.0, 2.0 + 1e-12])).tolist()
+    >>> distinct_values(np.array([2.0, 1.0, 2.0 + 1e-12])).tolist()
     [1.0, 2.0]
     """
     ascending = np.sort(values)

@@ -27,14 +27,14 @@ from flexstage.base.quantity import Quantity
 _Kind = TypeVar("_Kind")
 
 
-class Told(Enum):
+class Walked(Enum):
     """Whether a field is told, where its type alone does not say."""
 
     VIEW = True
     INNER = False
 
 
-VIEW, INNER = Told.VIEW, Told.INNER
+VIEW, INNER = Walked.VIEW, Walked.INNER
 
 
 @dataclass(frozen=True)
@@ -102,7 +102,7 @@ class Field:
         'axial_n_per_m'
         """
         called = self.annotation(Called)
-        return keyed(called.key if called else self.name, self.unit)
+        return key_with_unit(called.key if called else self.name, self.unit)
 
     @property
     def unit(self) -> str:
@@ -140,7 +140,9 @@ class Field:
         """Its value."""
         value = getattr(record, self.name)
         by_name = self.annotation(UnitOf)
-        return value if by_name is None or value is None else {keyed(name, by_name.unit(name)): each for name, each in value.items()}
+        return (
+            value if by_name is None or value is None else {key_with_unit(name, by_name.unit(name)): each for name, each in value.items()}
+        )
 
     @property
     def along(self) -> str | None:
@@ -149,10 +151,10 @@ class Field:
         return along.names if along else None
 
 
-def keyed(name: str, unit: str) -> str:
+def key_with_unit(name: str, unit: str) -> str:
     """A name with a unit behind it.
 
-    >>> keyed("gain", "m/V"), keyed("gain", "1"), keyed("mass_factor", "1/s")
+    >>> key_with_unit("gain", "m/V"), key_with_unit("gain", "1"), key_with_unit("mass_factor", "1/s")
     ('gain_m_per_v', 'gain', 'mass_factor_per_s')
     """
     if unit == "1":
@@ -162,20 +164,20 @@ def keyed(name: str, unit: str) -> str:
 
 
 @functools.cache
-def told_of(kind: type) -> tuple[Field, ...]:
+def walked_fields(kind: type) -> tuple[Field, ...]:
     """What is told of results of that class: fields, then properties."""
     hints = get_type_hints(kind, include_extras=True)
-    own = [(each.name, hints[each.name], "") for each in fields(kind) if each.name != "reasons" and _is_told(*_opened(hints[each.name]))]
+    own = [(each.name, hints[each.name], "") for each in fields(kind) if each.name != "reasons" and _is_walked(*_unwrap(hints[each.name]))]
     views = [(name, hint, doc) for name, hint, doc in _properties(kind) if get_origin(hint) is Annotated]
-    return tuple(Field(name, *_opened(hint), doc) for name, hint, doc in (*own, *views))
+    return tuple(Field(name, *_unwrap(hint), doc) for name, hint, doc in (*own, *views))
 
 
-def _opened(hint: Any) -> tuple[Any, tuple[Any, ...]]:
+def _unwrap(hint: Any) -> tuple[Any, tuple[Any, ...]]:
     """A type and its annotations."""
     return get_args(hint)[0] if get_origin(hint) is Annotated else hint, getattr(hint, "__metadata__", ())
 
 
-def _is_told(kind: Any, annotations: tuple[Any, ...]) -> bool:
+def _is_walked(kind: Any, annotations: tuple[Any, ...]) -> bool:
     if any(not isinstance(each, (Axes, Heading)) for each in annotations):
         return INNER not in annotations
     return not any(part == Array or (isinstance(part, type) and issubclass(part, Description)) for part in _parts(kind))
@@ -212,7 +214,7 @@ def walk(record: Any) -> dict[str, Any]:
 
 
 @dataclass(frozen=True)
-class Together:
+class SideBySide:
     """Results, or mappings with results in them, that stand in one document side by side."""
 
     results: tuple[Any, ...]
@@ -223,7 +225,7 @@ def values_of(record: Any) -> tuple[dict[Field, Any], dict[str, str]]:
 
     Keys of a mapping are fields without annotations, but for its `reasons`.
     """
-    if isinstance(record, Together):
+    if isinstance(record, SideBySide):
         values, why = dict[Field, Any](), dict[str, str]()
         for each in record.results:
             own, absent = values_of(each)
@@ -232,7 +234,7 @@ def values_of(record: Any) -> tuple[dict[Field, Any], dict[str, str]]:
     if isinstance(record, Mapping):
         return {Field(str(key), object, ()): value for key, value in record.items() if key != "reasons"}, dict(record.get("reasons") or {})
     reasons, found = dict(getattr(record, "reasons", {})), dict[Field, Any]()
-    for each in told_of(type(record)):
+    for each in walked_fields(type(record)):
         try:
             found[each] = None if each.name in reasons else each.of(record)
         except DesignError as error:
@@ -250,7 +252,7 @@ def paths(kind: type, before: str = "") -> Iterator[tuple[str, str, str]]:
 
     A result within the result says itself what its fields mean.
     """
-    kinds = told_of(kind)
+    kinds = walked_fields(kind)
     named = {each.along for each in kinds}
     for each in kinds:
         if each.name not in named:

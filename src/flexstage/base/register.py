@@ -39,13 +39,13 @@ class Register(Generic[Entry]):
         """
         offers = [offer for offer in _offered(self.group) if offer.name == kind]
         if len(offers) + (kind in self.own) > 1:
-            who = ", ".join([*(["flexstage"] if kind in self.own else []), *(_named(offer) for offer in offers)])
+            who = ", ".join([*(["flexstage"] if kind in self.own else []), *(_distribution(offer) for offer in offers)])
             raise refuse(f"{self.group}: {kind}", f"it is offered by {who}", "Uninstall all of these packages but one")
-        return self.own[kind] if kind in self.own else _loaded(offers[0]) if offers else None
+        return self.own[kind] if kind in self.own else _load(offers[0]) if offers else None
 
     def offer(self, kind: str) -> str:
         """Name and version of the package that offers a kind; empty for the floor's own."""
-        return ", ".join(_named(offer) for offer in _offered(self.group) if offer.name == kind)
+        return ", ".join(_distribution(offer) for offer in _offered(self.group) if offer.name == kind)
 
     @property
     def all(self) -> dict[str, Entry]:
@@ -68,7 +68,7 @@ def origin(module: str) -> str:
 @functools.cache
 def _origin(package: str) -> str:
     offers = [offer for group in GROUPS for offer in _offered(group) if offer.module.partition(".")[0] == package]
-    return ", ".join(sorted({_named(offer) for offer in offers}))
+    return ", ".join(sorted({_distribution(offer) for offer in offers}))
 
 
 @functools.cache
@@ -76,14 +76,14 @@ def _offered(group: str) -> tuple[EntryPoint, ...]:
     return tuple(entry_points(group=group))
 
 
-def _named(offer: EntryPoint) -> str:
+def _distribution(offer: EntryPoint) -> str:
     return f"{offer.dist.name} {offer.dist.version}" if offer.dist is not None else offer.value
 
 
 @functools.cache
-def _loaded(offer: EntryPoint) -> Entry:  # type: ignore[type-var]
+def _load(offer: EntryPoint) -> Entry:  # type: ignore[type-var]
     try:
         return offer.load()
     except Exception as error:
-        what = f"{_named(offer)} offers it, and it cannot be loaded: {type(error).__name__}: {error}"
+        what = f"{_distribution(offer)} offers it, and it cannot be loaded: {type(error).__name__}: {error}"
         raise refuse(f"{offer.group}: {offer.name}", what, "Install that package again, or ask who maintains it") from error

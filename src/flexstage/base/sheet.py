@@ -68,7 +68,7 @@ def rows_of(source: Any) -> Sheet:
         return Sheet({"name": tuple(source)}, _columns([_record(each) for each in source.values()]))
     if isinstance(source, Sequence):
         return Sheet({}, _columns([_record(each) for each in source]))
-    return next(_along({}, [_record(source)]))[1]
+    return next(_rows_along({}, [_record(source)]))[1]
 
 
 def _record(value: Any) -> Record:
@@ -77,10 +77,10 @@ def _record(value: Any) -> Record:
 
 def _columns(records: Sequence[Record]) -> dict[Field, tuple[Any, ...]]:
     columns = {field: tuple(each.get(field) for each in records) for field in dict.fromkeys(field for each in records for field in each)}
-    return {part: own for field, values in columns.items() for part, own in _real(field, values)}
+    return {part: own for field, values in columns.items() for part, own in _split_complex(field, values)}
 
 
-def _real(field: Field, values: tuple[Any, ...]) -> Iterator[tuple[Field, tuple[Any, ...]]]:
+def _split_complex(field: Field, values: tuple[Any, ...]) -> Iterator[tuple[Field, tuple[Any, ...]]]:
     """A column, or of complex values two: their real and their imaginary parts."""
     if any(isinstance(each, complex) for each in values):
         for part, of in (("real", np.real), ("imaginary", np.imag)):
@@ -96,15 +96,15 @@ def _parts(path: str, names: Mapping[str, tuple[Any, ...]], records: Sequence[Re
     cells = {field: tuple(map(plain_cell, values)) for field, values in alone.items() if all(map(is_cell, values))}
     if any(value is not None for values in cells.values() for value in values):
         yield path, Sheet(names, cells)
-    for name, sheet in _along(names, records):
-        yield _under(path, name), sheet
+    for name, sheet in _rows_along(names, records):
+        yield _join_path(path, name), sheet
     for field, values in alone.items():
         if field not in cells:
             there = [(*(own[index] for own in names.values()), value) for index, value in enumerate(values) if value is not None]
-            yield from _inner(_under(path, field.key), field, tuple(names), there)
+            yield from _inner(_join_path(path, field.key), field, tuple(names), there)
 
 
-def _under(path: str, key: str) -> str:
+def _join_path(path: str, key: str) -> str:
     return f"{path}.{key}" if path else key
 
 
@@ -117,9 +117,9 @@ def _inner(path: str, field: Field, heads: tuple[str, ...], rows: Sequence[_Row]
         if sort is _Sort.MATRIX:
             yield from ((".".join([path, *map(str, names)]), matrix) for *names, value in alike if (matrix := _matrix(value)) is not None)
         elif sort is _Sort.RECORD:
-            yield from _parts(path, _named(heads, alike), [_record(row[-1]) for row in alike])
+            yield from _parts(path, _name_rows(heads, alike), [_record(row[-1]) for row in alike])
         elif sort is _Sort.CELL:
-            yield from _parts(path, _named(heads, alike), [{field: row[-1]} for row in alike])
+            yield from _parts(path, _name_rows(heads, alike), [{field: row[-1]} for row in alike])
         else:
             items = [(*names, name, item) for *names, value in alike for name, item in _items(value)]
             plural = not any(is_cell(row[-1]) for row in items)
@@ -145,11 +145,11 @@ def _sort(value: Any, *, entry: bool) -> _Sort:
     return _Sort.NAMES if names and not entry else _Sort.RECORD
 
 
-def _named(heads: Iterable[str], rows: Sequence[tuple[Any, ...]]) -> dict[str, tuple[Any, ...]]:
+def _name_rows(heads: Iterable[str], rows: Sequence[tuple[Any, ...]]) -> dict[str, tuple[Any, ...]]:
     return {head: tuple(row[number] for row in rows) for number, head in enumerate(heads)}
 
 
-def _along(names: Mapping[str, tuple[Any, ...]], records: Sequence[Record]) -> Iterator[tuple[str, Sheet]]:
+def _rows_along(names: Mapping[str, tuple[Any, ...]], records: Sequence[Record]) -> Iterator[tuple[str, Sheet]]:
     """A sheet for the arrays along the same axes, a row for each name, or combination of names, on these."""
     for axes in dict.fromkeys(field.axes for record in records for field in record if field.axes):
         rows, found = list[tuple[Any, ...]](), list[Record]()
@@ -159,11 +159,11 @@ def _along(names: Mapping[str, tuple[Any, ...]], records: Sequence[Record]) -> I
             own = {field: value for field, value in record.items() if field.axes == axes and value is not None}
             for place in product(*(range(len(end)) for end in ends)) if own else ():
                 rows.append((*(each[index] for each in names.values()), *(end[at] for end, at in zip(ends, place, strict=True))))
-                found.append({field: _at(value, place) for field, value in own.items()})
+                found.append({field: _entry(value, place) for field, value in own.items()})
         if found:
             columns = _columns(found)
             named = columns if len(axes) > 1 else [field for field in records[0] if field.name in axes]
-            yield "_".join(each.key for each in named), Sheet(_named((*names, *heads), rows), columns)
+            yield "_".join(each.key for each in named), Sheet(_name_rows((*names, *heads), rows), columns)
 
 
 def _head(record: Record, name: str) -> str:
@@ -171,7 +171,7 @@ def _head(record: Record, name: str) -> str:
     return field.key if field.unit != "1" else field.words.removesuffix("s")
 
 
-def _at(value: Any, place: tuple[int, ...]) -> Any:
+def _entry(value: Any, place: tuple[int, ...]) -> Any:
     if isinstance(value, np.ndarray):
         return plain_cell(value[(..., *place)])
     for at in place:

@@ -55,14 +55,14 @@ def cache_folder() -> Path:
 
 
 @dataclass(frozen=True)
-class Waiting:
+class PendingFile:
     """A file written, or to be written, at `place` beside its `target`, where it is not yet; `where` is how the user named it."""
 
     place: Path
     target: Path
     where: str
 
-    def settle(self) -> None:
+    def flush(self) -> None:
         """Bring it to the disk, with the rights of the file it replaces; raises `DesignError` if that cannot be."""
         try:
             with self.place.open("rb+") as stream:
@@ -70,19 +70,19 @@ class Waiting:
             if self.target.exists():
                 self.place.chmod(self.target.stat().st_mode & 0o777)
         except OSError as error:
-            raise _unwritable(self.where, error) from None
+            raise _write_error(self.where, error) from None
 
     def rename(self) -> None:
         """Rename it onto its target; raises `DesignError` if that cannot be."""
         try:
             self.place.replace(self.target)
         except OSError as error:
-            raise _unwritable(self.where, error) from None
+            raise _write_error(self.where, error) from None
 
     def put(self) -> Path:
         """Rename it onto its target, on the disk before it is there; raises `DesignError` if that cannot be."""
         try:
-            self.settle()
+            self.flush()
             self.rename()
         finally:
             self.drop()
@@ -106,12 +106,12 @@ def atomic_write(path: str | os.PathLike[str]) -> Generator[Path]:
     ...     [each.name for each in folder.iterdir()]
     ['a.txt']
     """
-    waiting = _begun(path)
+    waiting = _open_temporary(path)
     try:
         yield waiting.place
         waiting.put()
     except OSError as error:
-        raise _unwritable(waiting.where, error) from None
+        raise _write_error(waiting.where, error) from None
     finally:
         waiting.drop()
 
@@ -123,37 +123,37 @@ def write(path: str | os.PathLike[str], content: str | bytes) -> Path:
     ...     write(folder / "stage.toml", "name = 'a'").read_text()
     "name = 'a'"
     """
-    return written(path, content).put()
+    return write_temporary(path, content).put()
 
 
-def written(path: str | os.PathLike[str], content: str | bytes) -> Waiting:
+def write_temporary(path: str | os.PathLike[str], content: str | bytes) -> PendingFile:
     """Write beside `path`, to be put there later, together with others; raises `DesignError` if it cannot be written.
 
     >>> with temporary_folder() as folder:
-    ...     waiting = written(folder / "stage.toml", "name = 'a'")
+    ...     waiting = write_temporary(folder / "stage.toml", "name = 'a'")
     ...     (waiting.target.exists(), waiting.put().exists())
     (False, True)
     """
-    waiting = _begun(path)
+    waiting = _open_temporary(path)
     try:
         with waiting.place.open("xb") as stream:
             stream.write(content.encode() if isinstance(content, str) else content)
     except BaseException as error:
         waiting.drop()
         if isinstance(error, (OSError, ValueError)):
-            raise _unwritable(waiting.where, error) from None
+            raise _write_error(waiting.where, error) from None
         raise
     return waiting
 
 
-def put_together(files: Iterable[Waiting]) -> None:
+def move_all(files: Iterable[PendingFile]) -> None:
     """Put all files or none: where one cannot be put, those before it are as they were.
 
     All are on the disk before the first is renamed, and only renames lie between the first and the last: a process that is killed within
     these few microseconds leaves files that are whole, some of them new.
 
     >>> with temporary_folder() as folder:
-    ...     put_together(written(folder / name, "whole") for name in ("a.c", "a.h"))
+    ...     move_all(write_temporary(folder / name, "whole") for name in ("a.c", "a.h"))
     ...     sorted(each.name for each in folder.iterdir())
     ['a.c', 'a.h']
     """
@@ -162,8 +162,8 @@ def put_together(files: Iterable[Waiting]) -> None:
     begun = 0
     try:
         for each in waiting:
-            each.settle()
-            before.append(_second_name(each) if len(waiting) > 1 else None)
+            each.flush()
+            before.append(_keep_aside(each) if len(waiting) > 1 else None)
         for each in waiting:
             begun += 1
             each.rename()
@@ -179,7 +179,7 @@ def put_together(files: Iterable[Waiting]) -> None:
             left.unlink(missing_ok=True)
 
 
-def _second_name(waiting: Waiting) -> Path | None:
+def _keep_aside(waiting: PendingFile) -> Path | None:
     """The file that is to be replaced under another name; nothing where there is none."""
     target = waiting.target
     if not target.exists():
@@ -191,11 +191,11 @@ def _second_name(waiting: Waiting) -> Path | None:
         except (OSError, NotImplementedError):  # a disk without second names
             shutil.copy2(target, place)
     except OSError as error:
-        raise _unwritable(waiting.where, error) from None
+        raise _write_error(waiting.where, error) from None
     return place
 
 
-def _begun(path: str | os.PathLike[str]) -> Waiting:
+def _open_temporary(path: str | os.PathLike[str]) -> PendingFile:
     where = os.fspath(path)
     try:
         target = Path(path).resolve()
@@ -205,33 +205,33 @@ def _begun(path: str | os.PathLike[str]) -> Waiting:
             raise refuse(where, "this is no regular file", "Name a file")
         if target.exists() and not os.access(target, os.W_OK):  # renaming would replace even that
             raise PermissionError(errno.EACCES, "the file is write-protected")
-        sweep(target.parent)
-        return Waiting(target.with_name(_part_name(target)), target, where)
+        remove_leftovers(target.parent)
+        return PendingFile(target.with_name(_part_name(target)), target, where)
     except (OSError, ValueError, RuntimeError) as error:
         if isinstance(error, DesignError):
             raise
-        raise _unwritable(where, error) from None
+        raise _write_error(where, error) from None
 
 
 def _part_name(target: Path) -> str:
     """A new name for a file beside another: its own, cut so that no disk finds it too long, and whose it is."""
     stem = os.fsencode(target.name)[:_LONGEST].decode(errors="ignore")
-    return f".{stem}.{_here()}-{os.getpid()}-{secrets.token_hex(4)}{_PART}"
+    return f".{stem}.{_host()}-{os.getpid()}-{secrets.token_hex(4)}{_PART}"
 
 
-def _unwritable(where: str, error: Exception) -> DesignError:
+def _write_error(where: str, error: Exception) -> DesignError:
     reason = (error.strerror if isinstance(error, OSError) else None) or str(error)
     return refuse(where, f"it cannot be written: {reason}", "Choose another file or folder, or free space")
 
 
-def temporary() -> Path:
+def make_temporary_folder() -> Path:
     """A new folder for temporary files, to be removed by the caller. Raises `DesignError` where none can be made.
 
-    >>> temporary().rmdir()
+    >>> make_temporary_folder().rmdir()
     """
     try:
-        sweep(Path(tempfile.gettempdir()))
-        return Path(tempfile.mkdtemp(prefix=f"flexstage-{_here()}-{os.getpid()}-"))
+        remove_leftovers(Path(tempfile.gettempdir()))
+        return Path(tempfile.mkdtemp(prefix=f"flexstage-{_host()}-{os.getpid()}-"))
     except OSError as error:
         what = f"no folder for temporary files can be made ({error.strerror or error})"
         raise refuse("TMPDIR", what, "Let the environment variable TMPDIR name a folder with room that can be written to") from None
@@ -247,34 +247,34 @@ def temporary_folder() -> Generator[Path]:
     >>> folder.exists()
     False
     """
-    place = temporary()
+    place = make_temporary_folder()
     try:
         yield place
     finally:
         shutil.rmtree(place, ignore_errors=True)
 
 
-def sweep(folder: Path) -> None:
+def remove_leftovers(folder: Path) -> None:
     """Remove what killed processes left in a folder: half-written files and folders for temporary files of this user.
 
-    >>> sweep(Path("nowhere"))
+    >>> remove_leftovers(Path("nowhere"))
     """
     with contextlib.suppress(OSError), os.scandir(folder) as entries:
         for entry in entries:
-            if (ours := _OURS.fullmatch(entry.name)) is not None and _is_left(entry, ours):
+            if (ours := _OURS.fullmatch(entry.name)) is not None and _is_abandoned(entry, ours):
                 if ours["part"]:
                     Path(entry.path).unlink(missing_ok=True)
                 else:
                     shutil.rmtree(entry.path, ignore_errors=True)
 
 
-def sweep_temporary() -> None:
+def remove_temporary_leftovers() -> None:
     """The same in the folder for temporary files, where there is one."""
     with contextlib.suppress(OSError):
-        sweep(Path(tempfile.gettempdir()))
+        remove_leftovers(Path(tempfile.gettempdir()))
 
 
-def _is_left(entry: os.DirEntry[str], ours: re.Match[str]) -> bool:
+def _is_abandoned(entry: os.DirEntry[str], ours: re.Match[str]) -> bool:
     """Whether the process that made a file or folder is gone."""
     try:
         state = entry.stat(follow_symlinks=False)
@@ -282,12 +282,12 @@ def _is_left(entry: os.DirEntry[str], ours: re.Match[str]) -> bool:
         return False
     if hasattr(os, "getuid") and state.st_uid != os.getuid():
         return False
-    if ours["place"] != _here():
+    if ours["place"] != _host():
         return bool(ours["part"]) and time.time() - state.st_mtime > _DAY
-    return not _lives(int(ours["process"]), state.st_mtime)
+    return not _is_running(int(ours["process"]), state.st_mtime)
 
 
-def _lives(number: int, since: float) -> bool:
+def _is_running(number: int, since: float) -> bool:
     """Whether the process of a number that wrote at a time still runs; one that began later has taken over the number."""
     try:
         import psutil
@@ -301,7 +301,7 @@ def _lives(number: int, since: float) -> bool:
 
 
 @functools.cache
-def _here() -> str:
+def _host() -> str:
     """The machine, or the container, in which numbers of processes mean something."""
     try:
         space = Path("/proc/self/ns/pid").stat().st_ino

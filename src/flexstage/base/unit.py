@@ -36,8 +36,8 @@ def parse(text: str, quantity: Quantity, *, where: str = "value") -> float:
     3.141592653589793
     """
     number, unit = _split(text, quantity, where)
-    scale = _relative(unit, quantity, where, text)
-    value = _rounded(Fraction(number) * scale, text, where)
+    scale = _unit_scale(unit, quantity, where, text)
+    value = _round(Fraction(number) * scale, text, where)
     return -0.0 if value == 0.0 and number.startswith("-") else value
 
 
@@ -56,8 +56,8 @@ def show(value: Number, quantity: Quantity, unit: str | None = None, *, digits: 
     unit = unit or quantity.shown
     if not np.isfinite(number):
         return _with_unit(str(number), unit)
-    scale = _relative(unit, quantity, "unit", unit)
-    text = _shortest(number, scale) if digits is None else _decimal(Fraction(number) / scale, digits)
+    scale = _unit_scale(unit, quantity, "unit", unit)
+    text = _shortest_text(number, scale) if digits is None else _decimal(Fraction(number) / scale, digits)
     return _with_unit(f"-{text}" if str(number) == "-0.0" else text, unit)
 
 
@@ -69,7 +69,7 @@ def convert(value: Number, quantity: Quantity, unit: str | None = None) -> Numbe
     (2.0, 1.0)
     """
     unit = unit or quantity.shown
-    scale = _relative(unit, quantity, "unit", unit)
+    scale = _unit_scale(unit, quantity, "unit", unit)
     if scale.denominator == 1:
         return value / float(scale)
     return value * float(1 / scale)
@@ -109,21 +109,21 @@ def _no_number(text: str, quantity: Quantity, where: str) -> DesignError:
     return refuse(where, f'found "{shown}" where {quantity.noun} is expected', example)
 
 
-def _rounded(exact: Fraction, text: str, where: str) -> float:
-    value = _nearest(exact)
+def _round(exact: Fraction, text: str, where: str) -> float:
+    value = _to_float(exact)
     if not np.isfinite(value) or (value == 0.0 and exact != 0):
         raise refuse(where, f'found "{text}", which no double-precision number can hold', "Check the exponent and the unit")
     return value
 
 
-def _nearest(exact: Fraction) -> float:
+def _to_float(exact: Fraction) -> float:
     try:
         return float(exact)
     except OverflowError:
         return float("inf")
 
 
-def _relative(unit: str, quantity: Quantity, where: str, text: str) -> Fraction:
+def _unit_scale(unit: str, quantity: Quantity, where: str, text: str) -> Fraction:
     """The unit's size in the quantity's SI unit, after checking its dimension."""
     example = f'Write for example "{quantity.example}"'
     if unit == quantity.si:
@@ -157,11 +157,11 @@ def _with_unit(text: str, unit: str) -> str:
     return text if unit == "1" else f"{text} {unit}"
 
 
-def _shortest(value: float, scale: Fraction) -> str:
+def _shortest_text(value: float, scale: Fraction) -> str:
     exact = Fraction(value) / scale
     for digits in range(1, 18):
         text = _decimal(exact, digits)
-        if _nearest(Fraction(text) * scale) == value:
+        if _to_float(Fraction(text) * scale) == value:
             return text
     return _decimal(exact, 18)
 

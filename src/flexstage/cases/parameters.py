@@ -12,7 +12,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from flexstage.base.finding import DesignError, Finding, nearest, refuse, require
+from flexstage.base.finding import DesignError, Finding, refuse, require, suggest_nearest
 from flexstage.base.number import Array, freeze
 from flexstage.base.quantity import Quantity
 from flexstage.base.unit import parse, show
@@ -89,7 +89,7 @@ def parameter(of: Any, name: str, where: str = "") -> Parameter:
         inside = [each for each in known if each.startswith(f"{full}.")]
         if inside:
             raise refuse(where or name, f'"{name}" is no single parameter but holds several', f"Name one: {', '.join(inside)}")
-        raise refuse(where or name, f'there is no parameter "{name}"', nearest(name, known))
+        raise refuse(where or name, f'there is no parameter "{name}"', suggest_nearest(name, known))
     return known[full]
 
 

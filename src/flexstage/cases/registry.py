@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from flexstage.base.finding import nearest, refuse
+from flexstage.base.finding import refuse, suggest_nearest
 from flexstage.base.number import Number, Table, stack
 from flexstage.cases.bridge import Bridge, bridge
 from flexstage.cases.double_triangle import SM_REF_A, SM_REF_B, SM_REF_B_REFITTED, double_triangle
@@ -92,7 +92,7 @@ def shipped_case(name: str) -> Case:
     'six axes: six flexure struts in three pairs'
     """
     if name not in CASES:
-        raise refuse(name, "there is no case of this name", nearest(name, CASES))
+        raise refuse(name, "there is no case of this name", suggest_nearest(name, CASES))
     return CASES[name]
 
 

@@ -1,6 +1,6 @@
 """The control wing: from reference command to nanometres."""
 
-from flexstage.base.lazy import lazily
+from flexstage.base.lazy import lazy_attributes
 
 HOMES = {
     "system": "System",
@@ -34,7 +34,7 @@ HOMES = {
     "hysteresis.stack_test": "stack_test",
     "study.choices": "Axes Axis Compensation ControllerKind Criterion Notching StackKind",
     "study.setup": (
-        "Amplifying Controlling FileMotion Floor Gauging HystereticStacks LoopSetup Motion NotchAt RasterMotion Shaking "
+        "AmplifierSetup ControllerSetup FileMotion Floor GaugeSetup HystereticStacks LoopSetup Motion NotchAt RasterMotion VibrationSetup "
         "SineMotion SpiralMotion StepMotion"
     ),
     "study.file": "load_setup",
@@ -42,4 +42,4 @@ HOMES = {
     "report": "loop_report",
     "export.files": "write_controller write_fmu write_plant",
 }
-__getattr__, __dir__ = lazily(__name__, HOMES)
+__getattr__, __dir__ = lazy_attributes(__name__, HOMES)

@@ -7,9 +7,9 @@ from enum import Enum
 
 import numpy as np
 
-from flexstage.base.finding import Finding, nearest, require
-from flexstage.control.plants import Plant, held
-from flexstage.control.system import System, connected, picked, renamed, static
+from flexstage.base.finding import Finding, require, suggest_nearest
+from flexstage.control.plants import Plant, zero_order_hold
+from flexstage.control.system import System, connect, rename, select, static
 from flexstage.models.linear.model import Channel
 
 
@@ -62,21 +62,21 @@ def loop(given: Plant, controller: System) -> Loop:
     >>> channels = (Channel("error.x", "m"),), (Channel("command.B", "m"),)
     >>> integral = System(np.eye(1), np.eye(1), 0.05 * np.eye(1), np.zeros((1, 1)), *channels, step=1e-4)
     >>> found = loop(one, integral)
-    >>> gain = picked(found.system, ["reference.x"], ["error.x"]).transfer(np.array([0.0]))
+    >>> gain = select(found.system, ["reference.x"], ["error.x"]).transfer(np.array([0.0]))
     >>> found.system.growth < 0.0, float(abs(gain[0, 0, 0])) < 1e-9  # stable, and without error at rest
     (True, True)
     """
     require(_findings(given, controller))
     wanted = [name for name in controller.input_names if not name.startswith("applied.")]
-    wired = picked(controller, wanted, _commands(given))
-    plant_held = held(given)
+    wired = select(controller, wanted, _commands(given))
+    plant_held = zero_order_hold(given)
     inputs = (*_channels("reference", given), *_noises(given), *_disturbances(given))
     outputs = (*plant_held.output_names[len(given.gauges) :], *given.gauges, *_names("pose", given), *_names("error", given))
-    system = connected(*_wiring(given, plant_held, wired), inputs, (*outputs, *_commands(given), *given.actuators))
+    system = connect(*_wiring(given, plant_held, wired), inputs, (*outputs, *_commands(given), *given.actuators))
     return Loop(given, plant_held, wired, system, _states(given, plant_held, wired))
 
 
-def opened(closed: Loop, cut: Cut, channel: str | None = None) -> System:
+def open_at(closed: Loop, cut: Cut, channel: str | None = None) -> System:
     """The open loop L of a negative feedback: S = (I + L)^-1, from what goes into the cut to minus what comes back.
 
     Cut at the pose or at the commands, all channels (rows and columns named by coordinates or actuators, inputs `cut.<name>`), or one
@@ -84,7 +84,7 @@ def opened(closed: Loop, cut: Cut, channel: str | None = None) -> System:
 
     >>> from flexstage.control.example import integral_loop
     >>> one = integral_loop()
-    >>> at_pose, at_command = opened(one, Cut.POSE), opened(one, Cut.COMMAND)
+    >>> at_pose, at_command = open_at(one, Cut.POSE), open_at(one, Cut.COMMAND)
     >>> at_pose.input_names, at_pose.output_names
     (('cut.x',), ('pose.x',))
     >>> far = np.array([10.0, 500.0])
@@ -95,22 +95,22 @@ def opened(closed: Loop, cut: Cut, channel: str | None = None) -> System:
     outer = _names("pose", given) if cut is Cut.POSE else _commands(given)
     short = [name.removeprefix(f"{cut.value}.") for name in outer]
     if channel is not None and channel not in short:
-        require([Finding(channel, f"the loop has no such {cut.value}", nearest(channel, short))])
-    return _cut(closed, [name for name, each in zip(outer, short, strict=True) if channel is None or channel == each])
+        require([Finding(channel, f"the loop has no such {cut.value}", suggest_nearest(channel, short))])
+    return _loop_cut(closed, [name for name, each in zip(outer, short, strict=True) if channel is None or channel == each])
 
 
-def opened_everywhere(closed: Loop) -> System:
+def open_everywhere(closed: Loop) -> System:
     """The loop cut open at all poses and all commands at once, in this order: for what acts at both its ends together.
 
     >>> from flexstage.control.example import integral_loop
-    >>> found = opened_everywhere(integral_loop())
+    >>> found = open_everywhere(integral_loop())
     >>> found.input_names, found.output_names
     (('cut.x', 'cut.B'), ('pose.x', 'command.B'))
     """
-    return _cut(closed, [*_names("pose", closed.plant), *_commands(closed.plant)])
+    return _loop_cut(closed, [*_names("pose", closed.plant), *_commands(closed.plant)])
 
 
-def _cut(closed: Loop, chosen: list[str]) -> System:
+def _loop_cut(closed: Loop, chosen: list[str]) -> System:
     """Open at these signals, the sign turned: what comes back is subtracted."""
     given = closed.plant
     systems, links = _wiring(given, closed.held, closed.controller)
@@ -120,13 +120,13 @@ def _cut(closed: Loop, chosen: list[str]) -> System:
     changed = {
         entry: {swapped.get(term, term): factor for term, factor in terms.items() if term not in zero} for entry, terms in links.items()
     }
-    found = connected(systems, changed, tuple(Channel(swapped[name], outer[name]) for name in chosen), chosen)
+    found = connect(systems, changed, tuple(Channel(swapped[name], outer[name]) for name in chosen), chosen)
     return replace(found, C=-found.C, D=-found.D)
 
 
 def _wiring(given: Plant, plant: System, controller: System) -> tuple[tuple[System, ...], dict[str, dict[str, float]]]:
     """Plant, estimate and controller with every input's terms; nothing but a pose and a command crosses between them."""
-    entry = renamed(controller, {name: f"to.{name}" for name in controller.input_names})
+    entry = rename(controller, {name: f"to.{name}" for name in controller.input_names})
     entry = replace(entry, outputs=controller.outputs)
     links: dict[str, dict[str, float]] = {name: {name: 1.0} for name in plant.input_names if name not in given.actuators}
     links |= {f"entry.{name}": {f"command.{name}": 1.0, f"noise.{name}": 1.0} for name in given.actuators}
@@ -199,7 +199,11 @@ def _findings(given: Plant, controller: System) -> list[Finding]:
     known = [*_names("error", given), *_names("reference", given), *_names("pose", given), *(f"applied.{name}" for name in given.actuators)]
     return [
         *found,
-        *(Finding(name, "a controller has no such input", nearest(name, known)) for name in controller.input_names if name not in known),
+        *(
+            Finding(name, "a controller has no such input", suggest_nearest(name, known))
+            for name in controller.input_names
+            if name not in known
+        ),
         *(
             Finding("controller", f"it has no output {name}", "Give a command to every actuator, zero if need be")
             for name in _commands(given)

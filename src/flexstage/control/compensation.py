@@ -32,18 +32,18 @@ class Compensation:
         return np.asarray(poses) @ self.gains.values.T + self.offset
 
 
-def uncompensated(kinematics: Kinematics) -> Compensation:
+def ideal_compensation(kinematics: Kinematics) -> Compensation:
     """The strokes of the ideal kinematics alone, a = R_a xi (Eq. 13 of Shin & Moon).
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.ideal import ideal
-    >>> uncompensated(ideal(parallelogram())).strokes(np.array([2e-6])).tolist()
+    >>> ideal_compensation(ideal(parallelogram())).strokes(np.array([2e-6])).tolist()
     [2e-06]
     """
     return Compensation(kinematics.mapping, np.zeros(len(kinematics.actuators)), kinematics.provenance)
 
 
-def compensated(lost: LostMotion, kinematics: Kinematics, deflection: Array | None = None) -> Compensation:
+def lost_motion_compensation(lost: LostMotion, kinematics: Kinematics, deflection: Array | None = None) -> Compensation:
     """Gains that correct lost motion and, with the platform's `deflection` (6,) under loads, the strokes that take it back.
 
     a = (R_a V^+ T)^-1 R_a (xi - V^+ C w): Eq. 11 of Shin & Moon turned round, its load term included; C w is the twist of the platform's
@@ -56,7 +56,7 @@ def compensated(lost: LostMotion, kinematics: Kinematics, deflection: Array | No
     >>> from flexstage.models.lumped import lumped
     >>> stage = parallelogram()
     >>> lost = lost_motion(ideal(stage), lumped(stage))
-    >>> found = compensated(lost, ideal(stage), np.array([1e-6, 0, 0, 0, 0, 0]))
+    >>> found = lost_motion_compensation(lost, ideal(stage), np.array([1e-6, 0, 0, 0, 0, 0]))
     >>> round(float(found.strokes(np.array([1e-6]))[0]), 15)  # what the load does already needs no stroke
     0.0
     """
@@ -101,9 +101,9 @@ def static_error(given: Compensation, kinematics: Kinematics, plant: Matrix, def
     >>> from flexstage.models.lumped import lumped
     >>> stage = double_triangle()
     >>> kinematics, lost = ideal(stage), lost_motion(ideal(stage), lumped(stage))
-    >>> round(static_error(uncompensated(kinematics), kinematics, lost.gain).error.at("z", "z").item(), 3)
+    >>> round(static_error(ideal_compensation(kinematics), kinematics, lost.gain).error.at("z", "z").item(), 3)
     0.032
-    >>> static_error(compensated(lost, kinematics), kinematics, lost.gain).largest < 1e-9
+    >>> static_error(lost_motion_compensation(lost, kinematics), kinematics, lost.gain).largest < 1e-9
     True
     """
     if plant.columns != given.gains.rows or len(plant.rows) != len(COMPONENTS):
@@ -143,7 +143,7 @@ def finite_error(given: Compensation, kinematics: Kinematics, plant: Matrix, pos
     >>> from flexstage.models.lumped import lumped
     >>> stage = parallelogram()
     >>> lost, poses = lost_motion(ideal(stage), lumped(stage)), np.array([[50e-6]])
-    >>> given = compensated(lost, ideal(stage))
+    >>> given = lost_motion_compensation(lost, ideal(stage))
     >>> moved = forward_kinematics(stage, ideal(stage), given.strokes(poses)).pose.vector
     >>> bool(np.abs(finite_error(given, ideal(stage), lost.gain, poses, moved)).max() < 1e-12)
     True
@@ -164,7 +164,7 @@ def finite_strokes(given: Compensation, kinematics: Kinematics, ideal: Array) ->
     >>> from flexstage.models.ideal import ideal
     >>> from flexstage.models.lumped import lumped
     >>> kinematics = ideal(double_triangle())
-    >>> given = compensated(lost_motion(kinematics, lumped(double_triangle())), kinematics)
+    >>> given = lost_motion_compensation(lost_motion(kinematics, lumped(double_triangle())), kinematics)
     >>> (1e6 * finite_strokes(given, kinematics, np.array([0, 0, 0, 50e-6, 50e-6, 50e-6]))[3:]).round(2).tolist()  # 50/(1 - 0.032)
     [51.63, 51.63, 51.63]
     """

@@ -7,11 +7,11 @@ from dataclasses import replace
 from flexstage.base.finding import refuse
 from flexstage.control.hysteresis.creep import Creep
 from flexstage.control.plants import Plant
-from flexstage.control.system import connected, picked, renamed
+from flexstage.control.system import connect, rename, select
 from flexstage.models.linear.model import Channel
 
 
-def with_creep(given: Plant, creep: Creep) -> Plant:
+def add_creep(given: Plant, creep: Creep) -> Plant:
     """The plant behind the creep of its stacks: free strokes `<actuator>` go through y = g_0 u + sum_i g_i s_i first (Hammerstein).
 
     Hysteresis, which does not depend on time, stands before it, so that everything behind the hold stays linear and exactly sampled; creep
@@ -19,7 +19,7 @@ def with_creep(given: Plant, creep: Creep) -> Plant:
 
     >>> from flexstage.control.example import integral_loop
     >>> plant = integral_loop().plant
-    >>> found = with_creep(plant, Creep([1.0], [0.1, 0.05], [2.0, 0.2]))
+    >>> found = add_creep(plant, Creep([1.0], [0.1, 0.05], [2.0, 0.2]))
     >>> found.states[:2], round(float(found.system.transfer([0.0])[0, 0, 0].real / plant.system.transfer([0.0])[0, 0, 0].real), 9)
     (('creep.B.1', 'creep.B.2'), 1.15)
     """
@@ -28,11 +28,11 @@ def with_creep(given: Plant, creep: Creep) -> Plant:
     entering = tuple(Channel(name, "m") for name in given.actuators)
     crept = {name: f"crept.{name}" for name in given.actuators}
     first = creep.system(entering, tuple(Channel(name, "m") for name in crept.values()))
-    whole = connected([first, renamed(given.system, crept)], {}, _inputs(given, entering), given.system.output_names)
+    whole = connect([first, rename(given.system, crept)], {}, _inputs(given, entering), given.system.output_names)
     states = (f"creep.{name}.{number + 1}" for name in given.actuators for number in range(creep.times.shape[1]))
     note = f"{given.note}; creep by {creep.times.shape[1]} exponentials an actuator"
     return replace(
-        given, system=picked(whole, given.system.input_names, given.system.output_names), states=(*states, *given.states), note=note
+        given, system=select(whole, given.system.input_names, given.system.output_names), states=(*states, *given.states), note=note
     )
 
 

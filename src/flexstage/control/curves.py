@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from flexstage.base.number import Array
-from flexstage.control.closed import Cut, Loop, opened
+from flexstage.control.closed import Cut, Loop, open_at
 from flexstage.control.resolvent import Resolvent, resolvent
 from flexstage.control.system import System
 
@@ -51,7 +51,7 @@ def sensitivity(open_loop: System) -> System:
     """S = (I + L)^-1 as a system with the names of L's outputs on both sides.
 
     >>> from flexstage.control.example import integral_loop
-    >>> found, far = opened(integral_loop(), Cut.POSE), np.array([40.0])
+    >>> found, far = open_at(integral_loop(), Cut.POSE), np.array([40.0])
     >>> bool(np.allclose(sensitivity(found).transfer(far) * (1.0 + found.transfer(far)), 1.0))
     True
     """
@@ -70,14 +70,14 @@ def curves(closed: Loop, cut: Cut) -> Curves:
     >>> found.names, bool(np.max(np.abs(np.diff(np.angle(found.loops[:, 0])) % (2.0 * np.pi) - np.pi)) > np.pi - 0.7)
     (('x',), True)
     """
-    whole = sensitivity(opened(closed, cut))
+    whole = sensitivity(open_at(closed, cut))
     names = tuple(name.removeprefix(f"{cut.value}.") for name in whole.output_names)
     response = resolvent(whole)
-    poles = [whole.poles, *(opened(closed, cut, name).poles for name in names)]
-    frequencies = dense(np.concatenate(poles), whole.step)
+    poles = [whole.poles, *(open_at(closed, cut, name).poles for name in names)]
+    frequencies = dense_frequencies(np.concatenate(poles), whole.step)
     found = Curves(cut, names, frequencies, response.at(frequencies), response)
     for _ in range(_ROUNDS):
-        between = _between(found)
+        between = refine(found)
         if not len(between) or len(found.frequencies) > _MOST:
             break
         places = np.searchsorted(found.frequencies, between)
@@ -95,10 +95,10 @@ def rates_of(poles: Array, step: float | None) -> Array:
     return poles.astype(complex) if step is None else np.log(np.where(np.abs(poles) > 1e-6, poles, 1e-6).astype(complex)) / step
 
 
-def around(rates: Array) -> Array:
+def points_around(rates: Array) -> Array:
     """Frequencies [Hz] at multiples of each resonance's half width around it; only its own of a pole damped more than 0.5.
 
-    >>> around(np.array([-1.0 + 100.0j])).round(3)[4:7].tolist()  # 100/(2 pi), and 1/(2 pi) either side
+    >>> points_around(np.array([-1.0 + 100.0j])).round(3)[4:7].tolist()  # 100/(2 pi), and 1/(2 pi) either side
     [15.756, 15.915, 16.075]
     """
     natural, width = np.abs(np.imag(rates)) / (2.0 * np.pi), np.maximum(np.abs(np.real(rates)), 1e-9 * np.abs(rates)) / (2.0 * np.pi)
@@ -107,10 +107,10 @@ def around(rates: Array) -> Array:
     return np.concatenate([spread.ravel(), np.hypot(natural, width)[~sharp]])
 
 
-def dense(poles: Array, step: float | None) -> Array:
+def dense_frequencies(poles: Array, step: float | None) -> Array:
     """Frequencies [Hz] that resolve a system of these poles: some a decade, and around each resonance.
 
-    >>> found = dense(np.array([-1.0 + 100.0j, -1.0 - 100.0j]), None)
+    >>> found = dense_frequencies(np.array([-1.0 + 100.0j, -1.0 - 100.0j]), None)
     >>> round(float(found[0]), 4), round(float(found[-1])), len(found)
     (0.0159, 1592, 73)
     """
@@ -122,11 +122,11 @@ def dense(poles: Array, step: float | None) -> Array:
     end = 100.0 * np.max(natural) if step is None else 0.5 / step
     low = 1e-3 * min(float(np.min(natural)), end)
     coarse = np.geomspace(low, end, 2 + int(_PER_DECADE * np.log10(end / low)))
-    near = around(rates)
+    near = points_around(rates)
     return np.unique(np.concatenate([coarse, near[(near > low) & (near < end)]]))
 
 
-def _between(found: Curves) -> Array:
+def refine(found: Curves) -> Array:
     """Middles of the steps over which a loop turns or grows too much."""
     loops = found.loops
     finite = np.where(np.isfinite(loops) & (loops != 0.0), loops, 1e-300)

@@ -11,11 +11,11 @@ import scipy
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
 from flexstage.base.quantity import FREQUENCY
-from flexstage.control.closed import Cut, Loop, opened, opened_everywhere
-from flexstage.control.curves import dense, sensitivity
+from flexstage.control.closed import Cut, Loop, open_at, open_everywhere
+from flexstage.control.curves import dense_frequencies, sensitivity
 from flexstage.control.norm import Plane, level_crossings, peak, to_plane
 from flexstage.control.resolvent import Resolvent, resolvent
-from flexstage.control.singular import balanced, lower_bound, upper_bound
+from flexstage.control.singular import balance, lower_bound, upper_bound
 from flexstage.control.stability import require_stable
 from flexstage.control.system import System
 
@@ -73,11 +73,11 @@ def disk_margin(own: System, skew: float = 0.0) -> Edge:
     """alpha = 1/||S + (skew - 1)/2|| of a single loop from its sensitivity S = 1/(1 + L), exact by `peak`.
 
     >>> from flexstage.control.example import integral_loop
-    >>> whole = sensitivity(opened(integral_loop(), Cut.POSE))
+    >>> whole = sensitivity(open_at(integral_loop(), Cut.POSE))
     >>> disk_margin(whole).value <= 2.0
     True
     """
-    found = peak(_shifted(own, skew))
+    found = peak(_shift(own, skew))
     return Edge(1.0 / found.value, found.frequency)
 
 
@@ -91,32 +91,32 @@ def disk_margins(closed: Loop, cut: Cut | None, skew: float = 0.0) -> DiskMargin
 
     >>> from flexstage.control.example import integral_loop
     >>> one = integral_loop()
-    >>> found, alone = disk_margins(one, Cut.POSE), disk_margin(sensitivity(opened(one, Cut.POSE)))
+    >>> found, alone = disk_margins(one, Cut.POSE), disk_margin(sensitivity(open_at(one, Cut.POSE)))
     >>> found.covered, abs(found.reached / alone.value - 1.0) < 1e-4, abs(found.guaranteed / alone.value - 1.0) < 2e-3
     (True, True, True)
     """
     require_stable(closed, "disk margins")
-    open_loop = opened_everywhere(closed) if cut is None else opened(closed, cut)
-    moved = _shifted(sensitivity(open_loop), skew)
+    open_loop = open_everywhere(closed) if cut is None else open_at(closed, cut)
+    moved = _shift(sensitivity(open_loop), skew)
     response = resolvent(moved)
-    frequencies = dense(moved.poles, moved.step)
-    lowest, highest, place = _searched(response, frequencies)
-    level, covered = _covered(moved, response, frequencies, highest * (1.0 + _SLACK))
+    frequencies = dense_frequencies(moved.poles, moved.step)
+    lowest, highest, place = _search_bounds(response, frequencies)
+    level, covered = _guaranteed_level(moved, response, frequencies, highest * (1.0 + _SLACK))
     return DiskMargin(open_loop.output_names, skew, 1.0 / level, 1.0 / lowest, place, covered)
 
 
-def _shifted(own: System, skew: float) -> System:
+def _shift(own: System, skew: float) -> System:
     return replace(own, D=own.D + 0.5 * (skew - 1.0) * np.eye(len(own.D)))
 
 
-def _scaled(matrices: Array, logs: Array) -> Array:
+def _scale(matrices: Array, logs: Array) -> Array:
     return matrices * np.exp(logs[..., :, None] - logs[..., None, :])
 
 
-def _searched(response: Resolvent, frequencies: Array) -> tuple[float, float, float]:
+def _search_bounds(response: Resolvent, frequencies: Array) -> tuple[float, float, float]:
     """The highest bounds from below and above, and where the one from below stands: local maxima over frequency followed to their tops."""
     matrices = response.at(frequencies)
-    sizes = np.linalg.svd(_scaled(matrices, balanced(matrices)), compute_uv=False)[:, 0]
+    sizes = np.linalg.svd(_scale(matrices, balance(matrices)), compute_uv=False)[:, 0]
     padded = np.concatenate([[-1.0], sizes, [-1.0]])
     tops = np.flatnonzero((sizes >= padded[:-2]) & (sizes >= padded[2:]))
     lowest, highest, place = 0.0, 0.0, np.nan
@@ -124,7 +124,7 @@ def _searched(response: Resolvent, frequencies: Array) -> tuple[float, float, fl
         if sizes[top] < highest * (1.0 - _NEAR):
             break
         ends = float(frequencies[max(top - 1, 0)]), float(frequencies[min(top + 1, len(frequencies) - 1)])
-        at, above = _top(response, ends)
+        at, above = _local_maximum(response, ends)
         below = lower_bound(response.at(np.array([at]))[0])[0]
         highest = max(highest, above)
         if below > lowest:
@@ -132,7 +132,7 @@ def _searched(response: Resolvent, frequencies: Array) -> tuple[float, float, fl
     return lowest, highest, place
 
 
-def _top(response: Resolvent, ends: tuple[float, float]) -> tuple[float, float]:
+def _local_maximum(response: Resolvent, ends: tuple[float, float]) -> tuple[float, float]:
     """Where the bound from above is highest between two frequencies, and how high."""
 
     def below(frequency: float) -> float:
@@ -148,10 +148,10 @@ def _top(response: Resolvent, ends: tuple[float, float]) -> tuple[float, float]:
 
 def _bound(response: Resolvent, frequency: float) -> tuple[float, Array]:
     matrix = response.at(np.array([frequency]))
-    return upper_bound(matrix[0], balanced(matrix)[0])
+    return upper_bound(matrix[0], balance(matrix)[0])
 
 
-def _covered(moved: System, response: Resolvent, frequencies: Array, level: float) -> tuple[float, bool]:
+def _guaranteed_level(moved: System, response: Resolvent, frequencies: Array, level: float) -> tuple[float, bool]:
     """The level below which mu is shown to stay at all frequencies, and whether it was shown."""
     end = np.inf if moved.step is None else 0.5 / moved.step
     plane = to_plane(moved)
@@ -160,13 +160,13 @@ def _covered(moved: System, response: Resolvent, frequencies: Array, level: floa
         if not open_:
             return level, True
         low, high = open_.pop()
-        middle = _within(low, high, frequencies)
+        middle = _next_frequency(low, high, frequencies)
         size, logs = _bound(response, middle)
         if size >= level / (1.0 + 0.5 * _SLACK):
             level, open_ = size * (1.0 + _SLACK), [*open_, (low, high)]
             continue
         scale = np.exp(logs)
-        system = replace(plane.system, B=plane.system.B / scale, C=plane.system.C * scale[:, None], D=_scaled(plane.system.D, logs))
+        system = replace(plane.system, B=plane.system.B / scale, C=plane.system.C * scale[:, None], D=_scale(plane.system.D, logs))
         crossings = _true_crossings(replace(plane, system=system), response, logs, level)
         below, above = crossings[crossings < middle], crossings[crossings > middle]
         left, right = max(below, default=-np.inf), min(above, default=np.inf)
@@ -177,11 +177,11 @@ def _covered(moved: System, response: Resolvent, frequencies: Array, level: floa
 def _true_crossings(plane: Plane, response: Resolvent, logs: Array, level: float) -> Array:
     """Those frequencies at which a singular value is the level indeed; eigenvalues near the axis leave more."""
     found = level_crossings(plane, level)
-    sizes = np.linalg.svd(_scaled(response.at(found), logs), compute_uv=False)
+    sizes = np.linalg.svd(_scale(response.at(found), logs), compute_uv=False)
     return found[np.min(np.abs(sizes / level - 1.0), axis=1) < _TRUE]
 
 
-def _within(low: float, high: float, frequencies: Array) -> float:
+def _next_frequency(low: float, high: float, frequencies: Array) -> float:
     """A frequency in between to look at next: the middle one of those that resolve the loop, else a mean."""
     inside = frequencies[(frequencies > low) & (frequencies < high)]
     if len(inside):

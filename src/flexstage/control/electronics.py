@@ -9,7 +9,7 @@ from typing import Annotated, TypeVar
 import numpy as np
 
 from flexstage.analysis.workspace.stroke import stacks, stroke_limits
-from flexstage.base.finding import Finding, nearest, require
+from flexstage.base.finding import Finding, require, suggest_nearest
 from flexstage.base.number import Table
 from flexstage.base.quantity import FREQUENCY, TIME
 from flexstage.base.record import INNER
@@ -151,7 +151,7 @@ _Setting = TypeVar("_Setting", AmplifierSettings, GaugeSettings)
 def _by_name(given: _Setting | Mapping[str, _Setting] | None, names: tuple[str, ...], none: _Setting, kind: str) -> dict[str, _Setting]:
     if not isinstance(given, Mapping):
         return dict.fromkeys(names, none if given is None else given)
-    require(Finding(name, f"the stage has no {kind} of this name", nearest(name, names)) for name in given if name not in names)
+    require(Finding(name, f"the stage has no {kind} of this name", suggest_nearest(name, names)) for name in given if name not in names)
     return {name: given.get(name, none) for name in names}
 
 
@@ -183,20 +183,20 @@ def _gain(piezo: Piezo) -> float:
 
 def _sensor(setting: GaugeSettings, gauge: DisplacementGauge) -> Sensor:
     return Sensor(
-        bandwidth=_first(setting.bandwidth, gauge.bandwidth, np.inf),
-        noise_density=setting.noise_density if setting.noise_density is not None else _number(gauge.noise_density),
-        resolution=_first(setting.resolution, gauge.resolution, 0.0),
+        bandwidth=_first_stated(setting.bandwidth, gauge.bandwidth, np.inf),
+        noise_density=setting.noise_density if setting.noise_density is not None else _float_or_none(gauge.noise_density),
+        resolution=_first_stated(setting.resolution, gauge.resolution, 0.0),
         filter_order=setting.filter_order,
         filter_corner=np.inf if setting.filter_corner is None else setting.filter_corner,
         half_range=0.5 * float(gauge.range),
     )
 
 
-def _number(value: object) -> float | None:
+def _float_or_none(value: object) -> float | None:
     return None if value is None else float(value)  # type: ignore[arg-type]
 
 
-def _first(*values: object) -> float:
+def _first_stated(*values: object) -> float:
     return next(float(value) for value in values if value is not None)  # type: ignore[arg-type]
 
 

@@ -17,8 +17,8 @@ from flexstage.control.study.stacks import Sweep
 from flexstage.control.study.study import LoopStudy
 from flexstage.control.tables import motion_cell
 from flexstage.control.white_noise import Kind
-from flexstage.show.display import NO_VALUE, number, percent, value_with_unit
-from flexstage.show.table import Cell, Column, Mark, Table, build, row_table
+from flexstage.show.display import NO_VALUE, format_value, number, percent
+from flexstage.show.table import Cell, Column, Mark, Table, make_table, row_table
 from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
 
 _SILENT = 1e-12
@@ -30,8 +30,8 @@ def rest_table(found: RestErrors) -> Table:
     pairs = (("by R_a", found.ideal_map), ("corrected", found.lost_motion_gains))
     heads = ["command", *(head for noun, _ in pairs for head in (Column(f"error {noun}"), Column("crosstalk")))]
     names, errors = found.ideal_map.error.rows, [each for _, each in pairs]
-    rows = [(Cell(name, Mark.STRONG), *_own_and_cross(errors, index)) for index, name in enumerate(names)]
-    return build("Static errors without the loop", heads, rows, notes=list(_rest_notes(found)))
+    rows = [(Cell(name, Mark.STRONG), *_error_and_crosstalk(errors, index)) for index, name in enumerate(names)]
+    return make_table("Static errors without the loop", heads, rows, notes=list(_rest_notes(found)))
 
 
 def _rest_notes(found: RestErrors) -> Iterator[str]:
@@ -48,18 +48,18 @@ def _rest_notes(found: RestErrors) -> Iterator[str]:
         yield f"Loads, strokes held: {_twist(found.load, found.load)}; their strokes fed forward: {_twist(found.load_left, found.load)}."
 
 
-def _own_and_cross(found: Sequence[StaticError], column: int) -> Iterator[Cell]:
+def _error_and_crosstalk(found: Sequence[StaticError], column: int) -> Iterator[Cell]:
     for each in found:
         values = np.asarray(each.error.values)
         yield _share(float(values[column, column]))
         row = int(np.argmax(np.abs(values[:, column]) * (np.arange(len(values)) != column)))
         size = float(values[row, column]) if row != column else 0.0
-        text = f"{_sized(size, each.error.unit[row][column])} {each.error.rows[row]}"
+        text = f"{_with_unit(size, each.error.unit[row][column])} {each.error.rows[row]}"
         yield Cell(NO_VALUE, Mark.FAINT) if abs(size) < _SILENT else Cell(text)
 
 
-def _sized(value: float, unit: str) -> str:
-    return percent(value, 3) if unit == "1" else value_with_unit(value, unit, 3)
+def _with_unit(value: float, unit: str) -> str:
+    return percent(value, 3) if unit == "1" else format_value(value, unit, 3)
 
 
 def _share(value: float) -> Cell:
@@ -70,7 +70,7 @@ def _twist(values: Array, against: Array) -> str:
     """The components of a twist that stand out against another."""
     scale = {unit: max(abs(float(value)) for value, each in zip(against, TWIST_UNITS, strict=True) if each == unit) for unit in TWIST_UNITS}
     parts = [
-        f"{name} {value_with_unit(float(value), unit, 3)}"
+        f"{name} {format_value(float(value), unit, 3)}"
         for name, value, unit in zip(COMPONENTS, values, TWIST_UNITS, strict=True)
         if abs(value) > _STANDS_OUT * scale[unit]
     ]
@@ -90,12 +90,12 @@ def noise_table(found: LoopStudy) -> Table:
         cells = [motion_cell(float(np.sqrt(value)), channel.unit) for value in squares[index]]
         total = motion_cell(float(budget.rms[index]), channel.unit)
         if resting is not None:
-            ends = (value_with_unit(float(each[index]), channel.unit, 3) for each in (resting.low, resting.high))
+            ends = (format_value(float(each[index]), channel.unit, 3) for each in (resting.low, resting.high))
             told = [motion_cell(float(resting.rms[index]), channel.unit), Cell(" to ".join(ends)), replace(total, mark=Mark.FAINT), *cells]
         else:
             told = [total, *cells, *([] if simulated is None else [motion_cell(float(simulated[index]), channel.unit)])]
         rows.append((Cell(channel.name.removeprefix("relative."), Mark.STRONG), replace(told[0], mark=Mark.STRONG), *told[1:]))
-    return build("Noise at rest", heads, rows, notes=_noise_notes(budget, found.still, resting))
+    return make_table("Noise at rest", heads, rows, notes=_noise_notes(budget, found.still, resting))
 
 
 def _noise_notes(budget: NoiseBudget, still: Simulated | None, resting: RestRms | None) -> Sequence[str]:

@@ -24,7 +24,7 @@ def to_control(system: System, states: tuple[str, ...] | None = None) -> Any:
     (['error_x'], ['command_B'], 0.0001)
     """
     control = _control()
-    names = [[_plain(name) for name in group] for group in (system.input_names, system.output_names, states or ())]
+    names = [[_python_names(name) for name in group] for group in (system.input_names, system.output_names, states or ())]
     for group in names:
         require(
             Finding(name, f"{group.count(name)} names become this one", "Rename them")
@@ -70,7 +70,7 @@ def _control() -> Any:
         raise refuse("python-control", "it is not installed", "Install it with: pip install 'flexstage[control]'") from None
 
 
-def _plain(name: str) -> str:
+def _python_names(name: str) -> str:
     return name.replace(".", "_")
 
 

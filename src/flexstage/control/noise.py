@@ -9,18 +9,18 @@ from typing import Annotated
 import numpy as np
 
 from flexstage.analysis.random_response import Spectrum, quadrature, spectrum_findings
-from flexstage.base.finding import Finding, nearest, require
+from flexstage.base.finding import Finding, require, suggest_nearest
 from flexstage.base.labelled import Matrix
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
 from flexstage.base.quantity import FREQUENCY
 from flexstage.base.record import INNER, VIEW, Axes, Called
 from flexstage.control.closed import Loop
-from flexstage.control.curves import around, rates_of
+from flexstage.control.curves import points_around, rates_of
 from flexstage.control.electronics import Amplifier, Sensor
 from flexstage.control.resolvent import resolvent
 from flexstage.control.stability import require_stable
-from flexstage.control.system import System, picked
+from flexstage.control.system import System, select
 from flexstage.control.white_noise import Kind, Source, bounded_amplifiers, mean_squares, white_system
 from flexstage.mechanism.mechanism import GROUND
 from flexstage.models.linear.model import Channel
@@ -51,7 +51,7 @@ class NoiseBudget(InNotebook):
     notes: tuple[str, ...]
 
     @property
-    def slow(self) -> tuple[str, ...]:
+    def slowly_rounding(self) -> tuple[str, ...]:
         """Gauges whose rounding is no white noise, where that matters: their readings move by less than half a step a sample.
 
         Errors of successive samples of a Gaussian series with changes of s steps correlate by about exp(-2 pi^2 s^2), 0.7 % at a half
@@ -97,7 +97,7 @@ class NoiseBudget(InNotebook):
     @property
     def rounding_is_white(self) -> Annotated[bool, VIEW]:
         """Whether rounding is white noise, as the budget counts it; otherwise take the simulated rms."""
-        return not self.slow
+        return not self.slowly_rounding
 
 
 def noise_budget(
@@ -123,11 +123,11 @@ def noise_budget(
     gauges = closed.plant.gauges
     seen, count = (*outputs, *(name for name in gauges if name not in outputs)), len(outputs)
     both, sources = white_system(closed, seen)
-    white, readings = (picked(both, both.input_names, names) for names in (outputs, gauges))
-    squares, listed = _summed(mean_squares(white), sources)
-    spectra = driving(closed, floor, seen)
+    white, readings = (select(both, both.input_names, names) for names in (outputs, gauges))
+    squares, listed = _sum_by_source(mean_squares(white), sources)
+    spectra = band_spectra(closed, floor, seen)
     nodes, weights = quadrature(_panels(closed, floor, band))
-    every = np.abs(Disturbed(closed, tuple(spectra), seen).at(nodes)) ** 2
+    every = np.abs(DisturbanceResponse(closed, tuple(spectra), seen).at(nodes)) ** 2
     gains = every[:, :count]
     densities = np.stack([spectrum.at(nodes) for spectrum in spectra.values()], axis=-1) if spectra else np.zeros((len(nodes), 0))
     shares = np.einsum("f,fpm,fm->pm", weights, gains, densities)
@@ -166,7 +166,7 @@ def _changes(closed: Loop, readings: System, sources: tuple[Source, ...], driven
     return np.sqrt(squares) / np.where(steps > 0.0, steps, np.nan)
 
 
-def _summed(squares: Array, sources: tuple[Source, ...]) -> tuple[Array, tuple[Source, ...]]:
+def _sum_by_source(squares: Array, sources: tuple[Source, ...]) -> tuple[Array, tuple[Source, ...]]:
     """Columns of one source added."""
     listed = tuple(dict.fromkeys(sources))
     columns = [np.sum(squares[..., [each == source for each in sources]], axis=-1) for source in listed]
@@ -178,14 +178,14 @@ def _white_density(white: System, sources: tuple[Source, ...], frequencies: Arra
     size = 2.0 * np.abs(resolvent(white).at(frequencies)) ** 2
     if white.step is not None:
         size = np.where((frequencies <= 0.5 / white.step)[:, None, None], white.step * size, 0.0)
-    return _summed(size, sources)[0]
+    return _sum_by_source(size, sources)[0]
 
 
-def driving(closed: Loop, floor: Mapping[str, Spectrum], outputs: tuple[str, ...]) -> dict[str, Spectrum]:
+def band_spectra(closed: Loop, floor: Mapping[str, Spectrum], outputs: tuple[str, ...]) -> dict[str, Spectrum]:
     """Spectra that are integrated over a band, by plant input: the floor's, and those of amplifiers that nothing bounds.
 
     >>> from flexstage.control.example import integral_loop
-    >>> list(driving(integral_loop(), {"ground.x": Spectrum(1e-18)}, ("relative.x",)))
+    >>> list(band_spectra(integral_loop(), {"ground.x": Spectrum(1e-18)}, ("relative.x",)))
     ['ground.x']
     """
     found = dict(floor)
@@ -201,7 +201,7 @@ def _source(name: str) -> Source:
 
 
 @dataclass(frozen=True, eq=False)
-class Disturbed:
+class DisturbanceResponse:
     """The loop's response to what disturbs the stage between the samples: inputs of the plant, `ground.x` ... or an actuator's stroke.
 
     At the samples y = [G_y(j omega) + S_y(e^{j omega T}) G_gap(j omega)] w.
@@ -218,9 +218,9 @@ class Disturbed:
             return np.zeros((len(frequencies), len(self.outputs), 0), complex)
         own = [name for name in self.outputs if name in given.system.output_names]
         rows = [self.outputs.index(name) for name in own]
-        felt = resolvent(picked(given.system, self.inputs, (*(f"gap.{name}" for name in given.gauges), *own))).at(frequencies)
+        felt = resolvent(select(given.system, self.inputs, (*(f"gap.{name}" for name in given.gauges), *own))).at(frequencies)
         noises = [f"noise.{name}" for name in given.gauges]
-        found = resolvent(picked(self.closed.system, noises, self.outputs)).at(frequencies) @ felt[:, : len(noises)]
+        found = resolvent(select(self.closed.system, noises, self.outputs)).at(frequencies) @ felt[:, : len(noises)]
         found[:, rows] += felt[:, len(noises) :]
         return found
 
@@ -229,10 +229,10 @@ def _panels(closed: Loop, floor: Mapping[str, Spectrum], band: tuple[float, floa
     """Ends of the panels [Hz]: around every resonance of stage and loop, those of a sampled loop mirrored at multiples of its rate."""
     low, high = band
     step = closed.step
-    near = around(rates_of(closed.system.poles, step))
+    near = points_around(rates_of(closed.system.poles, step))
     if step is not None:
         near = np.concatenate([np.abs(number / step + sign * near) for number in range(int(high * step) + 2) for sign in (1.0, -1.0)])
-    stage = around(rates_of(closed.plant.system.poles, None))
+    stage = points_around(rates_of(closed.plant.system.poles, None))
     coarse = np.geomspace(low, high, 2 + int(_PER_DECADE * np.log10(high / low)))
     knots = [np.asarray(spectrum.frequencies) for spectrum in floor.values() if spectrum.frequencies is not None]
     ends = np.concatenate([coarse, near, stage, *knots])
@@ -241,7 +241,7 @@ def _panels(closed: Loop, floor: Mapping[str, Spectrum], band: tuple[float, floa
 
 def _findings(floor: Mapping[str, Spectrum]) -> list[Finding]:
     known = [f"{GROUND}.{name}" for name in COMPONENTS]
-    return [Finding(name, "the ground has no such motion", nearest(name, known)) for name in floor if name not in known]
+    return [Finding(name, "the ground has no such motion", suggest_nearest(name, known)) for name in floor if name not in known]
 
 
 def _notes(closed: Loop, outputs: tuple[str, ...], budget: NoiseBudget) -> Iterator[str]:
@@ -257,11 +257,12 @@ def _notes(closed: Loop, outputs: tuple[str, ...], budget: NoiseBudget) -> Itera
         yield f"{', '.join(bare)}: neither bandwidth nor filter is stated; noise is taken to end at {end}"
     if len(bare) < len(sensors) - len(silent) and closed.step is not None:
         yield "gauge noise is white before the gauge's lag and filter; what passes them above half the sampling rate is aliased, exactly"
-    if budget.slow:
-        half = 1e9 * 0.5 * max(sensors[name].resolution for name in budget.slow)
-        most = max(change for name, change in zip(budget.gauges, budget.changes, strict=True) if name in budget.slow)
+    if budget.slowly_rounding:
+        half = 1e9 * 0.5 * max(sensors[name].resolution for name in budget.slowly_rounding)
+        most = max(change for name, change in zip(budget.gauges, budget.changes, strict=True) if name in budget.slowly_rounding)
         yield (
-            f"rounding is counted as white noise, and is none: from sample to sample the readings of {', '.join(budget.slow)} move by "
+            "rounding is counted as white noise, and is none: from sample to sample the readings of "
+            f"{', '.join(budget.slowly_rounding)} move by "
             f"{most:.2g} steps rms at most, where half a step is needed; it is slow and correlated, and a reading at rest may stay off "
             f"by half a step, {half:.3g} nm, which no loop sees"
         )
@@ -270,6 +271,6 @@ def _notes(closed: Loop, outputs: tuple[str, ...], budget: NoiseBudget) -> Itera
     quiet = [name for name in given.actuators if given.hardware.amplifiers.get(name, Amplifier()).noise_density is None]
     if quiet:
         yield f"no amplifier noise is stated of {', '.join(quiet)}: counted as none"
-    unbounded = list(driving(closed, {}, outputs))
+    unbounded = list(band_spectra(closed, {}, outputs))
     if unbounded:
         yield f"the amplifiers of {', '.join(unbounded)} have no lag: their noise is counted over the band only"

@@ -43,12 +43,12 @@ def peak(system: System) -> Peak:
     if system.growth >= 0.0:
         raise refuse("peak", f"the system grows by {system.growth:.3g} 1/s", "Stabilise it first")
     response, plane = resolvent(system), to_plane(system)
-    frequencies = _first(system)
-    best = _highest(response, frequencies)
+    frequencies = _first_frequencies(system)
+    best = _highest_of(response, frequencies)
     for _ in range(30):
         crossings = level_crossings(plane, best.value * (1.0 + _ACCURACY)) if best.value > 0.0 else np.zeros(0)
         between = 0.5 * (crossings[1:] + crossings[:-1])
-        found = _climbed(response, _highest(response, np.concatenate([crossings, between, [best.frequency]])))
+        found = _climb(response, _highest_of(response, np.concatenate([crossings, between, [best.frequency]])))
         if found.value <= best.value * (1.0 + _ACCURACY):
             return found if found.value > best.value else best
         best = found
@@ -88,10 +88,10 @@ def to_plane(system: System) -> Plane:
         B, C = np.sqrt(2.0) * inverse @ system.B, np.sqrt(2.0) * system.C @ inverse
         A = inverse @ (system.A - np.eye(len(system.A)))
         moved = replace(system, A=A, B=B, C=C, D=system.D - system.C @ inverse @ system.B, step=None)
-    return Plane(_balanced(moved), unit, system.step)
+    return Plane(_balance(moved), unit, system.step)
 
 
-def _balanced(system: System) -> System:
+def _balance(system: System) -> System:
     """States scaled so that rows and columns are alike in size, the inputs and outputs among them."""
     size = len(system.A)
     if not size:
@@ -122,7 +122,7 @@ def level_crossings(plane: Plane, level: float) -> Array:
     return plane.frequencies(np.unique(np.abs(np.imag(found))[near]))
 
 
-def _first(system: System) -> Array:
+def _first_frequencies(system: System) -> Array:
     """Where a peak may stand: 0, the end, and at each pole."""
     poles = system.poles
     if system.step is None:
@@ -134,13 +134,13 @@ def _sizes(response: Resolvent, frequencies: Array) -> Array:
     return np.linalg.svd(response.at(frequencies), compute_uv=False)[:, 0]
 
 
-def _highest(response: Resolvent, frequencies: Array) -> Peak:
+def _highest_of(response: Resolvent, frequencies: Array) -> Peak:
     sizes = _sizes(response, frequencies)
     place = int(np.argmax(sizes))
     return Peak(float(sizes[place]), float(frequencies[place]))
 
 
-def _climbed(response: Resolvent, start: Peak) -> Peak:
+def _climb(response: Resolvent, start: Peak) -> Peak:
     """The same peak, followed up by parabolas of shrinking width."""
     if not np.isfinite(start.frequency) or start.frequency == 0.0:
         return start
@@ -151,6 +151,6 @@ def _climbed(response: Resolvent, start: Peak) -> Peak:
         sizes = _sizes(response, np.clip(places, 0.0, end))
         bend, slope, _ = np.polyfit(np.arange(-2, 3), sizes / sizes[2], 2)
         top = best.frequency - 0.25 * width * slope / bend if bend < 0.0 else best.frequency
-        found = _highest(response, np.clip(np.append(places, top), 0.0, end))
+        found = _highest_of(response, np.clip(np.append(places, top), 0.0, end))
         best, width = (found if found.value > best.value else best), 0.3 * width
     return best

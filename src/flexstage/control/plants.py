@@ -7,14 +7,14 @@ from typing import Annotated
 
 import numpy as np
 
-from flexstage.base.finding import Finding, nearest, refuse, require
+from flexstage.base.finding import Finding, refuse, require, suggest_nearest
 from flexstage.base.number import Array
 from flexstage.base.quantity import FREQUENCY
 from flexstage.base.record import INNER
 from flexstage.control.coordinates import Coordinates, coordinates
 from flexstage.control.electronics import Hardware, Sensor
-from flexstage.control.sampling import ramped, sampled
-from flexstage.control.system import System, connected, from_state_space, lag, picked, renamed, static
+from flexstage.control.sampling import discretise, first_order_hold
+from flexstage.control.system import System, connect, from_state_space, lag, rename, select, static
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Damping
 from flexstage.models.linear.arguments import takes_models
 from flexstage.models.linear.damping import damping_law
@@ -112,10 +112,10 @@ def plant(
     )
 
 
-def held(given: Plant) -> System:
+def zero_order_hold(given: Plant) -> System:
     """The plant between hold and sampler: exact at the samples; strokes come `delay` late, wrenches are held without delay.
 
-    The ground goes straight from sample to sample (`ramped`): held, it would jump, and gauges would see the jumps.
+    The ground goes straight from sample to sample (`first_order_hold`): held, it would jump, and gauges would see the jumps.
     A gauge is read before the output that its sample leads to arrives: without delay, and without a lag between, it still sees the last
     one. A continuous plant is returned as it is. Inputs and outputs are those of `Plant.system`; its states come first, then the strokes
     under way.
@@ -126,7 +126,7 @@ def held(given: Plant) -> System:
     >>> from flexstage.models.lumped import lumped
     >>> stage = parallelogram()
     >>> one = plant(lumped(stage), ideal(stage), hardware(stage, rate=10e3, delay=150e-6), modes=2)
-    >>> len(one.system.A), len(held(one).A)  # and two strokes of one actuator under way
+    >>> len(one.system.A), len(zero_order_hold(one).A)  # and two strokes of one actuator under way
     (5, 7)
     """
     step = given.hardware.step
@@ -136,8 +136,8 @@ def held(given: Plant) -> System:
     ground = tuple(name for name in given.system.input_names if name.startswith(f"{GROUND}."))
     others = tuple(name for name in given.system.input_names if name not in (*actuators, *ground))
     outputs = given.system.output_names
-    driven = _driven(picked(given.system, actuators, outputs), step, given.hardware.delay, len(given.gauges))
-    moved, loaded = ramped(picked(given.system, ground, outputs), step), sampled(picked(given.system, others, outputs), step)
+    driven = _delayed_inputs(select(given.system, actuators, outputs), step, given.hardware.delay, len(given.gauges))
+    moved, loaded = first_order_hold(select(given.system, ground, outputs), step), discretise(select(given.system, others, outputs), step)
     late = np.zeros((len(driven.A) - len(moved.A), len(ground) + len(others)))
     return replace(
         driven,
@@ -147,10 +147,10 @@ def held(given: Plant) -> System:
     )
 
 
-def _driven(stage: System, step: float, delay: float, gauges: int) -> System:
+def _delayed_inputs(stage: System, step: float, delay: float, gauges: int) -> System:
     """Sampled between strokes and outputs; what a gauge (the first outputs) feels of a stroke at once is that of u[k-d-1]."""
     direct = stage.D[:gauges]
-    found = sampled(replace(stage, D=np.vstack([np.zeros_like(direct), stage.D[gauges:]])), step, delay)
+    found = discretise(replace(stage, D=np.vstack([np.zeros_like(direct), stage.D[gauges:]])), step, delay)
     if not np.any(direct):
         return found
     width, states = len(found.inputs), len(found.A)
@@ -199,13 +199,13 @@ def _with_hardware(stage: System, states: tuple[str, ...], loop: Coordinates, gi
     amplifiers, lags = _amplifiers(loop.actuators, given), _lags(loop.gauges, given)
     filters = [_filter(name, given.sensors.get(name, Sensor())) for name in loop.gauges]
     others = tuple(channel for channel in stage.inputs if channel.name not in loop.actuators)
-    body = renamed(stage, {name: f"stroke.{name}" for name in loop.actuators})
+    body = rename(stage, {name: f"stroke.{name}" for name in loop.actuators})
     motions = tuple(name for name in stage.output_names if name not in loop.gauges)
     inputs = (*(Channel(name, "m") for name in loop.actuators), *others)
     outputs = (*(f"gap.{name}" for name in loop.gauges), *motions)
     names = [*states, *_slow("amplifier", loop.actuators, amplifiers), *_slow("gauge", loop.gauges, lags)]
     names += [f"filter.{name}.{number + 1}" for name, each in zip(loop.gauges, filters, strict=True) for number in range(len(each.A))]
-    return connected([body, amplifiers, lags, *filters], {}, inputs, outputs), tuple(names)
+    return connect([body, amplifiers, lags, *filters], {}, inputs, outputs), tuple(names)
 
 
 def _slow(kind: str, names: tuple[str, ...], lags: System) -> list[str]:
@@ -236,7 +236,7 @@ def _filter(name: str, sensor: Sensor) -> System:
     return System(A * turning, last * turning, first, np.zeros((1, 1)), entry, exit_)
 
 
-def sensing(given: Plant) -> System:
+def sensor_filter(given: Plant) -> System:
     """Lags and filters of the gauges alone: from noise `noise.<gauge>` [m] at the gauge to `filtered.<gauge>` [m] at the sampler.
 
     >>> from flexstage.control.electronics import GaugeSettings, hardware
@@ -245,16 +245,16 @@ def sensing(given: Plant) -> System:
     >>> from flexstage.models.lumped import lumped
     >>> stage = parallelogram()
     >>> filtered = hardware(stage, gauges=GaugeSettings(filter_order=2, filter_corner=1000.0))
-    >>> found = sensing(plant(lumped(stage), ideal(stage), filtered, modes=2))
+    >>> found = sensor_filter(plant(lumped(stage), ideal(stage), filtered, modes=2))
     >>> round(float(abs(found.transfer(np.array([1000.0]))[0, 0, 0])), 4)  # 0.7071 / (1 + (1/3)^2)^(1/2), the gauge has 3 kHz
     0.6708
     """
     lags = _lags(given.gauges, given.hardware)
     filters = [_filter(name, given.hardware.sensors.get(name, Sensor())) for name in given.gauges]
     inputs = tuple(Channel(name, "m") for name in given.gauges)
-    whole = connected([lags, *filters], {}, inputs, [f"gap.{name}" for name in given.gauges])
+    whole = connect([lags, *filters], {}, inputs, [f"gap.{name}" for name in given.gauges])
     old = {name: f"noise.{name}" for name in given.gauges} | {f"gap.{name}": f"filtered.{name}" for name in given.gauges}
-    return renamed(whole, old)
+    return rename(whole, old)
 
 
 def _findings(model: LinearModel, loop: Coordinates, given: Hardware, points: tuple[str, ...]) -> list[Finding]:
@@ -264,7 +264,7 @@ def _findings(model: LinearModel, loop: Coordinates, given: Hardware, points: tu
     for name in points:
         if f"{name}.x" not in outputs:
             places = {each.rpartition(".")[0] for each in outputs if each.endswith(".rz")}
-            found.append(Finding(name, "the model has no point of this name", nearest(name, places)))
+            found.append(Finding(name, "the model has no point of this name", suggest_nearest(name, places)))
     for kind, items, known in (("actuator", given.amplifiers, loop.actuators), ("gauge", given.sensors, loop.gauges)):
-        found += [Finding(name, f"there is no {kind} of this name", nearest(name, known)) for name in items if name not in known]
+        found += [Finding(name, f"there is no {kind} of this name", suggest_nearest(name, known)) for name in items if name not in known]
     return found

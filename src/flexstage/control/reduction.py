@@ -8,12 +8,12 @@ import numpy as np
 
 from flexstage.base.number import Array
 from flexstage.control.plants import Plant
-from flexstage.control.system import System, picked
+from flexstage.control.system import System, select
 
 _REPEATED = 1e-3
 
 
-def reduced(given: Plant, least: float) -> Plant:
+def reduce_modes(given: Plant, least: float) -> Plant:
     """The plant without modes whose resonance stands for less than `least` in the loop, on the scale where a stroke moves the pose by 1.
 
     A mode's resonance between strokes and pose, both as motions of the platform in lengths, is |c| |b| / (2 zeta omega^2). Of repeated
@@ -22,11 +22,11 @@ def reduced(given: Plant, least: float) -> Plant:
 
     >>> from flexstage.control.example import integral_loop
     >>> plant = integral_loop().plant
-    >>> found = reduced(plant, 0.5)
+    >>> found = reduce_modes(plant, 0.5)
     >>> len(plant.frequencies), len(found.frequencies), len(found.system.A)
     (3, 1, 3)
     """
-    kept = _kept(given, resonances(given) >= least)
+    kept = _kept_modes(given, resonances(given) >= least)
     if np.all(kept):
         return given
     known = _modes(given)
@@ -34,7 +34,7 @@ def reduced(given: Plant, least: float) -> Plant:
     count = int(np.sum(kept))
     return replace(
         given,
-        system=_followed(given.system, slow),
+        system=_rename_states(given.system, slow),
         states=tuple(name for name, each in zip(given.states, slow, strict=True) if each),
         frequencies=given.frequencies[kept],
         ratios=given.ratios[kept],
@@ -44,7 +44,7 @@ def reduced(given: Plant, least: float) -> Plant:
 
 
 def resonances(given: Plant) -> Array:
-    """Size (k,) of every mode's resonance between strokes and pose, as `reduced` counts it.
+    """Size (k,) of every mode's resonance between strokes and pose, as `reduce_modes` counts it.
 
     >>> from flexstage.control.example import integral_loop
     >>> resonances(integral_loop().plant).round(1).tolist()  # one of them is the guide's own, 1/(2 zeta) = 50
@@ -52,7 +52,7 @@ def resonances(given: Plant) -> Array:
     """
     loop = given.coordinates
     modal = np.array([name.startswith("mode") for name in given.states])
-    stage = _followed(picked(given.system, given.actuators, [f"gap.{name}" for name in given.gauges]), modal)
+    stage = _rename_states(select(given.system, given.actuators, [f"gap.{name}" for name in given.gauges]), modal)
     names = [name for name, each in zip(given.states, modal, strict=True) if each]
     sizes = np.zeros(len(given.frequencies))
     for index, (name, frequency, ratio) in enumerate(zip(_modes(given), given.frequencies, given.ratios, strict=True)):
@@ -64,7 +64,7 @@ def resonances(given: Plant) -> Array:
     return sizes
 
 
-def _kept(given: Plant, wanted: Array) -> Array:
+def _kept_modes(given: Plant, wanted: Array) -> Array:
     """Those wanted, whole groups of repeated modes, and at least as many as the loop has coordinates."""
     kept = wanted.copy()
     order = np.argsort(-resonances(given))
@@ -80,7 +80,7 @@ def _modes(given: Plant) -> list[str]:
     return [name for name in given.states if name.startswith("mode") and not name.endswith("'")]
 
 
-def _followed(system: System, slow: Array) -> System:
+def _rename_states(system: System, slow: Array) -> System:
     """The system whose other states follow at once."""
     fast = ~slow
     if not np.any(fast):

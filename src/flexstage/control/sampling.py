@@ -14,7 +14,7 @@ from flexstage.control.system import System
 from flexstage.models.linear.model import Channel
 
 
-def sampled(system: System, step: float, delay: float = 0.0) -> System:
+def discretise(system: System, step: float, delay: float = 0.0) -> System:
     """A continuous system whose inputs are held over each `step` [s] and arrive `delay` [s] late; exact at the samples.
 
     With delay = (d + f) T, 0 <= f < 1, the input changes within the step: x[k+1] = e^{AT} x[k] + Gamma_1 u[k-d-1] + Gamma_0 u[k-d],
@@ -24,26 +24,26 @@ def sampled(system: System, step: float, delay: float = 0.0) -> System:
 
     >>> metre = (Channel("u", "m"),), (Channel("y", "m"),)
     >>> lag = System(-np.eye(1), np.eye(1), np.eye(1), np.zeros((1, 1)), *metre)
-    >>> found = sampled(lag, np.log(2.0))
+    >>> found = discretise(lag, np.log(2.0))
     >>> found.A.round(12).tolist(), found.B.round(12).tolist()
     ([[0.5]], [[0.5]])
-    >>> len(sampled(lag, 0.1, delay=0.25).A)  # the state, and three past inputs
+    >>> len(discretise(lag, 0.1, delay=0.25).A)  # the state, and three past inputs
     4
     """
     require(_findings(system, step, delay))
     whole, part = _split(delay / step)
-    early, start = _held(system, (1.0 - part) * step)
-    late, before = _held(system, part * step)
+    early, start = _hold_matrices(system, (1.0 - part) * step)
+    late, before = _hold_matrices(system, part * step)
     direct = system.D if part == 0.0 else np.zeros_like(system.D)
     held = np.zeros_like(system.D) if part == 0.0 else system.D
     count = whole + (part > 0.0)
     if not count:
         return replace(system, A=early, B=start, step=step)
-    found = _registered(system, early @ late, early @ before, start, held=held, direct=direct, count=count, between=part > 0.0)
+    found = _add_registers(system, early @ late, early @ before, start, held=held, direct=direct, count=count, between=part > 0.0)
     return replace(found, step=step)
 
 
-def ramped(system: System, step: float) -> System:
+def first_order_hold(system: System, step: float) -> System:
     """A continuous system whose inputs go straight from sample to sample, each `step` [s]; exact at the samples.
 
     x[k+1] = e^{AT} x[k] + (Gamma - Gamma_1) u[k] + Gamma_1 u[k+1], Gamma_1 = int_0^T e^{A(T-s)} (s/T) ds B (Franklin, Powell and
@@ -54,7 +54,7 @@ def ramped(system: System, step: float) -> System:
 
     >>> metre = (Channel("u", "m"),), (Channel("y", "m"),)
     >>> integrator = System(np.zeros((1, 1)), np.eye(1), np.eye(1), np.zeros((1, 1)), *metre)
-    >>> found = ramped(integrator, 0.1)
+    >>> found = first_order_hold(integrator, 0.1)
     >>> found.B.round(12).tolist(), found.D.round(12).tolist()  # the trapezoidal rule
     ([[0.1]], [[0.05]])
     """
@@ -77,7 +77,7 @@ def _split(samples: float) -> tuple[int, float]:
     return int(np.floor(samples)), samples - np.floor(samples)
 
 
-def _held(system: System, time: float) -> tuple[Array, Array]:
+def _hold_matrices(system: System, time: float) -> tuple[Array, Array]:
     """e^{At} and int_0^t e^{As} ds B."""
     size, width = system.B.shape
     joined = np.zeros((size + width, size + width))
@@ -86,7 +86,7 @@ def _held(system: System, time: float) -> tuple[Array, Array]:
     return result[:size, :size], result[:size, size:]
 
 
-def _registered(
+def _add_registers(
     system: System, whole: Array, older: Array, newer: Array, *, held: Array, direct: Array, count: int, between: bool
 ) -> System:
     """The states, then the inputs of the last `count` samples, newest first."""
@@ -146,7 +146,7 @@ def registers(channels: tuple[Channel, ...], outputs: tuple[Channel, ...], sampl
     ([1.0, 1.0], 2)
     """
     none = System(np.zeros((0, 0)), np.zeros((0, len(channels))), np.zeros((len(outputs), 0)), np.eye(len(channels)), channels, outputs)
-    return sampled(none, step, samples * step)
+    return discretise(none, step, samples * step)
 
 
 def _findings(system: System, step: float, delay: float) -> list[Finding]:

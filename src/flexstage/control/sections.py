@@ -18,10 +18,10 @@ from flexstage.control.study.choices import Compensation, ControllerKind
 from flexstage.control.study.runs import Run
 from flexstage.control.study.stacks import Sweep
 from flexstage.control.study.study import LoopStudy
-from flexstage.control.tables import law_table, loop_table, margin_table, modes_told, step_table, tracking_table
-from flexstage.show.display import number, value_with_unit
+from flexstage.control.tables import count_modes, law_table, loop_table, margin_table, step_table, tracking_table
+from flexstage.show.display import format_value, number
 from flexstage.show.figures.export import to_svg
-from flexstage.show.page import Block, Fact, Facts, Picture, Section, folded, section
+from flexstage.show.page import Block, Fact, Facts, Picture, Section, fold, section
 from flexstage.show.table import matrix_table
 
 _GOAL = 2.0
@@ -55,14 +55,14 @@ def _facts(found: LoopStudy) -> Iterator[Fact]:
 def _error_fact(test: Run) -> Fact:
     unit = test.tracking.unit[test.index][2]
     value = float(test.tracking.values[test.index][2])
-    return Fact(f"{test.course.name}, {test.course.moved[0]}", value_with_unit(value, unit, 3), "rms true error")
+    return Fact(f"{test.course.name}, {test.course.moved[0]}", format_value(value, unit, 3), "rms true error")
 
 
 def diagram_of(found: LoopStudy) -> Diagram:
     """The block diagram of a loop, in the words of its set-up."""
     setup, plant = found.setup, found.plant
     rate = f"{number(1e-3 * found.settled.rate, 4)} kHz"
-    stage = Box("stage", f"{setup.model.value}\n{modes_told(len(plant.frequencies))}")
+    stage = Box("stage", f"{setup.model.value}\n{count_modes(len(plant.frequencies))}")
     back = (
         Box("gauges", f"{len(plant.gauges)}"),
         *_filters(found),
@@ -72,7 +72,7 @@ def diagram_of(found: LoopStudy) -> Diagram:
     power = tuple(plant.hardware.amplifiers.values())
     analogue = (
         Box("hold", f"{rate}\nafter {number(1e6 * plant.hardware.delay, 4)} us"),
-        Box("amplifier", _lag(power)),
+        Box("amplifier", _bandwidth_text(power)),
         Box("PZT", _stacks(found)),
     )
     onto = [("floor", "stage")] if found.settled.floor else []
@@ -117,10 +117,10 @@ def _filters(found: LoopStudy) -> Iterator[Box]:
 
 def _sampler(found: LoopStudy, rate: str) -> str:
     steps = {each.resolution for each in found.plant.hardware.sensors.values() if each.resolution}
-    return f"{rate}\nsteps {value_with_unit(max(steps), 'm', 3)}" if steps else rate
+    return f"{rate}\nsteps {format_value(max(steps), 'm', 3)}" if steps else rate
 
 
-def _lag(items: tuple[Amplifier | Sensor, ...]) -> str:
+def _bandwidth_text(items: tuple[Amplifier | Sensor, ...]) -> str:
     slowest = min((each.bandwidth for each in items), default=np.inf)
     return "ideal" if np.isinf(slowest) else f"{number(slowest, 4)} Hz"
 
@@ -151,7 +151,7 @@ def frequency_section(found: LoopStudy) -> Section | None:
             Picture(
                 poles, "Closed-loop poles, delay and hold included, beside those of the stage alone; dotted: damping ratios 0.1, 0.3, 0.6."
             ),
-            folded("Crosstalk at rest", matrix_table("Motion at rest per reference", found.crosstalk)),
+            fold("Crosstalk at rest", matrix_table("Motion at rest per reference", found.crosstalk)),
         ],
     )
 
@@ -165,11 +165,11 @@ def time_section(found: LoopStudy) -> Section | None:
         drawn = to_svg(step_figure(stepped), "steps", "Steps of every motion")
         pictures.append(Picture(drawn, "Dashed: the reference; blue: the true motion; grey: the other coordinates of the same unit."))
     for number_, test in enumerate(test for test in found.runs if test.figures is None):
-        pictures += _followed(test, f"trajectory{number_}")
+        pictures += _trajectory_pictures(test, f"trajectory{number_}")
     return section("Over time", [*blocks, *pictures])
 
 
-def _followed(test: Run, name: str) -> Iterator[Picture]:
+def _trajectory_pictures(test: Run, name: str) -> Iterator[Picture]:
     if test.course.plane is not None:
         drawn = to_svg(path_figure(test.simulated, test.course.plane), f"{name}-path", f"Path of the {test.course.name} in plan")
         yield Picture(drawn, f"The {test.course.name} in plan, to scale; the true error is drawn magnified.")
@@ -181,8 +181,10 @@ def error_section(found: LoopStudy) -> Section | None:
     """Errors at rest without the loop, noise with it, hysteresis of the stacks."""
     blocks: list[Block | None] = [rest_table(found.static_errors), noise_table(found), *_noise_pictures(found)]
     if found.hysteresis is not None:
-        drawn = to_svg(hysteresis_figure(_worst(found.hysteresis)), "hysteresis", "Hysteresis of a stack with and without its inverse")
-        name = found.hysteresis.actuators[_hardest(found.hysteresis)]
+        drawn = to_svg(
+            hysteresis_figure(_worst_loops(found.hysteresis)), "hysteresis", "Hysteresis of a stack with and without its inverse"
+        )
+        name = found.hysteresis.actuators[_worst_stack(found.hysteresis)]
         blocks += [hysteresis_table(found.hysteresis), Picture(drawn, f"Stack of {name} alone, driven to and fro in open loop.")]
     return section("Errors and noise", blocks)
 
@@ -191,7 +193,7 @@ def _noise_pictures(found: LoopStudy) -> Iterator[Picture]:
     budget = found.noise
     if not np.any(budget.rms > _NOISELESS):
         return
-    shares = shares_of(found)
+    shares = noise_shares(found)
     drawn = to_svg(noise_share_figure(shares), "noise-shares", "Shares of the noise by source")
     yield Picture(drawn, "Whose the noise is: shares of the mean square of each motion at rest, and its rms.")
     densities = Densities(shares.coordinates, shares.units, budget.frequencies, np.sum(budget.density, axis=2))
@@ -199,7 +201,7 @@ def _noise_pictures(found: LoopStudy) -> Iterator[Picture]:
     yield Picture(drawn, "Where it lies: amplitude densities of the true motion, and its rms summed up from the lowest frequency.")
 
 
-def shares_of(found: LoopStudy) -> Shares:
+def noise_shares(found: LoopStudy) -> Shares:
     """Mean squares of the motions at rest by kind of source."""
     budget = found.noise
     names = tuple(channel.name.removeprefix("relative.") for channel in budget.outputs)
@@ -207,12 +209,12 @@ def shares_of(found: LoopStudy) -> Shares:
     return Shares(names, tuple(each.unit for each in budget.outputs), kinds, np.asarray(budget.by_kind.values))
 
 
-def _hardest(sweep: Sweep) -> int:
+def _worst_stack(sweep: Sweep) -> int:
     return int(np.argmax(sweep.rms_error))
 
 
-def _worst(sweep: Sweep) -> list[HysteresisLoop]:
+def _worst_loops(sweep: Sweep) -> list[HysteresisLoop]:
     """The stack that is furthest off."""
-    index = _hardest(sweep)
+    index = _worst_stack(sweep)
     pairs = (("without inverse", sweep.bare), ("with inverse", sweep.inverse))
     return [HysteresisLoop(name, sweep.wanted[:, index], came[:, index]) for name, came in pairs]

@@ -10,12 +10,12 @@ from flexstage.base.number import Array
 _POWERS = (4.0, 32.0, 256.0, 2048.0)
 
 
-def balanced(matrices: Array) -> Array:
+def balance(matrices: Array) -> Array:
     """Logarithms d (f, n) of diagonal factors that make e^{d_i} M_ij e^{-d_j} of each matrix (f, n, n) small, by rows and columns in turn.
 
     Osborne's rule: every row's norm without its diagonal made equal to its column's. A start, and often enough.
 
-    >>> balanced(np.array([[[0.0, 100.0], [1.0, 0.0]]])).round(6).tolist()
+    >>> balance(np.array([[[0.0, 100.0], [1.0, 0.0]]])).round(6).tolist()
     [[-1.151293, 1.151293]]
     """
     size = np.abs(matrices) ** 2

@@ -12,7 +12,7 @@ from flexstage.base.finding import Finding, require
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
 from flexstage.base.quantity import FREQUENCY, RATE
-from flexstage.control.closed import Cut, Loop, opened
+from flexstage.control.closed import Cut, Loop, open_at
 from flexstage.control.system import System
 
 _UP, _DOWN, _FARTHEST = 1.08, 0.6, 1000.0
@@ -70,7 +70,7 @@ def verdict(closed: Loop) -> Verdict:
     (False, True)
     """
     least, rates = _least(closed)
-    stable = _decays(closed, least)
+    stable = _is_stable(closed, least)
     low, high = _interval(closed, stable=stable)
     return Verdict(stable, least, rates, low, high, f"{_sentence(closed, least)}; {_gain_words(low, high, stable=stable)}")
 
@@ -82,7 +82,7 @@ def _least(closed: Loop) -> tuple[Pole, Array]:
     worst = int(order[0])
     left = _left(closed.system.A, poles[worst])
     parts = np.abs(left.conj() * right[:, worst])
-    source, share = max(_gathered(closed, parts / np.sum(parts)).items(), key=lambda item: item[1])
+    source, share = max(_participation_by_owner(closed, parts / np.sum(parts)).items(), key=lambda item: item[1])
     least = Pole(
         frequency=float(abs(rates[worst].imag)) / (2.0 * np.pi),
         growth=float(rates[worst].real),
@@ -94,7 +94,7 @@ def _least(closed: Loop) -> tuple[Pole, Array]:
     return least, rates[order]
 
 
-def _decays(closed: Loop, least: Pole) -> bool:
+def _is_stable(closed: Loop, least: Pole) -> bool:
     """What neither grows nor decays but for rounding is not stable."""
     fastest = 1.0 / closed.step if closed.step is not None else float(np.max(np.abs(closed.system.poles), initial=0.0))
     return least.growth < -_ROUNDING * fastest
@@ -102,7 +102,7 @@ def _decays(closed: Loop, least: Pole) -> bool:
 
 def _interval(closed: Loop, *, stable: bool) -> tuple[float, float]:
     """Factors of all commands between which the loop is stable."""
-    open_loop = opened(closed, Cut.COMMAND)
+    open_loop = open_at(closed, Cut.COMMAND)
     start, up, down = 1.0, int(np.log(_FARTHEST) / np.log(_UP)), int(-np.log(_FARTHEST) / np.log(_DOWN))
     if not stable:
         found = [factor for factor in _UP ** -np.arange(1.0, up + 1) if _growth(open_loop, factor) < 0.0][:1]
@@ -156,7 +156,7 @@ def _left(A: Array, pole: complex) -> Array:
     return vectors[:, int(np.argmin(np.abs(values - pole)))].conj()
 
 
-def _gathered(closed: Loop, parts: Array) -> dict[str, float]:
+def _participation_by_owner(closed: Loop, parts: Array) -> dict[str, float]:
     """Participations summed by what a state belongs to."""
     result: dict[str, float] = {}
     for name, part in zip(closed.states, parts, strict=True):
@@ -193,7 +193,7 @@ def _coordinate(closed: Loop, vector: Array) -> str:
 def _sentence(closed: Loop, least: Pole) -> str:
     where = f"{least.frequency:.4g} Hz" if least.frequency > 0.0 else "0 Hz (without oscillation)"
     comes = f"from {least.source} ({100.0 * least.share:.0f} % of it), seen most in {least.coordinate}"
-    if _decays(closed, least):
+    if _is_stable(closed, least):
         return f"stable; the least stable pole, at {where}, decays by {-least.growth:.4g} 1/s, {comes}"
     return f"a pole at {where} grows by {least.growth:.4g} 1/s, {comes}"
 

@@ -14,13 +14,13 @@ from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
 from flexstage.base.quantity import ANGLE, FREQUENCY, TIME
 from flexstage.base.record import INNER, VIEW, Along
-from flexstage.control.closed import Cut, Loop, loop, opened
+from flexstage.control.closed import Cut, Loop, loop, open_at
 from flexstage.control.curves import Curves, curves, roots, sensitivity, sign_changes
 from flexstage.control.disk import Edge, disk_margin
 from flexstage.control.norm import Peak, peak
 from flexstage.control.resolvent import Resolvent, resolvent
 from flexstage.control.stability import require_stable
-from flexstage.control.system import System, picked
+from flexstage.control.system import System, select
 from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
 
 _AT_REST = 1e-8
@@ -82,7 +82,7 @@ def margins(closed: Loop, cut: Cut) -> Margins:
     (4.49, 1.56, 0.0)
     """
     require_stable(closed, "margins")
-    found, whole = curves(closed, cut), sensitivity(opened(closed, cut))
+    found, whole = curves(closed, cut), sensitivity(open_at(closed, cut))
     return Margins(cut, tuple(_channel(found, whole, number) for number in range(len(found.names))))
 
 
@@ -90,7 +90,7 @@ def _channel(found: Curves, whole: System, number: int) -> ChannelMargins:
     low, high = _gains(found, number)
     phase, delay = _phases(found, number)
     name = whole.output_names[number]
-    return ChannelMargins(found.names[number], low, high, phase, delay, disk_margin(picked(whole, [name], [name])))
+    return ChannelMargins(found.names[number], low, high, phase, delay, disk_margin(select(whole, [name], [name])))
 
 
 def _gains(found: Curves, number: int) -> tuple[Edge, Edge]:
@@ -114,11 +114,11 @@ def _phases(found: Curves, number: int) -> tuple[Edge, Edge]:
     phase = min(zip(np.abs(turns).tolist(), places.tolist(), strict=True), default=(np.inf, np.nan))
     delay = min(zip(delays.tolist(), places.tolist(), strict=True), default=(np.inf, np.nan))
     return Edge(*phase), (
-        Edge(0.0, np.inf) if _felt_at_once(found.response.system.D[number, number], found.response.system.step) else Edge(*delay)
+        Edge(0.0, np.inf) if _has_direct_gain(found.response.system.D[number, number], found.response.system.step) else Edge(*delay)
     )
 
 
-def _felt_at_once(own: complex, step: float | None) -> bool:
+def _has_direct_gain(own: complex, step: float | None) -> bool:
     """Whether a continuous loop's gain is 1 or more at ever higher frequencies, S = 1/(1 + L) there: then no delay is short enough."""
     return step is None and abs(own) <= abs(1.0 - own)
 
@@ -140,7 +140,7 @@ def peaks(closed: Loop, cut: Cut) -> Peaks:
     True
     """
     require_stable(closed, "peaks of S and T")
-    whole = sensitivity(opened(closed, cut))
+    whole = sensitivity(open_at(closed, cut))
     scale = closed.plant.coordinates.scale if cut is Cut.POSE else np.ones(len(closed.plant.actuators))
     scaled = replace(whole, B=whole.B / scale, C=whole.C * scale[:, None], D=whole.D * scale[:, None] / scale)
     rest = replace(scaled, C=-scaled.C, D=np.eye(len(scale)) - scaled.D)
@@ -200,7 +200,7 @@ def _first_rise(frequencies: Array, values: Array, of: Callable[[Array], Array])
 
 def _tracking(closed: Loop, found: Curves, number: int) -> float:
     name = found.names[number]
-    response = resolvent(picked(closed.system, [f"reference.{name}"], [f"relative.{name}"]))
+    response = resolvent(select(closed.system, [f"reference.{name}"], [f"relative.{name}"]))
 
     def below(points: Array) -> Array:
         return np.sqrt(0.5) - np.abs(response.at(points)[:, 0, 0])
@@ -220,7 +220,7 @@ def crosstalk(closed: Loop, frequency: float = 0.0) -> Matrix:
     """
     require_stable(closed, "crosstalk")
     names = closed.plant.coordinates.names
-    chosen = picked(closed.system, [f"reference.{name}" for name in names], [f"relative.{name}" for name in COMPONENTS])
+    chosen = select(closed.system, [f"reference.{name}" for name in names], [f"relative.{name}" for name in COMPONENTS])
     found = chosen.transfer(np.array([frequency]))[0]
     return Matrix(np.abs(found) if frequency else found.real, COMPONENTS, names, ratio_units(TWIST_UNITS, closed.plant.coordinates.units))
 
@@ -241,7 +241,7 @@ def delay_margin(closed: Loop) -> Edge:
     True
     """
     require_stable(closed, "delay margin")
-    response = resolvent(opened(closed, Cut.POSE))
+    response = resolvent(open_at(closed, Cut.POSE))
     expected = Edge(*min(_unit_crossings(response, curves(closed, Cut.POSE).frequencies), default=(np.inf, np.nan)))
     step = closed.step
     if step is None and np.max(np.abs(np.linalg.eigvals(response.system.D))) >= 1.0:
@@ -249,33 +249,33 @@ def delay_margin(closed: Loop) -> Edge:
     if step is None or not np.isfinite(expected.value):
         return expected
     if len(closed.system.A) + expected.value / step * len(closed.plant.actuators) < _FEW:
-        return Edge(_scanned(closed, expected.value), expected.frequency)
+        return Edge(_scan_delay(closed, expected.value), expected.frequency)
 
     def excess(later: float) -> float:
-        moved = resolvent(opened(_later(closed, later % step), Cut.POSE))
-        return _turned(moved, expected.frequency, later - later % step)
+        moved = resolvent(open_at(_delay_loop(closed, later % step), Cut.POSE))
+        return _missing_delay(moved, expected.frequency, later - later % step)
 
-    return Edge(_solved(excess, expected.value), expected.frequency)
+    return Edge(_secant_root(excess, expected.value), expected.frequency)
 
 
-def _later(closed: Loop, delay: float) -> Loop:
+def _delay_loop(closed: Loop, delay: float) -> Loop:
     hardware = replace(closed.plant.hardware, delay=closed.plant.hardware.delay + delay)
     return loop(replace(closed.plant, hardware=hardware), closed.controller)
 
 
-def _scanned(closed: Loop, expected: float) -> float:
+def _scan_delay(closed: Loop, expected: float) -> float:
     """The first delay at which the loop begins to grow, from none up."""
     for number in range(1, 31):
         outside = 0.1 * number * expected
-        if _later(closed, outside).system.growth >= 0.0:
+        if _delay_loop(closed, outside).system.growth >= 0.0:
             found: Any = scipy.optimize.brentq(
-                lambda delay: _later(closed, delay).system.growth, outside - 0.1 * expected, outside, xtol=1e-13 * expected
+                lambda delay: _delay_loop(closed, delay).system.growth, outside - 0.1 * expected, outside, xtol=1e-13 * expected
             )
             return float(found)
     return np.inf
 
 
-def _turned(response: Resolvent, near: float, wanted: float) -> float:
+def _missing_delay(response: Resolvent, near: float, wanted: float) -> float:
     """What a delay lacks of the nearest one that brings an eigenvalue near a frequency to -1; they recur with every turn."""
     widths = np.geomspace(1e-6, 0.5, 20)
     points = np.unique(np.concatenate([near * (1.0 - widths), [near], near * (1.0 + widths)]))
@@ -284,7 +284,7 @@ def _turned(response: Resolvent, near: float, wanted: float) -> float:
     return min((lack - round(lack * frequency) / frequency for lack, frequency in turned), key=abs)
 
 
-def _solved(of: Callable[[float], float], start: float) -> float:
+def _secant_root(of: Callable[[float], float], start: float) -> float:
     """Zero of a function that falls nearly by 1 per 1, by the secant rule."""
     last, at_last = start, of(start)
     here = start + at_last

@@ -9,7 +9,7 @@ from typing import Annotated, Any
 import numpy as np
 import scipy
 
-from flexstage.base.finding import Finding, nearest, require
+from flexstage.base.finding import Finding, require, suggest_nearest
 from flexstage.base.number import Array
 from flexstage.base.quantity import TIME
 from flexstage.base.record import INNER, VIEW, Called
@@ -138,25 +138,25 @@ def lag(channels: tuple[Channel, ...], bandwidths: Array, outputs: tuple[Channel
     return System(-np.diag(rates), entry, exit_, np.diag(1.0 * np.isinf(bandwidths)), channels, outputs)
 
 
-def renamed(system: System, names: Mapping[str, str]) -> System:
+def rename(system: System, names: Mapping[str, str]) -> System:
     """The same system with some of its inputs and outputs called otherwise.
 
     >>> one = static(np.eye(1), (Channel("u", "m"),), (Channel("y", "m"),))
-    >>> renamed(one, {"u": "stroke"}).input_names
+    >>> rename(one, {"u": "stroke"}).input_names
     ('stroke',)
     """
     changed = [tuple(replace(each, name=names.get(each.name, each.name)) for each in group) for group in (system.inputs, system.outputs)]
     return replace(system, inputs=changed[0], outputs=changed[1])
 
 
-def picked(system: System, inputs: Iterable[str], outputs: Iterable[str]) -> System:
+def select(system: System, inputs: Iterable[str], outputs: Iterable[str]) -> System:
     """The same states with only these inputs and outputs, in this order. Raises `DesignError` for names that it does not have.
 
     >>> two = static(np.array([[1.0, 2.0]]), (Channel("a", "m"), Channel("b", "m")), (Channel("y", "m"),))
-    >>> picked(two, ["b"], ["y"]).D.tolist()
+    >>> select(two, ["b"], ["y"]).D.tolist()
     [[2.0]]
     """
-    columns, rows = _places(inputs, system.input_names, "input"), _places(outputs, system.output_names, "output")
+    columns, rows = _indices(inputs, system.input_names, "input"), _indices(outputs, system.output_names, "output")
     return replace(
         system,
         B=system.B[:, columns],
@@ -167,9 +167,9 @@ def picked(system: System, inputs: Iterable[str], outputs: Iterable[str]) -> Sys
     )
 
 
-def _places(names: Iterable[str], known: tuple[str, ...], kind: str) -> list[int]:
+def _indices(names: Iterable[str], known: tuple[str, ...], kind: str) -> list[int]:
     names = tuple(names)
-    require(Finding(name, f"there is no {kind} of this name", nearest(name, known)) for name in names if name not in known)
+    require(Finding(name, f"there is no {kind} of this name", suggest_nearest(name, known)) for name in names if name not in known)
     return [known.index(name) for name in names]
 
 
@@ -177,7 +177,7 @@ Terms = Mapping[str, float]
 """A sum of named signals, each with its factor."""
 
 
-def connected(systems: Iterable[System], links: Mapping[str, Terms], inputs: tuple[Channel, ...], outputs: Iterable[str]) -> System:
+def connect(systems: Iterable[System], links: Mapping[str, Terms], inputs: tuple[Channel, ...], outputs: Iterable[str]) -> System:
     """Systems wired by name: every input in `links` is the stated sum of outputs and of the new system's `inputs`.
 
     An input that is not in `links` is fed by what has its own name: a new input, or an output; one that nothing feeds is refused. With
@@ -186,12 +186,12 @@ def connected(systems: Iterable[System], links: Mapping[str, Terms], inputs: tup
 
     >>> unit = Channel("r", "m")
     >>> integrator = System(np.zeros((1, 1)), np.eye(1), np.eye(1), np.zeros((1, 1)), (Channel("e", "m"),), (Channel("y", "m"),))
-    >>> closed = connected([integrator], {"e": {"r": 1.0, "y": -1.0}}, (unit,), ["y"])
+    >>> closed = connect([integrator], {"e": {"r": 1.0, "y": -1.0}}, (unit,), ["y"])
     >>> closed.A.tolist(), closed.B.tolist()
     ([[-1.0]], [[1.0]])
     """
     parts = tuple(systems)
-    whole = _side_by_side(parts)
+    whole = _append(parts)
     require(_link_findings(whole, links, inputs))
     wired = {name: links.get(name, {name: 1.0}) for name in whole.input_names}
     rows, external = whole.output_names, tuple(channel.name for channel in inputs)
@@ -205,10 +205,10 @@ def connected(systems: Iterable[System], links: Mapping[str, Terms], inputs: tup
     closed = System(
         whole.A + whole.B @ states, whole.B @ driven, whole.C + whole.D @ states, whole.D @ driven, inputs, whole.outputs, whole.step
     )
-    return picked(closed, external, outputs)
+    return select(closed, external, outputs)
 
 
-def _side_by_side(parts: tuple[System, ...]) -> System:
+def _append(parts: tuple[System, ...]) -> System:
     steps = {part.step for part in parts}
     if len(steps) != 1:
         shown = ", ".join(sorted("continuous" if step is None else f"{step:g} s" for step in steps))
@@ -234,10 +234,10 @@ def _link_findings(whole: System, links: Mapping[str, Terms], inputs: tuple[Chan
     sources = (*external, *whole.output_names)
     for name in links:
         if name not in whole.input_names:
-            yield Finding(name, "no system has an input of this name", nearest(name, whole.input_names))
+            yield Finding(name, "no system has an input of this name", suggest_nearest(name, whole.input_names))
         for term in links[name]:
             if term not in sources:
-                yield Finding(f"link to {name}", f"nothing is called '{term}'", nearest(term, sources))
+                yield Finding(f"link to {name}", f"nothing is called '{term}'", suggest_nearest(term, sources))
     for name in whole.input_names:
         if name not in links and name not in sources:
             yield Finding(name, "nothing feeds this input", "Link it, or name it among the inputs")

@@ -13,8 +13,8 @@ from flexstage.control.simulation.result import Excursion
 from flexstage.control.study.choices import ControllerKind
 from flexstage.control.study.runs import Run, StepAnswer
 from flexstage.control.study.study import LoopStudy
-from flexstage.show.display import NO_VALUE, number, percent, value_with_unit
-from flexstage.show.table import Cell, Column, Content, Mark, Table, build, field_column
+from flexstage.show.display import NO_VALUE, format_value, number, percent
+from flexstage.show.table import Cell, Column, Content, Mark, Table, field_column, make_table
 
 _SMALL, _NOTHING = 1e-12, 1e-16
 _BANDWIDTH_NOTE = "Follows to: the true motion is 3 dB below its reference. Rejects to: |S| passes 1, disturbances above it are made worse."
@@ -28,7 +28,7 @@ def loop_table(found: LoopStudy) -> Table:
     """What the loop is, and whether it is stable."""
     plant, hardware = found.plant, found.plant.hardware
     delay = f"{number(1e6 * hardware.delay, 4)} us"
-    modes = f"{modes_told(len(plant.frequencies))} up to {number(float(plant.frequencies[-1]), 4)} Hz, {plant.left_out} as a static term"
+    modes = f"{count_modes(len(plant.frequencies))} up to {number(float(plant.frequencies[-1]), 4)} Hz, {plant.left_out} as a static term"
     rows = [
         ("stability", Cell("stable" if found.stability.stable else "unstable", Mark.PASS if found.stability.stable else Mark.FAIL)),
         ("controller", _controller(found)),
@@ -46,13 +46,13 @@ def loop_table(found: LoopStudy) -> Table:
         notes.append("S: what the loop leaves of a disturbance, above 1 it adds to it. T: what it follows of a reference.")
     if found.controller.tuning is not None:
         notes.insert(0, f"Tuned: {found.controller.tuning.reason}.")
-    return build("Loop", ["what", "value"], [(Cell(name, Mark.STRONG), value) for name, value in rows], notes=notes)
+    return make_table("Loop", ["what", "value"], [(Cell(name, Mark.STRONG), value) for name, value in rows], notes=notes)
 
 
-def modes_told(count: int) -> str:
+def count_modes(count: int) -> str:
     """How many modes.
 
-    >>> modes_told(1), modes_told(18)
+    >>> count_modes(1), count_modes(18)
     ('1 mode', '18 modes')
     """
     return f"{count} mode" if count == 1 else f"{count} modes"
@@ -78,7 +78,7 @@ def law_table(found: LoopStudy) -> Table | None:
     rows = zip([Cell(name, Mark.STRONG) for name in loops], *(cells for _, cells in known), notches, strict=True)
     columns = ["loop", *(column for column, _ in known), "notches"]
     note = "From the loop's error to its command, both in metres: rotations times the stage's length."
-    return build("Controller", columns, list(rows), notes=[note])
+    return make_table("Controller", columns, list(rows), notes=[note])
 
 
 def _notches(group: Sequence[Notch]) -> str:
@@ -110,10 +110,10 @@ def margin_table(found: LoopStudy) -> Table | None:
         Column("delay margin", "ms"),
         Column("disk margin"),
     ]
-    return build("Bandwidth and margins", heads, rows, notes=[_BANDWIDTH_NOTE, _MARGIN_NOTE, *_together(found.disk_margin)])
+    return make_table("Bandwidth and margins", heads, rows, notes=[_BANDWIDTH_NOTE, _MARGIN_NOTE, *_disk_margin_notes(found.disk_margin)])
 
 
-def _together(found: DiskMargin | None) -> Iterator[str]:
+def _disk_margin_notes(found: DiskMargin | None) -> Iterator[str]:
     if found is not None:
         span = f"{number(found.gain_low, 3)} to {number(found.gain_high, 3)}"
         turn = number(float(np.rad2deg(found.phase)), 3)
@@ -151,12 +151,12 @@ def step_table(tests: Sequence[Run]) -> Table | None:
         "Settled: the true error stays within 2 % of the step. Others: the largest motion in metres and the largest in radians along all "
         "other axes of the platform, at any time, and along which."
     )
-    return build("Steps", heads, [tuple(_step(test, step)) for test, step in stepped], notes=[note])
+    return make_table("Steps", heads, [tuple(_step(test, step)) for test, step in stepped], notes=[note])
 
 
 def _step(test: Run, step: StepAnswer) -> Iterator[Content]:
     yield Cell(test.course.name, Mark.STRONG)
-    yield value_with_unit(step.size, step.unit, 4)
+    yield format_value(step.size, step.unit, 4)
     yield Cell("not", Mark.FAIL) if np.isinf(step.settling) else number(1e3 * step.settling, 4)
     yield percent(step.overshoot, 3)
     yield _length(step.residual, step.size, step.unit)
@@ -168,14 +168,14 @@ def _others(known: Mapping[str, Excursion]) -> Cell:
     """The largest motion of each unit, and its axis; what is far below an atom is rounding."""
     units = dict.fromkeys(each.unit for each in known.values())
     largest = {unit: max((each.largest, name) for name, each in known.items() if each.unit == unit) for unit in units}
-    told = [f"{value_with_unit(value, unit, 3)} {name}" for unit, (value, name) in largest.items() if value > _NOTHING]
+    told = [f"{format_value(value, unit, 3)} {name}" for unit, (value, name) in largest.items() if value > _NOTHING]
     if not told:
         return Cell("0" if known else NO_VALUE, Mark.FAINT)
     return Cell(", ".join(told))
 
 
 def _length(value: float, size: float, unit: str) -> Cell:
-    return Cell("0", Mark.FAINT) if abs(value) < _SMALL * abs(size) else Cell(value_with_unit(value, unit, 3))
+    return Cell("0", Mark.FAINT) if abs(value) < _SMALL * abs(size) else Cell(format_value(value, unit, 3))
 
 
 def limits_text(test: Run) -> str:
@@ -200,7 +200,7 @@ def motion_cell(value: float, unit: str) -> Cell:
     >>> motion_cell(3.3e-9, "m").text, motion_cell(5e-24, "m").text
     ('3.3 nm', '0')
     """
-    return Cell("0", Mark.FAINT) if abs(value) < _NOTHING else Cell(value_with_unit(value, unit, 3))
+    return Cell("0", Mark.FAINT) if abs(value) < _NOTHING else Cell(format_value(value, unit, 3))
 
 
 def tracking_table(tests: Sequence[Run]) -> Table | None:
@@ -220,4 +220,4 @@ def tracking_table(tests: Sequence[Run]) -> Table | None:
     heads = ["trajectory", "motion", *(Column(head) for head in ("rms seen", "peak seen", "true rms", "true peak"))]
     limits = [f"{test.course.name}: {limits_text(test)}." for test in followed if limits_text(test)]
     note = "Reference less pose: as the gauges tell it, and against the platform's true pose."
-    return build("Tracking", heads, rows, notes=[note, *limits])
+    return make_table("Tracking", heads, rows, notes=[note, *limits])

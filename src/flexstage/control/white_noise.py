@@ -11,8 +11,8 @@ import scipy
 from flexstage.base.number import Array
 from flexstage.control.closed import Loop
 from flexstage.control.electronics import Amplifier, Sensor
-from flexstage.control.plants import Plant, sensing
-from flexstage.control.system import System, connected, picked
+from flexstage.control.plants import Plant, sensor_filter
+from flexstage.control.system import System, connect, select
 from flexstage.models.linear.model import Channel
 
 
@@ -97,10 +97,10 @@ def white_system(closed: Loop, outputs: tuple[str, ...]) -> tuple[System, tuple[
     >>> [source.kind.value for source in sources], system.output_names
     (['gauge noise', 'gauge rounding'], ('relative.x',))
     """
-    return _continuous(closed, outputs) if closed.step is None else _sampled(closed, outputs)
+    return _continuous_white(closed, outputs) if closed.step is None else _sampled_white(closed, outputs)
 
 
-def _sampled(closed: Loop, outputs: tuple[str, ...]) -> tuple[System, tuple[Source, ...]]:
+def _sampled_white(closed: Loop, outputs: tuple[str, ...]) -> tuple[System, tuple[Source, ...]]:
     given, systems, links, inputs, sources = closed.plant, [], {}, [], []
     for name in given.gauges:
         sensor, terms = given.hardware.sensors.get(name, Sensor()), {}
@@ -119,7 +119,7 @@ def _sampled(closed: Loop, outputs: tuple[str, ...]) -> tuple[System, tuple[Sour
         links[f"noise.{name}"] = {f"converted.{name}": size / np.sqrt(12.0)} if size else {}
         inputs += [Channel(f"converted.{name}", "1")] if size else []
         sources += [Source(Kind.CONVERTER, name)] if size else []
-    whole = connected([picked(closed.system, tuple(links), outputs), *systems], links, tuple(inputs), outputs)
+    whole = connect([select(closed.system, tuple(links), outputs), *systems], links, tuple(inputs), outputs)
     return _with_amplifiers(whole, closed, outputs, tuple(sources))
 
 
@@ -131,14 +131,14 @@ def gauge_noise(given: Plant, gauge: str, density: float) -> System:
     >>> bool(found.step), round(float(mean_squares(found).sum() / (1e-24 * 0.5 * np.pi * 3000.0)), 6)  # density^2 pi/2 f of a lag f
     (True, 1.0)
     """
-    filters = picked(sensing(given), [f"noise.{gauge}"], [f"filtered.{gauge}"])
-    return _coloured(filters, gauge, density, given.hardware.step or 0.0)
+    filters = select(sensor_filter(given), [f"noise.{gauge}"], [f"filtered.{gauge}"])
+    return _filtered_noise(filters, gauge, density, given.hardware.step or 0.0)
 
 
-def _coloured(filters: System, name: str, density: float, step: float) -> System:
+def _filtered_noise(filters: System, name: str, density: float, step: float) -> System:
     """The samples of white noise behind lag and filter: x[k+1] = e^{AT} x[k] + L w[k], unit w."""
     outputs = (Channel(f"coloured.{name}", "m"),)
-    used = _reached(filters)
+    used = _reachable(filters)
     if not len(used.A):
         return System(used.A, used.B, used.C, used.D * density / np.sqrt(2.0 * step), (Channel(f"white.{name}", "1"),), outputs, step)
     factor = held_noise(used.A, used.B * density / np.sqrt(2.0), step)
@@ -146,7 +146,7 @@ def _coloured(filters: System, name: str, density: float, step: float) -> System
     return System(scipy.linalg.expm(used.A * step), factor, used.C, np.zeros((1, len(inputs))), inputs, outputs, step)
 
 
-def _reached(filters: System) -> System:
+def _reachable(filters: System) -> System:
     """One gauge's lag and filter without the states of the others, which nothing drives."""
     own, reached = np.any(filters.B != 0.0, axis=1), np.zeros(0, bool)
     while not np.array_equal(own, reached):
@@ -162,7 +162,7 @@ def _with_amplifiers(
     given, step = closed.plant, closed.step
     for name in bounded_amplifiers(closed, outputs):
         density = given.hardware.amplifiers[name].noise_density or 0.0
-        column = picked(given.system, [name], given.system.output_names[:1]).B
+        column = select(given.system, [name], given.system.output_names[:1]).B
         factor = held_noise(given.system.A, column * density / np.sqrt(2.0), step or 0.0)
         entry = np.vstack([factor, np.zeros((len(whole.A) - len(factor), factor.shape[1]))])
         inputs = tuple(Channel(f"amplified.{name}.{number + 1}", "1") for number in range(factor.shape[1]))
@@ -182,10 +182,10 @@ def bounded_amplifiers(closed: Loop, outputs: tuple[str, ...]) -> tuple[str, ...
     given = closed.plant
     felt = [*(f"gap.{name}" for name in given.gauges), *(name for name in outputs if name in given.system.output_names)]
     noisy = [name for name in given.actuators if name in given.hardware.amplifiers and given.hardware.amplifiers[name].noise_density]
-    return tuple(name for name in noisy if not np.any(picked(given.system, [name], felt).D))
+    return tuple(name for name in noisy if not np.any(select(given.system, [name], felt).D))
 
 
-def _continuous(closed: Loop, outputs: tuple[str, ...]) -> tuple[System, tuple[Source, ...]]:
+def _continuous_white(closed: Loop, outputs: tuple[str, ...]) -> tuple[System, tuple[Source, ...]]:
     given = closed.plant
     densities = {Kind.GAUGE: {name: given.hardware.sensors.get(name, Sensor()).noise_density for name in given.gauges}}
     densities[Kind.AMPLIFIER] = {name: given.hardware.amplifiers.get(name, Amplifier()).noise_density for name in given.actuators}
@@ -193,13 +193,13 @@ def _continuous(closed: Loop, outputs: tuple[str, ...]) -> tuple[System, tuple[S
     links = {f"noise.{name}": {} for name in (*given.gauges, *given.actuators)}
     links |= {f"noise.{name}": {f"filtered.{name}": 1.0} for name in given.gauges}
     entry = {f"noise.{name}": f"white.{name}" for name in (*given.gauges, *given.actuators)}
-    before = replace(sensing(given), inputs=tuple(Channel(f"before.{name}", "m") for name in given.gauges))
+    before = replace(sensor_filter(given), inputs=tuple(Channel(f"before.{name}", "m") for name in given.gauges))
     links |= {f"before.{name}": {} for name in given.gauges}
     for source, size in parts.items():
         place = f"before.{source.channel}" if source.kind is Kind.GAUGE else f"noise.{source.channel}"
         links[place] = {entry[f"noise.{source.channel}"]: size}
     inputs = tuple(Channel(f"white.{source.channel}", "1") for source in parts)
     noises = [f"noise.{name}" for name in (*given.gauges, *given.actuators)]
-    whole = connected([picked(closed.system, noises, outputs), before], links, inputs, outputs)
+    whole = connect([select(closed.system, noises, outputs), before], links, inputs, outputs)
     kept = [channel.name for column, channel in enumerate(inputs) if not np.any(whole.D[:, column])]
-    return picked(whole, kept, outputs), tuple(source for source in parts if f"white.{source.channel}" in kept)
+    return select(whole, kept, outputs), tuple(source for source in parts if f"white.{source.channel}" in kept)

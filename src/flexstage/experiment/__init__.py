@@ -1,6 +1,6 @@
 """The experiment wing: records of tests, the modes found in them, theory beside them."""
 
-from flexstage.base.lazy import lazily
+from flexstage.base.lazy import lazy_attributes
 
 HOMES = {
     "record": "Channel Record Role in_memory",
@@ -17,4 +17,4 @@ HOMES = {
     "virtual_rig.rig": "rig",
     "virtual_rig.setup": "Amplifier AntiAlias NoiseDrive Recorded RigSetup Sensing Tap",
 }
-__getattr__, __dir__ = lazily(__name__, HOMES)
+__getattr__, __dir__ = lazy_attributes(__name__, HOMES)

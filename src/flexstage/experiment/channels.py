@@ -55,16 +55,16 @@ def shape_doubts(outputs: tuple[str, ...], shapes: Array, score: Score, scales: 
         return ()
     pairs = list(combinations(range(count), 2))
     tried = [
-        *((_flipped(shapes, (index,)), f"{outputs[index]} looks inverted: with its sign changed") for index in range(count)),
-        *((_exchanged(shapes, pair), f"{outputs[pair[0]]} and {outputs[pair[1]]} look exchanged: the other way round") for pair in pairs),
+        *((_invert(shapes, (index,)), f"{outputs[index]} looks inverted: with its sign changed") for index in range(count)),
+        *((_exchange(shapes, pair), f"{outputs[pair[0]]} and {outputs[pair[1]]} look exchanged: the other way round") for pair in pairs),
         *(
             (
-                _flipped(shapes, pair),
+                _invert(shapes, pair),
                 f"{outputs[pair[0]]} and {outputs[pair[1]]} look inverted against the others: with their signs changed",
             )
             for pair in pairs
         ),
-        *(() if scales is None else _divided(outputs, shapes, scales)),
+        *(() if scales is None else _rescale(outputs, shapes, scales)),
     ]
     before = score(shapes)
     scores = np.array([score(each) for each, _ in tried])
@@ -91,7 +91,7 @@ def output_scales(theory: Array, measured: Array) -> Array:
     return np.exp(rows - np.percentile(rows, 50.0, method="lower"))
 
 
-def _divided(outputs: tuple[str, ...], shapes: Array, scales: Array) -> Iterator[tuple[Array, str]]:
+def _rescale(outputs: tuple[str, ...], shapes: Array, scales: Array) -> Iterator[tuple[Array, str]]:
     wrong = [index for index, scale in enumerate(scales) if not 1.0 / _SCALED < scale < _SCALED]
     if wrong:
         divided = shapes / scales[:, None]
@@ -100,13 +100,13 @@ def _divided(outputs: tuple[str, ...], shapes: Array, scales: Array) -> Iterator
         yield divided / np.maximum(np.linalg.norm(divided, axis=0), 1e-300), f"{listed} {look} scaled against the others: divided by that"
 
 
-def _flipped(shapes: Array, indices: tuple[int, ...]) -> Array:
+def _invert(shapes: Array, indices: tuple[int, ...]) -> Array:
     signs = np.ones((len(shapes), 1))
     signs[list(indices)] = -1.0
     return signs * shapes
 
 
-def _exchanged(shapes: Array, pair: tuple[int, int]) -> Array:
+def _exchange(shapes: Array, pair: tuple[int, int]) -> Array:
     order = list(range(len(shapes)))
     order[pair[0]], order[pair[1]] = order[pair[1]], order[pair[0]]
     return shapes[order]
@@ -123,12 +123,12 @@ def gain_doubts(residues: Residues) -> tuple[str, ...]:
     if not theory.size or len(theory) < _FEWEST:
         return ()
     likeness = _correlations(theory, measured)
-    found = [*_misnamed(residues.inputs, likeness, _correlations(theory, theory))]
+    found = [*_exchange_doubts(residues.inputs, likeness, _correlations(theory, theory))]
     if not found:
-        found += _all_scaled(theory, measured, residues.strokes)
-        found += _scaled(residues.inputs, theory, measured, residues.inputs_known)
+        found += _common_scale_doubts(theory, measured, residues.strokes)
+        found += _scale_doubts(residues.inputs, theory, measured, residues.inputs_known)
         rows = _columns(np.swapaxes(residues.theory, 1, 2)), _columns(np.swapaxes(residues.measured, 1, 2))
-        found += _scaled(residues.outputs, *rows, np.ones(len(residues.outputs), dtype=bool))
+        found += _scale_doubts(residues.outputs, *rows, np.ones(len(residues.outputs), dtype=bool))
     return tuple(found)
 
 
@@ -142,7 +142,7 @@ def _correlations(theory: Array, measured: Array) -> Array:
     return theory.T @ measured / np.maximum(sizes, 1e-300)
 
 
-def _misnamed(names: tuple[str, ...], likeness: Array, among: Array) -> Iterator[str]:
+def _exchange_doubts(names: tuple[str, ...], likeness: Array, among: Array) -> Iterator[str]:
     """Channels whose part in the modes is another's, or its own inverted; not those that theory has alike."""
     _, order = scipy.optimize.linear_sum_assignment(-np.abs(likeness))
     own = np.diag(likeness)
@@ -162,37 +162,37 @@ def _misnamed(names: tuple[str, ...], likeness: Array, among: Array) -> Iterator
         yield f"{listed} {look} inverted: with the sign changed, the part in the modes is like theory's"
 
 
-def _all_scaled(theory: Array, measured: Array, known: Array) -> Iterator[str]:
+def _common_scale_doubts(theory: Array, measured: Array, known: Array) -> Iterator[str]:
     """All gains together: not as large as theory's masses lead to."""
     sizes = np.linalg.norm(theory, axis=0)
     sure = known & (sizes > 1e-3 * np.max(sizes)) & (np.diag(_correlations(theory, measured)) > _ALIKE)
     if not np.any(sure):
         return
-    usual = _usual(np.linalg.norm(measured, axis=0)[sure] / sizes[sure])
+    usual = _nearest_median(np.linalg.norm(measured, axis=0)[sure] / sizes[sure])
     if not 1.0 / _ALL_SCALED < usual < _ALL_SCALED:
         yield f"all gains are {usual:.3g} times theory's: the unit or the scale of all inputs or of all outputs looks wrong"
 
 
-def _scaled(names: tuple[str, ...], theory: Array, measured: Array, known: Array) -> Iterator[str]:
+def _scale_doubts(names: tuple[str, ...], theory: Array, measured: Array, known: Array) -> Iterator[str]:
     """Channels whose part in the modes is not as large as that of the others leads one to expect."""
     sizes = np.linalg.norm(theory, axis=0)
     sure = known & (sizes > 1e-3 * np.max(sizes)) & (np.diag(_correlations(theory, measured)) > _ALIKE)
     if np.sum(sure) < _FEWEST:
         return
     ratio = np.linalg.norm(measured, axis=0) / np.maximum(sizes, 1e-300)
-    usual = _usual(ratio[sure])
+    usual = _nearest_median(ratio[sure])
     for index in np.flatnonzero(sure):
         if not 1.0 / _SCALED < ratio[index] / usual < _SCALED:
             yield f"{names[index]} looks scaled: its part in the modes is {ratio[index] / usual:.3g} times what that of the others leads to"
 
 
-def _usual(ratios: Array) -> float:
+def _nearest_median(ratios: Array) -> float:
     """The median; between two, the one nearer to theory's: half of the channels may be scaled."""
     both = np.percentile(ratios, 50.0, method="lower"), np.percentile(ratios, 50.0, method="higher")
     return float(min(both, key=lambda ratio: abs(np.log(ratio))))
 
 
-def sized(residues: Residues) -> Residues:
+def normalise(residues: Residues) -> Residues:
     """Both divided, group by group, by theory's size, so that every mode counts alike."""
     size = np.maximum(np.linalg.norm(residues.theory, axis=(1, 2)), 1e-300)[:, None, None]
     return replace(residues, theory=residues.theory / size, measured=residues.measured / size)

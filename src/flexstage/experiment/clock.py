@@ -18,12 +18,12 @@ TIME_SCALES = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "ns": 1e-9, "min":
 """Seconds in the units that times may have."""
 
 
-def nominal(value: float, uncertainty: float) -> float:
+def round_nominal(value: float, uncertainty: float) -> float:
     """The roundest number a rounded value can have meant: it or its inverse has the fewest digits within the relative uncertainty.
 
     A step printed as 4.88281e-04 s stands for 2048 Hz, not for 2048.002.
 
-    >>> nominal(1 / 4.88281e-04, 1e-6), nominal(1 / 0.333, 1e-3), nominal(1 / 0.195313, 3e-6), nominal(3.14159, 0.0)
+    >>> round_nominal(1 / 4.88281e-04, 1e-6), round_nominal(1 / 0.333, 1e-3), round_nominal(1 / 0.195313, 3e-6), round_nominal(3.14159, 0.0)
     (2048.0, 3.0, 5.12, 3.14159)
     """
     if not RATES[0] <= abs(value) <= RATES[1]:
@@ -93,7 +93,7 @@ def read_clock(times: Iterable[Array], where: str) -> Clock | list[Finding]:
     """
     known = _Steps()
     for block in times:
-        _advance(known, np.asarray(block, dtype=float))
+        _update(known, np.asarray(block, dtype=float))
     found = _problem(known, where)
     if found is not None:
         return [found]
@@ -101,26 +101,26 @@ def read_clock(times: Iterable[Array], where: str) -> Clock | list[Finding]:
     uncertainty = max(known.resolution / known.regular, 1e-12)
     starts = (known.first, *(after for _, _, after in known.jumps))
     edges = [0, *(index for index, _, _ in known.jumps), known.count]
-    return Clock(nominal(1.0 / mean, uncertainty), known.first, tuple(pairwise(edges)), starts)
+    return Clock(round_nominal(1.0 / mean, uncertainty), known.first, tuple(pairwise(edges)), starts)
 
 
 @dataclass(frozen=True)
-class Told:
+class StatedClock:
     """What is told of times beside them: the rate the file states, if any, and whether gaps may be passed over."""
 
     rate: float | None = None
     allow_gaps: bool = False
 
 
-def settled(times: Iterable[Array], at: Callable[[int], float], told: Told, where: str) -> Clock:
+def determine_clock(times: Iterable[Array], at: Callable[[int], float], told: StatedClock, where: str) -> Clock:
     """The clock of times in s, given in blocks and, for the message of gaps, one by one; raises `DesignError` with what is wrong with it.
 
     A rate that the file states beside the times holds where they agree within a thousandth.
 
     >>> times = np.array([0.0, 0.1, 0.2, 0.7, 0.8])
-    >>> settled([times], lambda number: float(times[number]), Told(allow_gaps=True), "a.csv").longest
+    >>> determine_clock([times], lambda number: float(times[number]), StatedClock(allow_gaps=True), "a.csv").longest
     (0, 3)
-    >>> settled([times], lambda number: float(times[number]), Told(), "a.csv")
+    >>> determine_clock([times], lambda number: float(times[number]), StatedClock(), "a.csv")
     Traceback (most recent call last):
     flexstage.base.finding.DesignError: a.csv: there is 1 gap between samples, before 0.7 s. The longest stretch without gaps has 3 ...
     """
@@ -162,7 +162,7 @@ def _gaps(clock: Clock, times: list[float], where: str) -> Finding:
     return Finding(where, what, f'The longest stretch without gaps has {length}: allow "gaps" to use it alone')
 
 
-def _advance(known: _Steps, block: Array) -> None:
+def _update(known: _Steps, block: Array) -> None:
     if block.size == 0:
         return
     known.broken += int(np.count_nonzero(~np.isfinite(block)))

@@ -13,12 +13,12 @@ from flexstage.analysis.complete import platform_modes, read
 from flexstage.analysis.modes import Modes, clusters
 from flexstage.analysis.pairing import RELIABLE, Moving, Pair, gyration, pair_modes
 from flexstage.analysis.solid_modes import FeaModes
-from flexstage.base.finding import Finding, nearest, require
+from flexstage.base.finding import Finding, require, suggest_nearest
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, first_design
 from flexstage.base.quantity import ANGLE, FREQUENCY, RATIO
 from flexstage.base.record import INNER, VIEW
-from flexstage.experiment.channels import Residues, gain_doubts, output_scales, shape_doubts, sized
+from flexstage.experiment.channels import Residues, gain_doubts, normalise, output_scales, shape_doubts
 from flexstage.experiment.identification.identified import Identified
 from flexstage.experiment.shapes_on_stage import si_factor, si_shapes
 from flexstage.experiment.updating.gains import is_length, metres
@@ -163,27 +163,27 @@ def compare(mechanism: Mechanism, experiment: Identified, fea: FeaModes | None =
     theory = platform_modes(mechanism, linear)
     sensors = shared_sensors(linear, experiment)
     candidates = _candidates(theory, experiment)
-    seen = _weighted(si_shapes(experiment, sensors), linear, sensors)
-    own = _sensed(linear, theory, candidates, sensors)
+    seen = _normalise(si_shapes(experiment, sensors), linear, sensors)
+    own = _shapes_at_sensors(linear, theory, candidates, sensors)
     groups = _groups(theory, candidates)
     frequencies = first_design(theory.frequencies, 1)[list(candidates)]
-    pairs, likeness = _pairs(frequencies, experiment, groups, own, seen)
+    pairs, likeness = _pair(frequencies, experiment, groups, own, seen)
 
     def score(shapes: Array) -> float:
-        found, alike = _pairs(frequencies, experiment, groups, own, shapes)
+        found, alike = _pair(frequencies, experiment, groups, own, shapes)
         return sum(float(alike[place, index]) for place, index in found.items()) / max(1, shapes.shape[1])
 
     misnamed = shape_doubts(sensors, seen, score, _scales(frequencies, experiment, groups, own, seen))
     misnamed = misnamed or gain_doubts(
-        _residues(mechanism, linear, theory, experiment, sensors, matched=_matched(groups, candidates, pairs))
+        _residues(mechanism, linear, theory, experiment, sensors, matched=_match_groups(groups, candidates, pairs))
     )
     rows = _rows(theory, experiment, pairs, likeness)
-    rows = rows if fea is None else _with_fea(rows, theory, fea, linear)
-    repeated = tuple(_repeated(group, pairs, own, seen) for group in groups if len(group) > 1 and group[-1] < len(rows))
+    rows = rows if fea is None else _add_fea(rows, theory, fea, linear)
+    repeated = tuple(_repeated_modes(group, pairs, own, seen) for group in groups if len(group) > 1 and group[-1] < len(rows))
     return Compared(
         modes=rows,
         repeated=repeated,
-        further=tuple(_further(theory, candidates, experiment, pairs, likeness)),
+        further=tuple(_further_modes(theory, candidates, experiment, pairs, likeness)),
         sensors=sensors,
         model=model,
         experiment=experiment,
@@ -200,7 +200,7 @@ def shared_sensors(model: LinearModel, experiment: Identified) -> tuple[str, ...
     found = tuple(channel.name for channel in experiment.outputs if channel.name in known)
     gauges = [name for name in known if "." not in name]
     require(
-        Finding(channel.name, "the stage has no output of this name, nor of any other of the record", nearest(channel.name, gauges))
+        Finding(channel.name, "the stage has no output of this name, nor of any other of the record", suggest_nearest(channel.name, gauges))
         for channel in experiment.outputs
         if not found
     )
@@ -222,15 +222,15 @@ def _groups(theory: Modes, candidates: tuple[int, ...]) -> list[list[int]]:
     return [*clusters(frequencies[:count], _REPEATED), *([count + index for index in group] for group in others)]
 
 
-def _sensed(model: LinearModel, theory: Modes, candidates: tuple[int, ...], sensors: Sequence[str]) -> Array:
+def _shapes_at_sensors(model: LinearModel, theory: Modes, candidates: tuple[int, ...], sensors: Sequence[str]) -> Array:
     """Theory's modes at the sensors (p, n), of unit length; zero where the sensors do not feel a mode."""
     shapes = first_design(theory.shapes, 2)[:, list(candidates)]
     seen = first_design(model.output, 2)[list(model.output_index(tuple(sensors)))] @ shapes
     size = np.linalg.norm(seen, axis=0)
-    return np.where(size > _SILENT * np.max(size), _weighted(seen, model, sensors), 0.0)
+    return np.where(size > _SILENT * np.max(size), _normalise(seen, model, sensors), 0.0)
 
 
-def _weighted(shapes: Array, model: LinearModel, sensors: Sequence[str]) -> Array:
+def _normalise(shapes: Array, model: LinearModel, sensors: Sequence[str]) -> Array:
     """Shapes of unit length; angles weighted so that the platform's radius of gyration makes lengths of them."""
     units = {channel.name: channel.unit for channel in model.outputs}
     weight = np.array([gyration(model) if units[name] == "rad" else 1.0 for name in sensors])
@@ -238,7 +238,7 @@ def _weighted(shapes: Array, model: LinearModel, sensors: Sequence[str]) -> Arra
     return scaled / np.maximum(np.linalg.norm(scaled, axis=0), 1e-300)
 
 
-def _pairs(frequencies: Array, experiment: Identified, groups: list[list[int]], own: Array, seen: Array) -> tuple[dict[int, int], Array]:
+def _pair(frequencies: Array, experiment: Identified, groups: list[list[int]], own: Array, seen: Array) -> tuple[dict[int, int], Array]:
     """The measured mode of each of theory's, and how alike all are (n, k): the share of a measured shape within the mode's subspace."""
     likeness = np.zeros((own.shape[1], seen.shape[1]))
     for group in groups:
@@ -250,7 +250,7 @@ def _pairs(frequencies: Array, experiment: Identified, groups: list[list[int]], 
     fitting = (likeness >= _PAIRED) & (apart <= _FARTHEST)
     first, second = scipy.optimize.linear_sum_assignment(np.where(fitting, _FAR * apart - likeness, 0.0))
     found = {i: j for i, j in zip(first.tolist(), second.tolist(), strict=True) if fitting[i, j]}
-    return _in_order(found, groups), likeness
+    return _sort_within_groups(found, groups), likeness
 
 
 def _scales(frequencies: Array, experiment: Identified, groups: list[list[int]], own: Array, seen: Array) -> Array:
@@ -276,7 +276,7 @@ def _sizes(shapes: Array, groups: list[list[int]]) -> Array:
     return np.stack(sizes, axis=1) if sizes else np.zeros((len(shapes), 0))
 
 
-def _in_order(found: dict[int, int], groups: list[list[int]]) -> dict[int, int]:
+def _sort_within_groups(found: dict[int, int], groups: list[list[int]]) -> dict[int, int]:
     """Within a subspace the lower measured frequency goes to the lower mode."""
     ordered: dict[int, int] = {}
     for group in groups:
@@ -285,7 +285,7 @@ def _in_order(found: dict[int, int], groups: list[list[int]]) -> dict[int, int]:
     return ordered
 
 
-def _matched(groups: list[list[int]], candidates: tuple[int, ...], pairs: dict[int, int]) -> list[tuple[list[int], list[int]]]:
+def _match_groups(groups: list[list[int]], candidates: tuple[int, ...], pairs: dict[int, int]) -> list[tuple[list[int], list[int]]]:
     """Theory's modes of every group all of whose modes were found, and the measured ones."""
     whole = (group for group in groups if all(index in pairs for index in group))
     return [([candidates[index] for index in group], [pairs[index] for index in group]) for group in whole]
@@ -318,7 +318,9 @@ def _residues(
     own = [(sense @ shapes[:, modes]) @ (shapes[:, modes].T @ drive) for modes, _ in matched]
     found = [np.real(seen[:, modes] @ felt[modes]) for _, modes in matched]
     strokes = [is_length(experiment.inputs[index].unit) for index in columns]
-    return sized(Residues(tuple(sensors), inputs, np.reshape(own, shape), np.reshape(found, shape), np.isfinite(sizes), np.array(strokes)))
+    return normalise(
+        Residues(tuple(sensors), inputs, np.reshape(own, shape), np.reshape(found, shape), np.isfinite(sizes), np.array(strokes))
+    )
 
 
 def _basis(shapes: Array) -> Array:
@@ -334,14 +336,14 @@ def _rows(theory: Modes, experiment: Identified, pairs: dict[int, int], likeness
             number=number + 1,
             name=theory.names[index],
             theory=float(frequencies[number]),
-            experiment=_measured(experiment, pairs[number]) if number in pairs else None,
+            experiment=_measured_mode(experiment, pairs[number]) if number in pairs else None,
             assurance=float(likeness[number, pairs[number]]) if number in pairs else None,
         )
         for number, index in enumerate(theory.platform)
     )
 
 
-def _measured(experiment: Identified, index: int) -> Measured:
+def _measured_mode(experiment: Identified, index: int) -> Measured:
     (low, high), (least, most) = experiment.frequency_intervals[index].tolist(), experiment.damping_intervals[index].tolist()
     return Measured(
         index,
@@ -353,21 +355,21 @@ def _measured(experiment: Identified, index: int) -> Measured:
     )
 
 
-def _further(
+def _further_modes(
     theory: Modes, candidates: tuple[int, ...], experiment: Identified, pairs: dict[int, int], likeness: Array
 ) -> Iterator[FurtherMode]:
     partners = {measured: place for place, measured in pairs.items()}
     for index in range(len(experiment.frequencies)):
         place = partners.get(index)
         if place is None:
-            yield FurtherMode(_measured(experiment, index))
+            yield FurtherMode(_measured_mode(experiment, index))
         elif place >= len(theory.platform):
             mode = candidates[place]
             frequency = float(first_design(theory.frequencies, 1)[mode])
-            yield FurtherMode(_measured(experiment, index), theory.names[mode], frequency, float(likeness[place, index]))
+            yield FurtherMode(_measured_mode(experiment, index), theory.names[mode], frequency, float(likeness[place, index]))
 
 
-def _with_fea(rows: tuple[ComparedMode, ...], theory: Modes, fea: FeaModes, model: LinearModel) -> tuple[ComparedMode, ...]:
+def _add_fea(rows: tuple[ComparedMode, ...], theory: Modes, fea: FeaModes, model: LinearModel) -> tuple[ComparedMode, ...]:
     pairs = pair_modes(Moving(theory, model), Moving(fea.modes, fea.model))
     return tuple(
         row
@@ -383,7 +385,7 @@ def _error(fea: FeaModes, pair: Pair) -> float | None:
     return fea.errors[fea.modes.platform.index(pair.index)] if fea.errors and pair.index in fea.modes.platform else None
 
 
-def _repeated(group: list[int], pairs: dict[int, int], own: Array, seen: Array) -> RepeatedModes:
+def _repeated_modes(group: list[int], pairs: dict[int, int], own: Array, seen: Array) -> RepeatedModes:
     members = [pairs[index] for index in group if index in pairs]
     numbers = tuple(index + 1 for index in group)
     if len(members) < len(group):

@@ -7,7 +7,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from flexstage.experiment.comparison import Compared, ComparedMode
-from flexstage.show.figures.style import FULL, INK, MUTED, SERIES, Margins, canvas, panels, styled
+from flexstage.show.figures.style import FULL, INK, MUTED, SERIES, Margins, canvas, panels, style_context
 
 _Series: TypeAlias = tuple[str, str, list[float | None]]
 _THEORY, _FEA, _EXPERIMENT = SERIES[0], SERIES[2], SERIES[1]
@@ -22,7 +22,7 @@ def compare_figure(found: Compared) -> Any:
     if found.fea is not None:
         series.append(("FEA", _FEA, [row.fea for row in found.modes]))
     series.append(("experiment", _EXPERIMENT, [None if row.experiment is None else row.experiment.frequency for row in found.modes]))
-    with styled():
+    with style_context():
         figure = canvas(FULL, 3.9)
         grid = panels(figure, 2, 1, Margins(left=0.7, top=0.45, bottom=0.55, down=0.18), heights=[1.7, 1.0])
         _bars(grid[0, 0], series, found.modes)

@@ -7,7 +7,7 @@ import numpy as np
 from flexstage.experiment.comparison import Compared, ComparedMode, Measured
 from flexstage.experiment.tables import WIDENED, interval_texts, widening_cell
 from flexstage.show.display import NO_VALUE, number, percent
-from flexstage.show.table import Cell, Column, Content, Mark, Table, build
+from flexstage.show.table import Cell, Column, Content, Mark, Table, make_table
 
 _TRUSTED = 0.9
 _NEAR, _OFF = 0.02, 0.1
@@ -26,7 +26,7 @@ def compare_table(found: Compared) -> Table:
     notes = ["Off: relative to the experiment, which had damping; theory and FEA are undamped."]
     notes += ["MAC: modal assurance of theory and experiment at the sensors; of repeated modes, within their subspace."]
     notes += [WIDENED, *_fea_notes(found)]
-    return build("Theory, FEA and experiment", heads, rows, notes=notes, provenance=found.provenance)
+    return make_table("Theory, FEA and experiment", heads, rows, notes=notes, provenance=found.provenance)
 
 
 def _line(row: ComparedMode, *, with_fea: bool) -> list[Content]:
@@ -97,7 +97,7 @@ def repeated_table(found: Compared) -> Table | None:
     ]
     note = "Any combination of repeated modes is a mode: theory's and the measured ones span planes, compared by their largest angle."
     heads = ["modes", Column("seen in the experiment"), Column("largest angle", "°")]
-    return build("Repeated modes", heads, rows, notes=[note])
+    return make_table("Repeated modes", heads, rows, notes=[note])
 
 
 def further_table(found: Compared) -> Table | None:
@@ -118,4 +118,4 @@ def further_table(found: Compared) -> Table | None:
     heads = ["mode of the record", Column("experiment", "Hz"), Column("95 % interval", "Hz"), Column("widened"), Column("damping", "%")]
     heads += ["theory's nearest", Column("theory", "Hz"), Column("MAC")]
     note = "Modes of single units, of the ground or of what carries the stage; by the sensors alone local modes are told less surely."
-    return build("Further measured modes", heads, rows, notes=[note])
+    return make_table("Further measured modes", heads, rows, notes=[note])

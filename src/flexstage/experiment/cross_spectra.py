@@ -105,7 +105,7 @@ def spectra(record: Record, segments: Segments, tell: Tell | None = None) -> Spe
     inputs, outputs = record.inputs, record.outputs
     require(_findings(record, size, outputs))
     chosen = record.select([channel.name for channel in (*inputs, *outputs)])
-    total, averages = _accumulated(chosen, size, segments, tell)
+    total, averages = _accumulate(chosen, size, segments, tell)
     weight = segments.window.samples(size)
     density = total / (averages * record.rate * np.sum(weight**2))
     density[1 : (size + 1) // 2] *= 2.0
@@ -165,7 +165,7 @@ def _hop(size: int, segments: Segments) -> int:
     return max(1, round(size * (1.0 - segments.overlap)))
 
 
-def _accumulated(record: Record, size: int, segments: Segments, tell: Tell | None) -> tuple[Array, int]:
+def _accumulate(record: Record, size: int, segments: Segments, tell: Tell | None) -> tuple[Array, int]:
     """Sum over segments of the outer products (f, c, c) of their transforms, and the number of segments."""
     hop, window = _hop(size, segments), segments.window.samples(size)
     count = len(record.channels)
@@ -185,12 +185,12 @@ def _accumulated(record: Record, size: int, segments: Segments, tell: Tell | Non
     return total, averages
 
 
-def pooled(parts: Sequence[Spectra]) -> Spectra:
+def pool(parts: Sequence[Spectra]) -> Spectra:
     """Spectra of several records together, weighted by their averages; an input that a record lacks was at rest in it.
 
     Inputs are put in the order in which they first occur. All must have the same lines and outputs.
 
-    >>> pooled([example_spectra(), example_spectra()]).averages
+    >>> pool([example_spectra(), example_spectra()]).averages
     14
     """
     inputs = tuple({channel.name: channel for part in parts for channel in part.inputs}.values())

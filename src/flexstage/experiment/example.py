@@ -6,7 +6,7 @@ import numpy as np
 
 from flexstage.base.number import Array
 from flexstage.experiment.identification.likelihood import Band, Modal, background
-from flexstage.experiment.identification.lines import edges, gathered, record_lines
+from flexstage.experiment.identification.lines import edges, gather_cells, record_lines
 from flexstage.experiment.record import Channel, Record, Role, in_memory
 
 POLE = 10.0 * (-0.02 + 1j * np.sqrt(1.0 - 0.02**2))
@@ -37,7 +37,7 @@ def one_mode_band(second: Array | None = None) -> tuple[Band, Modal]:
     """
     poles = np.concatenate([[1.01 * POLE], np.zeros(0) if second is None else second])
     made = one_mode_record()
-    cells = gathered(record_lines(made, (0,), 1), [edges(poles, 6.0, 14.0)])[0]
+    cells = gather_cells(record_lines(made, (0,), 1), [edges(poles, 6.0, 14.0)])[0]
     variance = np.full((1, len(cells.low)), 0.05**2 * float(np.var(made.values[:, 1])))
     start = Modal(poles, np.ones((len(poles), 2), dtype=complex), np.full((1, len(poles)), -5.0j))
     return Band(cells, variance, background(cells, np.conj(poles[:1]))), start

@@ -10,8 +10,8 @@ import numpy as np
 from flexstage.base.number import Array
 from flexstage.experiment.identification.identified import Identified
 from flexstage.experiment.record import Channel, Responses
-from flexstage.show.display import typeset
-from flexstage.show.figures.style import FULL, INK, MUTED, SERIES, Margins, canvas, panels, styled
+from flexstage.show.display import to_typography
+from flexstage.show.figures.style import FULL, INK, MUTED, SERIES, Margins, canvas, panels, style_context
 
 LARGEST = 6
 """Rows and columns of responses that a figure shows at most."""
@@ -39,7 +39,7 @@ def response_matrix_figure(found: Identified) -> Any:
     fine = _fine_lines(found, band)
     fitted = found.response(fine).values if len(found.frequencies) else None
     bins = min(_BINS, max(40, _POINTS // (len(rows) * len(columns))))
-    with styled():
+    with style_context():
         height = 1.35 if len(columns) > 2 else 2.0
         figure = canvas(FULL, 0.75 + height * len(rows))
         margins = Margins(left=0.75, top=0.3, bottom=0.42, across=0.1, down=0.06)
@@ -104,7 +104,9 @@ def _matrix_labels(grid: Any, rows: Sequence[Channel], columns: Sequence[Channel
         grid[-1, column].set_xlabel("frequency [Hz]", fontsize=7.0)
     for row, channel in enumerate(rows):
         units = {each.unit for each in columns}
-        unit = f" [{typeset(channel.unit)}/{typeset(units.pop())}]" if len(units) == 1 and channel.unit and "" not in units else ""
+        unit = (
+            f" [{to_typography(channel.unit)}/{to_typography(units.pop())}]" if len(units) == 1 and channel.unit and "" not in units else ""
+        )
         for axes, text in zip(grid[2 * row : 2 * row + 2, 0], (f"{channel.name}{unit}", "phase [°]"), strict=True):
             axes.set_ylabel(text, fontsize=6.5)
             axes.yaxis.set_label_coords(-0.62 / (FULL / len(columns)), 0.5)
@@ -121,7 +123,7 @@ def _decades(axes: Any) -> None:
     from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
     axes.yaxis.set_major_locator(LogLocator(numticks=5))
-    axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: typeset(f"{value:g}" if 1e-2 <= value < 1e3 else f"{value:.0e}")))
+    axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: to_typography(f"{value:g}" if 1e-2 <= value < 1e3 else f"{value:.0e}")))
     axes.yaxis.set_minor_locator(NullLocator())
 
 
@@ -135,7 +137,7 @@ def estimator_figure(first: Responses, others: Sequence[Responses], band: tuple[
     """
     inside = _inside(first.frequencies, band)
     rows = range(min(LARGEST, len(first.outputs)))
-    with styled():
+    with style_context():
         figure, grid = _grid(len(rows), 1.6, Margins(left=0.6, top=0.5, across=0.45, down=0.4))
         for row, axes in zip(rows, grid.flat, strict=False):
             column = int(np.argmax(np.sum(np.abs(first.values[inside, row]) ** 2, axis=0)))
@@ -166,7 +168,7 @@ def coherence_figure(found: Identified, multiple: Array | None, lines: Array | N
     band = focus(found)
     inside = _inside(data.frequencies, band)
     rows = range(min(LARGEST, len(found.outputs)))
-    with styled():
+    with style_context():
         figure, grid = _grid(len(rows), 1.25, Margins(left=0.5, top=0.5, across=0.45, down=0.35))
         for row, axes in zip(rows, grid.flat, strict=False):
             for column in range(min(LARGEST, len(found.inputs)) if data.coherence is not None else 0):
@@ -194,7 +196,7 @@ def stabilisation_figure(found: Identified) -> Any:
     2
     """
     kinds = ((0, "new", ".", "#b8c1cc", 2.0), (1, "frequency stable", "x", SERIES[1], 2.6), (2, "damping too", "^", SERIES[4], 2.6))
-    with styled():
+    with style_context():
         figure = canvas(FULL, 3.1)
         axes = panels(figure, 1, 1, Margins(left=0.5, right=0.55, top=0.4))[0, 0]
         _envelope(axes, found)

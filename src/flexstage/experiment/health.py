@@ -10,12 +10,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from flexstage.base.finding import DesignError, Finding, nearest
+from flexstage.base.finding import DesignError, Finding, suggest_nearest
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
-from flexstage.experiment.numbers import Gathered, Numbers, explained, gather
+from flexstage.experiment.numbers import Numbers, RecordNumbers, explained_share, gather
 from flexstage.experiment.options import Allow, matches
-from flexstage.experiment.record import Channel, Record, Responses, Role, not_rising
+from flexstage.experiment.record import Channel, Record, Responses, Role, rising_problem
 from flexstage.experiment.unit import same_dimension, unit_problem
 
 _STILL, _STILL_SHARE = 32, 0.05
@@ -98,7 +98,7 @@ def examine(record: Record, needs: Needs = _NEEDS) -> Examination:
     return Examination((*faults, *_extent(record, needs, where)), numbers, found.stretch)
 
 
-def usable(record: Record, allow: frozenset[Allow] = frozenset(), needs: Needs = _NEEDS) -> Record:
+def usable_record(record: Record, allow: frozenset[Allow] = frozenset(), needs: Needs = _NEEDS) -> Record:
     """The record as it can be used: as it is where it is sound, else without what `allow` allows to leave out.
 
     Dead, dependent and unfitting channels go; of a record with gaps the longest whole stretch stays. Raises `DesignError` with every fault
@@ -107,7 +107,7 @@ def usable(record: Record, allow: frozenset[Allow] = frozenset(), needs: Needs =
     >>> from flexstage.experiment.record import in_memory
     >>> noise = np.random.default_rng(1).normal(size=(4096, 3)) * [1.0, 0.0, 1.0]
     >>> three = [Channel("u1", "V", Role.INPUT), Channel("S1", "um", Role.OUTPUT), Channel("S2", "um", Role.OUTPUT)]
-    >>> usable(in_memory(three, 2048.0, noise), frozenset({Allow.DEAD})).names
+    >>> usable_record(in_memory(three, 2048.0, noise), frozenset({Allow.DEAD})).names
     ('u1', 'S2')
     """
     found = examine(record, needs)
@@ -133,9 +133,9 @@ def responses_findings(responses: Responses, needs: Needs = _NEEDS) -> list[Faul
     ['its responses end at 2 Hz, the highest mode is at 5 Hz']
     """
     where = responses.source or responses.name or "responses"
-    faults = [*_units((*responses.outputs, *responses.inputs), where), *_named(responses.inputs, responses.outputs, needs, where)]
+    faults = [*_units((*responses.outputs, *responses.inputs), where), *_name_faults(responses.inputs, responses.outputs, needs, where)]
     frequencies = responses.frequencies
-    if (falling := not_rising(frequencies)) is not None:
+    if (falling := rising_problem(frequencies)) is not None:
         faults.append(Fault(None, "", Finding(where, falling, "Export each frequency once, from the lowest to the highest")))
     elif needs.highest is not None and needs.highest > frequencies[-1]:
         what = f"its responses end at {frequencies[-1]:g} Hz, the highest mode is at {needs.highest:g} Hz"
@@ -155,14 +155,14 @@ def _coherence(coherence: Array, where: str) -> Iterator[Fault]:
         yield Fault(Allow.CLIPPED, "", Finding(where, what, advice))
 
 
-def _samples(record: Record, found: Gathered, where: str) -> Iterator[Fault]:
+def _samples(record: Record, found: RecordNumbers, where: str) -> Iterator[Fault]:
     for channel, numbers in zip(record.channels, found.channels, strict=True):
         place = f"{where}: {channel.name}"
         if numbers.broken:
-            yield from _broken(record, channel, numbers, place, found.stretch)
+            yield from _broken_samples(record, channel, numbers, place, found.stretch)
         if numbers.broken < record.length:
             dead = _dead(record, channel, numbers) or _faint(record, found, channel, numbers)
-            windowed = _force_windowed(record, channel, numbers)
+            windowed = _force_window(record, channel, numbers)
             if windowed:
                 yield Fault(None, channel.name, Finding(place, windowed, _UNWINDOWED))
             elif dead:
@@ -171,7 +171,7 @@ def _samples(record: Record, found: Gathered, where: str) -> Iterator[Fault]:
                 yield from _clipped(record, channel, numbers, place)
 
 
-def _broken(record: Record, channel: Channel, numbers: Numbers, place: str, stretch: tuple[int, int]) -> Iterator[Fault]:
+def _broken_samples(record: Record, channel: Channel, numbers: Numbers, place: str, stretch: tuple[int, int]) -> Iterator[Fault]:
     start, stop = stretch
     share = numbers.broken / max(1, record.length)
     first = record.start + numbers.first_broken / record.rate
@@ -197,7 +197,7 @@ def _dead(record: Record, channel: Channel, numbers: Numbers) -> str | None:
     return None
 
 
-def _force_windowed(record: Record, channel: Channel, numbers: Numbers) -> str | None:
+def _force_window(record: Record, channel: Channel, numbers: Numbers) -> str | None:
     """Whether a force is exactly nought after a blow, as analysers make it: what it did then was cut off, and none may leave it out."""
     still = numbers.still >= max(_STILL, _STILL_SHARE * record.length) and numbers.low != numbers.high
     known = channel.unit and unit_problem(channel.unit) is None
@@ -209,7 +209,7 @@ def _force_windowed(record: Record, channel: Channel, numbers: Numbers) -> str |
     return f"it looks force-windowed: exact zeros from {start:.6g} s on, at {share:.3g} % of the record, for {zeros}"
 
 
-def _faint(record: Record, found: Gathered, channel: Channel, numbers: Numbers) -> str | None:
+def _faint(record: Record, found: RecordNumbers, channel: Channel, numbers: Numbers) -> str | None:
     """A channel that is far weaker than all others of its kind."""
     pairs = zip(record.channels, found.channels, strict=True)
     others = [
@@ -251,12 +251,12 @@ def _units(channels: Iterable[Channel], where: str) -> Iterator[Fault]:
             yield Fault(Allow.UNITS, channel.name, Finding(f"{where}: {channel.name}", problem, advice))
 
 
-def _dependent(record: Record, found: Gathered, where: str) -> Iterator[Fault]:
+def _dependent(record: Record, found: RecordNumbers, where: str) -> Iterator[Fault]:
     """Inputs that the others explain, one after another, until those left are independent."""
     names = [channel.name for channel in record.inputs]
     alive = [number for number in range(len(names)) if np.real(found.input_spectra[:, number, number]).sum() > 0.0]
     while len(alive) > 1 and found.segments >= _SEGMENTS_AN_INPUT * len(alive):
-        shares = _unbiased(explained(found.input_spectra[:, alive][:, :, alive]), len(alive), found.segments)
+        shares = _remove_bias(explained_share(found.input_spectra[:, alive][:, :, alive]), len(alive), found.segments)
         worst = int(np.flatnonzero(shares >= shares.max() - _TIE)[-1])  # of those alike the last
         if shares[worst] < _EXPLAINED:
             return
@@ -266,7 +266,7 @@ def _dependent(record: Record, found: Gathered, where: str) -> Iterator[Fault]:
         yield Fault(Allow.DEPENDENT, name, Finding(f"{where}: {name}", what, advice))
 
 
-def _unbiased(shares: Array, inputs: int, segments: int) -> Array:
+def _remove_bias(shares: Array, inputs: int, segments: int) -> Array:
     """Multiple coherence less what independent signals show with so few averages."""
     lost = (inputs - 1) / segments
     return np.maximum(0.0, (shares - lost) / (1.0 - lost))
@@ -283,17 +283,17 @@ def _roles(record: Record, needs: Needs, where: str) -> Iterator[Fault]:
         if not channels:
             what = f"none of its channels ({', '.join(record.names[:12])}) is an {kind}"
             yield Fault(None, "", Finding(where, what, f"Name the {kind}s ({kind}s), by names or patterns"))
-    yield from _named(record.inputs, record.outputs, needs, where)
+    yield from _name_faults(record.inputs, record.outputs, needs, where)
 
 
-def _named(inputs: tuple[Channel, ...], outputs: tuple[Channel, ...], needs: Needs, where: str) -> Iterator[Fault]:
+def _name_faults(inputs: tuple[Channel, ...], outputs: tuple[Channel, ...], needs: Needs, where: str) -> Iterator[Fault]:
     """Channels the stage does not have, and units that cannot be those of the stage's channels."""
     for kind, channels, expected in (("input", inputs, needs.inputs), ("output", outputs, needs.outputs)):
         known = dict(expected or ())
         for channel in channels if expected is not None else ():
             place = f"{where}: {channel.name}"
             if channel.name not in known:
-                advice = f'{nearest(channel.name, known)}; rename it, or allow "names" to leave it out'
+                advice = f'{suggest_nearest(channel.name, known)}; rename it, or allow "names" to leave it out'
                 yield Fault(Allow.NAMES, channel.name, Finding(place, f"the stage has no {kind} of this name", advice))
             elif unit_problem(channel.unit) is None and not same_dimension(channel.unit, known[channel.name]):
                 what = f"its unit is {channel.unit}, that of the stage's {kind} {known[channel.name]}"

@@ -43,7 +43,7 @@ class Numbers:
 
 
 @dataclass(frozen=True, eq=False)
-class Gathered:
+class RecordNumbers:
     """Numbers of all channels; the longest stretch (start, stop) in which all are numbers; mean cross-spectra of the inputs, unscaled."""
 
     channels: tuple[Numbers, ...]
@@ -52,7 +52,7 @@ class Gathered:
     segments: int
 
 
-def gather(record: Record) -> Gathered:
+def gather(record: Record) -> RecordNumbers:
     """One pass over a record. Memory is that of a block, whatever its length.
 
     >>> from flexstage.experiment.record import Channel, in_memory
@@ -75,7 +75,7 @@ def gather(record: Record) -> Gathered:
             for run, values in zip(runs, block.T, strict=True):
                 run.add(values)
     found = tuple(_numbers(column, moments, extremes, gaps, runs[column]) for column in range(size))
-    return Gathered(found, gaps.longest, spectra.sum / max(1, spectra.segments), spectra.segments)
+    return RecordNumbers(found, gaps.longest, spectra.sum / max(1, spectra.segments), spectra.segments)
 
 
 class _Moments:
@@ -222,12 +222,12 @@ def _piles(values: Array) -> tuple[int, int]:
     return first[0] if first else 0, first[1] if len(first) > 1 else 0
 
 
-def explained(spectra: Array) -> Array:
+def explained_share(spectra: Array) -> Array:
     """Share of each input's power that is explained by the others, (inputs,): 1 - sum of 1/(G^-1)_ii over sum of G_ii.
 
     Multiple coherence, weighted with power (Bendat and Piersol, Random Data, 4th edition, section 7.3); delays within a segment count.
 
-    >>> explained(np.array([[[1.0, 0.8], [0.8, 1.0]]])).round(2).tolist()
+    >>> explained_share(np.array([[[1.0, 0.8], [0.8, 1.0]]])).round(2).tolist()
     [0.64, 0.64]
     """
     size = spectra.shape[1]

@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, fields, replace
 from enum import Enum
 
-from flexstage.base.finding import Finding, nearest, require
+from flexstage.base.finding import Finding, require, suggest_nearest
 from flexstage.experiment.record import Channel, Role
 from flexstage.experiment.unit import plain_unit
 
@@ -105,26 +105,26 @@ class Options:
     allow: frozenset[Allow] = frozenset()
 
 
-def assigned(channels: Iterable[Channel], options: Options, where: str) -> tuple[Channel, ...]:
+def assign(channels: Iterable[Channel], options: Options, where: str) -> tuple[Channel, ...]:
     """The channels with roles and units as the user says, else as the file says, else by their names.
 
     Raises `DesignError` for patterns that match no channel and for channels that are said to be both.
 
-    >>> [channel.role.value for channel in assigned([Channel("u1", "V"), Channel("S1", "um"), Channel("note")], Options(), "a.csv")]
+    >>> [channel.role.value for channel in assign([Channel("u1", "V"), Channel("S1", "um"), Channel("note")], Options(), "a.csv")]
     ['input', 'output', 'unknown']
-    >>> [channel.role.value for channel in assigned([Channel("a"), Channel("b")], Options(inputs=("b",)), "a.csv")]
+    >>> [channel.role.value for channel in assign([Channel("a"), Channel("b")], Options(inputs=("b",)), "a.csv")]
     ['output', 'input']
     """
     known = tuple(channels)
     names = [channel.name for channel in known]
-    require([*_unmatched(names, options, where), *_both(names, options, where)])
+    require([*_unknown_names(names, options, where), *_named_twice(names, options, where)])
     return tuple(replace(channel, role=_role(channel, options), unit=_unit(channel, options)) for channel in known)
 
 
-def wanted(names: Iterable[str], options: Options) -> tuple[str, ...]:
+def select_names(names: Iterable[str], options: Options) -> tuple[str, ...]:
     """The names that count: all, or those that `only` matches.
 
-    >>> wanted(["u1", "S1", "trigger"], Options(only=("u*", "S*")))
+    >>> select_names(["u1", "S1", "trigger"], Options(only=("u*", "S*")))
     ('u1', 'S1')
     """
     return tuple(name for name in names if not options.only or matches(name, options.only))
@@ -139,10 +139,10 @@ def matches(name: str, patterns: Iterable[str]) -> bool:
     return any(name == pattern or fnmatch.fnmatchcase(name, pattern) for pattern in patterns)
 
 
-def numbered(names: Iterable[str]) -> tuple[str, ...]:
+def number_names(names: Iterable[str]) -> tuple[str, ...]:
     """Names made different by numbers where some are alike.
 
-    >>> numbered(["acc", "acc", "u"])
+    >>> number_names(["acc", "acc", "u"])
     ('acc 1', 'acc 2', 'u')
     """
     listed = list(names)
@@ -154,15 +154,15 @@ def numbered(names: Iterable[str]) -> tuple[str, ...]:
     return tuple(result)
 
 
-def _unmatched(names: list[str], options: Options, where: str) -> list[Finding]:
+def _unknown_names(names: list[str], options: Options, where: str) -> list[Finding]:
     asked = {"inputs": options.inputs, "outputs": options.outputs, "only": options.only, "units": tuple(name for name, _ in options.units)}
     missing = [
         (kind, pattern) for kind, patterns in asked.items() for pattern in patterns if not any(matches(name, [pattern]) for name in names)
     ]
-    return [Finding(f"{where}: {kind} {pattern}", "no channel is called so", nearest(pattern, names)) for kind, pattern in missing]
+    return [Finding(f"{where}: {kind} {pattern}", "no channel is called so", suggest_nearest(pattern, names)) for kind, pattern in missing]
 
 
-def _both(names: list[str], options: Options, where: str) -> list[Finding]:
+def _named_twice(names: list[str], options: Options, where: str) -> list[Finding]:
     twice = [name for name in names if matches(name, options.inputs) and matches(name, options.outputs)]
     return [Finding(f"{where}: {name}", "it is named as an input and as an output", "Name it once") for name in twice]
 

@@ -8,16 +8,16 @@ from typing import Annotated, TypeAlias
 
 import numpy as np
 
-from flexstage.base.finding import DesignError, Finding, joined, require
+from flexstage.base.finding import DesignError, Finding, join_findings, require
 from flexstage.base.number import Array
 from flexstage.base.record import INNER, VIEW
-from flexstage.experiment.cross_spectra import Spectra, pooled, spectra
-from flexstage.experiment.health import Needs, responses_findings, usable
-from flexstage.experiment.identification.evidence import chosen_segments
+from flexstage.experiment.cross_spectra import Spectra, pool, spectra
+from flexstage.experiment.health import Needs, responses_findings, usable_record
+from flexstage.experiment.identification.evidence import choose_segments
 from flexstage.experiment.identification.identified import Identified
 from flexstage.experiment.identification.identify import Search, identify
 from flexstage.experiment.options import Allow
-from flexstage.experiment.record import Record, Responses, watched
+from flexstage.experiment.record import Record, Responses, report_reading
 from flexstage.experiment.transfer import h2, multiple_coherence, spectral_ratio
 
 Told: TypeAlias = Callable[[str, float], None]
@@ -60,7 +60,7 @@ class Identification:
         return {channel.name: float(np.mean(self.multiple[inside, row])) for row, channel in enumerate(self.spectra.outputs)}
 
 
-def sound(
+def usable_measurement(
     contents: Sequence[Record | Responses], allow: frozenset[Allow] = frozenset(), needs: Needs | None = None, told: Told | None = None
 ) -> Measurement:
     """What of the files' contents can be used together; raises `DesignError` with every fault that is not allowed.
@@ -68,23 +68,23 @@ def sound(
     Several records are taken for tests of one stage; responses stand alone.
 
     >>> from flexstage.experiment.example import one_mode_record
-    >>> [each.duration for each in sound([one_mode_record()])]
+    >>> [each.duration for each in usable_measurement([one_mode_record()])]
     [64.0]
     """
     wanted = needs if needs is not None else Needs()
     records = [each for each in contents if isinstance(each, Record)]
     responses = [each for each in contents if isinstance(each, Responses)]
     if responses:
-        require(_alone(contents))
+        require(_mixed_kinds(contents))
         return _sound_responses(responses[0], allow, wanted)
     findings: list[Finding] = []
     kept: list[Record] = []
     for index, record in enumerate(records):
         try:
-            kept.append(_sound_record(record, allow, wanted, _part(told, index, len(records))))
+            kept.append(_sound_record(record, allow, wanted, _part_progress(told, index, len(records))))
         except DesignError as error:
             findings += error.findings
-    require(joined(findings))
+    require(join_findings(findings))
     return tuple(kept)
 
 
@@ -97,25 +97,25 @@ def identification(test: Measurement, search: Search = _DEFAULT, told: Told | No
     (10.0, 1)
     """
     if isinstance(test, Responses):
-        return Identification(test, identify(test, search, _named(told, "finding modes", 0.0, 1.0)))
-    segments = search.segments if search.segments is not None else chosen_segments(test)
+        return Identification(test, identify(test, search, _stage_progress(told, "finding modes", 0.0, 1.0)))
+    segments = search.segments if search.segments is not None else choose_segments(test)
     share = (_SPECTRA - _LOOKED) / len(test)
     parts = [
-        spectra(record, segments, _named(told, "spectra", _LOOKED + index * share, _LOOKED + (index + 1) * share))
+        spectra(record, segments, _stage_progress(told, "spectra", _LOOKED + index * share, _LOOKED + (index + 1) * share))
         for index, record in enumerate(test)
     ]
-    found = identify(list(test), search, _named(told, "finding modes", _SPECTRA, 1.0))
+    found = identify(list(test), search, _stage_progress(told, "finding modes", _SPECTRA, 1.0))
     names = {channel.name for channel in found.inputs}
-    known = pooled([part.driven(names) for part in parts])
+    known = pool([part.driven(names) for part in parts])
     second = h2(known) if len(known.outputs) >= len(known.inputs) else None
     return Identification(test, found, known, multiple_coherence(known), second, spectral_ratio(known))
 
 
 def _sound_record(record: Record, allow: frozenset[Allow], needs: Needs, told: Told | None) -> Record:
     """The usable part of the record itself, not of the one that tells how far it was read."""
-    tell = _named(told, "looking at the record", 0.0, _LOOKED)
-    seen = record if tell is None else watched(record, lambda stop: tell(stop / max(1, record.length)))
-    kept = usable(seen, allow, needs)
+    tell = _stage_progress(told, "looking at the record", 0.0, _LOOKED)
+    seen = record if tell is None else report_reading(record, lambda stop: tell(stop / max(1, record.length)))
+    kept = usable_record(seen, allow, needs)
     first = round((kept.start - record.start) * record.rate)
     whole = kept.length == record.length
     chosen = record if kept.names == record.names else record.select(kept.names)
@@ -142,16 +142,16 @@ def _sound_responses(responses: Responses, allow: frozenset[Allow], needs: Needs
     )
 
 
-def _alone(contents: Sequence[Record | Responses]) -> list[Finding]:
+def _mixed_kinds(contents: Sequence[Record | Responses]) -> list[Finding]:
     if len(contents) == 1:
         return []
     kinds = ", ".join(f"{each.source or each.name or 'one'}: {'record' if isinstance(each, Record) else 'responses'}" for each in contents)
     return [Finding("records", f"responses cannot be put together with others ({kinds})", "Give several records, or responses alone")]
 
 
-def _named(told: Told | None, text: str, start: float, stop: float) -> Callable[[float], None] | None:
+def _stage_progress(told: Told | None, text: str, start: float, stop: float) -> Callable[[float], None] | None:
     return None if told is None else lambda share: told(text, start + share * (stop - start))
 
 
-def _part(told: Told | None, index: int, count: int) -> Told | None:
+def _part_progress(told: Told | None, index: int, count: int) -> Told | None:
     return None if told is None else lambda text, share: told(text, (index * _LOOKED + share) / count)

@@ -14,7 +14,7 @@ from typing import Annotated, Protocol
 
 import numpy as np
 
-from flexstage.base.finding import Finding, nearest, require
+from flexstage.base.finding import Finding, require, suggest_nearest
 from flexstage.base.labelled import ratio_units
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
@@ -76,7 +76,7 @@ class InMemory:
 
 
 @dataclass(frozen=True, eq=False)
-class Chosen:
+class ChosenChannels:
     """Some channels of other samples, by their numbers and in their order."""
 
     samples: Samples
@@ -90,7 +90,7 @@ class Chosen:
     def read(self, start: int, stop: int) -> Array:
         """Samples `start` to `stop`, the latter excluded, of the chosen channels.
 
-        >>> Chosen(InMemory(np.array([[1.0, 2.0]])), (1,)).read(0, 1).tolist()
+        >>> ChosenChannels(InMemory(np.array([[1.0, 2.0]])), (1,)).read(0, 1).tolist()
         [[2.0]]
         """
         return self.samples.read(start, stop)[:, self.columns]
@@ -114,7 +114,7 @@ class Stretch:
 
 
 @dataclass(frozen=True, eq=False)
-class Watched:
+class WatchedSamples:
     """Other samples; `tell` is called with how far they were read, after each block."""
 
     samples: Samples
@@ -197,7 +197,8 @@ class Record(InNotebook):
         chosen, known = tuple(names), self.names
         where = self.source or self.name or "record"
         require(
-            Finding(f"{where}: {name}", "the record has no channel of this name", nearest(name, known)) for name in set(chosen) - set(known)
+            Finding(f"{where}: {name}", "the record has no channel of this name", suggest_nearest(name, known))
+            for name in set(chosen) - set(known)
         )
         return tuple(known.index(name) for name in chosen)
 
@@ -209,7 +210,7 @@ class Record(InNotebook):
         [[2.0]]
         """
         columns = self.columns(names)
-        return replace(self, channels=tuple(self.channels[column] for column in columns), samples=Chosen(self.samples, columns))
+        return replace(self, channels=tuple(self.channels[column] for column in columns), samples=ChosenChannels(self.samples, columns))
 
     def part(self, start: int, stop: int) -> Record:
         """The record from sample `start` to sample `stop`, the latter excluded.
@@ -299,15 +300,15 @@ class Responses(InNotebook):
         return self.values[:, row, column]
 
 
-def watched(record: Record, tell: Callable[[int], None]) -> Record:
+def report_reading(record: Record, tell: Callable[[int], None]) -> Record:
     """The record, telling how many samples were read whenever a block is: for bars of progress.
 
     >>> told = []
-    >>> long = watched(in_memory([Channel("S1")], 1.0, np.zeros((5, 1))), told.append)
+    >>> long = report_reading(in_memory([Channel("S1")], 1.0, np.zeros((5, 1))), told.append)
     >>> sum(len(block) for block in long.blocks(2)), told
     (5, [2, 4, 5])
     """
-    return replace(record, samples=Watched(record.samples, tell))
+    return replace(record, samples=WatchedSamples(record.samples, tell))
 
 
 def in_memory(channels: Iterable[Channel], rate: float, values: Array) -> Record:
@@ -319,10 +320,10 @@ def in_memory(channels: Iterable[Channel], rate: float, values: Array) -> Record
     return Record(tuple(channels), float(rate), InMemory(np.asarray(values, dtype=float)))
 
 
-def not_rising(frequencies: Array) -> str | None:
+def rising_problem(frequencies: Array) -> str | None:
     """What keeps frequencies from rising: fewer than two, one that stands twice, one below the one before; None if they rise.
 
-    >>> not_rising(np.array([1.0, 2.0, 2.0, 3.0]))
+    >>> rising_problem(np.array([1.0, 2.0, 2.0, 3.0]))
     'its frequencies do not rise: 2 Hz stands twice, lines 2 and 3'
     """
     if len(frequencies) < 2:

@@ -29,7 +29,7 @@ from flexstage.experiment.tables import (
 from flexstage.show.display import number
 from flexstage.show.figures.export import to_svg
 from flexstage.show.figures.style import THIRD
-from flexstage.show.page import Abreast, Block, Picture, Prose, Section, folded, section
+from flexstage.show.page import Abreast, Block, Picture, Prose, Section, fold, section
 from flexstage.show.scene.pictures import moved_picture
 from flexstage.show.scene.stage import Scene, largest_motion
 from flexstage.show.table import Table
@@ -65,7 +65,7 @@ def response_data_section(seen: Identification) -> Section | None:
             "Moon) equals H1 where one input acts alone or inputs are uncorrelated."
         )
         estimators = Picture(picture, text)
-    return section("Responses", [Picture(drawn, caption), folded("H1, H2 and the paper's ratio", estimators)])
+    return section("Responses", [Picture(drawn, caption), fold("H1, H2 and the paper's ratio", estimators)])
 
 
 def coherence_section(seen: Identification) -> Section | None:

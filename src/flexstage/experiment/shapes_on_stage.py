@@ -59,14 +59,14 @@ def stage_shapes(kinematics: Kinematics, found: Identified) -> StageShapes:
     rows = {channel.name: row for channel in found.outputs if (row := _row(kinematics, channel.name)) is not None}
     if not rows:
         names = ", ".join(channel.name for channel in found.outputs[:8])
-        return _none(f"no output of the record ({names}) has the name of a gauge or of a motion of the stage")
+        return _missing_shapes(f"no output of the record ({names}) has the name of a gauge or of a motion of the stage")
     chosen = [index for index, channel in enumerate(found.outputs) if channel.name in rows]
-    weight = np.array([kinematics.length if _turns(name) else 1.0 for name in rows])
+    weight = np.array([kinematics.length if _is_rotation(name) else 1.0 for name in rows])
     scale = np.array([1.0 / kinematics.length if name.startswith("r") else 1.0 for name in kinematics.coordinates])
     seen = weight[:, None] * np.stack(list(rows.values())) * scale
     rank = int(np.linalg.matrix_rank(seen, tol=_RANK * float(np.linalg.norm(seen, 2))))
     if rank < kinematics.mobility:
-        return _none(f"{', '.join(rows)} see {rank} of the {kinematics.mobility} motions of the platform")
+        return _missing_shapes(f"{', '.join(rows)} see {rank} of the {kinematics.mobility} motions of the platform")
     measured = weight[:, None] * si_shapes(found)[chosen]
     motion = np.linalg.lstsq(seen, measured, rcond=None)[0]
     rest = np.sum((measured - seen @ motion) ** 2, axis=0) / np.maximum(np.sum(measured**2, axis=0), 1e-300)
@@ -110,7 +110,7 @@ def _row(kinematics: Kinematics, name: str) -> Array | None:
     return None
 
 
-def _turns(name: str) -> bool:
+def _is_rotation(name: str) -> bool:
     return name.rpartition(".")[2] in COMPONENTS[3:]
 
 
@@ -121,5 +121,5 @@ def _twists(kinematics: Kinematics, motion: Array) -> dict[str, Array]:
     return {name: moved[index] for name, index in rows.items()} | {PLATFORM: first_design(kinematics.motion, 2) @ motion}
 
 
-def _none(reason: str) -> StageShapes:
+def _missing_shapes(reason: str) -> StageShapes:
     return StageShapes({}, (), np.zeros(0), reason)

@@ -10,8 +10,8 @@ from flexstage.base.number import Array
 from flexstage.experiment.identification.identified import Identified
 from flexstage.experiment.identification.peaks import Peak
 from flexstage.experiment.record import Channel, Record, Responses
-from flexstage.show.display import NO_VALUE, aligned, number, percent
-from flexstage.show.table import Cell, Column, Mark, Table, build
+from flexstage.show.display import NO_VALUE, align_numbers, number, percent
+from flexstage.show.table import Cell, Column, Mark, Table, make_table
 
 _COMPLEX = 0.1
 _WEAK = 3.0
@@ -35,7 +35,7 @@ def recorded_table(test: Sequence[Record] | Responses) -> Table:
             (_source(each), _channels(each.inputs), _channels(each.outputs), f"{number(each.duration)} s at {number(each.rate)} Hz")
             for each in test
         ]
-    return build("What was measured", ["file", "inputs", "outputs", "extent"], rows)
+    return make_table("What was measured", ["file", "inputs", "outputs", "extent"], rows)
 
 
 def _source(what: Record | Responses) -> Cell:
@@ -86,7 +86,7 @@ def identified_table(found: Identified) -> Table:
     ]
     if not rows:
         notes = [f"No mode was found between {number(found.band[0], 4)} and {number(found.band[1], 4)} Hz."]
-    return build("Modes found", heads, rows, notes=notes, provenance=found.provenance)
+    return make_table("Modes found", heads, rows, notes=notes, provenance=found.provenance)
 
 
 def widening_cell(factor: float) -> Cell:
@@ -122,7 +122,7 @@ def measured_shape_table(found: Identified) -> Table:
     [['output', '1'], ['y', '1']]
     """
     shapes = found.real_shapes
-    shown = [aligned(np.where(np.abs(column) < _SILENT, 0.0, column), 4) for column in shapes.T]
+    shown = [align_numbers(np.where(np.abs(column) < _SILENT, 0.0, column), 4) for column in shapes.T]
     rows = [
         (Cell(channel.name, Mark.STRONG), *(Cell(column[row], Mark.FAINT if column[row] == "0" else Mark.PLAIN) for column in shown))
         for row, channel in enumerate(found.outputs)
@@ -130,7 +130,7 @@ def measured_shape_table(found: Identified) -> Table:
     units = {channel.unit for channel in found.outputs}
     notes = ["Rows in different units, as recorded."] if len(units) > 1 else []
     heads = ["output", *(Column(str(index + 1)) for index in range(shapes.shape[1]))]
-    return build("Shapes of the modes", heads, rows, notes=notes)
+    return make_table("Shapes of the modes", heads, rows, notes=notes)
 
 
 def peak_table(peaks: Sequence[Peak]) -> Table | None:
@@ -163,7 +163,7 @@ def peak_table(peaks: Sequence[Peak]) -> Table | None:
         "why it is no mode",
     ]
     notes = ["By chance: how likely there would be as much without a mode. A mode needs 1e-9, and lines within its width."]
-    return build("Peaks seen, not confirmed as modes", heads, rows, notes=notes)
+    return make_table("Peaks seen, not confirmed as modes", heads, rows, notes=notes)
 
 
 def warning_table(warnings: Sequence[str]) -> Table | None:
@@ -174,7 +174,7 @@ def warning_table(warnings: Sequence[str]) -> Table | None:
     """
     if not warnings:
         return None
-    return build("What the data cannot tell", ["caution"], [(Cell(text, Mark.WARN),) for text in warnings])
+    return make_table("What the data cannot tell", ["caution"], [(Cell(text, Mark.WARN),) for text in warnings])
 
 
 def motion_explained_text(explained: Array) -> str:

@@ -66,7 +66,7 @@ def same_dimension(unit: str, other: str) -> bool:
 
 
 @dataclass(frozen=True, eq=False)
-class Scaled:
+class ScaledSamples:
     """Other samples with each channel multiplied by a factor."""
 
     samples: Samples
@@ -81,7 +81,7 @@ class Scaled:
         """Samples `start` to `stop`, the latter excluded, in the new units.
 
         >>> from flexstage.experiment.record import InMemory
-        >>> Scaled(InMemory(np.array([[1.0, 2.0]])), np.array([1.0, 1e-6])).read(0, 1).tolist()
+        >>> ScaledSamples(InMemory(np.array([[1.0, 2.0]])), np.array([1.0, 1e-6])).read(0, 1).tolist()
         [[1.0, 2e-06]]
         """
         return self.samples.read(start, stop) * self.factors
@@ -95,11 +95,11 @@ def in_si(record: Record) -> Record:
     >>> [channel.unit for channel in metres.channels], metres.values.tolist()
     (['m', ''], [[2e-06, 3.0]])
     """
-    channels, factors = _converted(record.channels)
-    return replace(record, channels=channels, samples=Scaled(record.samples, np.array(factors)))
+    channels, factors = _convert(record.channels)
+    return replace(record, channels=channels, samples=ScaledSamples(record.samples, np.array(factors)))
 
 
-def _converted(channels: Iterable[Channel]) -> tuple[tuple[Channel, ...], list[float]]:
+def _convert(channels: Iterable[Channel]) -> tuple[tuple[Channel, ...], list[float]]:
     both = [(channel, *_si(channel.unit)) for channel in channels]
     return tuple(replace(channel, unit=unit) for channel, unit, _ in both), [factor for _, _, factor in both]
 
@@ -111,10 +111,10 @@ def _si(unit: str) -> tuple[str, float]:
     dimension = dimension_of(unit)
     if dimension.size == 1:
         return unit, 1.0
-    found = _coherent(dimension)
+    found = _coherent_unit(dimension)
     return (unit, 1.0) if found is None else (found, float(dimension.size))
 
 
-def _coherent(dimension: Dimension) -> str | None:
+def _coherent_unit(dimension: Dimension) -> str | None:
     known = [each.si for each in vars(quantities).values() if isinstance(each, Quantity) and each.si != "mixed"]
     return next((unit for unit in (*known, *_FURTHER) if dimension_of(unit) == Dimension(Fraction(1), dimension.powers)), None)

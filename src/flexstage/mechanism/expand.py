@@ -10,7 +10,7 @@ from typing import TypeAlias
 
 import numpy as np
 
-from flexstage.base.finding import Finding, nearest, require
+from flexstage.base.finding import Finding, require, suggest_nearest
 from flexstage.base.number import Array, Number, Table, stack
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Link, Mechanism, Probe
 from flexstage.mechanism.misalignment import MISALIGNED, misalign
@@ -195,14 +195,14 @@ def _unknown_names(mechanism: Mechanism) -> Iterator[Finding]:
     named += [(f"gauges.{name}.gauge", "sensor", probe.gauge, mechanism.sensors) for name, probe in mechanism.gauges.items()]
     for where, kind, name, known in named:
         if name and name not in known:
-            yield Finding(where, f'there is no {kind} "{name}"', nearest(name, known))
+            yield Finding(where, f'there is no {kind} "{name}"', suggest_nearest(name, known))
 
 
 def _unknown_bodies(bodies: Mapping[str, PlacedBody], links: Mapping[str, PlacedLink], gauges: Mapping[str, Probe]) -> Iterator[Finding]:
     known = (*bodies, GROUND)
     ends = [(f"{link.name}.joins", body) for link in links.values() for body in link.joins]
     ends += [(f"gauges.{name}", body) for name, probe in gauges.items() for body in (probe.body, probe.base or GROUND)]
-    yield from (Finding(where, f'there is no body "{body}"', nearest(body, known)) for where, body in ends if body not in known)
+    yield from (Finding(where, f'there is no body "{body}"', suggest_nearest(body, known)) for where, body in ends if body not in known)
 
 
 def copies(mechanism: Mechanism) -> Iterator[tuple[str, str, Frame]]:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from flexstage.base.finding import Finding, nearest, refuse, require
+from flexstage.base.finding import Finding, refuse, require, suggest_nearest
 from flexstage.base.number import Number
 from flexstage.mechanism.drawn import as_drawn
 from flexstage.mechanism.expand import Assembly, PlacedLink, expand
@@ -161,7 +161,7 @@ def _unknown(mechanism: Mechanism, choices: Mapping[str, tuple[str, str]]) -> li
         if not material:
             found.append(Finding(name, f"how it grows with temperature is not known: {source}", "Give the body one solid of its material"))
         elif material not in mechanism.materials:
-            found.append(Finding(name, f"material {material} is not described", nearest(material, mechanism.materials)))
+            found.append(Finding(name, f"material {material} is not described", suggest_nearest(material, mechanism.materials)))
     return found
 
 

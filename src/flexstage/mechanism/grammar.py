@@ -17,7 +17,7 @@ from enum import Enum
 from typing import Annotated, Any
 
 from flexstage.base.digest import digest
-from flexstage.base.finding import nearest, refuse
+from flexstage.base.finding import refuse, suggest_nearest
 from flexstage.base.number import Table
 from flexstage.base.quantity import COMPLIANCE_MATRIX, DIRECTION, Bound, Quantity
 from flexstage.mechanism.mechanism import Mechanism, ModalDamping, RayleighDamping, StructuralDamping
@@ -219,7 +219,7 @@ class RecordNode(Node):
                 values[name] = slot.default
         known = [key for slot in self.fields.values() for key in slot.keys]
         for key in [key for key in raw if key not in used]:
-            reader.refuse(join(where, key), "this key is not known here", nearest(key, set(known) - used or known))
+            reader.refuse(join(where, key), "this key is not known here", suggest_nearest(key, set(known) - used or known))
         return BAD if BAD in values.values() else self.record(**values)
 
     def _like_is_known(self, raw: dict[str, Any], where: str, reader: Reader) -> bool:
@@ -230,7 +230,7 @@ class RecordNode(Node):
         name = raw[LIKE]
         known = isinstance(name, str) and name in section.entries
         if not known:
-            reader.refuse(join(where, LIKE), f"the catalogue has no {kind(name)}", nearest(kind(name), section.entries))
+            reader.refuse(join(where, LIKE), f"the catalogue has no {kind(name)}", suggest_nearest(kind(name), section.entries))
         return known
 
     def _expand(self, raw: dict[str, Any], reader: Reader) -> dict[str, Any]:
@@ -344,7 +344,7 @@ class UnionNode(Node):
         if name is None:
             return reader.refuse(where, f"it has no {key}", f"Write {key} = one of {', '.join(options)}")
         if not isinstance(name, str) or name not in options:
-            advice = nearest(kind(name), options)
+            advice = suggest_nearest(kind(name), options)
             return reader.refuse(join(where, key), f"found {kind(name)}", f"{advice}. {_ELSEWHERE}" if key == _KIND else advice)
         return options[name].read({item: value for item, value in raw.items() if item != key}, where, reader)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, fields, is_dataclass, replace
 from typing import Any
 
-from flexstage.base.finding import DesignError, nearest, refuse
+from flexstage.base.finding import DesignError, refuse, suggest_nearest
 from flexstage.mechanism.expand import copy_names
 from flexstage.mechanism.grammar import RecordNode, node_of
 from flexstage.mechanism.mechanism import Link, Mechanism
@@ -86,12 +86,12 @@ def _in_unit(mechanism: Mechanism, address: str, owner: str, steps: tuple[str, .
     copies = unit_of_copy(mechanism)
     name = owner if owner in mechanism.units else copies.get(owner, "")
     if name not in mechanism.units:
-        raise refuse(address, f'"{owner}" is no unit and no copy of one', nearest(owner, [*mechanism.units, *copies]))
+        raise refuse(address, f'"{owner}" is no unit and no copy of one', suggest_nearest(owner, [*mechanism.units, *copies]))
     unit = mechanism.units[name]
     if owner == name and steps[0] in unit.bodies:
         return _descend(mechanism, address, Place((), (), RecordNode(Mechanism)), ("units", name, "bodies", *steps))
     if steps[0] not in unit.links:
-        raise refuse(address, f'unit {name} has no link "{steps[0]}"', nearest(steps[0], unit.links))
+        raise refuse(address, f'unit {name} has no link "{steps[0]}"', suggest_nearest(steps[0], unit.links))
     drawn = f"{name}/{steps[0]}"
     owners = (drawn,) if owner == name else (drawn, f"{owner}/{steps[0]}")
     return _in_link(mechanism, address, ("units", name, "links", steps[0]), owners, steps[1:])
@@ -107,7 +107,7 @@ def _in_link(mechanism: Mechanism, address: str, tree: tuple[str, ...], owners: 
         start = Place(owners, (), RecordNode(Link), in_link=True) if departed else Place((), tree, RecordNode(Link))
         return _descend(link, address, start, steps)
     if link.part not in mechanism.parts:
-        raise refuse(address, f'there is no part "{link.part}"', nearest(link.part, mechanism.parts))
+        raise refuse(address, f'there is no part "{link.part}"', suggest_nearest(link.part, mechanism.parts))
     parts = node_of(Mechanism).fields["parts"].node
     start = Place(owners, (), parts.child(mechanism.parts, link.part))
     return _descend(mechanism.parts[link.part], address, start, steps)
@@ -141,12 +141,12 @@ def _complete(value: Any, address: str, node: Node, step: str) -> tuple[str, ...
         raise refuse(address, f'"{step}" may be {" or ".join(".".join(path) for path in found)}', "Write the one that is meant in full")
     if value is None:
         raise refuse(address, f'there is no "{step}": what holds it is not given', "Give it first")
-    raise refuse(address, f'there is no "{step}"', nearest(step, _names(value)))
+    raise refuse(address, f'there is no "{step}"', suggest_nearest(step, _names(value)))
 
 
 def _component(value: Any, address: str, node: Node, step: str) -> str:
     if not node.components or not has_member(value, step):
-        raise refuse(address, f'there is no component "{step}"', nearest(step, COMPONENTS[: len(value)]))
+        raise refuse(address, f'there is no component "{step}"', suggest_nearest(step, COMPONENTS[: len(value)]))
     return COMPONENTS[int(step)] if step in "012345" else step
 
 

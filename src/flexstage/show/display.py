@@ -19,7 +19,7 @@ _TOO_SMALL, _TOO_LARGE = 0.1, 1e5
 
 
 @dataclass(frozen=True)
-class Shown:
+class DisplayUnit:
     """A display unit: its text and the factor from SI values to shown numbers."""
 
     unit: str
@@ -99,54 +99,54 @@ _FIELD_UNITS = {
 }
 
 
-def shown(unit: str, largest: float = 1.0) -> Shown:
+def display_unit_of(unit: str, largest: float = 1.0) -> DisplayUnit:
     """The display unit of an SI unit for values up to `largest` [SI].
 
-    >>> shown("N/m", 15e6).unit, shown("m", 5e-9).unit, shown("rad/m").unit
+    >>> display_unit_of("N/m", 15e6).unit, display_unit_of("m", 5e-9).unit, display_unit_of("rad/m").unit
     ('N/um', 'nm', 'urad/um')
     """
     ladder = _LADDERS.get(unit)
     if ladder is None:
-        return Shown(unit, 1.0)
+        return DisplayUnit(unit, 1.0)
     factors = dict(ladder)
     preferred = _PREFERRED.get(unit, ladder[0][0])
     if largest == 0.0 or not math.isfinite(largest) or _TOO_SMALL <= largest * factors[preferred] < _TOO_LARGE:
-        return Shown(preferred, factors[preferred])
+        return DisplayUnit(preferred, factors[preferred])
     fitting = [name for name, factor in ladder if largest * factor >= 1.0]
     chosen = fitting[-1] if fitting else ladder[0][0]
-    return Shown(chosen, factors[chosen])
+    return DisplayUnit(chosen, factors[chosen])
 
 
-def preferred(unit: str) -> Shown:
+def preferred_unit(unit: str) -> DisplayUnit:
     """The preferred display unit of an SI unit, whatever the values.
 
-    >>> preferred("m/N")
-    Shown(unit='um/N', factor=1000000.0)
+    >>> preferred_unit("m/N")
+    DisplayUnit(unit='um/N', factor=1000000.0)
     """
-    return shown(unit, 0.0)
+    return display_unit_of(unit, 0.0)
 
 
-def field_unit(quantity: Quantity) -> Shown:
+def field_unit(quantity: Quantity) -> DisplayUnit:
     """The unit a description's field is shown in.
 
     >>> from flexstage.base.quantity import ANGLE, LENGTH
     >>> field_unit(LENGTH), round(field_unit(ANGLE).factor, 6)
-    (Shown(unit='mm', factor=1000.0), 57.29578)
+    (DisplayUnit(unit='mm', factor=1000.0), 57.29578)
     """
-    return Shown(quantity.shown, 1.0 if quantity.shown == quantity.si else _FIELD_UNITS[quantity.shown])
+    return DisplayUnit(quantity.shown, 1.0 if quantity.shown == quantity.si else _FIELD_UNITS[quantity.shown])
 
 
-def display_unit(quantity: Quantity | None, unit: str = "") -> Shown:
+def display_unit(quantity: Quantity | None, unit: str = "") -> DisplayUnit:
     """The unit in which results of a quantity are shown: `unit`, one of its display units, or where it is absent the quantity's own.
 
     >>> from flexstage.base.quantity import PIEZO_GAIN
     >>> display_unit(PIEZO_GAIN, "um/V"), display_unit(None)
-    (Shown(unit='um/V', factor=1000000.0), Shown(unit='', factor=1.0))
+    (DisplayUnit(unit='um/V', factor=1000000.0), DisplayUnit(unit='', factor=1.0))
     """
     if quantity is None or quantity.shown == "1":
-        return Shown("", 1.0)
+        return DisplayUnit("", 1.0)
     ladder = dict(_LADDERS.get(quantity.si, ()))
-    return Shown(unit, ladder[unit]) if unit else field_unit(quantity)
+    return DisplayUnit(unit, ladder[unit]) if unit else field_unit(quantity)
 
 
 def number(value: float, digits: int = DIGITS) -> str:
@@ -167,12 +167,12 @@ def number(value: float, digits: int = DIGITS) -> str:
     return text
 
 
-def aligned(values: Iterable[float], digits: int = DIGITS) -> list[str]:
+def align_numbers(values: Iterable[float], digits: int = DIGITS) -> list[str]:
     """Numbers of one column with the same decimals: `digits` significant ones for the largest, one more where the smallest needs it.
 
     A column that spans more than four decades keeps significant digits instead.
 
-    >>> aligned([110.9101, 1690.27]), aligned([0.0, 0.5]), aligned([1.0, 2.0])
+    >>> align_numbers([110.9101, 1690.27]), align_numbers([0.0, 0.5]), align_numbers([1.0, 2.0])
     (['110.91', '1690.27'], ['0', '0.5'], ['1', '2'])
     """
     items = [float(value) for value in values]
@@ -198,13 +198,13 @@ def percent(share: float, digits: int = 4) -> str:
     return f"{number(100.0 * share, digits)} %"
 
 
-def value_with_unit(value: float, unit: str, digits: int = DIGITS) -> str:
+def format_value(value: float, unit: str, digits: int = DIGITS) -> str:
     """An SI value with its display unit.
 
-    >>> value_with_unit(15.45e6, "N/m"), value_with_unit(2e-9, "m"), value_with_unit(0.5, "1")
+    >>> format_value(15.45e6, "N/m"), format_value(2e-9, "m"), format_value(0.5, "1")
     ('15.45 N/um', '2 nm', '0.5')
     """
-    form = shown(unit, abs(value) if math.isfinite(value) else 0.0)
+    form = display_unit_of(unit, abs(value) if math.isfinite(value) else 0.0)
     text = number(value * form.factor, digits)
     return text if form.unit == "1" else f"{text} {form.unit}"
 
@@ -212,11 +212,11 @@ def value_with_unit(value: float, unit: str, digits: int = DIGITS) -> str:
 _SUPERSCRIPT = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
 
 
-def typeset(text: str) -> str:
+def to_typography(text: str) -> str:
     """Text with units and numbers as a printer sets them: micro sign, true minus, powers; for HTML and figures.
 
-    >>> typeset("-1.2e-5 N/um"), typeset("J/m^2"), typeset("nm/Hz^0.5"), typeset("+-5 um"), typeset("digest 9bc8e8")
-    ('−1.2·10⁻⁵ N/µm', 'J/m²', 'nm/√Hz', '±5 µm', 'digest 9bc8e8')
+    >>> [to_typography(text) for text in ("-1.2e-5 N/um", "J/m^2", "nm/Hz^0.5", "+-5 um", "digest 9bc8e8")]
+    ['−1.2·10⁻⁵ N/µm', 'J/m²', 'nm/√Hz', '±5 µm', 'digest 9bc8e8']
     """
     text = re.sub(r"\+-(?=\d)", "±", text)
     text = re.sub(r"(?<![A-Za-z0-9])u(?=(?:m|rad|J|F|s|V)\b)", "µ", text)

@@ -14,7 +14,7 @@ from flexstage.analysis.statics import Statics
 from flexstage.base.digest import digest
 from flexstage.base.document import Document, plain
 from flexstage.base.finding import Finding
-from flexstage.base.record import Together, walk
+from flexstage.base.record import SideBySide, walk
 from flexstage.mechanism.mechanism import Damping, Mechanism, ModalDamping, RayleighDamping, StructuralDamping
 from flexstage.models.linear.frequency import Response
 from flexstage.models.theory import Model
@@ -25,12 +25,12 @@ _KEYS = {"statics": "stiffness", "lost_motion": "lost-motion", "error_budget": "
 """Fields of an analysis whose document has the name of their command."""
 
 
-def enveloped(kind: str, mechanism: Mechanism | None, model: Model | None, body: Any, more: Iterable[Finding] = ()) -> Document:
+def envelope(kind: str, mechanism: Mechanism | None, model: Model | None, body: Any, more: Iterable[Finding] = ()) -> Document:
     """A document: what it is, of which description (absent: of a record alone), by which model and version, caveats, then its `body`.
 
     `body` is a result, or a mapping with results in it. `more` are cautions of the result's own.
 
-    >>> enveloped("mapping", Mechanism("stage"), None, {"mobility": 6})["name"]
+    >>> envelope("mapping", Mechanism("stage"), None, {"mobility": 6})["name"]
     'stage'
     """
     known = Caveats() if mechanism is None else caveats(mechanism)
@@ -57,7 +57,7 @@ def check_document(mechanism: Mechanism | None, errors: Iterable[Finding] = ()) 
     body: Document = {"sound": not found, "findings": found}
     if mechanism is None:
         return {"format": FORMAT, "kind": "check", "version": flexstage.__version__, **body, "cautions": [], "defaults": [], "warnings": []}
-    document = enveloped("check", mechanism, None, body)
+    document = envelope("check", mechanism, None, body)
     return {**document, "warnings": document["cautions"]}
 
 
@@ -93,15 +93,15 @@ def analysis_body(analysis: Analysis) -> Document:
     return {"requirements": requirements_body(analysis.verdicts), **documents, **({"reasons": reasons} if reasons else {})}
 
 
-def stiffness_body(statics: Statics, deflection: Deflection | None = None) -> Together:
+def stiffness_body(statics: Statics, deflection: Deflection | None = None) -> SideBySide:
     """Statics of the platform, and its deflection under dead load."""
-    return Together((statics, {"dead_load": deflection, "reasons": {} if deflection is not None else {"dead_load": _UNLUMPED}}))
+    return SideBySide((statics, {"dead_load": deflection, "reasons": {} if deflection is not None else {"dead_load": _UNLUMPED}}))
 
 
-def response_body(response: Response, damping: Damping | None) -> Together:
+def response_body(response: Response, damping: Damping | None) -> SideBySide:
     """A frequency response and its damping."""
     laws: dict[type, str] = {ModalDamping: "modal", RayleighDamping: "rayleigh", StructuralDamping: "structural"}
-    return Together((response, {"damping": None if damping is None else {"law": laws[type(damping)], **walk(damping)}}))
+    return SideBySide((response, {"damping": None if damping is None else {"law": laws[type(damping)], **walk(damping)}}))
 
 
 def requirements_body(verdicts: Iterable[Verdict]) -> list[Document]:

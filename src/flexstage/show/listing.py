@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
-from flexstage.base.finding import nearest, refuse
+from flexstage.base.finding import refuse, suggest_nearest
 from flexstage.cases.parameters import parameters
 from flexstage.cases.registry import CASES, shipped_case
 from flexstage.mechanism.catalogue import Catalogue, Section
@@ -15,7 +15,7 @@ from flexstage.mechanism.grammar import TAGS
 from flexstage.parts.gauge import Gauge
 from flexstage.parts.material import Material
 from flexstage.parts.piezo import Piezo
-from flexstage.show.table import Cell, Mark, Table, build
+from flexstage.show.table import Cell, Mark, Table, make_table
 
 _SECTIONS: Mapping[type, str] = {Material: "materials", Piezo: "stacks", Gauge: "gauges"}
 _TITLES: Mapping[type, str] = {Material: "Materials", Piezo: "Piezo stacks", Gauge: "Gauges"}
@@ -28,7 +28,7 @@ def case_table() -> Table:
     'double-triangle'
     """
     rows = [(Cell(name, Mark.STRONG), case.summary) for name, case in CASES.items()]
-    return build("Cases", ["name", "what it is"], rows, notes=["flexstage new stage.toml --case NAME"])
+    return make_table("Cases", ["name", "what it is"], rows, notes=["flexstage new stage.toml --case NAME"])
 
 
 def parameter_table(name: str) -> Table:
@@ -41,7 +41,7 @@ def parameter_table(name: str) -> Table:
     rows = [(Cell(each.name, Mark.STRONG), each.kind, each.text) for each in parameters(own).values()]
     meaning = " ".join((inspect.getdoc(type(own)) or "").partition("\n\n")[2].replace("`", "").split())
     notes = [meaning, f"flexstage new stage.toml --case {name} --parameter NAME=VALUE"]
-    return build(f"Parameters of {name}", ["name", "quantity", "value"], rows, notes=notes)
+    return make_table(f"Parameters of {name}", ["name", "quantity", "value"], rows, notes=notes)
 
 
 def catalogue_tables(catalogue: Catalogue) -> tuple[Table, ...]:
@@ -54,15 +54,15 @@ def catalogue_tables(catalogue: Catalogue) -> tuple[Table, ...]:
     return tuple(_section_table(section, catalogue.sources) for section in catalogue.sections if section.entries)
 
 
-def section_named(catalogue: Catalogue, name: str) -> Catalogue:
+def find_section(catalogue: Catalogue, name: str) -> Catalogue:
     """The catalogue with one section only: `materials`, `stacks` or `gauges`. Raises `DesignError` for another name.
 
     >>> from flexstage.mechanism.catalogue import shipped_catalogue
-    >>> [section.record.__name__ for section in section_named(shipped_catalogue(), "gauges").sections]
+    >>> [section.record.__name__ for section in find_section(shipped_catalogue(), "gauges").sections]
     ['Gauge']
     """
     if name not in _SECTIONS.values():
-        raise refuse(name, "the catalogue has no such section", nearest(name, _SECTIONS.values()))
+        raise refuse(name, "the catalogue has no such section", suggest_nearest(name, _SECTIONS.values()))
     return replace(catalogue, sections=tuple(section for section in catalogue.sections if _SECTIONS[section.record] == name))
 
 
@@ -82,7 +82,7 @@ def _section_table(section: Section, sources: Mapping[str, str]) -> Table:
     tags = [tag for entry in section.entries.values() for tag in entry.get(TAGS, {}).values()]
     used = {word for tag in tags for word in tag.split()[1:2]}
     notes = [f"{key}: {text}" for key, text in sources.items() if key in used]
-    return build(_TITLES[section.record], ["name", *keys], rows, notes=notes)
+    return make_table(_TITLES[section.record], ["name", *keys], rows, notes=notes)
 
 
 def _entry_cell(entry: Mapping[str, Any], key: str) -> Cell:

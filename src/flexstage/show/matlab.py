@@ -31,10 +31,10 @@ def as_mat(analysis: Analysis) -> bytes:
     >>> as_mat(analyse(double_triangle(), Model.IDEAL))[:10]
     b'MATLAB 5.0'
     """
-    return _saved(mat_variables(analysis))
+    return _write_mat(mat_variables(analysis))
 
 
-def _saved(variables: dict[str, Any]) -> bytes:
+def _write_mat(variables: dict[str, Any]) -> bytes:
     content = io.BytesIO()
     scipy.io.savemat(content, variables, do_compression=True, oned_as="column", long_field_names=True)
     return content.getvalue()
@@ -55,7 +55,7 @@ def to_mat(result: Any) -> bytes:
         for step in filter(None, path.split(".")):
             under = under.setdefault(_identifier(step), {})
         under |= _matrix(part) if isinstance(part, Matrix) else _sheet(part)
-    return _saved(found)
+    return _write_mat(found)
 
 
 def _identifier(name: str) -> str:
@@ -64,7 +64,7 @@ def _identifier(name: str) -> str:
 
 
 def _matrix(matrix: Matrix) -> dict[str, Any]:
-    return {key.removeprefix("values").removeprefix("_") or key: value for key, value in _labelled("values", matrix).items()}
+    return {key.removeprefix("values").removeprefix("_") or key: value for key, value in _matrix_variables("values", matrix).items()}
 
 
 def _sheet(sheet: Sheet) -> dict[str, Any]:
@@ -103,10 +103,10 @@ def mat_variables(analysis: Analysis) -> dict[str, Any]:
         "model": analysis.model.value,
         "flexstage_version": flexstage.__version__,
         "physics_digest": digest(analysis.mechanism, physics=True),
-        **_labelled("R_s", kinematics.gauge_mapping),
+        **_matrix_variables("R_s", kinematics.gauge_mapping),
     }
     if kinematics.actuated:
-        variables |= _labelled("R_a", kinematics.mapping)
+        variables |= _matrix_variables("R_a", kinematics.mapping)
     else:
         notes.append("R_a: the strokes do not determine the platform")
     if analysis.linear is None:
@@ -122,7 +122,7 @@ def mat_variables(analysis: Analysis) -> dict[str, Any]:
     return {**variables, "notes": _cells(notes)}
 
 
-def _labelled(name: str, matrix: Matrix) -> dict[str, Any]:
+def _matrix_variables(name: str, matrix: Matrix) -> dict[str, Any]:
     shape = (len(matrix.rows), len(matrix.columns))
     unit = matrix.unit if isinstance(matrix.unit, str) else np.array(matrix.unit, dtype=object).reshape(shape)
     return {name: matrix.values, f"{name}_rows": _cells(matrix.rows), f"{name}_columns": _cells(matrix.columns), f"{name}_unit": unit}

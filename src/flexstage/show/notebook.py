@@ -67,5 +67,5 @@ def _picture(mechanism: Mechanism) -> str:
     try:
         figure = stage_picture(scene(mechanism))
     except DesignError as error:
-        return "".join(f"<p>{render.escaped(str(finding))}</p>" for finding in error.findings)
+        return "".join(f"<p>{render.escape(str(finding))}</p>" for finding in error.findings)
     return to_svg(figure, f"stage{digest(mechanism)[:12]}", f"{mechanism.name} from above its corner")

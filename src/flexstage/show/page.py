@@ -8,7 +8,7 @@ from importlib import resources
 from typing import TypeAlias
 
 from flexstage.base.text import printable
-from flexstage.show.render import escaped, to_html
+from flexstage.show.render import escape, to_html
 from flexstage.show.table import Table
 
 
@@ -96,10 +96,10 @@ def section(title: str, blocks: Iterable[Block | None]) -> Section | None:
     return Section(title, kept) if kept else None
 
 
-def folded(title: str, *blocks: Block | None) -> Folded | None:
+def fold(title: str, *blocks: Block | None) -> Folded | None:
     """The blocks that exist, shown on demand; `None` where there are none.
 
-    >>> folded("Empty", None) is None
+    >>> fold("Empty", None) is None
     True
     """
     kept = tuple(block for block in blocks if block is not None)
@@ -113,13 +113,13 @@ def page(head: Head, sections: Sequence[Section]) -> str:
     True
     """
     style = resources.files("flexstage.show").joinpath("static/report.css").read_text(encoding="utf-8")
-    contents = "".join(f'<li><a href="#{_anchor(each.title)}">{escaped(each.title)}</a></li>' for each in sections)
+    contents = "".join(f'<li><a href="#{_anchor(each.title)}">{escape(each.title)}</a></li>' for each in sections)
     text = "".join(
         [
             '<!doctype html>\n<html lang="en"><head><meta charset="utf-8">',
             '<meta name="viewport" content="width=device-width, initial-scale=1">',
-            f"<title>{escaped(head.title)}: {escaped(head.kind)}</title>\n<style>{style}</style></head>\n<body>",
-            f'<header><p class="kind">{escaped(head.kind)}</p><h1>{escaped(head.title)}</h1>{_origin(head)}</header>',
+            f"<title>{escape(head.title)}: {escape(head.kind)}</title>\n<style>{style}</style></head>\n<body>",
+            f'<header><p class="kind">{escape(head.kind)}</p><h1>{escape(head.title)}</h1>{_origin(head)}</header>',
             f"\n<nav><ul>{contents}</ul></nav>\n<main>",
             *(_section(each) for each in sections),
             "</main></body></html>\n",
@@ -129,7 +129,7 @@ def page(head: Head, sections: Sequence[Section]) -> str:
 
 
 def _origin(head: Head) -> str:
-    items = "".join(f"<div><dt>{escaped(name)}</dt><dd>{escaped(value)}</dd></div>" for name, value in head.origin)
+    items = "".join(f"<div><dt>{escape(name)}</dt><dd>{escape(value)}</dd></div>" for name, value in head.origin)
     return f'<dl class="origin">{items}</dl>' if items else ""
 
 
@@ -138,7 +138,7 @@ def _anchor(title: str) -> str:
 
 
 def _section(each: Section) -> str:
-    return f'\n<section id="{_anchor(each.title)}"><h2>{escaped(each.title)}</h2>{"".join(_blocks(each.blocks))}</section>'
+    return f'\n<section id="{_anchor(each.title)}"><h2>{escape(each.title)}</h2>{"".join(_blocks(each.blocks))}</section>'
 
 
 def _blocks(blocks: Iterable[Block]) -> Iterator[str]:
@@ -146,9 +146,9 @@ def _blocks(blocks: Iterable[Block]) -> Iterator[str]:
         if isinstance(block, Table):
             yield f'<div class="table">{to_html(block)}</div>'
         elif isinstance(block, Prose):
-            yield f"<p>{escaped(block.text)}</p>"
+            yield f"<p>{escape(block.text)}</p>"
         elif isinstance(block, Picture):
-            caption = f"<figcaption>{escaped(block.caption)}</figcaption>" if block.caption else ""
+            caption = f"<figcaption>{escape(block.caption)}</figcaption>" if block.caption else ""
             yield f"<figure>{block.svg}{caption}</figure>"
         else:
             yield _group(block)
@@ -158,14 +158,14 @@ def _group(block: Facts | Abreast | Folded | Legend) -> str:
     if isinstance(block, Facts):
         return f'<div class="facts">{"".join(_fact(item) for item in block.items)}</div>'
     if isinstance(block, Legend):
-        entries = "".join(f'<span><i style="background:{colour}"></i>{escaped(name)}</span>' for colour, name in block.entries)
+        entries = "".join(f'<span><i style="background:{colour}"></i>{escape(name)}</span>' for colour, name in block.entries)
         return f'<p class="legend">{entries}</p>'
     inner = "".join(_blocks(block.blocks))
     if isinstance(block, Folded):
-        return f"<details><summary>{escaped(block.title)}</summary>{inner}</details>"
+        return f"<details><summary>{escape(block.title)}</summary>{inner}</details>"
     return f'<div class="abreast{" narrow" if block.narrow else ""}">{inner}</div>'
 
 
 def _fact(item: Fact) -> str:
-    remark = f"<small>{escaped(item.remark)}</small>" if item.remark else ""
-    return f"<div><dt>{escaped(item.name)}</dt><dd>{escaped(item.value)}</dd>{remark}</div>"
+    remark = f"<small>{escape(item.remark)}</small>" if item.remark else ""
+    return f"<div><dt>{escape(item.name)}</dt><dd>{escape(item.value)}</dd>{remark}</div>"

@@ -15,9 +15,9 @@ from flexstage.mechanism.outline import outlines
 from flexstage.mechanism.pattern import Polar
 from flexstage.parts.body import Block, Cylinder
 from flexstage.show.display import number
-from flexstage.show.figures.style import FULL, INK, MUTED, PAPER, SERIES, canvas, styled
+from flexstage.show.figures.style import FULL, INK, MUTED, PAPER, SERIES, canvas, style_context
 from flexstage.show.scene.facet import Kind
-from flexstage.show.scene.primitives import plain
+from flexstage.show.scene.primitives import first_value
 from flexstage.show.scene.stage import Scene
 from flexstage.show.scene.view import Side, view, write
 
@@ -44,12 +44,14 @@ def rings(mechanism: Mechanism) -> tuple[Ring, ...]:
     """
     placed = [(key, placement.pattern) for key, placement in mechanism.place.items()]
     placed += [(key, probe.pattern) for key, probe in mechanism.gauges.items()]
-    return tuple(_ring(copy_names(key), pattern) for key, pattern in placed if isinstance(pattern, Polar) and plain(pattern.radius) > 0.0)
+    return tuple(
+        _ring(copy_names(key), pattern) for key, pattern in placed if isinstance(pattern, Polar) and first_value(pattern.radius) > 0.0
+    )
 
 
 def _ring(names: tuple[str, ...], pattern: Polar) -> Ring:
-    step = 360.0 / len(names) if pattern.step is None else float(np.rad2deg(plain(pattern.step)))
-    return Ring(names, 1e3 * plain(pattern.radius), float(np.rad2deg(plain(pattern.first))), step)
+    step = 360.0 / len(names) if pattern.step is None else float(np.rad2deg(first_value(pattern.step)))
+    return Ring(names, 1e3 * first_value(pattern.radius), float(np.rad2deg(first_value(pattern.first))), step)
 
 
 def plan_figure(mechanism: Mechanism, scene: Scene) -> Any:
@@ -61,7 +63,7 @@ def plan_figure(mechanism: Mechanism, scene: Scene) -> Any:
     >>> len(plan_figure(Mechanism(""), scene(Mechanism(""))).axes)
     1
     """
-    with styled():
+    with style_context():
         reach = _reach(mechanism, scene)
         low, high = _limits(reach)
         figure = canvas(FULL, min(1.1, float((high - low)[1] / (high - low)[0])) * FULL)
@@ -82,7 +84,7 @@ def _reach(mechanism: Mechanism, scene: Scene) -> Array:
     points = [1e3 * facet.points[:, :2] for facet in scene.facets] or [np.full((1, 2), 50.0)]
     reach = np.abs(np.concatenate(points)).max(axis=0)
     if mechanism.envelope is not None:
-        reach = np.maximum(reach, np.abs(_room_middle(mechanism)) + [500.0 * plain(size) for size in mechanism.envelope[:2]])
+        reach = np.maximum(reach, np.abs(_outline_middle(mechanism)) + [500.0 * first_value(size) for size in mechanism.envelope[:2]])
     return np.maximum(reach, 0.2 * reach.max())
 
 
@@ -124,13 +126,13 @@ def hull(points: Array) -> Array:
 def _chain(points: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
     chain: list[tuple[float, float]] = []
     for x, y in points:
-        while len(chain) > 1 and _turn(chain[-2], chain[-1], (x, y)) <= 0.0:
+        while len(chain) > 1 and _cross_product(chain[-2], chain[-1], (x, y)) <= 0.0:
             chain.pop()
         chain.append((x, y))
     return chain
 
 
-def _turn(first: tuple[float, float], second: tuple[float, float], third: tuple[float, float]) -> float:
+def _cross_product(first: tuple[float, float], second: tuple[float, float], third: tuple[float, float]) -> float:
     return (second[0] - first[0]) * (third[1] - first[1]) - (second[1] - first[1]) * (third[0] - first[0])
 
 
@@ -151,10 +153,10 @@ def _holes(mechanism: Mechanism) -> Iterator[Array]:
         solid, turn, place = placed.solid, first_design(placed.frame.rotation, 2), first_design(placed.frame.position, 1)
         if isinstance(solid, Block) and solid.hole is not None and abs(turn[2, 2]) > _UPRIGHT:
             corners = 0.5 * np.array([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0], [-1, -1, 0]])
-            yield place + (corners * [*(plain(side) for side in solid.hole), 0.0]) @ turn.T
+            yield place + (corners * [*(first_value(side) for side in solid.hole), 0.0]) @ turn.T
         elif isinstance(solid, Cylinder) and solid.bore is not None and abs(turn[2, 0]) > _UPRIGHT:
             angle = np.linspace(0.0, 2.0 * np.pi, 61)
-            yield place + 0.5 * plain(solid.bore) * np.stack([0.0 * angle, np.cos(angle), np.sin(angle)], axis=-1) @ turn.T
+            yield place + 0.5 * first_value(solid.bore) * np.stack([0.0 * angle, np.cos(angle), np.sin(angle)], axis=-1) @ turn.T
 
 
 def _rectangle(axes: Any, size: Sequence[float], style: str, colour: str, centre: Sequence[float] = (0.0, 0.0)) -> None:
@@ -165,21 +167,21 @@ def _rectangle(axes: Any, size: Sequence[float], style: str, colour: str, centre
 def _rectangles(axes: Any, mechanism: Mechanism) -> None:
     """Envelope and clear opening, with their names: the opening lies about the stage's axis, the envelope about all that takes up room."""
     if mechanism.envelope is not None:
-        size, (x, y) = [1e3 * plain(value) for value in mechanism.envelope[:2]], _room_middle(mechanism)
+        size, (x, y) = [1e3 * first_value(value) for value in mechanism.envelope[:2]], _outline_middle(mechanism)
         _rectangle(axes, size, "--", MUTED, (x, y))
         place = (x + 0.495 * size[0], y + 0.5 * size[1] + 1.0)
-        axes.text(*place, _sized("envelope", size), ha="right", va="bottom", fontsize=6.5, color=MUTED)
+        axes.text(*place, _size_text("envelope", size), ha="right", va="bottom", fontsize=6.5, color=MUTED)
     if mechanism.opening is not None:
-        size = [1e3 * plain(value) for value in mechanism.opening.size]
+        size = [1e3 * first_value(value) for value in mechanism.opening.size]
         _rectangle(axes, size, "--", SERIES[3])
-        axes.text(0.0, -0.48 * size[1], _sized("clear opening", size), ha="center", va="bottom", fontsize=6.5, color=SERIES[3])
+        axes.text(0.0, -0.48 * size[1], _size_text("clear opening", size), ha="center", va="bottom", fontsize=6.5, color=SERIES[3])
 
 
-def _sized(name: str, size: Sequence[float]) -> str:
+def _size_text(name: str, size: Sequence[float]) -> str:
     return f"{name} {number(size[0])} × {number(size[1])}"
 
 
-def _room_middle(mechanism: Mechanism) -> Array:
+def _outline_middle(mechanism: Mechanism) -> Array:
     """Middle (x, y) [mm] of the box around all outlines: an envelope says how much room there is, not where."""
     found = outlines(expand(mechanism))
     if not found:
@@ -247,7 +249,7 @@ def _sizes(axes: Any, scene: Scene, reach: Array) -> None:
     low, high = (function(np.concatenate(outlines), axis=0) for function in (np.min, np.max))
     gap = 0.1 * float(reach.max())
     _dimension(axes, low, np.array([high[0], low[1]]), -reach[1] - gap)
-    _upright(axes, low, float(high[1] - low[1]), -reach[0] - gap)
+    _dimension_height(axes, low, float(high[1] - low[1]), -reach[0] - gap)
 
 
 def _dimension(axes: Any, first: Array, second: Array, level: float) -> None:
@@ -258,7 +260,7 @@ def _dimension(axes: Any, first: Array, second: Array, level: float) -> None:
     axes.text(0.5 * (first[0] + second[0]), level, text, ha="center", va="center", fontsize=7.5, bbox=_PLATE)
 
 
-def _upright(axes: Any, low: Array, height: float, level: float) -> None:
+def _dimension_height(axes: Any, low: Array, height: float, level: float) -> None:
     for y in (low[1], low[1] + height):
         axes.plot([low[0], level - 4.0], [y, y], color=INK, linewidth=0.4)
     axes.annotate("", xy=(level, low[1]), xytext=(level, low[1] + height), arrowprops=_arrow("<|-|>"))

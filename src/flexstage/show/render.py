@@ -6,7 +6,7 @@ import html
 from typing import Any
 
 from flexstage.base.text import printable
-from flexstage.show.display import typeset
+from flexstage.show.display import to_typography
 from flexstage.show.table import Cell, Column, Mark, Table
 
 _STYLES = {
@@ -24,8 +24,8 @@ _STYLES = {
 def to_text(table: Table) -> str:
     """The table as lines of plain text, columns aligned.
 
-    >>> from flexstage.show.table import build
-    >>> print(to_text(build("Masses", ["body", Column("mass", "kg")], [("platform", "14"), ("lever", "0.5")])))
+    >>> from flexstage.show.table import make_table
+    >>> print(to_text(make_table("Masses", ["body", Column("mass", "kg")], [("platform", "14"), ("lever", "0.5")])))
     Masses
     body      mass [kg]
     --------  ---------
@@ -49,8 +49,8 @@ def _line(cells: list[str], widths: list[int], columns: tuple[Column, ...]) -> s
 def to_markdown(table: Table) -> str:
     r"""The table in GitHub's Markdown.
 
-    >>> from flexstage.show.table import build
-    >>> print(to_markdown(build("Masses", ["body", Column("mass", "kg")], [("a|b", "14")])))
+    >>> from flexstage.show.table import make_table
+    >>> print(to_markdown(make_table("Masses", ["body", Column("mass", "kg")], [("a|b", "14")])))
     **Masses**
     <BLANKLINE>
     | body | mass [kg] |
@@ -73,29 +73,29 @@ def _markdown(text: str) -> str:
 def to_html(table: Table) -> str:
     """The table as HTML without style of its own; classes say what cells mean, all texts are escaped.
 
-    >>> from flexstage.show.table import build
-    >>> to_html(build("a < b", ["x"], [("1",)]))
+    >>> from flexstage.show.table import make_table
+    >>> to_html(make_table("a < b", ["x"], [("1",)]))
     '<table><caption>a &lt; b</caption><thead><tr><th>x</th></tr></thead><tbody><tr><td>1</td></tr></tbody></table>'
     """
-    caption = f"<caption>{escaped(table.title)}</caption>" if table.title else ""
+    caption = f"<caption>{escape(table.title)}</caption>" if table.title else ""
     head = "".join(_html_head(column) for column in table.columns)
     body = "".join(f"<tr>{_html_row(row, table.columns)}</tr>" for row in table.rows)
-    notes = "".join(f'<p class="note">{escaped(note)}</p>' for note in table.notes)
+    notes = "".join(f'<p class="note">{escape(note)}</p>' for note in table.notes)
     return f"<table>{caption}<thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>{notes}"
 
 
-def escaped(text: str) -> str:
+def escape(text: str) -> str:
     """Text of anybody's making as HTML, units and numbers typeset.
 
-    >>> escaped('<b>"5 um"</b>')
+    >>> escape('<b>"5 um"</b>')
     '&lt;b&gt;&quot;5 µm&quot;&lt;/b&gt;'
     """
-    return html.escape(typeset(text), quote=True)
+    return html.escape(to_typography(text), quote=True)
 
 
 def _html_head(column: Column) -> str:
-    unit = f' <span class="unit">{escaped(column.unit)}</span>' if column.unit else ""
-    return f"<th{_class('number' if column.numeric else '')}>{escaped(column.head)}{unit}</th>"
+    unit = f' <span class="unit">{escape(column.unit)}</span>' if column.unit else ""
+    return f"<th{_class('number' if column.numeric else '')}>{escape(column.head)}{unit}</th>"
 
 
 def _html_row(row: tuple[Cell, ...], columns: tuple[Column, ...]) -> str:
@@ -107,7 +107,7 @@ def _html_cell(cell: Cell, column: Column) -> str:
     classes += [] if cell.mark is Mark.PLAIN else [cell.mark.value]
     classes += ["bar"] if cell.bar is not None else []
     style = f' style="--share:{min(max(cell.bar, 0.0), 1.0):.3f}"' if cell.bar is not None else ""
-    return f"<td{_class(' '.join(classes))}{style}>{escaped(cell.text)}</td>"
+    return f"<td{_class(' '.join(classes))}{style}>{escape(cell.text)}</td>"
 
 
 def _class(names: str) -> str:
@@ -117,8 +117,8 @@ def _class(names: str) -> str:
 def to_rich(table: Table) -> Any:
     """The table as a `rich.table.Table` for the terminal.
 
-    >>> from flexstage.show.table import build
-    >>> to_rich(build("Masses", ["body"], [("platform",)])).row_count
+    >>> from flexstage.show.table import make_table
+    >>> to_rich(make_table("Masses", ["body"], [("platform",)])).row_count
     1
     """
     from rich import box

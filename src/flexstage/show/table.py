@@ -14,7 +14,18 @@ from flexstage.base.number import Array
 from flexstage.base.quantity import Bound, Quantity
 from flexstage.base.record import Field, values_of
 from flexstage.base.sheet import NUMBERS, Sheet, is_cell, parts, plain_cell, rows_of
-from flexstage.show.display import DIGITS, NO_VALUE, Shown, aligned, display_unit, number, percent, preferred, shown, value_with_unit
+from flexstage.show.display import (
+    DIGITS,
+    NO_VALUE,
+    DisplayUnit,
+    align_numbers,
+    display_unit,
+    display_unit_of,
+    format_value,
+    number,
+    percent,
+    preferred_unit,
+)
 
 
 class Mark(Enum):
@@ -75,7 +86,7 @@ class Table:
         return to_html(self)
 
 
-def build(
+def make_table(
     title: str,
     columns: Iterable[Column | str],
     rows: Iterable[Sequence[Content]],
@@ -85,7 +96,7 @@ def build(
 ) -> Table:
     """A table from columns (a text alone is the head of a column of words) and rows of cells (a text alone is a plain cell).
 
-    >>> build("Masses", ["body", Column("mass", "kg")], [("platform", "14")]).texts()
+    >>> make_table("Masses", ["body", Column("mass", "kg")], [("platform", "14")]).texts()
     [['body', 'mass [kg]'], ['platform', '14']]
     """
     heads = tuple(column if isinstance(column, Column) else Column(column, numeric=False) for column in columns)
@@ -93,17 +104,17 @@ def build(
     return Table(title, heads, cells, tuple(notes), provenance)
 
 
-def figures(values: Iterable[float], form: Shown, digits: int | None = None) -> list[Cell]:
+def number_cells(values: Iterable[float], form: DisplayUnit, digits: int | None = None) -> list[Cell]:
     """A column of SI values in a display unit, decimals aligned, or each to as many significant `digits`.
 
     Rounding noise against the column's largest value is shown as 0.
 
-    >>> [cell.text for cell in figures([15e6, 1e-6], Shown("N/um", 1e-6))]
+    >>> [cell.text for cell in number_cells([15e6, 1e-6], DisplayUnit("N/um", 1e-6))]
     ['15', '0']
     """
-    items = form.factor * _audible(np.array([float(value) for value in values]))
-    texts = aligned(items) if digits is None else [number(float(each), digits) for each in items]
-    return [Cell(text, _faint(text)) for text in texts]
+    items = form.factor * _zero_noise(np.array([float(value) for value in values]))
+    texts = align_numbers(items) if digits is None else [number(float(each), digits) for each in items]
+    return [Cell(text, _mark_of(text)) for text in texts]
 
 
 def row_table(title: str, source: Any, *fields: str, head: str = "", notes: Iterable[str] = (), provenance: str = "") -> Table:
@@ -128,7 +139,7 @@ def sheet_table(title: str, sheet: Sheet, *, notes: Iterable[str] = (), provenan
     """Rows and columns of a result, names first."""
     names = [(Column(head, numeric=False), [Cell(str(each), Mark.STRONG) for each in values]) for head, values in sheet.names.items()]
     columns = [*names, *(field_column(*each) for each in sheet.columns.items())]
-    return build(
+    return make_table(
         title, [column for column, _ in columns], zip(*(cells for _, cells in columns), strict=True), notes=notes, provenance=provenance
     )
 
@@ -137,14 +148,14 @@ def record_table(title: str, record: Any, *fields: str, notes: Iterable[str] = (
     """A record as rows of name, value and unit; `fields` as for `row_table`."""
     told = {each.name: (each, value) for each, value in values_of(record)[0].items()}
     chosen = [told[name] for name in fields] if fields else [each for each in told.values() if not each[0].axes and is_cell(each[1])]
-    return _upright(title, Sheet({}, {each: (value,) for each, value in chosen}), notes, provenance)
+    return _vertical_table(title, Sheet({}, {each: (value,) for each, value in chosen}), notes, provenance)
 
 
-def _upright(title: str, sheet: Sheet, notes: Iterable[str] = (), provenance: str = "") -> Table:
+def _vertical_table(title: str, sheet: Sheet, notes: Iterable[str] = (), provenance: str = "") -> Table:
     """A single row of a sheet, set upright."""
     columns = [(each.heading.text, *field_column(each, values)) for each, values in sheet.columns.items()]
     rows = [(Cell(name, Mark.STRONG), cells[0], column.unit) for name, column, cells in columns]
-    return build(title, ["", Column("value"), "unit"], rows, notes=notes, provenance=provenance)
+    return make_table(title, ["", Column("value"), "unit"], rows, notes=notes, provenance=provenance)
 
 
 def result_tables(result: Any) -> Iterator[Table]:
@@ -160,7 +171,7 @@ def result_tables(result: Any) -> Iterator[Table]:
         elif part.names:
             yield _first_rows(sheet_table(title, part))
         else:
-            yield _upright(title, part)
+            yield _vertical_table(title, part)
 
 
 def _first_rows(table: Table) -> Table:
@@ -182,16 +193,16 @@ def field_column(field: Field, values: Sequence[Any]) -> tuple[Column, list[Cell
     """
     heading, form = field.heading, display_unit(field.annotation(Quantity), field.heading.unit)
     if not all(isinstance(each, (*NUMBERS, np.ndarray)) and not isinstance(each, bool) for each in values if each is not None):
-        return Column(heading.text, numeric=False), [Cell(_words(each)) for each in values]
+        return Column(heading.text, numeric=False), [Cell(_cell_text(each)) for each in values]
     numbers = np.array([np.nan if each is None else float(first_design(each, 0)) for each in values])
     if heading.varying:
-        cells = [Cell(value_with_unit(each, field.unit, heading.digits or DIGITS)) for each in _audible(numbers).tolist()]
+        cells = [Cell(format_value(each, field.unit, heading.digits or DIGITS)) for each in _zero_noise(numbers).tolist()]
     elif form.unit == "%":
-        cells = [Cell(percent(each, heading.digits or 4), bar=each) for each in _audible(numbers, 1.0).tolist()]
+        cells = [Cell(percent(each, heading.digits or 4), bar=each) for each in _zero_noise(numbers, 1.0).tolist()]
     elif field.annotation(Quantity) is None:  # numbers of who knows what beside one another: none is noise against the others
-        cells = [Cell(text, _faint(text)) for text in (number(each, heading.digits or DIGITS) for each in numbers.tolist())]
+        cells = [Cell(text, _mark_of(text)) for text in (number(each, heading.digits or DIGITS) for each in numbers.tolist())]
     else:
-        cells = figures(numbers, form, heading.digits)
+        cells = number_cells(numbers, form, heading.digits)
     cells = [Cell(NO_VALUE, Mark.FAINT) if np.isnan(each) else cell for cell, each in zip(cells, numbers, strict=True)]
     bound = field.annotation(Bound) or Bound()
     outside = [each > bound.high + NOISE * abs(bound.high) or each < bound.low - NOISE * abs(bound.low) for each in numbers]
@@ -200,13 +211,13 @@ def field_column(field: Field, values: Sequence[Any]) -> tuple[Column, list[Cell
     return Column(heading.text, "" if heading.varying or form.unit == "%" else form.unit), cells
 
 
-def _words(value: Any) -> str:
+def _cell_text(value: Any) -> str:
     if isinstance(value, bool):
         return "yes" if value else "no"
     return NO_VALUE if value is None else str(plain_cell(value))
 
 
-def _audible(values: Array, least: float = 0.0) -> Array:
+def _zero_noise(values: Array, least: float = 0.0) -> Array:
     """A column of values in which rounding noise against its largest, or `least` where that is more, is 0."""
     largest = np.max(np.abs(values[np.isfinite(values)]), initial=least)
     return np.where(np.isfinite(values) & (np.abs(values) < NOISE * largest), 0.0, values)
@@ -236,7 +247,7 @@ def matrix_table(title: str, matrix: Matrix, *, against: Matrix | None = None, f
         for name, form, line in zip(short_names(matrix.rows), rows, kept, strict=True)
     ]
     ratio = ["Entries: row unit per column unit."] if all(any(_unit(form) for form in forms) for forms in (rows, columns)) else []
-    return build(title, [Column("", numeric=False), *heads], lines, notes=[*notes, *ratio, *said])
+    return make_table(title, [Column("", numeric=False), *heads], lines, notes=[*notes, *ratio, *said])
 
 
 def unit_row_table(title: str, matrix: Matrix, *, heads: tuple[str, ...] = (), first: str = "along", notes: tuple[str, ...] = ()) -> Table:
@@ -249,9 +260,9 @@ def unit_row_table(title: str, matrix: Matrix, *, heads: tuple[str, ...] = (), f
     values, units = first_design(matrix.values, 2), _entry_units(matrix)
     for name, line, unit in zip(matrix.rows, values, units, strict=True):
         alike = np.concatenate([other for other, its in zip(values, units, strict=True) if its[0] == unit[0]])
-        form = shown(unit[0], float(np.max(np.abs(alike[np.isfinite(alike)]), initial=0.0)))
-        rows.append((Cell(name, Mark.STRONG), _unit(form), *figures(line, form)))
-    return build(title, [first, "unit", *(Column(head) for head in heads or matrix.columns)], rows, notes=notes)
+        form = display_unit_of(unit[0], float(np.max(np.abs(alike[np.isfinite(alike)]), initial=0.0)))
+        rows.append((Cell(name, Mark.STRONG), _unit(form), *number_cells(line, form)))
+    return make_table(title, [first, "unit", *(Column(head) for head in heads or matrix.columns)], rows, notes=notes)
 
 
 def short_names(names: tuple[str, ...]) -> tuple[str, ...]:
@@ -264,7 +275,7 @@ def short_names(names: tuple[str, ...]) -> tuple[str, ...]:
     return tuple(name.rpartition(".")[2] for name in names) if len(owners) == 1 else names
 
 
-def _row_head(name: str, form: Shown) -> Cell:
+def _row_head(name: str, form: DisplayUnit) -> Cell:
     unit = _unit(form)
     return Cell(f"{name} [{unit}]" if unit else name, Mark.STRONG)
 
@@ -275,7 +286,7 @@ def _entries_with_units(title: str, matrix: Matrix, kept: Array, notes: tuple[st
         [Cell(name, Mark.STRONG), *(_with_unit(value, unit) for value, unit in zip(row, line, strict=True))]
         for name, row, line in zip(matrix.rows, kept, units, strict=True)
     ]
-    return build(title, [Column("", numeric=False), *(Column(name) for name in matrix.columns)], lines, notes=notes)
+    return make_table(title, [Column("", numeric=False), *(Column(name) for name in matrix.columns)], lines, notes=notes)
 
 
 _ENDS = ("m", "rad", "N", "N m", "K", "K/m", "V", "1")
@@ -287,8 +298,8 @@ def _ends(matrix: Matrix) -> tuple[tuple[str, ...], tuple[str, ...]] | None:
     if isinstance(matrix.unit, str):
         return None if matrix.unit != "1" else (("1",) * len(matrix.rows), ("1",) * len(matrix.columns))
     for start in _ENDS:
-        columns = _known(_denominator(start, unit) for unit in units[0])
-        rows = _known(_numerator(line[0], columns[0]) for line in units) if columns else ()
+        columns = _drop_unknown(_denominator(start, unit) for unit in units[0])
+        rows = _drop_unknown(_numerator(line[0], columns[0]) for line in units) if columns else ()
         if (len(rows), len(columns)) == (len(matrix.rows), len(matrix.columns)) and ratio_units(rows, columns) == units:
             return rows, columns
     return None
@@ -302,7 +313,7 @@ def _numerator(unit: str, bottom: str) -> str | None:
     return next((top for top in _ENDS if ratio_units((top,), (bottom,))[0][0] == unit), None)
 
 
-def _known(units: Iterable[str | None]) -> tuple[str, ...]:
+def _drop_unknown(units: Iterable[str | None]) -> tuple[str, ...]:
     return tuple(unit for unit in units if unit is not None)
 
 
@@ -312,25 +323,25 @@ def _entry_units(matrix: Matrix) -> tuple[tuple[str, ...], ...]:
     return matrix.unit
 
 
-def _form(unit: str, *, fine: bool) -> Shown:
-    return Shown("mrad", 1e3) if unit == "rad" and not fine else preferred(unit)
+def _form(unit: str, *, fine: bool) -> DisplayUnit:
+    return DisplayUnit("mrad", 1e3) if unit == "rad" and not fine else preferred_unit(unit)
 
 
-def _unit(form: Shown) -> str:
+def _unit(form: DisplayUnit) -> str:
     return "" if form.unit == "1" else form.unit
 
 
 def _entry(value: float) -> Cell:
     text = number(float(value))
-    return Cell(text, _faint(text))
+    return Cell(text, _mark_of(text))
 
 
 def _with_unit(value: float, unit: str) -> Cell:
-    text = value_with_unit(float(value), unit)
-    return Cell(text.split()[0] if text[0] in "0-" and value == 0.0 else text, _faint(text.split()[0]))
+    text = format_value(float(value), unit)
+    return Cell(text.split()[0] if text[0] in "0-" and value == 0.0 else text, _mark_of(text.split()[0]))
 
 
-def _faint(text: str) -> Mark:
+def _mark_of(text: str) -> Mark:
     return Mark.FAINT if text in ("0", NO_VALUE) else Mark.PLAIN
 
 

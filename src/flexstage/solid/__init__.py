@@ -1,6 +1,6 @@
 """The solid wing: a stage as three-dimensional elastic bodies, and theory beside it."""
 
-from flexstage.base.lazy import lazily
+from flexstage.base.lazy import lazy_attributes
 
 HOMES = {
     "fea.cache": "Cache",
@@ -16,4 +16,4 @@ HOMES = {
     "modes": "fea_modes",
     "calibration": "calibrate",
 }
-__getattr__, __dir__ = lazily(__name__, HOMES)
+__getattr__, __dir__ = lazy_attributes(__name__, HOMES)

@@ -53,28 +53,28 @@ def calibrate(text: str, compute: Hinges = STANDARD_HINGES, *, where: str = "tex
     Raises `DesignError` for hinges that are calibrated already, that single copies depart from, or whose 6x6 FEA could not find.
     """
     mechanism = loads(text, where=where)
-    require(_already(mechanism))
-    require(_departing(mechanism))
+    require(_refuse_calibrated(mechanism))
+    require(_refuse_departures(mechanism))
     found = solid_hinges(mechanism, compute)
-    parts = given_parts(found)
+    parts = stand_ins(found)
     errors = max(hinge.found.error for hinge in found.values())
     stands = {name: StandIn(part, found[name].links) for name, part in parts.items()}
     return Calibration(found, parts, write_stand_ins(text, stands, f"{TAG} within {100.0 * errors:.2g} %", where=where))
 
 
-def given_parts(found: Mapping[str, SolidHinge]) -> dict[str, Given]:
+def stand_ins(found: Mapping[str, SolidHinge]) -> dict[str, Given]:
     """The computed hinges as given parts, of the mass and with the intended freedoms of the drawn ones.
 
     The 6x6 is given the symmetry of the drawn hinge; a freedom whose compliance FEA cannot tell from that of the blocks beside the hinge
     keeps beam theory's. Raises `DesignError` for a 6x6 that is known to worse than 10 %.
 
-    >>> given_parts({})
+    >>> stand_ins({})
     {}
     """
     parts: dict[str, Given] = {}
     findings: list[Finding] = []
     for name, hinge in found.items():
-        matrix = _clean(hinge)
+        matrix = _symmetrise(hinge)
         if hinge.error is None or hinge.error > _LARGEST_ERROR:
             findings.append(_doubt(name, hinge.error))
             continue
@@ -97,35 +97,35 @@ def _doubt(name: str, error: float | None) -> Finding:
     return Finding(f"parts.{name}", what, "Ask for more accuracy")
 
 
-def with_matrices(mechanism: Mechanism, found: Mapping[str, SolidHinge]) -> Mechanism:
+def substitute_parts(mechanism: Mechanism, found: Mapping[str, SolidHinge]) -> Mechanism:
     """The stage with the computed hinges as given parts, those of which no copy departs.
 
     Raises `DesignError` where copies depart from a shared hinge.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> with_matrices(double_triangle(), {}) == double_triangle()
+    >>> substitute_parts(double_triangle(), {}) == double_triangle()
     True
     """
-    require(_departing(mechanism))
-    parts = given_parts(found)
+    require(_refuse_departures(mechanism))
+    parts = stand_ins(found)
     kept = {hinge.shared + KEPT: hinge.form.part for hinge in found.values()}
     others = {name: part for name, part in mechanism.parts.items() if name + KEPT not in kept}
     names = {link: name for name, hinge in found.items() for link in hinge.links}
-    units = {unit: replace(drawn, links=_renamed(drawn.links, names, f"{unit}/")) for unit, drawn in mechanism.units.items()}
-    return replace(mechanism, parts={**others, **kept, **parts}, units=units, links=_renamed(mechanism.links, names, "links."))
+    units = {unit: replace(drawn, links=_rename_parts(drawn.links, names, f"{unit}/")) for unit, drawn in mechanism.units.items()}
+    return replace(mechanism, parts={**others, **kept, **parts}, units=units, links=_rename_parts(mechanism.links, names, "links."))
 
 
-def _renamed(links: Mapping[str, Link], names: Mapping[str, str], owner: str) -> dict[str, Link]:
+def _rename_parts(links: Mapping[str, Link], names: Mapping[str, str], owner: str) -> dict[str, Link]:
     """Links with the parts that stand in for theirs."""
     return {name: replace(link, part=names.get(owner + name, link.part)) for name, link in links.items()}
 
 
-def _already(mechanism: Mechanism) -> Iterator[Finding]:
+def _refuse_calibrated(mechanism: Mechanism) -> Iterator[Finding]:
     for name in calibrated_parts(mechanism):
         yield Finding(f"parts.{name}", "its 6x6 is of FEA origin already", "Calibrate the file that it was made from")
 
 
-def _departing(mechanism: Mechanism) -> Iterator[Finding]:
+def _refuse_departures(mechanism: Mechanism) -> Iterator[Finding]:
     for link in expand(mechanism).links.values():
         shared = mechanism.parts[link.link.part]
         if link.part != shared:
@@ -136,7 +136,7 @@ _TURN = spatial_rotation(np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0,
 """A quarter turn about x."""
 
 
-def _clean(hinge: SolidHinge) -> Array:
+def _symmetrise(hinge: SolidHinge) -> Array:
     """The 6x6 with the symmetry of the drawn hinge, which its mesh has not quite.
 
     Reflected across y and z a hinge is itself, and across x if its roots are alike; a round one is alike all round. What cannot be told

@@ -24,7 +24,7 @@ from flexstage.mechanism.expand import PlacedLink, expand
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.parts.shape import Shaped
 from flexstage.solid.fea.estimate import Accuracy
-from flexstage.solid.fea.hinge_cache import kept_hinges
+from flexstage.solid.fea.hinge_cache import hinges_from_cache
 from flexstage.solid.fea.hinge_form import NO_ESTIMATE, HingeForm, HingeSolid
 from flexstage.solid.fea.parts import Ways
 from flexstage.solid.fea.roots import Roots, roots_of
@@ -38,7 +38,7 @@ Hinges: TypeAlias = Callable[[Mapping[str, HingeForm]], Mapping[str, HingeSolid]
 
 
 @dataclass(frozen=True, eq=False)
-class DrawnHinge:
+class DistinctHinge:
     """A distinct hinge: the `shared` part that it is, its form, and the drawn `links` that are like it."""
 
     shared: Annotated[str, INNER]
@@ -52,7 +52,7 @@ class DrawnHinge:
 
 
 @dataclass(frozen=True, eq=False)
-class SolidHinge(DrawnHinge, InNotebook):
+class SolidHinge(DistinctHinge, InNotebook):
     """A distinct hinge and its 6x6 about its centre in the link frame, between the ends of its arcs."""
 
     found: Annotated[HingeSolid, INNER]
@@ -115,7 +115,7 @@ def hinges(accuracy: float = 0.01, order: int | None = None, ways: Ways = STANDA
     asked = Accuracy(error=accuracy) if order is None else Accuracy(error=accuracy, orders=(2, max(3, order)))
 
     def compute(forms: Mapping[str, HingeForm]) -> Mapping[str, HingeSolid]:
-        return kept_hinges(forms, asked, ways, notice)
+        return hinges_from_cache(forms, asked, ways, notice)
 
     return compute
 
@@ -124,7 +124,7 @@ STANDARD_HINGES = hinges()
 """To 1 %, by the cache of the user."""
 
 
-def distinct_hinges(mechanism: Mechanism) -> dict[str, DrawnHinge]:
+def distinct_hinges(mechanism: Mechanism) -> dict[str, DistinctHinge]:
     """Every distinct hinge of a stage.
 
     It is called as its part is; where that has different roots at different links, `part-link`; a copy that departs, by its link's name.
@@ -146,7 +146,7 @@ def distinct_hinges(mechanism: Mechanism) -> dict[str, DrawnHinge]:
             alike.setdefault(key, []).append(link)
     links = {key: tuple(dict.fromkeys(link.drawn for link in each)) for key, each in alike.items()}
     names = {key: _name(shape, each, list(alike.values())) for key, each in alike.items()}
-    return {names[key]: DrawnHinge(each[0].link.part, forms[key], links[key]) for key, each in alike.items()}
+    return {names[key]: DistinctHinge(each[0].link.part, forms[key], links[key]) for key, each in alike.items()}
 
 
 def _name(shape: Mechanism, links: list[PlacedLink], everything: list[list[PlacedLink]]) -> str:

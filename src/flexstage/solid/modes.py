@@ -16,8 +16,8 @@ from flexstage.solid.fea.cache import Cache, find, key_of
 from flexstage.solid.fea.component import components
 from flexstage.solid.fea.fineness import Reduction
 from flexstage.solid.fea.parts import Parts
-from flexstage.solid.read import STANDARD_SOLIDS, Solids, coarser, read_solid
-from flexstage.solid.resolution import DEFAULT, HIGHEST, Resolution, at_order, estimates, resolved
+from flexstage.solid.read import STANDARD_SOLIDS, Solids, coarsen, read_solid
+from flexstage.solid.resolution import DEFAULT, HIGHEST, Resolution, converge, estimates, reduction_of_order
 
 
 def fea_modes(mechanism: Mechanism, asked: Resolution = DEFAULT, reduce: Solids = STANDARD_SOLIDS) -> FeaModes:
@@ -27,31 +27,31 @@ def fea_modes(mechanism: Mechanism, asked: Resolution = DEFAULT, reduce: Solids 
         model = read_solid(mechanism, way, reduce).model
         return FeaModes(platform_modes(mechanism, model), model, way.fineness.order)
 
-    found = resolved(work, _figures, asked)
+    found = converge(work, _figures, asked)
     errors = tuple(found.errors.get(name) for name in _figures(found.result))
     return FeaModes(found.result.modes, found.result.model, found.order, errors)
 
 
-def kept_fea_modes(mechanism: Mechanism, cache: Cache) -> FeaModes | None:
+def fea_modes_from_cache(mechanism: Mechanism, cache: Cache) -> FeaModes | None:
     """The modes of a stage as a solid where every component of some order is in the cache, the highest order first; else `None`.
 
     >>> from pathlib import Path
     >>> from flexstage.cases.parallelogram import parallelogram
-    >>> kept_fea_modes(parallelogram(), Cache(Path("/nowhere"))) is None
+    >>> fea_modes_from_cache(parallelogram(), Cache(Path("/nowhere"))) is None
     True
     """
     try:
         for order in range(HIGHEST, 1, -1):
-            found = _kept(mechanism, cache, at_order(order))
+            found = _from_cache(mechanism, cache, reduction_of_order(order))
             if found is not None:
-                before = _kept(mechanism, cache, coarser(at_order(order)))
+                before = _from_cache(mechanism, cache, coarsen(reduction_of_order(order)))
                 return found if before is None else FeaModes(found.modes, found.model, order, _errors(before, found))
     except DesignError:  # parts without a shape: there is no solid model of this stage
         return None
     return None
 
 
-def _kept(mechanism: Mechanism, cache: Cache, reduction: Reduction) -> FeaModes | None:
+def _from_cache(mechanism: Mechanism, cache: Cache, reduction: Reduction) -> FeaModes | None:
     shape = with_drawn_parts(mechanism)
     parts: Parts = ()
     for part in components(shape):

@@ -12,7 +12,7 @@ from flexstage.mechanism.drawn import with_drawn_parts
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.linear.model import LinearModel
-from flexstage.solid.fea.assemble import Placed, linear_model, placed_parts
+from flexstage.solid.fea.assemble import Placed, linear_model, place_parts
 from flexstage.solid.fea.fineness import Reduction
 from flexstage.solid.fea.parts import Parts, Ways, reduce_parts
 from flexstage.solid.fea.sound import sound_components
@@ -92,13 +92,13 @@ def read_solid(mechanism: Mechanism, reduction: Reduction, reduce: Solids) -> So
     assembly = expand(shape)
     parts = reduce(shape, reduction)
     said = f"solid model of {digest(shape, physics=True)[:16]}, order {reduction.fineness.order}, {reduction.modes} modes a component"
-    return SolidRead(shape, linear_model(shape, assembly, parts, said), placed_parts(assembly, parts))
+    return SolidRead(shape, linear_model(shape, assembly, parts, said), place_parts(assembly, parts))
 
 
-def coarser(reduction: Reduction) -> Reduction:
+def coarsen(reduction: Reduction) -> Reduction:
     """The resolution that an error is estimated against: the same mesh, one order less.
 
-    >>> coarser(Reduction()).fineness.order
+    >>> coarsen(Reduction()).fineness.order
     2
     """
     return replace(reduction, fineness=replace(reduction.fineness, order=reduction.fineness.order - 1))

@@ -11,7 +11,7 @@ import numpy as np
 from flexstage.base.finding import DesignError
 from flexstage.base.record import INNER
 from flexstage.solid.fea.fineness import Fineness, Reduction
-from flexstage.solid.read import coarser
+from flexstage.solid.read import coarsen
 
 _Result = TypeVar("_Result")
 HIGHEST = 4
@@ -31,7 +31,7 @@ DEFAULT = Resolution()
 
 
 @dataclass(frozen=True, eq=False)
-class Resolved(Generic[_Result]):
+class Converged(Generic[_Result]):
     """A result with the relative error estimated of each of its figures. An estimate, no bound; a figure that is not there is unknown.
 
     It is the change from the order before, at order two a quarter of it.
@@ -49,27 +49,27 @@ class Resolved(Generic[_Result]):
         return max(self.errors.values(), default=float("inf"))
 
 
-def resolved(
+def converge(
     work: Callable[[Reduction], _Result], figures: Callable[[_Result], Mapping[str, float]], asked: Resolution
-) -> Resolved[_Result]:
+) -> Converged[_Result]:
     """Work at rising orders (2, 3, 4) until the figures change by less than the accuracy, or at one order and the next coarser way.
 
-    >>> found = resolved(lambda way: 1.0 + 0.1 ** way.fineness.order, lambda value: {"value": value}, Resolution(0.02))
+    >>> found = converge(lambda way: 1.0 + 0.1 ** way.fineness.order, lambda value: {"value": value}, Resolution(0.02))
     >>> found.order, round(found.error, 4)
     (3, 0.009)
     """
     orders = range(3, HIGHEST + 1) if asked.order is None else (asked.order,)
-    before = figures(work(coarser(at_order(orders[0]))))
-    found: Resolved[_Result] | None = None
+    before = figures(work(coarsen(reduction_of_order(orders[0]))))
+    found: Converged[_Result] | None = None
     for order in orders:
         try:
-            result = work(at_order(order))
+            result = work(reduction_of_order(order))
         except DesignError as error:  # of a higher order than one that went: what it needs is not there
             if found is None:
                 raise
             return replace(found, stopped=str(error))
         now = figures(result)
-        found = Resolved(result, estimates(before, now, order), order)
+        found = Converged(result, estimates(before, now, order), order)
         if found.error <= asked.accuracy:
             return found
         before = now
@@ -77,10 +77,10 @@ def resolved(
     return found
 
 
-def at_order(order: int) -> Reduction:
+def reduction_of_order(order: int) -> Reduction:
     """The standard reduction with elements of an order.
 
-    >>> at_order(2).fineness.order
+    >>> reduction_of_order(2).fineness.order
     2
     """
     return Reduction(Fineness(order=order))

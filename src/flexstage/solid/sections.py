@@ -27,7 +27,7 @@ from flexstage.solid.tables import (
 
 if TYPE_CHECKING:
     from flexstage.solid.hinges import SolidHinge
-    from flexstage.solid.resolution import Resolved
+    from flexstage.solid.resolution import Converged
     from flexstage.solid.stage import SolidStage
     from flexstage.solid.units import SolidUnit
     from flexstage.solid.verification import Verification
@@ -47,12 +47,12 @@ def hinge_section(found: Mapping[str, SolidHinge]) -> Section | None:
     return section("Hinges", [hinge_table(found), Folded("The full 6x6", matrices)])
 
 
-def unit_section(found: Resolved[dict[str, SolidUnit]]) -> Section | None:
+def unit_section(found: Converged[dict[str, SolidUnit]]) -> Section | None:
     """Every distinct unit alone, with its stress at the full stroke."""
     blocks: list[Block] = [solid_unit_table(found)]
     for name, unit in found.result.items():
         stroke = float(unit.strokes[-1])
-        surfaces = _megapascals(stress_surfaces(unit.read, unit.motion, {unit.copy: stroke}))
+        surfaces = _in_megapascals(stress_surfaces(unit.read, unit.motion, {unit.copy: stroke}))
         picture = png_picture(
             skin_figure(surfaces, "MPa", exponent=_STRESS_EXPONENT),
             f"The {name} unit at its full stroke, output guided: von Mises stress; motion magnified.",
@@ -63,11 +63,11 @@ def unit_section(found: Resolved[dict[str, SolidUnit]]) -> Section | None:
     return section("Units alone", blocks)
 
 
-def _megapascals(surfaces: tuple[Surface, ...]) -> tuple[Surface, ...]:
+def _in_megapascals(surfaces: tuple[Surface, ...]) -> tuple[Surface, ...]:
     return tuple(replace(each, values=1e-6 * each.values) for each in surfaces)
 
 
-def stage_solid_section(found: Resolved[SolidStage]) -> Section | None:
+def stage_solid_section(found: Converged[SolidStage]) -> Section | None:
     """Stiffness, modes and stress of the whole stage."""
     stage = found.result
     worst = max(found.errors, key=lambda name: found.errors[name], default=None)
@@ -104,7 +104,7 @@ def _mode_pictures(stage: SolidStage) -> Iterator[Picture]:
 
 def _stress_picture(stage: SolidStage) -> Picture:
     assert stage.worst is not None  # noqa: S101  there is a worst corner wherever there is a stress
-    surfaces = _megapascals(stress_surfaces(stage.read, stage.worst, worst_strokes(stage)))
+    surfaces = _in_megapascals(stress_surfaces(stage.read, stage.worst, worst_strokes(stage)))
     caption = "Von Mises stress at the corner of the strokes that is worst for the weakest link, dead load included; motion magnified."
     return png_picture(skin_figure(surfaces, "MPa", exponent=_STRESS_EXPONENT), caption)
 

@@ -10,7 +10,7 @@ import numpy as np
 from flexstage.base.number import Array
 from flexstage.show.display import number
 from flexstage.show.figures.export import to_png
-from flexstage.show.figures.style import HALF, INK, canvas, styled
+from flexstage.show.figures.style import HALF, INK, canvas, style_context
 from flexstage.show.page import Picture
 from flexstage.show.scene.view import Side, View, view
 
@@ -40,10 +40,10 @@ def skin_figure(surfaces: Sequence[Surface], label: str, *, exponent: float = 1.
 
     seen = view(side)
     corners, values = _faces(surfaces, seen)
-    flat = seen.flat(corners.reshape(-1, 3)).reshape(-1, 3, 2)
+    flat = seen.project(corners.reshape(-1, 3)).reshape(-1, 3, 2)
     highest = max((float(np.max(surface.values)) for surface in surfaces), default=0.0)
     scale = PowerNorm(exponent, 0.0, highest or 1.0)
-    with styled():
+    with style_context():
         from matplotlib import colormaps
 
         colours = np.array(colormaps["viridis"](scale(values)))
@@ -60,12 +60,12 @@ def _faces(surfaces: Sequence[Surface], seen: View) -> tuple[Array, Array]:
     values = np.concatenate([surface.values[surface.triangles] for surface in surfaces])
     size = float(np.max(np.ptp(corners.reshape(-1, 3), axis=0)))
     for _ in range(_DIVISIONS):
-        corners, values = _divided(corners, values, _COARSEST * size)
+        corners, values = _divide(corners, values, _COARSEST * size)
     order = np.argsort(corners.mean(axis=1) @ seen.axes[2], kind="stable")
     return corners[order], values[order].mean(axis=1)
 
 
-def _divided(corners: Array, values: Array, limit: float) -> tuple[Array, Array]:
+def _divide(corners: Array, values: Array, limit: float) -> tuple[Array, Array]:
     """Faces with an edge above the limit replaced by four, at the middles of their edges."""
     edges = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2)
     large = edges.max(axis=1) > limit

@@ -10,7 +10,7 @@ import numpy as np
 from flexstage.base.number import Array
 from flexstage.mechanism.expand import expand
 from flexstage.solid.fea.assemble import Placed
-from flexstage.solid.fea.surface import element_coordinates, moved_vertices, stresses, von_mises
+from flexstage.solid.fea.surface import element_coordinates, stresses, vertex_places, von_mises
 from flexstage.solid.read import SolidRead
 
 _SHOWN = 0.06
@@ -30,7 +30,7 @@ def mode_surfaces(read: SolidRead, shape: Array) -> tuple[Surface, ...]:
     """The stage moved by a mode's coordinates (N,), magnified to be seen; values: displacement relative to the largest."""
     factor, largest = magnification(read, shape)
     return tuple(
-        Surface(moved_vertices(item, shape, factor), item.element.skin.triangles, _displacement(item, shape) / largest)
+        Surface(vertex_places(item, shape, factor), item.element.skin.triangles, _displacement(item, shape) / largest)
         for item in read.placed
     )
 
@@ -44,17 +44,17 @@ def stress_surfaces(read: SolidRead, motion: Array, strokes: Mapping[str, float]
     for item in read.placed:
         own = element_coordinates(item, motion[:, None], by_link)
         values = von_mises(stresses(item, own)[:, :, 0])
-        found.append(Surface(moved_vertices(item, motion, factor), item.element.skin.triangles, values))
+        found.append(Surface(vertex_places(item, motion, factor), item.element.skin.triangles, values))
     return tuple(found)
 
 
 def magnification(read: SolidRead, motion: Array) -> tuple[float, float]:
     """By how much a motion (N,) is magnified in a picture, and its largest displacement [m]."""
-    places = np.concatenate([moved_vertices(item, motion, 0.0) for item in read.placed])
+    places = np.concatenate([vertex_places(item, motion, 0.0) for item in read.placed])
     size = float(np.max(places.max(axis=0) - places.min(axis=0)))
     largest = max((float(np.max(_displacement(item, motion))) for item in read.placed), default=0.0) or 1.0
     return _SHOWN * size / largest, largest
 
 
 def _displacement(item: Placed, motion: Array) -> Array:
-    return np.linalg.norm(moved_vertices(item, motion, 1.0) - moved_vertices(item, motion, 0.0), axis=1)
+    return np.linalg.norm(vertex_places(item, motion, 1.0) - vertex_places(item, motion, 0.0), axis=1)

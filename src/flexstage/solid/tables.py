@@ -9,14 +9,14 @@ import numpy as np
 
 from flexstage.analysis.trust import Trust
 from flexstage.base.labelled import NOISE
-from flexstage.show.display import NO_VALUE, aligned, number, percent, preferred, value_with_unit
-from flexstage.show.table import Cell, Column, Mark, Table, build, matrix_table, row_table
+from flexstage.show.display import NO_VALUE, align_numbers, format_value, number, percent, preferred_unit
+from flexstage.show.table import Cell, Column, Mark, Table, make_table, matrix_table, row_table
 from flexstage.solid.fea.hinge_form import NO_ESTIMATE
 
 if TYPE_CHECKING:
     from flexstage.solid.calibration import Calibration
     from flexstage.solid.hinges import SolidHinge
-    from flexstage.solid.resolution import Resolved
+    from flexstage.solid.resolution import Converged
     from flexstage.solid.stage import SolidStage
     from flexstage.solid.stress import LinkStress
     from flexstage.solid.units import SolidUnit
@@ -43,7 +43,7 @@ def hinge_table(found: Mapping[str, SolidHinge]) -> Table:
     >>> hinge_table({}).texts()[0][:4]
     ['part', 'links', 'ends on', 'x [um/N]']
     """
-    forms = [preferred("m/N")] * 3 + [preferred("rad/(N m)")] * 3
+    forms = [preferred_unit("m/N")] * 3 + [preferred_unit("rad/(N m)")] * 3
     rows = [
         (
             Cell(name, Mark.STRONG),
@@ -64,7 +64,7 @@ def hinge_table(found: Mapping[str, SolidHinge]) -> Table:
         f"{NO_VALUE}: it cannot be told from that of the blocks beside the hinge."
     )
     notes = [note, *([f"Error {NO_VALUE}: {NO_ESTIMATE}."] if any(hinge.error is None for hinge in found.values()) else [])]
-    return build("Hinges as solids", ["part", "links", "ends on", *heads], rows, notes=notes)
+    return make_table("Hinges as solids", ["part", "links", "ends on", *heads], rows, notes=notes)
 
 
 def hinge_matrices(found: Mapping[str, SolidHinge]) -> Iterator[Table]:
@@ -77,19 +77,19 @@ def hinge_matrices(found: Mapping[str, SolidHinge]) -> Iterator[Table]:
         yield matrix_table(f"Compliance of {name}", hinge.compliance)
 
 
-def solid_unit_table(found: Resolved[dict[str, SolidUnit]]) -> Table:
+def solid_unit_table(found: Converged[dict[str, SolidUnit]]) -> Table:
     """Every distinct unit alone: K_a, K_l, gain, loss, and the highest stress at the full stroke.
 
-    >>> from flexstage.solid.resolution import Resolved
-    >>> solid_unit_table(Resolved({}, {}, 3)).texts()[0][:3]
+    >>> from flexstage.solid.resolution import Converged
+    >>> solid_unit_table(Converged({}, {}, 3)).texts()[0][:3]
     ['unit', 'copy', 'axial K_a']
     """
     rows = [
         (
             Cell(name, Mark.STRONG),
             unit.copy,
-            value_with_unit(unit.axial, "N/m"),
-            " to ".join(value_with_unit(value, "N/m", 4) for value in unit.lateral),
+            format_value(unit.axial, "N/m"),
+            " to ".join(format_value(value, "N/m", 4) for value in unit.lateral),
             f"{number(unit.gain)} of {number(unit.ideal_gain)}",
             percent(unit.loss if abs(unit.loss) > 1e-6 else 0.0),
             *_weakest(unit.stress),
@@ -104,7 +104,7 @@ def solid_unit_table(found: Resolved[dict[str, SolidUnit]]) -> Table:
         "Gain and stress: output guided along its direction and not loaded, full stroke. " + _CORNERS,
         f"Elements of order {found.order}; error: the largest of K_a, K_l and gain, estimated.",
     ]
-    return build("Units alone as solids", heads, rows, notes=notes)
+    return make_table("Units alone as solids", heads, rows, notes=notes)
 
 
 def _weakest(stress: LinkStress | None) -> tuple[str, str, str]:
@@ -124,9 +124,9 @@ def command_table(name: str, unit: SolidUnit) -> Table:
     """Output of a unit by command, and what is lost (the form of the paper's Table 2)."""
     lost = unit.commands - unit.outputs
     lost = np.where(np.abs(lost) < NOISE * np.abs(unit.commands), 0.0, lost)
-    columns = [aligned(1e6 * values) for values in (unit.strokes, unit.commands, unit.outputs, lost)]
+    columns = [align_numbers(1e6 * values) for values in (unit.strokes, unit.commands, unit.outputs, lost)]
     heads = [Column("stroke", "um"), Column("commanded output", "um"), Column("output", "um"), Column("lost", "um")]
-    return build(f"Output of the {name} unit by command", heads, list(zip(*columns, strict=True)))
+    return make_table(f"Output of the {name} unit by command", heads, list(zip(*columns, strict=True)))
 
 
 def stress_table(title: str, stress: LinkStress | None, listed: int = _LISTED) -> Table | None:
@@ -153,7 +153,7 @@ def block_table(stage: SolidStage) -> Table:
     ]
     heads = ["platform mode", "name", Column("frequency", "Hz"), Column("strain energy in bodies"), Column("cost in frequency")]
     note = "Cost: what bodies of infinite stiffness would give back, to first order of the share."
-    return build("Elasticity of the bodies", heads, rows, notes=[note])
+    return make_table("Elasticity of the bodies", heads, rows, notes=[note])
 
 
 def verification_table(name: str, rows: tuple[Row, ...]) -> Table:
@@ -180,7 +180,7 @@ def verification_table(name: str, rows: tuple[Row, ...]) -> Table:
     shared = [row.modal_assurance for row in rows if row.modal_assurance is not None]
     notes = [f"Modes are paired by shape: modal assurance {np.floor(1e3 * min(shared)) / 1e3:.3f} and more."] if shared else []
     notes += [f"{row.figure}: {row.reason}." for row in rows if row.reason]
-    return build(f"{name[:1].upper()}{name[1:]}: theory and finite elements", heads, lines, notes=notes)
+    return make_table(f"{name[:1].upper()}{name[1:]}: theory and finite elements", heads, lines, notes=notes)
 
 
 def _trust(trust: Trust | None) -> Cell:
@@ -201,7 +201,7 @@ def _values(rows: tuple[Row, ...], values: list[float | None]) -> list[str] | No
 def _value(row: Row, value: float | None) -> str:
     if value is None:
         return NO_VALUE
-    return percent(value) if row.figure == "loss" else value_with_unit(value, row.unit)
+    return percent(value) if row.figure == "loss" else format_value(value, row.unit)
 
 
 def _differences(values: list[float | None]) -> list[str] | None:
@@ -224,7 +224,7 @@ def verdict_table_of(found: Verification) -> Table:
         "FEA's error is estimated from two resolutions: it is no bound.",
         *(f"Not compared: {name}: {reason}" for name, reason in found.reasons.items()),
     ]
-    return build("Which to trust", ["what", "verdict"], rows, notes=notes)
+    return make_table("Which to trust", ["what", "verdict"], rows, notes=notes)
 
 
 def calibration_table(found: Calibration) -> Table:
@@ -239,4 +239,4 @@ def calibration_table(found: Calibration) -> Table:
         for name, values in found.over_beam_theory.items()
     ]
     heads = ["part", "links", *(Column(axis) for axis in _AXES), Column("FEA's error")]
-    return build("Compliance by FEA over beam theory", heads, rows, notes=["Positive: softer than beam theory."])
+    return make_table("Compliance by FEA over beam theory", heads, rows, notes=["Positive: softer than beam theory."])

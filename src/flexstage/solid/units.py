@@ -106,7 +106,7 @@ def _unit(mechanism: Mechanism, unit: str, copy: str, direction: Array, *, reduc
     gain = float(along @ stiffness.values @ driven) / axial
     guide = stiffness.values @ (along * gain - driven)
     full = full_stroke(mechanism, copy)
-    motion = full * _moved(read, copy, guide)
+    motion = full * _full_motion(read, copy, guide)
     return SolidUnit(
         unit=unit,
         copy=copy,
@@ -121,7 +121,7 @@ def _unit(mechanism: Mechanism, unit: str, copy: str, direction: Array, *, reduc
     )
 
 
-def _moved(read: SolidRead, copy: str, guide: Array) -> Array:
+def _full_motion(read: SolidRead, copy: str, guide: Array) -> Array:
     """Coordinates (N,) under a unit stroke while the guide holds the output by a wrench (6,)."""
     model = read.model
     platform = model.output[model.output_index(_TWIST)]

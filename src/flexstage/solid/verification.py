@@ -25,10 +25,10 @@ from flexstage.mechanism.restrict import isolate
 from flexstage.models.linear.model import LinearModel
 from flexstage.models.lumped import lumped
 from flexstage.models.mapped import mapped
-from flexstage.solid.calibration import with_matrices
+from flexstage.solid.calibration import substitute_parts
 from flexstage.solid.hinges import STANDARD_HINGES, Hinges, SolidHinge, solid_hinges
 from flexstage.solid.read import STANDARD_SOLIDS, Solids
-from flexstage.solid.resolution import DEFAULT, Resolution, Resolved, resolved
+from flexstage.solid.resolution import DEFAULT, Converged, Resolution, converge
 from flexstage.solid.stage import SolidStage, solid_stage, stiffness_figures
 from flexstage.solid.units import SolidUnit, solid_units
 from flexstage.spatial.frame import COMPONENTS
@@ -103,8 +103,8 @@ class Verification(InNotebook):
     mechanism: Mechanism
     rows: tuple[Row, ...]
     hinges: Annotated[Mapping[str, SolidHinge], INNER]
-    units: Annotated[Resolved[dict[str, SolidUnit]] | None, INNER]
-    stage: Annotated[Resolved[SolidStage] | None, INNER]
+    units: Annotated[Converged[dict[str, SolidUnit]] | None, INNER]
+    stage: Annotated[Converged[SolidStage] | None, INNER]
     reasons: Mapping[str, str]
 
     @property
@@ -128,7 +128,7 @@ def verify(
     missing = dict[str, str]()
     stage = stage_solid(mechanism, asked, reduce)
     found = solid_hinges(mechanism, compute)
-    matched = with_matrices(mechanism, found)
+    matched = substitute_parts(mechanism, found)
     try:
         alone = units_solid(mechanism, asked, reduce) if driven_units(mechanism) else None
     except DesignError as error:
@@ -137,24 +137,24 @@ def verify(
         missing.setdefault("units", "none of the stage's units drives an output of its own by one actuator")
     rows = (
         *hinge_rows(mechanism, found),
-        *(() if alone is None else unit_rows(mechanism, units_matched(mechanism, compute), alone)),
+        *(() if alone is None else unit_rows(mechanism, units_with_calibrated_hinges(mechanism, compute), alone)),
         *stage_rows(mechanism, matched, stage),
     )
     return Verification(mechanism, rows, found, alone, stage, missing)
 
 
-def stage_solid(mechanism: Mechanism, asked: Resolution = DEFAULT, reduce: Solids = STANDARD_SOLIDS) -> Resolved[SolidStage]:
+def stage_solid(mechanism: Mechanism, asked: Resolution = DEFAULT, reduce: Solids = STANDARD_SOLIDS) -> Converged[SolidStage]:
     """The whole stage as a solid, to the accuracy asked."""
-    return resolved(lambda way: solid_stage(mechanism, way, reduce), lambda found: found.figures, asked)
+    return converge(lambda way: solid_stage(mechanism, way, reduce), lambda found: found.figures, asked)
 
 
-def units_solid(mechanism: Mechanism, asked: Resolution = DEFAULT, reduce: Solids = STANDARD_SOLIDS) -> Resolved[dict[str, SolidUnit]]:
+def units_solid(mechanism: Mechanism, asked: Resolution = DEFAULT, reduce: Solids = STANDARD_SOLIDS) -> Converged[dict[str, SolidUnit]]:
     """Every distinct unit alone as a solid, to the accuracy asked; the errors by `unit: figure`."""
 
     def figures(found: dict[str, SolidUnit]) -> dict[str, float]:
         return {f"{name}: {figure}": value for name, unit in found.items() for figure, value in unit.figures.items()}
 
-    return resolved(lambda way: solid_units(mechanism, way, reduce), figures, asked)
+    return converge(lambda way: solid_units(mechanism, way, reduce), figures, asked)
 
 
 def hinge_rows(mechanism: Mechanism, found: Mapping[str, SolidHinge]) -> Iterator[Row]:
@@ -177,33 +177,33 @@ def hinge_rows(mechanism: Mechanism, found: Mapping[str, SolidHinge]) -> Iterato
             value = float(np.real(theory[index]))
             fea = float(hinge.found.compliance[index, index])
             error = None if hinge.errors is None else float(hinge.errors[index])
-            yield Row(f"hinge {name}", f"compliance {axis}", unit, value, fea, error, calibration=touched, reason=_unestimated(error))
+            yield Row(f"hinge {name}", f"compliance {axis}", unit, value, fea, error, calibration=touched, reason=_why_unestimated(error))
 
 
-def units_matched(mechanism: Mechanism, compute: Hinges = STANDARD_HINGES) -> dict[str, UnitResult]:
+def units_with_calibrated_hinges(mechanism: Mechanism, compute: Hinges = STANDARD_HINGES) -> dict[str, UnitResult]:
     """Units alone with the FEA 6x6 of the hinges they have alone: an output without outlines holds the end of its hinge rigid."""
     found: dict[str, UnitResult] = {}
     for unit, (copy, direction) in driven_units(mechanism).items():
         alone = isolate(mechanism, copy)
-        found[unit] = unit_alone(with_matrices(alone, solid_hinges(alone, compute)), copy, unit, direction)
+        found[unit] = unit_alone(substitute_parts(alone, solid_hinges(alone, compute)), copy, unit, direction)
     return found
 
 
-def unit_rows(mechanism: Mechanism, better: Mapping[str, UnitResult], found: Resolved[dict[str, SolidUnit]]) -> Iterator[Row]:
+def unit_rows(mechanism: Mechanism, better: Mapping[str, UnitResult], found: Converged[dict[str, SolidUnit]]) -> Iterator[Row]:
     """K_a, K_l, gain and loss of every unit alone; `better` are the units with calibrated hinges.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> list(unit_rows(double_triangle(), {}, Resolved({}, {}, 3)))
+    >>> list(unit_rows(double_triangle(), {}, Converged({}, {}, 3)))
     []
     """
     theory = units(mechanism)
     for name, unit in found.result.items():
-        touched = _touched(mechanism, name)
+        touched = _calibrated_parts(mechanism, name)
         first, second = theory[name].figures, better[name].figures
         simple = _mapped_unit(theory[name])
         for figure, value in unit.figures.items():
             dimension = "1" if figure == "gain" else "N/m"
-            error = _known(found.errors.get(f"{name}: {figure}"))
+            error = _finite(found.errors.get(f"{name}: {figure}"))
             yield Row(
                 group=f"unit {name}",
                 figure=figure,
@@ -214,13 +214,13 @@ def unit_rows(mechanism: Mechanism, better: Mapping[str, UnitResult], found: Res
                 mapped=simple.get(figure),
                 calibrated=second[figure],
                 calibration=touched,
-                reason=_unestimated(error),
+                reason=_why_unestimated(error),
             )
         if unit.loss > 1e-4:
-            gain = _known(found.errors.get(f"{name}: gain"))
+            gain = _finite(found.errors.get(f"{name}: gain"))
             error = None if gain is None else gain * (1.0 - unit.loss) / unit.loss
             values = (theory[name].loss, unit.loss, error)
-            yield Row(f"unit {name}", "loss", "1", *values, None, better[name].loss, touched, reason=_unestimated(error))
+            yield Row(f"unit {name}", "loss", "1", *values, None, better[name].loss, touched, reason=_why_unestimated(error))
 
 
 def _mapped_unit(unit: UnitResult) -> dict[str, float]:
@@ -230,26 +230,26 @@ def _mapped_unit(unit: UnitResult) -> dict[str, float]:
     return {} if unit.series is None else {"axial stiffness": unit.series}
 
 
-def _touched(mechanism: Mechanism, unit: str | None) -> tuple[str, ...]:
+def _calibrated_parts(mechanism: Mechanism, unit: str | None) -> tuple[str, ...]:
     """The calibrated parts that a unit, or with `None` the stage, is built of."""
     given = calibrated_parts(mechanism)
     links = [link.link for link in expand(mechanism).links.values() if unit is None or link.drawn.startswith(f"{unit}/")]
     return tuple(name for name in given if any(link.part == name for link in links))
 
 
-def stage_rows(mechanism: Mechanism, matched: Mechanism, found: Resolved[SolidStage]) -> Iterator[Row]:
+def stage_rows(mechanism: Mechanism, matched: Mechanism, found: Converged[SolidStage]) -> Iterator[Row]:
     """Stiffness of the platform by direction, and its modes, paired by shape."""
-    touched = _touched(mechanism, None)
-    theories = {"theory": lumped(mechanism), "calibrated": lumped(matched), "mapped": _mapped(mechanism)}
+    touched = _calibrated_parts(mechanism, None)
+    theories = {"theory": lumped(mechanism), "calibrated": lumped(matched), "mapped": _mapped_model(mechanism)}
     known = {name: model for name, model in theories.items() if model is not None}
     fea = found.result
     tables = {name: stiffness_figures(statics(model)) for name, model in known.items()}
     for figure, value in stiffness_figures(fea.statics).items():
         unit = "N m/rad" if figure.endswith(("rx", "ry", "rz")) else "N/m"
         extra = {name: table[figure] for name, table in tables.items() if np.isfinite(table[figure])}
-        error = _known(found.errors.get(figure))
+        error = _finite(found.errors.get(figure))
         values = (extra.get("theory"), value, error, extra.get("mapped"), extra.get("calibrated"))
-        reason = _unestimated(error) if "theory" in extra else "theory gives no finite value"
+        reason = _why_unestimated(error) if "theory" in extra else "theory gives no finite value"
         yield Row("stage", figure, unit, *values, touched, reason=reason)
     own = Moving(fea.modes, fea.read.model)
     pairs = {name: pair_modes(own, Moving(platform_modes(mechanism, model), model)) for name, model in known.items()}
@@ -257,7 +257,7 @@ def stage_rows(mechanism: Mechanism, matched: Mechanism, found: Resolved[SolidSt
         figure = f"platform mode {number + 1}"
         best = {name: pair[index] for name, pair in pairs.items() if index in pair}
         alike = {name: pair.frequency for name, pair in best.items() if pair.reliable}
-        error = _known(found.errors.get(figure))
+        error = _finite(found.errors.get(figure))
         yield Row(
             group="stage",
             figure=f"{figure} ({fea.modes.names[index]})",
@@ -269,26 +269,26 @@ def stage_rows(mechanism: Mechanism, matched: Mechanism, found: Resolved[SolidSt
             calibrated=alike.get("calibrated"),
             calibration=touched,
             modal_assurance=best["theory"].assurance if "theory" in best else None,
-            reason=_unestimated(error) if "theory" in alike else _unpaired(best.get("theory")),
+            reason=_why_unestimated(error) if "theory" in alike else _why_unpaired(best.get("theory")),
         )
 
 
-def _unpaired(best: Pair | None) -> str:
+def _why_unpaired(best: Pair | None) -> str:
     if best is None:
         return "theory has fewer modes"
     return f"theory has no mode like it: that at {best.frequency:.4g} Hz shares {best.assurance:.2f} of its motion, {RELIABLE} is needed"
 
 
-def _known(error: float | None) -> float | None:
+def _finite(error: float | None) -> float | None:
     """An error that is a number."""
     return error if error is not None and np.isfinite(error) else None
 
 
-def _unestimated(error: float | None) -> str | None:
+def _why_unestimated(error: float | None) -> str | None:
     return None if error is not None else "FEA's error was not estimated: nothing coarser was at hand that gives this figure"
 
 
-def _mapped(mechanism: Mechanism) -> LinearModel | None:
+def _mapped_model(mechanism: Mechanism) -> LinearModel | None:
     try:
         return mapped(mechanism)
     except DesignError:
@@ -298,14 +298,14 @@ def _mapped(mechanism: Mechanism) -> LinearModel | None:
 def verdict(rows: tuple[Row, ...]) -> str:
     """In words, what the rows of one group say about which theory to trust.
 
-    >>> verdict((Row("stage", "mode 1", "Hz", 105.0, 100.0, 0.001, calibrated_parts=100.5),))
+    >>> verdict((Row("stage", "mode 1", "Hz", 105.0, 100.0, 0.001, calibrated=100.5),))
     'Lumped theory is up to 5 % off (mode 1); with calibrated hinges 0.5 %: calibrate, then trust the lumped model.'
     """
     open_rows = [row for row in rows if row.difference is None or (row.fea_error is None and not row.calibration)]
     judged = [row for row in rows if row not in open_rows]
     if not judged:
         return f"No verdict. {_reasons(open_rows)}"
-    said = _judged(tuple(judged))
+    said = _verdict_of_known(tuple(judged))
     return f"{said} No verdict on {len(open_rows)} of {len(rows)} figures. {_reasons(open_rows)}" if open_rows else said
 
 
@@ -316,11 +316,11 @@ def _reasons(rows: Iterable[Row]) -> str:
     return " ".join(f"{', '.join(figures)}: {reason}." for reason, figures in reasons.items())
 
 
-def _judged(rows: tuple[Row, ...]) -> str:
+def _verdict_of_known(rows: tuple[Row, ...]) -> str:
     """What rows say whose difference is known, and, unless they are not independent, whose error is."""
-    worst = max(rows, key=_away)
+    worst = max(rows, key=_size_of_difference)
     least = max((row.fea_error for row in rows if row.fea_error is not None), default=0.0)
-    off = f"up to {_percent(_away(worst))} off ({worst.figure})"
+    off = f"up to {_percent(_size_of_difference(worst))} off ({worst.figure})"
     if any(row.calibration for row in rows):
         names = ", ".join(dict.fromkeys(name for row in rows for name in row.calibration))
         return f"Not independent: the theory contains the FEA 6x6 of {names}. It is {off}: what is left is not the hinges'."
@@ -338,7 +338,7 @@ def _judged(rows: tuple[Row, ...]) -> str:
     return f"{name} is {off}; {after}: the rest is the elasticity of bodies and joints, which only the solid model knows. Trust FEA."
 
 
-def _away(row: Row) -> float:
+def _size_of_difference(row: Row) -> float:
     return abs(row.difference or 0.0)
 
 

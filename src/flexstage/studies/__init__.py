@@ -1,6 +1,6 @@
 """The wing of many designs: sweeps, optimisation, tolerances."""
 
-from flexstage.base.lazy import lazily
+from flexstage.base.lazy import lazy_attributes
 
 HOMES = {
     "sweeps.effects": "effects",
@@ -13,4 +13,4 @@ HOMES = {
     "tolerances.file": "load_tolerance",
     "tolerances.run": "tolerance",
 }
-__getattr__, __dir__ = lazily(__name__, HOMES)
+__getattr__, __dir__ = lazy_attributes(__name__, HOMES)

@@ -136,7 +136,7 @@ def study_file(text: str, where: str) -> StudyFile:
     try:
         return record_from(StudyFile, raw, FORMAT, tagged=False)
     except DesignError as error:
-        raise DesignError(placed(error.findings, where)) from None
+        raise DesignError(in_file(error.findings, where)) from None
 
 
 def study_schema() -> dict[str, Any]:
@@ -157,20 +157,20 @@ def is_share(raw: str | float) -> bool:
     return isinstance(raw, str) and raw.strip().endswith("%")
 
 
-def amount(raw: str | float, quantity: Quantity, where: str) -> float:
+def parse_amount(raw: str | float, quantity: Quantity, where: str) -> float:
     """An amount in SI; raises `DesignError` at `where` where it is none of that quantity.
 
     >>> from flexstage.base.quantity import LENGTH
-    >>> amount("1.5 mm", LENGTH, "variables.neck.from")
+    >>> parse_amount("1.5 mm", LENGTH, "variables.neck.from")
     0.0015
     """
     return NumberNode(quantity).si(raw, where)
 
 
-def placed(findings: Iterable[Finding], where: str) -> Iterator[Finding]:
+def in_file(findings: Iterable[Finding], where: str) -> Iterator[Finding]:
     """Findings with the file they are about.
 
-    >>> [str(each) for each in placed([Finding("limits", "none", "Add one")], "study.toml")]
+    >>> [str(each) for each in in_file([Finding("limits", "none", "Add one")], "study.toml")]
     ['study.toml: limits: none. Add one.']
     """
     return (Finding(f"{where}: {each.where}", each.what, each.advice) for each in findings)

@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from flexstage.base.number import Array
-from flexstage.solid.fea.mesh import Meshed
+from flexstage.solid.fea.mesh import PieceMesh
 from flexstage.solid.fea.piece import Medium
 from tests.elsewhere.calculix.grid import Grid, grid, spread
 from tests.elsewhere.calculix.ours import MODES
@@ -42,13 +42,13 @@ def run(folder: Path, name: str) -> str:
     return printed
 
 
-def deck(problem: Problem, mesh: Meshed) -> str:
+def deck(problem: Problem, mesh: PieceMesh) -> str:
     """The input file: three unit forces spread evenly over the loaded face, one static step each, then the lowest frequencies."""
     cells = grid(mesh, (problem.held, problem.loaded))
     return "\n".join([*_model(cells, mesh.media, problem), *_steps(spread(cells, problem.loaded)), ""])
 
 
-def printed_solution(problem: Problem, mesh: Meshed, printed: str) -> Solution:
+def printed_solution(problem: Problem, mesh: PieceMesh, printed: str) -> Solution:
     """What a .dat file says of a problem."""
     shares = spread(grid(mesh, (problem.loaded,)), problem.loaded)
     blocks = printed.split(_DISPLACEMENTS)[1:]

@@ -13,7 +13,7 @@ import ngsolve
 import numpy as np
 
 from flexstage.base.number import Array
-from flexstage.solid.fea.mesh import Meshed
+from flexstage.solid.fea.mesh import PieceMesh
 
 EDGES = ((0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3))
 SIDES = ((0, 1), (1, 2), (2, 0))
@@ -31,7 +31,7 @@ class Grid:
     faces: Mapping[str, Array]
 
 
-def grid(mesh: Meshed, faces: tuple[str, ...]) -> Grid:
+def grid(mesh: PieceMesh, faces: tuple[str, ...]) -> Grid:
     """Elements of order two on our mesh; its `Curve` must have been of order one or two."""
     ours = mesh.mesh
     vertices = np.array([vertex.point for vertex in ours.vertices])

@@ -14,8 +14,8 @@ from scipy import sparse
 from scipy.sparse.linalg import LinearOperator, eigsh
 
 from flexstage.base.number import Array
-from flexstage.solid.fea.field import Field, factored, field, inertia, stiffness
-from flexstage.solid.fea.mesh import Meshed
+from flexstage.solid.fea.field import Field, factorise, field, inertia, stiffness
+from flexstage.solid.fea.mesh import PieceMesh
 from flexstage.solid.fea.piece import MILLIMETRES
 from tests.elsewhere.calculix.problems import Problem, Solution
 
@@ -30,11 +30,11 @@ class Law:
     few_points: bool = False
 
 
-def solved(problem: Problem, mesh: Meshed, law: Law = Law()) -> Solution:
+def solved(problem: Problem, mesh: PieceMesh, law: Law = Law()) -> Solution:
     """Compliance of the loaded face and the lowest frequencies."""
     space = field(mesh, [problem.held], law.order)
     elastic, mass = stiffness(space), _by_four_points(space) if law.few_points else inertia(space)
-    solve = factored(space, elastic)
+    solve = factorise(space, elastic)
     forces = np.column_stack([_force(space, problem.loaded, axis) for axis in range(3)])
     free = np.flatnonzero(space.free)
     full = np.zeros(space.size)

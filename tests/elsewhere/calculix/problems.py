@@ -20,7 +20,7 @@ from flexstage.parts.notch import Notch
 from flexstage.parts.profile import Circular
 from flexstage.solid.fea.component import Component, components
 from flexstage.solid.fea.fineness import Fineness
-from flexstage.solid.fea.mesh import Meshed, meshed
+from flexstage.solid.fea.mesh import PieceMesh, mesh_component
 from flexstage.solid.fea.straighten import straighten
 
 STEEL = Material(young=196 * GPa, poisson=0.27, density=7800.0, source="made up")
@@ -101,12 +101,12 @@ PROBLEMS: Mapping[str, Callable[[], Problem]] = {"hinge": hinge, "pair": pair, "
 FINENESS = Fineness(neck=2.0, block=1.5, order=2)
 
 
-def mesh_of(problem: Problem, fineness: Fineness = FINENESS) -> Meshed:
+def mesh_of(problem: Problem, fineness: Fineness = FINENESS) -> PieceMesh:
     """A problem's mesh, before `shape`."""
-    return meshed(problem.component, fineness)
+    return mesh_component(problem.component, fineness)
 
 
-def shape(mesh: Meshed, geometry: Geometry) -> None:
+def shape(mesh: PieceMesh, geometry: Geometry) -> None:
     """Let a mesh follow its drawing as asked, but for elements that this would fold."""
     mesh.mesh.UnsetDeformation()
     mesh.mesh.Curve(geometry.order)
@@ -115,11 +115,11 @@ def shape(mesh: Meshed, geometry: Geometry) -> None:
         raise ValueError(found)
 
 
-def read_mesh(path: Path, problem: Problem) -> Meshed:
+def read_mesh(path: Path, problem: Problem) -> PieceMesh:
     """A problem's mesh, before `shape`, from a file that holds its drawing too; which piece owns an element is left out."""
     media = tuple(dict.fromkeys(piece.medium for piece in problem.component.pieces))
     mesh = ngsolve.Mesh(str(path))
-    return Meshed(mesh, media, (problem.held, problem.loaded), np.zeros(mesh.ne, dtype=int))
+    return PieceMesh(mesh, media, (problem.held, problem.loaded), np.zeros(mesh.ne, dtype=int))
 
 
 def _named(stage: Mechanism, name: str) -> Component:

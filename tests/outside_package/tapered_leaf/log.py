@@ -9,7 +9,7 @@ import numpy as np
 
 from flexstage.base.finding import refuse
 from flexstage.experiment.formats.format import Format
-from flexstage.experiment.options import Options, assigned
+from flexstage.experiment.options import Options, assign
 from flexstage.experiment.record import Channel, Record, in_memory
 
 
@@ -27,7 +27,7 @@ def read_log(path: Path, options: Options) -> tuple[Record]:
         known = options.rate or float(rate.removeprefix("LOG "))
     except ValueError as error:
         raise refuse(str(path), f"it is no log: {error}", "Export it anew") from None
-    return (replace(in_memory(assigned(channels, options, str(path)), known, values), source=str(path)),)
+    return (replace(in_memory(assign(channels, options, str(path)), known, values), source=str(path)),)
 
 
 LOG = Format((".log",), is_log, read_log)

@@ -13,7 +13,7 @@ from flexstage.analysis.workspace.stroke import StrokeLimits
 from flexstage.analysis.workspace.wrench import corner_wrenches
 from flexstage.base.labelled import Matrix
 from flexstage.base.notebook import InNotebook
-from flexstage.base.number import Array, Number, foremost
+from flexstage.base.number import Array, Number, index_of_largest
 from flexstage.base.quantity import RATIO
 from flexstage.base.record import VIEW, Along
 from flexstage.mechanism.expand import Assembly, PlacedLink, expand
@@ -69,7 +69,7 @@ class Buckling(InNotebook):
         if not self.links:
             return None
         first = self.factor.reshape(-1, len(self.links))[0]
-        return self.links[int(foremost(1.0 / first))]
+        return self.links[int(index_of_largest(1.0 / first))]
 
     @property
     def table(self) -> Annotated[Matrix, VIEW]:
@@ -96,8 +96,8 @@ def buckling(mechanism: Mechanism, model: LinearModel, limits: StrokeLimits) -> 
     whole = stability(mechanism, model, limits)
     columns = {name: _column(assembly, link) for name, link in assembly.links.items() if _is_column(link)}
     wrenches = corner_wrenches(mechanism, model, limits, tuple(columns))
-    rigidity = _joined([column[0] for column in columns.values()])
-    length_ = _joined([column[1] for column in columns.values()])
+    rigidity = _join([column[0] for column in columns.values()])
+    length_ = _join([column[1] for column in columns.values()])
     ends = tuple(column[2] for column in columns.values())
     effective = length_ * np.array([2.0 if end is Ends.FREE else 1.0 for end in ends])
     axial = wrenches[..., 0]
@@ -107,7 +107,7 @@ def buckling(mechanism: Mechanism, model: LinearModel, limits: StrokeLimits) -> 
     return Buckling(tuple(columns), critical, compression, np.broadcast_to(length_, compression.shape), ends, model.provenance, whole)
 
 
-def _joined(values: list[Number]) -> Array:
+def _join(values: list[Number]) -> Array:
     return np.stack(np.broadcast_arrays(*(np.asarray(value) for value in values)), axis=-1) if values else np.zeros(0)
 
 

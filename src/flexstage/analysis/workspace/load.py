@@ -97,7 +97,7 @@ class LoadShare(InNotebook):
         pressed, pulled = np.broadcast_arrays(self.usage(largest), self.pull(least))
         return np.where(np.real(pulled) > np.real(np.nan_to_num(pressed)), pulled, pressed)
 
-    def pulled(self, limits: StrokeLimits) -> Iterator[Finding]:
+    def tension_findings(self, limits: StrokeLimits) -> Iterator[Finding]:
         """Stacks that are pulled with more than their preload and tensile limit allow, or that state neither."""
         least, pull = self.range(limits)[0], self.pull(self.range(limits)[0])
         first, share = (np.real(each).reshape(-1, len(self.actuators))[0] for each in (least, pull))
@@ -169,10 +169,10 @@ def dead_loads(mechanism: Mechanism, model: LinearModel) -> dict[str, Array]:
     ['own weight']
     """
     require_balanced(model, "gravity", stack((*mechanism.gravity, 0.0, 0.0, 0.0)))
-    carried = {name: applied(mechanism, model, _weight(mechanism, name)) for name in mechanism.payloads}
+    carried = {name: applied_forces(mechanism, model, _weight(mechanism, name)) for name in mechanism.payloads}
     everything = model.base_inertia[..., :3] @ stack(mechanism.gravity)
     own = everything - sum(carried.values(), np.zeros(len(model.coordinates)))
-    forces = {name: applied(mechanism, model, force) for name, force in mechanism.forces.items()}
+    forces = {name: applied_forces(mechanism, model, force) for name, force in mechanism.forces.items()}
     return {OWN_WEIGHT: own, **{f"payload {name}": load for name, load in carried.items()}, **forces}
 
 
@@ -182,13 +182,13 @@ def _weight(mechanism: Mechanism, name: str) -> Force:
     return Force(load.body, load.at, (x, y, z))
 
 
-def applied(mechanism: Mechanism, model: LinearModel, force: Force) -> Array:
+def applied_forces(mechanism: Mechanism, model: LinearModel, force: Force) -> Array:
     """Generalised forces (..., n) of a force on a body at a point, stage's frame; none for a force on the ground.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.lumped import lumped
     >>> stage = double_triangle()
-    >>> applied(stage, lumped(stage), Force("platform", (0.0, 0.0, 0.105), (0.0, 0.0, -10.0))).sum().round(6).item()
+    >>> applied_forces(stage, lumped(stage), Force("platform", (0.0, 0.0, 0.105), (0.0, 0.0, -10.0))).sum().round(6).item()
     -10.0
     """
     if force.body == GROUND:

@@ -12,7 +12,7 @@ from flexstage.analysis.workspace.stroke import StrokeLimits, beside
 from flexstage.base.finding import refuse
 from flexstage.base.labelled import Matrix
 from flexstage.base.notebook import InNotebook
-from flexstage.base.number import Array, foremost
+from flexstage.base.number import Array, index_of_largest
 from flexstage.base.quantity import LENGTH
 from flexstage.base.record import VIEW
 from flexstage.mechanism.expand import expand
@@ -93,13 +93,13 @@ def map_error_at(mechanism: Mechanism, kinematics: Kinematics, strokes: Array) -
     rounding = _ROUNDING * np.repeat([_reach(mechanism), 1.0], 3)
     errors = moved.pose.vector - linear
     errors = np.where(np.abs(errors) > rounding, errors, 0.0)
-    place = foremost(np.moveaxis(np.abs(errors), 0, -1), rounding[:, None])
+    place = index_of_largest(np.moveaxis(np.abs(errors), 0, -1), rounding[:, None])
     return MapError(
         actuators=kinematics.actuators,
         strokes=strokes,
         errors=errors,
         worst=np.max(np.abs(errors), axis=0),
-        worst_strokes=_picked(np.broadcast_to(strokes, (*errors.shape[:-1], count)), place),
+        worst_strokes=_pick(np.broadcast_to(strokes, (*errors.shape[:-1], count)), place),
         residual=np.max(moved.residual, axis=0),
         provenance=moved.provenance,
     )
@@ -110,7 +110,7 @@ def _reach(mechanism: Mechanism) -> float:
     return max((float(np.max(np.abs(link.frame.position))) for link in expand(mechanism).links.values()), default=0.0)
 
 
-def _picked(strokes: Array, place: Array) -> Array:
+def _pick(strokes: Array, place: Array) -> Array:
     """Strokes (..., 6, n) of the points (k, ..., n) numbered by `place` (..., 6)."""
     return np.take_along_axis(strokes[..., None, :], place[None, ..., None], axis=0)[0]
 

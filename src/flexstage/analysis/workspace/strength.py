@@ -12,7 +12,7 @@ from flexstage.analysis.workspace.wrench import corner_wrenches
 from flexstage.base.finding import refuse
 from flexstage.base.labelled import Matrix
 from flexstage.base.notebook import InNotebook
-from flexstage.base.number import Array, foremost
+from flexstage.base.number import Array, index_of_largest
 from flexstage.base.quantity import RATIO
 from flexstage.base.record import VIEW
 from flexstage.beams.stress import has_section, stress
@@ -54,7 +54,7 @@ class HingeStress(InNotebook):
     def weakest(self) -> Annotated[str, VIEW]:
         """The link with the least safety factor among those that are known, on the first design."""
         first = np.nan_to_num(self.safety.reshape(-1, len(self.links))[0], nan=np.inf)
-        return self.links[int(foremost(1.0 / first))]
+        return self.links[int(index_of_largest(1.0 / first))]
 
     @property
     def unknown(self) -> Annotated[tuple[str, ...], VIEW]:

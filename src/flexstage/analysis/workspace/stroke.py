@@ -8,7 +8,7 @@ from typing import Annotated
 
 import numpy as np
 
-from flexstage.base.finding import Finding, nearest, refuse, require
+from flexstage.base.finding import Finding, refuse, require, suggest_nearest
 from flexstage.base.labelled import Matrix
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, Number, magnitude, stack
@@ -202,7 +202,7 @@ def point_motion(mechanism: Mechanism, kinematics: Kinematics, point: str) -> Ar
     if point == PLATFORM:
         return kinematics.motion
     if point not in assembly.points:
-        raise refuse(point, "no point of this name is in the description", nearest(point, (PLATFORM, *assembly.points)))
+        raise refuse(point, "no point of this name is in the description", suggest_nearest(point, (PLATFORM, *assembly.points)))
     body, position = assembly.points[point]
     return twist_at(assembly, layout(assembly), body, Frame(np.eye(3), position)) @ kinematics.bodies
 
@@ -235,7 +235,7 @@ def utilisation(mapping: Matrix, limits: StrokeLimits, command: Mapping[str, Num
     [70.74]
     """
     require(
-        Finding(f"command {name}", f"the stage's coordinates are {', '.join(mapping.columns)}", nearest(name, mapping.columns))
+        Finding(f"command {name}", f"the stage's coordinates are {', '.join(mapping.columns)}", suggest_nearest(name, mapping.columns))
         for name in command
         if name not in mapping.columns
     )

@@ -1,4 +1,4 @@
-"""What a stage can reach and bear, as one value: strokes, forces, volts, stress, buckling, loads, gauges, room, error of the linear map."""
+"""What a stage can reach and bear, as one value: strokes, forces, volts, stress, buckling, loads, gauges, clearance, map errors."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from flexstage.analysis.attempt import Attempts
 from flexstage.analysis.lost_motion import LostMotion
 from flexstage.analysis.workspace.blocking import PlatformLine, StackLine, platform_lines, stack_lines
 from flexstage.analysis.workspace.buckling import Buckling, buckling
+from flexstage.analysis.workspace.clearance import Clearance, clearance
 from flexstage.analysis.workspace.drive import Drive, drive
 from flexstage.analysis.workspace.gauging import GaugeRange, PoseResolution, gauge_range, pose_resolution
 from flexstage.analysis.workspace.load import LoadRange, LoadShare, load_share
 from flexstage.analysis.workspace.map_error import MapError, linear_map_error
 from flexstage.analysis.workspace.polytope import Polytope, reachable
-from flexstage.analysis.workspace.room import Room, room
 from flexstage.analysis.workspace.strength import HingeStress, hinge_stress
 from flexstage.analysis.workspace.stroke import SingleAxis, StrokeLimits, Utilisation, single_axis, stroke_limits, utilisation
 from flexstage.base.notebook import InNotebook
@@ -53,7 +53,7 @@ class Workspace(InNotebook):
     map_error: MapError | None
     gauges: GaugeRange | None
     resolution: PoseResolution | None
-    room: Room | None
+    clearance: Clearance | None
     platform_lines: PlatformLine | None
     stack_lines: StackLine | None
     stress: HingeStress | None
@@ -107,7 +107,7 @@ def workspace(
         map_error=attempt.of("map_error", lambda: linear_map_error(mechanism, kinematics, limits)),
         gauges=attempt.of("gauges", lambda: gauge_range(mechanism, kinematics, asked)),
         resolution=attempt.of("resolution", lambda: pose_resolution(mechanism, kinematics)),
-        room=attempt.of("room", lambda: room(mechanism)),
+        clearance=attempt.of("clearance", lambda: clearance(mechanism)),
         platform_lines=attempt.of_ground("platform_lines", model, _RIGID, lambda known: platform_lines(mapping, known, limits)),
         stack_lines=attempt.of_ground("stack_lines", hinged, _HINGELESS, lambda known: stack_lines(mechanism, known)),
         stress=attempt.of_ground("stress", hinged, _HINGELESS, lambda known: hinge_stress(mechanism, known, unloaded)),

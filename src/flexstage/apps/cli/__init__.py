@@ -11,7 +11,7 @@ import signal
 import sys
 from collections.abc import Sequence
 
-from flexstage.show.command.failure import ENDINGS, SIGNALLED, guarded
+from flexstage.show.command.failure import ENDINGS, SIGNALLED, run_guarded
 
 
 def main() -> None:
@@ -35,7 +35,7 @@ def run(arguments: Sequence[str]) -> int:
 
     0 done, 1 requirement missed (`--strict`), 2 bad input, no place for the output or interrupted, 70 a fault, 128 + n ended by signal n.
     """
-    return guarded(lambda: _run(list(arguments)))
+    return run_guarded(lambda: _run(list(arguments)))
 
 
 def _run(arguments: list[str]) -> None:

@@ -8,7 +8,7 @@ import typer
 
 import flexstage
 from flexstage.apps.cli import installation
-from flexstage.show.command.terminal import say
+from flexstage.show.command.terminal import print_result
 
 
 def doctor() -> None:
@@ -22,4 +22,4 @@ def doctor() -> None:
 
 def version() -> None:
     """Print the version of flexstage."""
-    say(f"flexstage {flexstage.__version__}, Python {platform.python_version()}, {platform.system()} {platform.machine()}")
+    print_result(f"flexstage {flexstage.__version__}, Python {platform.python_version()}, {platform.system()} {platform.machine()}")

@@ -18,7 +18,7 @@ from flexstage.base.quantity import TEMPERATURE
 from flexstage.base.unit import parse
 from flexstage.models.ideal import ideal
 from flexstage.models.theory import Model
-from flexstage.show.command.answer import answer, tell_missing
+from flexstage.show.command.answer import answer, print_missing
 from flexstage.show.command.design import open_design
 from flexstage.show.command.options import Changes, Csv, Design, Json, ModelName, text_option
 from flexstage.show.command.values import motions
@@ -49,7 +49,7 @@ def workspace(
 ) -> None:
     """What the stage reaches and bears.
 
-    Strokes, forces, volts, gauges, room, error of the linear map, stress, buckling, loads.
+    Strokes, forces, volts, gauges, clearance, error of the linear map, stress, buckling, loads.
     """
     mechanism = open_design(design, changes, [("--json", json)])
 
@@ -69,7 +69,7 @@ def _workspace_tables(workspace: study.Workspace) -> Iterator[Table | None]:
     yield None if workspace.drive is None else row_table("Drive", workspace.drive)
     yield None if workspace.gauges is None else tables.gauge_range_table(workspace.gauges)
     yield None if workspace.resolution is None else tables.resolution_table(workspace.resolution)
-    yield None if workspace.room is None else tables.room_table(workspace.room)
+    yield None if workspace.clearance is None else tables.clearance_table(workspace.clearance)
     yield from strength_tables(workspace)
 
 
@@ -131,7 +131,7 @@ def sensitivities(
         json=json,
         csv=csv,
     )
-    tell_missing(found.missing)
+    print_missing(found.missing)
 
 
 def budget(

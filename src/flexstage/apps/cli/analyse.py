@@ -13,13 +13,13 @@ from flexstage.analysis.complete import Analysis
 from flexstage.analysis.difference import Comparison, difference, set_values
 from flexstage.base.document import Document, as_text
 from flexstage.models.theory import Model
-from flexstage.show.command.answer import caveat_lines, show, tell_missing, write_csv
+from flexstage.show.command.answer import list_caveats, print_missing, show, write_csv
 from flexstage.show.command.design import change, open_design
 from flexstage.show.command.failure import MISSED
 from flexstage.show.command.options import Changes, Csv, Design, Json, ModelName, Report, text_option
 from flexstage.show.command.output import STDOUT, save
-from flexstage.show.command.terminal import tell
-from flexstage.show.document import analysis_body, analysis_results, enveloped, requirements_body
+from flexstage.show.command.terminal import print_note
+from flexstage.show.document import analysis_body, analysis_results, envelope, requirements_body
 from flexstage.show.matlab import as_mat
 from flexstage.show.report import report as whole_report
 from flexstage.show.table import Table
@@ -57,10 +57,10 @@ def analyse(
         save(json, _json_text(analysis, compared), "--json")
     if STDOUT not in (json, str(report), str(mat)):
         show(_tables(analysis, compared))
-        tell_missing(analysis.missing)
+        print_missing(analysis.missing)
     missed = [verdict for verdict in analysis.verdicts if not verdict.passed]
     if strict and missed:
-        tell(f"{len(missed)} of {len(analysis.verdicts)} requirements are missed.")
+        print_note(f"{len(missed)} of {len(analysis.verdicts)} requirements are missed.")
         raise typer.Exit(MISSED)
 
 
@@ -81,12 +81,12 @@ def _json_text(analysis: Analysis, compared: Comparison | None) -> str:
     if compared is not None:
         values = set_values(compared.stated, analysis.mechanism, compared.addresses)
         body = {"changes": {"set": values, "figures": compared.figures}, **body}
-    return as_text(enveloped("analyse", analysis.mechanism, analysis.model, body)) + "\n"
+    return as_text(envelope("analyse", analysis.mechanism, analysis.model, body)) + "\n"
 
 
 def _tables(analysis: Analysis, compared: Comparison | None) -> Iterator[Table | str | None]:
     yield verdict_table(analysis.verdicts)
-    yield from caveat_lines("analyse", analysis.mechanism)
+    yield from list_caveats("analyse", analysis.mechanism)
     if compared is not None:
         yield set_table(compared.stated, analysis.mechanism, compared.addresses)
         yield change_table(compared.figures)

@@ -16,7 +16,7 @@ from flexstage.analysis.random_response import random_response
 from flexstage.analysis.statics import Statics, statics
 from flexstage.base.finding import refuse
 from flexstage.base.quantity import FREQUENCY
-from flexstage.base.record import Together, walk
+from flexstage.base.record import SideBySide, walk
 from flexstage.base.unit import parse
 from flexstage.models.ideal import ideal
 from flexstage.models.linear.damping import damping_law
@@ -185,7 +185,7 @@ def response(  # noqa: PLR0913 (its options)
     answer(
         "response",
         mechanism,
-        lambda: Together((response_body(found, law), {} if shaken is None else {"random": shaken})),
+        lambda: SideBySide((response_body(found, law), {} if shaken is None else {"random": shaken})),
         lambda: [response_table(found), None if shaken is None else random_table(shaken)],
         model=model,
         json=json,

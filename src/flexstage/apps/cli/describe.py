@@ -21,14 +21,14 @@ from flexstage.control.study.file import setup_schema
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.store import dumps, load, shipped_catalogue
 from flexstage.mechanism.store import schema as design_schema
-from flexstage.show.command.answer import caveat_lines, show
+from flexstage.show.command.answer import list_caveats, show
 from flexstage.show.command.design import change, open_design
 from flexstage.show.command.options import Changes, Design, Json, output_option, text_option, word_option
 from flexstage.show.command.output import STDOUT, announce, require_writable, write
-from flexstage.show.command.terminal import say
+from flexstage.show.command.terminal import print_result
 from flexstage.show.document import FORMAT, check_document
 from flexstage.show.figures.drawing import drawing, format_of
-from flexstage.show.listing import case_table, catalogue_body, catalogue_tables, parameter_table, section_named
+from flexstage.show.listing import case_table, catalogue_body, catalogue_tables, find_section, parameter_table
 from flexstage.show.plan import plan_figure
 from flexstage.show.scene.stage import scene
 from flexstage.show.tables.description import composition_table
@@ -112,10 +112,10 @@ def check(design: Design, *, changes: Changes = None, json: Json = None) -> None
 
 
 def _tell_sound(design: Path, mechanism: Mechanism) -> None:
-    show((composition_table(mechanism), *caveat_lines("check", mechanism)))
+    show((composition_table(mechanism), *list_caveats("check", mechanism)))
     count = len(caveats(mechanism).cautions)
     said = f", {count} caution{'' if count == 1 else 's'}" if count else ""
-    say(f"{design}: no findings{said}.")
+    print_result(f"{design}: no findings{said}.")
 
 
 class File(Enum):
@@ -135,7 +135,7 @@ def schema(
     of: Annotated[File, word_option("--of", File, "Which file: a design, a study, a loop's set-up or a stack's hysteresis.")] = File.DESIGN,
 ) -> None:
     """Print the JSON Schema of a kind of file, for editors."""
-    say(as_json(_SCHEMAS[of](), indent=1, ensure_ascii=False))
+    print_result(as_json(_SCHEMAS[of](), indent=1, ensure_ascii=False))
 
 
 def plan(
@@ -166,7 +166,7 @@ def catalogue(
     Each number has its source. In a design file, like = "NAME" starts from an entry.
     """
     require_writable([("--json", json)])
-    known = shipped_catalogue() if section is None else section_named(shipped_catalogue(), section)
+    known = shipped_catalogue() if section is None else find_section(shipped_catalogue(), section)
     if json is not None:
         body = {"format": FORMAT, "kind": "catalogue", "version": flexstage.__version__, **catalogue_body(known)}
         write(json, as_text(body) + "\n", "--json")

@@ -8,7 +8,7 @@ from pathlib import Path
 from flexstage.apps import doctor
 from flexstage.apps.doctor import Row, Verdict
 from flexstage.show.command.failure import BAD_INPUT, DONE
-from flexstage.show.command.terminal import say
+from flexstage.show.command.terminal import print_result
 
 _FREQUENCIES = (110.910, 110.910, 135.148, 145.505, 176.690, 176.690)
 """Eq. 28 of Shin & Moon for the shipped stage [Hz]."""
@@ -20,15 +20,15 @@ def consult() -> int:
     rows = doctor.examine(Path.cwd(), self_test)
     _print_rows(rows)
     bad = [row for row in rows if row.verdict is Verdict.BAD]
-    say("The installation is sound." if not bad else f"{len(bad)} thing{'s' * (len(bad) > 1)} to mend.")
+    print_result("The installation is sound." if not bad else f"{len(bad)} thing{'s' * (len(bad) > 1)} to mend.")
     return BAD_INPUT if bad else DONE
 
 
 def _print_rows(rows: Iterable[Row]) -> None:
     for row in rows:
-        say(f"{row.verdict.value:5} {row.what:18} {row.found}{f' (wanted: {row.wanted})' if row.wanted else ''}")
+        print_result(f"{row.verdict.value:5} {row.what:18} {row.found}{f' (wanted: {row.wanted})' if row.wanted else ''}")
         if row.remedy:
-            say(f"      {'':18} {row.remedy}")
+            print_result(f"      {'':18} {row.remedy}")
 
 
 def self_test() -> Row:

@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any, TypeVar
 
-from flexstage.base.finding import DesignError, Finding, nearest, refuse, require
+from flexstage.base.finding import DesignError, Finding, refuse, require, suggest_nearest
 from flexstage.base.quantity import (
     ACCELERATION_NOISE,
     CURRENT,
@@ -39,7 +39,7 @@ from flexstage.show.command.design import open_design
 from flexstage.show.command.options import Changes, Csv, Design, Json, Report, text_option, word_option
 from flexstage.show.command.output import announce, require_writable, save, write
 from flexstage.show.command.progress import progress_bar
-from flexstage.show.command.values import Values, first_fit, motions
+from flexstage.show.command.values import Values, first_that_parses, motions
 from flexstage.show.table import Table
 
 _Record = TypeVar("_Record")
@@ -139,8 +139,8 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
         "seconds": seconds,
         "seed": seed,
         "compensate": values.attempt(lambda: _compensation(compensate)),
-        "amplifier": _over(given.amplifier, _electric(values, amplifier or ())),
-        "gauges": _over(
+        "amplifier": _override(given.amplifier, _amplifier_values(values, amplifier or ())),
+        "gauges": _override(
             given.gauges,
             {
                 "noise": values.value("--gauge-noise", gauge_noise, NOISE_DENSITY),
@@ -148,7 +148,7 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
             },
         ),
         "floor": values.attempt(lambda: _floor(given.floor, floor or ())),
-        "controller": _over(
+        "controller": _override(
             given.controller,
             {
                 "kind": controller,
@@ -157,10 +157,10 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
                 "sensitivity": values.value("--sensitivity", sensitivity, RATIO),
             },
         ),
-        "hysteresis": _stacks(hysteresis),
+        "hysteresis": _hysteresis(hysteresis),
         "trajectory": values.attempt(lambda: _trajectory(given.trajectory, trajectory, command)),
     }
-    asked = _over(given, options)
+    asked = _override(given, options)
     require([*values.findings, *setup_findings(asked)])
     mechanism = open_design(design, changes, [("--json", json), ("--report", report), *_files(exports)])
     with progress_bar() as shown:
@@ -188,17 +188,17 @@ def _write_example(design: Path, example: Path) -> None:
     announce(f"Wrote {example}. Next: flexstage loop {design} --setup {example}")
 
 
-def _over(record: _Record, given: Mapping[str, Any]) -> _Record:
+def _override(record: _Record, given: Mapping[str, Any]) -> _Record:
     """The record with the values that are given, others than `None`."""
     return replace(record, **{name: value for name, value in given.items() if value is not None})  # type: ignore[type-var]
 
 
-def _electric(values: Values, texts: Sequence[str]) -> dict[str, float]:
+def _amplifier_values(values: Values, texts: Sequence[str]) -> dict[str, float]:
     """What `--amplifier` says, each by its unit."""
     known = {"bandwidth": FREQUENCY, "resistance": RESISTANCE, "current": CURRENT}
     found: dict[str, float] = {}
     for text in texts:
-        if (fit := first_fit(text, known)) is None:
+        if (fit := first_that_parses(text, known)) is None:
             what = f'found "{text}", which is no frequency, resistance or current'
             values.findings.append(Finding("--amplifier", what, 'Write for example "500 Hz", "50 ohm" or "0.2 A"'))
         else:
@@ -206,11 +206,11 @@ def _electric(values: Values, texts: Sequence[str]) -> dict[str, float]:
     return found
 
 
-def _stacks(said: str | None) -> forms.HystereticStacks | None:
+def _hysteresis(said: str | None) -> forms.HystereticStacks | None:
     """A width where the text is a ratio, else a file."""
     if said is None:
         return None
-    width = first_fit(said, {"width": RATIO})
+    width = first_that_parses(said, {"width": RATIO})
     return forms.HystereticStacks(file=said) if width is None else forms.HystereticStacks(width=width[1])
 
 
@@ -230,7 +230,7 @@ def _floor(given: forms.Floor, texts: Sequence[str]) -> forms.Floor | None:
     if not texts:
         return None
     findings: list[Finding] = []
-    found: dict[str, forms.Shaking] = {}
+    found: dict[str, forms.VibrationSetup] = {}
     for text in texts:
         axis, sign, value = (part.strip() for part in text.rpartition("="))
         try:
@@ -241,33 +241,33 @@ def _floor(given: forms.Floor, texts: Sequence[str]) -> forms.Floor | None:
         if sign and axis not in ("x", "y", "z"):
             findings.append(Finding(f"--floor {text}", f'"{axis}" is no axis of the floor', "Write x, y or z, or no axis for all three"))
     require(findings)
-    return _over(given, found)
+    return _override(given, found)
 
 
-def _shaking(text: str, value: str) -> forms.Shaking:
+def _shaking(text: str, value: str) -> forms.VibrationSetup:
     for criterion in Criterion:
         if value == criterion.value:
-            return forms.Shaking(criterion=criterion)
-    fit = first_fit(value, {"acceleration": ACCELERATION_NOISE, "velocity": VELOCITY_NOISE, "displacement": NOISE_DENSITY})
+            return forms.VibrationSetup(criterion=criterion)
+    fit = first_that_parses(value, {"acceleration": ACCELERATION_NOISE, "velocity": VELOCITY_NOISE, "displacement": NOISE_DENSITY})
     if fit is None:
         names = ", ".join(each.value for each in Criterion)
         advice = f'Write one of {names}, or an amplitude density, for example "3 um/s^2/Hz^0.5"'
         raise refuse(f"--floor {text}", f'"{value}" is no criterion and no amplitude density', advice)
-    return _over(forms.Shaking(), {fit[0]: (fit[1],)})
+    return _override(forms.VibrationSetup(), {fit[0]: (fit[1],)})
 
 
-def _trajectory(given: forms.Commanded, word: str | None, moves: Sequence[str] | None) -> forms.Commanded | None:
+def _trajectory(given: forms.TrajectorySetup, word: str | None, moves: Sequence[str] | None) -> forms.TrajectorySetup | None:
     """The trajectory of that name, or of that file, with the sizes of its motions."""
-    found = given if word is None else _named(word, given)
+    found = given if word is None else _trajectory_of_name(word, given)
     if moves is None:
         return found if word is not None else None
     if not isinstance(found, (forms.StepMotion, forms.SineMotion)):
         name = found.TOLD_BY[1]
         raise refuse("--command", f"a trajectory of kind {name} has its sizes in the set-up file", "Use it with step or sine")
-    return replace(found, by=_over(forms.Motion(), motions(moves)))
+    return replace(found, by=_override(forms.Motion(), motions(moves)))
 
 
-def _named(word: str, given: forms.Commanded) -> forms.Commanded:
+def _trajectory_of_name(word: str, given: forms.TrajectorySetup) -> forms.TrajectorySetup:
     """What the set-up says where it is of that kind already, else as the kind is usual; a file where the word is one."""
     usual = (forms.StepMotion(), forms.RasterMotion(), forms.SpiralMotion(), forms.SineMotion())
     kinds = {each.TOLD_BY[1]: each for each in usual}
@@ -275,7 +275,7 @@ def _named(word: str, given: forms.Commanded) -> forms.Commanded:
         return given if type(given) is type(kinds[word]) else kinds[word]
     if word.lower().endswith(".csv"):
         return forms.FileMotion(word)
-    raise refuse("--trajectory", f'"{word}" is none of {", ".join(kinds)}, and no CSV file', nearest(word, kinds))
+    raise refuse("--trajectory", f'"{word}" is none of {", ".join(kinds)}, and no CSV file', suggest_nearest(word, kinds))
 
 
 def _files(exports: Sequence[Path]) -> Iterator[tuple[str, Path]]:

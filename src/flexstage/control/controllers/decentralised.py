@@ -14,7 +14,7 @@ from flexstage.control.controllers.law import Law
 from flexstage.control.controllers.loops import Loops
 from flexstage.control.controllers.notch import Notch
 from flexstage.control.coordinates import Coordinates
-from flexstage.control.system import System, connected, picked, renamed
+from flexstage.control.system import System, connect, rename, select
 from flexstage.models.linear.model import Channel
 
 
@@ -55,8 +55,8 @@ class Decentralised:
         loops, count = self.loops, len(chains)
         A = np.asarray(scipy.linalg.block_diag(*(each.A for each in chains)))
         size = sum(len(each.A) for each in chains)
-        entries = [_entry([each.B[:, [column]] for each in chains], size) for column in range(3)]
-        exit_ = _entry([each.C.T for each in chains], size).T
+        entries = [_block_columns([each.B[:, [column]] for each in chains], size) for column in range(3)]
+        exit_ = _block_columns([each.C.T for each in chains], size).T
         direct = [np.diag([each.D[0, column] for each in chains]) for column in range(3)]
         # what was applied, seen by the loops; the loops' commands are less than the actuators' where these are redundant
         seen = (loops.sense, loops.sense, np.linalg.pinv(loops.drive))
@@ -70,7 +70,7 @@ class Decentralised:
             step=step,
         )
         poses = [f"pose.{name}" for name in loops.coordinates.names] if any(np.any(each.B[:, 1]) for each in chains) and count else []
-        return with_feedforward(_without_others(found, poses), self.feedforward, loops.coordinates)
+        return with_feedforward(_drop_unused_poses(found, poses), self.feedforward, loops.coordinates)
 
 
 def loop_systems(control: Decentralised, step: float | None = None) -> tuple[System, ...]:
@@ -87,14 +87,14 @@ def loop_systems(control: Decentralised, step: float | None = None) -> tuple[Sys
     0.0
     """
     notches = control.notches or ((),) * len(control.laws)
-    return tuple(_in_a_row(law, filters, step) for law, filters in zip(control.laws, notches, strict=True))
+    return tuple(_in_series(law, filters, step) for law, filters in zip(control.laws, notches, strict=True))
 
 
-def _in_a_row(law: Law, notches: tuple[Notch, ...], step: float | None) -> System:
+def _in_series(law: Law, notches: tuple[Notch, ...], step: float | None) -> System:
     found = law.system(step)
     for each in notches:
-        found = connected([renamed(found, {"command": "raw"}), each.system(step)], {}, found.inputs, ["notched"])
-        found = renamed(found, {"notched": "command"})
+        found = connect([rename(found, {"command": "raw"}), each.system(step)], {}, found.inputs, ["notched"])
+        found = rename(found, {"notched": "command"})
     return found
 
 
@@ -140,12 +140,12 @@ def with_feedforward(control: System, gains: Array | None, coordinates: Coordina
     )
 
 
-def _without_others(control: System, poses: list[str]) -> System:
+def _drop_unused_poses(control: System, poses: list[str]) -> System:
     names = [name for name in control.input_names if not name.startswith("pose.") or name in poses]
-    return picked(control, names, control.output_names)
+    return select(control, names, control.output_names)
 
 
-def _entry(columns: list[Array], size: int) -> Array:
+def _block_columns(columns: list[Array], size: int) -> Array:
     """Columns of the single loops, each in its own rows: (size, count)."""
     found, row = np.zeros((size, len(columns))), 0
     for number, column in enumerate(columns):

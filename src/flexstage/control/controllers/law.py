@@ -62,19 +62,19 @@ def gain_findings(kind: str, gains: dict[str, float], unit: str = "") -> Iterato
             yield Finding(kind, f"{name} is {value:g}{' ' if unit else ''}{unit}", advice)
 
 
-def back_rate(time: float, step: float | None) -> float:
+def tracking_rate(time: float, step: float | None) -> float:
     """1/T_t [1/s] of a tracking time that follows from gains: not faster than one sample.
 
-    >>> back_rate(0.5, None), back_rate(0.01, 0.1)
+    >>> tracking_rate(0.5, None), tracking_rate(0.01, 0.1)
     (2.0, 10.0)
     """
     return 1.0 / (time if step is None else max(time, step))
 
 
-def slow_findings(kind: str, time: float | None, step: float | None) -> Iterator[Finding]:
+def slow_tracking_findings(kind: str, time: float | None, step: float | None) -> Iterator[Finding]:
     """A stated tracking time [s] too short for the samples, shorter than one of them: an integrator led back would overshoot.
 
-    >>> [each.what for each in slow_findings("PI", 1.0 / 3000.0, 1e-3)]
+    >>> [each.what for each in slow_tracking_findings("PI", 1.0 / 3000.0, 1e-3)]
     ['tracking at 3000 1/s moves 3 of the way in one sample of 0.001 s, more than all of it']
     """
     if step is not None and time is not None and step / time > 1.0 + 1e-9:

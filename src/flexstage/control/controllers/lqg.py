@@ -65,21 +65,21 @@ class LQG:
         if step != self.model.step:
             model, asked = (("continuous" if each is None else f"sampled every {each:g} s") for each in (self.model.step, step))
             raise refuse("LQG", f"its model is {model}, and the controller is to be {asked}", "Design it on a model sampled alike")
-        found = _continuous(self) if step is None else _sampled(self)
+        found = _continuous_system(self) if step is None else _sampled_system(self)
         return with_feedforward_states(found, self)
 
 
 def lqg(model: System, coordinates: Coordinates, weights: Weights, expected: Disturbances, feedforward: Array | None = None) -> LQG:
-    """The regulator of least cost and the observer of least variance for a `model` from commands to pose (`seen_plant`).
+    """The regulator of least cost and the observer of least variance for a `model` from commands to pose (`pose_plant`).
 
     K and K_z from the algebraic Riccati equation of the model with the integrators of the error, the observer from that of the model with
     its noises (Kwakernaak & Sivan, Linear Optimal Control Systems, 1972). One-sided densities G hold over the whole band, so that a sample
     has the variance G^2/(2 T). Raises `DesignError` for gauges without noise and a model of which nothing can be controlled.
 
-    >>> from flexstage.control.controllers.pose_plant import seen_plant
+    >>> from flexstage.control.controllers.pose_plant import pose_plant
     >>> from flexstage.control.example import integral_loop
     >>> plant = integral_loop().plant
-    >>> found = lqg(seen_plant(plant), plant.coordinates, Weights(20.0), Disturbances(1e-9, {"S": 1e-12}))
+    >>> found = lqg(pose_plant(plant), plant.coordinates, Weights(20.0), Disturbances(1e-9, {"S": 1e-12}))
     >>> found.regulator.shape, found.integral.round(0).tolist()  # 2 pi 20
     ((1, 8), [[125.0]])
     """
@@ -90,10 +90,10 @@ def lqg(model: System, coordinates: Coordinates, weights: Weights, expected: Dis
 def with_observer(model: System, coordinates: Coordinates, weights: Weights, observer: Array, feedforward: Array | None = None) -> LQG:
     """The regulator of least cost with an observer's gain that is known.
 
-    >>> from flexstage.control.controllers.pose_plant import seen_plant
+    >>> from flexstage.control.controllers.pose_plant import pose_plant
     >>> from flexstage.control.example import integral_loop
     >>> plant = integral_loop().plant
-    >>> with_observer(seen_plant(plant), plant.coordinates, Weights(20.0), np.zeros((8, 1))).tracking.__round__(5)  # 1/(2 pi 20)
+    >>> with_observer(pose_plant(plant), plant.coordinates, Weights(20.0), np.zeros((8, 1))).tracking.__round__(5)  # 1/(2 pi 20)
     0.00796
     """
     regulator, integral = _regulator(model, coordinates, weights)
@@ -124,10 +124,10 @@ def _regulator(model: System, coordinates: Coordinates, weights: Weights) -> tup
 def observer_gain(model: System, coordinates: Coordinates, expected: Disturbances) -> Array:
     """M (s, f) of the sampled filter, L of the continuous one; where D feels the strokes' noise, noises of state and output go together.
 
-    >>> from flexstage.control.controllers.pose_plant import seen_plant
+    >>> from flexstage.control.controllers.pose_plant import pose_plant
     >>> from flexstage.control.example import integral_loop
     >>> plant = integral_loop().plant
-    >>> observer_gain(seen_plant(plant), plant.coordinates, Disturbances(1e-9, {"S": 1e-12})).shape
+    >>> observer_gain(pose_plant(plant), plant.coordinates, Disturbances(1e-9, {"S": 1e-12})).shape
     (8, 1)
     """
     densities = np.array([expected.gauges[name] for name in coordinates.gauges])
@@ -156,7 +156,7 @@ def _riccati(A: Array, B: Array, cost: Array, effort: Array, cross: Array, *, sa
     return 0.5 * (found + found.T)
 
 
-def _sampled(control: LQG) -> System:
+def _sampled_system(control: LQG) -> System:
     model, M, K, Z = control.model, control.observer, control.regulator, control.integral
     states, count = len(model.A), len(model.outputs)
     width = len(model.inputs)
@@ -173,7 +173,7 @@ def _sampled(control: LQG) -> System:
     return System(A, B, output, direct, *_ports(control), model.step)
 
 
-def _continuous(control: LQG) -> System:
+def _continuous_system(control: LQG) -> System:
     model, L, K, Z = control.model, control.observer, control.regulator, control.integral
     states, count, width = len(model.A), len(model.outputs), len(model.inputs)
     output = np.hstack([-K, Z])
@@ -188,10 +188,10 @@ def _continuous(control: LQG) -> System:
 def with_feedforward_states(control: System, given: LQG) -> System:
     """The controller with the reference fed forward: strokes F r at rest and K x(F r) for the states they bring along.
 
-    >>> from flexstage.control.controllers.pose_plant import seen_plant
+    >>> from flexstage.control.controllers.pose_plant import pose_plant
     >>> from flexstage.control.example import integral_loop
     >>> plant = integral_loop().plant
-    >>> found = lqg(seen_plant(plant), plant.coordinates, Weights(20.0), Disturbances(1e-9, {"S": 1e-12}), np.eye(1))
+    >>> found = lqg(pose_plant(plant), plant.coordinates, Weights(20.0), Disturbances(1e-9, {"S": 1e-12}), np.eye(1))
     >>> found.system(1e-4).input_names
     ('error.x', 'pose.x', 'reference.x', 'applied.B')
     """

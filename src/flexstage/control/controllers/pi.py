@@ -9,7 +9,7 @@ import numpy as np
 
 from flexstage.base.finding import Finding, require
 from flexstage.base.quantity import RATE, TIME
-from flexstage.control.controllers.law import FIVE_DIGITS, back_rate, gain_findings, law_system, slow_findings
+from flexstage.control.controllers.law import FIVE_DIGITS, gain_findings, law_system, slow_tracking_findings, tracking_rate
 from flexstage.control.system import System
 
 
@@ -44,11 +44,11 @@ class PI:
 
     def system(self, step: float | None = None) -> System:
         """The law, as `Law` says; Tustin's rule with a step. Raises `DesignError` for samples slower than the tracking."""
-        require(slow_findings("PI", self.tracking, step))
+        require(slow_tracking_findings("PI", self.tracking, step))
         direct = np.array([[self.proportional, 0.0, 0.0]])
         if not self.integral:
             return law_system(np.zeros((0, 0)), np.zeros((0, 3)), np.zeros((1, 0)), direct, step)
-        entry = np.array([[self.integral, 0.0, back_rate(self.tracking_time, step)]])
+        entry = np.array([[self.integral, 0.0, tracking_rate(self.tracking_time, step)]])
         return law_system(np.zeros((1, 1)), entry, np.eye(1), direct, step)
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from flexstage.base.finding import Finding, require
 from flexstage.base.quantity import FREQUENCY, RATE, SHORT_TIME, TIME
-from flexstage.control.controllers.law import FIVE_DIGITS, back_rate, gain_findings, law_system, slow_findings
+from flexstage.control.controllers.law import FIVE_DIGITS, gain_findings, law_system, slow_tracking_findings, tracking_rate
 from flexstage.control.controllers.pi import PI, tracking_findings
 from flexstage.control.system import System
 
@@ -51,10 +51,10 @@ class PID:
 
     def system(self, step: float | None = None) -> System:
         """The law, as `Law` says; Tustin's rule with a step. Raises `DesignError` for a filter above half the sampling rate."""
-        require([*slow_findings("PID", self.tracking, step), *self._sampling(step)])
+        require([*slow_tracking_findings("PID", self.tracking, step), *self._sampling(step)])
         corner = 2.0 * np.pi * self.filter
         high = self.derivative * corner
-        A, B = np.diag([0.0, -corner]), np.array([[self.integral, 0.0, back_rate(self.tracking_time, step)], [corner, 0.0, 0.0]])
+        A, B = np.diag([0.0, -corner]), np.array([[self.integral, 0.0, tracking_rate(self.tracking_time, step)], [corner, 0.0, 0.0]])
         C, D = np.array([[1.0, -high]]), np.array([[self.proportional + high, 0.0, 0.0]])
         kept = [number for number, used in enumerate((self.integral, self.derivative)) if used]
         return law_system(A[np.ix_(kept, kept)], B[kept], C[:, kept], D, step)

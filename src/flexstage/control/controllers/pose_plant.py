@@ -5,20 +5,20 @@ from __future__ import annotations
 from dataclasses import replace
 
 from flexstage.control.controllers.decentralised import channels
-from flexstage.control.plants import Plant, held
-from flexstage.control.system import System, picked
+from flexstage.control.plants import Plant, zero_order_hold
+from flexstage.control.system import System, select
 from flexstage.models.linear.model import Channel
 
 
-def seen_plant(plant: Plant) -> System:
+def pose_plant(plant: Plant) -> System:
     """From `command.<actuator>` [m] to `pose.<c>` [m, rad]: stage, amplifiers, gauges, hold and delay; continuous where the loop is.
 
     >>> from flexstage.control.example import integral_loop
-    >>> found = seen_plant(integral_loop().plant)
+    >>> found = pose_plant(integral_loop().plant)
     >>> found.input_names, found.output_names, found.step
     (('command.B',), ('pose.x',), 0.0001)
     """
-    whole = picked(held(plant), plant.actuators, [f"gap.{name}" for name in plant.gauges])
+    whole = select(zero_order_hold(plant), plant.actuators, [f"gap.{name}" for name in plant.gauges])
     pose = plant.coordinates.pose
     commands = tuple(Channel(f"command.{name}", "m") for name in plant.actuators)
     return replace(whole, C=pose @ whole.C, D=pose @ whole.D, inputs=commands, outputs=channels("pose", plant.coordinates))

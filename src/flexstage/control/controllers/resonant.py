@@ -11,7 +11,7 @@ import numpy as np
 from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.quantity import RATE, TIME
 from flexstage.base.record import Heading
-from flexstage.control.controllers.law import FIVE_DIGITS, back_rate, gain_findings, law_system, slow_findings
+from flexstage.control.controllers.law import FIVE_DIGITS, gain_findings, law_system, slow_tracking_findings, tracking_rate
 from flexstage.control.system import System
 
 
@@ -45,16 +45,21 @@ class IntegralResonant:
     def system(self, step: float | None = None) -> System:
         """The law, as `Law` says; Tustin's rule with a step. Raises `DesignError` for samples slower than its gains."""
         pole = self.gain * self.feedthrough
-        require([*slow_findings("integral resonant control", self.tracking_time, step), *_sampling_findings(pole / (2.0 * np.pi), step)])
+        require(
+            [
+                *slow_tracking_findings("integral resonant control", self.tracking_time, step),
+                *_sampling_findings(pole / (2.0 * np.pi), step),
+            ]
+        )
         A, C = np.diag([-pole, 0.0]), np.ones((1, 2))
-        B = np.array([[0.0, self.gain, 0.0], [self.tracking, 0.0, self._back(step)]])
+        B = np.array([[0.0, self.gain, 0.0], [self.tracking, 0.0, self._tracking_rate(step)]])
         kept = [number for number, used in enumerate((self.gain, self.tracking)) if used]
         return law_system(A[np.ix_(kept, kept)], B[kept], C[:, kept], np.zeros((1, 3)), step)
 
-    def _back(self, step: float | None) -> float:
+    def _tracking_rate(self, step: float | None) -> float:
         if not self.tracking:
             return 0.0
-        return back_rate(1.0 / self.tracking if self.tracking_time is None else self.tracking_time, step)
+        return tracking_rate(1.0 / self.tracking if self.tracking_time is None else self.tracking_time, step)
 
 
 def _sampling_findings(corner: float, step: float | None) -> list[Finding]:
@@ -77,13 +82,13 @@ def resonant_damping(frequency: float, feedthrough: float, static: float = 1.0) 
     return 0.5 * (frequency / zeros - 1.0)
 
 
-def resonant(frequency: float, damping: float, static: float = 1.0, tracking: float = 0.0) -> IntegralResonant:
+def resonant_law(frequency: float, damping: float, static: float = 1.0, tracking: float = 0.0) -> IntegralResonant:
     """The gains that give an undamped mode at `frequency` [Hz] this `damping` ratio, the most for their feed-through.
 
     d = g (1 + 2 zeta)^2 / ((1 + 2 zeta)^2 - 1), k d = w_p sqrt(w_p/w_z) (Namavar, Fleming & Aphale 2014); the damped pair is at sqrt(w_p
     w_z). g = `static` is the plant's static gain, `tracking` [1/s] as for the law. Raises `DesignError` for numbers that are not positive.
 
-    >>> control = resonant(100.0, damping=0.5 * (2.0**0.5 - 1.0))
+    >>> control = resonant_law(100.0, damping=0.5 * (2.0**0.5 - 1.0))
     >>> round(control.feedthrough, 9), round(control.gain * control.feedthrough / (200.0 * np.pi), 4)  # 2, and 2^(1/4)
     (2.0, 1.1892)
     """

@@ -12,13 +12,13 @@ import numpy as np
 import scipy
 
 from flexstage.base.finding import Finding, refuse, require
-from flexstage.base.store import put_together, write, written
+from flexstage.base.store import move_all, write, write_temporary
 from flexstage.base.text import printable
 from flexstage.control.export.code.controller import controller_code
 from flexstage.control.export.code.program import Program
 from flexstage.control.export.code.text import identifier
 from flexstage.control.export.fmu.unit import fmu
-from flexstage.control.plants import Plant, held
+from flexstage.control.plants import Plant, zero_order_hold
 from flexstage.control.simulation.machine import Machine
 from flexstage.control.system import System
 from flexstage.models.linear.model import Channel
@@ -54,7 +54,7 @@ def controller_files(path: str | os.PathLike[str], given: Machine, about: str = 
     >>> [each.name for each in controller_files("stage.c", machine(example.plant, example.controller))]
     ['stage.c', 'stage.h']
     """
-    source = _ending(path, ".c")
+    source = _suffix_findings(path, ".c")
     require(export_findings(path))
     program = controller_code(given, source.stem, about)
     return {source: program.source, source.with_suffix(".h"): program.header}
@@ -70,12 +70,12 @@ def write_controller(path: str | os.PathLike[str], given: Machine, about: str = 
     >>> from flexstage.control.simulation.machine import machine
     >>> example = integral_loop()
     >>> with tempfile.TemporaryDirectory() as folder:
-    ...     written = write_controller(Path(folder) / "stage.c", machine(example.plant, example.controller))
-    ...     [each.name for each in written], "void stage_step(" in written[1].read_text()
+    ...     write_temporary = write_controller(Path(folder) / "stage.c", machine(example.plant, example.controller))
+    ...     [each.name for each in write_temporary], "void stage_step(" in write_temporary[1].read_text()
     (['stage.c', 'stage.h'], True)
     """
     files = controller_files(path, given, about)
-    put_together([written(place, text) for place, text in files.items()])
+    move_all([write_temporary(place, text) for place, text in files.items()])
     source, header = files
     return source, header
 
@@ -94,7 +94,7 @@ def write_fmu(path: str | os.PathLike[str], program: Program, *, sources_only: b
     ...     write_fmu(Path(folder) / "stage.fmu", known, sources_only=True).name
     'stage.fmu'
     """
-    return write(_ending(path, ".fmu"), fmu(program, sources_only=sources_only))
+    return write(_suffix_findings(path, ".fmu"), fmu(program, sources_only=sources_only))
 
 
 def write_plant(path: str | os.PathLike[str], given: Plant) -> Path:
@@ -106,7 +106,7 @@ def write_plant(path: str | os.PathLike[str], given: Plant) -> Path:
     ...     write_plant(Path(folder) / "plant.mat", integral_loop().plant).name
     'plant.mat'
     """
-    return write(_ending(path, ".mat"), plant_file(given))
+    return write(_suffix_findings(path, ".mat"), plant_file(given))
 
 
 def plant_file(given: Plant) -> bytes:
@@ -130,7 +130,7 @@ def plant_file(given: Plant) -> bytes:
         "provenance": printable(given.provenance),
     }
     if given.hardware.step is not None:
-        variables["sampled"] = _system(held(given), ())
+        variables["sampled"] = _system(zero_order_hold(given), ())
     scipy.io.savemat(content, variables, oned_as="column")
     made = bytearray(content.getvalue())
     made[:116] = b"MATLAB 5.0 MAT-file, Platform: any".ljust(116)  # scipy writes the time: the same plant is to be the same file
@@ -156,7 +156,7 @@ def _cells(texts: Any) -> Any:
     return np.array([printable(each) for each in texts], dtype=object).reshape(-1, 1)
 
 
-def _ending(path: str | os.PathLike[str], suffix: str) -> Path:
+def _suffix_findings(path: str | os.PathLike[str], suffix: str) -> Path:
     place = Path(path)
     if place.suffix != suffix:
         raise refuse(os.fspath(path), f"its name does not end in {suffix}", f"Call it {identifier(place.stem)}{suffix}")

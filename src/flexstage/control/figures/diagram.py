@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from flexstage.show.display import typeset
-from flexstage.show.figures.style import FULL, GAUGE, INK, MUTED, PAPER, SERIES, canvas, styled
+from flexstage.show.display import to_typography
+from flexstage.show.figures.style import FULL, GAUGE, INK, MUTED, PAPER, SERIES, canvas, style_context
 
 _HEIGHT = 2.5
 _UPPER, _LOWER = 1.6, 0.62
@@ -49,7 +49,7 @@ def loop_diagram(diagram: Diagram) -> Any:
     >>> len(loop_diagram(Diagram(blocks, (Block("gauges"), Block("R_s^-1", digital=True)))).axes)
     1
     """
-    with styled():
+    with style_context():
         figure = canvas(FULL, _HEIGHT)
         axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
         axes.set_xlim(0.0, FULL)
@@ -63,7 +63,7 @@ def loop_diagram(diagram: Diagram) -> Any:
         _forward(axes, diagram, upper, width)
         if diagram.closed:
             _back(axes, diagram, lower, width)
-        _outside(axes, diagram, {**_by_name(diagram.forward, upper, _UPPER), **_by_name(diagram.back[::-1], lower, _LOWER)})
+        _disturbances(axes, diagram, {**_by_name(diagram.forward, upper, _UPPER), **_by_name(diagram.back[::-1], lower, _LOWER)})
     return figure
 
 
@@ -102,10 +102,10 @@ def _forward(axes: Any, diagram: Diagram, places: Sequence[float], width: float)
     _arrow(axes, (start, _UPPER), (7.12, _UPPER))
     axes.text(7.12, _UPPER + 0.07, "x", fontsize=8.0, fontweight="bold", ha="right")
     if diagram.fed_forward:
-        _past(axes, places, width)
+        _feed_forward(axes, places, width)
 
 
-def _past(axes: Any, places: Sequence[float], width: float) -> None:
+def _feed_forward(axes: Any, places: Sequence[float], width: float) -> None:
     """The reference led over the first block, to a sum behind it."""
     behind = 0.5 * (places[0] + places[1]) if len(places) > 1 else places[0] + 0.6 * width
     over = _UPPER + 0.44
@@ -132,7 +132,7 @@ def _back(axes: Any, diagram: Diagram, places: Sequence[float], width: float) ->
     axes.text(_LEFT - 0.05, 0.5 * (_UPPER + _LOWER), "estimated pose", fontsize=6.0, color=MUTED, rotation=90, ha="right", va="center")
 
 
-def _outside(axes: Any, diagram: Diagram, places: dict[str, tuple[float, float]]) -> None:
+def _disturbances(axes: Any, diagram: Diagram, places: dict[str, tuple[float, float]]) -> None:
     seen: dict[str, int] = {}
     for text, name in diagram.onto:
         if name not in places:
@@ -143,7 +143,9 @@ def _outside(axes: Any, diagram: Diagram, places: dict[str, tuple[float, float]]
         shift = 0.22 * seen.get(name, 0)
         seen[name] = seen.get(name, 0) + 1
         _arrow(axes, (x + shift, far), (x + shift, near), colour=GAUGE)
-        axes.text(x + shift, far + sign * 0.03, typeset(text), fontsize=6.0, color=GAUGE, ha="center", va="bottom" if sign > 0 else "top")
+        axes.text(
+            x + shift, far + sign * 0.03, to_typography(text), fontsize=6.0, color=GAUGE, ha="center", va="bottom" if sign > 0 else "top"
+        )
 
 
 def _sum(axes: Any, x: float) -> None:
@@ -171,7 +173,7 @@ def _block(axes: Any, block: Block, place: tuple[float, float], width: float) ->
     axes.text(
         x,
         y + 0.055 * len(lines),
-        _SPELLED.get(block.name, typeset(block.name)),
+        _SPELLED.get(block.name, to_typography(block.name)),
         fontsize=6.8,
         fontweight="bold",
         ha="center",
@@ -180,7 +182,7 @@ def _block(axes: Any, block: Block, place: tuple[float, float], width: float) ->
     )
     for number, line in enumerate(lines):
         level = y + 0.055 * len(lines) - 0.11 * (number + 1)
-        axes.text(x, level, typeset(line), fontsize=5.6, color=MUTED, ha="center", va="center", zorder=4)
+        axes.text(x, level, to_typography(line), fontsize=5.6, color=MUTED, ha="center", va="center", zorder=4)
 
 
 def _arrow(axes: Any, start: tuple[float, float], end: tuple[float, float], colour: str = INK) -> None:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from flexstage.base.number import Array
-from flexstage.show.figures.style import FULL, INK, MUTED, SERIES, Margins, canvas, panels, styled
+from flexstage.show.figures.style import FULL, INK, MUTED, SERIES, Margins, canvas, panels, style_context
 
 _POINTS = 260
 _TURN = 360.0
@@ -32,23 +32,23 @@ def open_loop_figure(found: Curves, marks: Array, noun: str = "open loop L") -> 
     >>> len(open_loop_figure(Curves(lines, (30.0 / (1j * lines))[:, None], ("x",)), np.array([106.0])).axes)
     2
     """
-    with styled():
+    with style_context():
         figure = canvas(FULL, 3.9)
         grid = panels(figure, 2, 1, Margins(left=0.68, top=0.32, down=0.12), heights=[1.6, 1.0])
         upper, lower = grid[0, 0], grid[1, 0]
         for index, name in enumerate(found.names):
-            x, size = thinned(found.frequencies, np.abs(found.values[:, index]))
+            x, size = thin_out(found.frequencies, np.abs(found.values[:, index]))
             upper.loglog(x, np.maximum(size, _LEAST), color=_colour(index), linewidth=1.1, label=name, linestyle=_dash(index))
-            x, phase = thinned(found.frequencies, _phase(found.values[:, index]))
+            x, phase = thin_out(found.frequencies, _phase(found.values[:, index]))
             lower.semilogx(x, phase, color=_colour(index), linewidth=1.0, linestyle=_dash(index))
         upper.axhline(1.0, color=INK, linewidth=0.7)
         lower.axhline(-180.0, color=INK, linewidth=0.7)
-        _limited(upper, found)
-        _marked(upper, marks, found.frequencies)
+        _set_limits(upper, found)
+        _mark_modes(upper, marks, found.frequencies)
         upper.set_ylabel(noun)
         upper.tick_params(labelbottom=False)
         lower.set_ylabel("phase [°]")
-        _turns(lower)
+        _phase_ticks(lower)
         _plain(lower.xaxis, upper.yaxis)
         lower.set_xlabel("frequency [Hz]")
         lower.set_xlim(*_span(found))
@@ -64,12 +64,12 @@ def sensitivity_figure(sensitivity: Curves, complementary: Curves, highest: floa
     >>> len(sensitivity_figure(S, Curves(lines, 1.0 - S.values, ("x",))).axes)
     2
     """
-    with styled():
+    with style_context():
         figure = canvas(FULL, 2.5)
         grid = panels(figure, 1, 2, Margins(left=0.62, top=0.42, across=0.68))
         for axes, curves, title in ((grid[0, 0], sensitivity, "sensitivity |S|"), (grid[0, 1], complementary, "following |T|")):
             for index, name in enumerate(curves.names):
-                x, size = thinned(curves.frequencies, np.abs(curves.values[:, index]))
+                x, size = thin_out(curves.frequencies, np.abs(curves.values[:, index]))
                 axes.loglog(x, np.maximum(size, _LEAST), color=_colour(index), linewidth=1.1, label=name, linestyle=_dash(index))
             axes.axhline(1.0, color=INK, linewidth=0.7)
             axes.set_xlim(*_span(curves))
@@ -90,7 +90,7 @@ def pole_figure(poles: Array, step: float, alone: Array | None = None) -> Any:
     >>> len(pole_figure(np.array([0.9 + 0.1j, 0.9 - 0.1j]), 1e-4).axes)
     2
     """
-    with styled():
+    with style_context():
         figure = canvas(FULL, 2.95)
         grid = panels(figure, 1, 2, Margins(left=0.55, top=0.3, across=0.75))
         plane, damped = grid[0, 0], grid[0, 1]
@@ -105,11 +105,11 @@ def pole_figure(poles: Array, step: float, alone: Array | None = None) -> Any:
         plane.set_xlabel("Re z")
         plane.set_ylabel("Im z")
         plane.set_title("z plane")
-        _damped(damped, poles, step, alone)
+        _damping_panel(damped, poles, step, alone)
     return figure
 
 
-def _damped(axes: Any, poles: Array, step: float, alone: Array | None) -> None:
+def _damping_panel(axes: Any, poles: Array, step: float, alone: Array | None) -> None:
     """Damping ratio over frequency."""
     if alone is not None:
         frequencies, ratios = _damping(alone, step)
@@ -125,10 +125,10 @@ def _damped(axes: Any, poles: Array, step: float, alone: Array | None) -> None:
     axes.legend(loc="lower left", bbox_to_anchor=(-0.02, 1.0), ncols=2, borderaxespad=0.2, handletextpad=0.2)
 
 
-def thinned(x: Array, y: Array) -> tuple[Array, Array]:
+def thin_out(x: Array, y: Array) -> tuple[Array, Array]:
     """A curve over rising x > 0 with so few points as a picture can show: of each bin, even in log x, its ends and extremes.
 
-    >>> x, y = thinned(np.linspace(1.0, 100.0, 5000), np.zeros(5000))
+    >>> x, y = thin_out(np.linspace(1.0, 100.0, 5000), np.zeros(5000))
     >>> len(x) < 1100, x[0].item(), x[-1].item()
     (True, 1.0, 100.0)
     """
@@ -166,18 +166,18 @@ def _span(found: Curves) -> tuple[float, float]:
     return max(float(found.frequencies[first]), 1e-5 * float(found.frequencies[-1])), float(found.frequencies[-1])
 
 
-def _limited(axes: Any, found: Curves) -> None:
+def _set_limits(axes: Any, found: Curves) -> None:
     finite = np.abs(found.values)[np.isfinite(found.values)]
     axes.set_ylim(max(_FLOOR, 0.3 * float(np.min(finite, initial=1.0))), min(_CEILING, 3.0 * float(np.max(finite, initial=1.0))))
 
 
-def _marked(axes: Any, marks: Array, frequencies: Array) -> None:
+def _mark_modes(axes: Any, marks: Array, frequencies: Array) -> None:
     for mark in marks:
         if frequencies[0] < mark < frequencies[-1]:
             axes.axvline(float(mark), color=MUTED, linewidth=0.5, linestyle=":")
 
 
-def _turns(axes: Any) -> None:
+def _phase_ticks(axes: Any) -> None:
     low, high = axes.get_ylim()
     low, high = max(low, -4.0 * _TURN), min(high, _TURN)
     axes.set_ylim(low, high)

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from flexstage.base.number import Array
-from flexstage.show.display import shown, typeset
-from flexstage.show.figures.style import FULL, INK, SERIES, Margins, canvas, panels, styled
+from flexstage.show.display import display_unit_of, to_typography
+from flexstage.show.figures.style import FULL, INK, SERIES, Margins, canvas, panels, style_context
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,12 +30,12 @@ def hysteresis_figure(found: Sequence[HysteresisLoop]) -> Any:
     2
     """
     largest = max(float(np.max(np.abs(each.wanted), initial=0.0)) for each in found)
-    form = shown("m", largest)
-    with styled():
+    form = display_unit_of("m", largest)
+    with style_context():
         figure = canvas(FULL, 2.75)
         grid = panels(figure, 1, 2, Margins(left=0.6, top=0.32, across=0.72))
         errors = max(float(np.max(np.abs(each.came - each.wanted), initial=0.0)) for each in found)
-        fine = shown("m", errors)
+        fine = display_unit_of("m", errors)
         span = form.factor * largest * np.array([-1.0, 1.0])
         grid[0, 0].plot(span, span, color=INK, linewidth=0.6, linestyle=":")
         for index, each in enumerate(found):
@@ -44,8 +44,8 @@ def hysteresis_figure(found: Sequence[HysteresisLoop]) -> Any:
             grid[0, 0].plot(form.factor * each.wanted[::step], form.factor * each.came[::step], **look)
             grid[0, 1].plot(form.factor * each.wanted[::step], fine.factor * (each.came - each.wanted)[::step], **look)
         for axes in grid[0]:
-            axes.set_xlabel(typeset(f"wanted stroke [{form.unit}]"))
-        grid[0, 0].set_ylabel(typeset(f"stroke [{form.unit}]"))
-        grid[0, 1].set_ylabel(typeset(f"stroke less wanted [{fine.unit}]"))
+            axes.set_xlabel(to_typography(f"wanted stroke [{form.unit}]"))
+        grid[0, 0].set_ylabel(to_typography(f"stroke [{form.unit}]"))
+        grid[0, 1].set_ylabel(to_typography(f"stroke less wanted [{fine.unit}]"))
         grid[0, 0].legend(loc="lower left", bbox_to_anchor=(-0.02, 1.0), ncols=3, borderaxespad=0.2)
     return figure

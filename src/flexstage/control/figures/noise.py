@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 
 from flexstage.base.number import Array
-from flexstage.control.figures.frequency import thinned
-from flexstage.show.display import shown, typeset, value_with_unit
-from flexstage.show.figures.style import FULL, INK, SERIES, Margins, canvas, panels, styled, text_width
+from flexstage.control.figures.frequency import thin_out
+from flexstage.show.display import display_unit_of, format_value, to_typography
+from flexstage.show.figures.style import FULL, INK, SERIES, Margins, canvas, panels, style_context, text_width
 
 _ROW = 0.24
 
@@ -44,7 +44,7 @@ def noise_share_figure(found: Shares) -> Any:
     1
     """
     total = np.sum(found.squares, axis=1)
-    with styled():
+    with style_context():
         figure = canvas(FULL, 0.85 + _ROW * len(total))
         right = text_width(["100.0 nrad"]) + 0.15
         axes = panels(figure, 1, 1, Margins(left=text_width(found.coordinates) + 0.25, right=right, top=0.32))[0, 0]
@@ -52,12 +52,12 @@ def noise_share_figure(found: Shares) -> Any:
         left = np.zeros(len(total))
         for index, source in enumerate(found.sources):
             share = 100.0 * found.squares[:, index] / np.where(total > 0.0, total, 1.0)
-            axes.barh(rows, share, left=left, height=0.66, color=SERIES[index % len(SERIES)], label=typeset(source))
+            axes.barh(rows, share, left=left, height=0.66, color=SERIES[index % len(SERIES)], label=to_typography(source))
             left = left + share
         for row, name, unit, square in zip(rows, found.coordinates, found.units, total, strict=True):
             axes.text(-1.5, row, name, ha="right", va="center", fontsize=8.0)
             axes.text(
-                101.5, row, typeset(value_with_unit(float(np.sqrt(square)), unit, 3)), ha="left", va="center", fontsize=7.5, color=INK
+                101.5, row, to_typography(format_value(float(np.sqrt(square)), unit, 3)), ha="left", va="center", fontsize=7.5, color=INK
             )
         axes.set_xlim(0.0, 100.0)
         axes.set_ylim(-0.6, len(total) - 0.4)
@@ -76,7 +76,7 @@ def noise_spectrum_figure(found: Densities) -> Any:
     2
     """
     units = tuple(dict.fromkeys(found.units))
-    with styled():
+    with style_context():
         figure = canvas(FULL, 3.5)
         grid = panels(figure, 2, len(units), Margins(left=0.68, top=0.32, across=0.85, down=0.14))
         for column, unit in enumerate(units):
@@ -91,17 +91,17 @@ def _column(grid: Any, found: Densities, chosen: Sequence[int], unit: str) -> No
     density = found.density[:, chosen]
     steps = 0.5 * (density[1:] + density[:-1]) * np.diff(found.frequencies)[:, None]
     summed = np.sqrt(np.concatenate([np.zeros((1, len(chosen))), np.cumsum(steps, axis=0)]))
-    form = shown(unit, float(np.max(summed, initial=0.0)))
+    form = display_unit_of(unit, float(np.max(summed, initial=0.0)))
     for index, column, total in zip(chosen, density.T, summed.T, strict=True):
-        x, y = thinned(found.frequencies, np.sqrt(column))
+        x, y = thin_out(found.frequencies, np.sqrt(column))
         look = {"color": SERIES[index % 7], "linewidth": 1.0, "linestyle": (0, (4.0, 2.0)) if index % 2 else "-"}
         grid[0].loglog(x, form.factor * np.maximum(y, 1e-300), label=found.coordinates[index], **look)
-        x, y = thinned(found.frequencies, total)
+        x, y = thin_out(found.frequencies, total)
         grid[1].semilogx(x, form.factor * y, **look)
     largest = form.factor * float(np.sqrt(np.max(density, initial=0.0)))
     grid[0].set_ylim(1e-4 * largest, 3.0 * largest)
-    grid[0].set_ylabel(typeset(f"density [{form.unit}/Hz^0.5]"))
-    grid[1].set_ylabel(typeset(f"rms summed up [{form.unit}]"))
+    grid[0].set_ylabel(to_typography(f"density [{form.unit}/Hz^0.5]"))
+    grid[1].set_ylabel(to_typography(f"rms summed up [{form.unit}]"))
     grid[1].set_ylim(0.0, None)
     grid[1].set_xlabel("frequency [Hz]")
     grid[1].set_xlim(float(found.frequencies[0]), float(found.frequencies[-1]))

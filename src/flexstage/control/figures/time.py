@@ -9,8 +9,8 @@ import numpy as np
 
 from flexstage.base.number import Array
 from flexstage.control.simulation.result import Simulated
-from flexstage.show.display import shown, typeset
-from flexstage.show.figures.style import FULL, HALF, INK, MUTED, SERIES, Margins, canvas, panels, styled
+from flexstage.show.display import display_unit_of, to_typography
+from flexstage.show.figures.style import FULL, HALF, INK, MUTED, SERIES, Margins, canvas, panels, style_context
 
 _ACROSS = 3
 _POINTS = 320
@@ -30,7 +30,7 @@ def step_figure(found: Sequence[tuple[str, Simulated]]) -> Any:
     """
     columns = min(_ACROSS, len(found))
     rows = -(-len(found) // columns)
-    with styled():
+    with style_context():
         width = FULL if columns > 1 else HALF
         figure = canvas(width, 0.55 + 1.65 * rows)
         grid = panels(figure, rows, columns, Margins(left=0.52, top=0.28, across=0.62, down=0.42))
@@ -40,7 +40,7 @@ def step_figure(found: Sequence[tuple[str, Simulated]]) -> Any:
             axes.set_visible(False)
         for axes in grid.ravel():
             axes.tick_params(labelbottom=True)
-            axes.set_xlim(0.0, 1e3 * max(_settled(test, name) for name, test in found))
+            axes.set_xlim(0.0, 1e3 * max(_settling_band(test, name) for name, test in found))
         for axes in grid[-1]:
             axes.set_xlabel("time [ms]")
     return figure
@@ -50,7 +50,7 @@ def _step(axes: Any, name: str, test: Simulated) -> None:
     names = [channel.name for channel in test.coordinates]
     index = names.index(name)
     unit = test.coordinates[index].unit
-    form = shown(unit, float(np.max(np.abs(test.reference[:, index]))))
+    form = display_unit_of(unit, float(np.max(np.abs(test.reference[:, index]))))
     time = 1e3 * test.times
     true = test.reference - test.true_error
     for other, channel in enumerate(test.coordinates):
@@ -58,11 +58,11 @@ def _step(axes: Any, name: str, test: Simulated) -> None:
             axes.plot(*curve(time, form.factor * true[:, other]), color=MUTED, linewidth=0.6, alpha=0.7)
     axes.plot(time, form.factor * test.reference[:, index], color=INK, linewidth=0.7, linestyle="--")
     axes.plot(*curve(time, form.factor * true[:, index]), color=SERIES[0], linewidth=1.2)
-    axes.set_title(typeset(f"{name} [{form.unit}]"), fontsize=7.5, loc="left")
+    axes.set_title(to_typography(f"{name} [{form.unit}]"), fontsize=7.5, loc="left")
     axes.tick_params(labelsize=6.5)
 
 
-def _settled(test: Simulated, name: str) -> float:
+def _settling_band(test: Simulated, name: str) -> float:
     """The time [s] up to which a step is shown: some times that after which its error stays within 2 %."""
     index = [channel.name for channel in test.coordinates].index(name)
     outside = np.flatnonzero(np.abs(test.true_error[:, index]) > _BAND * float(np.max(np.abs(test.reference[:, index]))))
@@ -81,18 +81,18 @@ def error_figure(test: Simulated) -> Any:
     """
     units = list(dict.fromkeys(channel.unit for channel in test.coordinates))
     scaled, noun = _clock(test.times)
-    with styled():
+    with style_context():
         figure = canvas(FULL, 0.65 + 1.25 * len(units))
         grid = panels(figure, len(units), 1, Margins(left=0.62, top=0.3, down=0.14))
         count = 0
         for axes, unit in zip(grid[:, 0], units, strict=True):
             chosen = [index for index, channel in enumerate(test.coordinates) if channel.unit == unit]
             error = test.true_error[:, chosen]
-            form = shown(unit, float(np.max(np.abs(error), initial=0.0)))
+            form = display_unit_of(unit, float(np.max(np.abs(error), initial=0.0)))
             for index, column in zip(chosen, error.T, strict=True):
                 axes.plot(*curve(scaled, form.factor * column), color=SERIES[count % 7], linewidth=0.9, label=test.coordinates[index].name)
                 count += 1
-            axes.set_ylabel(typeset(f"error [{form.unit}]"))
+            axes.set_ylabel(to_typography(f"error [{form.unit}]"))
             axes.set_xlim(float(scaled[0]), float(scaled[-1]))
         handles = [line for axes in grid[:, 0] for line in axes.get_lines()]
         figure.legend(handles, [line.get_label() for line in handles], loc="upper left", ncols=8, handlelength=1.4, borderaxespad=0.2)
@@ -110,17 +110,17 @@ def path_figure(test: Simulated, axes_shown: tuple[str, str]) -> Any:
     asked, error = test.reference[:, places], test.true_error[:, places]
     size = float(np.max(np.ptp(asked, axis=0), initial=0.0))
     factor = magnification(size, error)
-    form = shown(test.coordinates[places[0]].unit, size)
+    form = display_unit_of(test.coordinates[places[0]].unit, size)
     followed = asked - factor * error
     label = "followed" if factor == 1.0 else f"followed, its error {factor:g} times"
-    with styled():
+    with style_context():
         figure = canvas(FULL * 0.62, _height(followed))
         plan = panels(figure, 1, 1, Margins(left=0.6, top=0.32))[0, 0]
-        plan.plot(*_every(form.factor * asked), color=MUTED, linewidth=0.9, label="commanded")
-        plan.plot(*_every(form.factor * followed), color=SERIES[0], linewidth=0.9, label=label)
+        plan.plot(*_decimate(form.factor * asked), color=MUTED, linewidth=0.9, label="commanded")
+        plan.plot(*_decimate(form.factor * followed), color=SERIES[0], linewidth=0.9, label=label)
         plan.set_aspect("equal", adjustable="datalim")
-        plan.set_xlabel(typeset(f"{axes_shown[0]} [{form.unit}]"))
-        plan.set_ylabel(typeset(f"{axes_shown[1]} [{form.unit}]"))
+        plan.set_xlabel(to_typography(f"{axes_shown[0]} [{form.unit}]"))
+        plan.set_ylabel(to_typography(f"{axes_shown[1]} [{form.unit}]"))
         plan.legend(loc="lower left", bbox_to_anchor=(-0.02, 1.0), ncols=2, borderaxespad=0.2)
     return figure
 
@@ -160,7 +160,7 @@ def curve(x: Array, y: Array) -> tuple[Array, Array]:
     return x[places], y[places]
 
 
-def _every(path: Array) -> tuple[Array, Array]:
+def _decimate(path: Array) -> tuple[Array, Array]:
     """A path in plan with some thousand points."""
     step = max(1, len(path) // 2500)
     return path[::step, 0], path[::step, 1]

@@ -10,7 +10,7 @@ import numpy as np
 from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.number import Array
 from flexstage.control.hysteresis.protocol import Hysteresis, freeze_by_axis
-from flexstage.control.hysteresis.shape import Range, settled_loop
+from flexstage.control.hysteresis.shape import Range, major_loop
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,10 +77,10 @@ class BoucWenStepper:
         lagging = sign * self._lagging
         slow, fast = model.beta - model.gamma, model.beta + model.gamma
         behind = np.minimum(lagging, 0.0)
-        before = np.minimum(way, -_held(-slow, behind, model.lag))
+        before = np.minimum(way, -_way_to_zero(-slow, behind, model.lag))
         ahead = np.where(before < way, np.maximum(lagging, 0.0), lagging)
-        first = _relaxed(behind, slow, before, model.lag)
-        passed = _relaxed(ahead, fast, way - before, model.lag)
+        first = _relax(behind, slow, before, model.lag)
+        passed = _relax(ahead, fast, way - before, model.lag)
         moved = np.where((lagging < 0.0) & (before >= way), first, passed)
         self._lagging = np.where(way > 0.0, sign * moved, self._lagging)
         self._volts = np.array(value, dtype=float)
@@ -89,14 +89,14 @@ class BoucWenStepper:
         return np.add(model.offset, out, out=out)
 
 
-def _relaxed(start: Array, rate: Array, way: Array, lag: Array) -> Array:
+def _relax(start: Array, rate: Array, way: Array, lag: Array) -> Array:
     """g e^{-c e} + A (1 - e^{-c e})/c, and g + A e where c is 0."""
     with np.errstate(invalid="ignore"):
         gained = np.where(rate == 0.0, way, -np.expm1(-rate * way) / np.where(rate == 0.0, 1.0, rate))
     return start * np.exp(-rate * way) + lag * gained
 
 
-def _held(rate: Array, start: Array, lag: Array) -> Array:
+def _way_to_zero(rate: Array, start: Array, lag: Array) -> Array:
     """ln(1 + c g/A)/c, and g/A where c is 0: minus the way to g = 0 for c = -(beta - gamma)."""
     safe = np.where(rate == 0.0, 1.0, rate)
     return np.where(rate == 0.0, start / lag, np.log1p(rate * start / lag) / safe)
@@ -123,7 +123,7 @@ def bouc_wen(stroke: float, volts: Range, width: float, *, sharpness: float = 4.
     lag and gain follow from two linear equations. Raises `DesignError` where no such loop rises everywhere.
 
     >>> model = bouc_wen(150e-6, (0.0, 1000.0), 0.15)
-    >>> loop = settled_loop(model, (0.0, 1000.0), count=101)
+    >>> loop = major_loop(model, (0.0, 1000.0), count=101)
     >>> round(float(loop.stroke[0]) * 1e6, 6), round(float(loop.width[0]), 3)
     (150.0, 0.15)
     """
@@ -133,7 +133,7 @@ def bouc_wen(stroke: float, volts: Range, width: float, *, sharpness: float = 4.
         raise refuse("Bouc-Wen model", what, "Give a stroke above 0, volts that ascend, and a width between 0 and 1")
     beta = sharpness / span
     largest = 0.5 * (1.0 + skew)
-    unit = settled_loop(_stack(1.0, largest, beta, skew), volts, count=201, cycles=6)
+    unit = major_loop(_stack(1.0, largest, beta, skew), volts, count=201, cycles=6)
     lagging = span - float(unit.stroke[0])
     lag = stroke * width / float(unit.width[0] * unit.stroke[0])
     gain = (stroke + lag * lagging) / span

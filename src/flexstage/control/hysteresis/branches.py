@@ -130,7 +130,7 @@ def _branch_findings(volts: Array, _: Array) -> Iterator[Finding]:
 def _loop_findings(volts: Array, strokes: Array) -> Iterator[Finding]:
     major = [branch for branch in branches_of(volts)[1:] if branch.swing >= MAJOR * np.ptp(volts)]
     size = float(np.ptp(strokes))
-    means = [_binned(volts, strokes, branch) for branch in major]
+    means = [_bin(volts, strokes, branch) for branch in major]
     risen = np.mean([np.sign(branch.last - branch.first) * (strokes[branch.stop] - strokes[branch.start]) for branch in major])
     if risen < 0.0:
         what = f"the stroke falls by {-1e6 * risen:.4g} um while the volts rise over a branch"
@@ -151,7 +151,7 @@ def _loop_findings(volts: Array, strokes: Array) -> Iterator[Finding]:
         yield _fall(major[worst], means[worst], volts, size)
 
 
-def _binned(volts: Array, strokes: Array, branch: Branch) -> Array:
+def _bin(volts: Array, strokes: Array, branch: Branch) -> Array:
     """Means of the strokes of a branch in equal bins of the record's range; where a bin is empty, from its neighbours."""
     rows = slice(branch.start, branch.stop + 1)
     edges = np.linspace(np.min(volts), np.max(volts), _BINS + 1)

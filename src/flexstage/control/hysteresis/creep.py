@@ -75,7 +75,7 @@ class Creep:
         risen = -np.expm1(-np.asarray(times, dtype=float)[:, None, None] / self.times)
         return self.instant + np.sum(self.gains * risen, axis=-1)
 
-    def settled(self, value: Array) -> Array:
+    def settle(self, value: Array) -> Array:
         """States (axes, m) after u = `value` (axes,) for ever: what a run starts from without creeping."""
         return np.broadcast_to(np.asarray(value, dtype=float)[:, None], self.times.shape).copy()
 
@@ -133,14 +133,14 @@ def exponentials(law: LogCreep, span: tuple[float, float], *, per_decade: int = 
     decades = np.log10(high / low)
     spread = np.logspace(np.log10(low) - 0.5, np.log10(high) + 0.5, 1 + int(np.ceil(per_decade * (decades + 1.0))))
     times = np.geomspace(low, high, 1 + int(40 * decades + 40))
-    instant, gains = _fitted(law, times, spread)
+    instant, gains = _fit(law, times, spread)
     creep = Creep(np.array([instant]), gains, spread)
     fine = np.geomspace(low, high, 10 * len(times))
     error = np.max(np.abs(creep.step_response(fine)[:, 0] - law.at(fine)))
     return CreepFit(creep, span, float(error))
 
 
-def _fitted(law: LogCreep, times: Array, spread: Array) -> tuple[float, Array]:
+def _fit(law: LogCreep, times: Array, spread: Array) -> tuple[float, Array]:
     """g_0 and g_i for given tau_i: the sign of the g_i is that of the rate."""
     columns = np.column_stack([np.ones_like(times), -np.expm1(-times[:, None] / spread)])
     sign = -1.0 if law.rate < 0.0 else 1.0
@@ -151,10 +151,10 @@ def _fitted(law: LogCreep, times: Array, spread: Array) -> tuple[float, Array]:
     return float(solved[0]), sign * solved[1:]
 
 
-def stacked_creep(creeps: tuple[Creep, ...]) -> Creep:
+def stack_creeps(creeps: tuple[Creep, ...]) -> Creep:
     """Creeps as one with all their axes; those with fewer exponentials get further ones of gain 0.
 
-    >>> stacked_creep((Creep([1.0], [0.1], [2.0]), Creep([1.0], [0.1, 0.2], [2.0, 3.0]))).gains.tolist()
+    >>> stack_creeps((Creep([1.0], [0.1], [2.0]), Creep([1.0], [0.1, 0.2], [2.0, 3.0]))).gains.tolist()
     [[0.1, 0.0], [0.1, 0.2]]
     """
     count = max(each.times.shape[1] for each in creeps)

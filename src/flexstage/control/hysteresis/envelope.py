@@ -58,9 +58,9 @@ class Envelope:
         """The function with buffers of its own, for arguments of one shape (..., axes)."""
         first, slope, start = self.knots[:, 0], self.slopes[:, 0], self.values[:, 0]
         if not self.is_straight:
-            return self._bent(shape)
+            return self._piecewise(shape)
         if not np.any(first) and not np.any(start) and np.all(slope == 1.0):
-            return _copied
+            return _copy
 
         def straight(argument: Array, out: Array) -> Array:
             np.subtract(argument, first, out=out)
@@ -69,7 +69,7 @@ class Envelope:
 
         return straight
 
-    def _bent(self, shape: tuple[int, ...]) -> Function:
+    def _piecewise(self, shape: tuple[int, ...]) -> Function:
         slopes = self.slopes
         knots, start = self.knots[:, :-1], self.values[:, 0]
         floors = np.where(np.arange(slopes.shape[1]) == 0, -np.inf, 0.0)
@@ -85,7 +85,7 @@ class Envelope:
         return bent
 
 
-def _copied(argument: Array, out: Array) -> Array:
+def _copy(argument: Array, out: Array) -> Array:
     np.copyto(out, argument)
     return out
 
@@ -117,21 +117,21 @@ def straight(slope: Sequence[float] | Array, start: Sequence[float] | Array | fl
     return Envelope(np.tile([0.0, 1.0], (len(slope), 1)), np.stack([start, start + slope], axis=1))
 
 
-def turned(envelope: Envelope) -> Envelope:
+def invert(envelope: Envelope) -> Envelope:
     """The inverse of an ascending envelope. Raises `DesignError` naming the piece that does not ascend.
 
     >>> bent = Envelope([0.0, 1.0, 2.0], [0.0, 2.0, 3.0])
-    >>> turned(bent).at(bent.at(np.array([[-1.0], [0.7], [5.0]]))).ravel().tolist()
+    >>> invert(bent).at(bent.at(np.array([[-1.0], [0.7], [5.0]]))).ravel().tolist()
     [-1.0, 0.7, 5.0]
     """
-    require(falls(envelope, "envelope"))
+    require(descent_findings(envelope, "envelope"))
     return Envelope(envelope.values, envelope.knots)
 
 
-def falls(envelope: Envelope, where: str) -> list[Finding]:
+def descent_findings(envelope: Envelope, where: str) -> list[Finding]:
     """A finding for each piece of an envelope that does not ascend: there no value has one argument.
 
-    >>> falls(Envelope([0.0, 1.0, 2.0], [0.0, 2.0, 1.0]), "envelope")[0].what
+    >>> descent_findings(Envelope([0.0, 1.0, 2.0], [0.0, 2.0, 1.0]), "envelope")[0].what
     'from 1 to 2 on axis 0 it goes from 2 to 1, and only what ascends can be inverted'
     """
     found = []
@@ -142,29 +142,29 @@ def falls(envelope: Envelope, where: str) -> list[Finding]:
     return found
 
 
-def spread(envelope: Envelope, axes: int) -> Envelope:
+def broadcast(envelope: Envelope, axes: int) -> Envelope:
     """An envelope that tells `axes` axes apart, be they alike.
 
-    >>> spread(IDENTITY, 3).axes
+    >>> broadcast(IDENTITY, 3).axes
     3
     """
     shape = (axes, envelope.knots.shape[1])
     return Envelope(np.broadcast_to(envelope.knots, shape), np.broadcast_to(envelope.values, shape))
 
 
-def stacked_envelopes(envelopes: Sequence[Envelope]) -> Envelope:
+def stack_envelopes(envelopes: Sequence[Envelope]) -> Envelope:
     """Envelopes as one with all their axes; those with fewer knots get further ones on their last piece.
 
-    >>> stacked_envelopes([IDENTITY, Envelope([0.0, 1.0, 2.0], [0.0, 2.0, 3.0])]).at(np.array([2.5, 2.5])).tolist()
+    >>> stack_envelopes([IDENTITY, Envelope([0.0, 1.0, 2.0], [0.0, 2.0, 3.0])]).at(np.array([2.5, 2.5])).tolist()
     [2.5, 3.5]
     """
     count = max(each.knots.shape[1] for each in envelopes)
-    pairs = [_lengthened(each, count - each.knots.shape[1]) for each in envelopes]
+    pairs = [_extend(each, count - each.knots.shape[1]) for each in envelopes]
     knots, values = (np.concatenate(group) for group in zip(*pairs, strict=True))
     return Envelope(knots, values)
 
 
-def _lengthened(envelope: Envelope, more: int) -> tuple[Array, Array]:
+def _extend(envelope: Envelope, more: int) -> tuple[Array, Array]:
     beyond = np.arange(1, more + 1) * (envelope.knots[:, -1:] - envelope.knots[:, -2:-1])
     knots = np.concatenate([envelope.knots, envelope.knots[:, -1:] + beyond], axis=1)
     values = np.concatenate([envelope.values, envelope.values[:, -1:] + envelope.slopes[:, -1:] * beyond], axis=1)

@@ -8,8 +8,8 @@ import numpy as np
 
 from flexstage.base.number import Array
 from flexstage.control.hysteresis.stack_test import StackTest
-from flexstage.show.display import shown, typeset
-from flexstage.show.figures.style import FULL, INK, SERIES, Margins, canvas, panels, styled
+from flexstage.show.display import display_unit_of, to_typography
+from flexstage.show.figures.style import FULL, INK, SERIES, Margins, canvas, panels, style_context
 
 _DATA, _MODEL, _UNDONE = "#9aa5b1", SERIES[0], SERIES[2]
 _POINTS = 900
@@ -23,26 +23,26 @@ def stack_figure(test: StackTest) -> Any:
     3
     """
     found = test.hysteresis
-    form = shown("m", float(np.max(np.abs(found.strokes))))
-    rows = _drawn(found.volts, test.kept)
-    with styled():
+    form = display_unit_of("m", float(np.max(np.abs(found.strokes))))
+    rows = _drawn_rows(found.volts, test.valid_samples)
+    with style_context():
         figure = canvas(FULL, 2.6)
         axes = panels(figure, 1, 3, Margins(left=0.52, top=0.32, across=0.62))[0]
         axes[0].plot(found.volts[rows], form.factor * found.strokes[rows], color=_DATA, linewidth=2.0, label="record")
         axes[0].plot(found.volts[rows], form.factor * found.modelled[rows], color=_MODEL, linewidth=0.8, label="model")
         axes[1].plot(found.volts[rows], 100.0 * (found.modelled - found.strokes)[rows] / found.stroke, color=_MODEL, linewidth=0.8)
         axes[2].plot(found.range, found.range, color=INK, linewidth=0.6, linestyle=":")
-        axes[2].plot(found.volts[rows], test.undone[rows], color=_UNDONE, linewidth=0.8, label="inverse of the record")
+        axes[2].plot(found.volts[rows], test.inverse_volts[rows], color=_UNDONE, linewidth=0.8, label="inverse of the record")
         labels = (f"stroke [{form.unit}]", "error [% of stroke]", "volts of the inverse [V]")
         for panel, label in zip(axes, labels, strict=True):
             panel.set_xlabel("volts applied [V]")
-            panel.set_ylabel(typeset(label), labelpad=1.0)
+            panel.set_ylabel(to_typography(label), labelpad=1.0)
         for panel in (axes[0], axes[2]):
             panel.legend(loc="lower left", bbox_to_anchor=(-0.02, 1.0), ncols=2, borderaxespad=0.2)
     return figure
 
 
-def _drawn(volts: Array, kept: Array) -> Array:
+def _drawn_rows(volts: Array, kept: Array) -> Array:
     """About so many of the samples, all turning points among them."""
     even = kept[:: max(1, len(kept) // _POINTS)]
     turns = 1 + np.flatnonzero(np.diff(np.sign(np.diff(volts))) != 0.0)

@@ -49,13 +49,13 @@ class Fit:
         """
         knots = self.form.knots
         values = knots[0] + np.concatenate([[0.0], np.cumsum(self.slopes * np.diff(knots))])
-        before = IDENTITY if len(knots) == 2 else Envelope(knots, values - np.interp(0.0, *_carried(knots, values)))
+        before = IDENTITY if len(knots) == 2 else Envelope(knots, values - np.interp(0.0, *_extrapolate(knots, values)))
         shift = float(values[0] - before.at(knots[:1])[0])
         after = straight([1.0], self.offset + shift * float(np.sum(self.weights)))
         return PrandtlIshlinskii(self.form.thresholds, self.weights, before, after)
 
 
-def _carried(knots: Array, values: Array) -> tuple[Array, Array]:
+def _extrapolate(knots: Array, values: Array) -> tuple[Array, Array]:
     """Knots and values with both end slopes carried on to beyond 0 V."""
     first, last = (np.diff(values)[place] / np.diff(knots)[place] for place in (0, -1))
     far = abs(knots[0]) + abs(knots[-1])
@@ -73,10 +73,10 @@ def form_of(volts: tuple[float, float], plays: int, pieces: int, *, reach: float
     return Form(reach * span * np.arange(plays) / plays, np.linspace(*volts, pieces + 1))
 
 
-def played(inputs: Array, thresholds: Array) -> Array:
+def play_outputs(inputs: Array, thresholds: Array) -> Array:
     """Outputs (k, n) of plays that start from the first of the inputs (k,).
 
-    >>> played(np.array([0.0, 3.0, 2.0]), np.array([0.0, 1.0])).tolist()
+    >>> play_outputs(np.array([0.0, 3.0, 2.0]), np.array([0.0, 1.0])).tolist()
     [[0.0, 0.0], [3.0, 2.0], [2.0, 2.0]]
     """
     above, found = inputs[:, None] + thresholds, inputs[:, None] - thresholds
@@ -101,7 +101,7 @@ def known_from(inputs: Array, thresholds: Array) -> int:
     return int(np.argmax(swing >= 2.0 * thresholds[-1])) if swing[-1] >= 2.0 * thresholds[-1] else len(inputs)
 
 
-def fitted(volts: Array, strokes: Array, form: Form, rows: Array, *, rounds: int = _ROUNDS) -> Fit:
+def fit_form(volts: Array, strokes: Array, form: Form, rows: Array, *, rounds: int = _ROUNDS) -> Fit:
     """The weights and the envelope with the least squares over some rows of a record; weights are 0 or more, slopes positive.
 
     Rows from before the plays are known are left out (`known_from`).
@@ -112,33 +112,33 @@ def fitted(volts: Array, strokes: Array, form: Form, rows: Array, *, rounds: int
 
     >>> volts = np.concatenate([np.linspace(0, 100, 21), np.linspace(95, 0, 20), np.linspace(5, 100, 20)])
     >>> strokes = PrandtlIshlinskii([0.0, 25.0], [1e-7, 5e-8]).run(volts)
-    >>> fitted(volts, strokes, form_of((0.0, 100.0), 2, 1), np.arange(61) > 20).weights.round(12).tolist()
+    >>> fit_form(volts, strokes, form_of((0.0, 100.0), 2, 1), np.arange(61) > 20).weights.round(12).tolist()
     [1e-07, 5e-08]
     """
     pieces = len(form.knots) - 1
     fit = Fit(form, np.ones(pieces), np.zeros(len(form.thresholds)), 0.0)
     for _ in range(0 if pieces == 1 else rounds):
-        plays, used = _used(fit, volts, rows)
+        plays, used = _known_plays(fit, volts, rows)
         before = fit.slopes
         fit = _with_weights(fit, plays[used], strokes[used])
         fit = _with_slopes(fit, volts, plays, strokes, used)
         if np.max(np.abs(fit.slopes - before)) < _SETTLED:
             break
-    plays, used = _used(fit, volts, rows)
+    plays, used = _known_plays(fit, volts, rows)
     return _with_weights(fit, plays[used], strokes[used])
 
 
-def _used(fit: Fit, volts: Array, rows: Array) -> tuple[Array, Array]:
+def _known_plays(fit: Fit, volts: Array, rows: Array) -> tuple[Array, Array]:
     effective = fit.effective(volts)
     known = np.arange(len(volts)) >= known_from(effective, fit.form.thresholds)
-    return played(effective, fit.form.thresholds), rows & known
+    return play_outputs(effective, fit.form.thresholds), rows & known
 
 
 def _with_weights(fit: Fit, plays: Array, strokes: Array) -> Fit:
     span = fit.form.knots[-1] - fit.form.knots[0]
     size = float(np.ptp(strokes)) / span or 1.0
     lower = np.concatenate([[_LEAST_WEIGHT], np.zeros(plays.shape[1] - 1), [-np.inf]])
-    solved = _bounded(np.column_stack([plays / span, np.ones(len(plays))]), strokes / (size * span), lower)
+    solved = _bounded_least_squares(np.column_stack([plays / span, np.ones(len(plays))]), strokes / (size * span), lower)
     return Fit(fit.form, fit.slopes, size * solved[:-1], float(size * span * solved[-1]))
 
 
@@ -153,7 +153,7 @@ def _with_slopes(fit: Fit, volts: Array, plays: Array, strokes: Array, rows: Arr
     known = fit.offset + knots[0] * np.sum(fit.weights) - (side * fit.form.thresholds) @ fit.weights
     scale = float(np.sum(fit.weights)) * (knots[-1] - knots[0])
     lower = np.concatenate([np.full(len(fit.slopes), _LEAST_SLOPE), [-np.inf]])
-    solved = _bounded(np.column_stack([columns / scale, np.ones(len(columns))]), (strokes[rows] - known) / scale, lower)
+    solved = _bounded_least_squares(np.column_stack([columns / scale, np.ones(len(columns))]), (strokes[rows] - known) / scale, lower)
     slopes = solved[:-1] * (knots[-1] - knots[0]) / float(solved[:-1] @ np.diff(knots))
     return Fit(fit.form, slopes, fit.weights, fit.offset)
 
@@ -165,7 +165,7 @@ def _ramps(volts: Array, knots: Array) -> Array:
     return np.clip(volts[:, None] - knots[:-1], floors, tops)
 
 
-def _bounded(matrix: Array, target: Array, lower: Array) -> Array:
+def _bounded_least_squares(matrix: Array, target: Array, lower: Array) -> Array:
     """Least squares with lower bounds, on the triangle that the columns leave."""
     triangle = np.asarray(np.linalg.qr(np.column_stack([matrix, target]), mode="r"))
     return scipy.optimize.lsq_linear(triangle[:, :-1], triangle[:, -1], (lower, np.inf), method="bvls", tol=1e-14).x

@@ -9,10 +9,10 @@ import numpy as np
 from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array
 from flexstage.control.hysteresis.branches import MAJOR, branches_of, record_findings
-from flexstage.control.hysteresis.fit import Fit, drift_of, fitted, form_of, known_from, played
-from flexstage.control.hysteresis.result import IdentifiedHysteresis, Trial
+from flexstage.control.hysteresis.fit import Fit, drift_of, fit_form, form_of, known_from, play_outputs
 from flexstage.control.hysteresis.inverse import inverse_findings
-from flexstage.control.hysteresis.shape import Range, settled_loop
+from flexstage.control.hysteresis.result import IdentifiedHysteresis, Trial
+from flexstage.control.hysteresis.shape import Range, major_loop
 
 _PLAYS = (2, 4, 8, 16, 32)
 _PIECES = (2, 4, 8)
@@ -49,14 +49,14 @@ def identify_hysteresis(volts: Array, strokes: Array, *, limits: Range | None = 
     """
     volts, strokes = np.asarray(volts, dtype=float), np.asarray(strokes, dtype=float)
     require(record_findings(volts, strokes))
-    rows = _thinned(volts)
+    rows = _sample_rows(volts)
     search = _Search(volts[rows], strokes[rows])
-    found = _judged(search, search.best(), limits)
+    found = _assess(search, search.best(), limits)
     require(_result_findings(found))
     return found
 
 
-def _thinned(volts: Array) -> Array:
+def _sample_rows(volts: Array) -> Array:
     """The samples used: so many evenly spaced ones, and all turning points."""
     even = np.linspace(0, len(volts) - 1, min(len(volts), _SAMPLES)).astype(int)
     turns = [place for branch in branches_of(volts, 0.01) for place in (branch.start, branch.stop)]
@@ -85,7 +85,7 @@ class _Search:
     def fit(self, trial: Trial) -> Fit:
         """The fit of a size on the whole record."""
         form = form_of(self.range, trial.plays, trial.pieces, reach=trial.reach)
-        return fitted(self.volts, self.strokes, form, np.full(len(self.volts), fill_value=True))
+        return fit_form(self.volts, self.strokes, form, np.full(len(self.volts), fill_value=True))
 
     def _pick(self, sizes: Iterable[tuple[int, int, float]]) -> Trial:
         """The first of the sizes, smallest first, that is about as good as the best."""
@@ -103,8 +103,8 @@ class _Search:
         squares = 0.0
         for number in range(_FOLDS):
             kept = fold == number
-            fit = fitted(self.volts, self.strokes, form, ~kept, rounds=_ROUNDS)
-            error = fit.strokes(played(fit.effective(self.volts), form.thresholds)) - self.strokes
+            fit = fit_form(self.volts, self.strokes, form, ~kept, rounds=_ROUNDS)
+            error = fit.strokes(play_outputs(fit.effective(self.volts), form.thresholds)) - self.strokes
             squares += float(np.sum(error[kept] ** 2))
         self.trials.append(Trial(plays, pieces, reach, float(np.sqrt(squares / np.sum(known))) / self.size))
         return self.trials[-1]
@@ -120,10 +120,10 @@ class _Search:
         return fold
 
 
-def _judged(search: _Search, best: Trial, limits: Range | None) -> IdentifiedHysteresis:
+def _assess(search: _Search, best: Trial, limits: Range | None) -> IdentifiedHysteresis:
     fit = search.fit(best)
     effective = fit.effective(search.volts)
-    plays = played(effective, fit.form.thresholds)
+    plays = play_outputs(effective, fit.form.thresholds)
     modelled = fit.strokes(plays)
     known = known_from(effective, fit.form.thresholds)
     error = (modelled - search.strokes)[known:] / search.size
@@ -137,7 +137,7 @@ def _judged(search: _Search, best: Trial, limits: Range | None) -> IdentifiedHys
         rms=rms,
         largest=float(np.max(np.abs(error))),
         validation=best.error,
-        width=float(settled_loop(model, search.range, count=201, cycles=1).width[0]),
+        width=float(major_loop(model, search.range, count=201, cycles=1).width[0]),
         drift=drift_of(plays[known:], search.strokes[known:]) / search.size,
         branches=len(search.branches),
         inner=inner,

@@ -8,7 +8,7 @@ import numpy as np
 
 from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array
-from flexstage.control.hysteresis.envelope import falls, turned
+from flexstage.control.hysteresis.envelope import descent_findings, invert
 from flexstage.control.hysteresis.prandtl_ishlinskii import PrandtlIshlinskii
 
 
@@ -32,7 +32,7 @@ def inverse(model: PrandtlIshlinskii) -> PrandtlIshlinskii:
     steps = np.diff(model.thresholds) * partial[:, :-1]
     thresholds = np.concatenate([np.zeros((model.axes, 1)), np.cumsum(steps, axis=1)], axis=1)
     weights = np.concatenate([1.0 / partial[:, :1], -model.weights[:, 1:] / (partial[:, 1:] * partial[:, :-1])], axis=1)
-    return PrandtlIshlinskii(thresholds, weights, turned(model.after), turned(model.before))
+    return PrandtlIshlinskii(thresholds, weights, invert(model.after), invert(model.before))
 
 
 def inverse_state(model: PrandtlIshlinskii, state: Array) -> Array:
@@ -53,7 +53,7 @@ def inverse_findings(model: PrandtlIshlinskii) -> list[Finding]:
     >>> inverse_findings(PrandtlIshlinskii([0.0, 50.0, 100.0], [1e-7, 5e-8, -2e-7]))[0].what
     'the weights up to 2 (threshold 100) add up to -5e-08: beyond it the output does not rise with the input, and no inverse exists'
     """
-    around = [*falls(model.before, "envelope before the plays"), *falls(model.after, "envelope after the plays")]
+    around = [*descent_findings(model.before, "envelope before the plays"), *descent_findings(model.after, "envelope after the plays")]
     return [*_slope_findings(model), *around]
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array, freeze
-from flexstage.control.hysteresis.envelope import IDENTITY, Envelope, spread, stacked_envelopes, straight
+from flexstage.control.hysteresis.envelope import IDENTITY, Envelope, broadcast, stack_envelopes, straight
 from flexstage.control.hysteresis.protocol import Hysteresis
 
 
@@ -118,22 +118,22 @@ def proportional(gain: Sequence[float] | Array, offset: Sequence[float] | Array 
     return PrandtlIshlinskii(np.zeros((len(gain), 1)), gain[:, None], after=straight(np.ones(len(gain)), offset))
 
 
-def stacked(models: Sequence[PrandtlIshlinskii]) -> PrandtlIshlinskii:
+def stack_models(models: Sequence[PrandtlIshlinskii]) -> PrandtlIshlinskii:
     """Models as one with all their axes, for actuators that differ; those with fewer plays get further ones of weight 0.
 
-    >>> pair = stacked([proportional([1e-7]), PrandtlIshlinskii([0.0, 100.0], [1e-7, 5e-8])])
+    >>> pair = stack_models([proportional([1e-7]), PrandtlIshlinskii([0.0, 100.0], [1e-7, 5e-8])])
     >>> (1e6 * pair.run(np.array([[0.0, 0.0], [500.0, 500.0]])))[1].round(9).tolist()
     [50.0, 70.0]
     """
     count = max(each.thresholds.shape[1] for each in models)
     return PrandtlIshlinskii(
-        np.concatenate([_further(each.thresholds, count) for each in models]),
+        np.concatenate([_extra_plays(each.thresholds, count) for each in models]),
         np.concatenate([np.pad(each.weights, ((0, 0), (0, count - each.weights.shape[1]))) for each in models]),
-        stacked_envelopes([spread(each.before, each.axes) for each in models]),
-        stacked_envelopes([spread(each.after, each.axes) for each in models]),
+        stack_envelopes([broadcast(each.before, each.axes) for each in models]),
+        stack_envelopes([broadcast(each.after, each.axes) for each in models]),
     )
 
 
-def _further(thresholds: Array, count: int) -> Array:
+def _extra_plays(thresholds: Array, count: int) -> Array:
     last = thresholds[:, -1:]
     return np.concatenate([thresholds, last + (1.0 + last) * np.arange(1, count - thresholds.shape[1] + 1)], axis=1)

@@ -10,7 +10,7 @@ import numpy as np
 from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.number import Array
 from flexstage.control.hysteresis.protocol import Hysteresis, freeze_by_axis
-from flexstage.control.hysteresis.shape import Range, settled_loop
+from flexstage.control.hysteresis.shape import Range, major_loop
 
 _SLOTS = 16
 
@@ -121,7 +121,7 @@ class PreisachStepper:
 
     def _make_room(self) -> None:
         """Drop the slots that were wiped out; where that is not enough, have twice as many."""
-        kept = [_unwiped(*each) for each in zip(self._peaks, self._valleys, self._slot, strict=True)]
+        kept = [_turning_points(*each) for each in zip(self._peaks, self._valleys, self._slot, strict=True)]
         slots = self._peaks.shape[1] * (2 if max(len(each) for each in kept) > self._peaks.shape[1] // 2 else 1)
         rows = np.arange(len(kept))
         now = self._valleys[rows, self._slot]
@@ -131,7 +131,7 @@ class PreisachStepper:
             self._peaks[row, : len(pairs)], self._valleys[row, : len(pairs)] = np.transpose(pairs)
 
 
-def _unwiped(peaks: Array, valleys: Array, slot: int) -> list[tuple[float, float]]:
+def _turning_points(peaks: Array, valleys: Array, slot: int) -> list[tuple[float, float]]:
     """Pairs (peak, valley) of which something is left: peaks fall and valleys rise from each to the next; the slot in use is the last."""
     kept: list[tuple[float, float]] = []
     for place, (peak, valley) in enumerate(zip(peaks[: slot + 1], valleys[: slot + 1], strict=True)):
@@ -160,7 +160,7 @@ def preisach(stroke: float, volts: Range, width: float, *, decay: float = 0.5, t
     `decay` is lambda as a part of the range, `tilt` and `bulge` say how the density varies over it. Raises `DesignError` where the relays
     alone would make more than the stroke.
 
-    >>> loop = settled_loop(preisach(150e-6, (0.0, 1000.0), 0.15), (0.0, 1000.0), cycles=1)
+    >>> loop = major_loop(preisach(150e-6, (0.0, 1000.0), 0.15), (0.0, 1000.0), cycles=1)
     >>> round(float(loop.stroke[0]) * 1e6, 6), round(float(loop.width[0]), 6)
     (150.0, 0.15)
     """
@@ -173,7 +173,7 @@ def preisach(stroke: float, volts: Range, width: float, *, decay: float = 0.5, t
         numbers = (slope, density, decay * span, tilt, bulge, *volts)
         return Preisach(*(np.array([number]) for number in numbers))
 
-    unit = settled_loop(stack(0.0, 1.0), volts, cycles=1)
+    unit = major_loop(stack(0.0, 1.0), volts, cycles=1)
     density = stroke * width / float(unit.width[0] * unit.stroke[0])
     slope = (stroke - density * float(unit.stroke[0])) / span
     if slope < 0.0:

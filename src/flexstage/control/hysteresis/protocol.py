@@ -82,8 +82,8 @@ def freeze_by_axis(model: Any) -> None:
     """Make all numbers of a dataclass (axes,) and read-only.
 
     >>> from flexstage.control.hysteresis.bouc_wen import BoucWen
-    >>> BoucWen(np.array([1e-7, 2e-7]), 1e-6, 2e-3, 1e-3).lag.tolist()
-    [1e-06, 1e-06]
+    >>> BoucWen(np.array([1e-7, 2e-7]), 4e-8, 4e-3, 2e-3).lag.tolist()
+    [4e-08, 4e-08]
     """
     names = [each.name for each in fields(model)]
     arrays = np.broadcast_arrays(*(np.atleast_1d(np.asarray(getattr(model, name), dtype=float)) for name in names))

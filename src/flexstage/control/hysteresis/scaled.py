@@ -10,7 +10,7 @@ from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.number import Array
 from flexstage.control.hysteresis.envelope import Envelope
 from flexstage.control.hysteresis.prandtl_ishlinskii import PrandtlIshlinskii
-from flexstage.control.hysteresis.shape import Range, settled_loop
+from flexstage.control.hysteresis.shape import Range, major_loop
 
 
 @dataclass(frozen=True, eq=False)
@@ -22,7 +22,7 @@ class Stacks:
     stroke: Array
 
 
-def scaled(model: PrandtlIshlinskii, volts: Range, stacks: Stacks) -> PrandtlIshlinskii:
+def scale_to_stacks(model: PrandtlIshlinskii, volts: Range, stacks: Stacks) -> PrandtlIshlinskii:
     """A model of one axis over `volts` as one of n axes whose major loops have the same form over each stack's own range and stroke.
 
     Volts and strokes are stretched: knots of the envelope before the plays, and values of the one after them; thresholds and weights stay.
@@ -31,14 +31,14 @@ def scaled(model: PrandtlIshlinskii, volts: Range, stacks: Stacks) -> PrandtlIsh
 
     >>> model = PrandtlIshlinskii([0.0, 100.0], [1e-7, 5e-8])
     >>> two = Stacks(np.array([0.0, -100.0]), np.array([1000.0, 400.0]), np.array([150e-6, 30e-6]))
-    >>> loops = [settled_loop(scaled(model, (0.0, 1000.0), two), (low, high)) for low, high in ((0.0, 1000.0), (-100.0, 400.0))]
+    >>> loops = [major_loop(scale_to_stacks(model, (0.0, 1000.0), two), (low, high)) for low, high in ((0.0, 1000.0), (-100.0, 400.0))]
     >>> [(round(float(loop.stroke[axis]) * 1e6, 6), round(float(loop.width[axis]), 6)) for axis, loop in enumerate(loops)]
     [(150.0, 0.071429), (30.0, 0.071429)]
     """
     if model.axes != 1:
         raise refuse("hysteresis", f"the model has {model.axes} axes", "Scale the model of one stack")
     require(_findings(volts, stacks))
-    loop = settled_loop(model, volts)
+    loop = major_loop(model, volts)
     stretch = (stacks.high - stacks.low) / (volts[1] - volts[0])
     growth = stacks.stroke / loop.stroke[0]
     axes = len(stretch)

@@ -36,11 +36,11 @@ class MajorLoop:
         return np.max(self.down - self.up, axis=0) / self.stroke
 
 
-def settled_loop(model: Hysteresis, volts: Range, count: int = 401, cycles: int = 8) -> MajorLoop:
+def major_loop(model: Hysteresis, volts: Range, count: int = 401, cycles: int = 8) -> MajorLoop:
     """The loop of a hysteresis between two inputs after `cycles` cycles, at `count` inputs a branch.
 
     >>> from flexstage.control.hysteresis.prandtl_ishlinskii import PrandtlIshlinskii
-    >>> loop = settled_loop(PrandtlIshlinskii([0.0, 100.0], [1e-7, 5e-8]), (0.0, 1000.0))
+    >>> loop = major_loop(PrandtlIshlinskii([0.0, 100.0], [1e-7, 5e-8]), (0.0, 1000.0))
     >>> (1e6 * loop.stroke).round(6).tolist(), loop.width.round(6).tolist()  # 5e-8 m/V times 200 V wide
     ([140.0], [0.071429])
     """

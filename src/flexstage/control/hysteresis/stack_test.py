@@ -9,14 +9,14 @@ from typing import Annotated
 
 import numpy as np
 
-from flexstage.base.finding import DesignError, Finding, nearest, refuse, require
+from flexstage.base.finding import DesignError, Finding, refuse, require, suggest_nearest
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
 from flexstage.base.record import VIEW
 from flexstage.control.hysteresis.creep_record import IdentifiedCreep, identify_creep
-from flexstage.control.hysteresis.result import IdentifiedHysteresis
 from flexstage.control.hysteresis.identify import identify_hysteresis
 from flexstage.control.hysteresis.inverse import inverse
+from flexstage.control.hysteresis.result import IdentifiedHysteresis
 from flexstage.control.hysteresis.shape import Range
 from flexstage.control.hysteresis.stack import StackHysteresis, stack_hysteresis
 from flexstage.experiment.record import Channel, Record
@@ -35,11 +35,11 @@ class Channels:
 class StackTest(InNotebook):
     """What a test of a stack says: its `hysteresis`, its `creep` where a step was recorded, and the channels used.
 
-    `undone` (k,) are the volts [V] by which the inverse makes the recorded strokes: those that were applied, if the model were exact.
+    `inverse_volts` (k,) are the volts [V] by which the inverse makes the recorded strokes: those applied, if the model were exact.
     """
 
     hysteresis: IdentifiedHysteresis
-    undone: Array
+    inverse_volts: Array
     channels: Channels
     source: str
     creep: IdentifiedCreep | None = None
@@ -52,14 +52,14 @@ class StackTest(InNotebook):
         return stack_hysteresis(found.model, creep=law, volts=found.range, rms=found.rms, source=self.source)
 
     @property
-    def kept(self) -> Array:
+    def valid_samples(self) -> Array:
         """Samples (m,) at which nothing depends on the unknown past any more: those that errors are told of."""
-        return np.arange(self.hysteresis.known_from, len(self.undone))
+        return np.arange(self.hysteresis.known_from, len(self.inverse_volts))
 
     @property
     def inverse_rms(self) -> Annotated[float, VIEW]:
         """Rms difference of the volts from the inverse to those applied, as a part of the range."""
-        wrong, (low, high) = (self.undone - self.hysteresis.volts)[self.kept], self.hysteresis.range
+        wrong, (low, high) = (self.inverse_volts - self.hysteresis.volts)[self.valid_samples], self.hysteresis.range
         return float(np.sqrt(np.mean(wrong**2))) / (high - low)
 
 
@@ -76,21 +76,21 @@ def stack_test(record: Record, channels: Channels = Channels(), *, step: Record 
     >>> round(test.hysteresis.width, 2), test.hysteresis.rms < 0.02
     (0.07, True)
     """
-    chosen = _chosen(record, channels)
+    chosen = _choose_channels(record, channels)
     _, volts, strokes = _samples(record, chosen)
-    with _told_of(record):
+    with _naming(record):
         found = identify_hysteresis(volts, strokes, limits=limits)
     creep = None
     if step is not None:
-        times, *both = _samples(step, _chosen(step, channels))
-        with _told_of(step):
+        times, *both = _samples(step, _choose_channels(step, channels))
+        with _naming(step):
             creep = identify_creep(times, *both)
     used = Channels(*(each.name for each in chosen))
     return StackTest(found, inverse(found.model).run(found.strokes), used, record.source, creep)
 
 
 @contextmanager
-def _told_of(record: Record) -> Generator[None]:
+def _naming(record: Record) -> Generator[None]:
     """Findings name the record."""
     try:
         yield
@@ -107,10 +107,13 @@ def _samples(record: Record, chosen: tuple[Channel, Channel]) -> tuple[Array, Ar
     return record.start + np.arange(record.length) / record.rate, volts, strokes
 
 
-def _chosen(record: Record, channels: Channels) -> tuple[Channel, Channel]:
+def _choose_channels(record: Record, channels: Channels) -> tuple[Channel, Channel]:
     """The channels of volts and stroke."""
     findings: list[Finding] = []
-    found = [_one(record, wanted, findings) for wanted in (_Wanted("volts", "V", channels.volts), _Wanted("stroke", "m", channels.stroke))]
+    found = [
+        _choose_channel(record, wanted, findings)
+        for wanted in (_ChannelRequest("volts", "V", channels.volts), _ChannelRequest("stroke", "m", channels.stroke))
+    ]
     require(findings)
     volts, stroke = (each for each in found if each is not None)
     if volts.name == stroke.name:
@@ -119,18 +122,18 @@ def _chosen(record: Record, channels: Channels) -> tuple[Channel, Channel]:
 
 
 @dataclass(frozen=True)
-class _Wanted:
+class _ChannelRequest:
     kind: str
     unit: str
     name: str | None
 
 
-def _one(record: Record, wanted: _Wanted, findings: list[Finding]) -> Channel | None:
+def _choose_channel(record: Record, wanted: _ChannelRequest, findings: list[Finding]) -> Channel | None:
     where = f"{record.source or 'record'}: {wanted.kind}"
     if wanted.name is not None:
         named = next((each for each in record.channels if each.name == wanted.name), None)
         if named is None:
-            findings.append(Finding(where, f"there is no channel {wanted.name}", nearest(wanted.name, record.names)))
+            findings.append(Finding(where, f"there is no channel {wanted.name}", suggest_nearest(wanted.name, record.names)))
             return None
         findings += _unit_findings(where, named, wanted)
         return named
@@ -144,7 +147,7 @@ def _one(record: Record, wanted: _Wanted, findings: list[Finding]) -> Channel | 
     return None
 
 
-def _unit_findings(where: str, named: Channel, wanted: _Wanted) -> Iterator[Finding]:
+def _unit_findings(where: str, named: Channel, wanted: _ChannelRequest) -> Iterator[Finding]:
     problem = unit_problem(named.unit)
     if problem is not None:
         yield Finding(where, f"{named.name}: {problem}", f'State it, e.g. --units "{named.name}={_example(wanted)}"')
@@ -153,5 +156,5 @@ def _unit_findings(where: str, named: Channel, wanted: _Wanted) -> Iterator[Find
         yield Finding(where, what, "Check whether the channels are exchanged, or state the unit (--units)")
 
 
-def _example(wanted: _Wanted) -> str:
+def _example(wanted: _ChannelRequest) -> str:
     return "V" if wanted.unit == "V" else "um"

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from flexstage.control.hysteresis.stack_test import StackTest
-from flexstage.show.display import aligned, number, percent, value_with_unit
-from flexstage.show.table import Cell, Column, Mark, Table, build
+from flexstage.show.display import align_numbers, format_value, number, percent
+from flexstage.show.table import Cell, Column, Mark, Table, make_table
 
 _LARGE = 0.02
 
@@ -22,12 +22,12 @@ def stack_table(test: StackTest) -> Table:
     plays, pieces = found.model.thresholds.shape[1], found.model.before.knots.shape[1] - 1
     rows = [
         ("volts", f"{number(found.range[0])} to {number(found.range[1])} V", test.channels.volts or ""),
-        ("stroke", value_with_unit(found.stroke, "m"), test.channels.stroke or ""),
+        ("stroke", format_value(found.stroke, "m"), test.channels.stroke or ""),
         ("loop width", percent(found.width, 3), "of the stroke, largest distance of the branches"),
         ("branches", str(found.branches), f"{found.inner} of them inner ones"),
         ("model", f"{plays} plays", f"envelope of {pieces} piece{'s' if pieces > 1 else ''}; chosen among {len(found.trials)}"),
-        ("error, rms", _error(found.rms), value_with_unit(found.rms * found.stroke, "m", 3)),
-        ("error, largest", _error(found.largest, 5.0), value_with_unit(found.largest * found.stroke, "m", 3)),
+        ("error, rms", _error(found.rms), format_value(found.rms * found.stroke, "m", 3)),
+        ("error, largest", _error(found.largest, 5.0), format_value(found.largest * found.stroke, "m", 3)),
         ("error, kept parts", _error(found.validation), "rms over parts of the record that were not fitted"),
         ("inverse", _error(test.inverse_rms), "rms of its volts against those applied, of their range"),
         ("drift", percent(found.drift, 3), "of the stroke over the record"),
@@ -36,7 +36,7 @@ def stack_table(test: StackTest) -> Table:
         span = f"{number(test.creep.span[0], 3)} to {number(test.creep.span[1], 3)} s after the step"
         rows.append(("creep", f"{percent(test.creep.law.rate, 3)} a decade", span))
     strong = [(Cell(name, Mark.STRONG), value, remark) for name, value, remark in rows]
-    return build("Hysteresis of the stack", ["", "value", ""], strong, provenance=test.source)
+    return make_table("Hysteresis of the stack", ["", "value", ""], strong, provenance=test.source)
 
 
 def _error(share: float, allowed: float = 1.0) -> Cell:
@@ -52,9 +52,9 @@ def plays_table(test: StackTest) -> Table:
     """
     plays = test.hysteresis.plays
     columns = (
-        aligned(plays.thresholds.tolist()),
-        aligned((1e9 * plays.weights).tolist(), 4),
-        aligned((1e9 * np.cumsum(plays.weights)).tolist(), 4),
+        align_numbers(plays.thresholds.tolist()),
+        align_numbers((1e9 * plays.weights).tolist(), 4),
+        align_numbers((1e9 * np.cumsum(plays.weights)).tolist(), 4),
     )
     heads = [Column("threshold", "V"), Column("weight", "nm/V"), Column("sum of weights", "nm/V")]
-    return build("Plays", heads, list(zip(*columns, strict=True)))
+    return make_table("Plays", heads, list(zip(*columns, strict=True)))

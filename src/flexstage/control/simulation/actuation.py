@@ -55,7 +55,7 @@ class Actuation:
         volts = np.divide(given, self._gain, out=self._volts)
         np.add(volts, self._bias, out=volts)
         if self._compensator is not None:
-            self._compensator.applied(volts)
+            self._compensator.move_to(volts)
         if self._hysteresis is None:
             np.copyto(stroke, given)
         else:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from flexstage.base.finding import Finding, nearest, require
+from flexstage.base.finding import Finding, require, suggest_nearest
 from flexstage.base.number import Array
 from flexstage.control.simulation.fused import Fused, Parts
 from flexstage.control.simulation.machine import Machine
@@ -28,7 +28,7 @@ class Inflow:
 
     def first(self, form: Fused, linear: Parts) -> Array:
         """What the first row begins with: at rest, seen through noise, and asked for the first reference."""
-        found = np.zeros(form.row.computed.stop)
+        found = np.zeros(form.row.next_values.stop)
         found[form.row.reading] = (linear.reading_w @ self.disturbances[0] + self.readings[0]) / form.scale
         found[form.row.base] = linear.command_r @ self.reference[0]
         return found
@@ -36,7 +36,7 @@ class Inflow:
     def block(self, form: Fused, linear: Parts, start: int, stop: int) -> Array:
         """What is added to the rows `start` + 1 to `stop` (stop - start, computed): one product a kind for many samples."""
         now, after = slice(start, stop), np.minimum(np.arange(start + 1, stop + 1), len(self) - 1)
-        found = np.zeros((stop - start, form.row.computed.stop))
+        found = np.zeros((stop - start, form.row.next_values.stop))
         plant = self.disturbances[now] @ linear.disturbed.T + self.strokes[now] @ linear.stroke.T
         controller = self.reference[now] @ linear.from_reference.T
         seen = plant @ linear.reading.T + self.disturbances[after] @ linear.reading_w.T + self.readings[after]
@@ -81,7 +81,7 @@ def _findings(given: Machine, reference: Array, named: Mapping[str, Array]) -> I
     known = [channel.name for channel in given.disturbances] + [*_noises(given.gauges), *_noises(given.actuators)]
     for name, values in named.items():
         if name not in known:
-            yield Finding(name, "the loop has no input of this name", nearest(name, known))
+            yield Finding(name, "the loop has no input of this name", suggest_nearest(name, known))
         elif values.shape != (len(reference),):
             yield Finding(name, f"it is {values.shape}, where the reference has {len(reference)} samples", "Give as many")
         elif name not in _noises(given.gauges) and not np.all(np.isfinite(values)):

@@ -106,24 +106,24 @@ class Row:
     width: int
 
     @property
-    def computed(self) -> slice:
+    def next_values(self) -> slice:
         """What the step before computes."""
         return slice(0, self.controller.stop)
 
     @property
-    def own(self) -> slice:
+    def bounded_states(self) -> slice:
         """What of it is bounded in a stable loop: all but readings, which may be lost."""
         return slice(self.base.start, self.controller.stop)
 
     @property
-    def taken(self) -> slice:
+    def carried_over(self) -> slice:
         """What the next step is computed from."""
         return slice(self.plant.start, self.stroke.stop)
 
 
 @dataclass(frozen=True, eq=False)
 class Fused:
-    """`step` takes a row's `taken` to the next row's `computed`, `proportional` the rounded readings to what they add to the command.
+    """`step` takes a row's `carried_over` to the next row's `next_values`, `proportional` rounded readings to what they add to commands.
 
     Readings are counted in `scale` (g,), the gauges' resolution (1 m where they have none).
     """
@@ -134,7 +134,7 @@ class Fused:
     proportional: Array
 
 
-def fused(given: Machine, linear: Parts) -> Fused:
+def fuse(given: Machine, linear: Parts) -> Fused:
     """A machine's linear parts, multiplied out: what is seen next is computed with the states.
 
     y+ = C x+ and command+ = C z+ take part as further rows, so that one product a sample does for all.
@@ -143,14 +143,14 @@ def fused(given: Machine, linear: Parts) -> Fused:
     >>> from flexstage.control.simulation.machine import machine
     >>> example = integral_loop()
     >>> known = machine(example.plant, example.controller)
-    >>> found = fused(known, parts(known))
-    >>> found.step.shape == (found.row.computed.stop, found.row.taken.stop - found.row.taken.start)
+    >>> found = fuse(known, parts(known))
+    >>> found.step.shape == (found.row.next_values.stop, found.row.carried_over.stop - found.row.carried_over.start)
     True
     """
     row = _row(given, linear)
     scale = np.where(given.resolution > 0.0, given.resolution, 1.0)
     seen = given.pose * scale
-    matrix = np.zeros((row.computed.stop, row.width))
+    matrix = np.zeros((row.next_values.stop, row.width))
     matrix[row.plant, row.plant] = linear.A
     matrix[row.plant, row.stroke] = linear.stroke
     matrix[row.controller, row.controller] = linear.controller
@@ -158,7 +158,7 @@ def fused(given: Machine, linear: Parts) -> Fused:
     matrix[row.controller, row.applied] = linear.from_applied
     matrix[row.reading] = linear.reading @ matrix[row.plant] / scale[:, None]
     matrix[row.base] = linear.command @ matrix[row.controller]
-    return Fused(row, scale, np.ascontiguousarray(matrix[:, row.taken]), np.ascontiguousarray(linear.command_q @ seen))
+    return Fused(row, scale, np.ascontiguousarray(matrix[:, row.carried_over]), np.ascontiguousarray(linear.command_q @ seen))
 
 
 def _row(given: Machine, linear: Parts) -> Row:

@@ -15,10 +15,10 @@ Kernel = Callable[[Array, Array], Array]
 """Takes numbers and a place for the result, which it returns."""
 
 
-def rounding(steps: Array) -> Kernel | None:
+def rounder(steps: Array) -> Kernel | None:
     """Rounding of numbers counted in steps, half to even; those without a step (0) pass; None where there is nothing to do.
 
-    >>> rounding(np.array([0.0, 1.0]))(np.array([0.3, 1.7]), np.empty(2)).tolist()
+    >>> rounder(np.array([0.0, 1.0]))(np.array([0.3, 1.7]), np.empty(2)).tolist()
     [0.3, 2.0]
     """
     coarse = steps > 0.0
@@ -28,18 +28,18 @@ def rounding(steps: Array) -> Kernel | None:
         return np.rint
     numbers = np.flatnonzero(coarse)
 
-    def some(values: Array, out: Array) -> Array:
+    def round_some(values: Array, out: Array) -> Array:
         np.copyto(out, values)
         out[numbers] = np.rint(values[numbers])
         return out
 
-    return some
+    return round_some
 
 
-def holding(reach: Array) -> Callable[[Array, Array], Array]:
+def reading_hold(reach: Array) -> Callable[[Array, Array], Array]:
     """Readings that are taken: in place of one that is no finite number or beyond its reach stands the one taken last.
 
-    >>> hold = holding(np.array([2.0, 2.0, 2.0]))
+    >>> hold = reading_hold(np.array([2.0, 2.0, 2.0]))
     >>> hold(np.array([1.5, np.nan, 3.0]), np.array([0.1, 0.2, 0.3])).tolist()
     [1.5, 0.2, 0.3]
     """
@@ -59,7 +59,7 @@ def converter(steps: Array) -> Kernel | None:
     >>> converter(np.array([0.0, 0.5]))(np.array([0.3, 1.7]), np.empty(2)).tolist()
     [0.3, 1.5]
     """
-    rounded = rounding(steps)
+    rounded = rounder(steps)
     if rounded is None:
         return None
     scale = np.where(steps > 0.0, steps, 1.0)
@@ -83,23 +83,23 @@ def limiter(amplifiers: Amplifiers, step: float) -> Callable[[Array, Array, Arra
     low, high, most = amplifiers.low, amplifiers.high, amplifiers.slew * step
     reach = np.empty(len(low))
 
-    def ranged(wanted: Array, last: Array, out: Array) -> Array:  # noqa: ARG001 one form for both
+    def limit_range(wanted: Array, last: Array, out: Array) -> Array:  # noqa: ARG001 one form for both
         np.minimum(wanted, high, out=out)
         return np.maximum(out, low, out=out)
 
-    def slowed(wanted: Array, last: Array, out: Array) -> Array:
+    def limit_speed(wanted: Array, last: Array, out: Array) -> Array:
         np.minimum(wanted, high, out=out)
         np.maximum(out, low, out=out)
         np.minimum(out, np.add(last, most, out=reach), out=out)
         return np.maximum(out, np.subtract(last, most, out=reach), out=out)
 
-    return slowed if np.any(np.isfinite(most)) else ranged
+    return limit_speed if np.any(np.isfinite(most)) else limit_range
 
 
 class Compensator:
     """The inverse of a Prandtl-Ishlinskii model that knows what was applied.
 
-    `volts` says which volts make a wanted stroke from where the model stands; `applied` moves the model to the volts that were given, be
+    `volts` says which volts make a wanted stroke from where the model stands; `move_to` moves the model to the volts that were given, be
     they limited or not. So the inverse does not lose the plant behind a limit. With plays z of the model, z' of its inverse and the
     partial sums P_j of weights p: z'_j = P_j z_j + sum_{i>j} p_i z_i (see `inverse_state`).
     """
@@ -130,7 +130,7 @@ class Compensator:
         np.vecdot(self._inverse.weights, plays, out=self._effective)
         return self._exit(self._effective, out)
 
-    def applied(self, volts: Array) -> None:
+    def move_to(self, volts: Array) -> None:
         """Move the model to the volts (axes,) that were given."""
         plays, bound, thresholds = self._plays, self._bound, self._model.thresholds
         effective = self._before(volts, self._effective)[:, None]

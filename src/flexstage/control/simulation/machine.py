@@ -8,13 +8,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from flexstage.analysis.workspace.drive import Drive
-from flexstage.base.finding import Finding, nearest, require
+from flexstage.base.finding import Finding, require, suggest_nearest
 from flexstage.base.number import Array
 from flexstage.control.hysteresis.inverse import inverse_findings
 from flexstage.control.hysteresis.prandtl_ishlinskii import PrandtlIshlinskii
 from flexstage.control.hysteresis.protocol import Hysteresis
-from flexstage.control.plants import Plant, held
-from flexstage.control.system import System, picked
+from flexstage.control.plants import Plant, zero_order_hold
+from flexstage.control.system import System, select
 from flexstage.models.linear.model import Channel
 
 
@@ -127,9 +127,9 @@ def machine(
     loop, power = given.coordinates, [given.hardware.amplifiers.get(name) for name in given.actuators]
     senses = [given.hardware.sensors.get(name) for name in given.gauges]
     nothing = np.full(len(power), np.nan)
-    plant = held(given)
+    plant = zero_order_hold(given)
     readings = tuple(f"gap.{name}" for name in given.gauges)
-    kept = plant if motions is None else picked(plant, plant.input_names, (*readings, *motions))
+    kept = plant if motions is None else select(plant, plant.input_names, (*readings, *motions))
     return Machine(
         plant=kept,
         controller=controller,
@@ -152,12 +152,12 @@ def machine(
     )
 
 
-def unlimited(given: Machine) -> Machine:
+def without_limits(given: Machine) -> Machine:
     """The same machine without anything that is not linear: no limits and ranges, no rounding, no hysteresis and no inverse.
 
     >>> from flexstage.control.example import integral_loop
     >>> example = integral_loop()
-    >>> bool(np.isinf(unlimited(machine(example.plant, example.controller)).amplifiers.high[0]))
+    >>> bool(np.isinf(without_limits(machine(example.plant, example.controller)).amplifiers.high[0]))
     True
     """
     count = len(given.actuators)
@@ -183,7 +183,7 @@ def _findings(given: Machine) -> Iterator[Finding]:
     known += [f"applied.{name}" for name in given.actuators]
     for name in controller.input_names:
         if name not in known:
-            yield Finding(name, "a controller has no such input", nearest(name, known))
+            yield Finding(name, "a controller has no such input", suggest_nearest(name, known))
     yield from _direct(given)
     yield from _electric(given)
 
@@ -191,7 +191,7 @@ def _findings(given: Machine) -> Iterator[Finding]:
 def _missing(kind: str, known: tuple[str, ...], wanted: tuple[str, ...]) -> Iterator[Finding]:
     for name in wanted:
         if name not in known:
-            yield Finding(f"{kind}: {name}", "there is no channel of this name", nearest(name, known))
+            yield Finding(f"{kind}: {name}", "there is no channel of this name", suggest_nearest(name, known))
 
 
 def _direct(given: Machine) -> Iterator[Finding]:

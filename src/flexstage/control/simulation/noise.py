@@ -8,7 +8,7 @@ from enum import IntEnum
 import numpy as np
 
 from flexstage.analysis.random_response import Spectrum
-from flexstage.base.finding import Finding, nearest, refuse, require
+from flexstage.base.finding import Finding, refuse, require, suggest_nearest
 from flexstage.base.number import Array
 from flexstage.base.stream import generator
 from flexstage.control.electronics import Amplifier, Sensor
@@ -25,7 +25,7 @@ class Stream(IntEnum):
     AMPLIFIER = 18
 
 
-def noises(given: Plant, floor: Mapping[str, Spectrum], samples: int, seed: int = 0) -> dict[str, Array]:
+def noise_series(given: Plant, floor: Mapping[str, Spectrum], samples: int, seed: int = 0) -> dict[str, Array]:
     """Series (samples,) by name, as `simulate` takes them: `ground.<c>` of the `floor`, noise of gauges and amplifiers of the hardware.
 
     Gaussian, each its own, the same for the same seed whatever else there is. The floor goes straight from sample to sample (see `ramped`
@@ -34,7 +34,7 @@ def noises(given: Plant, floor: Mapping[str, Spectrum], samples: int, seed: int 
     that the ground does not have.
 
     >>> from flexstage.control.example import integral_loop
-    >>> found = noises(integral_loop().plant, {"ground.x": Spectrum(1e-18)}, 1000, seed=3)
+    >>> found = noise_series(integral_loop().plant, {"ground.x": Spectrum(1e-18)}, 1000, seed=3)
     >>> list(found), round(float(np.std(found["ground.x"])) * 1e9)  # 1 nm/Hz^(1/2) over 5 kHz: 71 nm
     (['ground.x', 'noise.S'], 70)
     """
@@ -52,7 +52,7 @@ def noises(given: Plant, floor: Mapping[str, Spectrum], samples: int, seed: int 
             frequencies = np.fft.rfftfreq(_length(samples), step)
             sampled = resolvent(gauge_noise(given, name, density)).at(frequencies)
             aliased = 2.0 * step * np.sum(np.abs(sampled) ** 2, axis=(1, 2))
-            found[f"noise.{name}"] = shaped(aliased, samples, step, (seed, Stream.GAUGE, number))
+            found[f"noise.{name}"] = shape(aliased, samples, step, (seed, Stream.GAUGE, number))
     for number, name in enumerate(given.actuators):
         density = given.hardware.amplifiers.get(name, Amplifier()).noise_density
         if density:
@@ -71,16 +71,16 @@ def series(spectrum: Spectrum, samples: int, step: float, key: tuple[int, ...]) 
     """
     frequencies = np.fft.rfftfreq(_length(samples), step)
     density = np.concatenate([[0.0], spectrum.at(frequencies[1:])])
-    return shaped(density, samples, step, key)
+    return shape(density, samples, step, key)
 
 
-def shaped(density: Array, samples: int, step: float, key: tuple[int, ...]) -> Array:
+def shape(density: Array, samples: int, step: float, key: tuple[int, ...]) -> Array:
     """White Gaussian numbers shaped by a one-sided density (f,) at the frequencies of a series twice as long, of which half is taken.
 
     X(f) = W(f) (S(f) / 2 T)^(1/2), W the transform of unit white numbers: Gaussian and stationary, with exactly this density at its
     frequencies; cutting off half of it takes away that its end meets its beginning (Shinozuka and Deodatis, Appl. Mech. Rev. 44, 1991).
 
-    >>> flat = shaped(np.full(9, 2.0), 8, 1.0, (7,))  # one-sided 2 T: unit variance, the white numbers themselves
+    >>> flat = shape(np.full(9, 2.0), 8, 1.0, (7,))  # one-sided 2 T: unit variance, the white numbers themselves
     >>> bool(np.allclose(flat, generator(7).standard_normal(16)[:8]))
     True
     """
@@ -97,4 +97,4 @@ def _findings(given: Plant, floor: Mapping[str, Spectrum]) -> Iterator[Finding]:
     known = [name for name in given.system.input_names if name.startswith("ground.")]
     for name in floor:
         if name not in known:
-            yield Finding(name, "the ground has no such motion", nearest(name, known))
+            yield Finding(name, "the ground has no such motion", suggest_nearest(name, known))

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import numpy as np
 
-from flexstage.base.finding import nearest, refuse
+from flexstage.base.finding import refuse, suggest_nearest
 from flexstage.base.labelled import Matrix
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
@@ -51,7 +51,7 @@ class Simulated(InNotebook):
         """The true motion (n,) of that channel (`platform.x`) [m, rad]; raises `DesignError` where it was not kept."""
         known = [channel.name for channel in self.channels]
         if name not in known:
-            raise refuse(name, "this motion was not kept in the simulation", f"{nearest(name, known)}; name it among the motions")
+            raise refuse(name, "this motion was not kept in the simulation", f"{suggest_nearest(name, known)}; name it among the motions")
         return self.motions[:, known.index(name)]
 
     @property
@@ -74,7 +74,7 @@ class Excursion:
     unit: str
 
 
-def others(found: Simulated, moved: str) -> dict[str, Excursion]:
+def other_motions(found: Simulated, moved: str) -> dict[str, Excursion]:
     """The largest motion along every axis but the one that is `moved`: what it departs from its reference, or from rest.
 
     All of the platform's axes that were kept count, whether the loop controls them or not, and whatever their unit.
@@ -83,7 +83,7 @@ def others(found: Simulated, moved: str) -> dict[str, Excursion]:
     >>> from flexstage.control.simulation.machine import machine
     >>> from flexstage.control.simulation.run import simulate
     >>> example = integral_loop(gain=300.0)
-    >>> list(others(simulate(machine(example.plant, example.controller), np.full((10, 1), 1e-6)), "x"))
+    >>> list(other_motions(simulate(machine(example.plant, example.controller), np.full((10, 1), 1e-6)), "x"))
     ['y', 'z', 'rx', 'ry', 'rz']
     """
     known = {channel.name: channel.unit for channel in found.channels}
@@ -110,7 +110,7 @@ class Series:
     readings: Array
 
 
-def simulated(given: Machine, reference: Array, found: Series) -> Simulated:
+def simulation_result(given: Machine, reference: Array, found: Series) -> Simulated:
     """The result from what an engine computed.
 
     >>> from flexstage.control.example import integral_loop
@@ -118,7 +118,7 @@ def simulated(given: Machine, reference: Array, found: Series) -> Simulated:
     >>> example = integral_loop()
     >>> nothing = np.zeros((2, 1))
     >>> known = machine(example.plant, example.controller, motions=("platform.x",))
-    >>> simulated(known, nothing, Series(*(nothing,) * 7)).times.tolist()
+    >>> simulation_result(known, nothing, Series(*(nothing,) * 7)).times.tolist()
     [0.0, 0.0001]
     """
     amplifiers = given.amplifiers

@@ -10,11 +10,11 @@ import numpy as np
 from flexstage.base.finding import refuse
 from flexstage.base.number import Array
 from flexstage.control.simulation.actuation import Actuation
-from flexstage.control.simulation.fused import Fused, Parts, Row, fused, parts
 from flexstage.control.simulation.disturbances import Inflow, inflow
-from flexstage.control.simulation.kernel import holding, rounding
+from flexstage.control.simulation.fused import Fused, Parts, Row, fuse, parts
+from flexstage.control.simulation.kernel import reading_hold, rounder
 from flexstage.control.simulation.machine import Machine
-from flexstage.control.simulation.result import Series, Simulated, simulated
+from flexstage.control.simulation.result import Series, Simulated, simulation_result
 
 _BLOCK = 1024
 _NONE: Mapping[str, Array] = {}
@@ -25,36 +25,36 @@ def simulate(given: Machine, reference: Array, disturbances: Mapping[str, Array]
 
     `disturbances` are `ground.<c>`, `platform.fx` ... (further inputs of the plant), `noise.<gauge>` [m] added to a reading before it is
     rounded (not finite: that reading is lost), `noise.<actuator>` [m] added to a free stroke. Nothing here is random (see `noises`).
-    Between samples the plant is exact for strokes and wrenches that are held and a ground that goes straight (see `held`): there is no
-    error of integration. Raises `DesignError` for unknown names, lengths that differ, and where numbers grow beyond bounds.
+    Between samples the plant is exact for strokes and wrenches that are held and a ground that goes straight (see `zero_order_hold`): there
+    is no error of integration. Raises `DesignError` for unknown names, lengths that differ, and where numbers grow beyond bounds.
 
     >>> from flexstage.control.example import integral_loop
-    >>> from flexstage.control.simulation.machine import machine, unlimited
+    >>> from flexstage.control.simulation.machine import machine, without_limits
     >>> example = integral_loop()
-    >>> found = simulate(unlimited(machine(example.plant, example.controller)), np.full((2000, 1), 1e-6))
+    >>> found = simulate(without_limits(machine(example.plant, example.controller)), np.full((2000, 1), 1e-6))
     >>> round(float(found.pose[-1, 0]) * 1e9, 2)  # an integrator leaves no error: 1000 nm
     1000.0
     """
     linear = parts(given)
-    form, entering = fused(given, linear), inflow(given, reference, disturbances)
+    form, entering = fuse(given, linear), inflow(given, reference, disturbances)
     row, count = form.row, len(entering)
     rows, block = np.empty((count, row.width)), np.zeros((min(_BLOCK, count) + 1, row.width))
     stepper = _Stepper(given, form, block)
-    block[0, row.computed] = entering.first(form, linear)
+    block[0, row.next_values] = entering.first(form, linear)
     with np.errstate(over="ignore", invalid="ignore"):
         for start in range(0, count, _BLOCK):
             size = min(_BLOCK, count - start)
             stepper.advance(entering.block(form, linear, start, start + size))
             rows[start : start + size] = block[:size]
-            block[0, row.computed] = block[size, row.computed]
-            require_bounded(given, rows[start : start + size, row.own], start)
-    return simulated(given, entering.reference, _series(given, linear, form, entering, rows=rows))
+            block[0, row.next_values] = block[size, row.next_values]
+            require_finite(given, rows[start : start + size, row.bounded_states], start)
+    return simulation_result(given, entering.reference, _series(given, linear, form, entering, rows=rows))
 
 
 def _series(given: Machine, linear: Parts, form: Fused, entering: Inflow, *, rows: Array) -> Series:
     """What stands in the rows, and what follows from it without a loop: poses and motions."""
     row = form.row
-    sense = rounding(given.resolution) or _copied
+    sense = rounder(given.resolution) or _copy_row
     readings = sense(rows[:, row.reading].T, np.empty((len(form.scale), len(rows)))).T * form.scale
     stroke = rows[:, row.stroke] + entering.strokes
     return Series(
@@ -72,8 +72,8 @@ class _Stepper:
     """A machine that runs: its kernels, and the rows of a block as the places they read and write."""
 
     def __init__(self, given: Machine, form: Fused, block: Array) -> None:
-        self._sense = rounding(given.resolution) or _copied
-        self._hold, self._seen = holding(given.reach / form.scale), np.zeros(len(form.scale))
+        self._sense = rounder(given.resolution) or _copy_row
+        self._hold, self._seen = reading_hold(given.reach / form.scale), np.zeros(len(form.scale))
         self._proportional = form.proportional if np.any(form.proportional) else None
         self._actuate = Actuation(given)
         self._feeds_back = any(name.startswith("applied.") for name in given.controller.input_names)
@@ -102,22 +102,22 @@ class _Stepper:
 
 def _views(row: Row, block: Array) -> list[tuple[Array, ...]]:
     """The places of each sample, the last one that of what is computed for the next; made once, for a view costs as much as a sum."""
-    places = (row.reading, row.rounded, row.base, row.command, row.asked, row.given, row.applied, row.stroke, row.taken)
-    return [(*(now[place] for place in places), after[row.computed]) for now, after in pairwise(block)]
+    places = (row.reading, row.rounded, row.base, row.command, row.asked, row.given, row.applied, row.stroke, row.carried_over)
+    return [(*(now[place] for place in places), after[row.next_values]) for now, after in pairwise(block)]
 
 
-def _copied(values: Array, out: Array) -> Array:
+def _copy_row(values: Array, out: Array) -> Array:
     np.copyto(out, values)
     return out
 
 
-def require_bounded(given: Machine, rows: Array, start: int = 0) -> None:
+def require_finite(given: Machine, rows: Array, start: int = 0) -> None:
     """Raise `DesignError` where the last of the rows (n, ...) is not finite: when the loop was lost, counting from the sample `start`.
 
     >>> from flexstage.control.example import integral_loop
     >>> from flexstage.control.simulation.machine import machine
     >>> example = integral_loop()
-    >>> require_bounded(machine(example.plant, example.controller), np.zeros((2, 1)))
+    >>> require_finite(machine(example.plant, example.controller), np.zeros((2, 1)))
     """
     if np.all(np.isfinite(rows[-1])):
         return

@@ -8,17 +8,17 @@ from itertools import pairwise
 from flexstage.base.finding import Finding
 from flexstage.control.study.choices import Compensation, ControllerKind
 from flexstage.control.study.setup import (
-    Amplifying,
-    Commanded,
-    Controlling,
+    AmplifierSetup,
+    ControllerSetup,
     Floor,
-    Gauging,
+    GaugeSetup,
     HystereticStacks,
     LoopSetup,
     RasterMotion,
-    Shaking,
     SpiralMotion,
     StepMotion,
+    TrajectorySetup,
+    VibrationSetup,
 )
 from flexstage.mechanism.checks.value import number_findings
 from flexstage.mechanism.grammar import node_of
@@ -33,8 +33,8 @@ _GAINS = ("proportional", "integral", "derivative")
 def setup_findings(setup: LoopSetup) -> Iterator[Finding]:
     """All of it: numbers out of their bounds, and numbers that contradict one another; each with its key.
 
-    >>> from flexstage.control.study.setup import Gauging
-    >>> [str(each) for each in setup_findings(LoopSetup(gauges=Gauging(filter_order=4)))]
+    >>> from flexstage.control.study.setup import GaugeSetup
+    >>> [str(each) for each in setup_findings(LoopSetup(gauges=GaugeSetup(filter_order=4)))]
     ['gauges.filter_order: a filter of order 4 has no corner. Give filter_corner, or order 0.']
     """
     for address, value, node in node_of(LoopSetup).numbers(setup):
@@ -52,7 +52,7 @@ def setup_findings(setup: LoopSetup) -> Iterator[Finding]:
     yield from _trajectory(setup.trajectory)
 
 
-def _trajectory(found: Commanded) -> Iterator[Finding]:
+def _trajectory(found: TrajectorySetup) -> Iterator[Finding]:
     if isinstance(found, RasterMotion) and not 1 <= found.lines <= _MOST_LINES:
         yield Finding("trajectory.lines", f"found {found.lines}", f"Give between 1 and {_MOST_LINES}")
     pair = (found.fast, found.slow) if isinstance(found, RasterMotion) else None
@@ -67,14 +67,14 @@ def _trajectory(found: Commanded) -> Iterator[Finding]:
         )
 
 
-def _amplifier(found: Amplifying) -> Iterator[Finding]:
+def _amplifier(found: AmplifierSetup) -> Iterator[Finding]:
     if found.bandwidth is not None and found.resistance is not None:
         yield Finding("amplifier", "both its bandwidth and its resistance are given", "Give one of them: the other follows")
     if found.bits is not None and not 1 <= found.bits <= _MOST_BITS:
         yield Finding("amplifier.bits", f"found {found.bits}", f"Give between 1 and {_MOST_BITS}")
 
 
-def _gauges(found: Gauging) -> Iterator[Finding]:
+def _gauges(found: GaugeSetup) -> Iterator[Finding]:
     if not 0 <= found.filter_order <= _HIGHEST_ORDER:
         yield Finding("gauges.filter_order", f"found {found.filter_order}", f"Give an order from 0 (none) to {_HIGHEST_ORDER}")
     elif found.filter_order and found.filter_corner is None:
@@ -85,12 +85,12 @@ def _gauges(found: Gauging) -> Iterator[Finding]:
 
 def _floor(floor: Floor) -> Iterator[Finding]:
     for axis in ("x", "y", "z"):
-        shaking: Shaking | None = getattr(floor, axis)
+        shaking: VibrationSetup | None = getattr(floor, axis)
         if shaking is not None:
             yield from _shaking(f"floor.{axis}", shaking)
 
 
-def _shaking(where: str, found: Shaking) -> Iterator[Finding]:
+def _shaking(where: str, found: VibrationSetup) -> Iterator[Finding]:
     tables = {name: getattr(found, name) for name in ("acceleration", "velocity", "displacement") if getattr(found, name)}
     given = [*(["criterion"] if found.criterion is not None else []), *tables]
     if len(given) != 1:
@@ -111,7 +111,7 @@ def _shaking(where: str, found: Shaking) -> Iterator[Finding]:
         yield Finding(f"{where}.{name}", "a density of a table is 0", "Give positive ones: between points the table is straight in log-log")
 
 
-def _controller(found: Controlling) -> Iterator[Finding]:
+def _controller(found: ControllerSetup) -> Iterator[Finding]:
     tuned = [name for name in _TUNED if getattr(found, name) is not None]
     gains = [name for name in _GAINS if getattr(found, name) is not None]
     if found.kind in (ControllerKind.RESONANT, ControllerKind.LQG, ControllerKind.NONE) and gains:
@@ -119,7 +119,7 @@ def _controller(found: Controlling) -> Iterator[Finding]:
             f"controller.{gains[0]}", f"a controller of kind {found.kind.value} does not have it", "Leave it out, or take kind pi"
         )
     elif tuned and gains:
-        what = f"{tuned[0]} asks for tuning, and {', '.join(gains)} is given" if len(gains) == 1 else _both(tuned, gains)
+        what = f"{tuned[0]} asks for tuning, and {', '.join(gains)} is given" if len(gains) == 1 else _contradiction(tuned, gains)
         yield Finding("controller", what, "Give what the loop shall reach, or the numbers")
     if found.derivative is not None and found.kind is not ControllerKind.PID:
         yield Finding("controller.derivative", f"a controller of kind {found.kind.value} has none", "Take kind pid, or leave it out")
@@ -129,7 +129,7 @@ def _controller(found: Controlling) -> Iterator[Finding]:
         yield Finding(f"controller.{tuned[0]}", "there is no loop to be tuned", "Take another kind, or leave it out")
 
 
-def _both(tuned: list[str], gains: list[str]) -> str:
+def _contradiction(tuned: list[str], gains: list[str]) -> str:
     return f"{' and '.join(tuned)} ask for tuning, and {', '.join(gains)} are given"
 
 

@@ -21,12 +21,12 @@ from flexstage.control.controllers.notch import Notch, notch_of_mode
 from flexstage.control.controllers.pi import PI
 from flexstage.control.controllers.pid import PID
 from flexstage.control.study.choices import Axes, Compensation, ControllerKind, Notching
-from flexstage.control.study.resolve import Settled
-from flexstage.control.study.setup import Controlling, NotchAt
+from flexstage.control.study.resolve import ResolvedSetup
+from flexstage.control.study.setup import ControllerSetup, NotchAt
 from flexstage.control.system import System, static
 from flexstage.control.tuning.attempt import Task
 from flexstage.control.tuning.goal import Goal, Kind, Tuning
-from flexstage.control.tuning.tune import tuned
+from flexstage.control.tuning.tune import tune
 from flexstage.models.linear.model import Channel
 
 _KINDS: Mapping[ControllerKind, Kind] = MappingProxyType(
@@ -90,16 +90,16 @@ class Control:
         return None if self.tuning is None else self.tuning.bandwidth
 
 
-def controlled(given: Settled, gains: Array) -> Control:
+def make_controller(given: ResolvedSetup, gains: Array) -> Control:
     """The controller that a set-up asks for, `gains` (n, f) being the strokes by which poses are commanded.
 
     Raises `DesignError` for a bandwidth that cannot be reached, with the highest that can and why; for numbers that make no controller.
 
     >>> from flexstage.cases.parallelogram import parallelogram
-    >>> from flexstage.control.study.resolve import settled
+    >>> from flexstage.control.study.resolve import resolve
     >>> from flexstage.control.study.setup import LoopSetup
-    >>> given = settled(parallelogram(), LoopSetup(controller=Controlling(integral=300.0)))
-    >>> controlled(given, given.plant.coordinates.strokes).loops["x"].law
+    >>> given = resolve(parallelogram(), LoopSetup(controller=ControllerSetup(integral=300.0)))
+    >>> make_controller(given, given.plant.coordinates.strokes).loops["x"].law
     PI(proportional=0.0, integral=300.0, tracking=None)
     """
     asked = given.setup.controller
@@ -116,20 +116,20 @@ def controlled(given: Settled, gains: Array) -> Control:
         goal=Goal(asked.bandwidth, asked.sensitivity if asked.sensitivity is not None else _SENSITIVITY),
         notches=tuple(_notch(each, given) for each in asked.notches),
         automatic=asked.notching is Notching.AUTOMATIC,
-        expected=_expected(given) if asked.kind is ControllerKind.LQG else None,
+        expected=_expected_noise(given) if asked.kind is ControllerKind.LQG else None,
         feedforward=forward,
     )
-    found = tuned(given.plant, loops, task)
+    found = tune(given.plant, loops, task)
     return Control(found.controller.system(given.step), found.controller, found, gains)
 
 
-def _open_loop(given: Settled, gains: Array) -> System:
+def _open_loop(given: ResolvedSetup, gains: Array) -> System:
     """Strokes for the reference, whatever the gauges say."""
     loop = given.plant.coordinates
     return static(gains, channels("reference", loop), tuple(Channel(f"command.{name}", "m") for name in loop.actuators), given.step)
 
 
-def _loops(given: Settled, gains: Array) -> Loops:
+def _loops(given: ResolvedSetup, gains: Array) -> Loops:
     loop = given.plant.coordinates
     if given.setup.controller.coordinates is Axes.ACTUATOR:
         return actuator_loops(loop)
@@ -139,14 +139,14 @@ def _loops(given: Settled, gains: Array) -> Loops:
     return modal_loops(loop, np.asarray(found.platform_shapes)[:, list(loop_modes(found, loop))], gains)
 
 
-def _law(asked: Controlling) -> PI | PID:
+def _law(asked: ControllerSetup) -> PI | PID:
     proportional, integral = asked.proportional or 0.0, asked.integral or 0.0
     if asked.kind is ControllerKind.PI:
         return PI(proportional, integral)
     return PID(proportional, integral, asked.derivative or 0.0, asked.filter or _FILTER)
 
 
-def _notch(stated: NotchAt, given: Settled) -> Notch:
+def _notch(stated: NotchAt, given: ResolvedSetup) -> Notch:
     """As stated; without a depth it cancels the mode next to it."""
     if stated.depth is not None:
         return Notch(stated.frequency, stated.depth) if stated.damping is None else Notch(stated.frequency, stated.depth, stated.damping)
@@ -155,7 +155,7 @@ def _notch(stated: NotchAt, given: Settled) -> Notch:
     return notch_of_mode(stated.frequency, ratio) if stated.damping is None else notch_of_mode(stated.frequency, ratio, stated.damping)
 
 
-def _expected(given: Settled) -> Disturbances:
+def _expected_noise(given: ResolvedSetup) -> Disturbances:
     """Noise of the gauges as stated, with that of their steps, spread evenly up to half the rate; that of the strokes as stated."""
     hardware = given.plant.hardware
     gauges = {

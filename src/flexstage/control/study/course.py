@@ -11,13 +11,13 @@ import numpy as np
 
 from flexstage.analysis.workspace.polytope import reachable
 from flexstage.analysis.workspace.stroke import StrokeLimits
-from flexstage.base.finding import Finding, nearest, refuse, require
+from flexstage.base.finding import Finding, refuse, require, suggest_nearest
 from flexstage.base.labelled import Matrix
 from flexstage.base.number import Array
 from flexstage.base.quantity import TIME
 from flexstage.base.record import INNER
 from flexstage.control.coordinates import Coordinates
-from flexstage.control.study.setup import Commanded, FileMotion, Motion, RasterMotion, SineMotion, SpiralMotion, StepMotion
+from flexstage.control.study.setup import FileMotion, Motion, RasterMotion, SineMotion, SpiralMotion, StepMotion, TrajectorySetup
 from flexstage.control.trajectory.check import reach_findings, speed_findings
 from flexstage.control.trajectory.path import Trajectory, reference
 from flexstage.control.trajectory.profile import Limits
@@ -51,7 +51,7 @@ class Course:
         return isinstance(self.trajectory, Step)
 
 
-def courses(commanded: Commanded, coordinates: Coordinates) -> tuple[Course, ...]:
+def courses(commanded: TrajectorySetup, coordinates: Coordinates) -> tuple[Course, ...]:
     """The trajectories of a set-up for a loop of these coordinates: of a step, one for every motion.
 
     Raises `DesignError` for motions that the loop does not have, and for numbers that make no trajectory.
@@ -65,7 +65,7 @@ def courses(commanded: Commanded, coordinates: Coordinates) -> tuple[Course, ...
     """
     found = tuple(_courses(commanded, coordinates))
     require(
-        Finding(f"trajectory {each.name}", f"the stage has no motion {name}", nearest(name, coordinates.names))
+        Finding(f"trajectory {each.name}", f"the stage has no motion {name}", suggest_nearest(name, coordinates.names))
         for each in found
         for name in each.trajectory.coordinates
         if name not in coordinates.names
@@ -73,9 +73,9 @@ def courses(commanded: Commanded, coordinates: Coordinates) -> tuple[Course, ...
     return found
 
 
-def _courses(commanded: Commanded, coordinates: Coordinates) -> Iterator[Course]:
+def _courses(commanded: TrajectorySetup, coordinates: Coordinates) -> Iterator[Course]:
     if isinstance(commanded, StepMotion):
-        for name, size in (_stated(commanded.by) or _usual(coordinates.names)).items():
+        for name, size in (_stated_motions(commanded.by) or _default_motions(coordinates.names)).items():
             step = Step({name: size}, limits=_limits(commanded))
             yield Course(name, step, (name,), step.duration)
     elif isinstance(commanded, RasterMotion):
@@ -90,14 +90,14 @@ def _courses(commanded: Commanded, coordinates: Coordinates) -> Iterator[Course]
         spiral = Spiral(commanded.radius, commanded.pitch, EvenSpeed(commanded.speed), ramp, coordinates=pair)
         yield Course("spiral", spiral, pair, spiral.duration, pair)
     elif isinstance(commanded, SineMotion):
-        sizes = _stated(commanded.by) or dict([next(iter(_usual(coordinates.names).items()))])
+        sizes = _stated_motions(commanded.by) or dict([next(iter(_default_motions(coordinates.names).items()))])
         sine = Sine(sizes, commanded.frequency, fade=_FADED / commanded.frequency)
         yield Course("sine", sine, tuple(sizes), commanded.periods / commanded.frequency)
     else:
-        yield _tabled(commanded)
+        yield _course_of_file(commanded)
 
 
-def _tabled(commanded: FileMotion) -> Course:
+def _course_of_file(commanded: FileMotion) -> Course:
     if not Path(commanded.file).is_file():
         raise refuse(commanded.file, "there is no such file", "Check the path: a CSV table of times and poses")
     table = from_file(commanded.file)
@@ -109,11 +109,11 @@ def _plane(names: tuple[str, ...]) -> tuple[str, str] | None:
     return (lengths[0], lengths[1]) if len(lengths) > 1 else None
 
 
-def _stated(by: Motion) -> dict[str, float]:
+def _stated_motions(by: Motion) -> dict[str, float]:
     return {name: getattr(by, name) for name in COMPONENTS if getattr(by, name) is not None}
 
 
-def _usual(names: tuple[str, ...]) -> dict[str, float]:
+def _default_motions(names: tuple[str, ...]) -> dict[str, float]:
     return {name: _ANGLE if name.startswith("r") else _LENGTH for name in names}
 
 

@@ -49,10 +49,10 @@ def loads_setup(text: str, *, where: str = "text") -> LoopSetup:
     try:
         return record_from(LoopSetup, raw, FORMAT)
     except DesignError as error:
-        raise DesignError(with_lines(map(_renamed, error.findings), text, where)) from None
+        raise DesignError(with_lines(map(_name_renamed_keys, error.findings), text, where)) from None
 
 
-def _renamed(finding: Finding) -> Finding:
+def _name_renamed_keys(finding: Finding) -> Finding:
     """A finding on a key by its name of before says the name of now."""
     return replace(finding, advice=f"It is called {_RENAMED[finding.where]}") if finding.where in _RENAMED else finding
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from flexstage.analysis.random_response import Rate, Spectrum
 from flexstage.control.study.choices import Criterion
-from flexstage.control.study.setup import Floor, Shaking
+from flexstage.control.study.setup import Floor, VibrationSetup
 
 _THIRD_OCTAVE = np.log(2.0) / 3.0
 _VELOCITIES = MappingProxyType(
@@ -55,14 +55,14 @@ def criterion_spectrum(criterion: Criterion) -> Spectrum:
 def floor_spectra(floor: Floor) -> dict[str, Spectrum]:
     """Spectra by input (`ground.x`, ...) of a set-up's floor.
 
-    >>> sorted(floor_spectra(Floor(z=Shaking(criterion=Criterion.VC_C))))
+    >>> sorted(floor_spectra(Floor(z=VibrationSetup(criterion=Criterion.VC_C))))
     ['ground.z']
     """
     by_axis = {axis: getattr(floor, axis) for axis in ("x", "y", "z")}
     return {f"ground.{axis}": _spectrum(shaking) for axis, shaking in by_axis.items() if shaking is not None}
 
 
-def _spectrum(shaking: Shaking) -> Spectrum:
+def _spectrum(shaking: VibrationSetup) -> Spectrum:
     if shaking.criterion is not None:
         return criterion_spectrum(shaking.criterion)
     kinds = ((Rate.ACCELERATION, shaking.acceleration), (Rate.VELOCITY, shaking.velocity), (Rate.VALUE, shaking.displacement))

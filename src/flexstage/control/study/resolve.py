@@ -13,7 +13,7 @@ from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.number import Table
 from flexstage.control.electronics import AmplifierSettings, GaugeSettings, Hardware, hardware
 from flexstage.control.plants import Plant, plant
-from flexstage.control.reduction import reduced
+from flexstage.control.reduction import reduce_modes
 from flexstage.control.study.checks import setup_findings
 from flexstage.control.study.floor import floor_spectra
 from flexstage.control.study.setup import LoopSetup
@@ -31,7 +31,7 @@ _FELT = 0.01
 
 
 @dataclass(frozen=True, eq=False)
-class Settled:
+class ResolvedSetup:
     """What a set-up means for a stage: its kinematics, its linear model by the set-up's model, the plant, the floor's spectra by input.
 
     `plant` has the modes that its loop feels, or as many as the set-up says; `whole` all below half the sampling rate.
@@ -58,14 +58,14 @@ class Settled:
         return 1.0 / self.rate
 
 
-def settled(mechanism: Mechanism, setup: LoopSetup) -> Settled:
+def resolve(mechanism: Mechanism, setup: LoopSetup) -> ResolvedSetup:
     """Settle a set-up for a stage.
 
     Raises `DesignError` with all findings: of the set-up itself, gauges that do not tell the pose, actuators that cannot make it, stacks
     that do not state what amplifiers need, sampling too slow for the platform's modes, a model without stiffness.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> found = settled(double_triangle(), LoopSetup())
+    >>> found = resolve(double_triangle(), LoopSetup())
     >>> found.rate, found.plant.coordinates.names, round(found.highest, 1)
     (10000.0, ('x', 'y', 'z', 'rx', 'ry', 'rz'), 173.1)
     """
@@ -73,31 +73,31 @@ def settled(mechanism: Mechanism, setup: LoopSetup) -> Settled:
     kinematics, model = ideal(mechanism), read(mechanism, setup.model)
     if model is None:
         raise refuse("model", "rigid bodies have no stiffness and no modes", "Take lumped or mapped")
-    highest = highest_moved(mechanism, model, len(kinematics.coordinates))
-    rate = setup.rate if setup.rate is not None else usual_rate(highest)
+    highest = highest_platform_mode(mechanism, model, len(kinematics.coordinates))
+    rate = setup.rate if setup.rate is not None else default_rate(highest)
     delay = setup.delay if setup.delay is not None else 1.0 / rate
     require([*_rate_findings(rate, highest), *_delay_findings(delay * rate)])
     given = _hardware(mechanism, setup, rate, delay)
     whole = plant(model, kinematics, given)
-    found = reduced(whole, _FELT) if setup.modes is None else plant(model, kinematics, given, modes=setup.modes)
-    return Settled(mechanism, setup, kinematics, model, found, whole, Table(floor_spectra(setup.floor)), highest)
+    found = reduce_modes(whole, _FELT) if setup.modes is None else plant(model, kinematics, given, modes=setup.modes)
+    return ResolvedSetup(mechanism, setup, kinematics, model, found, whole, Table(floor_spectra(setup.floor)), highest)
 
 
-def highest_moved(mechanism: Mechanism, model: LinearModel, count: int) -> float:
+def highest_platform_mode(mechanism: Mechanism, model: LinearModel, count: int) -> float:
     """The highest [Hz] of the `count` lowest platform modes: those that move as the stage is meant to.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.lumped import lumped
-    >>> round(highest_moved(parallelogram(), lumped(parallelogram()), 1), 1)
+    >>> round(highest_platform_mode(parallelogram(), lumped(parallelogram()), 1), 1)
     875.4
     """
     return float(np.sort(platform_modes(mechanism, model).platform_frequencies)[:count][-1])
 
 
-def usual_rate(highest: float) -> float:
+def default_rate(highest: float) -> float:
     """The sampling rate [Hz] where none is stated: 10 kHz, or ten times the highest platform mode, rounded up to 1, 2 or 5 times a power.
 
-    >>> usual_rate(173.0), usual_rate(2853.9)
+    >>> default_rate(173.0), default_rate(2853.9)
     (10000.0, 50000.0)
     """
     wanted = max(_USUAL, _OVER_HIGHEST * highest)

@@ -15,8 +15,8 @@ from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, first_design
 from flexstage.base.quantity import LENGTH
 from flexstage.base.record import VIEW
-from flexstage.control.compensation import StaticError, compensated, static_error, uncompensated
-from flexstage.control.study.resolve import Settled
+from flexstage.control.compensation import StaticError, ideal_compensation, lost_motion_compensation, static_error
+from flexstage.control.study.resolve import ResolvedSetup
 from flexstage.models.theory import Model
 
 
@@ -38,26 +38,26 @@ class RestErrors(InNotebook):
     load_strokes: Annotated[Array, LENGTH]
 
 
-def rest_errors(given: Settled, lost: LostMotion) -> RestErrors:
+def rest_errors(given: ResolvedSetup, lost: LostMotion) -> RestErrors:
     """Errors at rest of a settled set-up.
 
     >>> from flexstage.analysis.lost_motion import lost_motion
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> from flexstage.control.study.resolve import settled
+    >>> from flexstage.control.study.resolve import resolve
     >>> from flexstage.control.study.setup import LoopSetup
-    >>> given = settled(double_triangle(), LoopSetup())
+    >>> given = resolve(double_triangle(), LoopSetup())
     >>> found = rest_errors(given, lost_motion(given.kinematics, given.model))
     >>> round(found.ideal_map.error.at("z", "z").item(), 3), found.lost_motion_gains.largest < 1e-9
     (0.032, True)
     """
     kinematics = given.kinematics
     load = np.real(first_design(deflection(given.mechanism, given.model).total, 1))
-    carrying = compensated(lost, kinematics, load)
-    other, model = _other(given)
+    carrying = lost_motion_compensation(lost, kinematics, load)
+    other, model = _other_gains(given)
     return RestErrors(
-        ideal_map=static_error(uncompensated(kinematics), kinematics, lost.gain, load),
-        lost_motion_gains=static_error(compensated(lost, kinematics), kinematics, lost.gain, load),
-        other_gains=None if other is None else static_error(compensated(other, kinematics), kinematics, lost.gain, load),
+        ideal_map=static_error(ideal_compensation(kinematics), kinematics, lost.gain, load),
+        lost_motion_gains=static_error(lost_motion_compensation(lost, kinematics), kinematics, lost.gain, load),
+        other_gains=None if other is None else static_error(lost_motion_compensation(other, kinematics), kinematics, lost.gain, load),
         other_model=model,
         load=load,
         load_left=static_error(carrying, kinematics, lost.gain, load).offset,
@@ -65,7 +65,7 @@ def rest_errors(given: Settled, lost: LostMotion) -> RestErrors:
     )
 
 
-def _other(given: Settled) -> tuple[LostMotion | None, Model]:
+def _other_gains(given: ResolvedSetup) -> tuple[LostMotion | None, Model]:
     other = Model.MAPPED if given.setup.model is Model.LUMPED else Model.LUMPED
     try:
         linear = read(given.mechanism, other)

@@ -18,15 +18,15 @@ from flexstage.base.number import Array
 from flexstage.base.quantity import TIME
 from flexstage.base.record import INNER, VIEW
 from flexstage.control.closed import Loop
-from flexstage.control.creep_plant import with_creep
+from flexstage.control.creep_plant import add_creep
 from flexstage.control.simulation.machine import Machine, machine
-from flexstage.control.simulation.noise import noises
-from flexstage.control.simulation.result import Excursion, Simulated, StepFigures, others, step_figures, tracking
+from flexstage.control.simulation.noise import noise_series
+from flexstage.control.simulation.result import Excursion, Simulated, StepFigures, other_motions, step_figures, tracking
 from flexstage.control.simulation.run import simulate
 from flexstage.control.study.choices import Compensation
 from flexstage.control.study.control import Control
 from flexstage.control.study.course import Course, course_cautions, course_findings, courses, sampled_course
-from flexstage.control.study.resolve import Settled
+from flexstage.control.study.resolve import ResolvedSetup
 from flexstage.control.study.stacks import Stacks
 
 _TIME_CONSTANTS = 8.0
@@ -83,7 +83,7 @@ class Run:
             settling=float(self.figures.settling[index]),
             overshoot=float(self.figures.overshoot[index]),
             residual=float(self.figures.residual[index]),
-            others=others(seen, channel.name),
+            others=other_motions(seen, channel.name),
             largest=np.max(np.abs(seen.true_error), axis=0),
         )
 
@@ -93,7 +93,9 @@ class Run:
         return [channel.name for channel in self.simulated.coordinates].index(self.course.moved[0])
 
 
-def runs(given: Settled, control: Control, closed: Loop, stacks: Stacks | None = None, offset: Array | None = None) -> tuple[Run, ...]:
+def runs(
+    given: ResolvedSetup, control: Control, closed: Loop, stacks: Stacks | None = None, offset: Array | None = None
+) -> tuple[Run, ...]:
     """Simulate every course of a set-up.
 
     Steps are simulated without noise, all else with it; gauges are read in their steps, amplifiers keep to their limits, and the stacks
@@ -103,11 +105,11 @@ def runs(given: Settled, control: Control, closed: Loop, stacks: Stacks | None =
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.control.closed import loop
-    >>> from flexstage.control.study.control import controlled
-    >>> from flexstage.control.study.resolve import settled
-    >>> from flexstage.control.study.setup import Controlling, LoopSetup
-    >>> given = settled(parallelogram(), LoopSetup(controller=Controlling(integral=300.0)))
-    >>> control = controlled(given, given.plant.coordinates.strokes)
+    >>> from flexstage.control.study.control import make_controller
+    >>> from flexstage.control.study.resolve import resolve
+    >>> from flexstage.control.study.setup import ControllerSetup, LoopSetup
+    >>> given = resolve(parallelogram(), LoopSetup(controller=ControllerSetup(integral=300.0)))
+    >>> control = make_controller(given, given.plant.coordinates.strokes)
     >>> found = runs(given, control, loop(given.plant, control.system))
     >>> found[0].course.name, bool(found[0].figures.settling[0] < 0.03)
     ('x', True)
@@ -115,7 +117,7 @@ def runs(given: Settled, control: Control, closed: Loop, stacks: Stacks | None =
     loop = given.plant.coordinates
     asked = courses(given.setup.trajectory, loop)
     rest = rest_time(closed, ringing=Compensation.REFERENCE in given.setup.compensate)
-    sampled = [sampled_course(each, loop, given.step, given.setup.seconds or _long(each, rest)) for each in asked]
+    sampled = [sampled_course(each, loop, given.step, given.setup.seconds or _simulated_time(each, rest)) for each in asked]
     gains = Matrix(control.gains, loop.actuators, loop.names, given.kinematics.mapping.unit)
     known = stroke_limits(given.mechanism)
     taken = np.zeros(len(known.actuators)) if offset is None else offset
@@ -133,23 +135,23 @@ def runs(given: Settled, control: Control, closed: Loop, stacks: Stacks | None =
     )
 
 
-def driven_machine(given: Settled, control: Control, stacks: Stacks | None = None) -> Machine:
+def driven_machine(given: ResolvedSetup, control: Control, stacks: Stacks | None = None) -> Machine:
     """The loop as it is simulated: hardware with its limits and steps, and hysteretic `stacks` that may creep."""
     if stacks is None:
         return machine(given.plant, control.system, _electric(given))
     inverted = stacks.model if Compensation.HYSTERESIS in given.setup.compensate else None
-    plant = given.plant if stacks.creep is None else with_creep(given.plant, stacks.creep)
+    plant = given.plant if stacks.creep is None else add_creep(given.plant, stacks.creep)
     return machine(plant, control.system, stacks.electric, hysteresis=stacks.plant, compensation=inverted)
 
 
-def _electric(given: Settled) -> Drive | None:
+def _electric(given: ResolvedSetup) -> Drive | None:
     """Voltages of the stacks, where all state them."""
     piezos = dict(piezo_stacks(given.mechanism))
     stated = all(each.voltage_low is not None and each.voltage_high is not None for each in piezos.values())
     return drive(given.mechanism) if stated and tuple(piezos) == given.plant.actuators else None
 
 
-def at_rest(given: Settled, control: Control, closed: Loop) -> Simulated | None:
+def simulate_rest(given: ResolvedSetup, control: Control, closed: Loop) -> Simulated | None:
     """The loop holding still in all its noise, from when it has got used to it; `None` where there is no noise but rounding."""
     hardware = given.plant.hardware
     noisy = given.floor or any(each.noise_density for each in (*hardware.sensors.values(), *hardware.amplifiers.values()))
@@ -157,7 +159,7 @@ def at_rest(given: Settled, control: Control, closed: Loop) -> Simulated | None:
         return None
     rest = rest_time(closed)
     count = int(np.clip((_STILL * rest) / given.step, _FEWEST, _MOST))
-    return _shaken(given, driven_machine(given, control), np.zeros((count, len(given.plant.coordinates.names))), rest)
+    return _simulate_noise(given, driven_machine(given, control), np.zeros((count, len(given.plant.coordinates.names))), rest)
 
 
 @dataclass(frozen=True, eq=False)
@@ -174,7 +176,7 @@ class RestRms:
     seconds: float
 
 
-def rest_rms(given: Settled, control: Control, closed: Loop) -> RestRms:
+def rest_rms(given: ResolvedSetup, control: Control, closed: Loop) -> RestRms:
     """The rms at rest of several simulations, each from its own random numbers, for noise that no budget adds up.
 
     Each holds another place within the gauges' steps: on the middle of a step a loop rests, near its edge it wanders to and fro.
@@ -186,7 +188,7 @@ def rest_rms(given: Settled, control: Control, closed: Loop) -> RestRms:
     for seed in range(given.setup.seed, given.setup.seed + _REPEATED):
         within = np.random.default_rng([seed, _REPEATED]).uniform(-0.5, 0.5, to_pose.shape[1]) * computed.resolution
         held = to_pose @ within
-        found = _shaken(replace(given, setup=replace(given.setup, seed=seed)), computed, np.tile(held, (count, 1)), rest, held)
+        found = _simulate_noise(replace(given, setup=replace(given.setup, seed=seed)), computed, np.tile(held, (count, 1)), rest, held)
         squares.append(np.mean(found.true_error**2, axis=0))
     mean = np.mean(squares, axis=0)
     reach = scipy.special.stdtrit(_REPEATED - 1, 0.975) * np.std(squares, axis=0, ddof=1) / np.sqrt(_REPEATED)
@@ -194,7 +196,7 @@ def rest_rms(given: Settled, control: Control, closed: Loop) -> RestRms:
     return RestRms(np.sqrt(mean), low, high, _REPEATED, count * given.step)
 
 
-def _long(course: Course, rest: float) -> float:
+def _simulated_time(course: Course, rest: float) -> float:
     """A course, and a rest: of a step to see it settle, of a trajectory a fifth at most."""
     return course.duration + (rest if course.is_step else min(rest, 0.2 * course.duration))
 
@@ -217,13 +219,13 @@ def rest_time(closed: Loop, *, ringing: bool = False) -> float:
     return float(next(step * power for step in (1.0, 2.0, 5.0, 10.0) if step * power >= wanted * (1.0 - 1e-9)))
 
 
-def _shaken(given: Settled, computed: Machine, poses: Array, rest: float, held: Array | float = 0.0) -> Simulated:
+def _simulate_noise(given: ResolvedSetup, computed: Machine, poses: Array, rest: float, held: Array | float = 0.0) -> Simulated:
     """A simulation in noise, begun early enough that the loop has got used to it, and to the pose it is `held` at before.
 
     The floor begins to shake gently, not at once.
     """
     lead = int(rest / given.step)
-    noise = noises(given.plant, given.floor, lead + len(poses), given.setup.seed)
+    noise = noise_series(given.plant, given.floor, lead + len(poses), given.setup.seed)
     if not noise and not np.any(held):
         return simulate(computed, poses)
     before = np.zeros((lead, poses.shape[1])) + held
@@ -240,13 +242,13 @@ def _after(found: Simulated, lead: int) -> Simulated:
     return replace(found, **(kept | {"times": found.times[lead:] - found.times[lead]}))
 
 
-def _run(given: Settled, course: Course, computed: Machine, cautions: tuple[Finding, ...], *, poses: Array, rest: float) -> Run:
-    found = simulate(computed, poses) if course.is_step else _shaken(given, computed, poses, rest)
+def _run(given: ResolvedSetup, course: Course, computed: Machine, cautions: tuple[Finding, ...], *, poses: Array, rest: float) -> Run:
+    found = simulate(computed, poses) if course.is_step else _simulate_noise(given, computed, poses, rest)
     figures = step_figures(found, _BAND) if course.is_step else None
-    return Run(course, found, figures, tracking(found), (*cautions, *_lost(course, found, computed)))
+    return Run(course, found, figures, tracking(found), (*cautions, *_range_cautions(course, found, computed)))
 
 
-def _lost(course: Course, found: Simulated, computed: Machine) -> Iterator[Finding]:
+def _range_cautions(course: Course, found: Simulated, computed: Machine) -> Iterator[Finding]:
     """Gauges that went beyond their range."""
     for name, share, reach in zip(found.gauges, found.out_of_range, computed.reach, strict=True):
         if share > 0.0:

@@ -50,7 +50,7 @@ class Motion:
 
 
 @dataclass(frozen=True)
-class Amplifying:
+class AmplifierSetup:
     """Amplifiers and their converter: first order on the stack's capacitance; absent all of this they are ideal.
 
     `bandwidth` as stated, or that of the output `resistance`, 1/(2 pi R C). `current` is the largest they give and `slew` their fastest
@@ -67,7 +67,7 @@ class Amplifying:
 
 
 @dataclass(frozen=True)
-class Gauging:
+class GaugeSetup:
     """Gauges: white `noise`, steps of `resolution`, `bandwidth`; absent: what each gauge of the design states.
 
     `filter_order` and `filter_corner` are those of an analogue low-pass (Butterworth) before sampling (order 0: none).
@@ -81,7 +81,7 @@ class Gauging:
 
 
 @dataclass(frozen=True)
-class Shaking:
+class VibrationSetup:
     """The floor along one axis: a `criterion` by name, or an amplitude density of `acceleration`, `velocity` or `displacement`.
 
     One density alone is white; with `frequencies`, as many as there are densities, straight between them in log-log and none outside.
@@ -98,9 +98,9 @@ class Shaking:
 class Floor:
     """The floor's vibration by axis; absent: it stands still."""
 
-    x: Shaking | None = None
-    y: Shaking | None = None
-    z: Shaking | None = None
+    x: VibrationSetup | None = None
+    y: VibrationSetup | None = None
+    z: VibrationSetup | None = None
 
 
 @dataclass(frozen=True)
@@ -113,7 +113,7 @@ class NotchAt:
 
 
 @dataclass(frozen=True)
-class Controlling:
+class ControllerSetup:
     """The controller: its `kind`, in which coordinates, and either what it shall reach or its numbers.
 
     What it shall reach: `bandwidth` (where the open loop's gain passes 1; absent: the highest that `sensitivity` allows) and
@@ -213,7 +213,7 @@ class FileMotion:
     file: str
 
 
-Commanded: TypeAlias = StepMotion | RasterMotion | SpiralMotion | SineMotion | FileMotion
+TrajectorySetup: TypeAlias = StepMotion | RasterMotion | SpiralMotion | SineMotion | FileMotion
 
 
 @dataclass(frozen=True)
@@ -235,12 +235,12 @@ class LoopSetup:
     seconds: Annotated[float, TIME, POSITIVE] | None = None
     seed: int = 0
     compensate: tuple[Compensation, ...] = (Compensation.LOST_MOTION,)
-    amplifier: Amplifying = field(default_factory=Amplifying)
-    gauges: Gauging = field(default_factory=Gauging)
+    amplifier: AmplifierSetup = field(default_factory=AmplifierSetup)
+    gauges: GaugeSetup = field(default_factory=GaugeSetup)
     floor: Floor = field(default_factory=Floor)
-    controller: Controlling = field(default_factory=Controlling)
+    controller: ControllerSetup = field(default_factory=ControllerSetup)
     hysteresis: HystereticStacks | None = None
-    trajectory: Commanded = field(default_factory=StepMotion)
+    trajectory: TrajectorySetup = field(default_factory=StepMotion)
 
     def to_json(self) -> dict[str, Any]:
         """The keys of its file with plain values, SI."""

@@ -21,8 +21,8 @@ from flexstage.control.hysteresis.inverse import hysteresis_inverse, inverse_sta
 from flexstage.control.hysteresis.prandtl_ishlinskii import PrandtlIshlinskii
 from flexstage.control.hysteresis.protocol import Hysteresis
 from flexstage.control.hysteresis.scaled import Stacks as Ranges
-from flexstage.control.hysteresis.scaled import scaled
-from flexstage.control.hysteresis.shape import Range, settled_loop
+from flexstage.control.hysteresis.scaled import scale_to_stacks
+from flexstage.control.hysteresis.shape import Range, major_loop
 from flexstage.control.hysteresis.stack import load_hysteresis
 from flexstage.control.study.choices import StackKind
 from flexstage.control.study.setup import HystereticStacks
@@ -108,15 +108,15 @@ def stacks_of(mechanism: Mechanism, given: HystereticStacks) -> Stacks:
     low, high = (np.asarray(each, dtype=float) for each in (electric.low, electric.high))
     ranges = list(zip(low.tolist(), high.tolist(), strict=True))
     strokes = np.asarray(electric.gain, dtype=float) * (high - low)
-    known, ends, law = _known(given)
-    model = scaled(known, ends or ranges[0], Ranges(low, high, strokes))
-    width = settled_widths(model, ranges)
+    known, ends, law = _known_model(given)
+    model = scale_to_stacks(known, ends or ranges[0], Ranges(low, high, strokes))
+    width = loop_widths(model, ranges)
     kind = given.plant or (StackKind.BOUC_WEN if given.file is None else StackKind.MODEL)
     plant = model if kind is StackKind.MODEL else _bouc_wen(strokes, ranges, width if given.width is None else given.width)
-    return Stacks(electric, plant, model, settled_widths(plant, ranges), _creep(law, len(strokes)))
+    return Stacks(electric, plant, model, loop_widths(plant, ranges), _creep(law, len(strokes)))
 
 
-def _known(given: HystereticStacks) -> tuple[PrandtlIshlinskii, Range | None, LogCreep | None]:
+def _known_model(given: HystereticStacks) -> tuple[PrandtlIshlinskii, Range | None, LogCreep | None]:
     """A model of one stack, the volts it is of (`None`: not stated, as many as the stage's first), and its creep."""
     stated = LogCreep(given.creep) if given.creep else None
     if given.file is not None:
@@ -148,22 +148,22 @@ def _bouc_wen(strokes: Array, ranges: Sequence[Range], width: Array | float) -> 
     return BoucWen(*(np.concatenate([getattr(each, name) for each in single]) for name in ("gain", "lag", "beta", "gamma")))
 
 
-def settled_widths(model: Hysteresis, ranges: Sequence[Range]) -> Array:
+def loop_widths(model: Hysteresis, ranges: Sequence[Range]) -> Array:
     """Widths (n,) of each stack's settled loop over its own volts.
 
     >>> from flexstage.control.hysteresis.bouc_wen import bouc_wen
-    >>> settled_widths(bouc_wen(150e-6, (0.0, 1000.0), 0.1), [(0.0, 1000.0)]).round(3).tolist()
+    >>> loop_widths(bouc_wen(150e-6, (0.0, 1000.0), 0.1), [(0.0, 1000.0)]).round(3).tolist()
     [0.1]
     """
-    loops = {volts: settled_loop(model, volts).width for volts in dict.fromkeys(ranges)}
+    loops = {volts: major_loop(model, volts).width for volts in dict.fromkeys(ranges)}
     return np.array([loops[volts][axis] for axis, volts in enumerate(ranges)])
 
 
-def swept(given: Stacks) -> Sweep:
+def sweep_stacks(given: Stacks) -> Sweep:
     """The stacks driven to and fro in open loop by wanted strokes, 60 % of the range and less and less, from the bias.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> found = swept(stacks_of(double_triangle(), HystereticStacks(width=0.15)))
+    >>> found = sweep_stacks(stacks_of(double_triangle(), HystereticStacks(width=0.15)))
     >>> bool(np.all(found.rms_error_inverse < 0.2 * found.rms_error))
     True
     """
@@ -176,11 +176,11 @@ def swept(given: Stacks) -> Sweep:
     at_rest = model.step(start, bias)[1]
     back = hysteresis_inverse(model)
     volts = back.run(wanted + at_rest, inverse_state(model, start))
-    came = [_driven(plant, each, bias) for each in (bias + wanted / gain, volts)]
+    came = [_drive(plant, each, bias) for each in (bias + wanted / gain, volts)]
     return Sweep(electric.actuators, given.width, wanted, came[0], came[1])
 
 
-def _driven(plant: Hysteresis, volts: Array, bias: Array) -> Array:
+def _drive(plant: Hysteresis, volts: Array, bias: Array) -> Array:
     """Strokes from those at the bias."""
     start = plant.start(bias)
     return plant.run(volts, start) - plant.step(start, bias)[1]

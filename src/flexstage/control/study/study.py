@@ -25,12 +25,12 @@ from flexstage.control.simulation.result import Simulated
 from flexstage.control.stability import Verdict, require_stable, verdict
 from flexstage.control.stability_margins import Bandwidths, Margins, Peaks, bandwidths, crosstalk, margins, peaks
 from flexstage.control.study.choices import Compensation, ControllerKind
-from flexstage.control.study.control import Control, controlled
+from flexstage.control.study.control import Control, make_controller
+from flexstage.control.study.resolve import ResolvedSetup, resolve
 from flexstage.control.study.rest import RestErrors, rest_errors
-from flexstage.control.study.runs import RestRms, Run, at_rest, rest_rms, runs
-from flexstage.control.study.resolve import Settled, settled
+from flexstage.control.study.runs import RestRms, Run, rest_rms, runs, simulate_rest
 from flexstage.control.study.setup import LoopSetup
-from flexstage.control.study.stacks import Stacks, Sweep, stacks_of, swept
+from flexstage.control.study.stacks import Stacks, Sweep, stacks_of, sweep_stacks
 from flexstage.experiment.pipeline import Told
 from flexstage.mechanism.mechanism import Mechanism
 
@@ -51,7 +51,7 @@ class LoopStudy(InNotebook):
     are what one should know of all this.
     """
 
-    settled: Annotated[Settled, INNER]
+    settled: Annotated[ResolvedSetup, INNER]
     lost: Annotated[LostMotion, INNER]
     controller: Control
     closed: Annotated[Loop, INNER]
@@ -105,7 +105,7 @@ class LoopStudy(InNotebook):
 def loop_study(mechanism: Mechanism, setup: LoopSetup | None = None, *, tell: Told | None = None) -> LoopStudy:
     """Close the loop of a stage as a set-up says; with everything left out it says what is usual.
 
-    Raises `DesignError` with all findings: see `settled`, `controlled` and `runs`; for a loop that is unstable, with what makes it so.
+    Raises `DesignError` with all findings: see `resolve`, `make_controller` and `runs`; for a loop that is unstable, with what makes it so.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> found = loop_study(parallelogram())
@@ -113,9 +113,9 @@ def loop_study(mechanism: Mechanism, setup: LoopSetup | None = None, *, tell: To
     (True, 'x')
     """
     said = _Steps(tell)
-    given = said.of(0.0, "reading the stage", lambda: settled(mechanism, setup or LoopSetup()))
+    given = said.of(0.0, "reading the stage", lambda: resolve(mechanism, setup or LoopSetup()))
     lost = lost_motion(given.kinematics, given.model)
-    control = said.of(0.05, "tuning", lambda: controlled(given, _gains(given, lost)))
+    control = said.of(0.05, "tuning", lambda: make_controller(given, _gains(given, lost)))
     closed = loop(given.plant, control.system)
     require_stable(closed, "margins, noise and simulations")
     found, growth = verdict(closed), _whole_growth(given, control)
@@ -124,9 +124,9 @@ def loop_study(mechanism: Mechanism, setup: LoopSetup | None = None, *, tell: To
     stacks = None if given.setup.hysteresis is None else stacks_of(mechanism, given.setup.hysteresis)
     is_closed = setup is None or setup.controller.kind is not ControllerKind.NONE
     tested = said.of(0.6, "simulating", lambda: runs(given, control, closed, stacks, carried))
-    noise = said.of(0.9, "noise", lambda: noise_budget(closed, given.floor, (_LOWEST, 0.5 * given.rate), _relative(given)))
-    still = at_rest(given, control, closed)
-    resting = rest_rms(given, control, closed) if noise.slow else None
+    noise = said.of(0.9, "noise", lambda: noise_budget(closed, given.floor, (_LOWEST, 0.5 * given.rate), _relative_motions(given)))
+    still = simulate_rest(given, control, closed)
+    resting = rest_rms(given, control, closed) if noise.slowly_rounding else None
     return LoopStudy(
         settled=given,
         lost=lost,
@@ -145,14 +145,14 @@ def loop_study(mechanism: Mechanism, setup: LoopSetup | None = None, *, tell: To
         still=still,
         resting=resting,
         stacks=stacks,
-        hysteresis=None if stacks is None else swept(stacks),
+        hysteresis=None if stacks is None else sweep_stacks(stacks),
         runs=tested,
         cautions=(*_cautions(given), *_slow_rounding(noise), *(each for run in tested for each in run.cautions)),
         reasons=Table({} if is_closed else dict.fromkeys(("margins", "peaks", "disk_margin", "bandwidths", "curves"), _NO_LOOP)),
     )
 
 
-def _relative(given: Settled) -> tuple[str, ...]:
+def _relative_motions(given: ResolvedSetup) -> tuple[str, ...]:
     """Outputs: the platform against the ground, by coordinate."""
     return tuple(f"relative.{name}" for name in given.plant.coordinates.names)
 
@@ -170,14 +170,14 @@ class _Steps:
         return action()
 
 
-def _gains(given: Settled, lost: LostMotion) -> Array:
+def _gains(given: ResolvedSetup, lost: LostMotion) -> Array:
     """Strokes (n, f) by which poses are commanded."""
     if Compensation.LOST_MOTION in given.setup.compensate:
         return np.real(first_design(np.asarray(lost.correction.values), 2))
     return given.plant.coordinates.strokes
 
 
-def _whole_growth(given: Settled, control: Control) -> float:
+def _whole_growth(given: ResolvedSetup, control: Control) -> float:
     """Growth with all modes; raises `DesignError` where one that was left out makes the loop unstable."""
     whole = loop(given.whole, control.system)
     if whole.system.growth >= 0.0:
@@ -188,13 +188,13 @@ def _whole_growth(given: Settled, control: Control) -> float:
 
 def _slow_rounding(noise: NoiseBudget) -> Iterator[Finding]:
     """Rounding that is no white noise."""
-    if noise.slow:
-        what = f"readings of {', '.join(noise.slow)} move by less than half a step a sample: rounding is slow, no white noise"
+    if noise.slowly_rounding:
+        what = f"readings of {', '.join(noise.slowly_rounding)} move by less than half a step a sample: rounding is slow, no white noise"
         advice = "Take the simulated rms, with its interval; a finer step, or noise of half a step, would make it white"
         yield Finding("gauges", what, advice)
 
 
-def _cautions(given: Settled) -> list[Finding]:
+def _cautions(given: ResolvedSetup) -> list[Finding]:
     """What a design does not state, and is taken as ideal."""
     found = []
     silent = [name for name, each in given.plant.hardware.sensors.items() if each.noise_density is None]

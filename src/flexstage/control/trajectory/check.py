@@ -40,7 +40,7 @@ def reach_findings(poses: Array, times: Array, polytope: Polytope) -> list[Findi
         return []
     share = np.max(poses @ polytope.normals.T / polytope.offsets, axis=-1)
     worst = int(np.argmax(share))
-    pose = ", ".join(f"{name} = {_shown(value, name)}" for name, value in zip(polytope.coordinates, poses[worst], strict=True) if value)
+    pose = ", ".join(f"{name} = {_show(value, name)}" for name, value in zip(polytope.coordinates, poses[worst], strict=True) if value)
     what = (
         f"it leaves what the strokes reach at {times[outside[0]]:g} s; at {times[worst]:g} s {pose} takes {share[worst]:.3g} of the stroke"
     )
@@ -48,7 +48,7 @@ def reach_findings(poses: Array, times: Array, polytope: Polytope) -> list[Findi
     return [Finding("trajectory", what, advice)]
 
 
-def _shown(value: float, coordinate: str) -> str:
+def _show(value: float, coordinate: str) -> str:
     return f"{1e6 * value:.4g} u{TWIST_UNITS[COMPONENTS.index(coordinate)]}"
 
 

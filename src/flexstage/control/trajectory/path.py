@@ -8,7 +8,7 @@ from typing import Protocol
 
 import numpy as np
 
-from flexstage.base.finding import Finding, nearest, refuse, require
+from flexstage.base.finding import Finding, refuse, require, suggest_nearest
 from flexstage.base.labelled import Matrix
 from flexstage.base.number import Array
 from flexstage.mechanism.mechanism import PLATFORM
@@ -67,7 +67,7 @@ def reference(trajectory: Trajectory, coordinates: Sequence[str], times: Array, 
     known = tuple(coordinates) if motion is None else motion.rows
     advice = "The loop's coordinates are " + ", ".join(known)
     require(
-        Finding(f"trajectory: {name}", "the loop has no coordinate of this name", f"{nearest(name, known)}. {advice}")
+        Finding(f"trajectory: {name}", "the loop has no coordinate of this name", f"{suggest_nearest(name, known)}. {advice}")
         for name in trajectory.coordinates
         if name not in known
     )

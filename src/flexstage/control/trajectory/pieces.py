@@ -26,18 +26,18 @@ class Pieces:
         """Values (n, c), or those of the derivative of an `order`."""
         times = np.clip(np.asarray(times, dtype=float), self.knots[0], self.knots[-1])
         piece = np.clip(np.searchsorted(self.knots, times, side="right") - 1, 0, len(self.coefficients) - 1)
-        return _valued(self.coefficients[piece], times - self.knots[piece], order)
+        return _polynomial(self.coefficients[piece], times - self.knots[piece], order)
 
     def largest(self, order: int) -> Array:
         """Largest absolute value (c,) of a derivative: of those at the ends of the pieces, and where the next derivative is 0."""
         found = np.zeros(self.coefficients.shape[2])
-        for duration, coefficients in {(time, each.tobytes()): (time, each) for time, each in self._timed}.values():
+        for duration, coefficients in {(time, each.tobytes()): (time, each) for time, each in self._at_times}.values():
             for column, values in enumerate(coefficients.T):
                 found[column] = max(found[column], _largest(np.polynomial.Polynomial(values).deriv(order), duration))
         return found
 
     @property
-    def _timed(self) -> Iterator[tuple[float, Array]]:
+    def _at_times(self) -> Iterator[tuple[float, Array]]:
         """Durations and coefficients but for where a piece begins, which no derivative feels."""
         moved = self.coefficients.copy()
         moved[:, 0] = 0.0
@@ -52,7 +52,7 @@ def _largest(polynomial: np.polynomial.Polynomial, duration: float) -> float:
     return float(np.max(np.abs(scaled(np.concatenate([[0.0, 1.0], inside])))))
 
 
-def _valued(coefficients: Array, times: Array, order: int) -> Array:
+def _polynomial(coefficients: Array, times: Array, order: int) -> Array:
     """Horner's rule on coefficients (n, 6, c) at times (n,)."""
     powers = np.arange(6.0)
     factors = np.prod([np.maximum(powers - each, 0.0) for each in range(order)], axis=0) * np.ones(6)
@@ -62,11 +62,11 @@ def _valued(coefficients: Array, times: Array, order: int) -> Array:
     return total
 
 
-def joined(parts: Iterable[tuple[float, Array]]) -> Pieces:
+def join(parts: Iterable[tuple[float, Array]]) -> Pieces:
     """Pieces from (duration [s], coefficients (6, c)) one after the other, each given from its own start; those that last no time drop out.
 
     >>> forth = np.zeros((6, 1)); forth[1] = 2.0
-    >>> joined([(0.5, forth), (0.5, rest(np.array([1.0])))]).at(np.array([0.25, 0.75, 9.0])).ravel().tolist()
+    >>> join([(0.5, forth), (0.5, rest(np.array([1.0])))]).at(np.array([0.25, 0.75, 9.0])).ravel().tolist()
     [0.5, 1.0, 1.0]
     """
     kept = [(time, coefficients) for time, coefficients in parts if time > 0.0]
@@ -89,7 +89,7 @@ def smooth(start: Array, end: Array, time: float) -> Array:
 
     Largest speed 15/8 d/time, acceleration 10/3^(1/2) d/time^2.
 
-    >>> move = joined([(2.0, smooth(np.array([0.0]), np.array([1.0]), 2.0))])
+    >>> move = join([(2.0, smooth(np.array([0.0]), np.array([1.0]), 2.0))])
     >>> move.at(np.array([1.0, 2.0])).ravel().tolist(), move.largest(1).tolist()
     ([0.5, 1.0], [0.9375])
     """

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexstage.base.finding import Finding, require
-from flexstage.control.trajectory.pieces import Pieces, joined
+from flexstage.control.trajectory.pieces import Pieces, join
 
 
 @dataclass(frozen=True)
@@ -41,10 +41,10 @@ def profile(distance: float, limits: Limits) -> Pieces:
     speed = top * (short + even)
     steady = max(0.0, distance / speed - (2.0 * short + even))
     times = np.array([short, even, short, steady, short, even, short])
-    return _integrated(times, jerk * np.array([1.0, 0.0, -1.0, 0.0, -1.0, 0.0, 1.0]), distance)
+    return _integrate(times, jerk * np.array([1.0, 0.0, -1.0, 0.0, -1.0, 0.0, 1.0]), distance)
 
 
-def _integrated(times: np.ndarray, jerks: np.ndarray, distance: float) -> Pieces:
+def _integrate(times: np.ndarray, jerks: np.ndarray, distance: float) -> Pieces:
     """Cubic pieces from jerks; the last value is set to the distance, which rounding misses by some 1e-16 of it."""
     position = speed = acceleration = 0.0
     parts = []
@@ -54,7 +54,7 @@ def _integrated(times: np.ndarray, jerks: np.ndarray, distance: float) -> Pieces
         speed += time * (acceleration + time * jerk / 2.0)
         acceleration += time * jerk
     scaled = [(time, coefficients * (distance / position)) for time, coefficients in parts]
-    return joined(scaled)
+    return join(scaled)
 
 
 def _findings(limits: Limits) -> list[Finding]:

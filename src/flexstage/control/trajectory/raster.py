@@ -12,7 +12,7 @@ import numpy as np
 from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array
 from flexstage.control.trajectory.path import Peaks
-from flexstage.control.trajectory.pieces import Pieces, joined, smooth, smooth_time
+from flexstage.control.trajectory.pieces import Pieces, join, smooth, smooth_time
 from flexstage.mechanism.mechanism import PLATFORM
 
 _STEEPEST = 10.0 / 3.0**0.5
@@ -127,21 +127,21 @@ class Raster:
 
     @cached_property
     def _pieces(self) -> Pieces:
-        return joined(self._parts())
+        return join(self._parts())
 
     def _parts(self) -> Iterator[tuple[float, Array]]:
         place, speed, accelerate = self._first, self.speed, self._swing
         yield self._approach(place), smooth(np.zeros(2), place, self._approach(place))
-        yield _even(place, 0.0, accelerate, speed / accelerate)
+        yield _even_piece(place, 0.0, accelerate, speed / accelerate)
         for line in range(self.lines):
             sign = -1.0 if self.scan is Scan.BOTH_WAYS and line % 2 else 1.0
             place = np.array([-0.5 * sign * self.length, self._first[1] + line * self.pitch])
-            yield _even(place, sign * speed, 0.0, self.length / speed)
+            yield _even_piece(place, sign * speed, 0.0, self.length / speed)
             place = place * np.array([-1.0, 1.0])
             if line + 1 < self.lines:
                 yield from self._turn(place, sign)
             else:
-                yield _even(place, sign * speed, -sign * accelerate, speed / accelerate)
+                yield _even_piece(place, sign * speed, -sign * accelerate, speed / accelerate)
                 place = place + np.array([sign * self.overshoot, 0.0])
         yield self._approach(place), smooth(place, np.zeros(2), self._approach(place))
 
@@ -155,14 +155,14 @@ class Raster:
             parts = [(speed, -accelerate, swing), (-self._back, 0.0, self._even_back), (-self._back, accelerate, swing)]
         fast, passed = place[0], 0.0
         for rate, bend, time in parts:
-            duration, coefficients = _even(np.array([fast, place[1]]), rate, bend, time)
-            coefficients[:, 1] = _shifted(step[:, 0], passed)
+            duration, coefficients = _even_piece(np.array([fast, place[1]]), rate, bend, time)
+            coefficients[:, 1] = _shift_polynomial(step[:, 0], passed)
             coefficients[0, 1] += place[1]
             yield duration, coefficients
             fast, passed = fast + rate * time + 0.5 * bend * time**2, passed + time
 
 
-def _even(place: Array, speed: float, acceleration: float, time: float) -> tuple[float, Array]:
+def _even_piece(place: Array, speed: float, acceleration: float, time: float) -> tuple[float, Array]:
     """A piece of even speed and acceleration of the first coordinate."""
     coefficients = np.zeros((6, len(place)))
     coefficients[0] = place
@@ -170,7 +170,7 @@ def _even(place: Array, speed: float, acceleration: float, time: float) -> tuple
     return time, coefficients
 
 
-def _shifted(coefficients: Array, by: float) -> Array:
+def _shift_polynomial(coefficients: Array, by: float) -> Array:
     """The coefficients of p(t + by)."""
     polynomial = np.polynomial.Polynomial(coefficients)
     moved = polynomial(np.polynomial.Polynomial([by, 1.0])).coef

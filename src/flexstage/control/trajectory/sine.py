@@ -9,7 +9,7 @@ import numpy as np
 
 from flexstage.base.number import Array
 from flexstage.control.trajectory.path import Peaks
-from flexstage.control.trajectory.pieces import joined, smooth
+from flexstage.control.trajectory.pieces import join, smooth
 from flexstage.mechanism.mechanism import PLATFORM
 
 
@@ -57,4 +57,4 @@ class Sine:
     def _growth(self, passed: Array) -> Array | float:
         if not self.fade:
             return 1.0
-        return joined([(self.fade, smooth(np.zeros(1), np.ones(1), self.fade))]).at(passed)
+        return join([(self.fade, smooth(np.zeros(1), np.ones(1), self.fade))]).at(passed)

@@ -10,7 +10,7 @@ import numpy as np
 from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array
 from flexstage.control.trajectory.path import Peaks
-from flexstage.control.trajectory.pieces import Pieces, joined
+from flexstage.control.trajectory.pieces import Pieces, join
 from flexstage.mechanism.mechanism import PLATFORM
 
 
@@ -106,7 +106,7 @@ class Spiral:
         even, first = self._whole / pace - ramp, 0.5 * pace * ramp
         bend = 0.5 * pace / ramp if ramp else 0.0
         parts = [(ramp, [0.0, 0.0, bend]), (even, [first, pace, 0.0]), (ramp, [first + pace * even, pace, -bend])]
-        return joined((time, np.array([*values, 0.0, 0.0, 0.0])[:, None]) for time, values in parts)
+        return join((time, np.array([*values, 0.0, 0.0, 0.0])[:, None]) for time, values in parts)
 
 
 def _length(angle: Array) -> Array:

@@ -11,8 +11,8 @@ import numpy as np
 from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.number import Array
 from flexstage.control.trajectory.path import Peaks
-from flexstage.experiment.formats.table.layout import layout_of
-from flexstage.experiment.formats.table.values import TableSamples, indexed
+from flexstage.experiment.formats.table.layout import read_layout
+from flexstage.experiment.formats.table.values import TableSamples, index_lines
 from flexstage.experiment.record import Channel, Record
 from flexstage.experiment.unit import in_si, plain_unit
 from flexstage.mechanism.mechanism import PLATFORM
@@ -111,8 +111,8 @@ def from_file(path: str | os.PathLike[str], point: str = PLATFORM) -> Table:
     ([0.0, 0.1, 0.4], [0.0, 2e-06, 0.0])
     """
     place = Path(path)
-    layout = layout_of(place)
-    lines = indexed(place, layout.start)
+    layout = read_layout(place)
+    lines = index_lines(place, layout.start)
     samples = TableSamples(place, layout, lines, tuple(range(len(layout.names))), lines.count)
     channels = tuple(Channel(name, plain_unit(unit)) for name, unit in zip(layout.names, layout.units, strict=True))
     if channels[0].name.lower() not in ("time", "t"):

@@ -16,7 +16,7 @@ from flexstage.control.controllers.lqg import LQG, Disturbances, Weights, observ
 from flexstage.control.controllers.notch import Notch, notch_of_mode
 from flexstage.control.resolvent import resolvent
 from flexstage.control.tuning.goal import Goal, Judgement, Kind
-from flexstage.control.tuning.judge import first_passed, judged, open_gains
+from flexstage.control.tuning.judge import crossing_frequency, judge_loop, open_gains
 from flexstage.control.tuning.laws import Place, laws
 from flexstage.control.tuning.view import View, resonances
 
@@ -77,13 +77,13 @@ def attempt(seen: View, task: Task, frequency: float, calm: float = 0.0) -> Atte
     (20.0, ((),))
     """
     if task.kind is Kind.LQG:
-        return _observed(seen, task, frequency)
+        return _attempt_lqg(seen, task, frequency)
     stated: _Options = ((task.notches,),) * len(seen.loops.names)
     first = _decentralised(seen, task, frequency, calm, stated)
     if first is None or not task.automatic or task.kind is Kind.RESONANT or first.reaches(frequency, task.goal):
         return first
     best = first
-    for options in _choices(_placed(seen, first, frequency)):
+    for options in _choices(_place_notches(seen, first, frequency)):
         found = _decentralised(seen, task, frequency, calm, options)
         if found is not None and found.judgement.score < best.judgement.score:
             best = found
@@ -104,21 +104,21 @@ def _decentralised(seen: View, task: Task, frequency: float, calm: float, option
     at = seen.at(frequency)
     found: list[_Chosen] = []
     for loop, sets in enumerate(options):
-        alike = _alike(seen, options, loop)
+        alike = _first_alike(seen, options, loop)
         if alike < loop:
             found.append(found[alike])
             continue
-        one = _chosen(seen, task.kind, sets, loop=loop, frequency=frequency, calm=calm, gain=complex(at[loop]))
+        one = _choose(seen, task.kind, sets, loop=loop, frequency=frequency, calm=calm, gain=complex(at[loop]))
         if one is None:
             return None
         found.append(one)
     notches = tuple(each.notches for each in found)
     controller = Decentralised(seen.loops, tuple(each.law for each in found), notches if any(notches) else (), task.feedforward)
     gains = (seen.responses @ seen.loops.drive) * np.stack([each.response for each in found], axis=-1)[:, None, :]
-    return Attempt(controller, judged(seen, controller.system(seen.step), gains), notches)
+    return Attempt(controller, judge_loop(seen, controller.system(seen.step), gains), notches)
 
 
-def _alike(seen: View, options: _Options, loop: int) -> int:
+def _first_alike(seen: View, options: _Options, loop: int) -> int:
     """The first loop that is the same as this one: a symmetric stage has several."""
     own = seen.own[:, :, loop]
     size = np.max(np.abs(own))
@@ -137,7 +137,7 @@ class _Chosen:
     response: Array
 
 
-def _chosen(seen: View, kind: Kind, options: _Sets, *, loop: int, frequency: float, calm: float, gain: complex) -> _Chosen | None:
+def _choose(seen: View, kind: Kind, options: _Sets, *, loop: int, frequency: float, calm: float, gain: complex) -> _Chosen | None:
     """Law and notches whose loop by itself is stable, passes 1 where it shall, and has the lowest peak of S, wherever the modes may lie.
 
     Peaks up to `calm` count as equal; the highest gain at the lowest frequency, so the strongest integrator, is then the best.
@@ -150,7 +150,7 @@ def _chosen(seen: View, kind: Kind, options: _Sets, *, loop: int, frequency: flo
         filtered = _product([resonant.at(seen.frequencies) for resonant in map(resolvent, filters)])
         notched = gain * complex(_product([each.transfer(np.array([frequency])) for each in filters])[0])
         for law in laws(kind, Place(frequency, notched, static, first), seen.step):
-            response = _sampled(law, seen)
+            response = _sampled_response(law, seen)
             if response is None:
                 continue
             whole = response * filtered
@@ -167,7 +167,7 @@ def _product(responses: list[Array]) -> Array:
     return np.prod([each[:, 0, 0] for each in responses], axis=0) if responses else np.ones(1)
 
 
-def _sampled(law: Law, seen: View) -> Array | None:
+def _sampled_response(law: Law, seen: View) -> Array | None:
     """Response from error to command, the pose being what the error leaves; None for a law too fast for the samples."""
     try:
         response = resolvent(law.system(seen.step)).at(seen.frequencies)
@@ -178,14 +178,14 @@ def _sampled(law: Law, seen: View) -> Array | None:
 
 def _score(frequencies: Array, gains: Array, frequency: float) -> float:
     """Peak of S of a single loop (v, f), far above any for one that encircles -1 or passes 1 elsewhere first."""
-    if abs(first_passed(frequencies, np.abs(gains[0])) / frequency - 1.0) > _AGREES:
+    if abs(crossing_frequency(frequencies, np.abs(gains[0])) / frequency - 1.0) > _AGREES:
         return 2.0 * _WRONG
     returned = 1.0 + gains
     turned = np.unwrap(np.angle(returned), axis=-1)[:, -1]
     return _WRONG * bool(np.any(np.abs(turned) > 1.0)) + float(1.0 / np.min(np.abs(returned)))
 
 
-def _placed(seen: View, found: Attempt, frequency: float) -> _Options:
+def _place_notches(seen: View, found: Attempt, frequency: float) -> _Options:
     """By loop, sets of notches of several widths on the modes above the crossing that stand out of it; none where no mode does."""
     gains = np.abs(open_gains(seen, found.controller.system(seen.step))[0])
     result = []
@@ -201,14 +201,14 @@ def _placed(seen: View, found: Attempt, frequency: float) -> _Options:
     return tuple(sets or (given,) for sets, given in zip(result, found.notches, strict=True)) if any(result) else ()
 
 
-def _observed(seen: View, task: Task, frequency: float) -> Attempt | None:
+def _attempt_lqg(seen: View, task: Task, frequency: float) -> Attempt | None:
     """Weights by coordinate, changed until every loop passes 1 at the frequency; an observer that trusts its model less and less."""
     best, wanted = None, np.full(len(seen.loops.names), frequency)
     for trust in _TRUST:
-        found, wanted = _balanced(seen, _designer(seen, task, trust), frequency, wanted)
+        found, wanted = _balance_bandwidths(seen, _designer(seen, task, trust), frequency, wanted)
         if found is None:
             continue
-        tried = Attempt(found, judged(seen, found.system(seen.step)), ((),) * len(wanted))
+        tried = Attempt(found, judge_loop(seen, found.system(seen.step)), ((),) * len(wanted))
         if best is None or tried.judgement.score < best.judgement.score or tried.reaches(frequency, task.goal):
             best = tried
         if best.reaches(frequency, task.goal):
@@ -224,7 +224,7 @@ def _designer(seen: View, task: Task, trust: float) -> Callable[[Array], LQG]:
     return lambda wanted: with_observer(model, coordinates, Weights(tuple(map(float, wanted))), observer, task.feedforward)
 
 
-def _balanced(seen: View, design: Callable[[Array], LQG], frequency: float, wanted: Array) -> tuple[LQG | None, Array]:
+def _balance_bandwidths(seen: View, design: Callable[[Array], LQG], frequency: float, wanted: Array) -> tuple[LQG | None, Array]:
     """The design whose loops all pass 1 at the frequency, or the nearest to it that a few rounds give; and its weights' bandwidths."""
     found = None
     low = np.flatnonzero(seen.frequencies < _AROUND * frequency)[::2]
@@ -234,7 +234,7 @@ def _balanced(seen: View, design: Callable[[Array], LQG], frequency: float, want
             return None, np.full(len(wanted), frequency)
         found = design(wanted)
         gains = np.abs(open_gains(near, found.system(seen.step))[0])
-        passed = np.array([first_passed(near.frequencies, gains[:, loop, loop]) for loop in range(len(wanted))])
+        passed = np.array([crossing_frequency(near.frequencies, gains[:, loop, loop]) for loop in range(len(wanted))])
         ratio = np.clip(passed / frequency, 1.0 / _AROUND, _AROUND)
         if np.all(np.abs(ratio - 1.0) < _AGREES):
             break

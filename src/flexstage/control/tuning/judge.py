@@ -8,13 +8,13 @@ import numpy as np
 
 from flexstage.base.number import Array
 from flexstage.control.resolvent import resolvent
-from flexstage.control.system import System, connected
+from flexstage.control.system import System, connect
 from flexstage.control.tuning.goal import Judgement
 from flexstage.control.tuning.view import View
 from flexstage.models.linear.model import Channel
 
 
-def judged(seen: View, control: System, gains: Array | None = None) -> Judgement:
+def judge_loop(seen: View, control: System, gains: Array | None = None) -> Judgement:
     """Stability by eigenvalues, the peak of S over all frequencies of the view, and each loop's bandwidth.
 
     `gains` are the `open_gains` where they are known already.
@@ -23,7 +23,7 @@ def judged(seen: View, control: System, gains: Array | None = None) -> Judgement
     >>> from flexstage.control.example import integral_loop
     >>> from flexstage.control.tuning.view import view
     >>> closed = integral_loop(gain=100.0)
-    >>> found = judged(view(closed.plant, platform_loops(closed.plant.coordinates), 0.02), closed.controller)
+    >>> found = judge_loop(view(closed.plant, platform_loops(closed.plant.coordinates), 0.02), closed.controller)
     >>> found.stable, round(found.bandwidths[0], 1)  # near 100/(2 pi)
     (True, 15.7)
     """
@@ -35,7 +35,7 @@ def judged(seen: View, control: System, gains: Array | None = None) -> Judgement
     place = int(np.argmax(peaks[worst]))
     count = len(seen.loops.names)
     return Judgement(
-        bandwidths=tuple(first_passed(seen.frequencies, np.abs(gains[0, :, loop, loop])) for loop in range(count)),
+        bandwidths=tuple(crossing_frequency(seen.frequencies, np.abs(gains[0, :, loop, loop])) for loop in range(count)),
         peak=float(np.max(peaks)),
         frequency=float(seen.frequencies[place]),
         growth=float(max(growths)),
@@ -68,15 +68,15 @@ def open_gains(seen: View, control: System) -> Array:
 def closed_growth(plant: System, control: System) -> float:
     """Growth [1/s] of the slowest free motion of a plant (commands to pose) under a controller.
 
-    >>> from flexstage.control.controllers.pose_plant import seen_plant
+    >>> from flexstage.control.controllers.pose_plant import pose_plant
     >>> from flexstage.control.example import integral_loop
     >>> closed = integral_loop()
-    >>> abs(closed_growth(seen_plant(closed.plant), closed.controller) / closed.system.growth - 1.0) < 1e-6
+    >>> abs(closed_growth(pose_plant(closed.plant), closed.controller) / closed.system.growth - 1.0) < 1e-6
     True
     """
     links = {name: {} for name in control.input_names if name.startswith(("reference.", "applied."))}
     links |= {name: {name.replace("error.", "pose."): -1.0} for name in control.input_names if name.startswith("error.")}
-    return connected([plant, control], links, (), plant.output_names).growth
+    return connect([plant, control], links, (), plant.output_names).growth
 
 
 def _peak(gains: Array, poses: Array) -> Array:
@@ -86,10 +86,10 @@ def _peak(gains: Array, poses: Array) -> Array:
     return np.sqrt(np.linalg.eigvalsh(product)[:, -1])
 
 
-def first_passed(frequencies: Array, gains: Array) -> float:
+def crossing_frequency(frequencies: Array, gains: Array) -> float:
     """Where a gain first falls through 1, straight in the logarithms; 0 where it starts below, infinite where it never falls.
 
-    >>> round(first_passed(np.array([1.0, 10.0, 100.0]), np.array([10.0, 1.25, 0.1])), 2)
+    >>> round(crossing_frequency(np.array([1.0, 10.0, 100.0]), np.array([10.0, 1.25, 0.1])), 2)
     12.26
     """
     below = np.flatnonzero(gains < 1.0)

@@ -9,7 +9,7 @@ import numpy as np
 from flexstage.control.controllers.law import Law
 from flexstage.control.controllers.pi import PI
 from flexstage.control.controllers.pid import PID
-from flexstage.control.controllers.resonant import resonant
+from flexstage.control.controllers.resonant import resonant_law
 from flexstage.control.tuning.goal import Kind
 
 _PI_ANGLES = np.radians(np.arange(0.0, 81.0, 16.0))
@@ -68,12 +68,12 @@ def _resonant(place: Place, turning: float, step: float | None) -> list[Law]:
     if place.resonance is None or not place.static > 0.0:
         return found
     for damping in _DAMPINGS:
-        damped = resonant(place.resonance, damping, place.static)
+        damped = resonant_law(place.resonance, damping, place.static)
         if step is not None and damped.gain * damped.feedthrough >= np.pi / step:
             continue
         feedback = damped.gain / (1j * turning + damped.gain * damped.feedthrough)
         rest = 1.0 / abs(place.gain) ** 2 - feedback.real**2
         if rest > 0.0 and np.sqrt(rest) > feedback.imag:
             tracking = turning * float(np.sqrt(rest) - feedback.imag)
-            found.append(resonant(place.resonance, damping, place.static, tracking))
+            found.append(resonant_law(place.resonance, damping, place.static, tracking))
     return found

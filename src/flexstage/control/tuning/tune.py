@@ -26,7 +26,7 @@ _NOTICED = 20.0
 _CALM = (0.9, 0.8, 0.7, 0.6)
 
 
-def tuned(plant: Plant, loops: Loops, task: Task) -> Tuning:
+def tune(plant: Plant, loops: Loops, task: Task) -> Tuning:
     """The controller that reaches a goal, judged on the whole sampled loop.
 
     At the wanted bandwidth (absent: the highest found, by trial from fast to slow and then by halving) every loop's gain is 1; of the
@@ -40,7 +40,7 @@ def tuned(plant: Plant, loops: Loops, task: Task) -> Tuning:
     >>> from flexstage.control.example import integral_loop
     >>> from flexstage.control.tuning.goal import Goal
     >>> plant = integral_loop().plant
-    >>> found = tuned(plant, platform_loops(plant.coordinates), Task(Kind.PI, Goal(bandwidth=5.0)))
+    >>> found = tune(plant, platform_loops(plant.coordinates), Task(Kind.PI, Goal(bandwidth=5.0)))
     >>> print(found.reason)
     PI: all gains pass 1 at 5 Hz; the peak of S is 0.5 dB, 6.02 dB allowed, modes up to 2 % off included
     """
@@ -48,11 +48,11 @@ def tuned(plant: Plant, loops: Loops, task: Task) -> Tuning:
     require(_findings(plant, task))
     seen = view(plant, loops, task.goal.spread)
     wanted = task.goal.bandwidth
-    top, best = highest(seen, task) if wanted is None else (wanted, attempt(seen, task, wanted))
+    top, best = highest_bandwidth(seen, task) if wanted is None else (wanted, attempt(seen, task, wanted))
     if best is None or not best.reaches(top, task.goal):
-        raise DesignError([_hopeless(seen, task) if wanted is None else _unreached(seen, task, best, wanted)])
+        raise DesignError([_no_bandwidth(seen, task) if wanted is None else _unreached(seen, task, best, wanted)])
     best = _stiffest(seen, task, top, best)
-    return Tuning(task.kind, task.goal, best.controller, best.judgement, best.notches, _said(task, best, top))
+    return Tuning(task.kind, task.goal, best.controller, best.judgement, best.notches, _sentence(task, best, top))
 
 
 def _stiffest(seen: View, task: Task, bandwidth: float, found: Attempt) -> Attempt:
@@ -73,7 +73,7 @@ def _weakest(seen: View, found: Attempt) -> float:
     return float(np.min(np.abs(np.diag(open_gains(slow, found.controller.system(seen.step))[0, 0]))))
 
 
-def highest(seen: View, task: Task) -> tuple[float, Attempt | None]:
+def highest_bandwidth(seen: View, task: Task) -> tuple[float, Attempt | None]:
     """The highest bandwidth [Hz] at which the goal's margins are kept, within 1 %, and the controller; 0 and None where there is none.
 
     >>> from flexstage.control.controllers.loops import platform_loops
@@ -81,7 +81,7 @@ def highest(seen: View, task: Task) -> tuple[float, Attempt | None]:
     >>> from flexstage.control.tuning.goal import Goal
     >>> plant = integral_loop().plant
     >>> seen = view(plant, platform_loops(plant.coordinates), 0.02)
-    >>> round(highest(seen, Task(Kind.PI, Goal(), automatic=False))[0])
+    >>> round(highest_bandwidth(seen, Task(Kind.PI, Goal(), automatic=False))[0])
     56
     """
     top: float = _FASTEST * float(seen.modes[min(len(seen.loops.names), len(seen.modes)) - 1])
@@ -94,11 +94,11 @@ def highest(seen: View, task: Task) -> tuple[float, Attempt | None]:
     for number, place in enumerate(places):
         found = attempt(seen, task, place)
         if found is not None and found.reaches(place, task.goal):
-            return _halved(seen, task, (place, found), places[number - 1] if number else place)
+            return _bisect(seen, task, (place, found), places[number - 1] if number else place)
     return 0.0, None
 
 
-def _halved(seen: View, task: Task, low: tuple[float, Attempt], high: float) -> tuple[float, Attempt]:
+def _bisect(seen: View, task: Task, low: tuple[float, Attempt], high: float) -> tuple[float, Attempt]:
     while high > _WITHIN * low[0]:
         middle = float(np.sqrt(low[0] * high))
         found = attempt(seen, task, middle)
@@ -119,73 +119,79 @@ def _findings(plant: Plant, task: Task) -> Iterator[Finding]:
         yield Finding("LQG", "the noise its observer shall expect is not stated", "State the gauges' noise and what disturbs the strokes")
 
 
-def _hopeless(seen: View, task: Task) -> Finding:
+def _no_bandwidth(seen: View, task: Task) -> Finding:
     slowest = _SLOWEST * float(seen.modes[0])
     best = attempt(seen, task, slowest)
-    return Finding("tuning", f"no bandwidth from {slowest:.3g} Hz up is reached: {_wrong(task, best, slowest)}", _help(seen, task, slowest))
+    return Finding(
+        "tuning", f"no bandwidth from {slowest:.3g} Hz up is reached: {_reason(task, best, slowest)}", _help(seen, task, slowest)
+    )
 
 
 def _unreached(seen: View, task: Task, best: Attempt | None, wanted: float) -> Finding:
-    top, reached = highest(seen, task)
-    rest = f"{_short(top)} Hz is the highest reachable with {_called(task, reached)}" if reached else "no other is reached either"
-    what = f"at {_short(wanted)} Hz {_wrong(task, best, wanted)}; {rest}"
-    ask = f"Ask for {_short(top)} Hz or less" if reached else "Allow a higher peak of S"
+    top, reached = highest_bandwidth(seen, task)
+    rest = (
+        f"{_three_digits(top)} Hz is the highest reachable with {_controller_name(task, reached)}"
+        if reached
+        else "no other is reached either"
+    )
+    what = f"at {_three_digits(wanted)} Hz {_reason(task, best, wanted)}; {rest}"
+    ask = f"Ask for {_three_digits(top)} Hz or less" if reached else "Allow a higher peak of S"
     return Finding("bandwidth", what, f"{ask}; {_help(seen, task, wanted)}")
 
 
-def _wrong(task: Task, best: Attempt | None, wanted: float) -> str:
+def _reason(task: Task, best: Attempt | None, wanted: float) -> str:
     """What stands in the way of a bandwidth."""
     if best is None:
         return f"{task.kind.value} has no law whose gain is 1 there"
-    found, called = best.judgement, _called(task, best)
+    found, called = best.judgement, _controller_name(task, best)
     if not found.stable:
-        return f"the loop with {called} is unstable: it grows by {found.growth:.3g} 1/s{_off(found)}"
+        return f"the loop with {called} is unstable: it grows by {found.growth:.3g} 1/s{_offset_text(found)}"
     allowed = task.goal.sensitivity
     if found.peak > allowed:
         above = _decibel(found.peak / allowed)
-        peak = f"{_decibel(found.peak):.1f} dB at {_short(found.frequency)} Hz{_off(found)}"
+        peak = f"{_decibel(found.peak):.1f} dB at {_three_digits(found.frequency)} Hz{_offset_text(found)}"
         return f"the peak of S with {called} is {peak}, {above:.1f} dB above the {_decibel(allowed):.1f} dB allowed"
     far = max(found.bandwidths, key=lambda each: abs(each / wanted - 1.0))
-    return f"the gain of a loop with {called} first passes 1 at {_short(far)} Hz already"
+    return f"the gain of a loop with {called} first passes 1 at {_three_digits(far)} Hz already"
 
 
 def _help(seen: View, task: Task, wanted: float) -> str:
     """What would help: notches, another kind, faster samples; with what it gives where that is computed."""
     found = []
     if not task.automatic and task.kind is not Kind.LQG:
-        top, best = highest(seen, replace(task, automatic=True))
+        top, best = highest_bandwidth(seen, replace(task, automatic=True))
         if best is not None and any(best.notches):
-            found.append(f"with {_placed(best)} {_short(top)} Hz is reached")
+            found.append(f"with {_notch_places(best)} {_three_digits(top)} Hz is reached")
     if seen.step is not None:
         lag = 360.0 * wanted * (seen.plant.hardware.delay + 0.5 * seen.step)
         if lag > _NOTICED:
-            found.append(f"sample faster: hold and delay take {lag:.0f} deg at {_short(wanted)} Hz")
+            found.append(f"sample faster: hold and delay take {lag:.0f} deg at {_three_digits(wanted)} Hz")
     others = {Kind.PI: "PID or LQG", Kind.PID: "LQG", Kind.RESONANT: "PI with notches, or LQG", Kind.LQG: "less noise of the gauges"}
     return "; ".join([*found, f"try {others[task.kind]}, more damping, or a smaller spread of the modes"])
 
 
-def _said(task: Task, best: Attempt, bandwidth: float) -> str:
+def _sentence(task: Task, best: Attempt, bandwidth: float) -> str:
     peak = f"the peak of S is {_decibel(best.judgement.peak):.1f} dB, {_decibel(task.goal.sensitivity):.3g} dB allowed"
     spread = f", modes up to {100.0 * task.goal.spread:g} % off included" if task.goal.spread else ""
-    return f"{_called(task, best)}: all gains pass 1 at {_short(bandwidth)} Hz; {peak}{spread}"
+    return f"{_controller_name(task, best)}: all gains pass 1 at {_three_digits(bandwidth)} Hz; {peak}{spread}"
 
 
-def _called(task: Task, best: Attempt) -> str:
-    return f"{task.kind.value} and {_placed(best)}" if any(best.notches) else task.kind.value
+def _controller_name(task: Task, best: Attempt) -> str:
+    return f"{task.kind.value} and {_notch_places(best)}" if any(best.notches) else task.kind.value
 
 
-def _placed(best: Attempt) -> str:
+def _notch_places(best: Attempt) -> str:
     places = sorted({round(each.frequency, 1) for group in best.notches for each in group})
     return f"{'notches' if len(places) > 1 else 'a notch'} at {', '.join(f'{each:g}' for each in places)} Hz"
 
 
-def _off(found: Judgement) -> str:
+def _offset_text(found: Judgement) -> str:
     if not found.offset:
         return ""
     return f" with all modes {abs(100.0 * found.offset):g} % {'higher' if found.offset > 0.0 else 'lower'}"
 
 
-def _short(value: float) -> str:
+def _three_digits(value: float) -> str:
     return f"{float(f'{value:.3g}'):g}"
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from flexstage.base.number import Array
 from flexstage.control.controllers.loops import Loops
-from flexstage.control.controllers.pose_plant import seen_plant
+from flexstage.control.controllers.pose_plant import pose_plant
 from flexstage.control.plants import Plant
 from flexstage.control.resolvent import resolvent
 from flexstage.control.system import System
@@ -67,21 +67,21 @@ def view(plant: Plant, loops: Loops, spread: float) -> View:
     ((0.0, -0.02, 0.02), 3, [[0.99]])
     """
     offsets = (0.0, -spread, spread) if spread else (0.0,)
-    systems = tuple(_stretched(plant, offset) for offset in offsets)
+    systems = tuple(_scale_modes(plant, offset) for offset in offsets)
     frequencies = _frequencies(plant, offsets)
     responses = np.stack([loops.sense @ resolvent(system).at(frequencies) for system in systems])
     static = np.real(loops.sense @ systems[0].transfer(np.zeros(1))[0])
     return View(plant, loops, systems, offsets, frequencies, responses, static, plant.frequencies, plant.ratios)
 
 
-def _stretched(plant: Plant, offset: float) -> System:
+def _scale_modes(plant: Plant, offset: float) -> System:
     """The plant with all its modes by a relative offset higher; lags and delays go with them."""
     given = plant.hardware
     if given.rate is None:
-        found = seen_plant(plant)
+        found = pose_plant(plant)
         return replace(found, A=found.A * (1.0 + offset), B=found.B * (1.0 + offset))
     slower = replace(given, rate=given.rate / (1.0 + offset), delay=given.delay * (1.0 + offset))
-    return replace(seen_plant(replace(plant, hardware=slower)), step=given.step)
+    return replace(pose_plant(replace(plant, hardware=slower)), step=given.step)
 
 
 def _frequencies(plant: Plant, offsets: tuple[float, ...]) -> Array:

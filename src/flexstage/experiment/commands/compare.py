@@ -32,7 +32,7 @@ from flexstage.show.command.design import elastic_model, open_design
 from flexstage.show.command.models import Models
 from flexstage.show.command.options import Changes, Csv, Design, Json, ModelName, Report, text_option
 from flexstage.show.command.output import require_writable, save
-from flexstage.show.command.terminal import warn
+from flexstage.show.command.terminal import print_warning
 
 
 def compare(  # noqa: PLR0913 (its options)
@@ -73,7 +73,7 @@ def compare(  # noqa: PLR0913 (its options)
     solid = models.modes("solid")(mechanism, computing=fea)
     found = comparison.compare(mechanism, seen.found, solid, model=model)
     for caution in found.warnings[len(seen.found.warnings) :]:
-        warn(caution)
+        print_warning(caution)
     if report is not None:
         save(report, compare_report(found, seen, mechanism, shapes_on(mechanism, seen)), "--report")
     tables = compare_tables(found)[:-1]

@@ -8,7 +8,7 @@ from typing import Annotated, TypeAlias
 
 import typer
 
-from flexstage.base.record import Together
+from flexstage.base.record import SideBySide
 from flexstage.experiment.commands.records import (
     Allow,
     Arrays,
@@ -77,8 +77,8 @@ def identify(  # noqa: PLR0913 (its options)
     answer("identify", mechanism, lambda: _body(seen, shapes), lambda: _tables(seen), json=json, csv=csv, beside=(report,))
 
 
-def _body(seen: Identification, shapes: StageShapes | None) -> Together:
-    return Together((seen, seen.found, {} if shapes is None else {"platform": shapes}))
+def _body(seen: Identification, shapes: StageShapes | None) -> SideBySide:
+    return SideBySide((seen, seen.found, {} if shapes is None else {"platform": shapes}))
 
 
 def _tables(seen: Identification) -> Iterator[Table | None]:

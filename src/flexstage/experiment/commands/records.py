@@ -17,7 +17,7 @@ from flexstage.experiment.cross_spectra import Segments
 from flexstage.experiment.formats.read import read
 from flexstage.experiment.health import Needs
 from flexstage.experiment.identification.identify import Search
-from flexstage.experiment.pipeline import Identification, identification, sound
+from flexstage.experiment.pipeline import Identification, identification, usable_measurement
 from flexstage.experiment.record import Record, Responses
 from flexstage.experiment.shapes_on_stage import StageShapes, stage_shapes
 from flexstage.mechanism.mechanism import Mechanism
@@ -25,7 +25,7 @@ from flexstage.models.ideal import ideal
 from flexstage.models.linear.model import LinearModel
 from flexstage.show.command.options import text_option
 from flexstage.show.command.progress import progress_bar
-from flexstage.show.command.terminal import tell, warn
+from flexstage.show.command.terminal import print_note, print_warning
 
 Inputs: TypeAlias = Annotated[
     list[str] | None, text_option("--inputs", "NAMES", 'Channels that were inputs, e.g. "u*" or B1,B2. Default: told by name.')
@@ -119,7 +119,7 @@ class RecordTexts:
 def open_records(paths: Sequence[Path], reader: options.Options) -> list[Record | Responses]:
     """What the files hold; raises `DesignError` with all that keeps any of them from being read."""
     found: list[Record | Responses] = []
-    findings = list(_twice(paths))
+    findings = list(_repeated(paths))
     for path in dict.fromkeys(paths):
         try:
             found.append(read(path, reader))
@@ -133,10 +133,10 @@ def identify_records(paths: Sequence[Path], texts: RecordTexts, model: LinearMod
     """The modes of the records, each caution told; with the model of the stage and its `highest` mode [Hz] where they are known."""
     reader, search, needs = texts.options(), texts.search(), texts.needs(model, highest)
     with progress_bar() as shown:
-        test = sound(open_records(paths, reader), reader.allow, needs, shown.share)
+        test = usable_measurement(open_records(paths, reader), reader.allow, needs, shown.share)
         seen = identification(test, search, shown.share)
     for caution in seen.found.warnings:
-        warn(caution)
+        print_warning(caution)
     return seen
 
 
@@ -144,7 +144,7 @@ def shapes_on(mechanism: Mechanism, seen: Identification) -> StageShapes:
     """The measured shapes on the stage; what keeps them from being given is told."""
     found = stage_shapes(ideal(mechanism), seen.found)
     if found.missing:
-        tell(f"not given: shapes on the stage: {found.missing}")
+        print_note(f"not given: shapes on the stage: {found.missing}")
     return found
 
 
@@ -153,7 +153,7 @@ def names(texts: Sequence[str] | None) -> tuple[str, ...]:
     return tuple(name.strip() for text in texts or () for name in text.split(",") if name.strip())
 
 
-def _twice(paths: Sequence[Path]) -> Iterator[Finding]:
+def _repeated(paths: Sequence[Path]) -> Iterator[Finding]:
     counts = Counter(path.resolve() for path in paths)
     for path in {path.resolve(): path for path in paths}.values():
         if (count := counts[path.resolve()]) > 1:

@@ -10,17 +10,17 @@ import typer
 from flexstage.base.finding import Finding, require
 from flexstage.base.quantity import CURRENT, DISPLACEMENT, FREQUENCY, NOISE_DENSITY, RESISTANCE, VOLTAGE, Quantity
 from flexstage.experiment.formats.write import write
-from flexstage.experiment.virtual_rig.rig import as_record, simulated
+from flexstage.experiment.virtual_rig.rig import as_record, simulate_test
 from flexstage.experiment.virtual_rig.setup import AntiAlias, NoiseDrive, Recorded, RigSetup, Sensing, Tap
 from flexstage.experiment.virtual_rig.tables import rig_table
 from flexstage.models.theory import Model
 from flexstage.parts.amplifier import Amplifier
-from flexstage.show.command.answer import caveat_lines, show
+from flexstage.show.command.answer import list_caveats, show
 from flexstage.show.command.design import elastic_model, open_design
 from flexstage.show.command.options import Changes, Design, ModelName, output_option, text_option, word_option
 from flexstage.show.command.output import announce
 from flexstage.show.command.progress import progress_bar
-from flexstage.show.command.values import Values, first_fit
+from flexstage.show.command.values import Values, first_that_parses
 
 
 def rig(  # noqa: PLR0913  a test has that many knobs
@@ -90,9 +90,9 @@ def rig(  # noqa: PLR0913  a test has that many knobs
     require(values.findings)
     linear = elastic_model(mechanism, model)
     with progress_bar() as shown:
-        test = simulated(mechanism, linear, setup, tell=lambda share: shown.share("testing", share))
+        test = simulate_test(mechanism, linear, setup, tell=lambda share: shown.share("testing", share))
         write(output, as_record(test))
-    show((*caveat_lines("rig", mechanism), rig_table(test)))
+    show((*list_caveats("rig", mechanism), rig_table(test)))
     announce(f"Wrote {output}")
 
 
@@ -118,7 +118,7 @@ def _of_one(values: Values, option: str, text: str | None, quantities: tuple[Qua
     if text is None:
         return None
     known = {quantity.name: quantity for quantity in quantities}
-    if (fit := first_fit(text, known)) is not None:
+    if (fit := first_that_parses(text, known)) is not None:
         return known[fit[0]], fit[1]
     examples = " or ".join(f'"{quantity.example}"' for quantity in quantities)
     nouns = ", ".join(quantity.noun for quantity in quantities)

@@ -39,7 +39,7 @@ from flexstage.models.theory import Model
 from flexstage.show.command.answer import answer
 from flexstage.show.command.options import Csv, Design, Json, output_option, text_option
 from flexstage.show.command.output import require_writable, save
-from flexstage.show.command.terminal import warn
+from flexstage.show.command.terminal import print_warning
 
 
 def update(  # noqa: PLR0913 (its options)
@@ -94,7 +94,7 @@ def update(  # noqa: PLR0913 (its options)
     found = updating.update(mechanism, seen.found, chosen, known)
     save(output, updated_text(text, found, ", ".join(path.name for path in record), where=str(design)), "--output")
     for caution in found.warnings[len(seen.found.warnings) :]:
-        warn(caution)
+        print_warning(caution)
     answer("update", mechanism, lambda: found, lambda: update_tables(found), model=Model.LUMPED, json=json, csv=csv, beside=(output,))
 
 

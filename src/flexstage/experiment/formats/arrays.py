@@ -15,11 +15,11 @@ from typing import Protocol
 import numpy as np
 
 from flexstage.base.files import Attribute
-from flexstage.base.finding import DesignError, Finding, nearest, refuse, require
+from flexstage.base.finding import DesignError, Finding, refuse, require, suggest_nearest
 from flexstage.base.number import Array
-from flexstage.experiment.clock import TIME_SCALES, Clock, Told, longest_stretch, settled
-from flexstage.experiment.options import Allow, Arrays, Kind, Options, assigned, matches, numbered, wanted
-from flexstage.experiment.record import Channel, InMemory, Record, Responses, Role, Samples, not_rising
+from flexstage.experiment.clock import TIME_SCALES, Clock, StatedClock, determine_clock, longest_stretch
+from flexstage.experiment.options import Allow, Arrays, Kind, Options, assign, matches, number_names, select_names
+from flexstage.experiment.record import Channel, InMemory, Record, Responses, Role, Samples, rising_problem
 from flexstage.experiment.unit import plain_unit
 
 RECORD_FORM, RESPONSES_FORM = "flexstage record 1", "flexstage responses 1"
@@ -61,7 +61,7 @@ class Variable(Protocol):
 
 
 @dataclass(frozen=True, eq=False)
-class Held:
+class HeldArray:
     """An array that is in memory already."""
 
     name: str
@@ -110,7 +110,7 @@ class Contents:
     def number(self, *names: str) -> float | None:
         """The first number of one of these names.
 
-        >>> Contents("a.mat", (Held("data.fs", np.array([[50.0]])),)).number("data.fs")
+        >>> Contents("a.mat", (HeldArray("data.fs", np.array([[50.0]])),)).number("data.fs")
         50.0
         """
         found: list[Attribute | None] = [float(np.real(each.whole().ravel()[0])) for each in self.find(names) if np.prod(each.shape) == 1]
@@ -159,12 +159,12 @@ def read_arrays(contents: Contents, options: Options) -> tuple[Record | Response
 
     Raises `DesignError` that lists the arrays where there is neither, and with what keeps those there are from being read.
 
-    >>> both = (Held("u", np.zeros((1, 8))), Held("y", np.ones((8, 2))), Held("fs", np.array(4.0)))
+    >>> both = (HeldArray("u", np.zeros((1, 8))), HeldArray("y", np.ones((8, 2))), HeldArray("fs", np.array(4.0)))
     >>> (found,) = read_arrays(Contents("a.mat", both), Options(arrays=Arrays(samples=("u", "y"), rate=("fs",))))
     >>> found.names, found.rate, found.values[0].tolist()
     (('u', 'y1', 'y2'), 4.0, [0.0, 1.0, 1.0])
     """
-    require(_unmatched(contents, options.arrays))
+    require(_unknown_names(contents, options.arrays))
     samples, responses = contents.find(options.arrays.samples), contents.find(options.arrays.responses)
     found: list[Record | Responses] = []
     if samples and options.kind is not Kind.RESPONSES:
@@ -172,30 +172,30 @@ def read_arrays(contents: Contents, options: Options) -> tuple[Record | Response
     if responses and options.kind is not Kind.RECORD:
         found.append(_responses(contents, responses, options))
     if not found:
-        raise _nothing(contents, options.kind)
+        raise _no_arrays(contents, options.kind)
     return tuple(found)
 
 
-def _unmatched(contents: Contents, arrays: Arrays) -> Iterator[Finding]:
+def _unknown_names(contents: Contents, arrays: Arrays) -> Iterator[Finding]:
     known = [*(each.name for each in contents.variables), *contents.said]
     for meaning, name in arrays.stated():
         if not any(matches(each, [name]) for each in known):
-            yield Finding(f"{contents.where}: {meaning}={name}", "it has no array of this name", nearest(name, known))
+            yield Finding(f"{contents.where}: {meaning}={name}", "it has no array of this name", suggest_nearest(name, known))
 
 
-def _nothing(contents: Contents, kind: Kind | None) -> DesignError:
+def _no_arrays(contents: Contents, kind: Kind | None) -> DesignError:
     missing = {None: '"samples" or "responses"', Kind.RECORD: '"samples"', Kind.RESPONSES: '"responses"'}[kind]
     advice = (
         'Say which is what (array): of a record "samples=..." with "time=...", "rate=..." or "step=...", or the rate itself (rate); '
         'of responses "responses=..." with "frequencies=..."'
     )
-    return refuse(contents.where, f"it has no array {missing}. {listed(contents)}", advice)
+    return refuse(contents.where, f"it has no array {missing}. {list_arrays(contents)}", advice)
 
 
-def listed(contents: Contents) -> str:
+def list_arrays(contents: Contents) -> str:
     """The arrays of a file with their shapes, single numbers with their values, for a message.
 
-    >>> listed(Contents("a.mat", (Held("u", np.zeros((8, 2))), Held("dt", np.array(0.5))), {"note": "run 2"}))
+    >>> list_arrays(Contents("a.mat", (HeldArray("u", np.zeros((8, 2))), HeldArray("dt", np.array(0.5))), {"note": "run 2"}))
     'It has u (8, 2), dt = 0.5, note "run 2"'
     """
     arrays = [
@@ -224,10 +224,10 @@ def _record(contents: Contents, chosen: tuple[Variable, ...], options: Options) 
     clock = _clock(contents, time, options)
     axes = _axes(contents, chosen, time, options)
     samples = SideBySide(tuple(variable.samples(axis) for variable, axis in axes))
-    channels = assigned(_channels(contents, axes, options.arrays), options, contents.where)
+    channels = assign(_channels(contents, axes, options.arrays), options, contents.where)
     start = clock.start if time is not None else contents.number("start") or 0.0
     whole = Record(channels, clock.rate, samples, start, name=contents.text("name"), source=contents.where)
-    return longest_stretch(whole.select(wanted(whole.names, options)) if options.only else whole, clock)
+    return longest_stretch(whole.select(select_names(whole.names, options)) if options.only else whole, clock)
 
 
 def _clock(contents: Contents, time: Variable | None, options: Options) -> Clock:
@@ -235,14 +235,16 @@ def _clock(contents: Contents, time: Variable | None, options: Options) -> Clock
     stated = options.rate or contents.number(*options.arrays.rate) or (1.0 / step if step else None)
     if time is None and stated is None:
         advice = 'Say what the time is: "time=...", "rate=..." or "step=..." (array), or the rate itself (rate)'
-        raise refuse(contents.where, f"it has neither times nor a rate. {listed(contents)}", advice)
+        raise refuse(contents.where, f"it has neither times nor a rate. {list_arrays(contents)}", advice)
     if time is None or options.rate:
         return Clock(float(stated or 0.0), 0.0, ((0, 0),))
     scale = TIME_SCALES.get(plain_unit(str(time.attributes.get("units", "s"))), 1.0)
     source = time.samples(int(np.argmax(time.shape)))
     blocks = (source.read(first, min(first + _BLOCK, source.length))[:, 0] * scale for first in range(0, source.length, _BLOCK))
-    told = Told(stated, allow_gaps=Allow.GAPS in options.allow)
-    return settled(blocks, lambda number: float(source.read(number, number + 1)[0, 0]) * scale, told, f"{contents.where}: {time.name}")
+    told = StatedClock(stated, allow_gaps=Allow.GAPS in options.allow)
+    return determine_clock(
+        blocks, lambda number: float(source.read(number, number + 1)[0, 0]) * scale, told, f"{contents.where}: {time.name}"
+    )
 
 
 def _axes(contents: Contents, chosen: tuple[Variable, ...], time: Variable | None, options: Options) -> list[tuple[Variable, int]]:
@@ -259,16 +261,18 @@ def _channels(contents: Contents, axes: list[tuple[Variable, int]], arrays: Arra
     widths = [int(np.prod(variable.shape)) // variable.shape[axis] for variable, axis in axes]
     variables = [variable for variable, _ in axes]
     total = sum(widths)
-    names = _each(contents, "names", arrays.names, variables, widths) or ("",) * total
+    names = _texts_by_channel(contents, "names", arrays.names, variables, widths) or ("",) * total
     names = tuple(name or own for name, own in zip(names, _own_names(variables, widths), strict=True))
-    units = _each(contents, "units", arrays.units, variables, widths) or ("",) * total
-    roles = _each(contents, "roles", ("roles",), variables, widths) or ("",) * total
+    units = _texts_by_channel(contents, "units", arrays.units, variables, widths) or ("",) * total
+    roles = _texts_by_channel(contents, "roles", ("roles",), variables, widths) or ("",) * total
     known = {role.value: role for role in Role}
-    triples = zip(numbered(names), units, roles, strict=True)
+    triples = zip(number_names(names), units, roles, strict=True)
     return tuple(Channel(name, plain_unit(unit), known.get(role, Role.UNKNOWN)) for name, unit, role in triples)
 
 
-def _each(contents: Contents, kind: str, names: tuple[str, ...], variables: list[Variable], widths: list[int]) -> tuple[str, ...]:
+def _texts_by_channel(
+    contents: Contents, kind: str, names: tuple[str, ...], variables: list[Variable], widths: list[int]
+) -> tuple[str, ...]:
     """A text a channel: of one list in the file, or of the attributes of all arrays; empty where there is neither."""
     total = sum(widths)
     found = contents.texts(*names)
@@ -298,9 +302,9 @@ def _responses(contents: Contents, chosen: tuple[Variable, ...], options: Option
     """Of several arrays each holds outputs to the same inputs."""
     lines = contents.vector(options.arrays.frequencies)
     if lines is None:
-        raise refuse(contents.where, f"it has no frequencies. {listed(contents)}", 'Say which they are (array "frequencies=...")')
+        raise refuse(contents.where, f"it has no frequencies. {list_arrays(contents)}", 'Say which they are (array "frequencies=...")')
     frequencies = lines.whole().ravel().astype(float)
-    problem = not_rising(frequencies)
+    problem = rising_problem(frequencies)
     if problem is not None:
         raise refuse(f"{contents.where}: {lines.name}", problem, "Export each frequency once, from the lowest to the highest")
     size = len(frequencies)
@@ -327,7 +331,7 @@ def _responses(contents: Contents, chosen: tuple[Variable, ...], options: Option
         source=contents.where,
     )
     require(_not_finite(contents.where, values, outputs))
-    return _chosen(whole, options)
+    return _select(whole, options)
 
 
 def _no_responses(where: str, chosen: Iterable[Variable], size: int) -> Iterator[Finding]:
@@ -351,7 +355,7 @@ def _side(contents: Contents, side: str, own: tuple[str, ...], given: tuple[str,
     names, units = (_as_many(contents.texts(f"{side}_{kind}"), own) for kind in ("names", "units"))
     plain = not any(sign in name for name in given for sign in "*?[")
     names = names or (_as_many(given, own) if plain else ()) or own
-    pairs = zip(numbered(names), units or ("",) * len(own), strict=True)
+    pairs = zip(number_names(names), units or ("",) * len(own), strict=True)
     return tuple(Channel(name, plain_unit(unit), Role(side)) for name, unit in pairs)
 
 
@@ -382,11 +386,11 @@ def _not_finite(where: str, values: Array, outputs: tuple[Channel, ...]) -> Iter
             yield Finding(f"{where}: {output.name}", what, "Store the responses anew")
 
 
-def _chosen(responses: Responses, options: Options) -> Responses:
+def _select(responses: Responses, options: Options) -> Responses:
     """The responses with units as the user says; only the channels that count."""
-    whole = assigned((*responses.outputs, *responses.inputs), Options(units=options.units), responses.source)
+    whole = assign((*responses.outputs, *responses.inputs), Options(units=options.units), responses.source)
     outputs, inputs = whole[: len(responses.outputs)], whole[len(responses.outputs) :]
-    rows, columns = _kept(outputs, options.outputs), _kept(inputs, options.inputs)
+    rows, columns = _positions(outputs, options.outputs), _positions(inputs, options.inputs)
     sides = (("outputs", rows, outputs, options.outputs), ("inputs", columns, inputs, options.inputs))
     require(
         Finding(
@@ -403,5 +407,5 @@ def _chosen(responses: Responses, options: Options) -> Responses:
     return replace(responses, outputs=kept[0], inputs=kept[1], values=values, coherence=coherence)
 
 
-def _kept(channels: tuple[Channel, ...], patterns: tuple[str, ...]) -> list[int]:
+def _positions(channels: tuple[Channel, ...], patterns: tuple[str, ...]) -> list[int]:
     return [number for number, channel in enumerate(channels) if not patterns or matches(channel.name, patterns)]

@@ -26,7 +26,7 @@ _FRAME = 1_000_000
 
 
 @dataclass(frozen=True, eq=False)
-class Stored:
+class StoredArray:
     """An array in an HDF5 file, or one `column` of a table; `turned` where the file keeps axes in the opposite order, as MAT files do."""
 
     file: Hdf
@@ -61,7 +61,7 @@ class Stored:
 class StoredSamples:
     """Samples along an axis of an array in an HDF5 file."""
 
-    array: Stored
+    array: StoredArray
     axis: int
 
     @property
@@ -106,11 +106,11 @@ def _variables(file: Hdf, array: HdfArray) -> list[Variable]:
     name, attributes = array.name, array.attributes
     if array.kind == "V":
         return [
-            Stored(file, f"{name}/{column}", array.shape, is_complex=False, attributes=attributes, dataset=name, column=column)
+            StoredArray(file, f"{name}/{column}", array.shape, is_complex=False, attributes=attributes, dataset=name, column=column)
             for column, kind in array.columns.items()
             if kind in NUMBERS
         ]
-    return [Stored(file, name, array.shape, array.kind == "c", attributes)] if array.kind in (*NUMBERS, "c") else []
+    return [StoredArray(file, name, array.shape, array.kind == "c", attributes)] if array.kind in (*NUMBERS, "c") else []
 
 
 def write_hdf(path: str | os.PathLike[str], what: Record | Responses) -> None:

@@ -15,9 +15,9 @@ from flexstage.base.files import Hdf, HdfArray, hdf, mat
 from flexstage.base.finding import refuse
 from flexstage.base.number import Array
 from flexstage.base.store import atomic_write
-from flexstage.experiment.formats.arrays import RECORD_FORM, RESPONSES_FORM, Contents, Held, Variable, read_arrays
+from flexstage.experiment.formats.arrays import RECORD_FORM, RESPONSES_FORM, Contents, HeldArray, Variable, read_arrays
 from flexstage.experiment.formats.format import Format
-from flexstage.experiment.formats.hdf import NUMBERS, Stored, is_hdf
+from flexstage.experiment.formats.hdf import NUMBERS, StoredArray, is_hdf
 from flexstage.experiment.options import Options
 from flexstage.experiment.record import Channel, Record, Responses
 
@@ -58,7 +58,7 @@ def read_mat(path: Path, options: Options) -> tuple[Record | Responses, ...]:
 
 def _version_5(path: Path) -> Iterator[tuple[str, Variable | tuple[str, ...]]]:
     for name, value in mat(path):
-        yield name, value if isinstance(value, tuple) else Held(name, value)
+        yield name, value if isinstance(value, tuple) else HeldArray(name, value)
 
 
 def _version_73(path: Path) -> Iterator[tuple[str, Variable | tuple[str, ...]]]:
@@ -73,7 +73,7 @@ def _version_73(path: Path) -> Iterator[tuple[str, Variable | tuple[str, ...]]]:
         elif array.attributes.get("MATLAB_class") == "char":
             yield name, _characters(file, array)
         elif array.kind in (*NUMBERS, "c") and not array.attributes.get("MATLAB_empty", 0):
-            yield name, Stored(file, name, tuple(reversed(array.shape)), array.kind == "c", dataset=array.name, turned=True)
+            yield name, StoredArray(file, name, tuple(reversed(array.shape)), array.kind == "c", dataset=array.name, turned=True)
 
 
 def _characters(file: Hdf, array: HdfArray) -> tuple[str, ...]:
@@ -116,19 +116,19 @@ def _fields(what: Record | Responses) -> Iterator[tuple[str, Any]]:
     """Names and values of a file's variables."""
     if isinstance(what, Record):
         yield from {"format": RECORD_FORM, "name": what.name, "rate": float(what.rate), "start": float(what.start)}.items()
-        yield from _described("", what.channels)
+        yield from _channel_fields("", what.channels)
         yield "roles", tuple(channel.role.value for channel in what.channels)
         yield "samples", what.values
         return
     yield from {"format": RESPONSES_FORM, "name": what.name, "window": what.window, "averages": float(what.averages or 0)}.items()
-    yield from _described("output_", what.outputs)
-    yield from _described("input_", what.inputs)
+    yield from _channel_fields("output_", what.outputs)
+    yield from _channel_fields("input_", what.inputs)
     yield from {"frequencies": what.frequencies[:, None], "responses": what.values}.items()
     if what.coherence is not None:
         yield "coherence", what.coherence
 
 
-def _described(side: str, channels: Iterable[Channel]) -> Iterator[tuple[str, tuple[str, ...]]]:
+def _channel_fields(side: str, channels: Iterable[Channel]) -> Iterator[tuple[str, tuple[str, ...]]]:
     known = tuple(channels)
     yield f"{side}names", tuple(channel.name for channel in known)
     yield f"{side}units", tuple(channel.unit for channel in known)

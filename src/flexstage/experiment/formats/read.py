@@ -50,12 +50,12 @@ def read(path: str | os.PathLike[str], options: Options = _DEFAULT) -> Record | 
         held = " and ".join(each.kind for each in found) or "neither a record nor responses"
         raise refuse(str(place), f"it holds {held}, not what is asked for", "Ask for the other kind (kind)")
     if len(wanted) > 1:
-        listed = " and ".join(_described(each) for each in wanted)
+        listed = " and ".join(_describe(each) for each in wanted)
         raise refuse(str(place), f"it holds {listed}", 'Say which is meant (kind): "record" or "responses"')
     return wanted[0]
 
 
-def _described(found: Record | Responses) -> str:
+def _describe(found: Record | Responses) -> str:
     if isinstance(found, Record):
         return f"a record ({', '.join(found.names[:8])}; {found.length} samples)"
     return f"frequency responses ({len(found.frequencies)} frequencies)"

@@ -58,7 +58,7 @@ def few_lines(known: Evidence, band: tuple[float, float], count: int) -> list[Fi
     return [Finding(known.where, what, "Ask for a wider band, or record longer")]
 
 
-def too_coarse(known: Evidence, poles: Array) -> str | None:
+def coarse_lines(known: Evidence, poles: Array) -> str | None:
     """A caution where lines lie further apart than the narrowest of the modes found, at `poles` in Hz, is wide.
 
     Candidates are poles of responses at those lines: what lies within one line of another mode may pass for it. With lines as close as the
@@ -67,9 +67,9 @@ def too_coarse(known: Evidence, poles: Array) -> str | None:
     >>> from flexstage.experiment.identification.evidence import evidence
     >>> from flexstage.experiment.example import one_mode_record
     >>> short, long = (evidence(one_mode_record(seconds=seconds), None) for seconds in (16.0, 64.0))
-    >>> too_coarse(short, np.array([-0.2 + 10.0j]))[:88]
+    >>> coarse_lines(short, np.array([-0.2 + 10.0j]))[:88]
     'lines are 1.49 Hz apart, the mode at 10 Hz is 0.4 Hz wide: further modes next to those f'
-    >>> too_coarse(long, np.array([-0.2 + 10.0j])) is None
+    >>> coarse_lines(long, np.array([-0.2 + 10.0j])) is None
     True
     """
     widths = [width(pole) for pole in poles]
@@ -79,16 +79,16 @@ def too_coarse(known: Evidence, poles: Array) -> str | None:
     narrowest = int(np.argmin(widths))
     return (
         f"lines are {apart:.3g} Hz apart, the mode at {abs(poles[narrowest]):.4g} Hz is {widths[narrowest]:.3g} Hz wide: further modes "
-        f"next to those found may be missing. {_longer(known, widths[narrowest])}"
+        f"next to those found may be missing. {_advise_length(known, widths[narrowest])}"
     )
 
 
-def not_searched(known: Evidence, reach: Reach) -> str | None:
+def unsearched_band(known: Evidence, reach: Reach) -> str | None:
     """A caution where a part of the band that the user asked for could not be searched.
 
     >>> from flexstage.experiment.identification.evidence import evidence
     >>> from flexstage.experiment.example import one_mode_record
-    >>> not_searched(evidence(one_mode_record(), None), Reach(2.0, 26.88, (0.5, 20.0)))
+    >>> unsearched_band(evidence(one_mode_record(), None), Reach(2.0, 26.88, (0.5, 20.0)))
     'modes from 0.5 to 20 Hz are asked for; from 2 to 20 Hz they could be looked for. Record longer.'
     """
     if reach.asked is None or (reach.low <= 1.001 * reach.asked[0] and reach.high >= 0.999 * reach.asked[1]):
@@ -99,21 +99,21 @@ def not_searched(known: Evidence, reach: Reach) -> str | None:
     return f"modes from {reach.asked[0]:g} to {reach.asked[1]:g} Hz are asked for; {could}. Record {' and '.join(needed) or 'longer'}."
 
 
-def nothing_found(known: Evidence, reach: Reach) -> str:
+def no_mode_caution(known: Evidence, reach: Reach) -> str:
     """What it means that no mode was found: noise alone, no resonance, or too short a record to tell.
 
     >>> from flexstage.experiment.identification.evidence import evidence
     >>> from flexstage.experiment.example import one_mode_record
-    >>> nothing_found(evidence(one_mode_record(), None), Reach(1.0, 26.0))[:54]
+    >>> no_mode_caution(evidence(one_mode_record(), None), Reach(1.0, 26.0))[:54]
     'no mode can be told, though inputs explain 85.5% of th'
     """
     middle = float(np.sqrt(reach.low * reach.high))
     apart = line_distance(known)
     seen = (
         f"What is narrower than the {apart:.3g} Hz between lines may be there all the same: at {middle:.3g} Hz what is damped below "
-        f"{apart / (2.0 * middle):.2g}. {_longer(known, None)}"
+        f"{apart / (2.0 * middle):.2g}. {_advise_length(known, None)}"
         if middle > 0.0
-        else f"There are too few lines to look for any. {_longer(known, None)}"
+        else f"There are too few lines to look for any. {_advise_length(known, None)}"
     )
     if known.coherence is None:
         return f"no mode stands out of the noise. {seen}"
@@ -126,17 +126,17 @@ def nothing_found(known: Evidence, reach: Reach) -> str:
     return f"no mode stands out of the noise: {told}, and would explain {chance:.1%} of noise that has nothing to do with them. {seen}"
 
 
-def _longer(known: Evidence, wanted: float | None) -> str:
+def _advise_length(known: Evidence, wanted: float | None) -> str:
     """Advice: how long a record of the same averages gives lines `wanted` Hz apart."""
     if known.coherence is None:
         return "Measure with finer lines." if wanted is None else f"Measure with lines {wanted:.2g} Hz apart."
     lasts = 1.0 / known.resolution
     if wanted is None:
         return f"It lasts {lasts:.3g} s: record longer."
-    return f"The record lasts {lasts:.3g} s: it takes {_up(lasts * line_distance(known) / wanted):.3g} s at least."
+    return f"The record lasts {lasts:.3g} s: it takes {_round_up(lasts * line_distance(known) / wanted):.3g} s at least."
 
 
-def _up(value: float) -> float:
+def _round_up(value: float) -> float:
     """Rounded up to two digits."""
     unit = 10.0 ** (np.floor(np.log10(value)) - 1.0)
     return float(np.ceil(value / unit) * unit)

@@ -63,16 +63,16 @@ def extents(poles: Array, low: float, high: float, *, resolution: float = 0.0) -
             groups[-1].append(index)
         else:
             groups.append([index])
-    groups = [part for group in groups for part in _divided(group, frequencies)]
+    groups = [part for group in groups for part in _divide(group, frequencies)]
     return [_extent(poles, group, low, high) for group in groups]
 
 
-def _divided(group: list[int], frequencies: Array) -> list[list[int]]:
+def _divide(group: list[int], frequencies: Array) -> list[list[int]]:
     """A group of more modes than are fitted at once, cut at its widest gaps."""
     if len(group) <= _MOST:
         return [group]
     cut = 1 + int(np.argmax(np.diff(frequencies[group])))
-    return _divided(group[:cut], frequencies) + _divided(group[cut:], frequencies)
+    return _divide(group[:cut], frequencies) + _divide(group[cut:], frequencies)
 
 
 def _extent(poles: Array, group: list[int], low: float, high: float) -> Extent:
@@ -81,12 +81,12 @@ def _extent(poles: Array, group: list[int], low: float, high: float) -> Extent:
     top = max(frequencies[index] + _REACH * widths[index] for index in group)
     first, last = group[0], group[-1]
     if first > 0:
-        bottom = max(bottom, _between(frequencies, widths, first - 1))
+        bottom = max(bottom, _divide_gap(frequencies, widths, first - 1))
     if last + 1 < len(poles):
-        top = min(top, _between(frequencies, widths, last))
+        top = min(top, _divide_gap(frequencies, widths, last))
     return Extent(max(low, bottom), min(high, top), tuple(group))
 
 
-def _between(frequencies: Array, widths: Array, index: int) -> float:
+def _divide_gap(frequencies: Array, widths: Array, index: int) -> float:
     gap = frequencies[index + 1] - frequencies[index]
     return float(frequencies[index] + gap * widths[index] / (widths[index] + widths[index + 1]))

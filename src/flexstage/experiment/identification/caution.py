@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexstage.base.number import Array
-from flexstage.experiment.identification.adequacy import Reach, not_searched, nothing_found, too_coarse
+from flexstage.experiment.identification.adequacy import Reach, coarse_lines, no_mode_caution, unsearched_band
 from flexstage.experiment.identification.evidence import Evidence
 from flexstage.experiment.record import Channel
 from flexstage.experiment.unit import same_dimension, unit_problem
@@ -41,7 +41,7 @@ def warnings(known: Evidence, modes: Modes, reach: Reach) -> tuple[str, ...]:
     'only u was driven: o'
     """
     poles, close = modes.poles, modes.close
-    limits = (not_searched(known, reach), too_coarse(known, poles), None if len(poles) else nothing_found(known, reach))
+    limits = (unsearched_band(known, reach), coarse_lines(known, poles), None if len(poles) else no_mode_caution(known, reach))
     found = [each for each in limits if each is not None]
     outputs, inputs = known.responses.values.shape[1:]
     listed = ", ".join(f"{abs(pole):.4g}" for pole in poles[:8]) + (" ..." if len(poles) > 8 else "")

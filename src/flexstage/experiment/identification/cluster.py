@@ -63,7 +63,7 @@ def stabilisation(found: tuple[Poles, ...], highest_damping: float) -> tuple[Sta
     for poles in found:
         values = poles.values / (2.0 * np.pi)
         chosen = np.flatnonzero(poles.damping < highest_damping)
-        _continued(tracks, values[chosen], poles.participation[chosen], poles.order)
+        _continue_tracks(tracks, values[chosen], poles.participation[chosen], poles.order)
     rows = [row for track in tracks for row in zip(track.orders, track.poles, track.stable, strict=True)]
     rows.sort(key=lambda row: (row[0], row[1].imag))
     values = np.array([row[1] for row in rows], dtype=complex)
@@ -79,44 +79,44 @@ def stabilisation(found: tuple[Poles, ...], highest_damping: float) -> tuple[Sta
     return diagram, tuple(_candidate(track, common) for track in lasting)
 
 
-def merged(sweeps: Iterable[tuple[Candidate, ...]]) -> tuple[Candidate, ...]:
+def merge(sweeps: Iterable[tuple[Candidate, ...]]) -> tuple[Candidate, ...]:
     """Candidates of overlapping bands without doubles, by rising frequency; of doubles the one found in more orders stays.
 
     Candidates of one band are never doubles of one another: a pole of each order belongs to one of them only.
 
     >>> twice = [(Candidate(-1 + 100j, np.array([1.0]), 3),), (Candidate(-1.1 + 100.1j, np.array([1.0]), 5),)]
-    >>> [candidate.orders for candidate in merged(twice)]
+    >>> [candidate.orders for candidate in merge(twice)]
     [5]
     """
     kept: list[tuple[int, Candidate]] = []
     numbered = [(number, candidate) for number, sweep in enumerate(sweeps) for candidate in sweep]
     for number, candidate in sorted(numbered, key=lambda each: -each[1].orders):
-        if not any(sweep != number and _double(candidate, other) for sweep, other in kept):
+        if not any(sweep != number and _is_double(candidate, other) for sweep, other in kept):
             kept.append((number, candidate))
     return tuple(sorted((candidate for _, candidate in kept), key=lambda each: each.pole.imag))
 
 
-def alike(first: Array, second: Array) -> float:
+def vector_assurance(first: Array, second: Array) -> float:
     """|a^H b|^2 / (a^H a b^H b) of two complex vectors.
 
-    >>> alike(np.array([1.0, 1.0j]), np.array([2.0, 2.0j]))
+    >>> vector_assurance(np.array([1.0, 1.0j]), np.array([2.0, 2.0j]))
     1.0
     """
     own = float(np.vdot(first, first).real * np.vdot(second, second).real)
     return float(abs(np.vdot(first, second)) ** 2 / own) if own > 0.0 else 0.0
 
 
-def _double(first: Candidate, second: Candidate) -> bool:
+def _is_double(first: Candidate, second: Candidate) -> bool:
     width = max(-first.pole.real, -second.pole.real)
-    return abs(first.pole - second.pole) < width and alike(first.participation, second.participation) > 0.8
+    return abs(first.pole - second.pole) < width and vector_assurance(first.participation, second.participation) > 0.8
 
 
-def _continued(tracks: list[_Track], values: Array, participations: Array, order: int) -> None:
+def _continue_tracks(tracks: list[_Track], values: Array, participations: Array, order: int) -> None:
     pairs: list[tuple[float, int, int]] = []
     for number, track in enumerate(tracks):
         for index, value in enumerate(values):
             away = abs(value - track.poles[-1]) / abs(value)
-            similar = alike(participations[index], track.participations[-1])
+            similar = vector_assurance(participations[index], track.participations[-1])
             coincident = abs(value - track.poles[-1]) < -_COINCIDENT * value.real
             if away < _NEAR and (similar > _ALIKE or coincident):
                 pairs.append((away / _NEAR + 1.0 - similar, number, index))
@@ -136,7 +136,7 @@ def _grow(track: _Track, value: complex, participation: Array, order: int) -> No
     checks = (
         abs(abs(value) / abs(before) - 1.0) < _STABLE_FREQUENCY,
         abs(value.real / before.real - 1.0) < _STABLE_DAMPING,
-        alike(participation, track.participations[-1]) > _STABLE_PARTICIPATION,
+        vector_assurance(participation, track.participations[-1]) > _STABLE_PARTICIPATION,
     )
     track.stable.append(next((level for level, good in enumerate(checks) if not good), 3))
     track.poles.append(complex(value))

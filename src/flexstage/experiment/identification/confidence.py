@@ -31,10 +31,10 @@ class Deviations:
     damping: Array
     shapes: Array
 
-    def widened(self, factors: Array) -> Deviations:
+    def widen(self, factors: Array) -> Deviations:
         """All deviations of each mode times its factor.
 
-        >>> Deviations(np.ones(1), np.ones(1), np.ones((2, 1))).widened(np.array([3.0])).shapes.tolist()
+        >>> Deviations(np.ones(1), np.ones(1), np.ones((2, 1))).widen(np.array([3.0])).shapes.tolist()
         [[3.0], [3.0]]
         """
         return Deviations(self.frequencies * factors, self.damping * factors, self.shapes * factors)
@@ -146,7 +146,7 @@ def drive_strength(band: Band, found: Fit, once_in: float) -> Array:
     inputs = total if band.inputs is None else band.inputs
     largest = count * (1 + total) + np.argmax(np.abs(modal.shapes), axis=0) * count + np.arange(count)
     strength = np.empty(count)
-    driving = [total if _blow(band, pole, inputs) else inputs for pole in modal.poles]
+    driving = [total if _is_blow(band, pole, inputs) else inputs for pole in modal.poles]
     for mode in range(count):
         transients = (count + np.arange(count)[:, None] * total + np.arange(driving[mode], total)).ravel()
         covariance = _inverse(found.information, np.append(largest, transients))
@@ -156,7 +156,7 @@ def drive_strength(band: Band, found: Fit, once_in: float) -> Array:
     return strength
 
 
-def _blow(band: Band, pole: complex, inputs: int) -> bool:
+def _is_blow(band: Band, pole: complex, inputs: int) -> bool:
     """Whether the inputs near a pole are the same as transients, to a tenth of their power."""
     cells = band.cells
     if inputs == cells.width:

@@ -10,7 +10,7 @@ import scipy
 
 from flexstage.base.number import Array
 from flexstage.experiment.identification.confidence import SAME
-from flexstage.experiment.identification.likelihood import Band, Modal, explained, resonances
+from flexstage.experiment.identification.likelihood import Band, Modal, explained_share, resonances
 from flexstage.experiment.identification.lines import DEGREE, Lines
 
 _WIDTHS = 4.0
@@ -30,7 +30,7 @@ class Drive:
     elsewhere: Array
 
 
-def drives(bands: Sequence[tuple[Band, Modal]], lines: Iterable[Lines]) -> list[Drive]:
+def measure_drives(bands: Sequence[tuple[Band, Modal]], lines: Iterable[Lines]) -> list[Drive]:
     """Whether the recorded inputs drive each mode, band by band.
 
     Its motion q is what the outputs hold beside all else that was fitted, weighted by shape and noise: q (j f - p) is the force on the
@@ -44,7 +44,7 @@ def drives(bands: Sequence[tuple[Band, Modal]], lines: Iterable[Lines]) -> list[
     >>> from flexstage.experiment.identification.likelihood import fit
     >>> from flexstage.experiment.identification.lines import record_lines
     >>> band, start = one_mode_band()
-    >>> [found] = drives([(band, fit(band, start).modal)], record_lines(one_mode_record(), (0,), 1))
+    >>> [found] = measure_drives([(band, fit(band, start).modal)], record_lines(one_mode_record(), (0,), 1))
     >>> bool(found.chance[0] < 1e-30), bool(found.elsewhere[0] < 0.01)
     (True, True)
     """
@@ -76,7 +76,7 @@ class _Local:
 
     @staticmethod
     def of(band: Band, modal: Modal) -> _Local:
-        return _Local(band, modal, list(explained(band, modal)), resonances(band, modal.poles), [[] for _ in modal.poles])
+        return _Local(band, modal, list(explained_share(band, modal)), resonances(band, modal.poles), [[] for _ in modal.poles])
 
     def add(self, block: int, lines: Lines) -> None:
         cells, (chosen, inside) = self.band.cells, self.fitted[block]
@@ -108,30 +108,30 @@ class _Local:
     def _tested(self, mode: int, inputs: int) -> tuple[float, float]:
         joined = _Near(*(np.concatenate([getattr(part, name) for part in self.near[mode]]) for name in ("drive", "motion", "away")))
         sensed = 1.0 / float(np.sum(np.abs(self.modal.shapes[:, mode]) ** 2 / self._noise(mode)))
-        return _tested(joined, inputs, sensed)
+        return _drive_chance(joined, inputs, sensed)
 
 
-def _tested(near: _Near, inputs: int, sensed: float) -> tuple[float, float]:
+def _drive_chance(near: _Near, inputs: int, sensed: float) -> tuple[float, float]:
     """The F-test's tail, of complex numbers: twice the degrees of freedom; and the share of motion that inputs do not explain."""
     values, force, distance = near.drive, near.motion * near.away, np.abs(near.away) ** 2
     count, total = values.shape
     if count <= total:
         return 1.0, 1.0
     least = sensed * float(np.sort(distance)[total])
-    other = _other(values, force, sensed * distance + least)
+    other = _other_variance(values, force, sensed * distance + least)
     weights = 1.0 / (other + sensed * distance + least)
-    rest = _rest(values, force, weights)
+    rest = _weighted_residual(values, force, weights)
     left = float(np.sum(np.abs(rest) ** 2))
     transients = values[:, inputs:]
-    unlike, size = np.abs(_rest(values[:, :inputs], transients, weights)) ** 2, np.abs(transients) ** 2 * weights[:, None]
+    unlike, size = np.abs(_weighted_residual(values[:, :inputs], transients, weights)) ** 2, np.abs(transients) ** 2 * weights[:, None]
     free = transients if np.sum(unlike) > SAME * np.sum(size) else transients[:, :0]
-    gained = float(np.sum(np.abs(_rest(free, force, weights)) ** 2)) - left
+    gained = float(np.sum(np.abs(_weighted_residual(free, force, weights)) ** 2)) - left
     more = total - free.shape[1]
     ratio = gained / more * (count - total) / max(left, 1e-300)
-    return float(scipy.stats.f.sf(ratio, 2 * more, 2 * (count - total))), _unexplained(near, rest / np.sqrt(weights))
+    return float(scipy.stats.f.sf(ratio, 2 * more, 2 * (count - total))), _unexplained_share(near, rest / np.sqrt(weights))
 
 
-def _unexplained(near: _Near, rest: Array) -> float:
+def _unexplained_share(near: _Near, rest: Array) -> float:
     """Share of the motion, where it is largest, that the regression leaves of the force."""
     count, total = near.drive.shape
     distance = np.abs(near.away) ** 2
@@ -140,20 +140,20 @@ def _unexplained(near: _Near, rest: Array) -> float:
     return float(min(1.0, left / max(np.sum(np.abs(near.motion[close]) ** 2), 1e-300)))
 
 
-def _other(values: Array, force: Array, sensed: Array) -> float:
+def _other_variance(values: Array, force: Array, sensed: Array) -> float:
     """The least variance beside the `sensed` with which the regression leaves no more than it should."""
     free = len(force) - values.shape[1]
-    if np.sum(np.abs(_rest(values, force, 1.0 / sensed)) ** 2) <= free:
+    if np.sum(np.abs(_weighted_residual(values, force, 1.0 / sensed)) ** 2) <= free:
         return 0.0
     low, high = float(np.min(sensed)) * 1e-6, float(np.sum(np.abs(force) ** 2)) / free
     for _ in range(_HALVINGS):
         middle = np.sqrt(low * high)
-        enough = np.sum(np.abs(_rest(values, force, 1.0 / (middle + sensed))) ** 2) <= free
+        enough = np.sum(np.abs(_weighted_residual(values, force, 1.0 / (middle + sensed))) ** 2) <= free
         low, high = (low, middle) if enough else (middle, high)
     return high
 
 
-def _rest(values: Array, force: Array, weights: Array) -> Array:
+def _weighted_residual(values: Array, force: Array, weights: Array) -> Array:
     """What the regression leaves, times the roots of the weights."""
     root = np.sqrt(weights)
     rows, right = values * root[:, None], (force.T * root).T

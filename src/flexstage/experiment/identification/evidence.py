@@ -10,11 +10,11 @@ import numpy as np
 
 from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array
-from flexstage.experiment.cross_spectra import Segments, Spectra, Tell, Window, pooled, spectra
+from flexstage.experiment.cross_spectra import Segments, Spectra, Tell, Window, pool, spectra
 from flexstage.experiment.identification.lines import Cells, Lines, block_count, record_lines
 from flexstage.experiment.identification.smear import SMEARING, Smear
-from flexstage.experiment.identification.tones import Tone, quieted
-from flexstage.experiment.record import Channel, Record, Responses, not_rising
+from flexstage.experiment.identification.tones import Tone, remove_tones
+from flexstage.experiment.record import Channel, Record, Responses, rising_problem
 from flexstage.experiment.transfer import h1, multiple_coherence, noise_density
 
 _SEGMENTS = 24.0
@@ -83,12 +83,12 @@ def evidence(what: Record | Responses | Sequence[Record], segments: Segments | N
         return _of_responses(what)
     records = (what,) if isinstance(what, Record) else tuple(what)
     require(_findings(records))
-    quiet = (quieted(record, _part(tell, index, _PASSES * len(records))) for index, record in enumerate(records))
+    quiet = (remove_tones(record, _part_progress(tell, index, _PASSES * len(records))) for index, record in enumerate(records))
     records, tones = zip(*quiet, strict=True)
-    chosen = segments if segments is not None else chosen_segments(records)
-    told = (_part(tell, len(records) + index, _PASSES * len(records)) for index in range(len(records)))
+    chosen = segments if segments is not None else choose_segments(records)
+    told = (_part_progress(tell, len(records) + index, _PASSES * len(records)) for index in range(len(records)))
     parts = [spectra(record, chosen, each) for record, each in zip(records, told, strict=True)]
-    together = pooled([part.driven([channel.name for channel in part.inputs]) for part in parts])
+    together = pool([part.driven([channel.name for channel in part.inputs]) for part in parts])
     return replace(_of_records(records, together, tell), tones=tuple(itertools.chain(*tones)))
 
 
@@ -107,8 +107,8 @@ def _of_records(records: tuple[Record, ...], known: Spectra, tell: Tell | None) 
         for index, record in enumerate(records, start=(2 + number) * len(records)):
             kept = record.select([channel.name for channel in record.channels if channel in record.outputs or channel.name in names])
             places = tuple(names.index(channel.name) for channel in kept.inputs)
-            for block in record_lines(kept, places, column, _part(tell, index, _PASSES * len(records)), parts):
-                yield _scaled(block, input_scale, output_scale)
+            for block in record_lines(kept, places, column, _part_progress(tell, index, _PASSES * len(records)), parts):
+                yield _scale_lines(block, input_scale, output_scale)
             column += block_count(kept, parts)
 
     weights = 1.0 / np.sqrt(np.maximum(noise, 1e-12 * np.max(noise, axis=0) + 1e-300))
@@ -148,16 +148,16 @@ def _rounding(outputs: tuple[Channel, ...], scale: Array) -> Array:
     return np.where(scale > 0.0, (_ROUNDING * largest / _divisor(scale)) ** 2, 1.0)
 
 
-def _scaled(lines: Lines, input_scale: Array, output_scale: Array) -> Lines:
+def _scale_lines(lines: Lines, input_scale: Array, output_scale: Array) -> Lines:
     factors = [input_scale[column] if column < len(input_scale) else 1.0 for column in lines.columns]
     return replace(lines, drive=lines.drive / np.array(factors), outputs=lines.outputs / output_scale)
 
 
-def chosen_segments(records: Sequence[Record], wanted: float = _SEGMENTS) -> Segments:
+def choose_segments(records: Sequence[Record], wanted: float = _SEGMENTS) -> Segments:
     """Long segments resolve sharp resonances, many average noise: as many as `wanted`, and three for each input.
 
     >>> from flexstage.experiment.example import one_mode_record
-    >>> chosen_segments([one_mode_record(seconds=48.0)]).seconds
+    >>> choose_segments([one_mode_record(seconds=48.0)]).seconds
     2.0
     """
     inputs = len({channel.name for record in records for channel in record.inputs})
@@ -167,11 +167,11 @@ def chosen_segments(records: Sequence[Record], wanted: float = _SEGMENTS) -> Seg
     return Segments(max(seconds, min(shortest, 16.0 / records[0].rate)))
 
 
-def whole(records: Sequence[Record]) -> Segments:
+def whole_segment(records: Sequence[Record]) -> Segments:
     """One segment without a window, as long as the shortest record: what a blow or a burst asks for.
 
     >>> from flexstage.experiment.example import one_mode_record
-    >>> whole([one_mode_record(seconds=48.0)]).seconds
+    >>> whole_segment([one_mode_record(seconds=48.0)]).seconds
     48.0
     """
     shortest = min(record.duration for record in records)
@@ -240,7 +240,7 @@ def _response_findings(known: Responses, steps: Array) -> list[Finding]:
         return [Finding(where, f"there are {len(steps) + 1} lines", "Give responses at 16 frequencies or more")]
     if not np.all(np.isfinite(known.values)):
         return [Finding(where, f"{int(np.sum(~np.isfinite(known.values)))} values are not numbers", "Leave those channels or lines out")]
-    if (falling := not_rising(known.frequencies)) is not None:
+    if (falling := rising_problem(known.frequencies)) is not None:
         return [Finding(where, falling, "Export each frequency once, from the lowest to the highest")]
     if np.max(np.abs(steps - np.mean(steps))) > 1e-3 * np.mean(steps):
         what = f"its lines lie unevenly, {np.min(steps):.6g} to {np.max(steps):.6g} Hz apart, as those of stepped or swept sines do"
@@ -269,7 +269,7 @@ def _findings(records: tuple[Record, ...]) -> list[Finding]:
     return found
 
 
-def _part(tell: Tell | None, index: int, count: int) -> Tell | None:
+def _part_progress(tell: Tell | None, index: int, count: int) -> Tell | None:
     if tell is None:
         return None
     return lambda share: tell((index + share) / count)

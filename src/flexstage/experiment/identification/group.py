@@ -9,13 +9,13 @@ import scipy
 
 from flexstage.base.number import Array
 from flexstage.experiment.identification.bands import Extent
-from flexstage.experiment.identification.cluster import Candidate, alike
+from flexstage.experiment.identification.cluster import Candidate, vector_assurance
 from flexstage.experiment.identification.confidence import Deviations, deviations, drive_strength, freedoms, misfits, significance
 from flexstage.experiment.identification.evidence import Evidence
 from flexstage.experiment.identification.jackknife import jackknife, sub_bands
-from flexstage.experiment.identification.likelihood import Band, Fit, Modal, background, fit, noise, scatter, shaped, silence
+from flexstage.experiment.identification.likelihood import Band, Fit, Modal, background, fit, noise, scatter, silence, with_shapes
 from flexstage.experiment.identification.lines import Cells
-from flexstage.experiment.identification.unexplained import SURPRISING, excess, suggested
+from flexstage.experiment.identification.unexplained import SURPRISING, excess, suggest_mode
 
 ONCE_IN = 1e-9
 """How often noise may pass for a mode."""
@@ -57,7 +57,7 @@ class Found:
     misfit: Array
     widening: Array
 
-    def only(self, chosen: Array) -> Found:
+    def select(self, chosen: Array) -> Found:
         """Some of the modes, by their numbers."""
         modal, spread = self.modal, self.deviations
         return Found(
@@ -70,17 +70,17 @@ class Found:
         )
 
 
-def grouped(known: Evidence, cells: Cells, candidates: tuple[Candidate, ...], hunt: Hunt) -> Found | None:
+def fit_group(known: Evidence, cells: Cells, candidates: tuple[Candidate, ...], hunt: Hunt) -> Found | None:
     """The modes of one group of candidates: fitted, freed of what is not significant, fitted anew with the noise that is left.
 
     `cells` are those of the group's band; candidates beside the group stand for what lies outside. `None` where no mode is left.
 
     >>> from flexstage.experiment.identification.evidence import evidence
     >>> from flexstage.experiment.example import POLE, one_mode_record
-    >>> from flexstage.experiment.identification.lines import edges, gathered
+    >>> from flexstage.experiment.identification.lines import edges, gather_cells
     >>> known, pole = evidence(one_mode_record(), None), 1.01 * POLE
-    >>> [cells] = gathered(known.lines(), [edges(np.array([pole]), 6.0, 14.0)])
-    >>> found = grouped(known, cells, (Candidate(pole, np.ones(1), 3),), Hunt(Extent(6.0, 14.0, (0,)), 0.1, []))
+    >>> [cells] = gather_cells(known.lines(), [edges(np.array([pole]), 6.0, 14.0)])
+    >>> found = fit_group(known, cells, (Candidate(pole, np.ones(1), 3),), Hunt(Extent(6.0, 14.0, (0,)), 0.1, []))
     >>> None if found is None else abs(found.modal.poles).round(1).tolist()
     [10.0]
     """
@@ -90,20 +90,20 @@ def grouped(known: Evidence, cells: Cells, candidates: tuple[Candidate, ...], hu
     if np.sum(cells.count) < 2 * cells.own.shape[2] * band.background.shape[1]:
         return None
     participation = np.array([candidates[index].participation for index in members])
-    found, strength = _pruned(band, fit(band, shaped(band, poles[members], participation)), hunt)
+    found, strength = _prune(band, fit(band, with_shapes(band, poles[members], participation)), hunt)
     for _ in range(_ROUNDS):
         band = replace(band, variance=noise(band, found.modal))
-        found, strength = _pruned(band, fit(band, found.modal), hunt)
-        band, found, strength = _extended(band, found, strength, hunt)
+        found, strength = _prune(band, fit(band, found.modal), hunt)
+        band, found, strength = _extend(band, found, strength, hunt)
     if not len(found.modal.poles):
         return None
     beyond = misfits(band, found.modal)
     spread = deviations(found, known.inflation, scatter(band, found.modal))
-    every = Found(band, found.modal, spread, strength / _limit(found.modal), beyond, np.maximum(beyond, _hidden(band, found)))
+    every = Found(band, found.modal, spread, strength / _limit(found.modal), beyond, np.maximum(beyond, _hidden_mode_factor(band, found)))
     return replace(every, widening=_widening(every, band, found.modal))
 
 
-def _hidden(band: Band, found: Fit) -> Array:
+def _hidden_mode_factor(band: Band, found: Fit) -> Array:
     """The factor (k,) on deviations for a further mode that the data may hold, though not so surely that it is told.
 
     Noise would pass for it once in 10,000, not once in 1e9. If it is there, the modes beside it move as it is added, and are known as
@@ -115,7 +115,7 @@ def _hidden(band: Band, found: Fit) -> Array:
     if score[place] < _NOTICED:
         return np.ones(len(modal.poles))
     enough = found.cost - 0.5 * float(scipy.stats.chi2.isf(_DOUBTED / len(score), freedoms(modal)))
-    more = fit(band, suggested(band, modal, place), enough)
+    more = fit(band, suggest_mode(band, modal, place), enough)
     if more.cost > enough:
         return np.ones(len(modal.poles))
     same = [int(np.argmin(np.abs(more.modal.poles - pole))) for pole in modal.poles]
@@ -125,7 +125,7 @@ def _hidden(band: Band, found: Fit) -> Array:
     return np.where(factors > _SLIGHT, factors, 1.0)
 
 
-def parted(known: Evidence, cells: Cells, candidates: tuple[Candidate, ...], group: Extent, found: Found) -> Found:
+def widen_by_parts(known: Evidence, cells: Cells, candidates: tuple[Candidate, ...], group: Extent, found: Found) -> Found:
     """The modes with deviations that hold for the scatter between parts of the record, too, where the fit leaves more than noise.
 
     `cells` are those of the same band, gathered from the parts' transforms. A mode that changes with its amplitude or with time answers
@@ -170,10 +170,10 @@ def _chance(modal: Modal, strength: float) -> float:
     return float(scipy.stats.chi2.sf(strength, freedoms(modal)))
 
 
-def _pruned(band: Band, found: Fit, hunt: Hunt) -> tuple[Fit, Array]:
+def _prune(band: Band, found: Fit, hunt: Hunt) -> tuple[Fit, Array]:
     """Leave out, one at a time and the least significant first, what is no mode; and the significance of the modes left."""
     while len(found.modal.poles):
-        worst, strength = _worst(band, found, hunt)
+        worst, strength = _least_significant(band, found, hunt)
         if worst is None:
             return found, strength
         hunt.lost.append(Lost(complex(found.modal.poles[worst]), found.modal.shapes[:, worst], _chance(found.modal, strength[worst])))
@@ -181,14 +181,14 @@ def _pruned(band: Band, found: Fit, hunt: Hunt) -> tuple[Fit, Array]:
     return found, np.zeros(0)
 
 
-def _extended(band: Band, found: Fit, strength: Array, hunt: Hunt) -> tuple[Band, Fit, Array]:
+def _extend(band: Band, found: Fit, strength: Array, hunt: Hunt) -> tuple[Band, Fit, Array]:
     """Add modes, one at a time, where the data hold more than those found explain, as long as that is significant."""
     while len(found.modal.poles) < _MOST_MODES:
         score = excess(band, found.modal)
         place = int(np.argmax(score))
         if score[place] < SURPRISING:
             break
-        more, grown = _pruned(band, fit(band, suggested(band, found.modal, place)), hunt)
+        more, grown = _prune(band, fit(band, suggest_mode(band, found.modal, place)), hunt)
         if len(more.modal.poles) <= len(found.modal.poles) or more.cost > found.cost:
             break
         found, strength = more, grown
@@ -196,7 +196,7 @@ def _extended(band: Band, found: Fit, strength: Array, hunt: Hunt) -> tuple[Band
     return band, found, strength
 
 
-def _worst(band: Band, found: Fit, hunt: Hunt) -> tuple[int | None, Array]:
+def _least_significant(band: Band, found: Fit, hunt: Hunt) -> tuple[int | None, Array]:
     """The mode that is least one, if there is such, and how significant each is."""
     poles, limit = found.modal.poles, _limit(found.modal)
     ratio = -np.real(poles) / np.abs(poles)
@@ -204,21 +204,21 @@ def _worst(band: Band, found: Fit, hunt: Hunt) -> tuple[int | None, Array]:
     outside = (ratio > hunt.highest_damping) | (np.imag(poles) < hunt.group.low) | (np.imag(poles) > hunt.group.high)
     if np.any(outside):
         return int(np.argmax(np.where(outside, spread.damping / ratio, -1.0))), np.zeros(len(poles))
-    strength = np.where(_doubles(found.modal), 0.0, significance(band, found, limit))
+    strength = np.where(_find_doubles(found.modal), 0.0, significance(band, found, limit))
     strength = np.minimum(strength, limit * drive_strength(band, found, ONCE_IN))
     wanted = np.where(spread.damping > _SURE * ratio, _EVIDENT * limit, limit)
     least = int(np.argmin(strength / wanted))
     return (least if strength[least] < wanted[least] else None), strength
 
 
-def _doubles(modal: Modal) -> Array:
+def _find_doubles(modal: Modal) -> Array:
     """Modes that repeat another one: same pole within a tenth of its half-width, same shape and participation; the weaker of both."""
     size = np.linalg.norm(modal.shapes, axis=0) * np.linalg.norm(modal.participation, axis=1)
     found = np.zeros(len(size), dtype=bool)
     for first in range(len(size)):
         for second in range(first):
             near = abs(modal.poles[first] - modal.poles[second]) < -0.1 * modal.poles[first].real
-            same = alike(modal.shapes[:, first], modal.shapes[:, second]) > 0.98
-            if near and same and alike(modal.participation[first], modal.participation[second]) > 0.98:
+            same = vector_assurance(modal.shapes[:, first], modal.shapes[:, second]) > 0.98
+            if near and same and vector_assurance(modal.participation[first], modal.participation[second]) > 0.98:
                 found[first if size[first] < size[second] else second] = True
     return found

@@ -13,13 +13,13 @@ from flexstage.experiment.cross_spectra import Segments, Tell
 from flexstage.experiment.identification.adequacy import Reach, few_lines
 from flexstage.experiment.identification.bands import extents, sweeps
 from flexstage.experiment.identification.caution import Modes, warnings
-from flexstage.experiment.identification.cluster import Candidate, Stabilisation, merged, stabilisation
-from flexstage.experiment.identification.driven import drives
-from flexstage.experiment.identification.evidence import Evidence, chosen_segments, evidence, whole
-from flexstage.experiment.identification.group import ONCE_IN, Found, Hunt, Lost, grouped, parted
+from flexstage.experiment.identification.cluster import Candidate, Stabilisation, merge, stabilisation
+from flexstage.experiment.identification.driven import measure_drives
+from flexstage.experiment.identification.evidence import Evidence, choose_segments, evidence, whole_segment
+from flexstage.experiment.identification.group import ONCE_IN, Found, Hunt, Lost, fit_group, widen_by_parts
 from flexstage.experiment.identification.identified import Identified
 from flexstage.experiment.identification.likelihood import Modal
-from flexstage.experiment.identification.lines import edges, gathered
+from flexstage.experiment.identification.lines import edges, gather_cells
 from flexstage.experiment.identification.lscf import lscf
 from flexstage.experiment.identification.peaks import Left, peaks
 from flexstage.experiment.identification.residues import modal_sum, remainder
@@ -63,22 +63,22 @@ def identify(what: Record | Responses | Sequence[Record], search: Search = Searc
     >>> found.frequencies.round(1).tolist(), found.damping.round(3).tolist()
     ([10.0], [0.02])
     """
-    found = _identified(what, search, tell)
+    found = _identify_once(what, search, tell)
     if len(found.frequencies) or search.segments is not None or isinstance(what, Responses):
         return found
     # Resonances sharper than the segments resolve leave no stable pole, and a blow falls into the first of them alone: look once more.
     records = [what] if isinstance(what, Record) else list(what)
-    longer = chosen_segments(records, _FEW) if len(found.inputs) > 1 else whole(records)
-    again = _identified(what, replace(search, segments=longer), tell)
+    longer = choose_segments(records, _FEW) if len(found.inputs) > 1 else whole_segment(records)
+    again = _identify_once(what, replace(search, segments=longer), tell)
     return again if len(again.frequencies) else found
 
 
-def _identified(what: Record | Responses | Sequence[Record], search: Search, tell: Tell | None) -> Identified:
+def _identify_once(what: Record | Responses | Sequence[Record], search: Search, tell: Tell | None) -> Identified:
     known = evidence(what, search.segments, tell)
     band = _band(known, search)
     diagrams, candidates, reach = _candidates(known, band, search)
     lost: list[Lost] = []
-    found, refused, share = _driven(known, _fitted(known, candidates, band, search.highest_damping, lost))
+    found, refused, share = _keep_driven(known, _fit_groups(known, candidates, band, search.highest_damping, lost))
     return _result(known, found, share, band=band, reach=reach, diagrams=diagrams, refused=refused, lost=lost)
 
 
@@ -117,10 +117,10 @@ def _candidates(
         diagram, found = stabilisation(lscf(known.responses.frequencies[inside], values, weights, orders), search.highest_damping)
         diagrams.append(diagram)
         candidates.append(tuple(each for each in found if sweep.first + each.pole.real <= each.pole.imag <= sweep.last - each.pole.real))
-    return tuple(diagrams), merged(candidates), Reach(low, high, search.band)
+    return tuple(diagrams), merge(candidates), Reach(low, high, search.band)
 
 
-def _fitted(
+def _fit_groups(
     known: Evidence, candidates: tuple[Candidate, ...], band: tuple[float, float], highest_damping: float, lost: list[Lost]
 ) -> list[Found]:
     if not candidates:
@@ -128,13 +128,13 @@ def _fitted(
     poles = np.array([candidate.pole for candidate in candidates])
     groups = extents(poles, *band, resolution=known.resolution)
     bounds = [edges(poles, group.low, group.high) for group in groups]
-    every = zip(groups, gathered(known.lines(), bounds), strict=True)
-    found = [grouped(known, cells, candidates, Hunt(group, highest_damping, lost)) for group, cells in every]
+    every = zip(groups, gather_cells(known.lines(), bounds), strict=True)
+    found = [fit_group(known, cells, candidates, Hunt(group, highest_damping, lost)) for group, cells in every]
     for parts in sorted({_parts(known, each) for each in found} - {1}):
         chosen = [index for index, each in enumerate(found) if _parts(known, each) == parts]
-        for index, cells in zip(chosen, gathered(known.lines(1, parts), [bounds[index] for index in chosen]), strict=True):
+        for index, cells in zip(chosen, gather_cells(known.lines(1, parts), [bounds[index] for index in chosen]), strict=True):
             each = found[index]
-            found[index] = None if each is None else parted(known, cells, candidates, groups[index], each)
+            found[index] = None if each is None else widen_by_parts(known, cells, candidates, groups[index], each)
     return [each for each in found if each is not None]
 
 
@@ -150,20 +150,20 @@ def _parts(known: Evidence, found: Found | None) -> int:
     return parts if parts >= _LEAST_PARTS else 1
 
 
-def _driven(known: Evidence, fitted: list[Found]) -> tuple[list[Found], list[Lost], Array]:
+def _keep_driven(known: Evidence, fitted: list[Found]) -> tuple[list[Found], list[Lost], Array]:
     """Modes that recorded inputs drive, resonances that they do not, and the share of each mode's motion that is not theirs.
 
     What is refused stays in the fit: it takes the motion that is not the other modes'. Responses say nothing of what else shook the stage.
     """
     if not fitted or all(each.band.inputs == each.band.cells.width for each in fitted):
         return fitted, [], np.zeros(sum(len(each.modal.poles) for each in fitted))
-    every = drives([(each.band, each.modal) for each in fitted], known.lines(1))
+    every = measure_drives([(each.band, each.modal) for each in fitted], known.lines(1))
     refused = [
         Lost(complex(each.modal.poles[mode]), each.modal.shapes[:, mode], float(drive.chance[mode]))
         for each, drive in zip(fitted, every, strict=True)
         for mode in np.flatnonzero(drive.chance > ONCE_IN)
     ]
-    kept = [each.only(np.flatnonzero(drive.chance <= ONCE_IN)) for each, drive in zip(fitted, every, strict=True)]
+    kept = [each.select(np.flatnonzero(drive.chance <= ONCE_IN)) for each, drive in zip(fitted, every, strict=True)]
     return kept, refused, np.concatenate([drive.elsewhere[drive.chance <= ONCE_IN] for drive in every])
 
 
@@ -179,18 +179,18 @@ def _result(
     lost: list[Lost],
 ) -> Identified:
     inputs, outputs = len(known.input_scale), len(known.output_scale)
-    modal = _joined([part.modal for part in found], inputs, outputs)
-    widened = [part.deviations.widened(part.widening) for part in found]
+    modal = _join([part.modal for part in found], inputs, outputs)
+    widened = [part.deviations.widen(part.widening) for part in found]
     spread = [np.concatenate([getattr(part, name) for part in widened] or [np.zeros(0)]) for name in ("frequencies", "damping")]
     wide = np.concatenate([part.shapes for part in widened] or [np.zeros((outputs, 0))], axis=1)
     strength = np.concatenate([part.significance for part in found] or [np.zeros(0)])
     widening = np.concatenate([part.widening for part in found] or [np.zeros(0)])
     order = np.argsort(np.abs(modal.poles))
-    poles, (shapes, participation, wide) = modal.poles[order], _in_units(known, modal, wide, order)
+    poles, (shapes, participation, wide) = modal.poles[order], _restore_units(known, modal, wide, order)
     inside = (known.responses.frequencies >= band[0]) & (known.responses.frequencies <= band[1])
     lines = known.responses.frequencies[inside]
     rest = known.responses.values[inside] - modal_sum(lines, 2.0 * np.pi * poles, shapes, participation)
-    close = _close(poles)
+    close = _close_groups(poles)
     return Identified(
         frequencies=np.abs(poles),
         damping=-np.real(poles) / np.abs(poles),
@@ -215,7 +215,7 @@ def _result(
     )
 
 
-def _joined(parts: list[Modal], inputs: int, outputs: int) -> Modal:
+def _join(parts: list[Modal], inputs: int, outputs: int) -> Modal:
     return Modal(
         np.concatenate([part.poles for part in parts] or [np.zeros(0, dtype=complex)]),
         np.concatenate([part.participation[:, :inputs] for part in parts] or [np.zeros((0, inputs), dtype=complex)]),
@@ -223,7 +223,7 @@ def _joined(parts: list[Modal], inputs: int, outputs: int) -> Modal:
     )
 
 
-def _in_units(known: Evidence, modal: Modal, wide: Array, order: Array) -> tuple[Array, Array, Array]:
+def _restore_units(known: Evidence, modal: Modal, wide: Array, order: Array) -> tuple[Array, Array, Array]:
     """Shapes (largest component 1), participations in rad/s and units of the channels, deviations of the shapes."""
     shapes = modal.shapes * known.output_scale[:, None]
     if not shapes.shape[1]:
@@ -238,7 +238,7 @@ def _in_units(known: Evidence, modal: Modal, wide: Array, order: Array) -> tuple
     return (relative / turn)[:, order], participation[order], (wide / np.abs(turn))[:, order]
 
 
-def _close(poles: Array) -> tuple[tuple[int, ...], ...]:
+def _close_groups(poles: Array) -> tuple[tuple[int, ...], ...]:
     """Modes nearer to the next than the mean of their half-widths, in groups."""
     groups: list[list[int]] = []
     for index in range(len(poles)):

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexstage.base.number import Array
-from flexstage.experiment.identification.lines import Cells, expanded, nodes
+from flexstage.experiment.identification.lines import Cells, legendre_coefficients, nodes
 from flexstage.experiment.identification.smear import Smear
 
 _CHUNK = 4_000_000
@@ -97,24 +97,24 @@ def fit(band: Band, start: Modal, enough: float = np.inf) -> Fit:
     for _ in range(_STEPS):
         promised = _step(information, gradient, _FREE)[1]
         if promised < _CONVERGED or cost - promised > enough:
-            return _fitted(modal, cost, information, converged=promised < _CONVERGED)
-        trial = _moved(modal, _step(information, gradient, damping)[0])
+            return _as_fit(modal, cost, information, converged=promised < _CONVERGED)
+        trial = _apply_step(modal, _step(information, gradient, damping)[0])
         trial_sums = _sums(band, trial.poles) if np.all(np.real(trial.poles) < 0.0) else None
         fall = -np.inf if trial_sums is None else cost - _cost(trial_sums, trial)
         if trial_sums is not None and fall >= 0.0:
             modal, sums, cost = trial, trial_sums, cost - fall
             information, gradient = _normal(sums, modal)
             if fall < 0.1 * _CONVERGED and damping < _SMALL:
-                return _fitted(modal, cost, information, converged=True)
+                return _as_fit(modal, cost, information, converged=True)
             damping = max(damping * 0.1, _FREE)
         elif damping > 1e8:
             break
         else:
             damping *= 10.0
-    return _fitted(modal, cost, information, converged=False)
+    return _as_fit(modal, cost, information, converged=False)
 
 
-def _fitted(modal: Modal, cost: float, information: Array, *, converged: bool) -> Fit:
+def _as_fit(modal: Modal, cost: float, information: Array, *, converged: bool) -> Fit:
     own = len(modal.poles) + modal.participation.size + modal.shapes.size
     return Fit(modal, cost, information[:own, :own], converged)
 
@@ -127,11 +127,11 @@ def _step(information: Array, gradient: Array, damping: float) -> tuple[Array, f
     return step, float(np.real(np.vdot(step, gradient)))
 
 
-def shaped(band: Band, poles: Array, participation: Array) -> Modal:
+def with_shapes(band: Band, poles: Array, participation: Array) -> Modal:
     """Shapes by linear least squares for given poles and participations of the inputs; transients begin at nought.
 
     >>> from flexstage.experiment.example import POLE, one_mode_band
-    >>> round(abs(shaped(one_mode_band()[0], np.array([POLE]), np.ones((1, 1))).shapes[0, 0]))
+    >>> round(abs(with_shapes(one_mode_band()[0], np.array([POLE]), np.ones((1, 1))).shapes[0, 0]))
     5
     """
     full = np.zeros((len(poles), band.cells.width), dtype=complex)
@@ -156,7 +156,7 @@ def residual_power(band: Band, modal: Modal) -> Array:
     """
     cells = band.cells
     left = np.moveaxis(cells.power.copy(), 0, 2)
-    for chosen, inside in explained(band, modal):
+    for chosen, inside in explained_share(band, modal):
         crossed = np.einsum("ocan,canp->opc", np.conj(inside), cells.cross[chosen], optimize=True)
         half = np.einsum("canbm,pcbm->canp", cells.own[chosen], inside, optimize=True)
         own = np.einsum("ocan,canp->opc", np.conj(inside), half, optimize=True)
@@ -164,11 +164,11 @@ def residual_power(band: Band, modal: Modal) -> Array:
     return left
 
 
-def explained(band: Band, modal: Modal) -> Iterator[tuple[Array, Array]]:
+def explained_share(band: Band, modal: Modal) -> Iterator[tuple[Array, Array]]:
     """Block by block, the numbers of its cells and the factors (p, c, 8, n) of Z in them that modes and background amount to.
 
     >>> from flexstage.experiment.example import one_mode_band
-    >>> [len(chosen) for chosen, _ in explained(*one_mode_band())] == [len(one_mode_band()[0].cells.low)]
+    >>> [len(chosen) for chosen, _ in explained_share(*one_mode_band())] == [len(one_mode_band()[0].cells.low)]
     True
     """
     every = np.concatenate([resonances(band, modal.poles), band.background], axis=1)
@@ -188,7 +188,7 @@ def noise(band: Band, modal: Modal) -> Array:
     """
     cells = band.cells
     power = np.real(np.einsum("ooc->oc", residual_power(band, modal))) / band.shape
-    found = _pooled(power, cells) / _free(band, modal)
+    found = _pool_cells(power, cells) / _free_share(band, modal)
     return np.maximum(found * band.shape, silence(cells, band.rounding))
 
 
@@ -220,7 +220,7 @@ def scatter(band: Band, modal: Modal) -> Array:
     """
     cells, outputs = band.cells, len(modal.shapes)
     left = np.conj(residual_power(band, modal))
-    noise = _pooled(left.reshape(-1, left.shape[2]), cells).reshape(left.shape) / _free(band, modal)
+    noise = _pool_cells(left.reshape(-1, left.shape[2]), cells).reshape(left.shape) / _free_share(band, modal)
     alone = np.arange(outputs)
     noise[alone, alone] = np.maximum(np.real(noise[alone, alone]), silence(cells, band.rounding))
     weights = (noise / band.variance[:, None, :] / band.variance[None, :, :]).reshape(outputs**2, -1)
@@ -250,7 +250,7 @@ def shares(band: Band, modal: Modal, groups: Array) -> tuple[Array, Array]:
     functions, full = _derivatives(band, modal)
     kept = len(modal.poles) + modal.participation.size + modal.shapes.size
     crossed = np.zeros((len(cells.low), functions.shape[1], cells.width, len(full)), dtype=complex)
-    for chosen, inside in explained(band, modal):
+    for chosen, inside in explained_share(band, modal):
         left = cells.cross[chosen] - np.einsum("canbm,ocbm->cano", cells.own[chosen], inside, optimize=True)
         part = np.einsum("cfa,cano->cfno", np.conj(functions[chosen]), left, optimize=True)
         crossed[chosen[:, None], :, list(cells.columns[cells.block[chosen[0]]])] = np.moveaxis(part, 2, 1)
@@ -258,7 +258,7 @@ def shares(band: Band, modal: Modal, groups: Array) -> tuple[Array, Array]:
     gradient, information = [], []
     for group in range(int(np.max(groups)) + 1):
         chosen = groups == group
-        gram = _gram(cells.only(chosen), 1.0 / band.variance[:, chosen], functions[chosen]).reshape(len(full), len(full[0]), -1)
+        gram = _gram(cells.select_cells(chosen), 1.0 / band.variance[:, chosen], functions[chosen]).reshape(len(full), len(full[0]), -1)
         cross = np.sum(crossed[chosen], axis=0)
         each = [(np.conj(one.T) @ column, np.conj(one.T) @ own @ one) for one, column, own in zip(full, cross.T, gram, strict=True)]
         gradient.append(np.sum([slope for slope, _ in each], axis=0)[:kept])
@@ -268,14 +268,14 @@ def shares(band: Band, modal: Modal, groups: Array) -> tuple[Array, Array]:
 
 def _derivatives(band: Band, modal: Modal) -> tuple[Array, list[Array]]:
     """The functions (c, f, 8) of modes and background, and by output the derivatives (f n, q) of their factors by all parameters."""
-    near = _functions(band, modal.poles)
+    near = _legendre_functions(band, modal.poles)
     functions = np.concatenate([near, band.background], axis=1)
     size, outputs = near.shape[1] * band.cells.width, len(modal.shapes)
-    own = _raw(band, functions).gram.reshape(outputs, functions.shape[1] * band.cells.width, -1)
-    return functions, [_with_background(own[output], _jacobian(modal, output, _pairs(modal.poles)), size) for output in range(outputs)]
+    own = _raw_sums(band, functions).gram.reshape(outputs, functions.shape[1] * band.cells.width, -1)
+    return functions, [_add_background(own[output], _jacobian(modal, output, _pairs(modal.poles)), size) for output in range(outputs)]
 
 
-def _with_background(gram: Array, jacobian: Array, size: int) -> Array:
+def _add_background(gram: Array, jacobian: Array, size: int) -> Array:
     """Derivatives of all factors: those of the background follow the modes'."""
     scale = 1.0 / np.sqrt(np.real(np.diagonal(gram)[size:]))
     inner = gram[size:, size:] * np.outer(scale, scale) + 1e-13 * np.eye(len(scale))
@@ -283,13 +283,13 @@ def _with_background(gram: Array, jacobian: Array, size: int) -> Array:
     return np.concatenate([jacobian, rest])
 
 
-def _free(band: Band, modal: Modal) -> float:
+def _free_share(band: Band, modal: Modal) -> float:
     """Share of the lines that the fit has not used up."""
     used = band.background.shape[1] * band.cells.width + len(modal.poles) * (1.0 + band.cells.width / len(modal.shapes))
     return max(0.1, 1.0 - used / float(np.sum(band.cells.count)))
 
 
-def _pooled(power: Array, cells: Cells) -> Array:
+def _pool_cells(power: Array, cells: Cells) -> Array:
     """Means per line of powers (q, c), over neighbouring cells of 100 lines or more together."""
     found = np.empty_like(power)
     for block in range(len(cells.columns)):
@@ -321,7 +321,7 @@ def background(cells: Cells, outside: Array, degree: int = 3) -> Array:
     rows = rows / np.linalg.norm(rows * weight[:, None], axis=0)
     left, values, _ = np.linalg.svd(rows * weight[:, None], full_matrices=False)
     kept = left[:, values > _DIGITS * values[0]] / weight[:, None]
-    return expanded(np.moveaxis(kept.reshape(*points.shape, -1), 2, 1))
+    return legendre_coefficients(np.moveaxis(kept.reshape(*points.shape, -1), 2, 1))
 
 
 def resonances(band: Band, poles: Array) -> Array:
@@ -332,20 +332,20 @@ def resonances(band: Band, poles: Array) -> Array:
     >>> resonances(band, start.poles).shape == (len(band.cells.low), 1, 8)
     True
     """
-    return _functions(band, poles)[:, : len(poles)]
+    return _legendre_functions(band, poles)[:, : len(poles)]
 
 
-def _functions(band: Band, poles: Array) -> Array:
+def _legendre_functions(band: Band, poles: Array) -> Array:
     """Legendre coefficients (c, f, 8) in every cell of 1/(j f - p), of its derivatives by p, and of products of near poles' functions."""
     points, pairs = nodes(band.cells.low, band.cells.high), _pairs(poles)
     if band.smear is not None:
         middles = np.array([0.5 * (poles[first] + poles[second]) for first, second in pairs], dtype=complex)
         both = band.smear.functions(points, np.concatenate([poles, middles]))
         every = [both[0][:, :, : len(poles)], both[1][:, :, : len(poles)], both[1][:, :, len(poles) :]]
-        return expanded(np.moveaxis(np.concatenate(every, axis=2), 2, 1))
+        return legendre_coefficients(np.moveaxis(np.concatenate(every, axis=2), 2, 1))
     away = 1.0 / (1j * points[:, None, :] - poles[:, None])
     products = [away[:, first] * away[:, second] for first, second in pairs]
-    return expanded(np.concatenate([away, away**2, *(each[:, None] for each in products)], axis=1))
+    return legendre_coefficients(np.concatenate([away, away**2, *(each[:, None] for each in products)], axis=1))
 
 
 def _pairs(poles: Array) -> list[tuple[int, int]]:
@@ -358,7 +358,7 @@ def _pairs(poles: Array) -> list[tuple[int, int]]:
     ]
 
 
-def _raw(band: Band, functions: Array) -> _Sums:
+def _raw_sums(band: Band, functions: Array) -> _Sums:
     """Sums before elimination, over the functions (c, f, 8), inputs and transients of all blocks."""
     cells, weights = band.cells, 1.0 / band.variance
     cross = np.zeros((len(weights), functions.shape[1], cells.width), dtype=complex)
@@ -397,8 +397,8 @@ def _products(functions: Array, own: Array) -> Array:
 
 
 def _sums(band: Band, poles: Array) -> _Sums:
-    near = _functions(band, poles)
-    raw = _raw(band, np.concatenate([near, band.background], axis=1))
+    near = _legendre_functions(band, poles)
+    raw = _raw_sums(band, np.concatenate([near, band.background], axis=1))
     kept = near.shape[1]
     outputs, count, total = raw.cross.shape
     size = kept * total
@@ -422,7 +422,7 @@ def _coefficients(band: Band, modal: Modal) -> Array:
     """Factors (p, f, n) of the modes' functions and, best for them, of the polynomials."""
     count = len(modal.poles)
     functions = np.concatenate([resonances(band, modal.poles), band.background], axis=1)
-    raw = _raw(band, functions)
+    raw = _raw_sums(band, functions)
     outputs, every, total = raw.cross.shape
     size = count * total
     gram, cross = raw.gram.reshape(outputs, every * total, every * total), raw.cross.reshape(outputs, -1)
@@ -475,7 +475,7 @@ def _normal(sums: _Sums, modal: Modal) -> tuple[Array, Array]:
     return np.asarray(information), np.asarray(gradient)
 
 
-def _moved(modal: Modal, step: Array) -> Modal:
+def _apply_step(modal: Modal, step: Array) -> Modal:
     """The modes after a step; where near poles are mixed, H = C (j f - A)^-1 B is brought back to modes by the eigenvectors of A."""
     count, total = modal.participation.shape
     outputs = len(modal.shapes)

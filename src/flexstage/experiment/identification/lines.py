@@ -67,7 +67,7 @@ class Cells:
         """Middles of the cells (c,) in Hz."""
         return 0.5 * (self.low + self.high)
 
-    def only(self, chosen: Array) -> Cells:
+    def select_cells(self, chosen: Array) -> Cells:
         """Some of the cells."""
         names = ("low", "high", "block", "count", "own", "cross", "power")
         return replace(self, **{name: getattr(self, name)[chosen] for name in names})
@@ -124,11 +124,11 @@ def edges(poles: Array, low: float, high: float) -> Array:
     return np.array([*found[:-1], high])
 
 
-def gathered(blocks: Iterable[Lines], bounds: Sequence[Array]) -> list[Cells]:
+def gather_cells(blocks: Iterable[Lines], bounds: Sequence[Array]) -> list[Cells]:
     """Cells of every band, whose limits are `bounds` in Hz, gathered from the blocks one after the other.
 
     >>> lines = Lines(np.arange(8.0), np.ones((8, 1)), 2.0 * np.ones((8, 1)), (0,))
-    >>> [cells] = gathered([lines], [np.array([2.0, 4.0, 6.0])])
+    >>> [cells] = gather_cells([lines], [np.array([2.0, 4.0, 6.0])])
     >>> cells.count.tolist(), cells.cross[:, 0, 0, 0].real.tolist()
     ([2, 2], [4.0, 4.0])
     """
@@ -158,10 +158,10 @@ def _band_sums(lines: Lines, limits: Array, number: int) -> list[tuple[Array, ..
     return found
 
 
-def expanded(values: Array) -> Array:
+def legendre_coefficients(values: Array) -> Array:
     """Legendre coefficients (..., 8) of functions known at the cells' `nodes` (..., 10).
 
-    >>> (expanded(nodes(np.array([1.0]), np.array([3.0]))).round(12) + 0.0).tolist()
+    >>> (legendre_coefficients(nodes(np.array([1.0]), np.array([3.0]))).round(12) + 0.0).tolist()
     [[2.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]]
     """
     return values @ _PROJECTION

@@ -53,7 +53,7 @@ def lscf(frequencies: Array, responses: Array, weights: Array, orders: range) ->
     found: list[Poles] = []
     for order in orders:
         size = order + 1
-        reduced = np.sum([_reduced(*products, size) for products in normal], axis=0)
+        reduced = np.sum([_reduce(*products, size) for products in normal], axis=0)
         found.append(_poles(reduced, order, count=count, low=frequencies[0], high=frequencies[-1], period=period))
     return tuple(found)
 
@@ -69,7 +69,7 @@ def _products(rows: Array, weight: Array, highest: int) -> tuple[Array, Array, A
     return lags @ squared, lags @ (squared[:, None] * rows), (lags @ power.reshape(lines, -1)).reshape(-1, count, count)
 
 
-def _reduced(weight: Array, crossed: Array, power: Array, size: int) -> Array:
+def _reduce(weight: Array, crossed: Array, power: Array, size: int) -> Array:
     """T - S^H R^-1 S of one output: the numerator eliminated."""
     middle = (len(weight) - 1) // 2
     lag = middle + np.arange(size)[None, :] - np.arange(size)[:, None]
@@ -89,10 +89,10 @@ def _poles(reduced: Array, order: int, *, count: int, low: float, high: float, p
     companion[count:, :-count] = np.eye((order - 1) * count)
     companion[:count] = -np.concatenate([coefficients[power].T for power in range(1, order + 1)], axis=1)
     roots, vectors = np.linalg.eig(companion)
-    return _physical(1.0 / roots[roots != 0.0], vectors[-count:, roots != 0.0].T, order, low=low, high=high, period=period)
+    return _physical_poles(1.0 / roots[roots != 0.0], vectors[-count:, roots != 0.0].T, order, low=low, high=high, period=period)
 
 
-def _physical(roots: Array, vectors: Array, order: int, *, low: float, high: float, period: float) -> Poles:
+def _physical_poles(roots: Array, vectors: Array, order: int, *, low: float, high: float, period: float) -> Poles:
     middle = 0.5 * _SPAN * np.pi
     angle = np.angle(roots * np.exp(-1j * middle)) + middle
     values = np.log(np.abs(roots)) / period + 1j * (angle / period + 2.0 * np.pi * low)

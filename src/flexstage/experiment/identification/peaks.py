@@ -102,22 +102,22 @@ def peaks(known: Evidence, left: Left, refused: Sequence[Lost], lost: Sequence[L
     ['weak']
     """
     step = known.resolution
-    free = [tone for tone in known.tones if not (tone.fades and _taken(complex(0.0, tone.frequency), left.poles, (), step))]
+    free = [tone for tone in known.tones if not (tone.fades and _is_listed(complex(0.0, tone.frequency), left.poles, (), step))]
     found = tone_peaks(free, step, known.responses.outputs, known.output_scale)
     for doubt, group in ((Doubt.UNDRIVEN, refused), (Doubt.WEAK, sorted(lost, key=lambda each: each.chance))):
         for each in group:
             modes = () if doubt is Doubt.UNDRIVEN else left.poles
-            if (doubt is Doubt.UNDRIVEN or each.chance < _NOTICED) and not _taken(each.pole, modes, found, step):
+            if (doubt is Doubt.UNDRIVEN or each.chance < _NOTICED) and not _is_listed(each.pole, modes, found, step):
                 size = np.abs(each.shape)
                 seen = _names(known.responses.outputs, size > _PART * np.max(size))
                 found.append(Peak(abs(each.pole), doubt, each.chance, -2.0 * each.pole.real, step, seen))
     for peak in narrow_peaks(known.responses, left) if known.stored else ():
-        if not _taken(complex(0.0, peak.frequency), (), found, peak.resolution):
+        if not _is_listed(complex(0.0, peak.frequency), (), found, peak.resolution):
             found.append(peak)
     return tuple(sorted(found, key=lambda each: each.frequency))
 
 
-def _taken(pole: complex, poles: Iterable[complex], found: Sequence[Peak], step: float) -> bool:
+def _is_listed(pole: complex, poles: Iterable[complex], found: Sequence[Peak], step: float) -> bool:
     """Whether it lies within four half-widths, or three lines, of a mode or a peak that is listed."""
     reach = max(-_WIDTHS * pole.real, 3.0 * step)
     return any(abs(pole.imag - abs(each)) < max(reach, -_WIDTHS * each.real) for each in poles) or any(
@@ -169,7 +169,7 @@ def narrow_peaks(responses: Responses, left: Left) -> list[Peak]:
     step = float(responses.frequencies[1] - responses.frequencies[0])
     if len(lines) <= 2 * _REACH:
         return []
-    ratio = _standing(rest)
+    ratio = _prominence(rest)
     chance = scipy.stats.f.sf(ratio, 2, 2 * _FREE) * ratio.size
     near = np.any(np.abs(lines[:, None] - np.abs(poles)) < np.maximum(-_WIDTHS * np.real(poles), 3.0 * step), axis=1)
     least = np.where(near, 1.0, np.min(chance, axis=(1, 2)))
@@ -183,7 +183,7 @@ def narrow_peaks(responses: Responses, left: Left) -> list[Peak]:
     return found
 
 
-def _standing(rest: Array) -> Array:
+def _prominence(rest: Array) -> Array:
     """Squared distance of every line (f, p, m) from the cubic through its neighbours, over its variance; nought at the ends."""
     offsets = np.r_[-_REACH:-1, 2 : _REACH + 1]
     basis, _ = np.linalg.qr(np.vander(offsets / _REACH, 4, increasing=True))

@@ -40,10 +40,10 @@ class Tone:
     fades: float = 0.0
 
 
-def steady(tones: Iterable[Tone]) -> tuple[Tone, ...]:
+def steady_tones(tones: Iterable[Tone]) -> tuple[Tone, ...]:
     """Those that do not fade.
 
-    >>> len(steady([Tone(1.0, np.ones(1), 0, 8), Tone(2.0, np.ones(1), 0, 8, fades=0.2)]))
+    >>> len(steady_tones([Tone(1.0, np.ones(1), 0, 8), Tone(2.0, np.ones(1), 0, 8, fades=0.2)]))
     1
     """
     return tuple(tone for tone in tones if not tone.fades)
@@ -82,7 +82,7 @@ class Quieted:
         return found
 
 
-def quieted(record: Record, tell: Tell | None = None) -> tuple[Record, tuple[Tone, ...]]:
+def remove_tones(record: Record, tell: Tell | None = None) -> tuple[Record, tuple[Tone, ...]]:
     """The record without steady tones in its outputs, and all tones seen.
 
     A tone is a line of what the inputs do not explain that stands eight times above those around it, and that by Thomson's harmonic F-test
@@ -96,8 +96,8 @@ def quieted(record: Record, tell: Tell | None = None) -> tuple[Record, tuple[Ton
     >>> made = one_mode_record(seconds=16.0)
     >>> hum = np.sin(2.0 * np.pi * 15.03 * np.arange(made.length) / made.rate)
     >>> noisy = replace(made, samples=InMemory(made.values + np.array([0.0, 20.0]) * hum[:, None]))
-    >>> quiet, found = quieted(noisy)
-    >>> [round(tone.frequency, 2) for tone in found], bool(np.std(quiet.values - made.values) < 0.05), quieted(made)[1]
+    >>> quiet, found = remove_tones(noisy)
+    >>> [round(tone.frequency, 2) for tone in found], bool(np.std(quiet.values - made.values) < 0.05), remove_tones(made)[1]
     ([15.03], True, ())
     """
     inputs, outputs = (record.columns(channel.name for channel in each) for each in (record.inputs, record.outputs))
@@ -105,27 +105,27 @@ def quieted(record: Record, tell: Tell | None = None) -> tuple[Record, tuple[Ton
     size = record.length // parts
     found: list[Tone] = []
     for start in range(0, parts * size, size):
-        found += _within(record, inputs, outputs, start, start + size)
+        found += _tones_of_block(record, inputs, outputs, start, start + size)
         if tell is not None:
             tell((start + size) / (parts * size))
-    if not steady(found):
+    if not steady_tones(found):
         return record, tuple(found)
-    return replace(record, samples=Quieted(record.samples, steady(found), outputs, record.rate)), tuple(found)
+    return replace(record, samples=Quieted(record.samples, steady_tones(found), outputs, record.rate)), tuple(found)
 
 
-def _within(record: Record, inputs: tuple[int, ...], outputs: tuple[int, ...], start: int, stop: int) -> list[Tone]:
+def _tones_of_block(record: Record, inputs: tuple[int, ...], outputs: tuple[int, ...], start: int, stop: int) -> list[Tone]:
     found: list[Tone] = []
     line = record.rate / (stop - start)
     for _ in range(_ROUNDS):
-        block = Quieted(record.samples, steady(found), outputs, record.rate).read(start, stop)[:, [*inputs, *outputs]]
+        block = Quieted(record.samples, steady_tones(found), outputs, record.rate).read(start, stop)[:, [*inputs, *outputs]]
         lines = np.fft.rfft(block - np.mean(block, axis=0), axis=0) / np.sqrt(stop - start)
         more = [
             Tone(seen.place * line, seen.amplitudes / np.sqrt(stop - start), start, stop, seen.chance, seen.fades)
-            for seen in _seen(lines, len(inputs))
+            for seen in _block_tones(lines, len(inputs))
             if all(abs(seen.place * line - other.frequency) > _TAPERS * line for other in found if other.fades)
         ]
         found += more
-        if not steady(more):
+        if not steady_tones(more):
             break
     return found
 
@@ -140,36 +140,36 @@ class _Seen:
     fades: float
 
 
-def _seen(lines: Array, inputs: int) -> Iterator[_Seen]:
+def _block_tones(lines: Array, inputs: int) -> Iterator[_Seen]:
     """Tones that outputs hold and inputs do not."""
-    for line in _standing_out(_unexplained(lines, inputs)):
+    for line in _prominent_lines(_unexplained_power(lines, inputs)):
         half = min(_HALF, line, len(lines) - 1 - line)
         if half < _LEAST:
             continue
         near = lines[line - half : line + half]
-        if _held(np.abs(near[:, :inputs]) ** 2):
+        if _is_in_inputs(np.abs(near[:, :inputs]) ** 2):
             continue
-        rest = _rest(near[None, :, :inputs], near[None, :, inputs:])[0]
+        rest = _local_residual(near[None, :, :inputs], near[None, :, inputs:])[0]
         both = [_test(np.concatenate([near[:, :inputs], each], axis=1), inputs) for each in (near[:, inputs:], rest)]
         test = min(both, key=lambda each: np.min(each.chance[inputs:]))
         chance, held = test.chance[inputs:], test.chance[:inputs]
         seen = chance < _SEEN_ONCE_IN
         if np.min(chance) < _ONCE_IN and np.all(held > _HELD_ONCE_IN):
-            offset, fades = _sharpened(test.slow[:, inputs:][:, seen], test.offset)
-            offset, amplitudes = _beside(near[:, :inputs], rest[:, seen], offset)
+            offset, fades = _refine_offset(test.slow[:, inputs:][:, seen], test.offset)
+            offset, amplitudes = _fit_beside_drive(near[:, :inputs], rest[:, seen], offset)
             every = np.zeros(len(seen), dtype=complex)
             every[seen] = amplitudes
             yield _Seen(line + offset, every, float(np.min(chance)), fades)
 
 
-def _held(power: Array) -> bool:
+def _is_in_inputs(power: Array) -> bool:
     """Whether the middle of powers (f, m) of inputs stands out in one of them: they are made of tones themselves."""
     middle = len(power) // 2
     level = np.median(power, axis=0) / np.log(2.0)
     return bool(np.any(np.max(power[middle - 1 : middle + 2], axis=0) > _HELD * level))
 
 
-def _unexplained(lines: Array, inputs: int) -> Array:
+def _unexplained_power(lines: Array, inputs: int) -> Array:
     """Powers (f, p) of what inputs do not explain of outputs, in stretches of lines by a local polynomial each."""
     count = len(lines) // (2 * _HALF)
     if count < 1:
@@ -178,14 +178,14 @@ def _unexplained(lines: Array, inputs: int) -> Array:
     for start in range(0, count, _TOGETHER):
         stop = min(count, start + _TOGETHER)
         part = lines[start * 2 * _HALF : stop * 2 * _HALF].reshape(stop - start, 2 * _HALF, -1)
-        rest = _rest(part[:, :, :inputs], part[:, :, inputs:])
+        rest = _local_residual(part[:, :, :inputs], part[:, :, inputs:])
         found[start * 2 * _HALF : stop * 2 * _HALF] = np.abs(rest.reshape(-1, rest.shape[2])) ** 2
     last = lines[-2 * _HALF :][None]
-    found[-2 * _HALF :] = np.abs(_rest(last[:, :, :inputs], last[:, :, inputs:])[0]) ** 2
+    found[-2 * _HALF :] = np.abs(_local_residual(last[:, :, :inputs], last[:, :, inputs:])[0]) ** 2
     return found
 
 
-def _rest(drive: Array, outputs: Array) -> Array:
+def _local_residual(drive: Array, outputs: Array) -> Array:
     """What polynomials in frequency times the drive (w, f, m) and 1 leave of the outputs (w, f, q): a local response and transient.
 
     The local polynomial method (Pintelon & Schoukens 2012, ch. 7); where there are too few lines for the inputs, the outputs as they are.
@@ -202,7 +202,7 @@ def _rest(drive: Array, outputs: Array) -> Array:
     return outputs - rows @ np.linalg.solve(gram, turned @ outputs)
 
 
-def _standing_out(power: Array) -> list[int]:
+def _prominent_lines(power: Array) -> list[int]:
     """Numbers of lines that stand out in one of the powers (f, p), the loudest first, none beside another."""
     count = len(power) // _CHUNK
     if count < 1:
@@ -252,7 +252,7 @@ def _tapers(size: int) -> tuple[Array, Array, Array]:
     return offsets, np.sum(tapers, axis=1), (turned[:, None] * tapers).reshape(-1, size)
 
 
-def _sharpened(slow: Array, offset: float) -> tuple[float, float]:
+def _refine_offset(slow: Array, offset: float) -> tuple[float, float]:
     """The offset in lines at which the spectra under Hann's window are largest, and the share that fades."""
     time = np.arange(len(slow))
     window = np.hanning(len(slow) + 1)[:-1]
@@ -264,16 +264,16 @@ def _sharpened(slow: Array, offset: float) -> tuple[float, float]:
         offset = float(offsets[np.argmax(np.sum(np.abs(size) ** 2 / level, axis=1))])
         step /= 6.0
     turned = np.exp(-2j * np.pi * offset * time / len(slow))[:, None] * slow
-    return offset, _fading(turned)
+    return offset, _fading_share(turned)
 
 
-def _beside(drive: Array, rest: Array, offset: float) -> tuple[float, Array]:
+def _fit_beside_drive(drive: Array, rest: Array, offset: float) -> tuple[float, Array]:
     """The offset and the amplitudes (q,) that fit what inputs do not explain: the stage's response there is no part of the tone."""
     place = np.arange(-(len(rest) // 2), len(rest) // 2)
     amplitudes = np.zeros(rest.shape[1], dtype=complex)
     for _ in range(_ZOOMS):
         kernels = np.stack([_line_shape(offset - place, order) for order in range(2)], axis=1)
-        kernels = _rest(drive[None], kernels[None])[0]
+        kernels = _local_residual(drive[None], kernels[None])[0]
         amplitudes, slopes = np.linalg.lstsq(kernels, rest, rcond=None)[0]
         offset += float(np.clip(np.real(np.vdot(amplitudes, slopes)) / np.sum(np.abs(amplitudes) ** 2), -0.25, 0.25))
     return offset, amplitudes
@@ -286,7 +286,7 @@ def _line_shape(away: Array, order: int) -> Array:
     return (turn - 1.0) / x if order == 0 else 2j * np.pi * (turn * (x - 1.0) + 1.0) / x**2
 
 
-def _fading(turned: Array) -> float:
+def _fading_share(turned: Array) -> float:
     """The share of amplitudes that fades from begin to end, nought where it is not five deviations from none."""
     ends = len(turned) // 16
     kept = turned[ends:-ends]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from flexstage.base.number import Array
-from flexstage.experiment.identification.likelihood import Band, Modal, explained, shaped
+from flexstage.experiment.identification.likelihood import Band, Modal, explained_share, with_shapes
 
 SURPRISING = 8.0
 """Standard deviations of the excess above which it is not chance."""
@@ -27,31 +27,31 @@ def excess(band: Band, modal: Modal) -> Array:
     """
     cells = band.cells
     found = np.zeros(len(cells.low))
-    for chosen, inside in explained(band, modal):
-        own, rest = _left(band, chosen, inside)
-        solved = _solved(own, rest)
+    for chosen, inside in explained_share(band, modal):
+        own, rest = _residual_sums(band, chosen, inside)
+        solved = _solve(own, rest)
         power = np.real(np.einsum("cno,cno->oc", np.conj(rest), solved)) / band.variance[:, chosen]
         count = np.minimum(own.shape[1], cells.count[chosen]) * len(power)
         found[chosen] = (np.sum(power, axis=0) - count) / np.sqrt(count)
     return found
 
 
-def suggested(band: Band, modal: Modal, cell: int) -> Modal:
+def suggest_mode(band: Band, modal: Modal, cell: int) -> Modal:
     """The modes and one more, begun from what is left in that cell: its strongest participation there.
 
     >>> from flexstage.experiment.example import one_mode_band
     >>> band, start = one_mode_band()
-    >>> len(suggested(band, start, 0).poles)
+    >>> len(suggest_mode(band, start, 0).poles)
     2
     """
-    for chosen, inside in explained(band, modal):
+    for chosen, inside in explained_share(band, modal):
         if cell not in chosen:
             continue
-        own, rest = _left(band, chosen, inside)
+        own, rest = _residual_sums(band, chosen, inside)
         place = int(np.flatnonzero(chosen == cell)[0])
         columns = list(band.cells.columns[band.cells.block[cell]])
         size = len(columns)
-        local = _solved(own, rest)[place, :size] / np.sqrt(band.variance[:, cell])
+        local = _solve(own, rest)[place, :size] / np.sqrt(band.variance[:, cell])
         row = np.linalg.svd(local)[0][:, 0]
         participation = np.zeros((len(modal.poles) + 1, band.cells.width), dtype=complex)
         participation[:-1] = modal.participation
@@ -59,11 +59,11 @@ def suggested(band: Band, modal: Modal, cell: int) -> Modal:
         middle = band.cells.middle[cell]
         widths = -np.real(modal.poles) / np.abs(modal.poles)
         width = float(np.median(widths)) * middle if len(widths) else band.cells.high[cell] - band.cells.low[cell]
-        return shaped(band, np.append(modal.poles, -_WIDTHS * width + 1j * middle), participation)
+        return with_shapes(band, np.append(modal.poles, -_WIDTHS * width + 1j * middle), participation)
     return modal
 
 
-def _left(band: Band, chosen: Array, inside: Array) -> tuple[Array, Array]:
+def _residual_sums(band: Band, chosen: Array, inside: Array) -> tuple[Array, Array]:
     """Gram matrices (c, q, q) of the lowest two polynomials times the drive, and their products (c, q, p) with what is left."""
     cells = band.cells
     own, cross = cells.own[chosen], cells.cross[chosen]
@@ -72,5 +72,5 @@ def _left(band: Band, chosen: Array, inside: Array) -> tuple[Array, Array]:
     return own[:, :_TERMS, :, :_TERMS, :].reshape(len(own), size, size), rest[:, :_TERMS].reshape(len(own), size, -1)
 
 
-def _solved(own: Array, rest: Array) -> Array:
+def _solve(own: Array, rest: Array) -> Array:
     return np.linalg.pinv(own, rcond=1e-9, hermitian=True) @ rest

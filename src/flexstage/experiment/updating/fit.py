@@ -49,13 +49,13 @@ class Fitted(Generic[_State]):
         return _cost(self.residuals, self.parameters)
 
 
-def fitted(problem: Problem[_State], start: Array, state: _State) -> Fitted[_State]:
+def gauss_newton(problem: Problem[_State], start: Array, state: _State) -> Fitted[_State]:
     """Minimise |r(u)|^2 + |u|^2 by Gauss-Newton steps, halved until they lead down.
 
     Raises `DesignError` where no end is found, or steps lead to designs that cannot be read.
 
     >>> line = Problem(lambda u, _: u, lambda u: 3.0 * (1.0 - u), lambda u: np.array([[3.0]]))
-    >>> fitted(line, np.zeros(1), np.zeros(1)).parameters.round(9).tolist()  # 9 / (9 + 1)
+    >>> gauss_newton(line, np.zeros(1), np.zeros(1)).parameters.round(9).tolist()  # 9 / (9 + 1)
     [0.9]
     """
     here, residuals = start, problem.residuals(state)
@@ -64,7 +64,7 @@ def fitted(problem: Problem[_State], start: Array, state: _State) -> Fitted[_Sta
     while count < _MOST_STEPS:
         step = _step(slopes, residuals, here)
         count, length = count + 1, float(np.max(np.abs(step)))
-        taken = _down(problem, here, state, residuals, step) if np.isfinite(length) else None
+        taken = _descend(problem, here, state, residuals, step) if np.isfinite(length) else None
         if taken is None and not length < _NEAR:
             break
         if taken is not None:
@@ -81,7 +81,7 @@ def _step(slopes: Array, residuals: Array, here: Array) -> Array:
     return np.linalg.lstsq(stacked, np.concatenate([residuals, -here]), rcond=None)[0]
 
 
-def _down(problem: Problem[_State], here: Array, state: _State, residuals: Array, step: Array) -> tuple[Array, _State, Array] | None:
+def _descend(problem: Problem[_State], here: Array, state: _State, residuals: Array, step: Array) -> tuple[Array, _State, Array] | None:
     """The first of ever shorter steps that lowers the cost; `None` where none does."""
     cost = _cost(residuals, here)
     for halving in range(_HALVINGS):

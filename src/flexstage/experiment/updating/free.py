@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from flexstage.analysis.sensitivities import departure, not_numbers
-from flexstage.base.finding import DesignError, Finding, nearest, require
+from flexstage.base.finding import DesignError, Finding, require, suggest_nearest
 from flexstage.base.number import Array, Table
 from flexstage.mechanism.address import get, quantity_of, set_value
 from flexstage.mechanism.locate import canonical, locate
@@ -46,7 +46,7 @@ class Free:
     values: Array
     deviations: Array
 
-    def moved(self, logarithms: Array) -> Mechanism:
+    def multiply(self, logarithms: Array) -> Mechanism:
         """The description with each number multiplied by the exponential of its entry (P,)."""
         result = self.mechanism
         for name, value in zip(self.names, self.values * np.exp(logarithms), strict=True):
@@ -64,7 +64,9 @@ def free(mechanism: Mechanism, names: Sequence[str], known: Known = DEFAULT) -> 
     require([*_error_findings(known), *_address_findings(mechanism, names, tuple(known.priors))])
     full = tuple(locate(mechanism, name).address for name in names)
     own = {canonical(mechanism, name): share for name, share in known.priors.items()}
-    require(Finding(f"prior of {name}", "it is not among the free numbers", nearest(name, full)) for name in own if name not in full)
+    require(
+        Finding(f"prior of {name}", "it is not among the free numbers", suggest_nearest(name, full)) for name in own if name not in full
+    )
     ordered = sorted(full, key=lambda name: departure(mechanism, name))
     started = mechanism
     for name in ordered:
@@ -110,7 +112,7 @@ def _of_link(mechanism: Mechanism, finding: Finding) -> Finding:
 
 
 def _number_findings(mechanism: Mechanism, names: Sequence[str]) -> list[Finding]:
-    findings = [_advised(mechanism, finding) for finding in not_numbers(mechanism, tuple(names))]
+    findings = [_advise(mechanism, finding) for finding in not_numbers(mechanism, tuple(names))]
     places = [locate(mechanism, name).address for name in names]
     findings += [Finding(name, "it is named twice", "Name it once") for name in dict.fromkeys(places) if places.count(name) > 1]
     for name in names:
@@ -119,7 +121,7 @@ def _number_findings(mechanism: Mechanism, names: Sequence[str]) -> list[Finding
     return findings
 
 
-def _advised(mechanism: Mechanism, finding: Finding) -> Finding:
+def _advise(mechanism: Mechanism, finding: Finding) -> Finding:
     """What to free where the mass of a drawn body is meant."""
     body = canonical(mechanism, finding.where).split(".")
     if body[-1] != "mass" or body[:1] != ["bodies"] or not mechanism.bodies[body[1]].solids:

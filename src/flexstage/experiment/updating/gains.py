@@ -8,12 +8,12 @@ import numpy as np
 
 from flexstage.analysis.workspace.stroke import stacks
 from flexstage.base.dimension import dimension_of
-from flexstage.base.finding import Finding, nearest, refuse, require
+from flexstage.base.finding import Finding, refuse, require, suggest_nearest
 from flexstage.base.number import Array
 from flexstage.experiment.identification.identified import Identified
 from flexstage.experiment.record import Channel
 from flexstage.experiment.unit import unit_problem
-from flexstage.experiment.virtual_rig.plan import driven, volts_per_metre
+from flexstage.experiment.virtual_rig.plan import drivable_actuators, volts_per_metre
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.linear.model import LinearModel
 
@@ -53,10 +53,10 @@ def measured_gains(mechanism: Mechanism, model: LinearModel, experiment: Identif
     ones, lags and an amplifier's bandwidth by even powers; a is the gain. Drives in volts count by their stack's stroke over its range
     of voltage. Raises `DesignError` where no input is a stroke, no unit leads to metres, or too few lines are below the modes.
     """
-    strokes = driven(mechanism, model)
+    strokes = drivable_actuators(mechanism, model)
     inputs = tuple(channel.name for channel in experiment.inputs if channel.name in strokes)
     require(
-        Finding(channel.name, "no input of the record has the name of an actuator", nearest(channel.name, strokes))
+        Finding(channel.name, "no input of the record has the name of an actuator", suggest_nearest(channel.name, strokes))
         for channel in experiment.inputs
         if not inputs
     )
@@ -64,14 +64,14 @@ def measured_gains(mechanism: Mechanism, model: LinearModel, experiment: Identif
     require(_unit_findings(mechanism, [known[name] for name in (*inputs, *outputs)]))
     rows = [[each.name for each in experiment.responses.outputs].index(name) for name in outputs]
     columns = [[each.name for each in experiment.responses.inputs].index(name) for name in inputs]
-    lines, values = _low(experiment)
-    fitted, deviations = _led_back(lines, np.real(values[:, rows][:, :, columns]))
+    lines, values = _low_lines(experiment)
+    fitted, deviations = _extrapolate_to_zero(lines, np.real(values[:, rows][:, :, columns]))
     top = np.array([metres(mechanism, known[name]) for name in outputs])[:, None]
     scale = top / np.array([metres(mechanism, known[name]) for name in inputs])
     return Gains(outputs, inputs, fitted * scale, deviations * scale)
 
 
-def _low(experiment: Identified) -> tuple[Array, Array]:
+def _low_lines(experiment: Identified) -> tuple[Array, Array]:
     """Lines below the modes over the lowest mode's frequency, and the responses there."""
     frequencies, lowest = experiment.responses.frequencies, float(experiment.frequencies[0])
     step = float(frequencies[1] - frequencies[0])
@@ -83,7 +83,7 @@ def _low(experiment: Identified) -> tuple[Array, Array]:
     return frequencies[chosen] / lowest, experiment.responses.values[chosen]
 
 
-def _led_back(lines: Array, values: Array) -> tuple[Array, Array]:
+def _extrapolate_to_zero(lines: Array, values: Array) -> tuple[Array, Array]:
     """Values (p, m) at zero frequency of the functions through values (f, p, m), and their standard deviations."""
     rise = 1.0 - lines**2
     powers = np.stack([np.ones_like(lines), lines**2 / rise, lines**4 / rise], axis=1)

@@ -76,25 +76,25 @@ def _mean(experiment: Identified, measured: tuple[int, ...]) -> tuple[float, flo
     return float(np.sqrt(total / len(chosen))), float(np.sqrt(np.sum((frequencies * deviations) ** 2))) / total
 
 
-def begun(mechanism: Mechanism, rows: tuple[ModeRow, ...]) -> Design:
+def start_design(mechanism: Mechanism, rows: tuple[ModeRow, ...]) -> Design:
     """The design that the rows were paired with.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> begun(double_triangle(), (ModeRow("z", (2,), (0,), 126.0, 1e-4),)).frequencies.round(1).tolist()
+    >>> start_design(double_triangle(), (ModeRow("z", (2,), (0,), 126.0, 1e-4),)).frequencies.round(1).tolist()
     [126.2]
     """
     model = lumped(mechanism)
     return Design(mechanism, model, eigen(model), tuple(row.modes for row in rows))
 
 
-def followed(before: Design, mechanism: Mechanism) -> Design:
+def follow_modes(before: Design, mechanism: Mechanism) -> Design:
     """The design at other values, each row with the modes that lie in the subspace of its modes before.
 
     Shapes are compared with M of the design before, all rows at once, so that crossing modes stay with their rows.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> here = begun(double_triangle(), (ModeRow("z", (2,), (0,), 126.0, 1e-4),))
-    >>> followed(here, double_triangle()).modes
+    >>> here = start_design(double_triangle(), (ModeRow("z", (2,), (0,), 126.0, 1e-4),))
+    >>> follow_modes(here, double_triangle()).modes
     ((2,),)
     """
     model = lumped(mechanism)
@@ -117,7 +117,7 @@ def frequency_slopes(design: Design, names: tuple[str, ...]) -> Array:
     """d ln f / d p (rows, P) of every row at the design, exact: sum of phi^T (dK - lambda dM) phi over 2 sum of lambda.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> here = begun(double_triangle(), (ModeRow("z", (2,), (0,), 126.0, 1e-4),))
+    >>> here = start_design(double_triangle(), (ModeRow("z", (2,), (0,), 126.0, 1e-4),))
     >>> (frequency_slopes(here, ("materials.steel.density",)) * 7750.0).round(4).tolist()
     [[-0.4923]]
     """
@@ -125,14 +125,14 @@ def frequency_slopes(design: Design, names: tuple[str, ...]) -> Array:
     shapes, values = design.solved.shapes[:, used], design.solved.values[used]
     ends = np.cumsum([0, *(len(modes) for modes in design.modes)])[:-1]
     result = np.zeros((len(design.modes), len(names)))
-    for chunk, model in _stepped(design, names):
+    for chunk, model in _complex_steps(design, names):
         change = project(model.stiffness, shapes) - values * project(model.inertia, shapes)
         moved = np.broadcast_to(np.diagonal(change, axis1=-2, axis2=-1), (len(chunk), len(used)))
         result[:, chunk] = (np.add.reduceat(moved, ends, axis=1) / (2.0 * np.add.reduceat(values, ends))).T
     return result
 
 
-def gains_of(design: Design, gains: Gains) -> Array:
+def static_gains(design: Design, gains: Gains) -> Array:
     """Theory's static gains (p, m) of the measured ones."""
     return static_gain(design.model, gains.outputs, gains.inputs).values
 
@@ -140,25 +140,25 @@ def gains_of(design: Design, gains: Gains) -> Array:
 def gain_slopes(design: Design, names: tuple[str, ...], gains: Gains) -> Array:
     """Derivatives (p, m, P) of theory's static gains."""
     result = np.zeros((*gains.values.shape, len(names)))
-    for chunk, model in _stepped(design, names):
+    for chunk, model in _complex_steps(design, names):
         moved = slope(static_gain(model, gains.outputs, gains.inputs).values)
         result[..., chunk] = np.moveaxis(np.broadcast_to(moved, (len(chunk), *gains.values.shape)), 0, -1)
     return result
 
 
-def _stepped(design: Design, names: tuple[str, ...]) -> list[tuple[list[int], LinearModel]]:
+def _complex_steps(design: Design, names: tuple[str, ...]) -> list[tuple[list[int], LinearModel]]:
     chunks = steppable(design.mechanism, names)
     return [(chunk, lumped(step_parameters(design.mechanism, tuple(names[index] for index in chunk)))) for chunk in chunks]
 
 
-def paired_alike(rows: tuple[ModeRow, ...], design: Design, again: tuple[ModeRow, ...]) -> bool:
+def same_pairs(rows: tuple[ModeRow, ...], design: Design, again: tuple[ModeRow, ...]) -> bool:
     """Whether a comparison made `again` at a design gives measured modes to the same modes of theory as the rows followed to there.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from dataclasses import replace
     >>> row = ModeRow("z", (2,), (0,), 126.0, 1e-4)
-    >>> here = begun(double_triangle(), (row,))
-    >>> paired_alike((row,), here, (row,)), paired_alike((row,), here, (replace(row, modes=(3,)),))
+    >>> here = start_design(double_triangle(), (row,))
+    >>> same_pairs((row,), here, (row,)), same_pairs((row,), here, (replace(row, modes=(3,)),))
     (True, False)
     """
     followed_to = {(row.measured, modes) for row, modes in zip(rows, design.modes, strict=True)}

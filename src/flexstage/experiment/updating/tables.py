@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from flexstage.experiment.updating.update import Residual, Told, Updated
-from flexstage.show.display import number, percent, value_with_unit
-from flexstage.show.table import Cell, Column, Mark, Table, build, matrix_table
+from flexstage.show.display import format_value, number, percent
+from flexstage.show.table import Cell, Column, Mark, Table, make_table, matrix_table
 
 _MARKS = {Told.WELL: Mark.PASS, Told.WEAKLY: Mark.WARN, Told.NOT: Mark.FAIL, Told.WITHHELD: Mark.FAIL}
 _MOST_GAINS = 12
@@ -26,8 +26,8 @@ def update_table(found: Updated) -> Table:
     rows = [
         (
             Cell(each.address, Mark.STRONG),
-            value_with_unit(each.before, each.unit),
-            value_with_unit(each.after, each.unit),
+            format_value(each.before, each.unit),
+            format_value(each.after, each.unit),
             _signed(100.0 * each.change),
             number(100.0 * each.prior_deviation, 2),
             number(100.0 * each.deviation, 2),
@@ -45,7 +45,7 @@ def update_table(found: Updated) -> Table:
     errors = f"Stated or assumed errors: theory's frequencies {percent(known.model_error, 3)}{gains}; +- is one standard deviation."
     notes = ["Variance left: of the prior's. At most 10 % is identified, at most 20 % weakly, more is the prior's word.", errors]
     notes += [f"{each.address}: {rest}." for each in found.parameters if (rest := each.verdict.partition("; ")[2])]
-    return build("Numbers after the test", heads, rows, notes=notes, provenance=found.provenance)
+    return make_table("Numbers after the test", heads, rows, notes=notes, provenance=found.provenance)
 
 
 def residual_table(found: Updated) -> Table:
@@ -62,7 +62,7 @@ def residual_table(found: Updated) -> Table:
     if len(gains) > _MOST_GAINS:
         notes.append(f"Of {len(gains)} gains the {_MOST_GAINS} that misfitted most; errors relative to the actuator's largest gain.")
     rows = [_residual(each) for each in (*modes, *gains[:_MOST_GAINS])]
-    return build("Theory and test", heads, rows, notes=notes)
+    return make_table("Theory and test", heads, rows, notes=notes)
 
 
 def combination_table(found: Updated) -> Table:
@@ -76,7 +76,9 @@ def combination_table(found: Updated) -> Table:
         for each in found.combinations
     ]
     notes = ["In prior standard deviations. A singular value of 1 halves the prior variance; far below, the test tells nothing."]
-    return build("Combinations that the test tells", ["combination", Column("singular value"), Column("variance left")], rows, notes=notes)
+    return make_table(
+        "Combinations that the test tells", ["combination", Column("singular value"), Column("variance left")], rows, notes=notes
+    )
 
 
 def _residual(each: Residual) -> tuple[Cell | str, ...]:

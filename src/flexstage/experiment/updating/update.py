@@ -19,19 +19,19 @@ from flexstage.base.threads import one_thread
 from flexstage.experiment.comparison import Compared, compare, shared_sensors
 from flexstage.experiment.identification.confidence import NORMAL_95
 from flexstage.experiment.identification.identified import Identified
-from flexstage.experiment.updating.fit import Fitted, Problem, fitted
+from flexstage.experiment.updating.fit import Fitted, Problem, gauss_newton
 from flexstage.experiment.updating.free import DEFAULT, Free, Known, free
 from flexstage.experiment.updating.gains import Gains, measured_gains
 from flexstage.experiment.updating.rows import (
     Design,
     ModeRow,
-    begun,
-    followed,
+    follow_modes,
     frequency_slopes,
     gain_slopes,
-    gains_of,
     mode_rows,
-    paired_alike,
+    same_pairs,
+    start_design,
+    static_gains,
 )
 from flexstage.mechanism.address import get
 from flexstage.mechanism.mechanism import Mechanism
@@ -161,7 +161,7 @@ class Updated(InNotebook):
             prior_deviation=float(self.prior[index]),
             deviation=float(self.deviations[index]),
             interval=(low, high),
-            prior_variance_left=float(self.left[index]),
+            prior_variance_left=float(self.remaining_variance[index]),
             told=self.told[index],
             verdict=self.verdicts[index],
         )
@@ -195,18 +195,18 @@ class Updated(InNotebook):
         return Matrix(values, self.addresses, self.addresses, "1")
 
     @property
-    def left(self) -> Array:
+    def remaining_variance(self) -> Array:
         """Share (P,) of each prior variance that is left."""
         return np.diag(self.covariance) / self.prior**2
 
     @property
     def told(self) -> tuple[Told, ...]:
         """How well the test tells each number; withheld where data miss theory by more than three deviations on average."""
-        known = (Told.WELL if share <= _TOLD else Told.WEAKLY if share <= _HARDLY else Told.NOT for share in self.left)
-        return tuple(Told.WITHHELD if self.withheld and told is not Told.NOT else told for told in known)
+        known = (Told.WELL if share <= _TOLD else Told.WEAKLY if share <= _HARDLY else Told.NOT for share in self.remaining_variance)
+        return tuple(Told.WITHHELD if self.is_withheld and told is not Told.NOT else told for told in known)
 
     @property
-    def withheld(self) -> bool:
+    def is_withheld(self) -> bool:
         """Whether theory and test contradict each other beyond what any of the numbers may be."""
         return self.chi_square > _CONTRADICTING * max(1, self.freedoms)
 
@@ -255,27 +255,27 @@ def update(mechanism: Mechanism, experiment: Identified, names: Sequence[str], k
     stage's gauges, and where no end is found.
     """
     freed = free(mechanism, names, known)
-    model = begun(freed.mechanism, ()).model
+    model = start_design(freed.mechanism, ()).model
     gains = None
     if known.gain_error is not None:
         gains = measured_gains(mechanism, model, experiment, shared_sensors(model, experiment))
     compared = compare(freed.mechanism, experiment)
     rows = mode_rows(freed.mechanism, compared, experiment)
-    require(_few(experiment, rows, freed, gains))
+    require(_too_few_data(experiment, rows, freed, gains))
     here, first, steps = np.zeros(len(freed.names)), None, 0
     for _ in range(_ROUNDS):
         data = _Data(freed, known, rows, gains)
-        found = fitted(data.problem, here, begun(freed.moved(here * freed.deviations), rows))
+        found = gauss_newton(data.problem, here, start_design(freed.multiply(here * freed.deviations), rows))
         steps += found.steps
         if first is None:
             first = found
             require(_without_effect(found.slopes, freed, gains))
         compared = compare(found.state.mechanism, experiment)
         again = mode_rows(found.state.mechanism, compared, experiment)
-        if paired_alike(rows, found.state, again):
-            return _updated(data, found, compared, steps)
+        if same_pairs(rows, found.state, again):
+            return _as_result(data, found, compared, steps)
         rows, here = again, found.parameters
-        require(_few(experiment, rows, freed, gains))
+        require(_too_few_data(experiment, rows, freed, gains))
     what = f"the pairing of modes by shape still changes after {_ROUNDS} rounds"
     raise refuse("update", what, "State narrower priors, or begin with a design nearer to the test (flexstage compare shows the pairs)")
 
@@ -298,14 +298,16 @@ class _Data:
     def problem(self) -> Problem[Design]:
         freed = self.freed
         return Problem(
-            state=lambda place, before: followed(before, freed.moved(place * freed.deviations)), residuals=self.misfit, slopes=self.slopes
+            state=lambda place, before: follow_modes(before, freed.multiply(place * freed.deviations)),
+            residuals=self.misfit,
+            slopes=self.slopes,
         )
 
     def misfit(self, design: Design) -> Array:
         measured = np.array([row.frequency for row in self.rows])
         parts = [np.log(measured / design.frequencies) / self.frequency_error]
         if self.gains is not None:
-            parts.append(((self.gains.values - gains_of(design, self.gains)) / self._gain_errors(self.gains)).ravel())
+            parts.append(((self.gains.values - static_gains(design, self.gains)) / self._gain_errors(self.gains)).ravel())
         return np.concatenate(parts)
 
     def slopes(self, design: Design) -> Array:
@@ -324,7 +326,7 @@ class _Data:
             yield Residual(row.name, "Hz", row.frequency, float(error), float(first), float(last), row.frequency)
         if self.gains is None:
             return
-        first, last = gains_of(before, self.gains), gains_of(after, self.gains)
+        first, last = static_gains(before, self.gains), static_gains(after, self.gains)
         scale = self.gains.scale
         errors = self._gain_errors(self.gains) / scale
         for (row, column), value in np.ndenumerate(self.gains.values):
@@ -336,12 +338,12 @@ class _Data:
         return gains.errors(self.known.gain_error or 0.0)
 
 
-def _updated(data: _Data, found: Fitted[Design], compared: Compared, steps: int) -> Updated:
+def _as_result(data: _Data, found: Fitted[Design], compared: Compared, steps: int) -> Updated:
     freed = data.freed
     count = len(freed.names)
     _, singular, directions = np.linalg.svd(np.concatenate([found.slopes, np.zeros((count, count))]), full_matrices=False)
     whitened = (directions.T / (1.0 + singular**2)) @ directions
-    before = followed(found.state, freed.mechanism)
+    before = follow_modes(found.state, freed.mechanism)
     residuals = tuple(data.residuals(before, found.state))
     start = data.misfit(before)
     return Updated(
@@ -382,7 +384,7 @@ def _cautions(data: _Data, found: Fitted[Design], compared: Compared) -> Iterato
             yield f"the repeated modes {' and '.join(map(str, group.numbers))} are compared by the {group.seen} of them seen."
 
 
-def _few(experiment: Identified, rows: tuple[ModeRow, ...], freed: Free, gains: Gains | None) -> list[Finding]:
+def _too_few_data(experiment: Identified, rows: tuple[ModeRow, ...], freed: Free, gains: Gains | None) -> list[Finding]:
     where = experiment.responses.source or "record"
     count = len(rows) + (0 if gains is None else gains.values.size)
     if not rows:

@@ -78,11 +78,11 @@ def chain(model: LinearModel, plan: Plan, damping: Damping) -> Chain:
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped
-    >>> from flexstage.experiment.virtual_rig.plan import planned
+    >>> from flexstage.experiment.virtual_rig.plan import plan_test
     >>> from flexstage.experiment.virtual_rig.setup import RigSetup
     >>> stage = double_triangle()
     >>> model = mapped(stage)
-    >>> found = chain(model, planned(stage, model, RigSetup(seconds=1.0)), model.damping)
+    >>> found = chain(model, plan_test(stage, model, RigSetup(seconds=1.0)), model.damping)
     >>> (1e6 * found.input_rms).round(3).tolist()  # 1.5 and 2 um, what the filter leaves of them
     [1.418, 1.418, 1.418, 1.89, 1.89, 1.89]
     """
@@ -90,7 +90,7 @@ def chain(model: LinearModel, plan: Plan, damping: Damping) -> Chain:
     rate = finer * plan.rate
     size = _block(_memory(model, plan, damping), rate)
     lines = np.arange(3 * size // 2 + 1) * (rate / (3 * size))
-    shape = _flat(lines, plan.band)
+    shape = _amplitude_shape(lines, plan.band)
     used = lines[: int(np.flatnonzero(shape)[-1]) + 1]
     unit = shape[: len(used)] / np.sqrt((2.0 * np.sum(shape**2) - shape[0] ** 2) / (3 * size))
     filtered = butterworth(used, plan.setup.filter.order, plan.corner)
@@ -130,10 +130,10 @@ def density_shape(frequencies: Array, band: tuple[float, float]) -> Array:
     >>> density_shape(np.array([4.0, 10.0, 100.0, 112.5, 130.0]), (10.0, 100.0)).round(6).tolist()
     [0.0, 1.0, 1.0, 0.25, 0.0]
     """
-    return _flat(frequencies, band) ** 2
+    return _amplitude_shape(frequencies, band) ** 2
 
 
-def _flat(frequencies: Array, band: tuple[float, float]) -> Array:
+def _amplitude_shape(frequencies: Array, band: tuple[float, float]) -> Array:
     """Edges by the error function: their impulse response fades as a Gaussian, so that blocks need little of their neighbours."""
     low, high = band
     upper = (frequencies - high) / (TAPER * high)

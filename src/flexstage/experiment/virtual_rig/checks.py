@@ -6,9 +6,9 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from flexstage.base.finding import Finding, nearest
+from flexstage.base.finding import Finding, suggest_nearest
 from flexstage.experiment.virtual_rig.chain import Chain
-from flexstage.experiment.virtual_rig.plan import Plan, driven, highest_mode
+from flexstage.experiment.virtual_rig.plan import Plan, drivable_actuators, highest_mode
 from flexstage.experiment.virtual_rig.setup import Recorded, RigSetup
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
@@ -61,7 +61,7 @@ def _clock_findings(mechanism: Mechanism, model: LinearModel, setup: RigSetup) -
 
 
 def _channel_findings(mechanism: Mechanism, model: LinearModel, setup: RigSetup) -> Iterator[Finding]:
-    known = driven(mechanism, model)
+    known = drivable_actuators(mechanism, model)
     asked = setup.drive.actuators
     if not known:
         yield Finding("actuators", "the stage has no piezo stack to be driven", "Add one")
@@ -69,7 +69,7 @@ def _channel_findings(mechanism: Mechanism, model: LinearModel, setup: RigSetup)
         yield Finding("actuators", "none is to be driven", f"Name at least one: {', '.join(known)}")
     for name in dict.fromkeys(asked or ()):
         if name not in known:
-            yield Finding(f"actuator {name}", "the stage has no actuator of this name", nearest(name, known))
+            yield Finding(f"actuator {name}", "the stage has no actuator of this name", suggest_nearest(name, known))
         elif asked is not None and asked.count(name) > 1:
             yield Finding(f"actuator {name}", f"it is named {asked.count(name)} times", "Name it once")
     if not expand(mechanism).gauges:
@@ -105,9 +105,9 @@ def plan_findings(plan: Plan) -> Iterator[Finding]:
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped
-    >>> from flexstage.experiment.virtual_rig.plan import planned
+    >>> from flexstage.experiment.virtual_rig.plan import plan_test
     >>> stage = double_triangle()
-    >>> list(plan_findings(planned(stage, mapped(stage), RigSetup(seconds=1.0, recorded=Recorded.VOLTAGE))))
+    >>> list(plan_findings(plan_test(stage, mapped(stage), RigSetup(seconds=1.0, recorded=Recorded.VOLTAGE))))
     []
     """
     setup = plan.setup
@@ -129,11 +129,11 @@ def range_findings(plan: Plan, chain: Chain) -> Iterator[Finding]:
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped
     >>> from flexstage.experiment.virtual_rig.chain import chain
-    >>> from flexstage.experiment.virtual_rig.plan import planned
+    >>> from flexstage.experiment.virtual_rig.plan import plan_test
     >>> from flexstage.experiment.virtual_rig.setup import NoiseDrive
     >>> stage = double_triangle()
     >>> model = mapped(stage)
-    >>> plan = planned(stage, model, RigSetup(seconds=1.0, drive=NoiseDrive(stroke=20e-6, actuators=("B1",))))
+    >>> plan = plan_test(stage, model, RigSetup(seconds=1.0, drive=NoiseDrive(stroke=20e-6, actuators=("B1",))))
     >>> print(next(range_findings(plan, chain(model, plan, model.damping))))
     B1: peaks of 6 x 20 um rms pass the stroke of -75 um to 75 um. Drive with 12.5 um rms at most.
     """

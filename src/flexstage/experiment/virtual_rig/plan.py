@@ -55,17 +55,17 @@ class Plan:
         return round(self.setup.seconds * self.rate)
 
 
-def planned(mechanism: Mechanism, model: LinearModel, setup: RigSetup) -> Plan:
+def plan_test(mechanism: Mechanism, model: LinearModel, setup: RigSetup) -> Plan:
     """Settle a set-up whose numbers and names were checked.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped
     >>> stage = double_triangle()
-    >>> plan = planned(stage, mapped(stage), RigSetup(seconds=1.0))
+    >>> plan = plan_test(stage, mapped(stage), RigSetup(seconds=1.0))
     >>> plan.rate, (1e6 * plan.rms).round(6).tolist(), (1e9 * plan.steps[:2]).round(6).tolist()
     (2048.0, [1.5, 1.5, 1.5, 2.0, 2.0, 2.0], [10.0, 10.0])
     """
-    names = setup.drive.actuators if setup.drive.actuators is not None else driven(mechanism, model)
+    names = setup.drive.actuators if setup.drive.actuators is not None else drivable_actuators(mechanism, model)
     limits = stroke_limits(mechanism)
     places = [limits.actuators.index(name) for name in names]
     piezos = [stacks(mechanism)[name] for name in names]
@@ -82,25 +82,25 @@ def planned(mechanism: Mechanism, model: LinearModel, setup: RigSetup) -> Plan:
         band=setup.drive.band if setup.drive.band is not None else (0.0, _BAND_SHARE * float(rate)),
         corner=setup.filter.corner if setup.filter.corner is not None else _BAND_SHARE * float(rate),
         highest=highest,
-        rms=_commanded(setup, piezos, volts),
+        rms=_commanded_rms(setup, piezos, volts),
         low=np.real(limits.low[places]),
         high=np.real(limits.high[places]),
         volts=volts,
         capacitances=capacitances,
         bandwidths=setup.amplifier.cutoff(capacitances),
-        densities=_of_gauges(setup.sensing.density, [gauge.noise_density for gauge in gauges.values()], 0.0),
-        steps=_of_gauges(setup.sensing.resolution, [gauge.resolution for gauge in gauges.values()], 0.0),
-        lags=_of_gauges(None, [gauge.bandwidth for gauge in gauges.values()], np.inf),
+        densities=_gauge_values(setup.sensing.density, [gauge.noise_density for gauge in gauges.values()], 0.0),
+        steps=_gauge_values(setup.sensing.resolution, [gauge.resolution for gauge in gauges.values()], 0.0),
+        lags=_gauge_values(None, [gauge.bandwidth for gauge in gauges.values()], np.inf),
         ranges=_ranges(list(gauges.values())),
     )
 
 
-def driven(mechanism: Mechanism, model: LinearModel) -> tuple[str, ...]:
+def drivable_actuators(mechanism: Mechanism, model: LinearModel) -> tuple[str, ...]:
     """Actuators that can be driven: strokes of the model that are piezo stacks.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.lumped import lumped
-    >>> driven(parallelogram(), lumped(parallelogram()))
+    >>> drivable_actuators(parallelogram(), lumped(parallelogram()))
     ('B',)
     """
     known = stacks(mechanism)
@@ -130,7 +130,7 @@ def volts_per_metre(piezo: Piezo) -> float:
     return float(np.real((piezo.voltage_high - piezo.voltage_low) / piezo.stroke))
 
 
-def _commanded(setup: RigSetup, piezos: list[Piezo], volts: Array) -> Array:
+def _commanded_rms(setup: RigSetup, piezos: list[Piezo], volts: Array) -> Array:
     if setup.drive.stroke is not None:
         return np.full(len(piezos), setup.drive.stroke)
     if setup.drive.voltage is not None:
@@ -138,7 +138,7 @@ def _commanded(setup: RigSetup, piezos: list[Piezo], volts: Array) -> Array:
     return np.array([_DEFAULT_SHARE * float(np.real(piezo.stroke)) for piezo in piezos])
 
 
-def _of_gauges(asked: float | None, stated: list[Number | None], otherwise: float) -> Array:
+def _gauge_values(asked: float | None, stated: list[Number | None], otherwise: float) -> Array:
     return np.array([asked if asked is not None else otherwise if value is None else float(np.real(value)) for value in stated])
 
 

@@ -9,7 +9,7 @@ from flexstage.experiment.cross_spectra import Tell
 from flexstage.experiment.record import Channel, Record, Role
 from flexstage.experiment.virtual_rig.chain import chain
 from flexstage.experiment.virtual_rig.checks import plan_findings, range_findings, setup_findings
-from flexstage.experiment.virtual_rig.plan import Plan, planned
+from flexstage.experiment.virtual_rig.plan import Plan, plan_test
 from flexstage.experiment.virtual_rig.samples import Simulated
 from flexstage.experiment.virtual_rig.setup import Recorded, RigSetup
 from flexstage.mechanism.mechanism import Damping, Mechanism
@@ -42,10 +42,10 @@ def rig(mechanism: Mechanism, model: LinearModel, setup: RigSetup, *, damping: D
     >>> record.length, [f"{each.name} {each.unit}" for each in record.channels][:2], [each.name for each in record.outputs][:2]
     (4096, ['B1 um', 'B2 um'], ['S1', 'S2'])
     """
-    return as_record(simulated(mechanism, model, setup, damping=damping, tell=tell))
+    return as_record(simulate_test(mechanism, model, setup, damping=damping, tell=tell))
 
 
-def simulated(
+def simulate_test(
     mechanism: Mechanism, model: LinearModel, setup: RigSetup, *, damping: Damping | None = None, tell: Tell | None = None
 ) -> Simulated:
     """The test behind a record of `rig`: its plan, its chain with the rms values to expect, and its samples. Raises as `rig` does.
@@ -53,12 +53,12 @@ def simulated(
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped
     >>> stage = double_triangle()
-    >>> simulated(stage, mapped(stage), RigSetup(seconds=1.0)).plan.band
+    >>> simulate_test(stage, mapped(stage), RigSetup(seconds=1.0)).plan.band
     (0.0, 819.2)
     """
     require(setup_findings(mechanism, model, setup))
     law = damping_law(model, damping)
-    plan = planned(mechanism, model, setup)
+    plan = plan_test(mechanism, model, setup)
     require(plan_findings(plan))
     found = chain(model, plan, law)
     require(range_findings(plan, found))
@@ -73,7 +73,7 @@ def as_record(test: Simulated) -> Record:
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped
     >>> stage = double_triangle()
-    >>> as_record(simulated(stage, mapped(stage), RigSetup(seconds=1.0))).name.partition("; ")[0]
+    >>> as_record(simulate_test(stage, mapped(stage), RigSetup(seconds=1.0))).name.partition("; ")[0]
     'rig: seed 0'
     """
     return Record(_channels(test.plan), test.plan.rate, test, name=f"rig: {test.source}", source="virtual test rig")

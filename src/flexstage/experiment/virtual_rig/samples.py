@@ -56,12 +56,12 @@ class Simulated:
         start, stop, _ = slice(start, stop).indices(self.length)
         size = self.block
         numbers = range(start // size, -(-stop // size)) if stop > start else range(0)
-        pieces = [self._at(number)[max(0, start - number * size) : stop - number * size] for number in numbers]
+        pieces = [self._block_at(number)[max(0, start - number * size) : stop - number * size] for number in numbers]
         return np.concatenate(pieces) if pieces else np.zeros((0, len(self.plan.actuators) + len(self.plan.gauges)))
 
-    def _at(self, number: int) -> Array:
+    def _block_at(self, number: int) -> Array:
         if number not in self._kept:
-            found = self._computed(number)
+            found = self._compute_block(number)
             if self.length * found.shape[1] > _HELD:
                 self._kept.clear()
             self._kept[number] = found
@@ -69,24 +69,24 @@ class Simulated:
                 self.tell(min(1.0, (number + 1) * self.block / self.length))
         return self._kept[number]
 
-    def _computed(self, number: int) -> Array:
-        inputs, moved = self._driven(number)
-        read = self._stepped(moved + self._gauge_noise(number) + self._drift(number))
+    def _compute_block(self, number: int) -> Array:
+        inputs, moved = self._driven_block(number)
+        read = self._round_to_steps(moved + self._gauge_noise(number) + self._drift(number))
         return np.concatenate([inputs * self.input_scale, read], axis=1)
 
-    def _driven(self, number: int) -> tuple[Array, Array]:
+    def _driven_block(self, number: int) -> tuple[Array, Array]:
         used = len(self.chain.inputs)
         count = len(self.plan.actuators)
         drive = np.stack([np.fft.rfft(self._white(Stream.DRIVE, channel, number))[:used] for channel in range(count)], axis=1)
         moved = (self.chain.outputs @ drive[:, :, None])[:, :, 0]
-        return self._middle(self.chain.inputs * drive), self._middle(moved)
+        return self._middle_block(self.chain.inputs * drive), self._middle_block(moved)
 
     def _gauge_noise(self, number: int) -> Array | float:
         if not np.any(self.plan.densities):
             return 0.0
         columns = range(len(self.plan.gauges))
         spectra = [np.fft.rfft(self._white(Stream.GAUGE, column, number)) * self.chain.gauge[:, column] for column in columns]
-        return self._middle(np.stack(spectra, axis=1))
+        return self._middle_block(np.stack(spectra, axis=1))
 
     def _drift(self, number: int) -> Array | float:
         """The random walk of every gauge: a step has the variance of a minute's over the samples of a minute."""
@@ -96,7 +96,7 @@ class Simulated:
         seed, columns = self.plan.setup.seed, range(len(self.plan.gauges))
         return step * np.stack([walk(seed, column, number, self.block) for column in columns], axis=1)
 
-    def _stepped(self, read: Array) -> Array:
+    def _round_to_steps(self, read: Array) -> Array:
         """Readings rounded to the gauges' steps, in the record's unit."""
         scaled = read * self.output_scale
         steps = self.plan.steps * self.output_scale
@@ -108,7 +108,7 @@ class Simulated:
         seed, size = self.plan.setup.seed, self.chain.size
         return np.concatenate([white(seed, stream, channel, each, size) for each in (number - 1, number, number + 1)])
 
-    def _middle(self, spectra: Array) -> Array:
+    def _middle_block(self, spectra: Array) -> Array:
         """The middle block of what transforms over three blocks stand for, at the sampling rate."""
         size = self.chain.size
         return np.fft.irfft(spectra, 3 * size, axis=0)[size : 2 * size : self.chain.finer]

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from flexstage.experiment.virtual_rig.samples import Simulated
 from flexstage.experiment.virtual_rig.setup import Recorded
-from flexstage.show.display import number, value_with_unit
-from flexstage.show.table import Cell, Mark, Table, build
+from flexstage.show.display import format_value, number
+from flexstage.show.table import Cell, Mark, Table, make_table
 
 
 def rig_table(test: Simulated) -> Table:
@@ -13,20 +13,20 @@ def rig_table(test: Simulated) -> Table:
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped
-    >>> from flexstage.experiment.virtual_rig.rig import simulated
+    >>> from flexstage.experiment.virtual_rig.rig import simulate_test
     >>> from flexstage.experiment.virtual_rig.setup import RigSetup
     >>> stage = double_triangle()
-    >>> rig_table(simulated(stage, mapped(stage), RigSetup(seconds=1.0))).texts()[-1]
+    >>> rig_table(simulate_test(stage, mapped(stage), RigSetup(seconds=1.0))).texts()[-1]
     ['S6', 'output', 'um', '19.53 um', '10 nm']
     """
     plan, unit = test.plan, "V" if test.plan.setup.recorded is Recorded.VOLTAGE else "um"
     volts = plan.setup.recorded is Recorded.VOLTAGE
     driven = [
-        (Cell(name, Mark.STRONG), "input", unit, value_with_unit(rms * (scale if volts else 1.0), "V" if volts else "m", 4), "")
+        (Cell(name, Mark.STRONG), "input", unit, format_value(rms * (scale if volts else 1.0), "V" if volts else "m", 4), "")
         for name, rms, scale in zip(plan.actuators, test.chain.input_rms, test.input_scale, strict=True)
     ]
     read = [
-        (Cell(name, Mark.STRONG), "output", "um", value_with_unit(rms, "m", 4), f"{1e9 * step:.4g} nm" if step else "")
+        (Cell(name, Mark.STRONG), "output", "um", format_value(rms, "m", 4), f"{1e9 * step:.4g} nm" if step else "")
         for name, rms, step in zip(plan.gauges, test.chain.output_rms, plan.steps, strict=True)
     ]
     clock = f"{test.length} samples at {number(plan.rate, 6)} Hz"
@@ -34,6 +34,6 @@ def rig_table(test: Simulated) -> Table:
     slower = [value for value in (*plan.bandwidths, *plan.lags) if value != float("inf")]
     lag = f"; slowest amplifier or gauge {number(min(slower), 4)} Hz" if slower else ""
     note = f"{clock}; {noise}{lag}; highest platform mode {number(plan.highest, 4)} Hz. {test.chain.note[0].upper()}{test.chain.note[1:]}."
-    return build(
+    return make_table(
         "Virtual test", ["channel", "role", "unit", "expected rms", "step"], [*driven, *read], notes=[note], provenance=test.source
     )

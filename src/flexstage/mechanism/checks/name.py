@@ -6,7 +6,7 @@ import re
 from collections import Counter
 from collections.abc import Iterable, Iterator
 
-from flexstage.base.finding import Finding, nearest
+from flexstage.base.finding import Finding, suggest_nearest
 from flexstage.mechanism.expand import copy_names
 from flexstage.mechanism.grammar import RESERVED
 from flexstage.mechanism.mechanism import GROUND, NOT_GROWING, PLATFORM, Link, Mechanism, Unit
@@ -141,7 +141,7 @@ def _materials(mechanism: Mechanism) -> Iterator[Finding]:
 
 def _check_known(where: str, kind: str, name: str | None, names: Iterable[str]) -> Iterator[Finding]:
     if name is not None and name not in names:
-        yield Finding(where, f'there is no {kind} "{name}"', nearest(name, names))
+        yield Finding(where, f'there is no {kind} "{name}"', suggest_nearest(name, names))
 
 
 def _check_placement(mechanism: Mechanism) -> Iterator[Finding]:

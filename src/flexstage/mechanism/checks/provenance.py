@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
 
-from flexstage.base.finding import DesignError, Finding, nearest
+from flexstage.base.finding import DesignError, Finding, suggest_nearest
 from flexstage.base.number import Table
 from flexstage.mechanism.address import ASSUMED
 from flexstage.mechanism.locate import Place, locate
@@ -69,4 +69,4 @@ def tag_findings(mechanism: Mechanism) -> Iterator[Finding]:
         elif words[0] == STATED and (len(words) < 2 or words[1] not in mechanism.sources):
             source = words[1] if len(words) > 1 else ""
             what = f'it is stated by "{source}", which is none of the sources' if source else "it is stated by no source"
-            yield Finding(where, what, nearest(source, mechanism.sources))
+            yield Finding(where, what, suggest_nearest(source, mechanism.sources))

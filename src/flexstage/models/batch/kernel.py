@@ -12,7 +12,7 @@ import os
 from pathlib import Path
 
 from flexstage.base.finding import DesignError
-from flexstage.base.native import Recipe, compiler, key, loaded
+from flexstage.base.native import Recipe, compiler, key, load_library
 
 SWITCH = "FLEXSTAGE_KERNEL"
 _SOURCE = Path(__file__).with_name("kernel.c")
@@ -30,7 +30,7 @@ def kernel() -> ctypes.CDLL | None:
     if os.environ.get(SWITCH, "") == "off":
         return None
     try:
-        return loaded(_recipe(), _answers)
+        return load_library(_recipe(), _answers)
     except DesignError:
         return None
 

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import numpy as np
 
-from flexstage.base.finding import Finding, joined, refuse
+from flexstage.base.finding import Finding, join_findings, refuse
 from flexstage.base.labelled import Matrix, ratio_units
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
@@ -136,7 +136,7 @@ class Kinematics(InNotebook):
     @property
     def blockages(self) -> tuple[Finding, ...]:
         """Strokes that cannot move, the links that block them, strongest first, and what to free; those blocked alike are told once."""
-        return joined(
+        return join_findings(
             Finding(name, f"the stroke cannot move: it is blocked by the locked freedoms of {_by_link(each.against)}", _freeing(each))
             for name, each in self.blocked.items()
         )

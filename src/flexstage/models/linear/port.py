@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from flexstage.base.finding import Finding, nearest, require
+from flexstage.base.finding import Finding, require, suggest_nearest
 from flexstage.base.number import Array
 from flexstage.mechanism.mechanism import GROUND
 from flexstage.models.linear.model import Channel, LinearModel
@@ -108,7 +108,7 @@ def _expand_groups(names: Iterable[str], known: tuple[str, ...], kind: str) -> l
         elif name in members and name:
             result += dict.fromkeys(members[name])
         else:
-            findings.append(Finding(name, f"the model has no {kind} of this name", nearest(name, [*known, *filter(None, members)])))
+            findings.append(Finding(name, f"the model has no {kind} of this name", suggest_nearest(name, [*known, *filter(None, members)])))
     require(findings)
     return result
 

@@ -18,8 +18,8 @@ from flexstage.base.text import printable
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.theory import Model
 from flexstage.show.command.output import STDOUT, announce, write
-from flexstage.show.command.terminal import styled, tell, warn
-from flexstage.show.document import enveloped
+from flexstage.show.command.terminal import print_note, print_styled, print_warning
+from flexstage.show.document import envelope
 from flexstage.show.render import to_rich
 from flexstage.show.sheets import to_csv
 from flexstage.show.table import Table
@@ -48,15 +48,15 @@ def answer(  # noqa: PLR0913 (all that a command can ask for)
     """
     write_csv(csv, kind, body)
     if json is not None:
-        write(json, as_text(enveloped(kind, mechanism, model, body(), cautions)) + "\n", "--json")
+        write(json, as_text(envelope(kind, mechanism, model, body(), cautions)) + "\n", "--json")
         if json == STDOUT:
             return
         announce(f"Wrote {json}")
     if STDOUT in map(str, beside):
         for each in (*(() if mechanism is None else caveats(mechanism).cautions), *cautions):
-            warn(str(each))
+            print_warning(str(each))
         return
-    show((*caveat_lines(kind, mechanism, cautions), *tables()))
+    show((*list_caveats(kind, mechanism, cautions), *tables()))
 
 
 def write_csv(folder: Path | None, kind: str, body: Callable[[], Any]) -> None:
@@ -73,7 +73,7 @@ def write_csv(folder: Path | None, kind: str, body: Callable[[], Any]) -> None:
     announce(f"Wrote {folder / kind}.*.csv")
 
 
-def caveat_lines(kind: str, mechanism: Mechanism | None, more: tuple[Finding, ...] = ()) -> Iterator[str]:
+def list_caveats(kind: str, mechanism: Mechanism | None, more: tuple[Finding, ...] = ()) -> Iterator[str]:
     """Cautions about a description (none: a record alone) and `more` about the result, and what this kind of result takes by default."""
     found = Caveats() if mechanism is None else caveats(mechanism)
     for title, findings in (("Cautions", (*found.cautions, *more)), ("Taken by default", found.defaults_of(kind))):
@@ -81,11 +81,11 @@ def caveat_lines(kind: str, mechanism: Mechanism | None, more: tuple[Finding, ..
             yield "\n".join([title, "", *(f"  {each}" for each in findings)])
 
 
-def tell_missing(missing: Mapping[str, str]) -> None:
+def print_missing(missing: Mapping[str, str]) -> None:
     """Say on stderr which results are not given, and why; a reason that several share once."""
     for reason in dict.fromkeys(missing.values()):
         names = ", ".join(name.replace("_", " ") for name, each in missing.items() if each == reason)
-        tell(f"not given: {names}: {reason}")
+        print_note(f"not given: {names}: {reason}")
 
 
 def show(shown: Iterable[Table | str | None]) -> None:
@@ -97,11 +97,11 @@ def show(shown: Iterable[Table | str | None]) -> None:
     if not console.is_terminal:
         console.width = _UNFOLDED
     for number, each in enumerate(each for each in shown if each is not None):
-        lines = printable(each, keep="\n").splitlines() if isinstance(each, str) else _rendered(console, each)
-        styled("\n".join(["", *lines][number == 0 :]).rstrip("\n") + "\n")
+        lines = printable(each, keep="\n").splitlines() if isinstance(each, str) else _render(console, each)
+        print_styled("\n".join(["", *lines][number == 0 :]).rstrip("\n") + "\n")
 
 
-def _rendered(console: Console, table: Table) -> list[str]:
+def _render(console: Console, table: Table) -> list[str]:
     with console.capture() as captured:
         console.print(to_rich(table))
     return [line.rstrip() for line in captured.get().splitlines()]

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from flexstage.analysis.complete import read
-from flexstage.base.finding import DesignError, Finding, nearest, refuse, require
+from flexstage.base.finding import DesignError, Finding, refuse, require, suggest_nearest
 from flexstage.mechanism.address import assign
 from flexstage.mechanism.checks import require_valid
 from flexstage.mechanism.mechanism import Mechanism
@@ -58,5 +58,5 @@ def known_point(model: LinearModel, name: str) -> str:
     outputs = {channel.name for channel in model.outputs}
     places = {each.rpartition(".")[0] for each in outputs if each.rpartition(".")[2] in COMPONENTS}
     if name not in places:
-        raise refuse("--at", f"there is no body or point {name}", nearest(name, places))
+        raise refuse("--at", f"there is no body or point {name}", suggest_nearest(name, places))
     return name

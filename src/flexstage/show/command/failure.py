@@ -12,9 +12,9 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from flexstage.base.finding import DesignError, refuse
-from flexstage.base.store import sweep_temporary
-from flexstage.show.command.output import together
-from flexstage.show.command.terminal import streams, tell, warn
+from flexstage.base.store import remove_temporary_leftovers
+from flexstage.show.command.output import pending_outputs
+from flexstage.show.command.terminal import print_note, print_warning, streams
 
 DONE, MISSED, BAD_INPUT, INTERRUPTED, FAULT = 0, 1, 2, 2, 70
 SIGNALLED = 128
@@ -26,21 +26,21 @@ _DEBUG = "FLEXSTAGE_DEBUG"
 _THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
 
 
-def guarded(action: Callable[[], object]) -> int:
+def run_guarded(action: Callable[[], object]) -> int:
     """Run an action and turn however it ends into an exit code; messages go to stderr."""
     with streams():
-        return _ended(action)
+        return _exit_code(action)
 
 
-def _ended(action: Callable[[], object]) -> int:
-    sweep_temporary()
+def _exit_code(action: Callable[[], object]) -> int:
+    remove_temporary_leftovers()
     for name in _THREADS:  # many small matrices: a second thread costs more than it gives. Read when numpy is loaded.
         os.environ.setdefault(name, "1")
     try:
-        with _told_warnings(), together():
-            _finished(action)
+        with _print_warnings(), pending_outputs():
+            _run_and_flush(action)
     except SystemExit as end:
-        return _left(end)
+        return _code_of_exit(end)
     except DesignError as error:
         return _bad_input(error)
     except ModuleNotFoundError as error:
@@ -56,18 +56,18 @@ def _ended(action: Callable[[], object]) -> int:
     return DONE
 
 
-def _left(end: SystemExit) -> int:
+def _code_of_exit(end: SystemExit) -> int:
     """The exit code of a command that left early."""
     if end.code == _FRAMEWORKS_INTERRUPTED:  # the command line's framework turns the interruption into this
         return _interrupted()
     if isinstance(end.__context__, BrokenPipeError):  # and a reader that has gone into a code of failure
         return DONE
     if end.code in {SIGNALLED + each for each in ENDINGS}:
-        tell("Ended by a signal; nothing was written. Finished parts are kept: the same command resumes from there.")
+        print_note("Ended by a signal; nothing was written. Finished parts are kept: the same command resumes from there.")
     return end.code if isinstance(end.code, int) else DONE if end.code is None else MISSED
 
 
-def _finished(action: Callable[[], object]) -> None:
+def _run_and_flush(action: Callable[[], object]) -> None:
     """The action, until its reader has all of it, however it ends."""
     try:
         action()
@@ -78,15 +78,15 @@ def _finished(action: Callable[[], object]) -> None:
 
 
 def _interrupted() -> int:
-    tell("Interrupted; nothing was written. Finished parts are kept in the cache: the same command resumes from there.")
+    print_note("Interrupted; nothing was written. Finished parts are kept in the cache: the same command resumes from there.")
     return INTERRUPTED
 
 
 def _bad_input(error: DesignError) -> int:
     count = len(error.findings)
-    tell(f"error: {count} finding{'s' * (count > 1)}")
+    print_note(f"error: {count} finding{'s' * (count > 1)}")
     for finding in error.findings:
-        tell(f"  {finding}")
+        print_note(f"  {finding}")
     return BAD_INPUT
 
 
@@ -98,9 +98,11 @@ def _fault(error: Exception) -> int:
         return _bad_input(refuse("the folder this runs in", what, "Change to another folder"))
     if os.environ.get(_DEBUG):
         raise error
-    tell(f"error: flexstage failed, and that is its fault, not your design's: {type(error).__name__}: {error}")
-    tell(f"Run the same command with {_DEBUG}=1 in the environment and report its output with the design file and `flexstage version`.")
-    tell("`flexstage doctor` says whether the installation is sound.")
+    print_note(f"error: flexstage failed, and that is its fault, not your design's: {type(error).__name__}: {error}")
+    print_note(
+        f"Run the same command with {_DEBUG}=1 in the environment and report its output with the design file and `flexstage version`."
+    )
+    print_note("`flexstage doctor` says whether the installation is sound.")
     return FAULT
 
 
@@ -115,13 +117,13 @@ def _folder_is_gone() -> bool:
 def _missing(error: ModuleNotFoundError) -> int:
     if os.environ.get(_DEBUG) or (error.name or "").partition(".")[0] == "flexstage":
         raise error
-    tell(f"error: the package {error.name} is missing. `flexstage doctor` says how to install it.")
+    print_note(f"error: the package {error.name} is missing. `flexstage doctor` says how to install it.")
     return FAULT
 
 
 @contextmanager
-def _told_warnings() -> Generator[None]:
+def _print_warnings() -> Generator[None]:
     """Python's warnings as one line each, without file and line of code."""
     with warnings.catch_warnings():
-        warnings.showwarning = lambda message, *_, **__: warn(str(message))
+        warnings.showwarning = lambda message, *_, **__: print_warning(str(message))
         yield

@@ -12,8 +12,8 @@ import typer
 
 from flexstage.models.theory import Model
 from flexstage.show.command.failure import BAD_INPUT
-from flexstage.show.command.output import writable_folder
-from flexstage.show.command.terminal import tell
+from flexstage.show.command.output import check_folder
+from flexstage.show.command.terminal import print_note
 
 _Kind = TypeVar("_Kind", bound=Enum)
 _NOTHING: Mapping[str, str] = MappingProxyType({})
@@ -50,7 +50,7 @@ def _reader(option: str, kind: type[_Kind], otherwise: Mapping[str, str]) -> Cal
             if word in (each, each.value):  # each: the default
                 return each
         advice = f" {otherwise[str(word)]}." if word in otherwise else ""
-        tell(f'error: {option}: "{word}" is none of {", ".join(str(each.value) for each in kind)}.{advice}')
+        print_note(f'error: {option}: "{word}" is none of {", ".join(str(each.value) for each in kind)}.{advice}')
         raise typer.Exit(BAD_INPUT)
 
     return read
@@ -84,7 +84,7 @@ Csv: TypeAlias = Annotated[
     typer.Option(
         "--csv",
         metavar="FOLDER",
-        callback=writable_folder,
+        callback=check_folder,
         help="Write each table of the result as a CSV file into a folder: full precision, SI units.",
         show_default=False,
     ),

@@ -10,8 +10,8 @@ from contextvars import ContextVar
 from pathlib import Path
 
 from flexstage.base.finding import Finding, refuse, require
-from flexstage.base.store import Waiting, put_together, written
-from flexstage.show.command.terminal import put_out, tell
+from flexstage.base.store import PendingFile, move_all, write_temporary
+from flexstage.show.command.terminal import print_bytes, print_note
 
 STDOUT = "-"
 _ENDED_WELL = (None, 0, 1)
@@ -21,13 +21,13 @@ class _Pending:
     """Outputs of one command that wait for its end, and what is told once they are there."""
 
     def __init__(self) -> None:
-        self.files: list[Waiting] = []
+        self.files: list[PendingFile] = []
         self.texts: list[str] = []
 
     def put(self) -> None:
-        put_together(self.files)
+        move_all(self.files)
         for text in self.texts:
-            tell(text)
+            print_note(text)
 
     def drop(self) -> None:
         for each in self.files:
@@ -39,7 +39,7 @@ _PENDING: ContextVar[_Pending | None] = ContextVar("outputs that wait", default=
 
 
 @contextmanager
-def together() -> Generator[None]:
+def pending_outputs() -> Generator[None]:
     """All files written inside appear together at its end, or none where it fails.
 
     A command that ends by saying what was missed, or whose reader has gone, has not failed.
@@ -65,7 +65,7 @@ def announce(text: str) -> None:
     """Say that a file was written, once it is there."""
     pending = _PENDING.get()
     if pending is None:
-        tell(text)
+        print_note(text)
     else:
         pending.texts.append(text)
 
@@ -75,17 +75,17 @@ def require_writable(wanted: Sequence[tuple[str, str | Path | None]], design: Pa
 
     They must not overwrite what is read: the `design` (or the study) and `records`.
     """
-    read = {_whole(path) for path in records}
+    read = {_real_path(path) for path in records}
     clashes = [
         Finding(option, f"{target} is a record that is read", "Choose another file")
         for option, target in wanted
-        if target is not None and str(target) != STDOUT and _whole(Path(target)) in read
+        if target is not None and str(target) != STDOUT and _real_path(Path(target)) in read
     ]
-    require([*_unwritable(wanted, design), *clashes])
+    require([*_problems(wanted, design), *clashes])
 
 
-def _unwritable(wanted: Iterable[tuple[str, str | Path | None]], design: Path | None) -> Iterator[Finding]:
-    taken: dict[Path, str] = {} if design is None else {_whole(design): "the design file"}
+def _problems(wanted: Iterable[tuple[str, str | Path | None]], design: Path | None) -> Iterator[Finding]:
+    taken: dict[Path, str] = {} if design is None else {_real_path(design): "the design file"}
     spoken: str | None = None
     for option, target in wanted:
         if target is not None and str(target) == STDOUT:
@@ -95,22 +95,22 @@ def _unwritable(wanted: Iterable[tuple[str, str | Path | None]], design: Path | 
         if target is None or str(target) == STDOUT:
             continue
         path = Path(target)
-        if (owner := taken.get(_whole(path))) is not None:
+        if (owner := taken.get(_real_path(path))) is not None:
             yield Finding(option, f"{path} is {owner} too", "Choose another file")
-        elif (problem := _problem(path, _refused)) is not None:
+        elif (problem := _problem(path, _file_problem)) is not None:
             yield Finding(option, f"{path} cannot be written: {problem}", "Choose another file or folder")
         else:
-            taken[_whole(path)] = f"the output of {option}"
+            taken[_real_path(path)] = f"the output of {option}"
 
 
-def writable_folder(folder: Path | None) -> Path | None:
+def check_folder(folder: Path | None) -> Path | None:
     """The folder that `--csv` names, new or there; raises a `DesignError` where nothing can be written into it."""
-    if folder is not None and (problem := _problem(folder, _folder_refused)) is not None:
+    if folder is not None and (problem := _problem(folder, _folder_problem)) is not None:
         raise refuse("--csv", f"{folder} cannot be written into: {problem}", "Choose another folder")
     return folder
 
 
-def _whole(path: Path) -> Path:
+def _real_path(path: Path) -> Path:
     """The path without links, where they do not end in a loop."""
     return Path(os.path.realpath(path))
 
@@ -123,24 +123,24 @@ def _problem(path: Path, refused: Callable[[Path], str | None]) -> str | None:
         return error.strerror or str(error)
 
 
-def _refused(path: Path) -> str | None:
+def _file_problem(path: Path) -> str | None:
     if path.is_dir():
         return "it is a folder"
     if path.exists() and not os.access(path, os.W_OK):
         return "it is write-protected"
     if _is_device(path):
         return None
-    folder = _whole(path).parent
+    folder = _real_path(path).parent
     if not folder.is_dir():
         return f"there is no folder {path.parent}"
     with tempfile.TemporaryFile(dir=folder):
         return None
 
 
-def _folder_refused(folder: Path) -> str | None:
+def _folder_problem(folder: Path) -> str | None:
     if folder.exists() and not folder.is_dir():
         return "it is a file"
-    return _refused(folder / "table.csv" if folder.exists() else folder)
+    return _file_problem(folder / "table.csv" if folder.exists() else folder)
 
 
 def _is_device(path: Path) -> bool:
@@ -151,10 +151,10 @@ def write(target: str | Path, content: str | bytes, option: str) -> None:
     """Write to a file, which is in its place at the end of the command, or to stdout for `-`; raises where the disk refuses."""
     data = content.encode() if isinstance(content, str) else content
     if str(target) == STDOUT:
-        put_out(data)
+        print_bytes(data)
         return
     if not _is_device(Path(target)):
-        pending, waiting = _PENDING.get(), written(target, data)
+        pending, waiting = _PENDING.get(), write_temporary(target, data)
         if pending is None:
             waiting.put()
         else:

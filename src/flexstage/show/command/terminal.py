@@ -18,28 +18,28 @@ if TYPE_CHECKING:
     from typing_extensions import Buffer
 
 
-def say(text: str = "") -> None:
+def print_result(text: str = "") -> None:
     """Print a line of a result to stdout."""
     sys.stdout.write(f"{text}\n")
 
 
-def tell(text: str) -> None:
+def print_note(text: str) -> None:
     """Print a line that is not the result (progress, where a file was written) to stderr."""
     sys.stderr.write(f"{text}\n")
 
 
-def warn(text: str) -> None:
+def print_warning(text: str) -> None:
     """Print a warning to stderr."""
-    tell(f"warning: {text}")
+    print_note(f"warning: {text}")
 
 
-def styled(text: str) -> None:
+def print_styled(text: str) -> None:
     """Print a result to stdout in which escape sequences are this program's own: what others wrote in it is printable."""
     encoding = sys.stdout.encoding or "utf-8"
-    put_out(text.encode(encoding, "backslashreplace"))
+    print_bytes(text.encode(encoding, "backslashreplace"))
 
 
-def put_out(data: bytes) -> None:
+def print_bytes(data: bytes) -> None:
     """Print bytes to stdout as they are."""
     sys.stdout.flush()
     sys.stdout.buffer.write(data)

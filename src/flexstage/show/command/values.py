@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import TypeVar
 
 from flexstage.analysis.random_response import Rate, Spectrum
-from flexstage.base.finding import DesignError, Finding, nearest, require
+from flexstage.base.finding import DesignError, Finding, require, suggest_nearest
 from flexstage.base.quantity import ANGLE, DISPLACEMENT, Quantity
 from flexstage.base.unit import parse
 from flexstage.models.linear.model import LinearModel
@@ -36,7 +36,7 @@ class Values:
         return None if text is None else self.attempt(lambda: parse(text, quantity, where=option))
 
 
-def first_fit(text: str, known: Mapping[str, Quantity]) -> tuple[str, float] | None:
+def first_that_parses(text: str, known: Mapping[str, Quantity]) -> tuple[str, float] | None:
     """The name of the first quantity that a text is of, and its value in SI units; nothing where it is of none."""
     for name, quantity in known.items():
         try:
@@ -54,7 +54,9 @@ def motions(texts: Sequence[str]) -> dict[str, float]:
         name, _, value = (part.strip() for part in text.partition("="))
         if name not in COMPONENTS or not value:
             findings.append(
-                Finding(f"--command {text}", "this names no motion and value", f"Write for example z=150um; {nearest(name, COMPONENTS)}")
+                Finding(
+                    f"--command {text}", "this names no motion and value", f"Write for example z=150um; {suggest_nearest(name, COMPONENTS)}"
+                )
             )
             continue
         try:

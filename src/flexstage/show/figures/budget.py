@@ -10,8 +10,8 @@ import numpy as np
 from flexstage.analysis.error_budget import ErrorBudget
 from flexstage.analysis.lost_motion import LostMotion
 from flexstage.base.number import Array
-from flexstage.show.display import number, percent, shown, typeset
-from flexstage.show.figures.style import FULL, INK, MUTED, SERIES, Margins, canvas, panels, styled, text_width
+from flexstage.show.display import display_unit_of, number, percent, to_typography
+from flexstage.show.figures.style import FULL, INK, MUTED, SERIES, Margins, canvas, panels, style_context, text_width
 from flexstage.show.table import first_design
 from flexstage.show.tables.lost_motion import ELSEWHERE, energy_shares, own_budget
 
@@ -46,13 +46,15 @@ def energy_figure(lost: LostMotion) -> Any:
     1
     """
     totals = first_design(lost.energy.values, 2).sum(axis=0)
-    texts = {name: typeset(f"{number(1e-6 * float(total), 3)} uJ/um^2") for name, total in zip(lost.energy.columns, totals, strict=True)}
+    texts = {
+        name: to_typography(f"{number(1e-6 * float(total), 3)} uJ/um^2") for name, total in zip(lost.energy.columns, totals, strict=True)
+    }
     return _share_figure(energy_shares(lost), texts, "share of the strain energy [%]")
 
 
 def _share_figure(shares: Mapping[str, Mapping[str, float]], totals: Mapping[str, str], label: str) -> Any:
     parts = _largest_parts(shares)
-    with styled():
+    with style_context():
         top = 0.1 + 0.16 * -(-len(parts) // _ACROSS)
         figure = canvas(FULL, 0.5 + top + 0.27 * len(shares))
         axes = panels(figure, 1, 1, Margins(left=0.15 + text_width(shares), top=top))[0, 0]
@@ -65,9 +67,9 @@ def _share_figure(shares: Mapping[str, Mapping[str, float]], totals: Mapping[str
             axes.barh(names, widths, left=starts, height=0.62, color=colour, label=part, linewidth=0.0)
             right, left = right + np.maximum(widths, 0.0), left + np.minimum(widths, 0.0)
         for row, name in enumerate(names):
-            _beside(axes, (right[row], row), totals[name], INK)
-        _tidy(axes, label)
-        _room_at_right(axes, 1.13)
+            _place_beside(axes, (right[row], row), totals[name], INK)
+        _format_axes(axes, label)
+        _widen_right(axes, 1.13)
         if parts:  # massless axial springs lose nothing: there is nothing to name
             figure.legend(loc="upper left", ncols=_ACROSS, **_LEGEND)
     return figure
@@ -93,7 +95,7 @@ def _colour(index: int, part: str) -> str:
     return {ELSEWHERE: _OTHER_COLOUR, _REST: _REST_COLOUR}.get(part, SERIES[index % len(SERIES)])
 
 
-def _tidy(axes: Any, label: str) -> None:
+def _format_axes(axes: Any, label: str) -> None:
     axes.invert_yaxis()
     axes.set_xlabel(label)
     axes.grid(visible=False, axis="y")
@@ -101,7 +103,7 @@ def _tidy(axes: Any, label: str) -> None:
     axes.axvline(0.0, color=MUTED, linewidth=0.6)
 
 
-def _room_at_right(axes: Any, factor: float) -> None:
+def _widen_right(axes: Any, factor: float) -> None:
     low, high = axes.get_xlim()
     axes.set_xlim(low, high * factor if high > 0.0 else 1.0)
 
@@ -114,7 +116,7 @@ def error_figure(budget: ErrorBudget) -> Any:
     >>> len(error_figure(budget(double_triangle(), {"z": 1e-5})).axes)
     2
     """
-    with styled():
+    with style_context():
         figure = canvas(FULL, 2.5)
         row = panels(figure, 1, 2, Margins(left=0.25, top=0.28, across=0.45))[0]
         for axes, rows, unit in zip(row, (slice(0, 3), slice(3, 6)), ("m", "rad"), strict=True):
@@ -127,7 +129,7 @@ def error_figure(budget: ErrorBudget) -> Any:
 def _error_panel(axes: Any, budget: ErrorBudget, rows: slice, unit: str) -> None:
     """Two bars an axis: ideal mapping above, corrected command below."""
     pairs = [np.nan_to_num(first_design(matrix.values, 2)[rows]) for matrix in (budget.ideal, budget.corrected)]
-    form = shown(unit, float(max(values.sum(axis=1).max() for values in pairs)))
+    form = display_unit_of(unit, float(max(values.sum(axis=1).max() for values in pairs)))
     places = np.arange(3)
     for offset, values, name in zip((-0.19, 0.19), pairs, ("ideal", "corrected"), strict=True):
         start = np.zeros(3)
@@ -138,14 +140,14 @@ def _error_panel(axes: Any, budget: ErrorBudget, rows: slice, unit: str) -> None
             start = start + widths
         _bar_texts(axes, places + offset, start, name)
     axes.set_yticks(places, list(budget.ideal.rows[rows]))
-    _tidy(axes, typeset(f"largest error [{form.unit}]"))
-    _room_at_right(axes, 1.3)
+    _format_axes(axes, to_typography(f"largest error [{form.unit}]"))
+    _widen_right(axes, 1.3)
 
 
 def _bar_texts(axes: Any, places: Array, ends: Array, name: str) -> None:
     for place, end in zip(places, ends, strict=True):
-        _beside(axes, (end, place), f"{number(float(end), 3)} {name}", MUTED)
+        _place_beside(axes, (end, place), f"{number(float(end), 3)} {name}", MUTED)
 
 
-def _beside(axes: Any, point: tuple[float, float], text: str, colour: str) -> None:
+def _place_beside(axes: Any, point: tuple[float, float], text: str, colour: str) -> None:
     axes.annotate(text, point, xytext=(3.0, 0.0), textcoords="offset points", va="center", ha="left", fontsize=7.0, color=colour)

@@ -8,8 +8,8 @@ import numpy as np
 
 from flexstage.analysis.statics import DirectionalStiffness, Statics
 from flexstage.base.number import Array
-from flexstage.show.display import number, typeset
-from flexstage.show.figures.style import HALF, INK, MUTED, SERIES, canvas, styled
+from flexstage.show.display import number, to_typography
+from flexstage.show.figures.style import HALF, INK, MUTED, SERIES, canvas, style_context
 from flexstage.show.table import first_design
 
 _ANGLES = np.deg2rad(np.arange(0.0, 361.0, 3.0))
@@ -26,7 +26,7 @@ def directional_figure(statics: Statics) -> Any:
     """
     from matplotlib.ticker import MaxNLocator
 
-    with styled():
+    with style_context():
         figure = canvas(HALF, 1.12 * HALF)
         axes = figure.add_axes((0.13, 0.2, 0.74, 0.74 / 1.12), projection="polar")
         both = (("others held", statics.held, SERIES[0]), ("others free", statics.free, SERIES[1]))
@@ -43,7 +43,7 @@ def directional_figure(statics: Statics) -> Any:
         axes.set_ylim(0.0, 1.1e-6 * max((float(first_design(stiffness.principal, 1)[0]) for _, stiffness, _ in curves), default=1e6))
         axes.yaxis.set_major_locator(MaxNLocator(4))
         if curves:
-            axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.08), handlelength=1.2, title=typeset("N/um"), title_fontsize=7.5)
+            axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.08), handlelength=1.2, title=to_typography("N/um"), title_fontsize=7.5)
         axes.set_xticks(np.deg2rad(np.arange(0, 360, 45)), ["x", "45°", "y", "135°", "180°", "225°", "270°", "315°"])
         axes.grid(linewidth=0.5)
         axes.tick_params(labelcolor=INK)

@@ -9,7 +9,7 @@ from typing import Any
 from flexstage.base.finding import refuse
 from flexstage.base.text import printable
 from flexstage.show.figures.export import to_png
-from flexstage.show.figures.style import styled
+from flexstage.show.figures.style import style_context
 
 FORMATS = (".svg", ".pdf", ".png")
 
@@ -36,7 +36,7 @@ def drawing(figure: Any, ending: str) -> bytes:
     if ending == ".png":
         return to_png(figure)
     buffer = io.BytesIO()
-    with styled():
+    with style_context():
         dates = {"Date": None} if ending == ".svg" else {"CreationDate": None}
         figure.savefig(buffer, format=ending.removeprefix("."), metadata=dates, facecolor="white")
     content = buffer.getvalue()

@@ -7,7 +7,7 @@ import re
 from typing import Any
 
 from flexstage.base.text import printable
-from flexstage.show.figures.style import DRIVE, GAUGE, GRID, INK, MUTED, PAPER, styled
+from flexstage.show.figures.style import DRIVE, GAUGE, GRID, INK, MUTED, PAPER, style_context
 
 _NUMBER = re.compile(r"-?\d+\.\d+(?:e-?\d+)?")
 _PATH = re.compile(r'<path([^>]*?) d="([^"]*)"([^>]*)>')
@@ -33,13 +33,13 @@ def to_svg(figure: Any, name: str, description: str) -> str:
     """
     buffer = io.StringIO()
     scenery = [each for axes in figure.axes for each in axes.artists if each.get_gid() == SCENERY]
-    with styled():
+    with style_context():
         for each in scenery:
             each.set_visible(False)
         figure.savefig(buffer, format="svg", metadata={"Date": None, "Creator": None, "Format": None, "Type": None})
         for each in scenery:
             each.set_visible(True)
-    head, start, rest = compact(buffer.getvalue(), name, description).partition(">")
+    head, start, rest = compact_svg(buffer.getvalue(), name, description).partition(">")
     return head + start + "".join(each.markup(f"{name}-{number}") for number, each in enumerate(scenery)) + rest
 
 
@@ -51,24 +51,24 @@ def to_png(figure: Any, *, dots_per_inch: int = 160) -> bytes:
     b'PNG'
     """
     buffer = io.BytesIO()
-    with styled():
+    with style_context():
         figure.savefig(buffer, format="png", dpi=dots_per_inch, facecolor="white", metadata={"Software": None})
     return buffer.getvalue()
 
 
-def themed(colour: str) -> str:
+def theme_colour(colour: str) -> str:
     """A colour as the page's variable, where it has one.
 
-    >>> themed("#b9c2cc"), themed(INK)
+    >>> theme_colour("#b9c2cc"), theme_colour(INK)
     ('#b9c2cc', 'var(--ink,#1f2a37)')
     """
     return f"var(--{_THEME[colour]},{colour})" if colour in _THEME else colour
 
 
-def compact(text: str, name: str, description: str) -> str:
+def compact_svg(text: str, name: str, description: str) -> str:
     """matplotlib's SVG without header, metadata, unused identifiers and digits nobody sees; repeated styles become classes.
 
-    >>> compact('<?xml version="1.0"?><svg width="72pt" viewBox="0 0 72 72"><g id="a"><path d="M 1.23456 2"/></g></svg>', "f", "a path")
+    >>> compact_svg('<?xml version="1.0"?><svg width="72pt" viewBox="0 0 72 72"><g id="a"><path d="M 1.23456 2"/></g></svg>', "f", "a path")
     '<svg viewBox="0 0 72 72" role="img" aria-label="a path" style="max-width:96px"><path d="M1.2 2"/></svg>'
     """
     body = re.sub(r"<metadata>.*?</metadata>|<!--.*?-->|<\?xml.*?\?>|<!DOCTYPE.*?>", "", text, flags=re.DOTALL)
@@ -79,14 +79,14 @@ def compact(text: str, name: str, description: str) -> str:
     # matplotlib's own rule would reach the whole page.
     body = re.sub(r"<style type=.text/css.>.*?</style>", "", body, flags=re.DOTALL)
     body = re.sub(r' transform="rotate\(-?0(?:\.0)? [^"]*\)"', "", body)
-    body = _own_names(body, name)
+    body = _prefix_ids(body, name)
     body = _PATH.sub(_path, body)
-    body = _GEOMETRY.sub(lambda found: f'{found[1]}="{_short(found[2])}"', body)
+    body = _GEOMETRY.sub(lambda found: f'{found[1]}="{_shorten_numbers(found[2])}"', body)
     body = _STYLE.sub(lambda found: f' style="{_styling(found[1])}"', body)
-    body = _without_empty(re.sub(r">\s+<", "><", body))
+    body = _drop_empty(re.sub(r">\s+<", "><", body))
     body, classes = _classes(body, name)
     width = round(float(box.split()[2]) * 96.0 / 72.0)
-    head = f'<svg viewBox="{_short(box)}" role="img" aria-label="{_attribute(description)}" style="max-width:{width}px">'
+    head = f'<svg viewBox="{_shorten_numbers(box)}" role="img" aria-label="{_attribute(description)}" style="max-width:{width}px">'
     return printable(f"{head}{classes}{body.strip()}</svg>", keep="\n\t")
 
 
@@ -96,16 +96,16 @@ def _attribute(text: str) -> str:
     return text
 
 
-def _own_names(body: str, name: str) -> str:
+def _prefix_ids(body: str, name: str) -> str:
     """Identifiers that are referred to get the figure's name in front, the others go."""
     used = set(re.findall(r'(?:url\(#|href="#)([^)"]+)', body))
     body = re.sub(r' id="([^"]+)"', lambda found: f' id="{name}-{found[1]}"' if found[1] in used else "", body)
     return re.sub(r'(url\(#|href="#)([^)"]+)', rf"\g<1>{name}-\g<2>", body)
 
 
-def _short(numbers: str, decimals: int = 1) -> str:
+def _shorten_numbers(numbers: str, decimals: int = 1) -> str:
     """Numbers to a tenth of a point, without zeros that say nothing."""
-    text = _NUMBER.sub(lambda found: _rounded(found[0], decimals), numbers)
+    text = _NUMBER.sub(lambda found: _round(found[0], decimals), numbers)
     text = re.sub(r"\s+", " ", text).strip()
     return re.sub(r"(?<=[A-Za-z]) (?=[-\d])| (?=[A-Za-z])", "", text) if text[:1] == "M" else text
 
@@ -114,11 +114,11 @@ def _path(found: re.Match[str]) -> str:
     """A path with fewer digits; translucent areas keep one more, or their seams show."""
     decimals = 2 if "fill-opacity" in found[3] else 1
     text = found[2].replace("\n", " ")
-    outline = _relative(text, decimals) if _STRAIGHT.fullmatch(text) else _short(text, decimals)
+    outline = _to_relative(text, decimals) if _STRAIGHT.fullmatch(text) else _shorten_numbers(text, decimals)
     return f'<path{found[1]} d="{outline}"{found[3]}>'
 
 
-def _relative(text: str, decimals: int) -> str:
+def _to_relative(text: str, decimals: int) -> str:
     """A path of straight lines with steps instead of points; a line that goes on from the last point needs no new start."""
     scale = 10**decimals
     here: tuple[int, int] | None = None
@@ -156,7 +156,7 @@ def _decimal(value: int, decimals: int) -> str:
     return text.replace("0.", ".", 1) if text.startswith(("0.", "-0.")) else text
 
 
-def _rounded(number: str, decimals: int) -> str:
+def _round(number: str, decimals: int) -> str:
     text = f"{float(number):.{decimals}f}".rstrip("0").rstrip(".")
     return "0" if text == "-0" else text
 
@@ -165,7 +165,7 @@ def _styling(style: str) -> str:
     """A style with the page's colours and font, without blanks."""
     style = re.sub(r"font: (?:(bold|\d+) )?([\d.]+)px [^;]+", _font, style)
     for colour in _THEME:
-        style = style.replace(colour, themed(colour))
+        style = style.replace(colour, theme_colour(colour))
     style = re.sub(r"stroke-linejoin: \w+;? ?|font-family: [^;]+;? ?", "", style)
     if "fill-opacity" in style:
         style += "; shape-rendering: crispEdges"  # or the seams between neighbours show
@@ -178,7 +178,7 @@ def _font(found: re.Match[str]) -> str:
     return f"font-size: {found[2]}px{weight}"
 
 
-def _without_empty(body: str) -> str:
+def _drop_empty(body: str) -> str:
     """Groups without attributes unwrapped, empty ones removed."""
     before = ""
     while before != body:

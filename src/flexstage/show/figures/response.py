@@ -9,8 +9,8 @@ import numpy as np
 
 from flexstage.analysis.modes import Modes
 from flexstage.models.linear.frequency import Response
-from flexstage.show.display import preferred, typeset
-from flexstage.show.figures.style import FULL, MUTED, SERIES, Margins, canvas, panels, styled
+from flexstage.show.display import preferred_unit, to_typography
+from flexstage.show.figures.style import FULL, MUTED, SERIES, Margins, canvas, panels, style_context
 from flexstage.show.table import first_design
 from flexstage.show.tables.response import Curve, leading_curves
 
@@ -34,7 +34,7 @@ def response_figure(response: Response, modes: Modes | None = None) -> Any:
     for curve in leading_curves(response)[:_SHOWN]:
         if np.any(np.abs(curve.values) > 0.0):
             groups.setdefault(curve.unit, []).append(curve)
-    with styled():
+    with style_context():
         figure = canvas(FULL, 3.7)
         margins = Margins(left=0.6, top=0.45, across=0.7, down=0.15)
         grid = panels(figure, 2, len(groups) or 1, margins, heights=[1.7, 1.0])
@@ -55,7 +55,7 @@ def response_figure(response: Response, modes: Modes | None = None) -> Any:
 
 
 def _magnitudes(axes: Any, curves: Sequence[Curve], response: Response, unit: str) -> None:
-    form = preferred(unit)
+    form = preferred_unit(unit)
     largest = 0.0
     for index, curve in enumerate(curves):
         size = form.factor * np.abs(curve.values)
@@ -63,7 +63,7 @@ def _magnitudes(axes: Any, curves: Sequence[Curve], response: Response, unit: st
         axes.loglog(response.frequencies, size, color=SERIES[index], label=f"{_short(curve.output)} / {curve.input}", linewidth=1.2)
     low, _ = axes.get_ylim()
     axes.set_ylim(max(low, _DECADES * largest), 4.0 * largest)
-    axes.set_ylabel(f"magnitude [{typeset(form.unit)}]" if form.unit != "1" else typeset("magnitude [um/um]"))
+    axes.set_ylabel(f"magnitude [{to_typography(form.unit)}]" if form.unit != "1" else to_typography("magnitude [um/um]"))
     axes.legend(loc="lower left", bbox_to_anchor=(-0.02, 1.0), ncols=3, handlelength=1.2, columnspacing=1.2, borderaxespad=0.2)
 
 
@@ -107,7 +107,7 @@ def _plain_ticks(axis: Any, steps: tuple[float, ...]) -> None:
     from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
     axis.set_major_locator(LogLocator(subs=steps, numticks=12))
-    axis.set_major_formatter(FuncFormatter(lambda value, _: typeset(f"{value:.4g}" if 1e-3 <= value < 1e5 else f"{value:.0e}")))
+    axis.set_major_formatter(FuncFormatter(lambda value, _: to_typography(f"{value:.4g}" if 1e-3 <= value < 1e5 else f"{value:.0e}")))
     axis.set_minor_locator(NullLocator())
 
 

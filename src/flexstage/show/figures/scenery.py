@@ -13,7 +13,7 @@ from matplotlib.collections import PathCollection
 from matplotlib.path import Path
 
 from flexstage.base.number import Array
-from flexstage.show.figures.export import SCENERY, themed
+from flexstage.show.figures.export import SCENERY, theme_colour
 
 Colour: TypeAlias = tuple[float, ...]
 """Red, green, blue and opacity from 0 to 1."""
@@ -123,4 +123,4 @@ def _course(points: Sequence[Sequence[int]], ends: Sequence[tuple[int, int]] | N
 
 
 def _colour(channels: Colour) -> str:
-    return themed("#" + "".join(f"{round(255.0 * each):02x}" for each in channels[:3])) if channels[3] > 0.0 else "none"
+    return theme_colour("#" + "".join(f"{round(255.0 * each):02x}" for each in channels[:3])) if channels[3] > 0.0 else "none"

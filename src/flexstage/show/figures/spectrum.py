@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from flexstage.analysis.modes import Modes
-from flexstage.show.figures.style import FULL, INK, MUTED, SERIES, Margins, canvas, panels, styled
+from flexstage.show.figures.style import FULL, INK, MUTED, SERIES, Margins, canvas, panels, style_context
 from flexstage.show.table import first_design
 from flexstage.show.tables.modes import listed_modes
 
@@ -22,7 +22,7 @@ def spectrum_figure(modes: Modes) -> Any:
     """
     listed = listed_modes(modes)
     frequencies, share = first_design(modes.frequencies, 1), first_design(modes.share, 1)
-    with styled():
+    with style_context():
         figure = canvas(FULL, 1.75)
         axes = panels(figure, 1, 1, Margins())[0, 0]
         kinds = (("platform", modes.platform, SERIES[0]), ("local neighbours", modes.local, SERIES[1]))

@@ -58,10 +58,10 @@ _RC: dict[Any, Any] = {
 
 
 @contextmanager
-def styled() -> Generator[None]:
+def style_context() -> Generator[None]:
     """The style, while a figure is drawn and written; matplotlib's settings are as before afterwards.
 
-    >>> with styled():
+    >>> with style_context():
     ...     from matplotlib import rcParams
     ...     rcParams["svg.fonttype"]
     'none'
@@ -102,7 +102,7 @@ def panels(figure: Any, rows: int, columns: int, margins: Margins, *, heights: S
     (2, 1)
     """
     width, height = figure.get_size_inches()
-    margins = _within(margins, (width, height), (rows, columns))
+    margins = _limit_margins(margins, (width, height), (rows, columns))
     inner_width = (width - margins.left - margins.right - (columns - 1) * margins.across) / columns
     inner_height = (height - margins.bottom - margins.top - (rows - 1) * margins.down) / rows
     figure.subplots_adjust(
@@ -116,7 +116,7 @@ def panels(figure: Any, rows: int, columns: int, margins: Margins, *, heights: S
     return figure.subplots(rows, columns, squeeze=False, height_ratios=heights, sharex="col" if rows > 1 else False)
 
 
-def _within(margins: Margins, size: tuple[float, float], count: tuple[int, int]) -> Margins:
+def _limit_margins(margins: Margins, size: tuple[float, float], count: tuple[int, int]) -> Margins:
     """Margins that leave the panels a fifth of the figure at least: names that are too long for it are cut off."""
     wide = margins.left + margins.right + (count[1] - 1) * margins.across
     high = margins.bottom + margins.top + (count[0] - 1) * margins.down

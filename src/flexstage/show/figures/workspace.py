@@ -10,8 +10,8 @@ import numpy as np
 
 from flexstage.analysis.workspace.workspace import Workspace
 from flexstage.base.number import Array, Number
-from flexstage.show.display import Shown, shown, typeset
-from flexstage.show.figures.style import FULL, MUTED, SERIES, Margins, canvas, panels, styled
+from flexstage.show.display import DisplayUnit, display_unit_of, to_typography
+from flexstage.show.figures.style import FULL, MUTED, SERIES, Margins, canvas, panels, style_context
 from flexstage.show.plan import hull
 from flexstage.show.table import first_design
 from flexstage.show.tables.workspace import unit_of
@@ -36,7 +36,7 @@ def workspace_figure(workspace: Workspace) -> Any | None:
     if polytope is None or len(polytope.coordinates) < 2:
         return None
     pairs = _pairs(polytope.coordinates)
-    with styled():
+    with style_context():
         figure = canvas(FULL, 2.25 if len(pairs) > 2 else 2.6)
         row = panels(figure, 1, len(pairs), Margins(left=0.6, top=0.3, across=0.62))[0]
         for axes, pair in zip(row, pairs, strict=True):
@@ -58,20 +58,20 @@ def _panel(axes: Any, workspace: Workspace, pair: tuple[str, str]) -> None:
     indices = [polytope.coordinates.index(name) for name in pair]
     vertices = first_design(polytope.vertices, 2)[:, indices]
     vertices = vertices[np.all(np.isfinite(vertices), axis=1)]
-    forms = [shown(unit_of(name), float(np.max(np.abs(vertices[:, side])))) for side, name in enumerate(pair)]
+    forms = [display_unit_of(unit_of(name), float(np.max(np.abs(vertices[:, side])))) for side, name in enumerate(pair)]
     outline = hull(vertices * [form.factor for form in forms])
     closed = np.vstack([outline, outline[:1]])
     axes.fill(*closed.T, color=SERIES[0], alpha=0.12, linewidth=0.0)
     axes.plot(*closed.T, color=SERIES[0], label="reachable, others free to follow", linewidth=1.0)
     _single(axes, workspace, pair, forms)
     _command(axes, workspace.command, pair, forms)
-    axes.set_xlabel(typeset(f"{pair[0]} [{forms[0].unit}]"))
-    axes.set_ylabel(typeset(f"{pair[1]} [{forms[1].unit}]"), labelpad=1.0)
+    axes.set_xlabel(to_typography(f"{pair[0]} [{forms[0].unit}]"))
+    axes.set_ylabel(to_typography(f"{pair[1]} [{forms[1].unit}]"), labelpad=1.0)
     axes.locator_params(nbins=5)
     axes.tick_params(labelsize=7)
 
 
-def _single(axes: Any, workspace: Workspace, pair: tuple[str, str], forms: list[Shown]) -> None:
+def _single(axes: Any, workspace: Workspace, pair: tuple[str, str], forms: list[DisplayUnit]) -> None:
     """The single-axis strokes as a cross."""
     low, high = (first_design(values, 1) for values in (workspace.single.low, workspace.single.high))
     for side, name in enumerate(pair):
@@ -83,7 +83,7 @@ def _single(axes: Any, workspace: Workspace, pair: tuple[str, str], forms: list[
         axes.plot(x, y, color=SERIES[1], marker="|" if side == 0 else "_", markersize=5, linewidth=1.2, label=label)
 
 
-def _command(axes: Any, command: Mapping[str, Number], pair: tuple[str, str], forms: list[Shown]) -> None:
+def _command(axes: Any, command: Mapping[str, Number], pair: tuple[str, str], forms: list[DisplayUnit]) -> None:
     if not set(pair) <= set(command):
         return
     half = [form.factor * float(np.real(np.ravel(command[name])[0])) for name, form in zip(pair, forms, strict=True)]

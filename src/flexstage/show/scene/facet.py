@@ -109,12 +109,12 @@ def _quad(rings: Array, level: int, side: int) -> Array:
     return np.stack([rings[level, side], rings[level, after], rings[level + 1, after], rings[level + 1, side]])
 
 
-def pierced(outer: Array, inner: Array, paint: Paint, *, round_section: bool = False) -> list[Facet]:
+def pierce(outer: Array, inner: Array, paint: Paint, *, round_section: bool = False) -> list[Facet]:
     """A prism with a through hole: `outer` and `inner` rings (2, k, 3), first the bottom, then the top, points facing one another.
 
     >>> square = np.array([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0.0]])
     >>> both = np.stack([square, square + [0, 0, 1.0]])
-    >>> len(pierced(2.0 * both, both, Paint(Kind.BODY, ("a", "a"))))
+    >>> len(pierce(2.0 * both, both, Paint(Kind.BODY, ("a", "a"))))
     16
     """
     facets = loft(outer, paint, round_section=round_section, closed=False)
@@ -147,10 +147,10 @@ def circle(diameter: float, sides: int = 12) -> Array:
     return 0.5 * diameter * np.stack([np.cos(angles), np.sin(angles)], axis=-1)
 
 
-def extruded(stations: Array, sections: list[Array]) -> Array:
+def extrude(stations: Array, sections: list[Array]) -> Array:
     """Rings (s, k, 3) along x: section (k, 2) in y and z at each station.
 
-    >>> extruded(np.array([0.0, 1.0]), [rectangle(1.0, 1.0)] * 2).shape
+    >>> extrude(np.array([0.0, 1.0]), [rectangle(1.0, 1.0)] * 2).shape
     (2, 4, 3)
     """
     return np.stack(

@@ -12,13 +12,13 @@ from flexstage.base.number import Array
 _PIXELS = 800
 
 
-def visible(polygons: Sequence[Array], opaque: Sequence[bool]) -> list[bool]:
+def are_visible(polygons: Sequence[Array], opaque: Sequence[bool]) -> list[bool]:
     """Whether each convex polygon (n, 2), given from the farthest to the nearest, shows from under the opaque ones before it.
 
     Decided on a raster, to a point of it; lines, and polygons smaller than two points of it, count as visible.
 
     >>> square = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
-    >>> visible([square, square], [True, True])
+    >>> are_visible([square, square], [True, True])
     [False, True]
     """
     if not polygons:

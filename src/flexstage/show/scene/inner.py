@@ -26,20 +26,20 @@ def outer(facets: Sequence[Facet]) -> list[Facet]:
     (12, 10)
     """
     covers: list[list[Facet]] = [[] for _ in facets]
-    for one, other in np.argwhere(_against(facets)).tolist():
+    for one, other in np.argwhere(_are_back_to_back(facets)).tolist():
         if facets[one].paint.name != facets[other].paint.name:
             covers[one].append(facets[other])
-    return [piece for facet, own in zip(facets, covers, strict=True) for piece in _less(facet, own)]
+    return [piece for facet, own in zip(facets, covers, strict=True) for piece in _subtract(facet, own)]
 
 
-def _against(facets: Sequence[Facet]) -> Array:
+def _are_back_to_back(facets: Sequence[Facet]) -> Array:
     """Which facets (n, n) lie in one plane and look opposite ways."""
     normals = np.array([facet.normal for facet in facets]).reshape(-1, 3)
     offsets = np.array([facet.points[0] @ facet.normal for facet in facets])
     return (normals @ normals.T < -1.0 + 1e-9) & (np.abs(offsets[:, None] + offsets) < _FLUSH)
 
 
-def _less(facet: Facet, covers: Sequence[Facet]) -> Iterator[Facet]:
+def _subtract(facet: Facet, covers: Sequence[Facet]) -> Iterator[Facet]:
     """What is left of a facet, in convex pieces."""
     if not covers:
         yield facet
@@ -50,12 +50,12 @@ def _less(facet: Facet, covers: Sequence[Facet]) -> Iterator[Facet]:
         if np.all(distance < _FLUSH):
             continue
         if np.all(distance > -_FLUSH):
-            yield from _less(facet, covers[1:])
+            yield from _subtract(facet, covers[1:])
             return
         beyond, rest = (replace(piece, whole=None) for piece in split(rest, distance))
         pieces.append(beyond)
     for piece in pieces:
-        yield from _less(piece, covers[1:])
+        yield from _subtract(piece, covers[1:])
 
 
 def _sides(cover: Facet) -> Iterator[tuple[Array, Array]]:

@@ -81,10 +81,10 @@ def split(facet: Facet, distance: Array) -> tuple[Facet, Facet]:
     >>> [half.points[:, 0].tolist() for half in halves]
     [[0.0, 1.0], [-1.0, 0.0]]
     """
-    return _clipped(facet, distance), _clipped(facet, -distance)
+    return _clip(facet, distance), _clip(facet, -distance)
 
 
-def _clipped(facet: Facet, distance: Array) -> Facet:
+def _clip(facet: Facet, distance: Array) -> Facet:
     """Sutherland and Hodgman's clip to the side of positive distances; the cut is no edge."""
     points: list[Array] = []
     share: list[float] = []
@@ -107,10 +107,10 @@ def _clipped(facet: Facet, distance: Array) -> Facet:
     return replace(facet, points=np.array(points), share=np.array(share), edges=tuple(edges), whole=facet.whole or facet)
 
 
-def farthest_first(tree: Partition | None, eye: Array) -> Iterator[Facet]:
+def sort_by_depth(tree: Partition | None, eye: Array) -> Iterator[Facet]:
     """Facets from the farthest to the nearest, seen from the direction `eye` (3,), towards the viewer.
 
-    >>> list(farthest_first(None, np.array([0.0, 0.0, 1.0])))
+    >>> list(sort_by_depth(None, np.array([0.0, 0.0, 1.0])))
     []
     """
     stack: list[Partition | tuple[Facet, ...] | None] = [tree]

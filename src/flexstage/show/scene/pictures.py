@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 
 from flexstage.base.number import Array
-from flexstage.show.figures.style import FULL, canvas, styled
+from flexstage.show.figures.style import FULL, canvas, style_context
 from flexstage.show.scene.facet import Facet, Kind
-from flexstage.show.scene.stage import Scene, displaced
-from flexstage.show.scene.view import Side, View, draw, ordered, outline, triad, view, write
+from flexstage.show.scene.stage import Scene, displace
+from flexstage.show.scene.view import Side, View, draw, order_facets, outline, triad, view, write
 
 _TALLEST = 1.1
 _MOVED = (Kind.PLATFORM, Kind.BODY, Kind.DRIVE)
@@ -26,9 +26,9 @@ def stage_picture(scene: Scene, *, side: Side = Side.ISOMETRIC, width: float = F
     1
     """
     seen = view(side)
-    facets = ordered(scene, seen)
+    facets = order_facets(scene, seen)
     labels = scene.labels if names else ()
-    with styled():
+    with style_context():
         axes = _axes(facets, seen, width)
         draw(axes, facets, seen)
         write(axes, labels, seen)
@@ -45,9 +45,9 @@ def moved_picture(scene: Scene, twists: Mapping[str, Array], factor: float, *, s
     1
     """
     seen = view(side)
-    kept = [facet for facet in ordered(scene, seen) if facet.paint.kind in _MOVED]
-    moved = displaced(kept, scene, twists, factor)
-    with styled():
+    kept = [facet for facet in order_facets(scene, seen) if facet.paint.kind in _MOVED]
+    moved = displace(kept, scene, twists, factor)
+    with style_context():
         axes = _axes(kept, seen, width)
         outline(axes, [facet for facet in kept if facet.paint.kind is Kind.PLATFORM], seen)
         draw(axes, moved, seen)
@@ -56,7 +56,7 @@ def moved_picture(scene: Scene, twists: Mapping[str, Array], factor: float, *, s
 
 def _axes(facets: list[Facet], seen: View, width: float) -> Any:
     """Axes that the facets fill, in a figure as high as they need."""
-    points = [seen.flat(facet.points) for facet in facets] or [np.zeros((1, 2))]
+    points = [seen.project(facet.points) for facet in facets] or [np.zeros((1, 2))]
     flat = np.concatenate(points)
     low, high = flat.min(axis=0), flat.max(axis=0)
     gap = 0.05 * float(max(high - low)) or 1.0

@@ -8,15 +8,15 @@ from flexstage.base.number import Array, Number
 from flexstage.parts.body import Block, Cylinder, Imported, Solid
 from flexstage.parts.part import Part, inner
 from flexstage.parts.shape import Profiled, Section, Shaped
-from flexstage.show.scene.facet import Facet, Paint, circle, extruded, loft, pierced, rectangle
+from flexstage.show.scene.facet import Facet, Paint, circle, extrude, loft, pierce, rectangle
 
 _ROUND_SIDES, _ROUND_NECK_SIDES = 12, 8
 
 
-def plain(value: Number | None, default: float = 0.0) -> float:
+def first_value(value: Number | None, default: float = 0.0) -> float:
     """The value of the first design as a float.
 
-    >>> plain(np.array([2.0, 3.0])), plain(None)
+    >>> first_value(np.array([2.0, 3.0])), first_value(None)
     (2.0, 0.0)
     """
     return default if value is None else float(np.real(np.asarray(value).ravel()[0]))
@@ -30,7 +30,7 @@ def part_length(part: Part) -> float:
     0.03
     """
     own = inner(part)
-    return plain(own.span) if isinstance(own, Shaped) else 0.0
+    return first_value(own.span) if isinstance(own, Shaped) else 0.0
 
 
 def part_section(part: Part) -> tuple[float, float]:
@@ -44,7 +44,7 @@ def part_section(part: Part) -> tuple[float, float]:
     if not isinstance(own, Shaped):
         return 0.0, 0.0
     end = own.silhouette[0][1]
-    return plain(end.height), plain(end.width)
+    return first_value(end.height), first_value(end.width)
 
 
 def part_facets(part: Part, paint: Paint, marker: float) -> list[Facet]:
@@ -57,14 +57,14 @@ def part_facets(part: Part, paint: Paint, marker: float) -> list[Facet]:
     """
     own = inner(part)
     if not isinstance(own, Shaped):
-        return loft(extruded(0.5 * marker * np.array([-1.0, 1.0]), [rectangle(marker, marker)] * 2), paint)
+        return loft(extrude(0.5 * marker * np.array([-1.0, 1.0]), [rectangle(marker, marker)] * 2), paint)
     stations, sections = zip(*own.silhouette, strict=True)
     sides = _ROUND_NECK_SIDES if isinstance(own, Profiled) else _ROUND_SIDES
-    return loft(extruded(np.array(stations), [_ring(each, sides) for each in sections]), paint, round_section=own.throat.is_round)
+    return loft(extrude(np.array(stations), [_ring(each, sides) for each in sections]), paint, round_section=own.throat.is_round)
 
 
 def _ring(section: Section, sides: int) -> Array:
-    height, width = plain(section.height), plain(section.width)
+    height, width = first_value(section.height), first_value(section.width)
     return circle(height, sides) if section.is_round else rectangle(height, width)
 
 
@@ -81,11 +81,11 @@ def solid_facets(solid: Solid, paint: Paint) -> list[Facet]:
 
 
 def _block(solid: Block, paint: Paint) -> list[Facet]:
-    size = [plain(value) for value in solid.size]
+    size = [first_value(value) for value in solid.size]
     outer = _prism(rectangle(size[0], size[1]), size[2])
     if solid.hole is None:
         return loft(outer, paint)
-    return pierced(outer, _prism(rectangle(plain(solid.hole[0]), plain(solid.hole[1])), size[2]), paint)
+    return pierce(outer, _prism(rectangle(first_value(solid.hole[0]), first_value(solid.hole[1])), size[2]), paint)
 
 
 def _prism(section: Array, height: float) -> Array:
@@ -94,9 +94,9 @@ def _prism(section: Array, height: float) -> Array:
 
 
 def _cylinder(solid: Cylinder, paint: Paint) -> list[Facet]:
-    ends = 0.5 * plain(solid.length) * np.array([-1.0, 1.0])
-    outer = extruded(ends, [circle(plain(solid.diameter), 24)] * 2)
+    ends = 0.5 * first_value(solid.length) * np.array([-1.0, 1.0])
+    outer = extrude(ends, [circle(first_value(solid.diameter), 24)] * 2)
     if solid.bore is None:
         return loft(outer, paint, round_section=True)
-    core = extruded(ends, [circle(plain(solid.bore), 24)] * 2)
-    return pierced(outer, core, paint, round_section=True)
+    core = extrude(ends, [circle(first_value(solid.bore), 24)] * 2)
+    return pierce(outer, core, paint, round_section=True)

@@ -11,7 +11,7 @@ from flexstage.base.number import Array
 from flexstage.mechanism.expand import Assembly, PlacedBody, PlacedGauge, PlacedLink, PlacedSolid, expand
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
 from flexstage.parts.part import is_actuator
-from flexstage.show.scene.facet import Facet, Kind, Paint, circle, cross, extruded, line, loft, rectangle
+from flexstage.show.scene.facet import Facet, Kind, Paint, circle, cross, extrude, line, loft, rectangle
 from flexstage.show.scene.inner import outer
 from flexstage.show.scene.order import Partition, partition
 from flexstage.show.scene.primitives import part_facets, part_length, part_section, solid_facets
@@ -66,12 +66,12 @@ def scene(mechanism: Mechanism) -> Scene:
     return Scene(tuple(facets), partition(facets, size), tuple(_labels(assembly, size)), references, size)
 
 
-def displaced(facets: Sequence[Facet], still: Scene, twists: Mapping[str, Array], factor: float) -> list[Facet]:
+def displace(facets: Sequence[Facet], still: Scene, twists: Mapping[str, Array], factor: float) -> list[Facet]:
     """Facets with every body of the scene moved by `factor` times its twist (6,) at its reference point; others stand still.
 
     Links bend from the motion of the one body to that of the other.
 
-    >>> displaced([], scene(Mechanism("")), {}, 1.0)
+    >>> displace([], scene(Mechanism("")), {}, 1.0)
     []
     """
     if not facets:
@@ -171,10 +171,10 @@ def _body(body: PlacedBody, joints: list[Array], size: float) -> list[Facet]:
 
 def _solids(solids: Mapping[str, PlacedSolid], paint: Paint) -> list[Facet]:
     named = [(placed, _frame(placed.frame), replace(paint, name=name)) for name, placed in solids.items()]
-    return [_placed(facet, frame) for placed, frame, own in named for facet in solid_facets(placed.solid, own)]
+    return [_place(facet, frame) for placed, frame, own in named for facet in solid_facets(placed.solid, own)]
 
 
-def _placed(facet: Facet, frame: Frame) -> Facet:
+def _place(facet: Facet, frame: Frame) -> Facet:
     turned = tuple(None if edge is None else frame.rotation @ edge for edge in facet.edges)
     return replace(facet, points=facet.points @ frame.rotation.T + frame.position, edges=turned)
 
@@ -194,8 +194,8 @@ def _bar(first: Array, second: Array, paint: Paint, thickness: float) -> list[Fa
     distance = float(np.sqrt(reach @ reach))
     if distance < 1e-9:
         return []
-    rings = extruded(np.array([0.0, distance]), [rectangle(thickness, thickness)] * 2)
-    return [_placed(facet, Frame(axes(reach), first)) for facet in loft(rings, paint)]
+    rings = extrude(np.array([0.0, distance]), [rectangle(thickness, thickness)] * 2)
+    return [_place(facet, Frame(axes(reach), first)) for facet in loft(rings, paint)]
 
 
 def _legs(points: Array, joints: list[Array], paint: Paint, size: float) -> Iterator[Facet]:
@@ -213,7 +213,7 @@ def _link(link: PlacedLink, assembly: Assembly, size: float) -> list[Facet]:
     forward = bool((ends[1] - ends[0]) @ frame.rotation[:, 0] >= 0.0)
     carriers = link.joins if forward else (link.joins[1], link.joins[0])
     paint = Paint(Kind.DRIVE if is_actuator(link.part) else Kind.HINGE, carriers, link.name)
-    facets = [_placed(facet, frame) for facet in part_facets(link.part, paint, _MARKER * size)]
+    facets = [_place(facet, frame) for facet in part_facets(link.part, paint, _MARKER * size)]
     if GROUND in link.joins:
         facets += _foot(f"{link.name} foot", ends[link.joins.index(GROUND)], frame, (*part_section(link.part), _MARKER * size))
     return facets
@@ -225,8 +225,8 @@ def _foot(name: str, end: Array, frame: Frame, section: tuple[float, float, floa
     outward = (end - frame.position) @ frame.rotation[:, 0]
     stations = (0.0, depth) if outward >= 0.0 else (-depth, 0.0)
     height, width = (max(1.15 * extent, 1.6 * depth) for extent in section[:2])
-    rings = extruded(np.array(stations), [rectangle(height, width)] * 2)
-    return [_placed(facet, Frame(frame.rotation, end)) for facet in loft(rings, Paint(Kind.GROUND, (GROUND, GROUND), name))]
+    rings = extrude(np.array(stations), [rectangle(height, width)] * 2)
+    return [_place(facet, Frame(frame.rotation, end)) for facet in loft(rings, Paint(Kind.GROUND, (GROUND, GROUND), name))]
 
 
 def _gauge(gauge: PlacedGauge, size: float) -> list[Facet]:
@@ -234,9 +234,9 @@ def _gauge(gauge: PlacedGauge, size: float) -> list[Facet]:
     tip, head, shaft = 0.0, -0.35 * _ARROW * size, -_ARROW * size
     thick, thin, none = circle(0.022 * size, 10), circle(0.008 * size, 10), circle(1e-4 * size, 10)
     paint = Paint(Kind.GAUGE, (gauge.base, gauge.base), gauge.name)
-    facets = loft(extruded(np.array([head, tip]), [thick, none]), paint, round_section=True)
-    facets += loft(extruded(np.array([shaft, head]), [thin, thin]), replace(paint, name=f"{gauge.name} shaft"), round_section=True)
-    return [_placed(facet, _frame(gauge.frame)) for facet in facets]
+    facets = loft(extrude(np.array([head, tip]), [thick, none]), paint, round_section=True)
+    facets += loft(extrude(np.array([shaft, head]), [thin, thin]), replace(paint, name=f"{gauge.name} shaft"), round_section=True)
+    return [_place(facet, _frame(gauge.frame)) for facet in facets]
 
 
 def _labels(assembly: Assembly, size: float) -> Iterator[Label]:

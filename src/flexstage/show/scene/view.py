@@ -13,8 +13,8 @@ import numpy as np
 from flexstage.base.number import Array
 from flexstage.show.figures.style import DRIVE, GAUGE, INK, MUTED, PAPER
 from flexstage.show.scene.facet import Facet, Kind
-from flexstage.show.scene.hidden import visible
-from flexstage.show.scene.order import farthest_first
+from flexstage.show.scene.hidden import are_visible
+from flexstage.show.scene.order import sort_by_depth
 from flexstage.show.scene.stage import Label, Scene
 
 if TYPE_CHECKING:
@@ -57,7 +57,7 @@ class View:
 
     axes: Array
 
-    def flat(self, points: Array) -> Array:
+    def project(self, points: Array) -> Array:
         """Points (..., 3) [m] in the picture (..., 2) [mm]."""
         return 1e3 * points @ self.axes[:2].T
 
@@ -66,7 +66,7 @@ class View:
 def view(side: Side) -> View:
     """The view from a side.
 
-    >>> view(Side.FRONT).flat(np.array([0.001, 0.0, 0.002])).round(9).tolist()
+    >>> view(Side.FRONT).project(np.array([0.001, 0.0, 0.002])).round(9).tolist()
     [1.0, 2.0]
     """
     eye, up = (np.array(direction) for direction in side.value)
@@ -77,25 +77,25 @@ def view(side: Side) -> View:
 
 
 @lru_cache(maxsize=2)
-def ordered(scene: Scene, seen: View) -> list[Facet]:
+def order_facets(scene: Scene, seen: View) -> list[Facet]:
     """The facets that face the viewer, from the farthest to the nearest.
 
     >>> from flexstage.mechanism.mechanism import Mechanism
     >>> from flexstage.show.scene.stage import scene
-    >>> ordered(scene(Mechanism("")), view(Side.TOP))
+    >>> order_facets(scene(Mechanism("")), view(Side.TOP))
     []
     """
-    return unsplit([facet for facet in farthest_first(scene.order, seen.axes[2]) if _faces(facet, seen)], seen)
+    return rejoin([facet for facet in sort_by_depth(scene.order, seen.axes[2]) if _faces(facet, seen)], seen)
 
 
 def _faces(facet: Facet, seen: View) -> bool:
     return len(facet.points) == 2 or float(facet.normal @ seen.axes[2]) > 1e-6
 
 
-def unsplit(facets: list[Facet], seen: View) -> list[Facet]:
+def rejoin(facets: list[Facet], seen: View) -> list[Facet]:
     """The facets with translucent ones made whole again and drawn last, where nothing opaque stands before them: pieces show their seams.
 
-    >>> unsplit([], view(Side.TOP))
+    >>> rejoin([], view(Side.TOP))
     []
     """
     wholes = {id(facet.whole or facet): facet.whole or facet for facet in facets if _is_translucent(facet)}
@@ -104,7 +104,7 @@ def unsplit(facets: list[Facet], seen: View) -> list[Facet]:
         return facets
     points = np.concatenate([facet.points for facet in opaque])
     starts = np.cumsum([0, *(len(facet.points) for facet in opaque)])[:-1]
-    free = {key for key, whole in wholes.items() if not np.any(_before(whole, points, starts, seen))}
+    free = {key for key, whole in wholes.items() if not np.any(_are_in_front(whole, points, starts, seen))}
     return [facet for facet in facets if id(facet.whole or facet) not in free] + [wholes[key] for key in wholes if key in free]
 
 
@@ -112,12 +112,12 @@ def _is_translucent(facet: Facet) -> bool:
     return _COLOURS[facet.paint.kind][1] < 1.0
 
 
-def _before(whole: Facet, points: Array, starts: Array, seen: View) -> Array:
+def _are_in_front(whole: Facet, points: Array, starts: Array, seen: View) -> Array:
     """Which of the facets whose points start at `starts` reach before a facet's plane, in the picture's box around it."""
     ahead = np.maximum.reduceat((points - whole.points[0]) @ whole.normal, starts) > 1e-5
     if len(whole.points) < 3:
         return ahead
-    flat, own = seen.flat(points), seen.flat(whole.points)
+    flat, own = seen.project(points), seen.project(whole.points)
     low, high = np.minimum.reduceat(flat, starts, axis=0), np.maximum.reduceat(flat, starts, axis=0)
     return ahead & np.all((high > own.min(axis=0)) & (low < own.max(axis=0)), axis=1)
 
@@ -135,9 +135,9 @@ def draw(axes: Any, facets: Sequence[Facet], seen: View) -> None:
     """
     from flexstage.show.figures.scenery import Scenery  # loads matplotlib
 
-    flats = [seen.flat(facet.points) for facet in facets]
+    flats = [seen.project(facet.points) for facet in facets]
     solid = [_COLOURS[facet.paint.kind][1] == 1.0 for facet in facets]
-    shown = zip(facets, flats, visible(flats, solid), strict=True)
+    shown = zip(facets, flats, are_visible(flats, solid), strict=True)
     strokes = [stroke for facet, flat, shows in shown if shows for stroke in _strokes(facet, flat, seen)]
     if strokes:
         axes.add_artist(Scenery(strokes))
@@ -148,10 +148,10 @@ def _strokes(facet: Facet, flat: Array, seen: View) -> Iterator[Stroke]:
     from flexstage.show.figures.scenery import Stroke
 
     if len(flat) > 2:
-        yield Stroke(flat, _filled(facet.paint.kind, _tone(facet, seen)))
+        yield Stroke(flat, _fill_style(facet.paint.kind, _tone(facet, seen)))
     ends = _edges(facet, seen)
     if ends:
-        yield Stroke(flat, _lined(), ends)
+        yield Stroke(flat, _line_style(), ends)
 
 
 def _edges(facet: Facet, seen: View) -> list[tuple[int, int]]:
@@ -165,7 +165,7 @@ def _tone(facet: Facet, seen: View) -> int:
 
 
 @cache
-def _filled(kind: Kind, tone: int) -> Style:
+def _fill_style(kind: Kind, tone: int) -> Style:
     """The kind's colour in a tone; opaque areas have an edge of their own colour, or seams show."""
     from flexstage.show.figures.scenery import Style
 
@@ -179,7 +179,7 @@ def _channels(colour: str) -> tuple[float, ...]:
 
 
 @cache
-def _lined(colour: str = INK, width: float = 0.4, *, dashed: bool = False) -> Style:
+def _line_style(colour: str = INK, width: float = 0.4, *, dashed: bool = False) -> Style:
     from flexstage.show.figures.scenery import Style
 
     return Style(edge=(*_channels(colour), 1.0), width=width, dashed=dashed)
@@ -193,8 +193,8 @@ def outline(axes: Any, facets: Sequence[Facet], seen: View) -> None:
     """
     from flexstage.show.figures.scenery import Scenery, Stroke
 
-    style = _lined(MUTED, 0.5, dashed=True)
-    lines = [Stroke(seen.flat(facet.points), style, ends) for facet in facets if (ends := _edges(facet, seen))]
+    style = _line_style(MUTED, 0.5, dashed=True)
+    lines = [Stroke(seen.project(facet.points), style, ends) for facet in facets if (ends := _edges(facet, seen))]
     if lines:
         axes.add_artist(Scenery(lines))
 
@@ -209,14 +209,14 @@ def write(axes: Any, labels: tuple[Label, ...], seen: View) -> None:
     'B1'
     """
     width = 0.045 * (axes.get_xlim()[1] - axes.get_xlim()[0])
-    places = _apart(seen.flat(np.array([label.point for label in labels]).reshape(-1, 3)), np.array([width, 0.55 * width]))
+    places = _spread(seen.project(np.array([label.point for label in labels]).reshape(-1, 3)), np.array([width, 0.55 * width]))
     box = {"boxstyle": "round,pad=0.18", "facecolor": PAPER, "edgecolor": "none", "alpha": 0.8}
     for label, (x, y) in zip(labels, places, strict=True):
         colour = _LABEL_COLOURS.get(label.kind, INK)
         axes.text(x, y, label.text, ha="center", va="center", fontsize=7, color=colour, fontweight="bold", bbox=box, parse_math=False)
 
 
-def _apart(places: Array, size: Array) -> Array:
+def _spread(places: Array, size: Array) -> Array:
     """Places (n, 2) pushed apart, a little a round, until boxes of that size no longer overlap."""
     places = np.array(places)
     for _ in range(60):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from flexstage.analysis.complete import Analysis
 from flexstage.show.figures.budget import error_figure
 from flexstage.show.figures.export import to_svg
-from flexstage.show.page import Picture, Prose, Section, folded, section
+from flexstage.show.page import Picture, Prose, Section, fold, section
 from flexstage.show.tables.errors import drift_table, error_budget_tables, gauge_drift_table
 
 
@@ -25,7 +25,7 @@ def drift_section(analysis: Analysis) -> Section | None:
         "of 1 K/m."
     )
     gauges = gauge_drift_table(drift)
-    return section("Thermal drift", [Prose(text), drift_table(drift), folded("What the gauges read", gauges)])
+    return section("Thermal drift", [Prose(text), drift_table(drift), fold("What the gauges read", gauges)])
 
 
 def error_section(analysis: Analysis) -> Section | None:

@@ -7,7 +7,7 @@ from flexstage.models.linear.kinematics import Kinematics
 from flexstage.show.figures.budget import energy_figure, loss_figure
 from flexstage.show.figures.directional import directional_figure
 from flexstage.show.figures.export import to_svg
-from flexstage.show.page import Abreast, Block, Folded, Picture, Prose, Section, folded, section
+from flexstage.show.page import Abreast, Block, Folded, Picture, Prose, Section, fold, section
 from flexstage.show.tables.deflection import deflection_table
 from flexstage.show.tables.kinematics import (
     freedom_table,
@@ -53,7 +53,7 @@ def kinematics_section(analysis: Analysis) -> Section | None:
             *_mappings(kinematics),
             motion_table(kinematics),
             Folded("Freedoms taken as free", (freedom_table(kinematics),)),
-            folded("Idle freedoms and redundant constraints", idle_table(kinematics), redundant_table(kinematics)),
+            fold("Idle freedoms and redundant constraints", idle_table(kinematics), redundant_table(kinematics)),
         ],
     )
 
@@ -86,7 +86,7 @@ def stiffness_section(analysis: Analysis) -> Section | None:
             stiffness_table(statics),
             Abreast((Picture(polar, caption), Abreast((principal_table(statics), centre_table(statics), *sag)))),
             *([] if analysis.units is None else [unit_table(analysis.units)]),
-            folded(
+            fold(
                 "Compliance, stiffness by angle, springs of the lever units",
                 compliance_table(statics),
                 direction_table(statics),

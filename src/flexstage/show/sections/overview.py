@@ -9,11 +9,11 @@ import numpy as np
 from flexstage.analysis.complete import Analysis
 from flexstage.analysis.difference import Comparison
 from flexstage.analysis.requirements import Verdict
-from flexstage.show.display import number, percent, value_with_unit
+from flexstage.show.display import format_value, number, percent
 from flexstage.show.page import Fact, Facts, Prose, Section, section
-from flexstage.show.table import Cell, Column, Mark, Table, build, first_design
+from flexstage.show.table import Cell, Column, Mark, Table, first_design, make_table
 from flexstage.show.tables.change import change_table, set_table
-from flexstage.show.tables.requirements import margin_text, meaning, met, shown_value
+from flexstage.show.tables.requirements import is_met, margin_text, meaning, value_text
 
 _SILENT = 1e-9
 
@@ -48,7 +48,7 @@ def change_section(analysis: Analysis, compared: Comparison | None) -> Section |
 
 
 def _verdict_text(verdicts: Sequence[Verdict]) -> str:
-    failed = [verdict for verdict in verdicts if not met(verdict)]
+    failed = [verdict for verdict in verdicts if not is_met(verdict)]
     if failed:
         names = ", ".join(verdict.requirement.key for verdict in failed)
         return f"{len(verdicts) - len(failed)} of {len(verdicts)} requirements are met. Not met: {names}."
@@ -63,14 +63,14 @@ def _margin(verdict: Verdict) -> float:
 
 
 def _verdict_table(verdicts: Sequence[Verdict]) -> Table:
-    ranked = sorted(verdicts, key=met)
+    ranked = sorted(verdicts, key=is_met)
     notes = [f"{verdict.requirement.key}: {verdict.reason}" for verdict in verdicts if verdict.reason]
     heads = ["", "requirement", "what it means", Column("demand"), Column("value"), Column("margin")]
-    return build("", heads, [_verdict_row(verdict) for verdict in ranked], notes=notes)
+    return make_table("", heads, [_verdict_row(verdict) for verdict in ranked], notes=notes)
 
 
 def _verdict_row(verdict: Verdict) -> tuple[Cell, ...]:
-    good = met(verdict)
+    good = is_met(verdict)
     mark = Mark.PASS if good else Mark.FAIL
     margin = _margin(verdict)
     bar = min(1.0, margin) if good and np.isfinite(margin) else None
@@ -79,7 +79,7 @@ def _verdict_row(verdict: Verdict) -> tuple[Cell, ...]:
         Cell(verdict.requirement.key, Mark.STRONG),
         Cell(meaning(verdict)),
         Cell(verdict.requirement.text),
-        Cell(shown_value(verdict)),
+        Cell(value_text(verdict)),
         Cell(margin_text(verdict), mark, bar),
     )
 
@@ -97,28 +97,30 @@ def summary_section(analysis: Analysis) -> Section | None:
 
 def _facts(analysis: Analysis) -> Iterator[Fact]:
     kinematics = analysis.kinematics
-    driven = f"{_counted(len(kinematics.actuators), 'actuator')}, {_counted(len(kinematics.gauges), 'gauge')}"
+    driven = f"{_count_text(len(kinematics.actuators), 'actuator')}, {_count_text(len(kinematics.gauges), 'gauge')}"
     yield Fact("Freedoms", str(kinematics.mobility), driven)
     if analysis.modes is not None and analysis.modes.platform:
         index = analysis.modes.platform[0]
         frequency = float(first_design(analysis.modes.frequencies, 1)[index])
-        yield Fact("First platform mode", value_with_unit(frequency, "Hz", 4), analysis.modes.names[index])
+        yield Fact("First platform mode", format_value(frequency, "Hz", 4), analysis.modes.names[index])
     if analysis.statics is not None:
         most, least = (float(value) for value in first_design(analysis.statics.free.principal, 1))
-        spread = "in every direction" if most - least < _SILENT * most else f"to {value_with_unit(most, 'N/m', 4)}"
-        yield Fact("Stiffness in the plane", value_with_unit(least, "N/m", 4), spread)
+        spread = "in every direction" if most - least < _SILENT * most else f"to {format_value(most, 'N/m', 4)}"
+        yield Fact("Stiffness in the plane", format_value(least, "N/m", 4), spread)
     if analysis.lost_motion is not None:
         losses = np.diagonal(first_design(analysis.lost_motion.loss.values, 2))
         worst = int(np.argmax(np.round(np.abs(losses), 9)))
-        yield Fact("Lost motion", percent(_quiet(float(losses[worst])), 3), f"at worst, actuator {analysis.lost_motion.loss.rows[worst]}")
+        yield Fact(
+            "Lost motion", percent(_zero_if_noise(float(losses[worst])), 3), f"at worst, actuator {analysis.lost_motion.loss.rows[worst]}"
+        )
     yield from _reach_facts(analysis)
 
 
-def _counted(count: int, thing: str) -> str:
+def _count_text(count: int, thing: str) -> str:
     return f"{count} {thing}{'' if count == 1 else 's'}"
 
 
-def _quiet(share: float) -> float:
+def _zero_if_noise(share: float) -> float:
     return 0.0 if abs(share) < _SILENT else share
 
 
@@ -129,7 +131,7 @@ def _reach_facts(analysis: Analysis) -> Iterator[Fact]:
     if single.coordinates:
         name = single.coordinates[0]
         value = float(first_design(single.symmetric, 1)[0])
-        yield Fact(f"Stroke along {name}", f"±{value_with_unit(value, 'rad' if name.startswith('r') else 'm', 4)}", "one axis at a time")
+        yield Fact(f"Stroke along {name}", f"±{format_value(value, 'rad' if name.startswith('r') else 'm', 4)}", "one axis at a time")
     stress = analysis.workspace.stress
     if stress is not None and stress.links:
         least = float(first_design(np.atleast_1d(stress.least), 1)[0])
@@ -153,7 +155,7 @@ def _mode_sentence(analysis: Analysis) -> str:
         return ""
     frequencies = first_design(modes.frequencies, 1)
     listed = [f"{name} at {' and '.join(values)} Hz" for name, values in _by_name(analysis, [float(value) for value in frequencies])]
-    text = f"The platform's modes are {_enumerated(listed)}."
+    text = f"The platform's modes are {_join_words(listed)}."
     if modes.local:
         lowest = min(float(frequencies[index]) for index in modes.local)
         text += f" {len(modes.local)} modes of single units lie below 1.5 times the highest of them, the lowest at {number(lowest, 4)} Hz."
@@ -170,7 +172,7 @@ def _by_name(analysis: Analysis, frequencies: list[float]) -> list[tuple[str, li
     return list(result.items())
 
 
-def _enumerated(items: Sequence[str]) -> str:
+def _join_words(items: Sequence[str]) -> str:
     return items[0] if len(items) == 1 else f"{', '.join(items[:-1])} and {items[-1]}"
 
 

@@ -1,4 +1,4 @@
-"""Workspace, forces, strength and room."""
+"""Workspace, forces, strength and clearance."""
 
 from __future__ import annotations
 
@@ -6,16 +6,16 @@ from flexstage.analysis.complete import Analysis
 from flexstage.analysis.workspace.workspace import Workspace
 from flexstage.show.figures.export import to_svg
 from flexstage.show.figures.workspace import workspace_figure
-from flexstage.show.page import Block, Folded, Picture, Prose, Section, folded, section
+from flexstage.show.page import Block, Folded, Picture, Prose, Section, fold, section
 from flexstage.show.table import row_table
 from flexstage.show.tables.strength import buckling_table, load_table, platform_line_table, stress_table
 from flexstage.show.tables.workspace import (
+    clearance_table,
     corner_table,
     extent_table,
     gauge_range_table,
     map_error_table,
     resolution_table,
-    room_table,
     stroke_table,
 )
 
@@ -42,7 +42,7 @@ def workspace_section(analysis: Analysis) -> Section | None:
             None if reach.corner is None else corner_table(reach.corner),
             None if reach.gauges is None else gauge_range_table(reach.gauges),
             None if reach.resolution is None else resolution_table(reach.resolution),
-            folded(
+            fold(
                 "Extents, error of the linear map, volts",
                 None if reach.polytope is None else extent_table(reach.polytope),
                 None if reach.map_error is None else map_error_table(reach.map_error),
@@ -53,16 +53,16 @@ def workspace_section(analysis: Analysis) -> Section | None:
 
 
 def strength_section(analysis: Analysis) -> Section | None:
-    """Forces, stress, buckling, loads and room; `None` where none is known.
+    """Forces, stress, buckling, loads and clearance; `None` where none is known.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse
     >>> strength_section(analyse(double_triangle(), Model.IDEAL)).title
-    'Forces, strength and room'
+    'Forces, strength and clearance'
     """
     reach = analysis.workspace
     if reach is not None:
-        return section("Forces, strength and room", _strength(reach))
+        return section("Forces, strength and clearance", _strength(reach))
     return None if analysis.buckling is None else section("Buckling", [buckling_table(analysis.buckling)])
 
 
@@ -74,13 +74,13 @@ def _strength(reach: Workspace) -> list[Block | None]:
         stress_table(reach.stress) if stressed and reach.stress is not None else None,
         None if reach.platform_lines is None else platform_line_table(reach.platform_lines),
         None if reach.loads is None else load_table(reach.loads, reach.limits.from_zero),
-        None if reach.room is None else room_table(reach.room),
+        None if reach.clearance is None else clearance_table(reach.clearance),
         _more(reach),
     ]
 
 
 def _more(reach: Workspace) -> Folded | None:
-    return folded(
+    return fold(
         "Stacks against the stage, buckling",
         None if reach.stack_lines is None else row_table("Stacks against the stage", reach.stack_lines),
         None if reach.buckling is None or not reach.buckling.links else buckling_table(reach.buckling),

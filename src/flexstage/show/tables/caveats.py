@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from flexstage.base.finding import Finding
-from flexstage.show.table import Cell, Mark, Table, build
+from flexstage.show.table import Cell, Mark, Table, make_table
 
 
 def caution_table(found: Sequence[Finding]) -> Table | None:
@@ -28,4 +28,4 @@ def default_table(found: Sequence[Finding]) -> Table | None:
 
 def _table(title: str, advice: str, mark: Mark, findings: Sequence[Finding]) -> Table | None:
     rows = [(Cell(each.where, mark), each.what, each.advice) for each in findings]
-    return build(title, ["where", "what", advice], rows) if rows else None
+    return make_table(title, ["where", "what", advice], rows) if rows else None

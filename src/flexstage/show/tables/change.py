@@ -9,8 +9,8 @@ from flexstage.analysis.difference import Change
 from flexstage.base.unit import show
 from flexstage.mechanism.address import get, quantity_of
 from flexstage.mechanism.mechanism import Mechanism
-from flexstage.show.display import NO_VALUE, number, percent, shown
-from flexstage.show.table import Cell, Column, Mark, Table, build
+from flexstage.show.display import NO_VALUE, display_unit_of, number, percent
+from flexstage.show.table import Cell, Column, Mark, Table, make_table
 
 _SILENT = 1e-9
 
@@ -22,7 +22,7 @@ def change_table(changes: Iterable[Change]) -> Table:
     ['platform mode 1', '100', '90', '-10', '-10 %', 'Hz']
     """
     heads = ["figure", Column("old"), Column("new"), Column("change"), Column("relative"), "unit"]
-    return build("What the change does", heads, [_row(change) for change in changes])
+    return make_table("What the change does", heads, [_row(change) for change in changes])
 
 
 def set_table(before: Mechanism, after: Mechanism, addresses: Iterable[str]) -> Table:
@@ -35,7 +35,7 @@ def set_table(before: Mechanism, after: Mechanism, addresses: Iterable[str]) -> 
     ['parts.neck.thickness', '1.54 mm', '1.4 mm', '-0.14 mm', '-9.09 %']
     """
     heads = ["value", Column("old"), Column("new"), Column("change"), Column("relative")]
-    return build("Values set", heads, [_set_row(before, after, address) for address in dict.fromkeys(addresses)])
+    return make_table("Values set", heads, [_set_row(before, after, address) for address in dict.fromkeys(addresses)])
 
 
 def _set_row(before: Mechanism, after: Mechanism, address: str) -> tuple[Cell, ...]:
@@ -54,7 +54,7 @@ def _text(value: object) -> str:
 
 def _row(change: Change) -> tuple[Cell, ...]:
     known = [value for value in (change.old, change.new) if value is not None]
-    form = shown(change.unit, max((abs(value) for value in known), default=0.0))
+    form = display_unit_of(change.unit, max((abs(value) for value in known), default=0.0))
     still = change.relative is not None and abs(change.relative) < _SILENT
     mark = Mark.FAINT if still else Mark.PLAIN
     difference = None if change.old is None or change.new is None else change.new - change.old

@@ -11,8 +11,8 @@ from flexstage.mechanism.expand import copy_names, expand
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.parts.part import Part, Restricted
 from flexstage.show.display import field_unit, number
-from flexstage.show.scene.primitives import plain
-from flexstage.show.table import Cell, Column, Mark, Table, build
+from flexstage.show.scene.primitives import first_value
+from flexstage.show.table import Cell, Column, Mark, Table, make_table
 from flexstage.spatial.frame import COMPONENTS
 
 TITLES = {
@@ -49,7 +49,7 @@ def composition_table(mechanism: Mechanism) -> Table:
         ("actuators", str(len(assembly.actuators)), ", ".join(assembly.actuators)),
         ("gauges", str(len(assembly.gauges)), ", ".join(f"{count} x {gauge}" for gauge, count in gauges.items())),
     ]
-    return build("Composition", ["", Column("number"), "of which"], rows)
+    return make_table("Composition", ["", Column("number"), "of which"], rows)
 
 
 def kind_name(part: Part) -> str:
@@ -76,7 +76,7 @@ def link_table(mechanism: Mechanism) -> Table:
         (Cell(drawn.removeprefix("links."), Mark.STRONG), " - ".join(first[drawn].link.joins), first[drawn].link.part, str(count))
         for drawn, count in counts.items()
     ]
-    return build("Links as drawn", ["link", "joins", "part", Column("copies")], rows)
+    return make_table("Links as drawn", ["link", "joins", "part", Column("copies")], rows)
 
 
 def value_tables(mechanism: Mechanism) -> tuple[Table, ...]:
@@ -87,11 +87,11 @@ def value_tables(mechanism: Mechanism) -> tuple[Table, ...]:
     """
     tags = provenance(mechanism)
     rows: dict[str, list[tuple[Cell, ...]]] = {}
-    for addresses in _joined(tuple(tags)):
-        group, name = _grouped(mechanism, addresses)
+    for addresses in _join_components(tuple(tags)):
+        group, name = _group_of(mechanism, addresses)
         rows.setdefault(group, []).append(_row(mechanism, name, addresses, tags[addresses[0]]))
     heads = ["value", Column("", numeric=True), "unit", "tag", "source"]
-    return tuple(build(title, heads, rows[group]) for group, title in TITLES.items() if group in rows)
+    return tuple(make_table(title, heads, rows[group]) for group, title in TITLES.items() if group in rows)
 
 
 def provenance_table(mechanism: Mechanism) -> Table:
@@ -103,7 +103,7 @@ def provenance_table(mechanism: Mechanism) -> Table:
     counts = Counter(tag.split()[0] if tag.split() else "assumed" for tag in provenance(mechanism).values())
     order = [*_TAGS, *sorted(set(counts) - set(_TAGS))]
     rows = [(Cell(tag, _TAGS.get(tag, Mark.PLAIN)), str(counts[tag])) for tag in order if counts[tag]]
-    return build("Where the numbers come from", ["tag", Column("numbers")], rows)
+    return make_table("Where the numbers come from", ["tag", Column("numbers")], rows)
 
 
 def source_table(mechanism: Mechanism) -> Table | None:
@@ -116,7 +116,7 @@ def source_table(mechanism: Mechanism) -> Table | None:
     holders = {**mechanism.materials, **mechanism.parts, **mechanism.sensors}
     own = {name: str(getattr(value, "source", "")) for name, value in holders.items()}
     rows += [(Cell(name, Mark.STRONG), text) for name, text in own.items() if text]
-    return build("Sources", ["", "source"], rows) if rows else None
+    return make_table("Sources", ["", "source"], rows) if rows else None
 
 
 def requirement_lines(mechanism: Mechanism) -> Table | None:
@@ -126,10 +126,10 @@ def requirement_lines(mechanism: Mechanism) -> Table | None:
     ['stroke.x', 'at least 50 um']
     """
     rows = [(Cell(key, Mark.STRONG), text) for key, text in mechanism.requirements.items()]
-    return build("Requirements", ["requirement", "demand"], rows) if rows else None
+    return make_table("Requirements", ["requirement", "demand"], rows) if rows else None
 
 
-def _joined(addresses: tuple[str, ...]) -> Iterator[tuple[str, ...]]:
+def _join_components(addresses: tuple[str, ...]) -> Iterator[tuple[str, ...]]:
     """Addresses of a vector's components together, others alone."""
     gathered: list[str] = []
     for address in addresses:
@@ -145,7 +145,7 @@ def _joined(addresses: tuple[str, ...]) -> Iterator[tuple[str, ...]]:
         yield tuple(gathered)
 
 
-def _grouped(mechanism: Mechanism, addresses: tuple[str, ...]) -> tuple[str, str]:
+def _group_of(mechanism: Mechanism, addresses: tuple[str, ...]) -> tuple[str, str]:
     """The kind of thing an address belongs to, and the name within it."""
     address = next(iter(addresses))
     address = address.rpartition(".")[0] if len(addresses) > 1 else address
@@ -166,4 +166,4 @@ def _row(mechanism: Mechanism, name: str, addresses: tuple[str, ...], tag: str) 
 def _value(mechanism: Mechanism, address: str) -> tuple[str, str]:
     quantity: Quantity = quantity_of(mechanism, address)
     form = field_unit(quantity)
-    return number(plain(get(mechanism, address)) * form.factor, _NUMBER_DIGITS), form.unit
+    return number(first_value(get(mechanism, address)) * form.factor, _NUMBER_DIGITS), form.unit

@@ -9,7 +9,7 @@ from flexstage.analysis.error_budget import ErrorBudget
 from flexstage.base.labelled import Matrix
 from flexstage.mechanism.expansion import Ground
 from flexstage.show.display import number
-from flexstage.show.table import Cell, Column, Mark, Table, build, first_design, matrix_table, short_names
+from flexstage.show.table import Cell, Column, Mark, Table, first_design, make_table, matrix_table, short_names
 from flexstage.show.tables.workspace import command_text
 from flexstage.spatial.frame import COMPONENTS
 
@@ -28,13 +28,16 @@ def drift_table(drift: Drift) -> Table:
     scale = np.max(np.abs(values), axis=1, keepdims=True, initial=0.0)
     kept = np.where(np.abs(values) < 1e-9 * max(float(np.max(scale)), 1e-12), 0.0, values)
     rows = [
-        (Cell(f"{name} [{'nrad' if name.rpartition('.')[2].startswith('r') else 'nm'}]", Mark.STRONG), *(_fine(value) for value in line))
+        (
+            Cell(f"{name} [{'nrad' if name.rpartition('.')[2].startswith('r') else 'nm'}]", Mark.STRONG),
+            *(_nano_cell(value) for value in line),
+        )
         for name, line in zip(short_names(drift.motion.rows), kept, strict=True)
     ]
     heads = ["motion", Column("uniform", "per K"), *(Column(f"gradient {axis}", "per K/m") for axis in "xyz")]
     at = ", ".join(number(1e3 * float(value)) for value in first_design(drift.datum, 1))
     notes = [f"Strokes held. {ground_text(drift.ground)}; its point ({at}) mm stays."]
-    return build("Thermal drift", heads, rows, notes=notes, provenance=drift.provenance)
+    return make_table("Thermal drift", heads, rows, notes=notes, provenance=drift.provenance)
 
 
 def ground_text(ground: Ground) -> str:
@@ -48,7 +51,7 @@ def ground_text(ground: Ground) -> str:
     return f"Ground made of {ground.material}" if ground.stated else f"Ground taken as {ground.material}: {ground.source}"
 
 
-def _fine(value: float) -> Cell:
+def _nano_cell(value: float) -> Cell:
     text = number(1e9 * float(value), 4)
     return Cell(text, Mark.FAINT if text == "0" else Mark.PLAIN)
 
@@ -81,7 +84,7 @@ def _budget_table(title: str, matrix: Matrix, sums: np.ndarray, budget: ErrorBud
         notes += [f"Gauge noise: {budget.coverage:g} standard deviations. Quantisation: half a step of every gauge, signs at their worst."]
     notes += [] if budget.ground is None else [f"{ground_text(budget.ground)}."]
     notes += [f"Not stated, so not counted: {', '.join(budget.missing)}."] if budget.missing else []
-    return build(title, heads, rows, notes=notes, provenance=budget.provenance)
+    return make_table(title, heads, rows, notes=notes, provenance=budget.provenance)
 
 
 def _nano(value: float) -> Cell:

@@ -6,7 +6,7 @@ from flexstage.base.labelled import Matrix, ratio_units
 from flexstage.models.linear.kinematics import Kinematics
 from flexstage.parts.freedom import Freedom
 from flexstage.show.display import number
-from flexstage.show.table import Cell, Column, Mark, Table, build, matrix_table
+from flexstage.show.table import Cell, Column, Mark, Table, make_table, matrix_table
 from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
 
 
@@ -26,7 +26,9 @@ def mobility_table(kinematics: Kinematics) -> Table:
         ("idle freedoms", str(len(kinematics.idle)), "move neither platform nor stroke"),
         ("redundant constraints", str(len(kinematics.redundant)), "stress the stage where parts do not fit exactly"),
     ]
-    return build("Mobility", ["", Column("number"), "which"], rows, notes=[actuation_text(kinematics)], provenance=kinematics.provenance)
+    return make_table(
+        "Mobility", ["", Column("number"), "which"], rows, notes=[actuation_text(kinematics)], provenance=kinematics.provenance
+    )
 
 
 def actuation_text(kinematics: Kinematics) -> str:
@@ -117,7 +119,7 @@ def freedom_table(kinematics: Kinematics) -> Table:
         (Cell(name, Mark.STRONG), ", ".join(freedom.value for freedom in free) or "none", ", ".join(copy for copy in owners if copy))
         for (name, free), owners in shared.items()
     ]
-    return build("Freedoms taken as free", ["link", "free", "in"], rows, notes=["In each link's own frame, x along the part."])
+    return make_table("Freedoms taken as free", ["link", "free", "in"], rows, notes=["In each link's own frame, x along the part."])
 
 
 def idle_table(kinematics: Kinematics) -> Table | None:
@@ -129,7 +131,7 @@ def idle_table(kinematics: Kinematics) -> Table | None:
     ['1', 'B1/base, B1/tip', 'B1/back, B1/front']
     """
     rows = [(str(number + 1), ", ".join(idle.bodies), ", ".join(idle.links)) for number, idle in enumerate(kinematics.idle)]
-    return build("Idle freedoms", [Column("no."), "bodies that move", "links that deform"], rows) if rows else None
+    return make_table("Idle freedoms", [Column("no."), "bodies that move", "links that deform"], rows) if rows else None
 
 
 def redundant_table(kinematics: Kinematics) -> Table | None:
@@ -141,4 +143,4 @@ def redundant_table(kinematics: Kinematics) -> Table | None:
     ['2', 'B4/back.rx, B4/pzt.rx, B4/front.rx, B4/pivot.rx']
     """
     rows = [(str(number + 1), ", ".join(item.constraints)) for number, item in enumerate(kinematics.redundant)]
-    return build("Redundant constraints", [Column("no."), "locked freedoms, one of them superfluous"], rows) if rows else None
+    return make_table("Redundant constraints", [Column("no."), "locked freedoms, one of them superfluous"], rows) if rows else None

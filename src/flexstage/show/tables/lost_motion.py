@@ -9,7 +9,7 @@ import numpy as np
 from flexstage.analysis.lost_motion import LostMotion
 from flexstage.base.labelled import NOISE, Matrix
 from flexstage.show.display import number, percent
-from flexstage.show.table import Cell, Column, Mark, Table, build, first_design, matrix_table
+from flexstage.show.table import Cell, Column, Mark, Table, first_design, make_table, matrix_table
 
 ELSEWHERE = "other units"
 _SHOWN = 1e-4
@@ -27,13 +27,13 @@ def loss_table(lost: LostMotion) -> Table:
     rows = [_loss_row(lost, name) for name in lost.loss.rows]
     heads = ["actuator", Column("gain"), Column("loss"), Column("crosstalk received"), "largest contributions"]
     note = "Gain: ideal motion reached per commanded one. Crosstalk received: the largest response to another actuator's command."
-    return build("Lost motion", heads, rows, notes=[note], provenance=lost.provenance)
+    return make_table("Lost motion", heads, rows, notes=[note], provenance=lost.provenance)
 
 
 def _loss_row(lost: LostMotion, name: str) -> tuple[Cell, ...]:
     index = lost.loss.rows.index(name)
     line = first_design(lost.loss.values, 2)[index]
-    own = _silent(float(line[index]))
+    own = _zero_if_noise(float(line[index]))
     others = np.delete(np.abs(line), index)
     least = max(NOISE, 0.02 * abs(own))
     largest = ", ".join(f"{part} {percent(share, 3)}" for part, share in list(own_budget(lost, name).items())[:2] if abs(share) > least)
@@ -42,12 +42,12 @@ def _loss_row(lost: LostMotion, name: str) -> tuple[Cell, ...]:
         Cell(name, Mark.STRONG),
         Cell(number(gain)),
         Cell(percent(own), bar=min(1.0, 10.0 * abs(own))),
-        Cell(percent(_silent(float(np.max(others, initial=0.0))), 3)),
+        Cell(percent(_zero_if_noise(float(np.max(others, initial=0.0))), 3)),
         Cell(largest),
     )
 
 
-def _silent(share: float) -> float:
+def _zero_if_noise(share: float) -> float:
     """A share without rounding noise."""
     return 0.0 if abs(share) < NOISE else share
 
@@ -62,14 +62,14 @@ def own_budget(lost: LostMotion, actuator: str) -> dict[str, float]:
     'pivot.rz'
     """
     shares = {name: float(first_design(np.asarray(value)[..., None], 1)[0]) for name, value in lost.of(actuator).items()}
-    gathered = gathered_by_unit(shares, actuator)
+    gathered = sum_by_unit(shares, actuator)
     return dict(sorted(gathered.items(), key=lambda item: -abs(round(item[1], 12))))
 
 
-def gathered_by_unit(shares: Mapping[str, float], actuator: str) -> dict[str, float]:
+def sum_by_unit(shares: Mapping[str, float], actuator: str) -> dict[str, float]:
     """Shares by name with the actuator's own copy left out of the names and all other copies added up.
 
-    >>> gathered_by_unit({"B1/front.rz": 1.0, "B2/front.rz": 2.0, "B3/front.rz": 3.0, "guide.y": 4.0}, "B1")
+    >>> sum_by_unit({"B1/front.rz": 1.0, "B2/front.rz": 2.0, "B3/front.rz": 3.0, "guide.y": 4.0}, "B1")
     {'front.rz': 1.0, 'other units': 5.0, 'guide.y': 4.0}
     """
     result: dict[str, float] = {}
@@ -93,7 +93,7 @@ def budget_table(lost: LostMotion) -> Table:
     names = lost.loss.rows
     budgets = {name: own_budget(lost, name) for name in names}
     notes = [f"Contributions below {percent(_SHOWN)} everywhere are gathered as the rest. Negative ones give back what others take."]
-    return build("Lost-motion budget", ["part.axis", *(Column(name) for name in names)], _share_rows(budgets, "loss"), notes=notes)
+    return make_table("Lost-motion budget", ["part.axis", *(Column(name) for name in names)], _share_rows(budgets, "loss"), notes=notes)
 
 
 def _share_rows(columns: Mapping[str, Mapping[str, float]], total: str) -> list[tuple[Cell, ...]]:
@@ -105,7 +105,7 @@ def _share_rows(columns: Mapping[str, Mapping[str, float]], total: str) -> list[
     rows = [_share_row(part, [shares.get(part) for shares in columns.values()]) for part in kept]
     if small:
         rows.append(_share_row("rest", [sum(shares.get(part, 0.0) for part in small) for shares in columns.values()]))
-    sums = [_silent(sum(shares.values())) for shares in columns.values()]
+    sums = [_zero_if_noise(sum(shares.values())) for shares in columns.values()]
     return [*rows, (Cell(total, Mark.STRONG), *(Cell(percent(value), Mark.STRONG) for value in sums))]
 
 
@@ -115,7 +115,7 @@ def _share_row(part: str, shares: Iterable[float | None]) -> tuple[Cell, ...]:
 
 
 def _share_cell(share: float) -> Cell:
-    share = _silent(share)
+    share = _zero_if_noise(share)
     text = percent(share, 3 if abs(share) >= 1e-3 else 2)
     return Cell("0" if share == 0.0 else text, Mark.FAINT if abs(share) < _SHOWN else Mark.PLAIN)
 
@@ -188,7 +188,7 @@ def energy_table(lost: LostMotion) -> Table:
     rows = _share_rows(energies, "all")
     whole = [Cell("energy [uJ/um^2]", Mark.STRONG), *(Cell(number(1e-6 * float(total), 4)) for total in totals)]
     heads = ["part", *(Column(name) for name in lost.energy.columns)]
-    return build("Where the stroke goes: strain energy", heads, [*rows, tuple(whole)])
+    return make_table("Where the stroke goes: strain energy", heads, [*rows, tuple(whole)])
 
 
 def energy_shares(lost: LostMotion) -> dict[str, dict[str, float]]:
@@ -201,7 +201,7 @@ def energy_shares(lost: LostMotion) -> dict[str, dict[str, float]]:
     1.0
     """
     values = first_design(lost.energy.values, 2)
-    return {name: gathered_by_unit(_shares(lost.energy, values[:, column]), name) for column, name in enumerate(lost.energy.columns)}
+    return {name: sum_by_unit(_shares(lost.energy, values[:, column]), name) for column, name in enumerate(lost.energy.columns)}
 
 
 def _shares(energy: Matrix, column: np.ndarray) -> dict[str, float]:

@@ -6,8 +6,8 @@ import numpy as np
 
 from flexstage.analysis.modes import Modes
 from flexstage.base.labelled import NOISE
-from flexstage.show.display import aligned, percent
-from flexstage.show.table import Cell, Column, Mark, Table, batch_note, build, first_design
+from flexstage.show.display import align_numbers, percent
+from flexstage.show.table import Cell, Column, Mark, Table, batch_note, first_design, make_table
 
 _FURTHER = 3
 
@@ -21,25 +21,25 @@ def mode_table(modes: Modes) -> Table:
     ['3', '126.16', 'z', '87.47 %', 'out of plane', 'platform']
     """
     listed = listed_modes(modes)
-    frequencies = aligned([float(value) for value in first_design(modes.frequencies, 1)[list(listed)]], 5)
+    frequencies = align_numbers([float(value) for value in first_design(modes.frequencies, 1)[list(listed)]], 5)
     share = first_design(modes.share, 1)
     rows = [
         (
             Cell(str(index + 1), Mark.STRONG),
             Cell(frequency),
             Cell(modes.names[index]),
-            Cell(percent(_loud(float(share[index]))), bar=float(share[index])),
+            Cell(percent(_zero_if_noise(float(share[index]))), bar=float(share[index])),
             Cell("in plane" if modes.in_plane[index] else "out of plane"),
             _role(modes, index),
         )
         for index, frequency in zip(listed, frequencies, strict=True)
     ]
     heads = [Column("mode"), Column("frequency", "Hz"), "name", Column("platform's share"), "plane", "role"]
-    notes = [margin_text(modes), *_unseen(modes, listed), *batch_note(modes.frequencies, 1)]
-    return build("Modes", heads, rows, notes=notes, provenance=modes.provenance)
+    notes = [margin_text(modes), *_unlisted(modes, listed), *batch_note(modes.frequencies, 1)]
+    return make_table("Modes", heads, rows, notes=notes, provenance=modes.provenance)
 
 
-def _loud(share: float) -> float:
+def _zero_if_noise(share: float) -> float:
     """A share without rounding noise."""
     return share if share > NOISE else 0.0
 
@@ -76,6 +76,6 @@ def margin_text(modes: Modes) -> str:
     return f"{chosen}{below}: at least {percent(least, 3)} each, {percent(modes.margin, 3)} in the next one."
 
 
-def _unseen(modes: Modes, listed: tuple[int, ...]) -> list[str]:
+def _unlisted(modes: Modes, listed: tuple[int, ...]) -> list[str]:
     rest = len(modes.names) - len(listed)
     return [f"{rest} higher modes were computed and are not listed."] if rest > 0 else []

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from flexstage.analysis.random_response import RandomResponse
-from flexstage.show.display import number, percent, value_with_unit
-from flexstage.show.table import Cell, Column, Mark, Table, build, first_design
+from flexstage.show.display import format_value, number, percent
+from flexstage.show.table import Cell, Column, Mark, Table, first_design, make_table
 
 _SILENT = 1e-9
 
@@ -26,13 +26,13 @@ def random_table(found: RandomResponse) -> Table:
     rows = [
         (
             Cell(channel.name, Mark.STRONG),
-            Cell(value_with_unit(float(value), channel.unit, 4)),
+            Cell(format_value(float(value), channel.unit, 4)),
             *(_share(float(share)) for share in row / (np.sum(row) or 1.0)),
         )
         for channel, value, row in zip(found.outputs, rms, shares, strict=True)
     ]
     band = f"From {number(found.band[0], 4)} to {number(found.band[1], 4)} Hz; inputs uncorrelated. {found.method}."
-    return build("Random response", heads, rows, notes=[band], provenance=found.provenance)
+    return make_table("Random response", heads, rows, notes=[band], provenance=found.provenance)
 
 
 def _share(share: float) -> Cell:

@@ -8,8 +8,8 @@ import numpy as np
 
 from flexstage.analysis.requirements import Verdict
 from flexstage.base.quantity import Quantity
-from flexstage.show.display import field_unit, number, percent, value_with_unit
-from flexstage.show.table import Cell, Column, Mark, Table, build, first_design
+from flexstage.show.display import field_unit, format_value, number, percent
+from flexstage.show.table import Cell, Column, Mark, Table, first_design, make_table
 
 
 def verdict_table(verdicts: Sequence[Verdict]) -> Table | None:
@@ -25,15 +25,15 @@ def verdict_table(verdicts: Sequence[Verdict]) -> Table | None:
     rows = [_row(verdict) for verdict in verdicts]
     notes = [f"{verdict.requirement.key}: {verdict.reason}" for verdict in verdicts if verdict.reason]
     heads = ["requirement", "demand", Column("value"), Column("margin"), "verdict"]
-    return build("Requirements", heads, rows, notes=notes)
+    return make_table("Requirements", heads, rows, notes=notes)
 
 
-def met(verdict: Verdict) -> bool:
+def is_met(verdict: Verdict) -> bool:
     """Whether a requirement is met by every design.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.judge import judge
-    >>> all(met(verdict) for verdict in judge(double_triangle()))
+    >>> all(is_met(verdict) for verdict in judge(double_triangle()))
     True
     """
     return bool(np.all(verdict.passed))
@@ -50,12 +50,12 @@ def meaning(verdict: Verdict) -> str:
     return verdict.requirement.kind.meaning
 
 
-def shown_value(verdict: Verdict) -> str:
+def value_text(verdict: Verdict) -> str:
     """The value a requirement is judged by, in display units (first design).
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.judge import judge
-    >>> shown_value(judge(double_triangle())[6])
+    >>> value_text(judge(double_triangle())[6])
     '106.01 Hz'
     """
     if verdict.value is None:
@@ -73,7 +73,7 @@ def quantity_text(value: float, quantity: Quantity) -> str:
     try:
         form = field_unit(quantity)
     except KeyError:
-        return value_with_unit(value, quantity.si)
+        return format_value(value, quantity.si)
     text = number(value * form.factor)
     return text if form.unit == "1" else f"{text} {form.unit}"
 
@@ -95,12 +95,12 @@ def margin_text(verdict: Verdict) -> str:
 
 
 def _row(verdict: Verdict) -> tuple[Cell, ...]:
-    good = met(verdict)
+    good = is_met(verdict)
     mark = Mark.PASS if good else Mark.FAIL
     return (
         Cell(verdict.requirement.key, Mark.STRONG),
         Cell(verdict.requirement.text),
-        Cell(shown_value(verdict)),
+        Cell(value_text(verdict)),
         Cell(margin_text(verdict), mark),
         Cell("met" if good else "withheld" if verdict.reason.startswith("withheld") else "not met", mark),
     )

@@ -9,8 +9,8 @@ import numpy as np
 
 from flexstage.base.number import Array
 from flexstage.models.linear.frequency import Response
-from flexstage.show.display import number, value_with_unit
-from flexstage.show.table import Cell, Column, Mark, Table, build
+from flexstage.show.display import format_value, number
+from flexstage.show.table import Cell, Column, Mark, Table, make_table
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,12 +35,12 @@ def leading_curves(response: Response) -> tuple[Curve, ...]:
     values = response.values.reshape(-1, *response.values.shape[-3:])[0]
     result: list[Curve] = []
     for row, output in enumerate(response.outputs):
-        column = _leading(values[0, row])
+        column = _leading_input(values[0, row])
         result.append(Curve(output.name, response.inputs[column].name, response.units[row][column], values[:, row, column]))
     return tuple(result)
 
 
-def _leading(gains: Array) -> int:
+def _leading_input(gains: Array) -> int:
     """The largest gain; among those within 2 % of it one that moves the output forward."""
     sizes = np.round(np.abs(gains) / (np.max(np.abs(gains)) or 1.0), 6)
     return int(np.argmax(np.where(sizes > 0.98, 1.0 + (np.real(gains) > 0.0), sizes)))
@@ -59,13 +59,13 @@ def response_table(response: Response) -> Table:
     rows = [(Cell(curve.output, Mark.STRONG), curve.input, *_numbers(curve, response.frequencies)) for curve in curves]
     heads = ["output", "leading input", Column("low-frequency gain"), Column("highest magnitude"), Column("at", "Hz"), Column("rise")]
     band = f"From {number(float(response.frequencies[0]), 4)} to {number(float(response.frequencies[-1]), 4)} Hz."
-    return build("Frequency responses", heads, rows, notes=[band], provenance=response.provenance)
+    return make_table("Frequency responses", heads, rows, notes=[band], provenance=response.provenance)
 
 
 def _numbers(curve: Curve, frequencies: Array) -> Iterator[str]:
     size = np.abs(curve.values)
     peak = int(np.argmax(size))
-    yield value_with_unit(float(size[0]), curve.unit, 4)
-    yield value_with_unit(float(size[peak]), curve.unit, 4)
+    yield format_value(float(size[0]), curve.unit, 4)
+    yield format_value(float(size[peak]), curve.unit, 4)
     yield number(float(frequencies[peak]), 5)
     yield number(float(size[peak] / size[0]), 4) if size[0] > 0.0 else "-"

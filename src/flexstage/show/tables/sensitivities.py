@@ -6,8 +6,8 @@ import numpy as np
 
 from flexstage.analysis.sensitivities import Sensitivities
 from flexstage.base.number import Array
-from flexstage.show.display import number, value_with_unit
-from flexstage.show.table import Cell, Column, Mark, Table, build
+from flexstage.show.display import format_value, number
+from flexstage.show.table import Cell, Column, Mark, Table, make_table
 
 
 def frequency_sensitivity_table(found: Sensitivities, *, modes: int = 6, top: int = 15) -> Table:
@@ -23,7 +23,7 @@ def frequency_sensitivity_table(found: Sensitivities, *, modes: int = 6, top: in
     values = relative.values[:, :modes]
     heads = [f"{name} ({frequency:.5g} Hz)" for name, frequency in zip(relative.columns[:modes], found.frequencies, strict=False)]
     note = "Relative change of the frequency per relative change of the parameter; for repeated modes that of their mean."
-    return _ranked("What moves the frequencies", found, values, (heads, top, note))
+    return _ranking_table("What moves the frequencies", found, values, (heads, top, note))
 
 
 def loss_sensitivity_table(found: Sensitivities, *, top: int = 15) -> Table | None:
@@ -39,17 +39,17 @@ def loss_sensitivity_table(found: Sensitivities, *, top: int = 15) -> Table | No
         return None
     matrix = found.relative_loss
     note = "Change of the loss (a share of the stroke) per relative change of the parameter."
-    return _ranked("What changes the lost motion", found, matrix.values, (list(matrix.columns), top, note))
+    return _ranking_table("What changes the lost motion", found, matrix.values, (list(matrix.columns), top, note))
 
 
-def _ranked(title: str, found: Sensitivities, values: Array, layout: tuple[list[str], int, str]) -> Table:
+def _ranking_table(title: str, found: Sensitivities, values: Array, layout: tuple[list[str], int, str]) -> Table:
     heads, top, note = layout
     largest = np.max(np.abs(values), axis=1, initial=0.0)
     order = np.argsort(-np.round(largest, 9), kind="stable")[:top]
     rows = [
         (
             Cell(found.parameters[index], Mark.STRONG),
-            value_with_unit(float(found.values[index]), found.units[index]),
+            format_value(float(found.values[index]), found.units[index]),
             *(_cell(float(value), float(largest[index])) for value in values[index]),
         )
         for index in order
@@ -58,7 +58,7 @@ def _ranked(title: str, found: Sensitivities, values: Array, layout: tuple[list[
     rest = len(found.parameters) - len(rows)
     notes = [note, *([f"{rest} further parameters matter less."] if rest > 0 else [])]
     columns = ["parameter", Column("value"), *(Column(head) for head in heads)]
-    return build(title, columns, rows, notes=notes, provenance=found.provenance)
+    return make_table(title, columns, rows, notes=notes, provenance=found.provenance)
 
 
 def _cell(value: float, scale: float) -> Cell:

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from flexstage.analysis.statics import DirectionalStiffness, Statics
-from flexstage.show.display import aligned, number, preferred
-from flexstage.show.table import Cell, Column, Mark, Table, build, first_design, matrix_table
+from flexstage.show.display import align_numbers, number, preferred_unit
+from flexstage.show.table import Cell, Column, Mark, Table, first_design, make_table, matrix_table
 
 _LOAD = 100.0
 _STEP = 15
@@ -53,8 +53,8 @@ def direction_table(statics: Statics, load: float = _LOAD) -> Table:
     degrees = np.arange(0, 180, _STEP)
     angles = np.deg2rad(degrees)
     free, held = (_along(item, angles) for item in (statics.free, statics.held))
-    micro = preferred("N/m").factor
-    columns = [aligned(1e6 * load / free), aligned(micro * free), aligned(micro * held)]
+    micro = preferred_unit("N/m").factor
+    columns = [align_numbers(1e6 * load / free), align_numbers(micro * free), align_numbers(micro * held)]
     rows = [(str(degree), *values) for degree, values in zip(degrees, zip(*columns, strict=True), strict=True)]
     heads = [
         Column("direction", "deg"),
@@ -62,7 +62,7 @@ def direction_table(statics: Statics, load: float = _LOAD) -> Table:
         Column("stiffness, others free", "N/um"),
         Column("stiffness, others held", "N/um"),
     ]
-    return build("Stiffness by direction in the plane", heads, rows, notes=["Directions counted from x towards y."])
+    return make_table("Stiffness by direction in the plane", heads, rows, notes=["Directions counted from x towards y."])
 
 
 def _along(stiffness: DirectionalStiffness, angles: np.ndarray) -> np.ndarray:
@@ -82,7 +82,7 @@ def principal_table(statics: Statics) -> Table:
     """
     rows = [_principal(name, item) for name, item in (("free", statics.free), ("held", statics.held))]
     heads = ["other freedoms", Column("stiffest", "N/um"), Column("softest", "N/um"), Column("stiffest along", "deg"), Column("spread")]
-    return build("Principal stiffnesses in the plane", heads, rows)
+    return make_table("Principal stiffnesses in the plane", heads, rows)
 
 
 def _principal(name: str, stiffness: DirectionalStiffness) -> tuple[Cell, ...]:
@@ -105,6 +105,6 @@ def centre_table(statics: Statics) -> Table:
     ['platform', '0', '0', '-25']
     """
     values = 1e3 * first_design(statics.centre, 1)
-    texts = aligned(np.where(np.abs(values) < 1e-6, 0.0, values))
+    texts = align_numbers(np.where(np.abs(values) < 1e-6, 0.0, values))
     heads = ["relative to", *(Column(axis, "mm") for axis in "xyz")]
-    return build("Centre of stiffness", heads, [(Cell(statics.load_point, Mark.STRONG), *texts)])
+    return make_table("Centre of stiffness", heads, [(Cell(statics.load_point, Mark.STRONG), *texts)])

@@ -14,8 +14,8 @@ from flexstage.analysis.workspace.strength import HingeStress
 from flexstage.analysis.workspace.stroke import StrokeLimits
 from flexstage.analysis.workspace.workspace import Workspace
 from flexstage.base.number import Array
-from flexstage.show.display import NO_VALUE, number, percent, value_with_unit
-from flexstage.show.table import Cell, Column, Content, Mark, Table, build, first_design, row_table
+from flexstage.show.display import NO_VALUE, format_value, number, percent
+from flexstage.show.table import Cell, Column, Content, Mark, Table, first_design, make_table, row_table
 
 _WEAK, _POOR = 1.0, 1.5
 
@@ -40,12 +40,12 @@ def platform_line_table(lines: PlatformLine) -> Table:
     matrix = lines.table
     units = matrix.unit if not isinstance(matrix.unit, str) else ((matrix.unit,) * 3,) * len(matrix.rows)
     rows = [
-        (Cell(name, Mark.STRONG), *(value_with_unit(float(value), unit, 4) for value, unit in zip(line, own, strict=True)))
+        (Cell(name, Mark.STRONG), *(format_value(float(value), unit, 4) for value, unit in zip(line, own, strict=True)))
         for name, line, own in zip(matrix.rows, first_design(matrix.values, 2), units, strict=True)
     ]
     heads = ["along", Column("travel without load"), Column("stiffness"), Column("blocking force")]
     note = "A command along one coordinate ends where the first actuator does; the load acts along it alone."
-    return build("Forces of the platform", heads, rows, notes=[note])
+    return make_table("Forces of the platform", heads, rows, notes=[note])
 
 
 def stress_table(stress: HingeStress) -> Table:
@@ -59,10 +59,12 @@ def stress_table(stress: HingeStress) -> Table:
     """
     nominal, peak, limit, safety = (first_design(each, 1) for each in (stress.nominal, stress.peak, stress.yield_stress, stress.safety))
     rows: list[tuple[Content, ...]] = []
-    for name, members in _weakest_first(stress.links, safety):
+    for name, members in _rank_by_factor(stress.links, safety):
         worst = members[0]
         stresses = [number(1e-6 * float(values[worst]), 4) for values in (nominal, peak, limit)]
-        rows.append((Cell(name, Mark.STRONG), str(len(members)), _owner(stress.links[worst]), *stresses, _safe(float(safety[worst]))))
+        rows.append(
+            (Cell(name, Mark.STRONG), str(len(members)), _owner(stress.links[worst]), *stresses, _safety_cell(float(safety[worst])))
+        )
     heads = [
         "hinge",
         Column("copies"),
@@ -75,10 +77,10 @@ def stress_table(stress: HingeStress) -> Table:
     notes = ["Von Mises stress at the worst corner of all strokes from no voltage, dead load included; peak: with the notch factor."]
     notes += [f"Not checked: {', '.join(stress.unchecked)}."] if stress.unchecked else []
     notes += [f"Yield stress not stated: {', '.join(stress.unknown)}."] if stress.unknown else []
-    return build("Stress in the hinges", heads, rows, notes=notes)
+    return make_table("Stress in the hinges", heads, rows, notes=notes)
 
 
-def _weakest_first(links: tuple[str, ...], factors: Array) -> list[tuple[str, list[int]]]:
+def _rank_by_factor(links: tuple[str, ...], factors: Array) -> list[tuple[str, list[int]]]:
     """Links of one name whose factors agree to three digits together, ascending by factor; unknown factors first."""
     known = np.nan_to_num(factors, nan=-1.0, posinf=1e300)
     groups: dict[tuple[str, str], list[int]] = {}
@@ -93,7 +95,7 @@ def _owner(link: str) -> str:
     return link.rpartition("/")[0]
 
 
-def _safe(factor: float) -> Cell:
+def _safety_cell(factor: float) -> Cell:
     if np.isinf(factor):
         return Cell("in tension", Mark.FAINT)
     mark = Mark.FAIL if not factor >= _WEAK else Mark.WARN if factor < _POOR else Mark.PLAIN
@@ -113,24 +115,26 @@ def buckling_table(buckling: Buckling) -> Table:
     factor = first_design(buckling.factor, 1)
     compression, critical = (first_design(each, 1) for each in (buckling.compression, buckling.critical))
     rows: list[tuple[Content, ...]] = [(Cell(name, Mark.STRONG), "", "", "", "", "", cell) for name, cell in _of_stage(buckling.stage)]
-    for name, members in _weakest_first(buckling.links, factor):
+    for name, members in _rank_by_factor(buckling.links, factor):
         worst = members[0]
         forces = [number(float(values[worst]), 4) for values in (compression, critical)]
         ends = buckling.ends[worst].value
-        rows.append((Cell(name, Mark.STRONG), str(len(members)), _owner(buckling.links[worst]), *forces, ends, _safe(float(factor[worst]))))
+        rows.append(
+            (Cell(name, Mark.STRONG), str(len(members)), _owner(buckling.links[worst]), *forces, ends, _safety_cell(float(factor[worst])))
+        )
     heads = ["part", Column("copies"), "first in", Column("compression", "N"), Column("critical", "N"), "ends", Column("load factor")]
     notes = [
         "The stage: by how much its loads could grow until it gives way as a whole (linearised; every column with its real ends).",
         "Parts: Euler's load of each one alone, its ends taken as said.",
     ]
-    return build("Buckling", heads, rows, notes=notes)
+    return make_table("Buckling", heads, rows, notes=notes)
 
 
 def _of_stage(stage: Stability) -> Iterator[tuple[str, Cell]]:
     factors = {"stage, dead load": stage.dead, "stage, worst strokes": stage.worst}
     for name, values in factors.items():
         factor = float(first_design(np.atleast_1d(values), 1)[0])
-        yield name, Cell("never", Mark.FAINT) if np.isinf(factor) else _safe(factor)
+        yield name, Cell("never", Mark.FAINT) if np.isinf(factor) else _safety_cell(factor)
 
 
 def load_table(loads: LoadShare, limits: StrokeLimits) -> Table:
@@ -155,7 +159,7 @@ def load_table(loads: LoadShare, limits: StrokeLimits) -> Table:
         rows.append((Cell(name, Mark.STRONG), *own, number(float(least[index]), 4), number(float(largest[index]), 4), *limit, used))
     heads = ["actuator", *(Column(name, "N") for name in loads.loads.columns), Column("least", "N"), Column("largest", "N")]
     heads += [Column("preload", "N"), Column("tensile", "N"), Column("limit", "N"), Column("used")]
-    return build("Axial forces of the stacks", heads, rows, notes=_load_notes(loads, least))
+    return make_table("Axial forces of the stacks", heads, rows, notes=_load_notes(loads, least))
 
 
 def _limit(values: Array, index: int) -> str:

@@ -7,9 +7,9 @@ from collections.abc import Mapping
 from flexstage.analysis.omitted import Omitted
 from flexstage.analysis.units import UnitResult
 from flexstage.base.labelled import NOISE
-from flexstage.show.display import NO_VALUE, number, percent, value_with_unit
-from flexstage.show.scene.primitives import plain
-from flexstage.show.table import Cell, Column, Mark, Table, build
+from flexstage.show.display import NO_VALUE, format_value, number, percent
+from flexstage.show.scene.primitives import first_value
+from flexstage.show.table import Cell, Column, Mark, Table, make_table
 
 
 def unit_table(found: Mapping[str, UnitResult]) -> Table:
@@ -24,19 +24,19 @@ def unit_table(found: Mapping[str, UnitResult]) -> Table:
         (
             Cell(name, Mark.STRONG),
             unit.copy,
-            value_with_unit(unit.axial, "N/m"),
-            " to ".join(value_with_unit(value, "N/m", 4) for value in unit.lateral),
+            format_value(unit.axial, "N/m"),
+            " to ".join(format_value(value, "N/m", 4) for value in unit.lateral),
             number(unit.ideal_gain),
             number(unit.gain),
             percent(unit.loss if abs(unit.loss) > NOISE else 0.0),
-            NO_VALUE if unit.series is None else value_with_unit(unit.series, "N/m"),
+            NO_VALUE if unit.series is None else format_value(unit.series, "N/m"),
         )
         for name, unit in found.items()
     ]
     heads = ["unit", "copy", Column("axial stiffness"), Column("lateral stiffness"), Column("ideal gain"), Column("gain")]
     heads += [Column("loss"), Column("in strokes")]
     note = "Each unit alone, strokes held, output guided along its direction. In strokes: in actuator coordinates, as mapped reads it."
-    return build("Units alone", heads, rows, notes=[note])
+    return make_table("Units alone", heads, rows, notes=[note])
 
 
 def lever_table(found: Mapping[str, UnitResult]) -> Table | None:
@@ -51,18 +51,18 @@ def lever_table(found: Mapping[str, UnitResult]) -> Table | None:
     rows = [
         (
             Cell(name, Mark.STRONG),
-            value_with_unit(plain(lever.drive), "N/m"),
-            value_with_unit(plain(lever.pivot), "N m/rad"),
-            value_with_unit(plain(lever.pole), "N/m"),
-            f"{number(1e3 * plain(lever.short_arm))} / {number(1e3 * plain(lever.long_arm))}",
-            number(plain(lever.gain)),
-            value_with_unit(plain(lever.tip_compliance), "m/N", 4),
+            format_value(first_value(lever.drive), "N/m"),
+            format_value(first_value(lever.pivot), "N m/rad"),
+            format_value(first_value(lever.pole), "N/m"),
+            f"{number(1e3 * first_value(lever.short_arm))} / {number(1e3 * first_value(lever.long_arm))}",
+            number(first_value(lever.gain)),
+            format_value(first_value(lever.tip_compliance), "m/N", 4),
         )
         for name, lever in levers.items()
     ]
     heads = ["unit", Column("drive K1"), Column("pivot K_theta2"), Column("pole K3"), Column("arms r1 / r2", "mm")]
     heads += [Column("gain (Eq. 11)"), Column("tip compliance (Eq. 11)")]
-    return build("Springs of the lever units", heads, rows) if rows else None
+    return make_table("Springs of the lever units", heads, rows) if rows else None
 
 
 def omitted_table(found: Omitted, *, top: int = 12) -> Table:
@@ -79,4 +79,4 @@ def omitted_table(found: Omitted, *, top: int = 12) -> Table:
     rows += [(Cell("their interaction"), f"{found.interaction:+.4g}", percent(found.interaction / found.full, 3))]
     rows += [(Cell("full theory", Mark.STRONG), Cell(number(found.full), Mark.STRONG), "")]
     title = f"What the simple theory omits: {found.output} over {found.input}"
-    return build(title, ["freedom given back", Column("value"), Column("of the full")], rows)
+    return make_table(title, ["freedom given back", Column("value"), Column("of the full")], rows)

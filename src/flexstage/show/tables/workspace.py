@@ -1,4 +1,4 @@
-"""Tables of the workspace: what the platform reaches, what that asks of actuators and gauges, forces and room."""
+"""Tables of the workspace: what the platform reaches, what that asks of actuators and gauges, forces and clearance."""
 
 from __future__ import annotations
 
@@ -6,16 +6,16 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from flexstage.analysis.workspace.clearance import Clearance
 from flexstage.analysis.workspace.gauging import GaugeRange, PoseResolution
 from flexstage.analysis.workspace.map_error import MapError
 from flexstage.analysis.workspace.polytope import Polytope
-from flexstage.analysis.workspace.room import Room
 from flexstage.analysis.workspace.stroke import Utilisation
 from flexstage.analysis.workspace.workspace import Workspace
 from flexstage.base.labelled import NOISE, Matrix
 from flexstage.base.number import Array, Number
-from flexstage.show.display import NO_VALUE, number, percent, shown, value_with_unit
-from flexstage.show.table import Cell, Column, Mark, Table, build, first_design, row_table, unit_row_table
+from flexstage.show.display import NO_VALUE, display_unit_of, format_value, number, percent
+from flexstage.show.table import Cell, Column, Mark, Table, first_design, make_table, row_table, unit_row_table
 from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
 
 _ARM = 0.1
@@ -37,7 +37,7 @@ def command_text(command: Mapping[str, Number]) -> str:
     >>> command_text({"x": 50e-6, "rz": 244e-6})
     'x +-50 um, rz +-244 urad'
     """
-    return ", ".join(f"{name} +-{value_with_unit(float(np.real(np.ravel(value)[0])), unit_of(name))}" for name, value in command.items())
+    return ", ".join(f"{name} +-{format_value(float(np.real(np.ravel(value)[0])), unit_of(name))}" for name, value in command.items())
 
 
 def stroke_table(workspace: Workspace) -> Table:
@@ -53,13 +53,13 @@ def stroke_table(workspace: Workspace) -> Table:
     low, high, both = (first_design(values, 1) for values in (single.low, single.high, single.symmetric))
     rows: list[tuple[Cell | str, ...]] = []
     for index, name in enumerate(single.coordinates):
-        form = shown(unit_of(name), float(max(abs(low[index]), abs(high[index]))))
+        form = display_unit_of(unit_of(name), float(max(abs(low[index]), abs(high[index]))))
         real = "-" if corrected is None else number(form.factor * float(first_design(corrected.symmetric, 1)[index]))
         texts = [number(form.factor * float(value)) for value in (low[index], high[index], both[index])]
         rows.append((Cell(name, Mark.STRONG), form.unit, *texts, real, single.limiting[index]))
     heads = ["along", "unit", Column("from"), Column("to"), Column("both ways"), Column("corrected, both ways"), "limited by"]
     note = "One coordinate at a time, the others held at zero. Corrected: lost motion made up by command, at the cost of stroke."
-    return build("Single-axis strokes", heads, rows, notes=[note], provenance=single.provenance)
+    return make_table("Single-axis strokes", heads, rows, notes=[note], provenance=single.provenance)
 
 
 def corner_table(corner: Utilisation) -> Table:
@@ -75,7 +75,7 @@ def corner_table(corner: Utilisation) -> Table:
     return row_table("Simultaneous strokes", corner, notes=[note])
 
 
-def _used(share: float) -> Cell:
+def _share_cell(share: float) -> Cell:
     """A share of a limit; more than the whole is marked."""
     return Cell(percent(share), Mark.FAIL if share > 1.0 + 1e-9 else Mark.PLAIN, bar=share)
 
@@ -105,7 +105,7 @@ def map_error_table(error: MapError) -> Table:
     rows = [
         (
             Cell(name, Mark.STRONG),
-            Cell(value_with_unit(float(value), unit, 4) if value > least else "0"),
+            Cell(format_value(float(value), unit, 4) if value > least else "0"),
             _strokes_text(error.actuators, line) if value > least else "",
         )
         for name, unit, value, line, least in zip(COMPONENTS, TWIST_UNITS, worst, strokes, noise, strict=True)
@@ -113,7 +113,7 @@ def map_error_table(error: MapError) -> Table:
     tried = f"Finite less linear kinematics at {error.strokes.shape[0]} combinations of strokes."
     rule = f"0 stands for rounding noise: below a billionth of the largest stroke (rotations: of one at an arm of {_ARM:g} m)."
     notes = [tried, rule] if any(row[1].text == "0" for row in rows) else [tried]
-    return build("Error of the linear map", ["along", Column("worst"), "at strokes [um]"], rows, notes=notes)
+    return make_table("Error of the linear map", ["along", Column("worst"), "at strokes [um]"], rows, notes=notes)
 
 
 def _strokes_text(actuators: tuple[str, ...], strokes: Array) -> str:
@@ -137,14 +137,14 @@ def gauge_range_table(gauges: GaugeRange) -> Table:
             Cell(name, Mark.STRONG),
             number(1e6 * float(swing[index])),
             number(1e6 * float(limit[index])),
-            _used(float(swing[index] / limit[index])),
+            _share_cell(float(swing[index] / limit[index])),
             *(column[index] for column in radii),
         )
         for index, name in enumerate(gauges.gauges)
     ]
     heads = ["gauge", Column("swing", "um"), Column("half range", "um"), Column("used")]
     heads += [Column("radius", "mm"), Column("largest, same angle", "mm"), Column("largest, any angle", "mm")]
-    return build("Gauge ranges", heads, rows, notes=[f"{command_text(gauges.command)}, all at once."])
+    return make_table("Gauge ranges", heads, rows, notes=[f"{command_text(gauges.command)}, all at once."])
 
 
 def _radius(value: float) -> str:
@@ -165,22 +165,22 @@ def resolution_table(resolution: PoseResolution) -> Table:
     return unit_row_table("Pose resolution of the gauges", fine, heads=("worst", "rms", "noise, rms"), notes=notes)
 
 
-def room_table(room: Room) -> Table:
+def clearance_table(found: Clearance) -> Table:
     """The bounding box of the stage against its envelope.
 
     >>> import numpy as np
-    >>> room_table(Room((), np.zeros(3), np.full(3, 0.1), None, ("a",) * 6)).texts()[1]
+    >>> clearance_table(Clearance((), np.zeros(3), np.full(3, 0.1), None, ("a",) * 6)).texts()[1]
     ['x', '0', '100', '100', '-', 'a, a']
     """
-    table = first_design(room.table.values, 2)
+    table = first_design(found.table.values, 2)
     rows: list[tuple[Cell | str, ...]] = []
     for index, axis in enumerate("xyz"):
         line = [number(1e3 * float(value)) for value in table[index]]
         limit = line[3] if len(line) > 3 else NO_VALUE
         fits = len(line) < 4 or table[index][2] <= table[index][3] + 1e-9
         size = Cell(line[2], Mark.PLAIN if fits else Mark.FAIL)
-        rows.append((Cell(axis, Mark.STRONG), line[0], line[1], size, limit, f"{room.extreme[index]}, {room.extreme[3 + index]}"))
+        rows.append((Cell(axis, Mark.STRONG), line[0], line[1], size, limit, f"{found.extreme[index]}, {found.extreme[3 + index]}"))
     heads = ["axis", Column("from", "mm"), Column("to", "mm"), Column("size", "mm"), Column("envelope", "mm"), "reached by"]
-    clear = [f"{item.name} enters the clear opening by {number(1e3 * float(np.max(item.depth)), 4)} mm." for item in room.intrusions]
-    kept = clear or ([] if room.opening is None else ["Nothing enters the clear opening."])
-    return build("Room", heads, rows, notes=kept)
+    clear = [f"{item.name} enters the clear opening by {number(1e3 * float(np.max(item.depth)), 4)} mm." for item in found.intrusions]
+    kept = clear or ([] if found.opening is None else ["Nothing enters the clear opening."])
+    return make_table("Clearance", heads, rows, notes=kept)

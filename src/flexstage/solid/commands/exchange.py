@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from flexstage.analysis.complete import platform_modes
-from flexstage.base.finding import nearest, refuse, require
+from flexstage.base.finding import refuse, require, suggest_nearest
 from flexstage.mechanism.drawn import with_drawn_parts
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.store import load, outline_text
@@ -17,7 +17,7 @@ from flexstage.show.command.design import open_design
 from flexstage.show.command.options import Changes, Design, output_option, text_option
 from flexstage.show.command.output import save
 from flexstage.show.command.progress import progress_bar
-from flexstage.show.command.terminal import say, warn
+from flexstage.show.command.terminal import print_result, print_warning
 from flexstage.solid.fea.apart import step_apart
 from flexstage.solid.fea.cache import Cache
 from flexstage.solid.fea.fineness import Fineness, Reduction
@@ -68,10 +68,10 @@ def state(
     mechanism = load(design)
     chosen = _material(mechanism, material)
     require_solver()
-    from flexstage.solid.fea.imported import measured, stated  # needs the solver, refused by name where it is missing
+    from flexstage.solid.fea.imported import measure, with_properties  # needs the solver, refused by name where it is missing
 
-    solid = stated(measured(part), str(part.resolve()), chosen, float(mechanism.materials[chosen].density))
-    say(outline_text(body, part.stem, solid, design.parent))
+    solid = with_properties(measure(part), str(part.resolve()), chosen, float(mechanism.materials[chosen].density))
+    print_result(outline_text(body, part.stem, solid, design.parent))
 
 
 def _material(mechanism: Mechanism, name: str | None) -> str:
@@ -80,7 +80,7 @@ def _material(mechanism: Mechanism, name: str | None) -> str:
         return known[0]
     if name is None or name not in known:
         what = f"the design has {len(known)} materials" if name is None else f"the design has no material {name}"
-        raise refuse("--material", what, f"Name one. {nearest(name or '', known)}")
+        raise refuse("--material", what, f"Name one. {suggest_nearest(name or '', known)}")
     return name
 
 
@@ -98,7 +98,7 @@ def _contents(mechanism: Mechanism, wanted: dict[str, Path | None], order: int, 
             mesh = stage_mesh(stage, fineness, progress=shown.step)
         yield path, "--mesh", vtu(mesh)
     if (path := wanted["--gltf"]) is not None:
-        yield path, "--gltf", _moving(stage, fineness, modes)
+        yield path, "--gltf", _moving_parts(stage, fineness, modes)
 
 
 def _check_contact(stage: Mechanism, *, meshed: bool) -> None:
@@ -107,15 +107,15 @@ def _check_contact(stage: Mechanism, *, meshed: bool) -> None:
     if meshed:
         require(findings)
     for finding in findings:
-        warn(str(finding))
+        print_warning(str(finding))
 
 
-def _moving(stage: Mechanism, fineness: Fineness, count: int) -> bytes:
+def _moving_parts(stage: Mechanism, fineness: Fineness, count: int) -> bytes:
     """The GLB file of a stage with its lowest modes."""
     from flexstage.solid.exchange.gltf import Motion, gltf, surfaces  # needs a package of the extra `solid`
 
     with progress_bar() as shown:
-        read = read_solid(stage, Reduction(fineness), solids(Ways(progress=shown.step), lambda finding: warn(str(finding))))
+        read = read_solid(stage, Reduction(fineness), solids(Ways(progress=shown.step), lambda finding: print_warning(str(finding))))
     found = platform_modes(stage, read.model)
     motions = [
         Motion(f"mode {number + 1}: {name}, {found.frequencies[number]:.1f} Hz", found.shapes[:, number])

@@ -5,7 +5,7 @@ from __future__ import annotations
 from flexstage.analysis.solid_modes import FeaModes
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.show.command.progress import progress_bar
-from flexstage.show.command.terminal import tell, warn
+from flexstage.show.command.terminal import print_note, print_warning
 from flexstage.solid import modes
 from flexstage.solid.fea.cache import Cache
 from flexstage.solid.fea.parts import Ways
@@ -17,8 +17,8 @@ def fea_modes(mechanism: Mechanism, *, computing: bool) -> FeaModes | None:
     """Modes from the cache, or computed if asked for; where there are none it is said how to get them."""
     if computing:
         with progress_bar() as shown:
-            return modes.fea_modes(mechanism, DEFAULT, solids(Ways(Cache(), shown.step), lambda finding: warn(str(finding))))
-    found = modes.kept_fea_modes(mechanism, Cache())
+            return modes.fea_modes(mechanism, DEFAULT, solids(Ways(Cache(), shown.step), lambda finding: print_warning(str(finding))))
+    found = modes.fea_modes_from_cache(mechanism, Cache())
     if found is None:
-        tell("not given: FEA: the cache does not hold this stage; --fea computes it")
+        print_note("not given: FEA: the cache does not hold this stage; --fea computes it")
     return found

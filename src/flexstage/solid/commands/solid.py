@@ -12,17 +12,17 @@ import typer
 from flexstage.analysis.standing import require_standing
 from flexstage.base.finding import Finding, refuse
 from flexstage.base.quantity import RATIO, Quantity
-from flexstage.base.record import Together
+from flexstage.base.record import SideBySide
 from flexstage.base.unit import parse
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.store import loads
 from flexstage.mechanism.store.file import read_text
-from flexstage.show.command.answer import answer, tell_missing
+from flexstage.show.command.answer import answer, print_missing
 from flexstage.show.command.design import open_design
 from flexstage.show.command.options import Changes, Csv, Design, Json, Report, output_option, text_option, word_option
 from flexstage.show.command.output import require_writable, save
 from flexstage.show.command.progress import ProgressBar, progress_bar
-from flexstage.show.command.terminal import tell, warn
+from flexstage.show.command.terminal import print_note, print_warning
 from flexstage.show.page import Section
 from flexstage.show.table import Table
 from flexstage.show.tables.modes import mode_table
@@ -37,7 +37,7 @@ from flexstage.solid.fea.remote import Limits
 from flexstage.solid.hinges import Hinges, SolidHinge, hinges, solid_hinges
 from flexstage.solid.read import Solids, solids
 from flexstage.solid.report import solid_report
-from flexstage.solid.resolution import Resolution, Resolved
+from flexstage.solid.resolution import Converged, Resolution
 from flexstage.solid.sections import hinge_section, stage_solid_section, unit_section, verification_section
 from flexstage.solid.tables import (
     block_table,
@@ -121,7 +121,7 @@ def solid(  # noqa: PLR0913 (its options)
     answer(
         "solid",
         mechanism,
-        lambda: Together(({"what": what.value}, *found.results)),
+        lambda: SideBySide(({"what": what.value}, *found.results)),
         found.tables,
         json=json,
         csv=csv,
@@ -152,13 +152,16 @@ def verify(
     with progress_bar() as shown:
         found = verification.verify(mechanism, asked.resolution, _solids(asked, shown), _hinges(asked, shown))
     read = [(name, each) for name, each in (("units", found.units), ("stage", found.stage)) if each is not None]
-    cautions = (*_inexact(found.hinges), *(caution for name, each in read for caution in _missed(name, each, asked.resolution)))
+    cautions = (
+        *_inexact_hinges(found.hinges),
+        *(caution for name, each in read for caution in _accuracy_cautions(name, each, asked.resolution)),
+    )
     if report is not None:
         units = None if found.units is None else unit_section(found.units)
         stage = None if found.stage is None else stage_solid_section(found.stage)
         sections = iter([verification_section(found), hinge_section(found.hinges), units, stage])
         save(report, solid_report(mechanism, sections, cautions), "--report")
-    tell_missing(found.reasons)
+    print_missing(found.reasons)
     answer("verify", mechanism, lambda: found, lambda: _verification_tables(found), json=json, csv=csv, cautions=cautions, beside=(report,))
 
 
@@ -183,7 +186,7 @@ def calibrate(
     with progress_bar() as shown:
         found = calibration.calibrate(text, _hinges(asked, shown), where=str(design))
     save(output, found.text, "--output")
-    cautions, tables = _inexact(found.hinges), [calibration_table(found)]
+    cautions, tables = _inexact_hinges(found.hinges), [calibration_table(found)]
     answer("calibrate", mechanism, lambda: found, lambda: tables, json=json, csv=csv, cautions=cautions, beside=(output,))
 
 
@@ -195,7 +198,7 @@ def _request(accuracy: str, order: int | None, memory: str | None) -> _Request:
 
 
 def _notice(finding: Finding) -> None:
-    warn(str(finding))
+    print_warning(str(finding))
 
 
 def _size(memory: str | None) -> float | None:
@@ -212,11 +215,11 @@ def _solids(asked: _Request, shown: ProgressBar) -> Solids:
     require_solver()
     reduce = solids(asked.ways(shown), _notice)
 
-    def followed(mechanism: Mechanism, reduction: Reduction) -> Parts:
+    def reduce_with_progress(mechanism: Mechanism, reduction: Reduction) -> Parts:
         shown.about = f"order {reduction.fineness.order}, "
         return reduce(mechanism, reduction)
 
-    return followed
+    return reduce_with_progress
 
 
 def _hinges(asked: _Request, shown: ProgressBar) -> Hinges:
@@ -235,7 +238,7 @@ def _hinge_study(mechanism: Mechanism, asked: _Request, shown: ProgressBar) -> _
         results=({"hinges": found},),
         tables=lambda: iter([hinge_table(found), *hinge_matrices(found)]),
         sections=lambda: iter([hinge_section(found)]),
-        cautions=_inexact(found),
+        cautions=_inexact_hinges(found),
     )
 
 
@@ -252,7 +255,7 @@ def _unit_study(mechanism: Mechanism, asked: _Request, shown: ProgressBar) -> _R
         results=(found, {"units": found.result}),
         tables=tables,
         sections=lambda: iter([unit_section(found)]),
-        cautions=_missed("units", found, asked.resolution),
+        cautions=_accuracy_cautions("units", found, asked.resolution),
     )
 
 
@@ -272,25 +275,25 @@ def _stage_study(mechanism: Mechanism, asked: _Request, shown: ProgressBar) -> _
         results=(found, stage),
         tables=tables,
         sections=lambda: iter([stage_solid_section(found)]),
-        cautions=_missed("stage", found, asked.resolution),
+        cautions=_accuracy_cautions("stage", found, asked.resolution),
     )
 
 
 _STUDIES = {What.HINGE: _hinge_study, What.UNIT: _unit_study, What.STAGE: _stage_study}
 
 
-def _inexact(hinges: Mapping[str, SolidHinge]) -> tuple[Finding, ...]:
+def _inexact_hinges(hinges: Mapping[str, SolidHinge]) -> tuple[Finding, ...]:
     """Cautions about hinges whose 6x6 is not as exact as was asked."""
     found = ((name, hinge.found.finding) for name, hinge in hinges.items())
     return tuple(Finding(name, each.what, each.advice) for name, each in found if each is not None)
 
 
-def _missed(what: str, found: Resolved[Any], asked: Resolution) -> tuple[Finding, ...]:
+def _accuracy_cautions(what: str, found: Converged[Any], asked: Resolution) -> tuple[Finding, ...]:
     """A caution where the error estimated is not as small as was asked; where it is, it is told."""
     size = f"{100.0 * found.error:.2g} %" if found.errors else "unknown"
     text = f"the error estimated of finite elements is {size} at order {found.order}"
     if found.error <= asked.accuracy:
-        tell(f"{what}: {text}")
+        print_note(f"{what}: {text}")
         return ()
     more = found.stopped or (f"Ask for --order {found.order + 1}" if asked.order is not None else "This is the highest order")
     return (Finding(what, f"{text}; {100.0 * asked.accuracy:.2g} % was asked", more.rstrip(".")),)

@@ -16,7 +16,7 @@ from flexstage.base.text import printable
 from flexstage.mechanism.mechanism import PLATFORM
 from flexstage.solid.exchange.paint import Colour, palette
 from flexstage.solid.fea.assemble import Placed
-from flexstage.solid.fea.surface import moved_vertices
+from flexstage.solid.fea.surface import vertex_places
 
 _KEYS = 33
 """Keyframes of one period: a sine drawn by chords is within 0.5 % of its amplitude."""
@@ -56,9 +56,9 @@ def surfaces(placed: Sequence[Placed], motions: Sequence[Motion]) -> Mapping[str
     """
     found: dict[str, Surface] = {}
     for item in placed:
-        still = moved_vertices(item, np.zeros(item.operator.shape[1]), 0.0)
-        shifts = np.array([moved_vertices(item, motion.coordinates, 1.0) - still for motion in motions]).reshape(-1, *still.shape)
-        found |= _split(item, still, shifts)
+        still = vertex_places(item, np.zeros(item.operator.shape[1]), 0.0)
+        shifts = np.array([vertex_places(item, motion.coordinates, 1.0) - still for motion in motions]).reshape(-1, *still.shape)
+        found |= _split_surface(item, still, shifts)
     if not found:
         return found
     everything = np.vstack([each.vertices for each in found.values()])
@@ -68,7 +68,7 @@ def surfaces(placed: Sequence[Placed], motions: Sequence[Motion]) -> Mapping[str
     return {name: Surface(each.vertices, each.triangles, scale * each.shifts, each.is_body) for name, each in found.items()}
 
 
-def _split(item: Placed, vertices: Array, shifts: Array) -> dict[str, Surface]:
+def _split_surface(item: Placed, vertices: Array, shifts: Array) -> dict[str, Surface]:
     skin = item.element.skin
     names: dict[str, list[int]] = {}
     for number, piece in enumerate(item.component.pieces):

@@ -14,7 +14,7 @@ from flexstage.solid.fea.reducing import ComponentJob
 from flexstage.solid.fea.worker import Call
 
 if TYPE_CHECKING:
-    from flexstage.solid.fea.mesh import Meshed
+    from flexstage.solid.fea.mesh import PieceMesh
 
 _CORNERS = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0), (0.0, 0.0, 0.0))
 _ORDER = (1, 0, 2, 3)
@@ -40,34 +40,34 @@ class Gridding(ComponentJob):
 
     def work(self, call: Call) -> bytes:
         """The grid, stored as numpy does."""
-        from flexstage.solid.fea.mesh import meshed
+        from flexstage.solid.fea.mesh import mesh_component
 
-        found = grid(meshed(self.component, self.fineness, call.report, call.attempt))
+        found = grid(mesh_component(self.component, self.fineness, call.report, call.attempt))
         stream = io.BytesIO()
         np.savez(stream, points=found.points, cells=found.cells, owner=found.owner)
         return stream.getvalue()
 
 
-def stored_grid(data: bytes) -> Grid:
+def grid_from_cache(data: bytes) -> Grid:
     """The grid that a job stored.
 
     >>> stream = io.BytesIO()
     >>> np.savez(stream, points=np.zeros((10, 3)), cells=np.arange(10)[None], owner=np.zeros(1, dtype=int))
-    >>> stored_grid(stream.getvalue()).cells.shape
+    >>> grid_from_cache(stream.getvalue()).cells.shape
     (1, 10)
     """
     with np.load(io.BytesIO(data)) as arrays:
         return Grid(arrays["points"], arrays["cells"], arrays["owner"])
 
 
-def grid(mesh: Meshed) -> Grid:
+def grid(mesh: PieceMesh) -> Grid:
     """A mesh's tetrahedra with the middles of their edges, which lie on the curved geometry.
 
     >>> import ngsolve
     >>> from netgen import occ
-    >>> from flexstage.solid.fea.mesh import Meshed
+    >>> from flexstage.solid.fea.mesh import PieceMesh
     >>> cube = ngsolve.Mesh(occ.OCCGeometry(occ.Box((0, 0, 0), (1, 1, 1))).GenerateMesh(maxh=2.0))
-    >>> drawn = grid(Meshed(cube, (), (), np.zeros(cube.ne, dtype=int)))
+    >>> drawn = grid(PieceMesh(cube, (), (), np.zeros(cube.ne, dtype=int)))
     >>> drawn.cells.shape == (cube.ne, 10), float(drawn.points.max())
     (True, 0.001)
     """

@@ -16,7 +16,7 @@ from flexstage.base.store import temporary_folder
 from flexstage.base.text import printable
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.solid.exchange.paint import Colour, palette
-from flexstage.solid.fea.draw import drawn, moved
+from flexstage.solid.fea.draw import draw_form, move_solid
 from flexstage.solid.fea.piece import Piece
 from flexstage.solid.fea.stage_pieces import Stage, require_shapes, stage_pieces
 
@@ -47,7 +47,7 @@ def stage_parts(stage: Stage) -> tuple[Part, ...]:
         groups.setdefault((owner, stage.materials[piece.name]), []).append(piece)
     owners = [owner for owner, _ in groups]
     return tuple(
-        Part(owner if owners.count(owner) == 1 else f"{owner}/{material}", _united(pieces), material, pieces[0].medium.density)
+        Part(owner if owners.count(owner) == 1 else f"{owner}/{material}", _fuse(pieces), material, pieces[0].medium.density)
         for (owner, material), pieces in groups.items()
     )
 
@@ -66,8 +66,8 @@ def step(mechanism: Mechanism) -> bytes:
     return step_text(mechanism.name or "stage", stage_parts(stage)).encode("ascii")
 
 
-def _united(pieces: Sequence[Piece]) -> occ.TopoDS_Shape:
-    shapes = [moved(drawn(piece.form), piece.frame) for piece in pieces]
+def _fuse(pieces: Sequence[Piece]) -> occ.TopoDS_Shape:
+    shapes = [move_solid(draw_form(piece.form), piece.frame) for piece in pieces]
     return shapes[0] if len(shapes) == 1 else occ.Fuse(shapes)
 
 
@@ -82,21 +82,21 @@ def step_text(name: str, parts: Sequence[Part]) -> str:
     root = _root(lines, name)
     with temporary_folder() as folder:
         for part in parts:
-            _append(lines, root, part, _written(part, colours[part.material], folder / "part.step"))
+            _append(lines, root, part, _write_entities(part, colours[part.material], folder / "part.step"))
     placed = ",".join(f"#{number}" for number in root.axes)
     lines.put(f"SHAPE_REPRESENTATION('',({placed}),#{root.context})", root.shape)
     heading = (
         "ISO-10303-21;\nHEADER;\nFILE_DESCRIPTION(('stage as drawn by flexstage, mm'),'2;1');\n"
-        f"FILE_NAME({quoted(name)},'',(''),(''),'flexstage','flexstage','');\n"
+        f"FILE_NAME({quote(name)},'',(''),(''),'flexstage','flexstage','');\n"
         "FILE_SCHEMA(('AUTOMOTIVE_DESIGN { 1 0 10303 214 1 1 1 1 }'));\nENDSEC;\nDATA;\n"
     )
     return heading + lines.text() + "ENDSEC;\nEND-ISO-10303-21;\n"
 
 
-def quoted(text: str) -> str:
+def quote(text: str) -> str:
     r"""A string of a STEP file: quotes doubled, other than ASCII by code.
 
-    >>> print(quoted("d'Arc"), quoted("Träger"))
+    >>> print(quote("d'Arc"), quote("Träger"))
     'd''Arc' 'Tr\X2\00E4\X0\ger'
     """
     return f"'{''.join(_letter(letter) for letter in printable(text))}'"
@@ -144,7 +144,7 @@ def _root(lines: _Lines, name: str) -> _Root:
     application = lines.put("APPLICATION_CONTEXT('core data for automotive mechanical design processes')")
     lines.put(f"APPLICATION_PROTOCOL_DEFINITION('international standard','automotive_design',2000,#{application})")
     mechanical = lines.put(f"PRODUCT_CONTEXT('',#{application},'mechanical')")
-    product = lines.put(f"PRODUCT({quoted(name)},{quoted(name)},'',(#{mechanical}))")
+    product = lines.put(f"PRODUCT({quote(name)},{quote(name)},'',(#{mechanical}))")
     lines.put(f"PRODUCT_RELATED_PRODUCT_CATEGORY('assembly',$,(#{product}))")
     formation = lines.put(f"PRODUCT_DEFINITION_FORMATION('','',#{product})")
     design = lines.put(f"PRODUCT_DEFINITION_CONTEXT('part definition',#{application},'design')")
@@ -172,7 +172,7 @@ def _axes(lines: _Lines) -> int:
     return lines.put(f"AXIS2_PLACEMENT_3D('',#{origin},#{up},#{along})")
 
 
-def _written(part: Part, colour: Colour, path: Path) -> dict[int, str]:
+def _write_entities(part: Part, colour: Colour, path: Path) -> dict[int, str]:
     """The entities that the CAD kernel writes for one solid."""
     solids = list(part.shape.solids)
     for solid in solids:
@@ -187,10 +187,10 @@ def _append(lines: _Lines, root: _Root, part: Part, entities: Mapping[int, str])
     """Take a solid's entities over, renumbered and renamed, and place it in the assembly."""
     offset = lines.reserve(max(entities) + 1)
     for number, entity in entities.items():
-        lines.put(_named(_REFERENCE.sub(lambda match: f"#{int(match[1]) + offset}", entity), part.name), number + offset)
+        lines.put(_name_entity(_REFERENCE.sub(lambda match: f"#{int(match[1]) + offset}", entity), part.name), number + offset)
     definition = offset + _only(entities, "PRODUCT_DEFINITION(")
-    shape = offset + _represented(entities)
-    use = lines.put(f"NEXT_ASSEMBLY_USAGE_OCCURRENCE('{len(root.axes)}',{quoted(part.name)},'',#{root.definition},#{definition},$)")
+    shape = offset + _representation(entities)
+    use = lines.put(f"NEXT_ASSEMBLY_USAGE_OCCURRENCE('{len(root.axes)}',{quote(part.name)},'',#{root.definition},#{definition},$)")
     place, origin = _axes(lines), root.axes[0]
     root.axes.append(place)
     turn = lines.put(f"ITEM_DEFINED_TRANSFORMATION('','',#{origin},#{place})")
@@ -203,13 +203,13 @@ def _append(lines: _Lines, root: _Root, part: Part, entities: Mapping[int, str])
     _append_material(lines, part, definition, root.context)
 
 
-def _named(entity: str, name: str) -> str:
+def _name_entity(entity: str, name: str) -> str:
     """Products and solids bear the part's name; written here, for the kernel's writer knows only some letters."""
     if entity.startswith("PRODUCT("):
         context = entity[entity.rindex(",") :]
-        return f"PRODUCT({quoted(name)},{quoted(name)},''{context}"
+        return f"PRODUCT({quote(name)},{quote(name)},''{context}"
     if entity.startswith("MANIFOLD_SOLID_BREP("):
-        return f"MANIFOLD_SOLID_BREP({quoted(name)}{entity[entity.rindex(',') :]}"
+        return f"MANIFOLD_SOLID_BREP({quote(name)}{entity[entity.rindex(',') :]}"
     return entity
 
 
@@ -218,7 +218,7 @@ def _only(entities: Mapping[int, str], start: str) -> int:
     return number
 
 
-def _represented(entities: Mapping[int, str]) -> int:
+def _representation(entities: Mapping[int, str]) -> int:
     """The shape representation that the product's definition points to."""
     return int(_REFERENCE.findall(entities[_only(entities, "SHAPE_DEFINITION_REPRESENTATION(")])[1])
 
@@ -232,7 +232,7 @@ def _append_material(lines: _Lines, part: Part, definition: int, context: int) -
 
 
 def _material_items(lines: _Lines, part: Part) -> Iterator[tuple[str, int]]:
-    yield "material name", lines.put(f"DESCRIPTIVE_REPRESENTATION_ITEM({quoted(part.material)},'')")
+    yield "material name", lines.put(f"DESCRIPTIVE_REPRESENTATION_ITEM({quote(part.material)},'')")
     mass = lines.put("(MASS_UNIT()NAMED_UNIT(*)SI_UNIT(.KILO.,.GRAM.))")
     length = lines.put("(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT($,.METRE.))")
     elements = (lines.put(f"DERIVED_UNIT_ELEMENT(#{mass},1.)"), lines.put(f"DERIVED_UNIT_ELEMENT(#{length},-3.)"))

@@ -19,7 +19,7 @@ from flexstage.base.progress import Progress
 from flexstage.base.store import temporary_folder
 from flexstage.base.text import printable
 from flexstage.mechanism.mechanism import Mechanism
-from flexstage.solid.exchange.grid import Grid, Gridding, stored_grid
+from flexstage.solid.exchange.grid import Grid, Gridding, grid_from_cache
 from flexstage.solid.fea.component import Component, components
 from flexstage.solid.fea.content import content
 from flexstage.solid.fea.fineness import Fineness
@@ -55,13 +55,13 @@ def stage_mesh(mechanism: Mechanism, fineness: Fineness, limits: Limits = _LIMIT
     jobs = [Gridding(content(part), part, fineness) for part in parts]
     own: dict[str, Grid] = {}
     work_all(
-        {job.key: job for job in reversed(jobs)}.values(), lambda job, data: own.update({job.key: stored_grid(data)}), limits, progress
+        {job.key: job for job in reversed(jobs)}.values(), lambda job, data: own.update({job.key: grid_from_cache(data)}), limits, progress
     )
     numbers = {name: number for number, name in enumerate(stage.pieces)}
-    return StageMesh(stage, parts, tuple(_placed(job.component, own[job.key], numbers) for job in jobs), tuple(stage.pieces))
+    return StageMesh(stage, parts, tuple(_place_mesh(job.component, own[job.key], numbers) for job in jobs), tuple(stage.pieces))
 
 
-def _placed(part: Component, own: Grid, numbers: Mapping[str, int]) -> Grid:
+def _place_mesh(part: Component, own: Grid, numbers: Mapping[str, int]) -> Grid:
     names = np.array([numbers[piece.name] for piece in part.pieces])
     return Grid(part.place.point(own.points), own.cells, names[own.owner])
 
@@ -69,8 +69,8 @@ def _placed(part: Component, own: Grid, numbers: Mapping[str, int]) -> Grid:
 def vtu(mesh: StageMesh) -> bytes:
     """The file of a stage's mesh: cell data `piece`, `body`, `material`, `component` (numbers), `young` [Pa] and `density` [kg/m^3]."""
     pieces = [mesh.stage.pieces[name] for name in mesh.pieces]
-    bodies = _numbered(piece.name if piece.body is None else piece.body for piece in pieces)
-    materials = _numbered(mesh.stage.materials[name] for name in mesh.pieces)
+    bodies = _number_points(piece.name if piece.body is None else piece.body for piece in pieces)
+    materials = _number_points(mesh.stage.materials[name] for name in mesh.pieces)
     owner = np.concatenate([item.owner for item in mesh.grids])
     part = np.concatenate([np.full(len(item.owner), number) for number, item in enumerate(mesh.grids)])
     body = np.array([bodies[piece.name if piece.body is None else piece.body] for piece in pieces])
@@ -84,14 +84,14 @@ def vtu(mesh: StageMesh) -> bytes:
         "density": np.array([piece.medium.density for piece in pieces])[owner],
     }
     names = {"piece": mesh.pieces, "body": tuple(bodies), "material": tuple(materials)}
-    return _commented(_written(mesh.grids, data), {**names, "component": tuple(each.name for each in mesh.components)})
+    return _comment(_write_xml(mesh.grids, data), {**names, "component": tuple(each.name for each in mesh.components)})
 
 
-def _numbered(names: Iterable[str]) -> dict[str, int]:
+def _number_points(names: Iterable[str]) -> dict[str, int]:
     return {name: number for number, name in enumerate(dict.fromkeys(names))}
 
 
-def _written(grids: Sequence[Grid], data: Mapping[str, Array]) -> bytes:
+def _write_xml(grids: Sequence[Grid], data: Mapping[str, Array]) -> bytes:
     starts = [0, *accumulate(len(item.points) for item in grids)]
     cells = np.vstack([item.cells + start for item, start in zip(grids, starts, strict=False)])
     points = np.vstack([item.points for item in grids])
@@ -102,7 +102,7 @@ def _written(grids: Sequence[Grid], data: Mapping[str, Array]) -> bytes:
         return path.read_bytes()
 
 
-def _commented(content: bytes, names: Mapping[str, Sequence[str]]) -> bytes:
+def _comment(content: bytes, names: Mapping[str, Sequence[str]]) -> bytes:
     """The file with the names behind its numbers as a comment."""
     lines = ["lengths in metres; numbers of the cell data:"]
     lines += [f"{kind} {number}: {escape(printable(name))}" for kind, members in names.items() for number, name in enumerate(members)]

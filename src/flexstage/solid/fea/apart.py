@@ -50,15 +50,15 @@ class _Checking(_Drawing):
 
 def contact_apart(mechanism: Mechanism, clearance: float = 0.0, limits: Limits = _LIMITS) -> tuple[Finding, ...]:
     """What `contact_findings` finds, in a process of its own. Raises `DesignError` where that crashes or takes too long."""
-    return tuple(Finding(**item) for item in json.loads(_done(_Checking(mechanism, clearance), limits)))
+    return tuple(Finding(**item) for item in json.loads(_result_of(_Checking(mechanism, clearance), limits)))
 
 
 def step_apart(mechanism: Mechanism, limits: Limits = _LIMITS) -> bytes:
     """What `step` writes, in a process of its own. Raises `DesignError` where that crashes or takes too long."""
-    return _done(_Drawing(mechanism), limits)
+    return _result_of(_Drawing(mechanism), limits)
 
 
-def _done(job: Job, limits: Limits) -> bytes:
+def _result_of(job: Job, limits: Limits) -> bytes:
     require_solver()
     results: list[bytes] = []
     work_all([job], lambda _job, data: results.append(data), limits)

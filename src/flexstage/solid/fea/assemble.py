@@ -25,7 +25,7 @@ from flexstage.models.linear.channels import (
 )
 from flexstage.models.linear.model import Contribution, LinearModel, assemble
 from flexstage.parts.piezo import Piezo
-from flexstage.solid.fea.casing import casing, end_faces_apart
+from flexstage.solid.fea.casing import casing, end_face_twist
 from flexstage.solid.fea.component import Component, Interface, Joint, groups, is_elastic
 from flexstage.solid.fea.fineness import WARPS
 from flexstage.solid.fea.superelement import Superelement
@@ -75,9 +75,9 @@ def linear_model(
     Coordinates: twists of rigid bodies, twists of the joints between elastic components (stage axes, at the joint), warps of their faces
     (in the joint's own axes), and each component's internal coordinates. Raises `DesignError` when the joined stage can move freely.
     """
-    model = _joined(mechanism, assembly, parts)
+    model = _join(mechanism, assembly, parts)
     elastic, mass = dict(_stiffness(model)), dict(_inertia(model))
-    _check_held(model, elastic)
+    _require_support(model, elastic)
     force, imposed = _inputs(model)
     output, feedthrough = _outputs(model, imposed)
     return LinearModel(
@@ -92,16 +92,16 @@ def linear_model(
         feedthrough=feedthrough,
         rigid=_rigid(model),
         rigid_output=_rigid_outputs(model),
-        base_inertia=_carried(model),
+        base_inertia=_carry_wrench(model),
         damping=mechanism.damping,
         idle=(),
         provenance=provenance,
     )
 
 
-def _joined(mechanism: Mechanism, assembly: Assembly, parts: tuple[tuple[Component, Superelement], ...]) -> _Model:
+def _join(mechanism: Mechanism, assembly: Assembly, parts: tuple[tuple[Component, Superelement], ...]) -> _Model:
     blocks, names = _coordinates(assembly, parts)
-    placed = _placed(assembly, parts, blocks, len(names))
+    placed = _place(assembly, parts, blocks, len(names))
     twists: dict[str, Array] = {}
     for body in assembly.bodies:
         if not is_elastic(assembly, body):
@@ -112,19 +112,19 @@ def _joined(mechanism: Mechanism, assembly: Assembly, parts: tuple[tuple[Compone
     return _Model(mechanism, assembly, names, blocks, placed, twists)
 
 
-def placed_parts(assembly: Assembly, parts: tuple[tuple[Component, Superelement], ...]) -> tuple[Placed, ...]:
+def place_parts(assembly: Assembly, parts: tuple[tuple[Component, Superelement], ...]) -> tuple[Placed, ...]:
     """The components with the operators from the coordinates of their `linear_model`, for fields within them.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.mechanism.expand import expand
-    >>> placed_parts(expand(parallelogram()), ())
+    >>> place_parts(expand(parallelogram()), ())
     ()
     """
     blocks, names = _coordinates(assembly, parts)
-    return _placed(assembly, parts, blocks, len(names))
+    return _place(assembly, parts, blocks, len(names))
 
 
-def _placed(
+def _place(
     assembly: Assembly, parts: tuple[tuple[Component, Superelement], ...], blocks: Mapping[str, slice], size: int
 ) -> tuple[Placed, ...]:
     return tuple(Placed(component, element, _operator(assembly, component, element, blocks, size)) for component, element in parts)
@@ -146,14 +146,14 @@ def _coordinates(assembly: Assembly, parts: tuple[tuple[Component, Superelement]
             joint = item.joint
             if joint.name not in blocks and is_elastic(assembly, joint.body):
                 add(joint.name, [f"{joint.name}.{name}" for name in COMPONENTS])
-            if _yielding(item, element) and _warps(joint) not in blocks:
+            if _yielding_coordinates(item, element) and _warps(joint) not in blocks:
                 add(_warps(joint), [f"{joint.name}.warp{number + 1}" for number in range(WARPS)])
-        inner = element.size - element.joined
+        inner = element.size - element.boundary_coordinates
         add(_inside(component), [f"{component.name}~{number + 1}" for number in range(inner)])
     return blocks, tuple(names)
 
 
-def _yielding(item: Interface, element: Superelement) -> bool:
+def _yielding_coordinates(item: Interface, element: Superelement) -> bool:
     return item.yields and element.warps > 0
 
 
@@ -175,11 +175,11 @@ def _operator(assembly: Assembly, component: Component, element: Superelement, b
         else:
             at = component.place.point(joint.frame.position)
             result[rows, blocks[joint.body]] = turn @ transport(at - assembly.bodies[joint.body].reference)
-    yielding = [item.joint for item in component.interfaces if _yielding(item, element)]
+    yielding = [item.joint for item in component.interfaces if _yielding_coordinates(item, element)]
     for number, joint in enumerate(yielding):
         start = 6 * element.interfaces + WARPS * number
         result[start : start + WARPS, blocks[_warps(joint)]] = np.eye(WARPS)
-    result[element.joined :, blocks[_inside(component)]] = np.eye(element.size - element.joined)
+    result[element.boundary_coordinates :, blocks[_inside(component)]] = np.eye(element.size - element.boundary_coordinates)
     return result
 
 
@@ -200,7 +200,7 @@ def _stiffness(model: _Model) -> Iterator[tuple[str, Contribution]]:
 
 def _across(item: Placed, link: PlacedLink) -> Array:
     """Relative twist (6, N) of a stack's two end faces."""
-    return end_faces_apart(item.component, link) @ item.operator[: 6 * item.element.interfaces]
+    return end_face_twist(item.component, link) @ item.operator[: 6 * item.element.interfaces]
 
 
 def _loss_factor(model: _Model, name: str) -> float:
@@ -241,7 +241,7 @@ def _body_inertia(model: _Model, item: Placed, name: str, number: int) -> Iterat
     yield f"{name} (elastic)", Contribution(item.operator, whole - mean.T @ own @ mean)
 
 
-def _check_held(model: _Model, elastic: Mapping[str, Contribution]) -> None:
+def _require_support(model: _Model, elastic: Mapping[str, Contribution]) -> None:
     stiffness = assemble(elastic, model.size)
     scale = 1.0 / np.sqrt(np.maximum(np.diag(stiffness), np.finfo(float).tiny))
     values, vectors = np.linalg.eigh(stiffness * scale * scale[:, None])
@@ -310,7 +310,7 @@ def _rigid_outputs(model: _Model) -> Array:
     return result
 
 
-def _carried(model: _Model) -> Array:
+def _carry_wrench(model: _Model) -> Array:
     """Inertial forces (N, 6) when everything, the ground included, is accelerated rigidly."""
     centre = model.assembly.bodies[PLATFORM].reference
     total = np.zeros((model.size, 6))

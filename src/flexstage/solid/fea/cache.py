@@ -21,7 +21,7 @@ from flexstage.base.store import FOLDER_VARIABLE, cache_folder, write
 from flexstage.solid.fea.component import Component
 from flexstage.solid.fea.content import content
 from flexstage.solid.fea.fineness import Reduction
-from flexstage.solid.fea.store import read, versions
+from flexstage.solid.fea.store import from_bytes, versions
 
 
 @dataclass(frozen=True)
@@ -95,7 +95,7 @@ def find(cache: Cache, key: str, where: str, kind: Kind = SUPERELEMENTS) -> Foun
         return Found(None, _other_versions(path, key, where, kind))
     except OSError as error:
         return Found(None, (Finding(where, f"its {kind.noun} {path} cannot be read ({error.strerror})", _RECOMPUTED),))
-    outcome = read(data, key, versions(kind.method))
+    outcome = from_bytes(data, key, versions(kind.method))
     if isinstance(outcome, str):
         return Found(None, (Finding(where, f"its {kind.noun} {path} is not used: {outcome}", _RECOMPUTED),))
     with contextlib.suppress(OSError):
@@ -115,7 +115,7 @@ def keep(cache: Cache, key: str, where: str, data: bytes, kind: Kind = SUPERELEM
     path = _path(cache, key, kind)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        _swept(cache, path.parent, len(data), kind)
+        _remove_old(cache, path.parent, len(data), kind)
         write(path, data)
     except (OSError, DesignError) as error:
         why = error.strerror if isinstance(error, OSError) else error.findings[0].what
@@ -125,7 +125,7 @@ def keep(cache: Cache, key: str, where: str, data: bytes, kind: Kind = SUPERELEM
     return ()
 
 
-def _swept(cache: Cache, folder: Path, coming: int, kind: Kind) -> None:
+def _remove_old(cache: Cache, folder: Path, coming: int, kind: Kind) -> None:
     """Remove what was not used for longest, until there is room."""
     total = float(coming)
     for _, size, path in sorted(_files(folder, kind.suffix), reverse=True):

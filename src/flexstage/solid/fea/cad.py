@@ -12,7 +12,7 @@ from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array
 from flexstage.parts.body import Imported
 from flexstage.solid.fea.component import Component, Interface, Joint
-from flexstage.solid.fea.draw import drawn, moved
+from flexstage.solid.fea.draw import draw_form, move_solid
 from flexstage.solid.fea.piece import MILLIMETRES, Medium, Piece
 
 _TOLERANCE = 1e-3
@@ -42,25 +42,25 @@ def cad(component: Component) -> Cad:
     (10000.0, ('end', 'foot'))
     """
     media = tuple(dict.fromkeys(piece.medium for piece in component.pieces))
-    solids = [_fused([piece for piece in component.pieces if piece.medium == medium]) for medium in media]
+    solids = [_fuse([piece for piece in component.pieces if piece.medium == medium]) for medium in media]
     for number, solid in enumerate(solids):
         solid.mat(f"medium {number}")
     shape = solids[0] if len(solids) == 1 else occ.Glue(solids)
-    require(_in_pieces(component, shape))
-    shape = _stamped(shape, component.interfaces)
+    require(_pieces_of(component, shape))
+    shape = _name_solids(shape, component.interfaces)
     joints = [*(item.joint for item in component.interfaces), *component.fixed]
     require(finding for joint in joints if (finding := _name_face(shape, joint)) is not None)
     return Cad(shape, media, tuple(joint.name for joint in joints))
 
 
-def _fused(pieces: Sequence[Piece]) -> occ.TopoDS_Shape:
-    total = moved(drawn(pieces[0].form), pieces[0].frame)
+def _fuse(pieces: Sequence[Piece]) -> occ.TopoDS_Shape:
+    total = move_solid(draw_form(pieces[0].form), pieces[0].frame)
     for piece in pieces[1:]:
-        total = total + moved(drawn(piece.form), piece.frame)
+        total = total + move_solid(draw_form(piece.form), piece.frame)
     return total
 
 
-def _in_pieces(component: Component, shape: occ.TopoDS_Shape) -> Iterator[Finding]:
+def _pieces_of(component: Component, shape: occ.TopoDS_Shape) -> Iterator[Finding]:
     """Solids that share faces, glued media included, hang together; anything else that falls apart has a gap."""
     groups: list[set[tuple[float, ...]]] = []
     for solid in shape.solids:
@@ -72,9 +72,11 @@ def _in_pieces(component: Component, shape: occ.TopoDS_Shape) -> Iterator[Findin
         yield Finding(component.name, f"its pieces ({names}) fall into {len(groups)} separate solids", "Let their outlines touch")
 
 
-def _stamped(shape: occ.TopoDS_Shape, interfaces: Sequence[Interface]) -> occ.TopoDS_Shape:
+def _name_solids(shape: occ.TopoDS_Shape, interfaces: Sequence[Interface]) -> occ.TopoDS_Shape:
     """The shape with the end faces of foreign links printed on it."""
-    stamps = [moved(drawn(item.footprint), item.stamp) for item in interfaces if item.footprint is not None and item.stamp is not None]
+    stamps = [
+        move_solid(draw_form(item.footprint), item.stamp) for item in interfaces if item.footprint is not None and item.stamp is not None
+    ]
     if not stamps:
         return shape
     for stamp in stamps:
@@ -89,17 +91,17 @@ def _name_face(shape: occ.TopoDS_Shape, joint: Joint) -> Finding | None:
     flat = [face for face in shape.faces if _is_flat(face, origin, normal)]
     # A face around the joint (an annulus) has the same centre: the area tells them apart.
     area = joint.area * MILLIMETRES**2
-    nearest = min(flat, key=lambda face: abs(face.mass - area) / area + _away(face, origin) / np.sqrt(area), default=None)
-    if nearest is None or _away(nearest, origin) > _TOLERANCE or abs(nearest.mass - area) > _AREA * area:
+    nearest = min(flat, key=lambda face: abs(face.mass - area) / area + _distance(face, origin) / np.sqrt(area), default=None)
+    if nearest is None or _distance(nearest, origin) > _TOLERANCE or abs(nearest.mass - area) > _AREA * area:
         likeliest = "" if nearest is None else f"the likeliest face there has {nearest.mass:.4g} mm^2 instead of {area:.4g}"
-        found = "no flat face there" if nearest is None else f"{likeliest}, its centre {_away(nearest, origin):.3g} mm away"
+        found = "no flat face there" if nearest is None else f"{likeliest}, its centre {_distance(nearest, origin):.3g} mm away"
         what = f"the end face of {joint.link} does not meet {joint.body}: {found}"
         return Finding(joint.name, what, "Move the outline to touch it fully")
     nearest.name = joint.name
     return None
 
 
-def _away(face: occ.Face, origin: Array) -> float:
+def _distance(face: occ.Face, origin: Array) -> float:
     return float(np.linalg.norm(_coordinates(face.center) - origin))
 
 
@@ -138,5 +140,5 @@ def half_extents(piece: Piece) -> Array:
     """
     if isinstance(piece.form, Imported):
         return 0.5 * np.real(np.array(piece.form.size))
-    low, high = drawn(piece.form).bounding_box
+    low, high = draw_form(piece.form).bounding_box
     return 0.5 * (_coordinates(high) - _coordinates(low)) / MILLIMETRES

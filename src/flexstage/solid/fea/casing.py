@@ -42,7 +42,7 @@ def casing(link: PlacedLink) -> Array | None:
     return np.diag([0.0, across, across, bending / (1.0 + float(np.real(part.poisson))), bending, bending])
 
 
-def end_faces_apart(component: Component, link: PlacedLink) -> Array:
+def end_face_twist(component: Component, link: PlacedLink) -> Array:
     """Relative twist (6, 6 m) of a stack's end faces, second against first, at its centre in its frame, by the component's interfaces.
 
     >>> from flexstage.cases.parallelogram import parallelogram
@@ -50,7 +50,7 @@ def end_faces_apart(component: Component, link: PlacedLink) -> Array:
     >>> from flexstage.solid.fea.component import components
     >>> stage = parallelogram()
     >>> stack = next(part for part in components(stage) if part.name == "B/pzt")
-    >>> apart = end_faces_apart(stack, expand(stage).links["B/pzt"])
+    >>> apart = end_face_twist(stack, expand(stage).links["B/pzt"])
     >>> [float(value) for value in apart[0, [0, 6]]]  # along the stack
     [-1.0, 1.0]
     """

@@ -8,8 +8,8 @@ import numpy as np
 
 from flexstage.mechanism.mechanism import GROUND
 from flexstage.mechanism.near import near_pairs
-from flexstage.solid.fea.draw import drawn, moved
-from flexstage.solid.fea.near import Answer, Question, distance_text, frame_key, seen_from
+from flexstage.solid.fea.draw import draw_form, move_solid
+from flexstage.solid.fea.near import Answer, Question, distance_text, frame_key, relative_frame
 from flexstage.solid.fea.piece import MILLIMETRES, Piece, form_digest
 from flexstage.solid.fea.stage_pieces import Stage
 
@@ -33,14 +33,14 @@ def clearance_questions(stage: Stage, clearance: float) -> Iterator[Question]:
     pieces = list(stage.pieces.values())
     for one, other in near_pairs([stage.boxes[piece.name] for piece in pieces], clearance + TOUCHING):
         first, second = pieces[one], pieces[other]
-        if _belong(stage, first, second):
+        if _belong_together(stage, first, second):
             continue
-        relative = seen_from(second.frame, first.frame)
+        relative = relative_frame(second.frame, first.frame)
         key = f"pair {form_digest(first.form)} {form_digest(second.form)} {frame_key(relative)}"
         yield Question(key, first.name, lambda pair=(first, second), clearance=clearance: _answers(*pair, clearance))
 
 
-def _belong(stage: Stage, first: Piece, second: Piece) -> bool:
+def _belong_together(stage: Stage, first: Piece, second: Piece) -> bool:
     """Whether two pieces are of one body, or a link and a body it joins."""
     if first.body is not None and second.body is not None:
         return first.body == second.body
@@ -51,7 +51,7 @@ def _belong(stage: Stage, first: Piece, second: Piece) -> bool:
 
 
 def _answers(first: Piece, second: Piece, clearance: float) -> Iterator[Answer]:
-    here, there = drawn(first.form), moved(drawn(second.form), seen_from(second.frame, first.frame))
+    here, there = draw_form(first.form), move_solid(draw_form(second.form), relative_frame(second.frame, first.frame))
     away, common = float(here.Distance(there)), here * there  # a solid within another one is at a distance from its faces
     if common.mass > _NO_VOLUME:
         at = first.frame.point(np.array([common.center.x, common.center.y, common.center.z]) / MILLIMETRES) * MILLIMETRES

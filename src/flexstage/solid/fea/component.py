@@ -19,7 +19,7 @@ from flexstage.mechanism.expand import Assembly, PlacedLink, copies, expand
 from flexstage.mechanism.mechanism import GROUND, Mechanism
 from flexstage.parts.material import Material
 from flexstage.parts.piezo import Piezo
-from flexstage.solid.fea.piece import Form, Piece, drawable, end_area, medium, span, stack_medium
+from flexstage.solid.fea.piece import Form, Piece, end_area, form_of, medium, span, stack_medium
 from flexstage.spatial.frame import Frame, identity
 
 
@@ -119,7 +119,7 @@ def link_joints(link: PlacedLink, form: Form) -> tuple[Joint, Joint]:
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> link = next(iter(expand(parallelogram()).links.values()))
-    >>> [joint.body for joint in link_joints(link, drawable(link))] == list(link.joins)
+    >>> [joint.body for joint in link_joints(link, form_of(link))] == list(link.joins)
     True
     """
     half = 0.5 * span(form)
@@ -142,7 +142,7 @@ def is_elastic(assembly: Assembly, body: str) -> bool:
 
 
 def _forms(assembly: Assembly) -> dict[str, Form]:
-    drawn = {name: drawable(link) for name, link in assembly.links.items()}
+    drawn = {name: form_of(link) for name, link in assembly.links.items()}
     require(form for form in drawn.values() if isinstance(form, Finding))
     return {name: form for name, form in drawn.items() if not isinstance(form, Finding)}
 
@@ -192,13 +192,13 @@ def _component(graph: _Graph, nodes: list[str], frames: Mapping[str, Frame]) -> 
     foreign = _footprints(graph, bodies, graph.owner[nodes[0]])
     return Component(
         name=name,
-        pieces=tuple(Piece(piece.name, piece.form, piece.medium, _seen(piece.frame, place), piece.body) for piece in pieces),
+        pieces=tuple(Piece(piece.name, piece.form, piece.medium, _in_frame(piece.frame, place), piece.body) for piece in pieces),
         interfaces=tuple(
-            replace(item, joint=_placed(item.joint, place), stamp=None if item.stamp is None else _seen(item.stamp, place))
+            replace(item, joint=_place(item.joint, place), stamp=None if item.stamp is None else _in_frame(item.stamp, place))
             for item in (*own, *foreign)
         ),
-        fixed=tuple(_placed(joint, place) for joint in fixed),
-        bodies={body: _seen(Frame(np.eye(3), graph.assembly.bodies[body].reference), place).position for body in bodies},
+        fixed=tuple(_place(joint, place) for joint in fixed),
+        bodies={body: _in_frame(Frame(np.eye(3), graph.assembly.bodies[body].reference), place).position for body in bodies},
         place=place,
     )
 
@@ -238,11 +238,11 @@ def _footprints(graph: _Graph, bodies: list[str], owner: str) -> list[Interface]
     ]
 
 
-def _placed(joint: Joint, place: Frame) -> Joint:
-    return replace(joint, frame=_seen(joint.frame, place))
+def _place(joint: Joint, place: Frame) -> Joint:
+    return replace(joint, frame=_in_frame(joint.frame, place))
 
 
-def _seen(frame: Frame, place: Frame) -> Frame:
+def _in_frame(frame: Frame, place: Frame) -> Frame:
     """A frame of the stage in the axes of `place`, without the last bits of rounding: copies of one unit must come out equal."""
     back = np.swapaxes(place.rotation, -1, -2)
     rotation, position = back @ frame.rotation, back @ (frame.position - place.position)

@@ -15,9 +15,9 @@ from flexstage.mechanism.mechanism import GROUND, Mechanism
 from flexstage.mechanism.near import near_pairs
 from flexstage.solid.fea.clearance import clearance_questions
 from flexstage.solid.fea.component import components
-from flexstage.solid.fea.draw import drawn, moved
+from flexstage.solid.fea.draw import draw_form, move_solid
 from flexstage.solid.fea.imported import import_findings
-from flexstage.solid.fea.near import Answer, Question, answered, distance_text, frame_key, seen_from
+from flexstage.solid.fea.near import Answer, Question, distance_text, findings_of, frame_key, relative_frame
 from flexstage.solid.fea.piece import MILLIMETRES, Piece, form_digest, span, thinnest
 from flexstage.solid.fea.sliver import SLIVER, sliver_findings
 from flexstage.solid.fea.stage_pieces import Stage, stage_pieces
@@ -49,7 +49,7 @@ def contact_findings(mechanism: Mechanism, clearance: float = 0.0) -> tuple[Find
     if foreign := import_findings(mechanism):
         return foreign
     questions = [*_joint_questions(stage), *_body_questions(stage), *clearance_questions(stage, clearance)]
-    found = tuple(answered(questions))
+    found = tuple(findings_of(questions))
     return (*found, *sliver_findings(components(mechanism), coarse=bool(found)))
 
 
@@ -95,7 +95,7 @@ def _end(stage: Stage, link: str, number: int) -> _End:
     pieces = [each for each in stage.bodies.get(joint.body, ()) if joint.body != GROUND or _group(each.name) == _group(link)]
     boxes = [stage.boxes[link], *(stage.boxes[each.name] for each in pieces)]
     near = [pieces[other - 1] for one, other in near_pairs(boxes, _NEAR) if one == 0]
-    chosen = [Piece(each.name, each.form, each.medium, seen_from(each.frame, piece.frame), joint.body) for each in near or pieces]
+    chosen = [Piece(each.name, each.form, each.medium, relative_frame(each.frame, piece.frame), joint.body) for each in near or pieces]
     return _End(1.0 if number else -1.0, joint.body, tuple(chosen))
 
 
@@ -104,9 +104,9 @@ def _group(name: str) -> str:
 
 
 def _link_answers(piece: Piece, first: _End, second: _End) -> Iterator[Answer]:
-    shape, half = drawn(piece.form), 0.5 * span(piece.form) * MILLIMETRES
+    shape, half = draw_form(piece.form), 0.5 * span(piece.form) * MILLIMETRES
     drawn_ends = [end for end in (first, second) if end.pieces]
-    solids = {end.side: _united(end.pieces, identity()) for end in drawn_ends}
+    solids = {end.side: _unite(end.pieces, identity()) for end in drawn_ends}
     meetings = {end.side: _meeting(shape, half, end.side, solids[end.side]) for end in drawn_ends}
     bad = [end for end in drawn_ends if not meetings[end.side].sound]
     if bad and all(_meeting(shape, half, -end.side, solids[end.side]).sound for end in drawn_ends):
@@ -170,7 +170,7 @@ def _body_questions(stage: Stage) -> Iterator[Question]:
     for body, pieces in stage.bodies.items():
         if body != GROUND and len(pieces) > 1:
             base = pieces[0].frame
-            seen = [Piece(piece.name, piece.form, piece.medium, seen_from(piece.frame, base), body) for piece in pieces]
+            seen = [Piece(piece.name, piece.form, piece.medium, relative_frame(piece.frame, base), body) for piece in pieces]
             key = " ".join(f"{form_digest(piece.form)} {frame_key(piece.frame)}" for piece in seen)
             slot = SLIVER * max(thinnest(piece.form) for piece in pieces)
             near = near_pairs([stage.boxes[piece.name] for piece in pieces], slot)
@@ -178,11 +178,11 @@ def _body_questions(stage: Stage) -> Iterator[Question]:
 
 
 def _body_answers(pieces: Sequence[Piece], near: Sequence[tuple[int, int]]) -> Iterator[Answer]:
-    shapes = [moved(drawn(piece.form), piece.frame) for piece in pieces]
+    shapes = [move_solid(draw_form(piece.form), piece.frame) for piece in pieces]
     if len(occ.Fuse(shapes).solids) == 1:
         yield from _slot_answers(pieces, shapes, near)
     else:
-        yield from _apart_answers(pieces, shapes)
+        yield from _gap_answers(pieces, shapes)
 
 
 def _slot_answers(pieces: Sequence[Piece], shapes: Sequence[occ.TopoDS_Shape], near: Sequence[tuple[int, int]]) -> Iterator[Answer]:
@@ -195,9 +195,9 @@ def _slot_answers(pieces: Sequence[Piece], shapes: Sequence[occ.TopoDS_Shape], n
             yield what, "Close it, or make it wider: a mesh would have to follow it"
 
 
-def _apart_answers(pieces: Sequence[Piece], shapes: Sequence[occ.TopoDS_Shape]) -> Iterator[Answer]:
+def _gap_answers(pieces: Sequence[Piece], shapes: Sequence[occ.TopoDS_Shape]) -> Iterator[Answer]:
     """Groups of outlines that no face joins to the rest."""
-    groups = _connected(shapes)
+    groups = _connected_groups(shapes)
     for group in groups[1:]:
         rest = [number for number in range(len(shapes)) if number not in group]
         away, one, other = min((float(shapes[i].Distance(shapes[j])), i, j) for i in group for j in rest)
@@ -209,7 +209,7 @@ def _apart_answers(pieces: Sequence[Piece], shapes: Sequence[occ.TopoDS_Shape]) 
             yield what, "Let them touch over a face, or overlap"
 
 
-def _connected(shapes: Sequence[occ.TopoDS_Shape]) -> list[list[int]]:
+def _connected_groups(shapes: Sequence[occ.TopoDS_Shape]) -> list[list[int]]:
     """Groups of shapes joined over faces."""
     groups: list[list[int]] = []
     for number, shape in enumerate(shapes):
@@ -219,6 +219,6 @@ def _connected(shapes: Sequence[occ.TopoDS_Shape]) -> list[list[int]]:
     return sorted(groups, key=lambda group: (-len(group), group))
 
 
-def _united(pieces: Sequence[Piece], base: Frame) -> occ.TopoDS_Shape:
-    shapes = [moved(drawn(piece.form), seen_from(piece.frame, base)) for piece in pieces]
+def _unite(pieces: Sequence[Piece], base: Frame) -> occ.TopoDS_Shape:
+    shapes = [move_solid(draw_form(piece.form), relative_frame(piece.frame, base)) for piece in pieces]
     return shapes[0] if len(shapes) == 1 else occ.Fuse(shapes)

@@ -45,8 +45,8 @@ def contributions(space: Field, groups: Mapping[str, Array], basis: Array) -> It
     >>> from flexstage.solid.fea.bar import bar
     >>> from flexstage.solid.fea.field import field
     >>> from flexstage.solid.fea.fineness import Fineness
-    >>> from flexstage.solid.fea.mesh import meshed
-    >>> space = field(meshed(bar(), Fineness(order=2)), ["foot"], 2)
+    >>> from flexstage.solid.fea.mesh import mesh_component
+    >>> space = field(mesh_component(bar(), Fineness(order=2)), ["foot"], 2)
     >>> half = np.arange(space.meshed.mesh.ne) % 2 == 0
     >>> moved = rigid(space, Frame(np.eye(3), np.zeros(3)))[:, :1]
     >>> parts = list(contributions(space, {"even": half, "odd": ~half}, moved))
@@ -54,16 +54,16 @@ def contributions(space: Field, groups: Mapping[str, Array], basis: Array) -> It
     0.01
     """
     found = [_Group(name, elements, degrees_of(space, elements)) for name, elements in groups.items()]
-    for alike in _coloured(found):
+    for alike in _group_by_law(found):
         together = np.any([group.elements for group in alike], axis=0)
-        strained = _strained(space, alike, basis)
+        strained = _strain_operator(space, alike, basis)
         forces, momenta = times(stiffness(space, together), strained), times(inertia(space, together), basis)
         for group in alike:
             rows = np.flatnonzero(group.degrees)
             yield Contribution(group.name, rows, basis[rows], strained[rows], forces[rows], momenta[rows])
 
 
-def _coloured(groups: list[_Group]) -> list[list[_Group]]:
+def _group_by_law(groups: list[_Group]) -> list[list[_Group]]:
     """The groups in as few sets as come at once, none of which has two that share a degree of freedom."""
     sets: list[list[_Group]] = []
     taken: list[Array] = []
@@ -78,7 +78,7 @@ def _coloured(groups: list[_Group]) -> list[list[_Group]]:
     return sets
 
 
-def _strained(space: Field, groups: list[_Group], basis: Array) -> Array:
+def _strain_operator(space: Field, groups: list[_Group], basis: Array) -> Array:
     """The motions (n, k) on the groups' degrees of freedom, each less its nearest rigid motion; zero elsewhere."""
     result = np.zeros_like(basis)
     for group in groups:

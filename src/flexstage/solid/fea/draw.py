@@ -39,11 +39,11 @@ _STATIONS = 33
 Curve = list[occ.TopoDS_Shape]
 
 
-def drawn(form: Form) -> occ.Solid:
+def draw_form(form: Form) -> occ.Solid:
     """A form as a CAD solid at the origin [mm]: links along x, thin along y, width along z.
 
     >>> from flexstage.parts.body import Block
-    >>> round(drawn(Block("steel", (0.01, 0.02, 0.03))).mass, 6)  # mm^3
+    >>> round(draw_form(Block("steel", (0.01, 0.02, 0.03))).mass, 6)  # mm^3
     6000.0
     """
     if isinstance(form, Block):
@@ -77,11 +77,11 @@ def _shape(part: Shaped) -> Shape:
     return found
 
 
-def moved(solid: occ.TopoDS_Shape, frame: Frame) -> occ.TopoDS_Shape:
+def move_solid(solid: occ.TopoDS_Shape, frame: Frame) -> occ.TopoDS_Shape:
     """A solid drawn at the origin, moved into a frame given in metres.
 
     >>> from flexstage.parts.body import Block
-    >>> there = moved(drawn(Block("steel", (0.01, 0.01, 0.01))), Frame(np.eye(3), np.array([0.1, 0.0, 0.0])))
+    >>> there = move_solid(draw_form(Block("steel", (0.01, 0.01, 0.01))), Frame(np.eye(3), np.array([0.1, 0.0, 0.0])))
     >>> round(there.center.x, 6)
     100.0
     """
@@ -124,8 +124,8 @@ def _tube(form: Cylinder) -> occ.Solid:
 
 def _neck(form: Neck) -> occ.Solid:
     if form.width is not None:
-        flat = _extruded(form.thickness, form.profile, 4.0 * form.width + 4.0 * form.thickness + 4.0 * length(form.profile))
-        upright = _extruded(form.width, form.profile, 4.0 * form.width + 4.0 * form.thickness + 4.0 * length(form.profile))
+        flat = _extrude(form.thickness, form.profile, 4.0 * form.width + 4.0 * form.thickness + 4.0 * length(form.profile))
+        upright = _extrude(form.width, form.profile, 4.0 * form.width + 4.0 * form.thickness + 4.0 * length(form.profile))
         return flat * upright.Rotate(occ.Axis(occ.Pnt(0, 0, 0), occ.X), 90.0)
     half = 0.5 * _mm(length(form.profile))
     upper = _upper(0.5 * _mm(form.thickness), form.profile)
@@ -135,7 +135,7 @@ def _neck(form: Neck) -> occ.Solid:
     return occ.Face(wire).Revolve(occ.Axis(occ.Pnt(0, 0, 0), occ.X), 360.0)
 
 
-def _extruded(thickness: object, profile: Profile, width: object) -> occ.Solid:
+def _extrude(thickness: object, profile: Profile, width: object) -> occ.Solid:
     """The profile on both sides of the xz plane, drawn through the width."""
     half, rise = 0.5 * _mm(length(profile)), 0.5 * _mm(thickness)
     upper, lower = _upper(rise, profile), _upper(rise, profile, side=-1.0)
@@ -166,7 +166,7 @@ def _upper(rise: float, profile: Profile, side: float = 1.0) -> Curve:
 def _cut(rise: float, profile: Profile, side: float) -> tuple[Curve, float, float]:
     """The curved part, shortened: its edges, how far it reaches along x and its height there [mm]."""
     if isinstance(profile, Filleted):
-        return _filleted(rise, profile, side)
+        return _fillet(rise, profile, side)
     half, height = 0.5 * _mm(length(profile)), _mm(cut_height(profile))
     largest = float(np.arcsin(1.0 - SHORTENED))
 
@@ -178,7 +178,7 @@ def _cut(rise: float, profile: Profile, side: float) -> tuple[Curve, float, floa
     return [curve], reach, side * end
 
 
-def _filleted(rise: float, profile: Filleted, side: float) -> tuple[Curve, float, float]:
+def _fillet(rise: float, profile: Filleted, side: float) -> tuple[Curve, float, float]:
     radius, half = _mm(profile.radius), 0.5 * _mm(profile.length)
     straight, largest = half - radius, float(np.arcsin(1.0 - SHORTENED))
 
@@ -218,7 +218,7 @@ class Shape:
 
 
 _OWN: Mapping[type[Shaped], Shape] = {
-    Notch: Shape(lambda form: _extruded(form.thickness, form.profile, form.width), cut),
+    Notch: Shape(lambda form: _extrude(form.thickness, form.profile, form.width), cut),
     Neck: Shape(_neck, cut),
     Leaf: Shape(lambda form: _box(form.length, form.thickness, form.width), bar),
     Rod: Shape(lambda form: _round(form.diameter, form.length), bar),

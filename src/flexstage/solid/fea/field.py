@@ -10,7 +10,7 @@ import ngsolve
 import numpy as np
 
 from flexstage.base.number import Array
-from flexstage.solid.fea.mesh import Meshed
+from flexstage.solid.fea.mesh import PieceMesh
 from flexstage.solid.fea.piece import MILLIMETRES
 from flexstage.spatial.frame import Frame
 
@@ -23,7 +23,7 @@ _PER_VOLUME = 1.0 / MILLIMETRES**3
 class Field:
     """The displacement space of a mesh, held on `held` faces, and the coefficients of its media."""
 
-    meshed: Meshed
+    meshed: PieceMesh
     space: ngsolve.VectorH1
     lame: ngsolve.CoefficientFunction
     shear: ngsolve.CoefficientFunction
@@ -52,18 +52,18 @@ class Field:
         return 2.0 * self.shear * strain + self.lame * ngsolve.Trace(strain) * ngsolve.Id(3)
 
 
-def field(meshed: Meshed, held: Iterable[str], order: int) -> Field:
+def field(meshed: PieceMesh, held: Iterable[str], order: int) -> Field:
     """The displacement space of `order` on a mesh with named faces held.
 
     >>> from flexstage.solid.fea.bar import bar
     >>> from flexstage.solid.fea.fineness import Fineness
-    >>> from flexstage.solid.fea.mesh import meshed
-    >>> space = field(meshed(bar(), Fineness(order=2)), ["foot"], 2)
+    >>> from flexstage.solid.fea.mesh import mesh_component
+    >>> space = field(mesh_component(bar(), Fineness(order=2)), ["foot"], 2)
     >>> space.size == 3 * (space.size // 3) and not space.free.all()
     True
     """
     mesh = meshed.mesh
-    pattern = "|".join(_escaped(name) for name in held)
+    pattern = "|".join(_escape(name) for name in held)
     space = ngsolve.VectorH1(mesh, order=order, dirichlet=pattern) if pattern else ngsolve.VectorH1(mesh, order=order)
 
     def coefficient(values: list[float]) -> ngsolve.CoefficientFunction:
@@ -79,7 +79,7 @@ def field(meshed: Meshed, held: Iterable[str], order: int) -> Field:
     )
 
 
-def _escaped(name: str) -> str:
+def _escape(name: str) -> str:
     return "".join(f"\\{letter}" if letter in ".+*?()[]{}|^$\\" else letter for letter in name)
 
 
@@ -88,8 +88,8 @@ def strain(displacement: ngsolve.CoefficientFunction) -> ngsolve.CoefficientFunc
 
     >>> from flexstage.solid.fea.bar import bar
     >>> from flexstage.solid.fea.fineness import Fineness
-    >>> from flexstage.solid.fea.mesh import meshed
-    >>> space = field(meshed(bar(), Fineness(order=2)), ["foot"], 2)
+    >>> from flexstage.solid.fea.mesh import mesh_component
+    >>> space = field(mesh_component(bar(), Fineness(order=2)), ["foot"], 2)
     >>> function = ngsolve.GridFunction(space.space)
     >>> function.Set(ngsolve.CF((1e-3 * ngsolve.x, 0, 0)))
     >>> round(ngsolve.Integrate(strain(function)[0, 0], space.meshed.mesh), 6)  # 1e-3 over 10 000 mm^3
@@ -103,8 +103,8 @@ def stiffness(space: Field, elements: Array | None = None, *, assemble: bool = T
 
     >>> from flexstage.solid.fea.bar import bar
     >>> from flexstage.solid.fea.fineness import Fineness
-    >>> from flexstage.solid.fea.mesh import meshed
-    >>> space = field(meshed(bar(), Fineness(order=2)), ["foot"], 2)
+    >>> from flexstage.solid.fea.mesh import mesh_component
+    >>> space = field(mesh_component(bar(), Fineness(order=2)), ["foot"], 2)
     >>> forces = times(stiffness(space), rigid(space, Frame(np.eye(3), np.zeros(3))))
     >>> bool(np.abs(forces).max() < 1e-3)  # N per m and rad, of a bar of 1e8 N/m
     True
@@ -120,8 +120,8 @@ def inertia(space: Field, elements: Array | None = None, *, assemble: bool = Tru
 
     >>> from flexstage.solid.fea.bar import bar
     >>> from flexstage.solid.fea.fineness import Fineness
-    >>> from flexstage.solid.fea.mesh import meshed
-    >>> space = field(meshed(bar(), Fineness(order=2)), ["foot"], 2)
+    >>> from flexstage.solid.fea.mesh import mesh_component
+    >>> space = field(mesh_component(bar(), Fineness(order=2)), ["foot"], 2)
     >>> moved = rigid(space, Frame(np.eye(3), np.zeros(3)))[:, :1]
     >>> round((moved.T @ times(inertia(space), moved)).item(), 9)  # the bar's 10 g
     0.01
@@ -136,21 +136,21 @@ def _volume(elements: Array | None) -> object:
     return ngsolve.dx if elements is None else ngsolve.dx(definedonelements=ngsolve.BitArray(elements.tolist()))
 
 
-def applied(form: ngsolve.BilinearForm, vectors: Array) -> Array:
+def apply_form(form: ngsolve.BilinearForm, vectors: Array) -> Array:
     """A form applied to columns (n, k), without a matrix.
 
     >>> from flexstage.solid.fea.bar import bar
     >>> from flexstage.solid.fea.fineness import Fineness
-    >>> from flexstage.solid.fea.mesh import meshed
-    >>> space = field(meshed(bar(), Fineness(order=2)), ["foot"], 2)
+    >>> from flexstage.solid.fea.mesh import mesh_component
+    >>> space = field(mesh_component(bar(), Fineness(order=2)), ["foot"], 2)
     >>> moved = rigid(space, Frame(np.eye(3), np.zeros(3)))[:, :1]
-    >>> round((moved.T @ applied(inertia(space, assemble=False), moved)).item(), 9)
+    >>> round((moved.T @ apply_form(inertia(space, assemble=False), moved)).item(), 9)
     0.01
     """
-    return _by_columns(form.Apply, vectors)
+    return _apply_by_columns(form.Apply, vectors)
 
 
-def _by_columns(operator: Callable[[ngsolve.BaseVector, ngsolve.BaseVector], object], vectors: Array) -> Array:
+def _apply_by_columns(operator: Callable[[ngsolve.BaseVector, ngsolve.BaseVector], object], vectors: Array) -> Array:
     """Columns (n, k) that an operator, which writes to its second vector, makes of columns (n, k)."""
     x, y = ngsolve.BaseVector(len(vectors)), ngsolve.BaseVector(len(vectors))
     result = np.empty_like(vectors)
@@ -166,10 +166,10 @@ def stroke_force(space: Field, frame: Frame, length: float) -> Array:
 
     >>> from flexstage.solid.fea.bar import bar
     >>> from flexstage.solid.fea.fineness import Fineness
-    >>> from flexstage.solid.fea.mesh import meshed
-    >>> space = field(meshed(bar(), Fineness(order=2)), ["foot"], 2)
+    >>> from flexstage.solid.fea.mesh import mesh_component
+    >>> space = field(mesh_component(bar(), Fineness(order=2)), ["foot"], 2)
     >>> end = Frame(np.eye(3), np.array([0.1, 0.0, 0.0]))
-    >>> motion = factored(space, stiffness(space))(stroke_force(space, Frame(np.eye(3), np.zeros(3)), 0.1))
+    >>> motion = factorise(space, stiffness(space))(stroke_force(space, Frame(np.eye(3), np.zeros(3)), 0.1))
     >>> round(float((mean_motion(space, end, "end") @ motion)[0]), 9)  # a unit stroke lengthens it by one
     1.0
     """
@@ -190,8 +190,8 @@ def rigid(space: Field, frame: Frame, faces: str | None = None) -> Array:
 
     >>> from flexstage.solid.fea.bar import bar
     >>> from flexstage.solid.fea.fineness import Fineness
-    >>> from flexstage.solid.fea.mesh import meshed
-    >>> space = field(meshed(bar(), Fineness(order=2)), ["foot"], 2)
+    >>> from flexstage.solid.fea.mesh import mesh_component
+    >>> space = field(mesh_component(bar(), Fineness(order=2)), ["foot"], 2)
     >>> end = Frame(np.eye(3), np.array([0.1, 0.0, 0.0]))
     >>> (mean_motion(space, end, "end") @ rigid(space, end)).round(9).tolist() == np.eye(6).tolist()
     True
@@ -205,18 +205,18 @@ def rigid(space: Field, frame: Frame, faces: str | None = None) -> Array:
     return np.stack([motion.T.ravel() for motion in motions], axis=1)
 
 
-def warped(space: Field, frame: Frame, size: float, faces: str) -> Array:
+def warping_motion(space: Field, frame: Frame, size: float, faces: str) -> Array:
     """The twelve motions (n, 12) of a face across a frame's x axis that are linear or quadratic over it, and not rigid.
 
     With y and z over `size` [m]: in-plane strains and shear; u_x, u_y and u_z as y^2, y z and z^2, in the frame's axes.
 
     >>> from flexstage.solid.fea.bar import bar
     >>> from flexstage.solid.fea.fineness import Fineness
-    >>> from flexstage.solid.fea.mesh import meshed
-    >>> space = field(meshed(bar(), Fineness(order=2)), ["foot"], 2)
+    >>> from flexstage.solid.fea.mesh import mesh_component
+    >>> space = field(mesh_component(bar(), Fineness(order=2)), ["foot"], 2)
     >>> end = Frame(np.eye(3), np.array([0.1, 0.0, 0.0]))
     >>> from flexstage.solid.fea.fineness import WARPS
-    >>> warped(space, end, 0.01, "end").shape == (space.size, WARPS)
+    >>> warping_motion(space, end, 0.01, "end").shape == (space.size, WARPS)
     True
     """
     arm = [coordinate * (1.0 / MILLIMETRES) - float(at) for coordinate, at in zip(_coordinates(), frame.position, strict=True)]
@@ -249,7 +249,7 @@ def _interpolated(space: Field, columns: list[ngsolve.CoefficientFunction], face
         if faces is None:
             function.Set(column, dual=False)
         else:
-            function.Set(column, definedon=mesh.Boundaries(_escaped(faces)))
+            function.Set(column, definedon=mesh.Boundaries(_escape(faces)))
         result[:, number] = function.vec.FV().NumPy()
     return result
 
@@ -259,8 +259,8 @@ def degrees_of(space: Field, elements: Array) -> Array:
 
     >>> from flexstage.solid.fea.bar import bar
     >>> from flexstage.solid.fea.fineness import Fineness
-    >>> from flexstage.solid.fea.mesh import meshed
-    >>> space = field(meshed(bar(), Fineness(order=2)), ["foot"], 2)
+    >>> from flexstage.solid.fea.mesh import mesh_component
+    >>> space = field(mesh_component(bar(), Fineness(order=2)), ["foot"], 2)
     >>> bool(degrees_of(space, np.ones(space.meshed.mesh.ne, dtype=bool)).all())
     True
     """
@@ -275,8 +275,8 @@ def mean_motion(space: Field, frame: Frame, face: str) -> Array:
 
     >>> from flexstage.solid.fea.bar import bar
     >>> from flexstage.solid.fea.fineness import Fineness
-    >>> from flexstage.solid.fea.mesh import meshed
-    >>> space = field(meshed(bar(), Fineness(order=2)), ["foot"], 2)
+    >>> from flexstage.solid.fea.mesh import mesh_component
+    >>> space = field(mesh_component(bar(), Fineness(order=2)), ["foot"], 2)
     >>> end = Frame(np.eye(3), np.array([0.1, 0.0, 0.0]))
     >>> mean_motion(space, end, "end").shape == (6, space.size)
     True
@@ -285,7 +285,7 @@ def mean_motion(space: Field, frame: Frame, face: str) -> Array:
     rows = np.empty((6, space.size))
     for axis in range(6):
         form = ngsolve.LinearForm(space.space)
-        form += ngsolve.InnerProduct(_rigid_motion(frame, axis), v) * ngsolve.ds(_escaped(face))
+        form += ngsolve.InnerProduct(_rigid_motion(frame, axis), v) * ngsolve.ds(_escape(face))
         form.Assemble()
         rows[axis] = form.vec.FV().NumPy()
     return np.linalg.solve(rows @ rigid(space, frame), rows)
@@ -296,24 +296,24 @@ def times(form: ngsolve.BilinearForm, vectors: Array) -> Array:
 
     >>> from flexstage.solid.fea.bar import bar
     >>> from flexstage.solid.fea.fineness import Fineness
-    >>> from flexstage.solid.fea.mesh import meshed
-    >>> space = field(meshed(bar(), Fineness(order=2)), ["foot"], 2)
+    >>> from flexstage.solid.fea.mesh import mesh_component
+    >>> space = field(mesh_component(bar(), Fineness(order=2)), ["foot"], 2)
     >>> times(inertia(space), np.zeros((space.size, 2))).shape == (space.size, 2)
     True
     """
-    return _by_columns(form.mat.Mult, vectors)
+    return _apply_by_columns(form.mat.Mult, vectors)
 
 
-def shifted(space: Field, elastic: ngsolve.BilinearForm, mass: ngsolve.BilinearForm, shift: float) -> ngsolve.BilinearForm:
+def shift_stiffness(space: Field, elastic: ngsolve.BilinearForm, mass: ngsolve.BilinearForm, shift: float) -> ngsolve.BilinearForm:
     """Stiffness plus shift times inertia: definite without any support.
 
     >>> from flexstage.solid.fea.bar import bar
     >>> from flexstage.solid.fea.fineness import Fineness
-    >>> from flexstage.solid.fea.mesh import meshed
-    >>> space = field(meshed(bar(), Fineness(order=2)), ["foot"], 2)
+    >>> from flexstage.solid.fea.mesh import mesh_component
+    >>> space = field(mesh_component(bar(), Fineness(order=2)), ["foot"], 2)
     >>> elastic, mass = stiffness(space), inertia(space)
     >>> moved = rigid(space, Frame(np.eye(3), np.zeros(3)))[:, :1]
-    >>> round((moved.T @ times(shifted(space, elastic, mass, 100.0), moved)).item(), 5)  # 100 / s^2 times 10 g
+    >>> round((moved.T @ times(shift_stiffness(space, elastic, mass, 100.0), moved)).item(), 5)  # 100 / s^2 times 10 g
     1.0
     """
     u, v = space.space.TnT()
@@ -327,21 +327,21 @@ def shifted(space: Field, elastic: ngsolve.BilinearForm, mass: ngsolve.BilinearF
 Solver = Callable[[Array], Array]
 
 
-def factored(space: Field, form: ngsolve.BilinearForm) -> Solver:
+def factorise(space: Field, form: ngsolve.BilinearForm) -> Solver:
     """Solve with a form's matrix on the free degrees of freedom: columns (n, k) of forces to columns of displacements, zero where held.
 
     >>> from flexstage.solid.fea.bar import bar
     >>> from flexstage.solid.fea.fineness import Fineness
-    >>> from flexstage.solid.fea.mesh import meshed
-    >>> space = field(meshed(bar(), Fineness(order=2)), ["foot"], 2)
+    >>> from flexstage.solid.fea.mesh import mesh_component
+    >>> space = field(mesh_component(bar(), Fineness(order=2)), ["foot"], 2)
     >>> end = Frame(np.eye(3), np.array([0.1, 0.0, 0.0]))
     >>> mean = mean_motion(space, end, "end")
-    >>> round(1e-6 / float((mean @ factored(space, stiffness(space))(mean.T))[0, 0]), 6)  # E A / L, N/um
+    >>> round(1e-6 / float((mean @ factorise(space, stiffness(space))(mean.T))[0, 0]), 6)  # E A / L, N/um
     100.0
     """
     inverse = form.mat.Inverse(space.space.FreeDofs(), inverse="sparsecholesky")
 
     def solve(forces: Array) -> Array:
-        return _by_columns(inverse.Mult, forces) if forces.ndim == 2 else _by_columns(inverse.Mult, forces[:, None])[:, 0]
+        return _apply_by_columns(inverse.Mult, forces) if forces.ndim == 2 else _apply_by_columns(inverse.Mult, forces[:, None])[:, 0]
 
     return solve

@@ -21,10 +21,10 @@ from flexstage.parts.profile import Filleted
 from flexstage.parts.shape import Profiled, Shaped
 from flexstage.solid.fea.draw import specimen
 from flexstage.solid.fea.estimate import Accuracy, change, remaining
-from flexstage.solid.fea.field import Field, applied, factored, field, rigid, stiffness, times
+from flexstage.solid.fea.field import Field, apply_form, factorise, field, rigid, stiffness, times
 from flexstage.solid.fea.hinge_form import LEAVE, NO_ESTIMATE, HingeSolid
 from flexstage.solid.fea.memory import Counts
-from flexstage.solid.fea.mesh import Meshed, generated
+from flexstage.solid.fea.mesh import PieceMesh, generate_mesh
 from flexstage.solid.fea.piece import Medium, medium, span
 from flexstage.solid.fea.progress import Report, Stage, silent
 from flexstage.solid.fea.roots import Roots, own_roots, rises
@@ -60,14 +60,14 @@ class _Solve:
 
 
 @dataclass(frozen=True, eq=False)
-class Told:
+class Listener:
     """Who is told how far a hinge is, and who is asked whether there is room for its first mesh (nobody, unless stated)."""
 
     report: Report = silent
     ask: Callable[[Counts], None] = lambda _counts: None
 
 
-_NOBODY = Told()
+_NOBODY = Listener()
 
 
 def hinge_compliance(
@@ -75,7 +75,7 @@ def hinge_compliance(
     material: Material,
     accuracy: Accuracy | None = None,
     stub: float | None = None,
-    told: Told = _NOBODY,
+    told: Listener = _NOBODY,
     *,
     roots: Roots | None = None,
 ) -> HingeSolid:
@@ -90,6 +90,7 @@ def hinge_compliance(
     length by 1-3 %, C_y by some 10 %, and C_rx of a hinge several times wider than high by a factor. Raises `DesignError` for a part
     without a shape, for a batch, and where no mesh can be made. `told` hears of every mesh and solve.
 
+    >>> from flexstage.parts.neck import Neck
     >>> from flexstage.parts.profile import Straight
     >>> steel = Material(young=200e9, poisson=0.3, density=7750.0)
     >>> coarse = Accuracy(error=0.5, orders=(2, 3), meshes=1)
@@ -101,20 +102,20 @@ def hinge_compliance(
     require(_refusals(part))
     own = medium(material)
     lengths = _stub_lengths(part, stub, roots or own_roots(part))
-    taken, blunt = _stubs(part, lengths, own), _blunted(part, lengths)
+    taken, blunt = _stubs(part, lengths, own), _blunting_error(part, lengths)
     found: list[Array] = []
     last = None
     for last in _solves(part, lengths, own, asked, told):
-        found.append(_symmetric(np.linalg.inv(last.stiffness)) - taken)
+        found.append(_symmetrise(np.linalg.inv(last.stiffness)) - taken)
         if blunt + _error(part, found) <= asked.error:
             break
     if last is None:
         what = f"its coarsest mesh has more than the {asked.freedoms} freedoms allowed"
-        raise refuse(_named(part), what, "Ask for --order 3, which begins with order two, or in Python allow more freedoms by its Accuracy")
+        raise refuse(_label(part), what, "Ask for --order 3, which begins with order two, or in Python allow more freedoms by its Accuracy")
     alone, error = found[-1], blunt + _error(part, found)
     return HingeSolid(
         compliance=alone,
-        stiffness=_symmetric(np.linalg.inv(alone)),
+        stiffness=_symmetrise(np.linalg.inv(alone)),
         error=error,
         changes=np.abs(np.diag(alone - found[-2]) / np.diag(alone)) if len(found) > 1 else np.full(6, np.inf),
         whole=alone + taken,
@@ -122,24 +123,24 @@ def hinge_compliance(
         freedoms=last.freedoms,
         elements=last.elements,
         order=last.order,
-        finding=None if error <= asked.error else _short(part, error, asked),
+        finding=None if error <= asked.error else _not_reached(part, error, asked),
     )
 
 
 def _refusals(part: Shaped) -> Iterator[Finding]:
     """Parts without a shape, batches, fillets longer than the hinge."""
     if not isinstance(part, Shaped) or is_actuator(part):
-        yield Finding(_named(part), "has no shape, or is no hinge", "Give a hinge of a kind that can be drawn: a notch, neck, leaf, rod")
+        yield Finding(_label(part), "has no shape, or is no hinge", "Give a hinge of a kind that can be drawn: a notch, neck, leaf, rod")
         return
     profile = part.profile if isinstance(part, Profiled) else None
     for owner in (part, profile):
         for name, value in vars(owner).items() if owner is not None else ():
             if np.ndim(value) > 0:
-                yield Finding(f"{_named(part)}'s {name}", f"is a batch of {np.size(value)}", "A solid is one design: read them one by one")
+                yield Finding(f"{_label(part)}'s {name}", f"is a batch of {np.size(value)}", "A solid is one design: read them one by one")
     if isinstance(profile, Filleted) and np.ndim(profile.length) == np.ndim(profile.radius) == 0:
         total, radius = float(np.real(profile.length)), float(np.real(profile.radius))
         if 2.0 * radius > total:
-            yield Finding(_named(part), f"its fillets of {radius:.4g} m do not fit into its length of {total:.4g} m", "Need 2 r <= l")
+            yield Finding(_label(part), f"its fillets of {radius:.4g} m do not fit into its length of {total:.4g} m", "Need 2 r <= l")
 
 
 def _error(part: Shaped, found: Sequence[Array]) -> float:
@@ -149,16 +150,16 @@ def _error(part: Shaped, found: Sequence[Array]) -> float:
     return remaining([change(first, second) for first, second in pairwise(ends)])
 
 
-def _blunted(part: Shaped, stubs: tuple[float, float]) -> float:
+def _blunting_error(part: Shaped, stubs: tuple[float, float]) -> float:
     """What is not known because arcs that end on a rigid face are blunted there."""
     return _BLUNT if min(stubs) == 0.0 and rises(part) else 0.0
 
 
-def _named(part: Shaped) -> str:
+def _label(part: Shaped) -> str:
     return f"the {part.kind}"
 
 
-def _solves(part: Shaped, stubs: tuple[float, float], own: Medium, asked: Accuracy, told: Told) -> Iterator[_Solve]:
+def _solves(part: Shaped, stubs: tuple[float, float], own: Medium, asked: Accuracy, told: Listener) -> Iterator[_Solve]:
     """Solves of rising order on one mesh, then of the highest on finer ones, until the next would have too many freedoms."""
     lowest, highest = asked.orders
     for refinement in range(asked.meshes):
@@ -176,16 +177,16 @@ def _solves(part: Shaped, stubs: tuple[float, float], own: Medium, asked: Accura
 
 def _space(mesh: ngsolve.Mesh, own: Medium, order: int) -> Field:
     mesh.Curve(order)
-    return field(Meshed(mesh, (own,), (START, END), np.zeros(mesh.ne, dtype=int)), [START, END], order)
+    return field(PieceMesh(mesh, (own,), (START, END), np.zeros(mesh.ne, dtype=int)), [START, END], order)
 
 
 def _law(part: Shaped, space: Field) -> Array:
     """Stiffness (6, 6) of the whole specimen: energies of the motions that move one outer face and hold the other."""
     form, motion = stiffness(space), rigid(space, identity(), faces=END)
-    motion -= factored(space, form)(times(form, motion))
-    law = motion.T @ applied(stiffness(space, assemble=False), motion)  # by strains: the rounding of K u drowns a thin leaf
+    motion -= factorise(space, form)(times(form, motion))
+    law = motion.T @ apply_form(stiffness(space, assemble=False), motion)  # by strains: the rounding of K u drowns a thin leaf
     _require_symmetric(part, law)
-    return _symmetric(law)
+    return _symmetrise(law)
 
 
 def hinge_mesh(part: Shaped, stub: float | None = None, factor: float = 1.0, order: int = 5) -> ngsolve.Mesh:
@@ -194,6 +195,7 @@ def hinge_mesh(part: Shaped, stub: float | None = None, factor: float = 1.0, ord
     Elements are `factor` times as large as usual. Where the mesher fails or an element folds, other sizes are tried, a few times. Raises
     `DesignError` when none of that helps.
 
+    >>> from flexstage.parts.neck import Neck
     >>> from flexstage.parts.profile import Straight
     >>> hinge_mesh(Neck("steel", 1e-3, Straight(1e-3), width=1e-3)).GetMaterials()
     ('medium 0',)
@@ -209,11 +211,11 @@ def _mesh(part: Shaped, stubs: tuple[float, float], factor: float, order: int) -
         if isinstance(outcome, ngsolve.Mesh):
             return outcome
         reason = outcome
-    raise refuse(_named(part), f"no mesh could be made: {reason}", "Look for proportions far from a hinge's")
+    raise refuse(_label(part), f"no mesh could be made: {reason}", "Look for proportions far from a hinge's")
 
 
 def _attempt(drawn: Specimen, grading: float, curvature: float, order: int) -> ngsolve.Mesh | str:
-    mesh = generated(drawn.solid, {"maxh": drawn.largest, "grading": grading, "curvaturesafety": curvature})
+    mesh = generate_mesh(drawn.solid, {"maxh": drawn.largest, "grading": grading, "curvaturesafety": curvature})
     if isinstance(mesh, str):
         return mesh
     for degree in range(2, order + 1):
@@ -229,6 +231,7 @@ def lowest_jacobian(mesh: ngsolve.Mesh) -> float:
 
     Not at the edges: where two faces of an element lie on one smooth surface the determinant is nought on their edge, harmlessly.
 
+    >>> from flexstage.parts.leaf import Leaf
     >>> lowest_jacobian(hinge_mesh(Leaf("steel", 1e-3, 1e-3, 1e-3))) > 0.0
     True
     """
@@ -251,17 +254,17 @@ def _stubs(part: Shaped, lengths: tuple[float, float], own: Medium) -> Array:
     form = circle(float(section.height)) if section.is_round else rectangle(float(section.height), float(section.width))
     for sign, length in zip((-1.0, 1.0), lengths, strict=True):
         if length > 0.0:
-            total += _seen(beam(form, length, own), sign * 0.5 * (span(part) + length))
+            total += _about_centre(beam(form, length, own), sign * 0.5 * (span(part) + length))
     return total
 
 
-def _seen(compliance: Array, away: float) -> Array:
+def _about_centre(compliance: Array, away: float) -> Array:
     """A compliance about a point `away` [m] along x, about the centre."""
     shift = transport(np.array([-away, 0.0, 0.0]))
     return shift @ compliance @ shift.T
 
 
-def _symmetric(matrix: Array) -> Array:
+def _symmetrise(matrix: Array) -> Array:
     return 0.5 * (matrix + matrix.T)
 
 
@@ -269,17 +272,17 @@ def _require_symmetric(part: Shaped, law: Array) -> None:
     skew = change(law, law.T)
     if skew > _SYMMETRY:
         raise refuse(
-            _named(part),
+            _label(part),
             f"its stiffness is unsymmetric by {skew:.1e}, {_SYMMETRY:.0e} is allowed",
             "Its mesh is ill-conditioned: check the proportions",
         )
 
 
-def _short(part: Shaped, error: float, asked: Accuracy) -> Finding:
+def _not_reached(part: Shaped, error: float, asked: Accuracy) -> Finding:
     if not np.isfinite(error):
-        return Finding(_named(part), f"the error of its 6x6 is not known: {NO_ESTIMATE}", LEAVE)
+        return Finding(_label(part), f"the error of its 6x6 is not known: {NO_ESTIMATE}", LEAVE)
     return Finding(
-        _named(part),
+        _label(part),
         f"its 6x6 is known to {100.0 * error:.2g} %, {100.0 * asked.error:.2g} % was asked, within {asked.freedoms} freedoms",
         "Allow more freedoms, or ask for less",
     )

@@ -16,12 +16,12 @@ from flexstage.solid.fea.memory import Counts, needed
 from flexstage.solid.fea.parts import Ways, obtain
 from flexstage.solid.fea.piece import form_digest
 from flexstage.solid.fea.reducing import StoredJob
-from flexstage.solid.fea.store import versions, written
+from flexstage.solid.fea.store import to_bytes, versions
 from flexstage.solid.fea.worker import Call
 
 
 @dataclass(frozen=True, eq=False)
-class Hinging(StoredJob):
+class HingeJob(StoredJob):
     """A hinge to compute in a process of its own, under the name it has for the user."""
 
     called: str
@@ -51,18 +51,18 @@ class Hinging(StoredJob):
 
     def work(self, call: Call) -> bytes:
         """Compute it; the 6x6 as stored. What is refused is told by the name it has for the user."""
-        from flexstage.solid.fea.hinge import Told, hinge_compliance
+        from flexstage.solid.fea.hinge import Listener, hinge_compliance
 
         try:
-            told = Told(call.report, call.ask)
+            told = Listener(call.report, call.ask)
             found = hinge_compliance(self.form.part, self.form.material, self.asked, told=told, roots=self.form.roots)
-            return written(found, self.key, versions(HINGES.method))
+            return to_bytes(found, self.key, versions(HINGES.method))
         except DesignError as error:
             kind = f"the {self.form.part.kind}"
             raise DesignError(replace(each, where=each.where.replace(kind, self.name, 1)) for each in error.findings) from None
 
 
-def kept_hinges(
+def hinges_from_cache(
     forms: Mapping[str, HingeForm], asked: Accuracy, ways: Ways, notice: Callable[[Finding], None] | None = None
 ) -> dict[str, HingeSolid]:
     """The 6x6 of hinges by name, from the cache, else computed in processes of their own, side by side, each kept as soon as it is done.
@@ -70,10 +70,10 @@ def kept_hinges(
     The solver is needed only for those that are not there. `notice` is told of a file that is damaged, and of one that could not be kept;
     neither is fatal. Raises `DesignError` with all that could not be computed.
 
-    >>> kept_hinges({}, Accuracy(), Ways())
+    >>> hinges_from_cache({}, Accuracy(), Ways())
     {}
     """
-    jobs = [Hinging(_key(form, asked), name, form, asked) for name, form in forms.items()]
+    jobs = [HingeJob(_key(form, asked), name, form, asked) for name, form in forms.items()]
     found, notices = obtain(jobs, HINGES, ways)
     for each in notices:
         (notice or _ignore)(each)

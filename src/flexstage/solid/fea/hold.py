@@ -15,7 +15,7 @@ import numpy as np
 from flexstage.base.number import Array
 from flexstage.parts.piezo import Piezo
 from flexstage.solid.fea.component import Component, Interface
-from flexstage.solid.fea.field import Field, Solver, factored, mean_motion, rigid, shifted, times, warped
+from flexstage.solid.fea.field import Field, Solver, factorise, mean_motion, rigid, shift_stiffness, times, warping_motion
 from flexstage.solid.fea.fineness import Hold
 from flexstage.spatial.frame import Frame
 
@@ -24,7 +24,7 @@ _SHIFT = (2.0 * np.pi * 10.0) ** 2
 
 
 @dataclass(frozen=True, eq=False)
-class Held:
+class Support:
     """Motions (n, 6 m) of unit interface twists, (n, w) of unit warps of faces, and the solver for loads within with all of them zero."""
 
     faces: Array
@@ -43,25 +43,25 @@ def is_rigid(component: Component, interface: Interface, hold: Hold) -> bool:
     return hold is Hold.RIGID or interface.joint.link in stacks or isinstance(interface.footprint, Piezo)
 
 
-def held(component: Component, space: Field, elastic: ngsolve.BilinearForm, mass: ngsolve.BilinearForm, hold: Hold) -> Held:
+def support(component: Component, space: Field, elastic: ngsolve.BilinearForm, mass: ngsolve.BilinearForm, hold: Hold) -> Support:
     """Hold a component's interfaces; `elastic` and `mass` are its stiffness and inertia; `space` must hold its rigid and grounded faces.
 
     >>> from flexstage.solid.fea.bar import bar
     >>> from flexstage.solid.fea.field import field, inertia, stiffness
     >>> from flexstage.solid.fea.fineness import Fineness
-    >>> from flexstage.solid.fea.mesh import meshed
-    >>> space = field(meshed(bar(), Fineness(order=2)), ["foot"], 2)
+    >>> from flexstage.solid.fea.mesh import mesh_component
+    >>> space = field(mesh_component(bar(), Fineness(order=2)), ["foot"], 2)
     >>> elastic = stiffness(space)
-    >>> faces = held(bar(), space, elastic, inertia(space), Hold.AVERAGED).faces
+    >>> faces = support(bar(), space, elastic, inertia(space), Hold.AVERAGED).faces
     >>> round(float((faces.T @ times(elastic, faces))[0, 0]) * 1e-6, 6)  # E A / L, N/um
     100.0
     """
     loose = [item for item in component.interfaces if not is_rigid(component, item, hold)]
     unsupported = len(loose) == len(component.interfaces) and not component.fixed
-    plain = factored(space, shifted(space, elastic, mass, _SHIFT) if unsupported else elastic)
+    plain = factorise(space, shift_stiffness(space, elastic, mass, _SHIFT) if unsupported else elastic)
     if not loose:
-        faces = _moved_faces(component.interfaces, space, elastic, plain)
-        return Held(faces, _warped_faces([item for item in component.interfaces if item.yields], space, elastic, plain), plain)
+        faces = _face_motions(component.interfaces, space, elastic, plain)
+        return Support(faces, _face_warpings([item for item in component.interfaces if item.yields], space, elastic, plain), plain)
     means = np.vstack([mean_motion(space, _frame(item), item.joint.name) for item in loose])
     carried = plain(means.T)
     gain = np.linalg.inv(means @ carried)
@@ -71,20 +71,20 @@ def held(component: Component, space: Field, elastic: ngsolve.BilinearForm, mass
         return motion - carried @ (gain @ (means @ motion))
 
     free = np.split(carried @ gain, len(loose), axis=1)
-    columns = [free[loose.index(item)] if item in loose else _moved_faces([item], space, elastic, solve) for item in component.interfaces]
-    return Held(np.hstack(columns), np.zeros((space.size, 0)), solve)
+    columns = [free[loose.index(item)] if item in loose else _face_motions([item], space, elastic, solve) for item in component.interfaces]
+    return Support(np.hstack(columns), np.zeros((space.size, 0)), solve)
 
 
-def _moved_faces(interfaces: Sequence[Interface], space: Field, elastic: ngsolve.BilinearForm, solve: Solver) -> Array:
-    return _carried(space, [rigid(space, _frame(item), faces=item.joint.name) for item in interfaces], elastic, solve)
+def _face_motions(interfaces: Sequence[Interface], space: Field, elastic: ngsolve.BilinearForm, solve: Solver) -> Array:
+    return _static_motions(space, [rigid(space, _frame(item), faces=item.joint.name) for item in interfaces], elastic, solve)
 
 
-def _warped_faces(interfaces: Sequence[Interface], space: Field, elastic: ngsolve.BilinearForm, solve: Solver) -> Array:
-    moved = [warped(space, item.joint.frame, float(np.sqrt(item.joint.area)), item.joint.name) for item in interfaces]
-    return _carried(space, moved, elastic, solve)
+def _face_warpings(interfaces: Sequence[Interface], space: Field, elastic: ngsolve.BilinearForm, solve: Solver) -> Array:
+    moved = [warping_motion(space, item.joint.frame, float(np.sqrt(item.joint.area)), item.joint.name) for item in interfaces]
+    return _static_motions(space, moved, elastic, solve)
 
 
-def _carried(space: Field, moved: Sequence[Array], elastic: ngsolve.BilinearForm, solve: Solver) -> Array:
+def _static_motions(space: Field, moved: Sequence[Array], elastic: ngsolve.BilinearForm, solve: Solver) -> Array:
     """One face moved and all others held: u = R - K_ff^-1 K R."""
     columns = [motion - solve(times(elastic, motion)) for motion in moved]
     return np.hstack(columns) if columns else np.zeros((space.size, 0))

@@ -25,7 +25,7 @@ TOLERANCE = 1e-3
 
 
 @dataclass(frozen=True, eq=False)
-class Measured:
+class ImportedProperties:
     """What a file's solid is, in its own axes: `sha256` of the file, sides and middle of its box [m], volume [m^3], centre [m].
 
     `inertia` (3, 3) is that of unit density about the centre [m^5].
@@ -50,12 +50,12 @@ def imported_shape(form: Imported) -> occ.TopoDS_Shape:
     return _solid(path).Move(occ.Vec(x, y, z))
 
 
-def measured(path: Path) -> Measured:
+def measure(path: Path) -> ImportedProperties:
     """Measure the solid in a STEP file.
 
     Raises `DesignError` where there is no such file or it does not hold exactly one solid.
 
-    >>> measured(Path("nowhere.step"))
+    >>> measure(Path("nowhere.step"))
     Traceback (most recent call last):
     flexstage.base.finding.DesignError: nowhere.step: there is no such file. Check the path.
     """
@@ -64,7 +64,7 @@ def measured(path: Path) -> Measured:
     low, high = (np.round([corner.x, corner.y, corner.z], _DIGITS) / MILLIMETRES for corner in solid.bounding_box)
     volume = float(solid.mass) / MILLIMETRES**3
     centre = np.array([solid.center.x, solid.center.y, solid.center.z]) / MILLIMETRES
-    return Measured(digest, high - low, 0.5 * (low + high), volume, centre, _inertia(solid))
+    return ImportedProperties(digest, high - low, 0.5 * (low + high), volume, centre, _inertia(solid))
 
 
 def _inertia(solid: occ.TopoDS_Shape) -> Array:
@@ -73,11 +73,11 @@ def _inertia(solid: occ.TopoDS_Shape) -> Array:
     return np.array([[matrix[i, j] for j in range(3)] for i in range(3)]) / MILLIMETRES**5
 
 
-def stated(found: Measured, file: str, material: str, density: float) -> Imported:
+def with_properties(found: ImportedProperties, file: str, material: str, density: float) -> Imported:
     """The description of a measured solid of a `density` [kg/m^3].
 
-    >>> cube = Measured("", np.ones(3), np.zeros(3), 1.0, np.zeros(3), np.eye(3) / 6.0)
-    >>> round(stated(cube, "cube.step", "steel", 6.0).inertia.zz, 12)
+    >>> cube = ImportedProperties("", np.ones(3), np.zeros(3), 1.0, np.zeros(3), np.eye(3) / 6.0)
+    >>> round(with_properties(cube, "cube.step", "steel", 6.0).inertia.zz, 12)
     1.0
     """
     j = density * found.inertia
@@ -105,10 +105,10 @@ def import_findings(mechanism: Mechanism) -> tuple[Finding, ...]:
     >>> import_findings(Mechanism("nothing"))
     ()
     """
-    return tuple(finding for where, solid in _imported(mechanism) for finding in _findings(mechanism, where, solid))
+    return tuple(finding for where, solid in _imported_bodies(mechanism) for finding in _findings(mechanism, where, solid))
 
 
-def _imported(mechanism: Mechanism) -> Iterator[tuple[str, Imported]]:
+def _imported_bodies(mechanism: Mechanism) -> Iterator[tuple[str, Imported]]:
     sections: dict[str, Mapping[str, Body]] = {"bodies": mechanism.bodies}
     sections |= {f"units.{name}.bodies": unit.bodies for name, unit in mechanism.units.items()}
     for section, bodies in sections.items():
@@ -121,7 +121,7 @@ def _imported(mechanism: Mechanism) -> Iterator[tuple[str, Imported]]:
 def _findings(mechanism: Mechanism, where: str, solid: Imported) -> Iterator[Finding]:
     path = Path(solid.file)
     try:
-        found = measured(path)
+        found = measure(path)
     except DesignError as error:
         yield from (Finding(f"{where}.file", f"{each.where}: {each.what}", each.advice) for each in error.findings)
         return

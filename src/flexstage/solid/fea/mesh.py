@@ -39,7 +39,7 @@ _WITHIN = 1e-6
 
 
 @dataclass(frozen=True)
-class Meshed:
+class PieceMesh:
     """A component's mesh [mm], its media by name `medium 0`, ..., named faces, and the piece (index) each element belongs to."""
 
     mesh: ngsolve.Mesh
@@ -48,7 +48,7 @@ class Meshed:
     owner: Array
 
 
-def meshed(component: Component, fineness: Fineness, report: Report = silent, first: int = 0) -> Meshed:
+def mesh_component(component: Component, fineness: Fineness, report: Report = silent, first: int = 0) -> PieceMesh:
     """Draw and mesh a component.
 
     Elements that curved faces turn inside out get straight sides, near the ends of arcs. Where the mesher fails, or an element of a neck is
@@ -57,35 +57,35 @@ def meshed(component: Component, fineness: Fineness, report: Report = silent, fi
 
     >>> from flexstage.solid.fea.bar import bar
     >>> from flexstage.solid.fea.fineness import Fineness
-    >>> whole = meshed(bar(), Fineness(order=2))
+    >>> whole = mesh_component(bar(), Fineness(order=2))
     >>> round(ngsolve.Integrate(1, whole.mesh), 6), whole.faces  # mm^3
     (10000.0, ('end', 'foot'))
     """
-    require(_too_thin(component, fineness))
+    require(_thin_findings(component, fineness))
     report(Stage.DRAWING, 0.0)
     drawing = cad(component)
     failure = "the mesher was not asked"
     for number, (shrink, grading, curvature) in enumerate(ATTEMPTS[first:], start=first):
         report(Stage.MESHING, number / len(ATTEMPTS))
-        largest = _sized(component, drawing, fineness, shrink)
-        outcome = _attempted(
+        largest = _set_sizes(component, drawing, fineness, shrink)
+        outcome = _attempt_mesh(
             drawing,
             fineness.order,
             {
-                "mp": _thinner(component.pieces, shrink * fineness.neck),
+                "mp": _refine_arcs(component.pieces, shrink * fineness.neck),
                 "maxh": largest,
                 "grading": grading * fineness.grading,
                 "curvaturesafety": curvature * _curvature(component),
             },
         )
-        result = outcome if isinstance(outcome, str) else _finished(component.pieces, drawing, outcome)
-        if isinstance(result, Meshed):
+        result = outcome if isinstance(outcome, str) else _finish(component.pieces, drawing, outcome)
+        if isinstance(result, PieceMesh):
             return result
         failure = result
-    raise _unmeshed(component, failure)
+    raise _refuse_mesh(component, failure)
 
 
-def _too_thin(component: Component, fineness: Fineness) -> Iterator[Finding]:
+def _thin_findings(component: Component, fineness: Fineness) -> Iterator[Finding]:
     """Links so thin for their length and width that elements of their size would never end."""
     for piece in component.pieces:
         size = _size(piece, fineness) / MILLIMETRES
@@ -98,20 +98,20 @@ def _too_thin(component: Component, fineness: Fineness) -> Iterator[Finding]:
             yield Finding(piece.name, f"{what}: {more}", "Check the thickness, or ask for larger elements (Fineness.neck)")
 
 
-def _attempted(drawing: Cad, order: int, sizes: Mapping[str, Any]) -> ngsolve.Mesh | str:
+def _attempt_mesh(drawing: Cad, order: int, sizes: Mapping[str, Any]) -> ngsolve.Mesh | str:
     """One attempt, curved to the drawing; else what went wrong."""
-    mesh = generated(drawing.shape, sizes)
+    mesh = generate_mesh(drawing.shape, sizes)
     if isinstance(mesh, ngsolve.Mesh):
         mesh.Curve(order)
     return mesh
 
 
-def generated(shape: occ.TopoDS_Shape, sizes: Mapping[str, Any]) -> ngsolve.Mesh | str:
+def generate_mesh(shape: occ.TopoDS_Shape, sizes: Mapping[str, Any]) -> ngsolve.Mesh | str:
     """A mesh [mm] of a drawing with the sizes the mesher is given; else what went wrong.
 
     By one thread: several may make another mesh from run to run, and spend most of their time waiting for one another.
 
-    >>> generated(occ.Box(occ.Pnt(0, 0, 0), occ.Pnt(1, 1, 1)), {"maxh": 2.0}).ne > 0
+    >>> generate_mesh(occ.Box(occ.Pnt(0, 0, 0), occ.Pnt(1, 1, 1)), {"maxh": 2.0}).ne > 0
     True
     """
     try:
@@ -122,7 +122,7 @@ def generated(shape: occ.TopoDS_Shape, sizes: Mapping[str, Any]) -> ngsolve.Mesh
     return mesh if mesh.ne else "no elements came out"
 
 
-def _finished(pieces: tuple[Piece, ...], drawing: Cad, mesh: ngsolve.Mesh) -> Meshed | str:
+def _finish(pieces: tuple[Piece, ...], drawing: Cad, mesh: ngsolve.Mesh) -> PieceMesh | str:
     """A mesh without folded elements, those of necks curved; else what is wrong with it."""
     places = centroids(mesh)
     owner = owners(pieces, places)
@@ -131,7 +131,7 @@ def _finished(pieces: tuple[Piece, ...], drawing: Cad, mesh: ngsolve.Mesh) -> Me
         if piece.body is None:
             within = np.abs((places - piece.frame.position) @ piece.frame.rotation[:, 0]) < _NECK * half_extents(piece)[0]
             necks |= within & (owner == number)
-    return straighten(mesh, necks) or Meshed(mesh, drawing.media, drawing.faces, owner)
+    return straighten(mesh, necks) or PieceMesh(mesh, drawing.media, drawing.faces, owner)
 
 
 def _curvature(component: Component) -> float:
@@ -140,7 +140,7 @@ def _curvature(component: Component) -> float:
     return _HINGE_CURVATURE if hinged else _ROUND_CURVATURE
 
 
-def _thinner(pieces: tuple[Piece, ...], neck: float) -> MeshingParameters:
+def _refine_arcs(pieces: tuple[Piece, ...], neck: float) -> MeshingParameters:
     """Smaller elements about the thinnest line of each hinge with an arc."""
     result = MeshingParameters()
     for piece in pieces:
@@ -160,7 +160,7 @@ def _thin_points(form: Shaped, share: float) -> Array:
     return np.array([(x, y, z) for x in along for y in (-0.5 * thickness, 0.5 * thickness) for z in across])
 
 
-def _sized(component: Component, drawing: Cad, fineness: Fineness, shrink: float) -> float:
+def _set_sizes(component: Component, drawing: Cad, fineness: Fineness, shrink: float) -> float:
     """Set the faces' mesh sizes; return the largest size anywhere [mm]."""
     sizes = [shrink * _size(piece, fineness) for piece in component.pieces]
     scale = _PRINT * fineness.neck * shrink * MILLIMETRES
@@ -192,7 +192,7 @@ def _is_strut(form: Shaped) -> bool:
     return form.is_prismatic and not form.slender and bends_both_ways(form)
 
 
-def _unmeshed(component: Component, reason: str) -> Exception:
+def _refuse_mesh(component: Component, reason: str) -> Exception:
     thin = min(component.pieces, key=lambda piece: thinnest(piece.form))
     return refuse(
         component.name,
@@ -206,7 +206,7 @@ def centroids(mesh: ngsolve.Mesh) -> Array:
 
     >>> from flexstage.solid.fea.bar import bar
     >>> from flexstage.solid.fea.fineness import Fineness
-    >>> found = centroids(meshed(bar(), Fineness(order=2)).mesh)
+    >>> found = centroids(mesh_component(bar(), Fineness(order=2)).mesh)
     >>> bool(np.all((0.0 < found[:, 0]) & (found[:, 0] < 0.1)))
     True
     """

@@ -12,7 +12,7 @@ from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.linear.model import LinearModel
 from flexstage.solid.fea.assemble import linear_model
 from flexstage.solid.fea.cache import Cache
-from flexstage.solid.fea.casing import casing, end_faces_apart
+from flexstage.solid.fea.casing import casing, end_face_twist
 from flexstage.solid.fea.component import Component, Cut
 from flexstage.solid.fea.fineness import Reduction
 from flexstage.solid.fea.parts import Ways, reduce_parts
@@ -54,6 +54,6 @@ def _springs(assembly: Assembly, component: Component) -> Array:
     for piece in component.pieces:
         law = None if piece.body is not None else casing(assembly.links[piece.name])
         if law is not None:
-            across = end_faces_apart(component, assembly.links[piece.name])
+            across = end_face_twist(component, assembly.links[piece.name])
             total += across.T @ law @ across
     return total

@@ -23,11 +23,11 @@ class Question:
     ask: Callable[[], Iterable[Answer]]
 
 
-def answered(questions: Iterable[Question]) -> Iterator[Finding]:
+def findings_of(questions: Iterable[Question]) -> Iterator[Finding]:
     """Ask each distinct question and tell its findings at the first place, naming the places alike.
 
     >>> asked = [Question("a", name, lambda: [("it is loose", "Hold it")]) for name in ("B1/front", "B2/front")]
-    >>> [str(finding) for finding in answered(asked)]
+    >>> [str(finding) for finding in findings_of(asked)]
     ['B1/front: it is loose (alike: B2/front). Hold it.']
     """
     same: dict[str, list[Question]] = {}
@@ -39,10 +39,10 @@ def answered(questions: Iterable[Question]) -> Iterator[Finding]:
             yield Finding(first.where, f"{what}{alike}", advice)
 
 
-def seen_from(frame: Frame, base: Frame) -> Frame:
+def relative_frame(frame: Frame, base: Frame) -> Frame:
     """A frame in the axes of another one, without the last bits of rounding, so that copies come out equal.
 
-    >>> seen_from(Frame(np.eye(3), np.ones(3)), Frame(np.eye(3), np.array([1.0, 0.0, 0.0]))).position.tolist()
+    >>> relative_frame(Frame(np.eye(3), np.ones(3)), Frame(np.eye(3), np.array([1.0, 0.0, 0.0]))).position.tolist()
     [0.0, 1.0, 1.0]
     """
     back = np.real(base.rotation).T

@@ -14,9 +14,9 @@ from flexstage.solid.fea.cache import SUPERELEMENTS, Cache, Kind, find, keep, ke
 from flexstage.solid.fea.component import Component
 from flexstage.solid.fea.fineness import Reduction
 from flexstage.solid.fea.install import require_solver
-from flexstage.solid.fea.reducing import Reducing, StoredJob
+from flexstage.solid.fea.reducing import Reduce, StoredJob
 from flexstage.solid.fea.remote import Limits, work_all
-from flexstage.solid.fea.store import read, versions
+from flexstage.solid.fea.store import from_bytes, versions
 from flexstage.solid.fea.superelement import Superelement
 
 Parts: TypeAlias = tuple[tuple[Component, Superelement], ...]
@@ -53,7 +53,7 @@ def reduce_parts(
     >>> reduce_parts((), Reduction()).parts
     ()
     """
-    jobs = [Reducing(key_of(part, reduction, springs.get(part.name)), part, reduction, springs.get(part.name)) for part in parts]
+    jobs = [Reduce(key_of(part, reduction, springs.get(part.name)), part, reduction, springs.get(part.name)) for part in parts]
     elements, notices = obtain(jobs, SUPERELEMENTS, ways)
     return ReducedParts(tuple((job.component, elements[job.key]) for job in jobs), notices)
 
@@ -95,7 +95,7 @@ class _Store:
 
     def take(self, job: StoredJob, data: bytes) -> None:
         """Take a result as a worker wrote it, and keep it."""
-        result = read(data, job.key, versions(self.kind.method))
+        result = from_bytes(data, job.key, versions(self.kind.method))
         if isinstance(result, str):
             advice = "See that the folder for temporary files (environment variable TMPDIR) keeps what is written to it, and run it again"
             raise refuse(job.name, f"what its process wrote cannot be used: {result}", advice)

@@ -92,12 +92,12 @@ def stack_medium(stack: Piezo) -> Medium:
     return Medium(_single(stack.stiffness) * size / area, _single(stack.poisson), _single(stack.mass) / (area * size))
 
 
-def drawable(link: PlacedLink) -> Form | Finding:
+def form_of(link: PlacedLink) -> Form | Finding:
     """The form of a link's part, or why it has none.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.mechanism.expand import expand
-    >>> type(drawable(expand(double_triangle()).links["B1/front"])).__name__
+    >>> type(form_of(expand(double_triangle()).links["B1/front"])).__name__
     'Neck'
     """
     part: Part = link.part

@@ -40,20 +40,20 @@ def silent(_stage: Stage, _fraction: float) -> None:
     """
 
 
-def within(stage: Stage, fraction: float) -> float:
+def fraction_done(stage: Stage, fraction: float) -> float:
     """Fraction of a component that is done when a fraction of a stage is.
 
-    >>> within(Stage.STARTING, 0.0), round(within(Stage.MESHING, 1.0), 2), round(within(Stage.PROJECTING, 1.0), 9)
+    >>> fraction_done(Stage.STARTING, 0.0), round(fraction_done(Stage.MESHING, 1.0), 2), round(fraction_done(Stage.PROJECTING, 1.0), 9)
     (0.0, 0.2, 1.0)
     """
     stages = list(Stage)
     return sum(_SHARES[each] for each in stages[: stages.index(stage)]) + _SHARES[stage] * min(max(fraction, 0.0), 1.0)
 
 
-def gathered(running: Mapping[str, tuple[Stage, float]], shares: Mapping[str, float], finished: Iterable[str]) -> float:
+def overall(running: Mapping[str, tuple[Stage, float]], shares: Mapping[str, float], finished: Iterable[str]) -> float:
     """Fraction of all components that is done, each with its share of the whole.
 
-    >>> round(gathered({"lever": (Stage.MESHING, 1.0)}, {"lever": 0.5, "foot": 0.5}, ["foot"]), 9)
+    >>> round(overall({"lever": (Stage.MESHING, 1.0)}, {"lever": 0.5, "foot": 0.5}, ["foot"]), 9)
     0.6
     """
-    return sum(shares[name] for name in finished) + sum(shares[name] * within(*where) for name, where in running.items())
+    return sum(shares[name] for name in finished) + sum(shares[name] * fraction_done(*where) for name, where in running.items())

@@ -18,10 +18,10 @@ from flexstage.mechanism.mechanism import PLATFORM
 from flexstage.parts.piezo import Piezo
 from flexstage.solid.fea.component import Component, groups
 from flexstage.solid.fea.contribution import contributions
-from flexstage.solid.fea.field import Field, Solver, applied, degrees_of, field, inertia, rigid, stiffness, stroke_force, times
+from flexstage.solid.fea.field import Field, Solver, apply_form, degrees_of, field, inertia, rigid, stiffness, stroke_force, times
 from flexstage.solid.fea.fineness import Reduction
-from flexstage.solid.fea.hold import held, is_rigid
-from flexstage.solid.fea.mesh import Meshed, centroids, meshed
+from flexstage.solid.fea.hold import is_rigid, support
+from flexstage.solid.fea.mesh import PieceMesh, centroids, mesh_component
 from flexstage.solid.fea.piece import span
 from flexstage.solid.fea.progress import Report, Stage, silent
 from flexstage.solid.fea.skin import skin
@@ -43,7 +43,7 @@ class _Problem:
     solve: Solver
 
 
-def reduced(component: Component, reduction: Reduction, springs: Array | None = None) -> Superelement:
+def reduce_component(component: Component, reduction: Reduction, springs: Array | None = None) -> Superelement:
     """Mesh, assemble and reduce a component.
 
     With `springs` (6 m, 6 m) between its interfaces the modes kept are those of the component free at its interfaces and joined by the
@@ -52,22 +52,22 @@ def reduced(component: Component, reduction: Reduction, springs: Array | None = 
 
     >>> from flexstage.solid.fea.bar import bar
     >>> from flexstage.solid.fea.fineness import Fineness
-    >>> element = reduced(bar(), Reduction(Fineness(order=2)))
+    >>> element = reduce_component(bar(), Reduction(Fineness(order=2)))
     >>> round(float(element.stiffness["bar"][0, 0]) * 1e-6, 6)  # E A / L, N/um
     100.0
     """
-    return reduced_mesh(component, meshed(component, reduction.fineness), reduction, springs)
+    return reduce_mesh(component, mesh_component(component, reduction.fineness), reduction, springs)
 
 
-def reduced_mesh(
-    component: Component, mesh: Meshed, reduction: Reduction, springs: Array | None = None, report: Report = silent
+def reduce_mesh(
+    component: Component, mesh: PieceMesh, reduction: Reduction, springs: Array | None = None, report: Report = silent
 ) -> Superelement:
     """Assemble and reduce a component that is meshed already, telling how far it is.
 
     >>> from flexstage.solid.fea.bar import bar
     >>> from flexstage.solid.fea.fineness import Fineness
     >>> plan = Reduction(Fineness(order=2), modes=0)
-    >>> reduced_mesh(bar(), meshed(bar(), plan.fineness), plan).interfaces
+    >>> reduce_mesh(bar(), mesh_component(bar(), plan.fineness), plan).interfaces
     1
     """
     problem = _problem(component, mesh, reduction, report)
@@ -75,18 +75,18 @@ def reduced_mesh(
     strokes = {str(number): force for number, force in _strokes(problem).items()}
     loaded = [PLATFORM] if springs is not None and PLATFORM in component.bodies else list(component.bodies)
     loads = [_wrenches(problem, body) for body in loaded] + [force[:, None] for force in strokes.values()]
-    inner = _independent(problem, [_modes(problem, reduction.modes, springs), *(problem.solve(load) for load in loads)])
+    inner = _independent_columns(problem, [_modes(problem, reduction.modes, springs), *(problem.solve(load) for load in loads)])
     basis = np.hstack([problem.faces, problem.warps, inner])
-    return _projected(problem, basis, strokes, report)
+    return _project(problem, basis, strokes, report)
 
 
-def _problem(component: Component, mesh: Meshed, reduction: Reduction, report: Report) -> _Problem:
+def _problem(component: Component, mesh: PieceMesh, reduction: Reduction, report: Report) -> _Problem:
     report(Stage.ASSEMBLING, 0.0)
     plane = [item.joint.name for item in component.interfaces if is_rigid(component, item, reduction.hold)]
     space = field(mesh, plane + [joint.name for joint in component.fixed], reduction.fineness.order)
     elastic, mass = stiffness(space), inertia(space)
     report(Stage.FACTORISING, 0.0)
-    interfaces = held(component, space, elastic, mass, reduction.hold)
+    interfaces = support(component, space, elastic, mass, reduction.hold)
     return _Problem(component, space, elastic, mass, interfaces.faces, interfaces.warps, interfaces.solve)
 
 
@@ -106,7 +106,7 @@ def _wrenches(problem: _Problem, body: str) -> Array:
     """Forces (n, 6) of unit wrenches on a body, spread over its mass: M R (R^T M R)^-1."""
     frame = Frame(np.eye(3), problem.component.bodies[body])
     motion = rigid(problem.field, frame)
-    momentum = applied(inertia(problem.field, _elements(problem, body), assemble=False), motion)
+    momentum = apply_form(inertia(problem.field, _elements(problem, body), assemble=False), motion)
     return momentum @ np.linalg.inv(motion.T @ momentum)
 
 
@@ -152,7 +152,7 @@ def _operator(size: int, function: Callable[[Array], Array]) -> scipy.sparse.lin
     return scipy.sparse.linalg.LinearOperator((size, size), matvec=function, dtype=float)  # pyright: ignore[reportCallIssue]  (its stubs know only __new__)
 
 
-def _independent(problem: _Problem, motions: list[Array]) -> Array:
+def _independent_columns(problem: _Problem, motions: list[Array]) -> Array:
     """An independent set spanning the motions, orthonormal in strain energy."""
     everything = np.hstack(motions)
     energy = everything.T @ times(problem.stiffness, everything)
@@ -162,7 +162,7 @@ def _independent(problem: _Problem, motions: list[Array]) -> Array:
     return everything @ (scale[:, None] * vectors[:, kept] / np.sqrt(values[kept]))
 
 
-def _projected(problem: _Problem, basis: Array, strokes: Mapping[str, Array], report: Report) -> Superelement:
+def _project(problem: _Problem, basis: Array, strokes: Mapping[str, Array], report: Report) -> Superelement:
     component, space = problem.component, problem.field
     elastic: dict[str, Array] = {}
     mass: dict[str, Array] = {}
@@ -174,11 +174,11 @@ def _projected(problem: _Problem, basis: Array, strokes: Mapping[str, Array], re
     for number, part in enumerate(contributions(space, wholes, basis)):
         report(Stage.PROJECTING, number / len(names))
         name = part.name
-        elastic[name], mass[name] = _symmetric(part.strained.T @ part.forces), _symmetric(part.motions.T @ part.momenta)
+        elastic[name], mass[name] = _symmetrise(part.strained.T @ part.forces), _symmetrise(part.motions.T @ part.momenta)
         if name in component.bodies:
             motion = rigid(space, Frame(np.eye(3), component.bodies[name]))
-            own = motion.T @ applied(inertia(space, wholes[name], assemble=False), motion)
-            bodies[name], moving[name] = np.linalg.solve(own, motion[part.rows].T @ part.momenta), _symmetric(own)
+            own = motion.T @ apply_form(inertia(space, wholes[name], assemble=False), motion)
+            bodies[name], moving[name] = np.linalg.solve(own, motion[part.rows].T @ part.momenta), _symmetrise(own)
         else:
             resultants[name] = _sections(problem, names[name][0])[part.rows].T @ part.forces
     everything = rigid(space, identity())
@@ -236,5 +236,5 @@ def _rigid_coordinates(component: Component, size: int) -> Array:
     return result
 
 
-def _symmetric(matrix: Array) -> Array:
+def _symmetrise(matrix: Array) -> Array:
     return 0.5 * (matrix + matrix.T)

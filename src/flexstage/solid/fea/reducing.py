@@ -11,7 +11,7 @@ from flexstage.solid.fea.component import Component
 from flexstage.solid.fea.fineness import ATTEMPTS, WARPS, Fineness, Reduction
 from flexstage.solid.fea.memory import Counts, needed, refusal
 from flexstage.solid.fea.piece import Form, Piece, span, thinnest
-from flexstage.solid.fea.store import written
+from flexstage.solid.fea.store import to_bytes
 from flexstage.solid.fea.worker import Call, Job
 
 _TRIANGLE = 0.433
@@ -68,7 +68,7 @@ class ComponentJob(StoredJob):
 
 
 @dataclass(frozen=True, eq=False)
-class Reducing(ComponentJob):
+class Reduce(ComponentJob):
     """A component to reduce; `springs` (6 m, 6 m) between its interfaces, for modes of a whole stage in one piece."""
 
     reduction: Reduction
@@ -92,12 +92,12 @@ class Reducing(ComponentJob):
 
     def work(self, call: Call) -> bytes:
         """Ask for what the surface alone takes, draw, mesh, ask for the mesh, reduce; the superelement as stored."""
-        from flexstage.solid.fea.mesh import meshed
-        from flexstage.solid.fea.reduce import reduced_mesh
+        from flexstage.solid.fea.mesh import mesh_component
+        from flexstage.solid.fea.reduce import reduce_mesh
 
         call.ask(Counts.of(fewest_elements(self.component, self.reduction.fineness)))
-        mesh = meshed(self.component, self.reduction.fineness, call.report, call.attempt)
+        mesh = mesh_component(self.component, self.reduction.fineness, call.report, call.attempt)
         size = mesh.mesh
         call.ask(Counts(size.nv, size.nedge, size.nface, size.ne))
-        element = reduced_mesh(self.component, mesh, self.reduction, self.springs, call.report)
-        return written(element, self.key, call.made)
+        element = reduce_mesh(self.component, mesh, self.reduction, self.springs, call.report)
+        return to_bytes(element, self.key, call.made)

@@ -20,7 +20,7 @@ from flexstage.base.jobs import Heard, Word, Worker, cores
 from flexstage.base.memory import available
 from flexstage.base.progress import Progress, Step, seconds_left
 from flexstage.solid.fea.memory import Counts
-from flexstage.solid.fea.progress import Stage, gathered
+from flexstage.solid.fea.progress import Stage, overall
 from flexstage.solid.fea.store import versions
 from flexstage.solid.fea.worker import Job, Task, work
 
@@ -148,7 +148,7 @@ class _Run(Generic[AnyJob]):
         try:
             worker = Worker(work, self.heard)
         except OSError as error:
-            raise _unstarted(job.name, error) from error
+            raise _refuse_start(job.name, error) from error
         self.children.append(_Child(job, attempt, begun if attempt else time.monotonic(), worker))
         worker.ask(task)
 
@@ -171,18 +171,18 @@ class _Run(Generic[AnyJob]):
                 self.done(child.job, value)
                 self._close(child)
             case Word.FAILED:
-                self._close(child, *_failures(child, value))
+                self._close(child, *_failure_findings(child, value))
             case Word.ENDED:
                 if value == 1 or not self._again(child):
-                    self._close(child, _failed(child, value))
+                    self._close(child, _failure(child, value))
 
     def _check_time(self, child: _Child[AnyJob]) -> None:
         now = time.monotonic()
         if child.stage is Stage.MESHING and not child.waits and now - child.since > self.limits.mesh_seconds:
             if not self._again(child):
-                self._close(child, _hung(child, self.limits.mesh_seconds))
+                self._close(child, _out_of_time(child, self.limits.mesh_seconds))
         elif now - child.begun > self.limits.seconds:
-            self._close(child, _hung(child, self.limits.seconds))
+            self._close(child, _out_of_time(child, self.limits.seconds))
 
     def _again(self, child: _Child[AnyJob]) -> bool:
         """Begin with the next attempt at a mesh, where one took the process down or did not end."""
@@ -220,14 +220,14 @@ class _Run(Generic[AnyJob]):
     def _tell(self) -> None:
         running = {child.job.name: (child.stage, child.fraction) for child in self.children}
         text = ", ".join(f"{name}: {stage.value}" for name, (stage, _) in running.items()) or "done"
-        self.fraction = min(1.0, max(self.fraction, gathered(running, self.shares, self.finished)))
+        self.fraction = min(1.0, max(self.fraction, overall(running, self.shares, self.finished)))
         now = time.monotonic()
         if text != self.text or now - self.told > _TELL_EVERY:
             self.text, self.told = text, now
             self.progress(Step(text, self.fraction, seconds_left(self.fraction, now - self.begun)))
 
 
-def _failures(child: _Child[AnyJob], error: Exception) -> tuple[Finding, ...]:
+def _failure_findings(child: _Child[AnyJob], error: Exception) -> tuple[Finding, ...]:
     """What keeps a job from being done that its process lived to tell."""
     if isinstance(error, DesignError):
         return error.findings
@@ -238,7 +238,7 @@ def _failures(child: _Child[AnyJob], error: Exception) -> tuple[Finding, ...]:
     return (_fault(child, f"{type(error).__name__}: {error}"),)
 
 
-def _failed(child: _Child[AnyJob], code: int) -> Finding:
+def _failure(child: _Child[AnyJob], code: int) -> Finding:
     doing = child.stage.value
     if code == 1:
         return _fault(child, child.worker.last_words())
@@ -261,7 +261,7 @@ def _reason(code: int) -> str:
     return names.get(code, f"exit code {code}")
 
 
-def _hung(child: _Child[AnyJob], seconds: float) -> Finding:
+def _out_of_time(child: _Child[AnyJob], seconds: float) -> Finding:
     advice = "Ask for larger elements or a lower order, allow more time, or look for slivers, which can keep the mesher busy for ever"
     return Finding(child.job.name, f"it was still {child.stage.value} after the {seconds:.4g} s allowed", advice)
 
@@ -276,7 +276,7 @@ def _disk_full(name: str) -> Finding:
     return Finding(name, f"no room is left in the folder for temporary files, {tempfile.gettempdir()}", advice)
 
 
-def _unstarted(name: str, error: OSError) -> Exception:
+def _refuse_start(name: str, error: OSError) -> Exception:
     where = tempfile.gettempdir()
     advice = "See that Python can be started and that the folder for temporary files (environment variable TMPDIR) has room"
     return refuse(name, f"no process could be started for it in {where} ({error.strerror})", advice)

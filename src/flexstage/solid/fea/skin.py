@@ -30,8 +30,8 @@ def skin(space: Field, basis: Array) -> Skin:
     >>> from flexstage.solid.fea.bar import bar
     >>> from flexstage.solid.fea.field import field
     >>> from flexstage.solid.fea.fineness import Fineness
-    >>> from flexstage.solid.fea.mesh import meshed
-    >>> space = field(meshed(bar(), Fineness(order=2)), ["foot"], 2)
+    >>> from flexstage.solid.fea.mesh import mesh_component
+    >>> space = field(mesh_component(bar(), Fineness(order=2)), ["foot"], 2)
     >>> skin(space, np.zeros((space.size, 1))).motion.max().item()
     0.0
     """
@@ -48,12 +48,12 @@ def skin(space: Field, basis: Array) -> Skin:
     motion = np.empty((len(used), 3, basis.shape[1]), dtype=np.float32)
     stress = np.empty((len(used), 6, basis.shape[1]), dtype=np.float32)
     weights = _weights(within)
-    shares = _summed(triangles, weights, len(used))
+    shares = _sum_by_vertex(triangles, weights, len(used))
     for number in range(basis.shape[1]):
         function.vec.FV().NumPy()[:] = basis[:, number]
         motion[triangles.ravel(), :, number] = function(points)
         found = np.einsum("ab,tbc->tac", _CONTINUED, np.asarray(wanted(within)).reshape(-1, 3, 6)).reshape(-1, 6)
-        stress[..., number] = _summed(triangles, weights * found, len(used)) / shares
+        stress[..., number] = _sum_by_vertex(triangles, weights * found, len(used)) / shares
     return Skin(places, triangles, motion, stress, _owners(mesh, space.meshed.owner))
 
 
@@ -63,7 +63,7 @@ def _weights(points: Any) -> Array:
     return np.maximum(values, _LEAST_WEIGHT * float(np.max(values)))
 
 
-def _summed(triangles: Array, values: Array, count: int) -> Array:
+def _sum_by_vertex(triangles: Array, values: Array, count: int) -> Array:
     total = np.zeros((count, values.shape[1]))
     np.add.at(total, triangles.ravel(), values)
     return total

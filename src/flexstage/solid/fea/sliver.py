@@ -16,8 +16,8 @@ from flexstage.base.number import Array
 from flexstage.solid.fea.cad import cad, half_extents
 from flexstage.solid.fea.component import Component
 from flexstage.solid.fea.content import content
-from flexstage.solid.fea.draw import drawn
-from flexstage.solid.fea.near import Question, answered, distance_text
+from flexstage.solid.fea.draw import draw_form
+from flexstage.solid.fea.near import Question, distance_text, findings_of
 from flexstage.solid.fea.piece import MILLIMETRES, Form, Piece, thinnest
 
 SLIVER = 0.05
@@ -44,7 +44,7 @@ def sliver_findings(parts: Sequence[Component], *, coarse: bool = False) -> Iter
     >>> list(sliver_findings([]))
     []
     """
-    yield from answered(Question(content(part), part.name, lambda part=part: _answers(part, coarse=coarse)) for part in parts)
+    yield from findings_of(Question(content(part), part.name, lambda part=part: _answers(part, coarse=coarse)) for part in parts)
 
 
 def _answers(component: Component, *, coarse: bool) -> Iterator[tuple[str, str]]:
@@ -58,16 +58,16 @@ def _answers(component: Component, *, coarse: bool) -> Iterator[tuple[str, str]]
         if not coarse:
             yield f"its outlines cannot be joined by the CAD kernel ({error})", "Look for faces that nearly coincide"
         return
-    pieces = _with_footprints(component)
+    pieces = _add_footprints(component)
     smallest: dict[tuple[int, ...], _Sliver] = {}
     for sliver in _slivers(shape, pieces):
         if sliver.pieces not in smallest or sliver.size < smallest[sliver.pieces].size:
             smallest[sliver.pieces] = sliver
     for sliver in smallest.values():
-        yield _told(sliver, pieces)
+        yield _finding(sliver, pieces)
 
 
-def _told(sliver: _Sliver, pieces: Sequence[Piece]) -> tuple[str, str]:
+def _finding(sliver: _Sliver, pieces: Sequence[Piece]) -> tuple[str, str]:
     there = [pieces[number] for number in sliver.pieces]
     thin = min(there, key=lambda piece: thinnest(piece.form))
     names = " and ".join(dict.fromkeys(piece.name for piece in there))
@@ -76,7 +76,7 @@ def _told(sliver: _Sliver, pieces: Sequence[Piece]) -> tuple[str, str]:
     return what, "Make their faces flush, or the step between them larger"
 
 
-def _with_footprints(component: Component) -> tuple[Piece, ...]:
+def _add_footprints(component: Component) -> tuple[Piece, ...]:
     stamps = (
         Piece(item.joint.link, item.footprint, component.pieces[0].medium, item.stamp)
         for item in component.interfaces
@@ -109,7 +109,7 @@ def _away(piece: Piece, half: Array, point: Array) -> float:
 
 def _own(form: Form) -> float:
     """The shortest edge or narrowest face of a form drawn alone."""
-    shape = drawn(form)
+    shape = draw_form(form)
     sizes = [*(edge.mass for edge in shape.edges), *(_width(face) for face in shape.faces)]
     return min(size for size in sizes if size > _NOTHING)
 

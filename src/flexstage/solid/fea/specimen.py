@@ -127,12 +127,12 @@ def cut(part: Profiled, stubs: tuple[float, float], size: float) -> Specimen:
         return bar(part, stubs, size)
     side = _Side(0.5 * _mm(part.throat.height), part.profile, stubs)
     if part.throat.is_round:
-        return _named(_revolved(side), side, 2.0 * side.rise, size)
+        return _name_faces(_revolve(side), side, 2.0 * side.rise, size)
     if part.end.first.width == part.throat.first.width:
         return _wide(side, _mm(part.throat.width), size)
     across = _Side(0.5 * _mm(part.throat.width), part.profile, stubs)
-    turned = _extruded(across, 3.0 * side.height).Rotate(occ.Axis(occ.Pnt(0, 0, 0), occ.X), 90.0)
-    return _named(_extruded(side, 3.0 * across.height) * turned, side, 2.0 * min(side.rise, across.rise), size)
+    turned = _extrude(across, 3.0 * side.height).Rotate(occ.Axis(occ.Pnt(0, 0, 0), occ.X), 90.0)
+    return _name_faces(_extrude(side, 3.0 * across.height) * turned, side, 2.0 * min(side.rise, across.rise), size)
 
 
 def bar(part: Shaped, stubs: tuple[float, float], size: float, drawn: occ.TopoDS_Shape | None = None) -> Specimen:
@@ -141,17 +141,17 @@ def bar(part: Shaped, stubs: tuple[float, float], size: float, drawn: occ.TopoDS
     solid = _prism(part) if drawn is None else drawn
     thin = _thinness(part)
     if not any(stubs):
-        return _named(solid, side, thin, size)
+        return _name_faces(solid, side, thin, size)
     for sign, depth in zip((-1.0, 1.0), stubs, strict=True):
         if depth > 0.0:
             solid = solid + _block(part, sign, side.half, depth)
     coarse = 2.0 * side.rise if rises(part) else _SEAT_SIZE * grain(part) * MILLIMETRES
-    return replace(_named(solid, side, thin, size), largest=size * max(thin, coarse))
+    return replace(_name_faces(solid, side, thin, size), largest=size * max(thin, coarse))
 
 
 def _prism(part: Shaped) -> occ.TopoDS_Shape:
     side = _Side(0.5 * _mm(part.throat.height), Straight(part.span))
-    return _revolved(side) if part.throat.is_round else _extruded(side, _mm(part.throat.width))
+    return _revolve(side) if part.throat.is_round else _extrude(side, _mm(part.throat.width))
 
 
 def _thinness(part: Shaped) -> float:
@@ -176,7 +176,7 @@ def _mm(value: Number) -> float:
     return float(np.real(value)) * MILLIMETRES
 
 
-def _extruded(side: _Side, width: float) -> occ.TopoDS_Shape:
+def _extrude(side: _Side, width: float) -> occ.TopoDS_Shape:
     upper, lower = _edge(side, 1.0), _edge(side, -1.0)
     (start, end), (first, last) = side.ends, side.tops
     right, left = _lines([(end, -last), (end, last)]), _lines([(start, first), (start, -first)])
@@ -184,7 +184,7 @@ def _extruded(side: _Side, width: float) -> occ.TopoDS_Shape:
     return face.Extrude(occ.Vec(0, 0, width)).Move(occ.Vec(0, 0, -0.5 * width))
 
 
-def _revolved(side: _Side) -> occ.TopoDS_Shape:
+def _revolve(side: _Side) -> occ.TopoDS_Shape:
     (start, end), (first, last) = side.ends, side.tops
     rest = [(end, last), (end, 0.0), (start, 0.0), (start, first)]
     face = occ.Face(occ.Wire([*_edge(side, 1.0), *_lines(rest)]))
@@ -243,10 +243,10 @@ def _lines(points: list[tuple[float, float]]) -> _Curve:
 
 def _wide(side: _Side, width: float, size: float) -> Specimen:
     """Elements of a wide thin hinge may be flat: those of high order do not mind, and cubes would be too many."""
-    return _named(_extruded(side, width), side, max(2.0 * side.rise, _FLAT * min(width, 2.0 * side.half)), size)
+    return _name_faces(_extrude(side, width), side, max(2.0 * side.rise, _FLAT * min(width, 2.0 * side.half)), size)
 
 
-def _named(solid: occ.TopoDS_Shape, side: _Side, thin: float, size: float) -> Specimen:
+def _name_faces(solid: occ.TopoDS_Shape, side: _Side, thin: float, size: float) -> Specimen:
     """Name the outer faces, and ask for fine elements where the section is thinnest."""
     solid.mat("medium 0")
     near = _NEAR * side.half
@@ -257,12 +257,12 @@ def _named(solid: occ.TopoDS_Shape, side: _Side, thin: float, size: float) -> Sp
         elif all(abs(vertex.p.x - start) < near for vertex in face.vertices):
             face.name = START
     for edge in solid.edges:
-        if all(abs(vertex.p.x) <= _thin(side) + near and abs(vertex.p.y) <= side.height + near for vertex in edge.vertices):
+        if all(abs(vertex.p.x) <= _thin_reach(side) + near and abs(vertex.p.y) <= side.height + near for vertex in edge.vertices):
             edge.maxh = size * thin
     return Specimen(solid, size * (thin if isinstance(side.profile, Straight) else max(thin, side.height)))
 
 
-def _thin(side: _Side) -> float:
+def _thin_reach(side: _Side) -> float:
     """How far from the middle the section is thinnest: all along a prism that ends on wider blocks."""
     if isinstance(side.profile, Straight):
         return side.half if any(side.stubs) else 0.0

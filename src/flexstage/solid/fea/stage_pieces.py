@@ -11,7 +11,7 @@ from flexstage.mechanism.mechanism import GROUND, Mechanism
 from flexstage.mechanism.outline import Outline, outlines
 from flexstage.parts.piezo import Piezo
 from flexstage.solid.fea.component import Joint, link_joints
-from flexstage.solid.fea.piece import Piece, drawable, medium, stack_medium
+from flexstage.solid.fea.piece import Piece, form_of, medium, stack_medium
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,7 +47,7 @@ def stage_pieces(mechanism: Mechanism) -> Stage:
     (27, 'steel', 'platform')
     """
     assembly = expand(mechanism)
-    forms = {name: drawable(link) for name, link in assembly.links.items()}
+    forms = {name: form_of(link) for name, link in assembly.links.items()}
     require(form for form in forms.values() if isinstance(form, Finding))
     pieces: dict[str, Piece] = {}
     materials: dict[str, str] = {}

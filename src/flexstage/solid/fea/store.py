@@ -75,25 +75,25 @@ def method_files(method: str = "reduce") -> tuple[Path, ...]:
     return tuple(found[name] for name in sorted(found))
 
 
-def written(element: Superelement | HingeSolid, key: str, made: Versions) -> bytes:
+def to_bytes(element: Superelement | HingeSolid, key: str, made: Versions) -> bytes:
     """A superelement or a 6x6 as the bytes of a file, for the content `key` and the versions it was made by.
 
     >>> small = Superelement(0, 0, {}, {}, {}, {}, {}, {}, {}, np.zeros((0, 6)), np.zeros((0, 6)), Skin(*[np.zeros(0)] * 5), 3, 1)
-    >>> read(written(small, "key", versions()), "key").freedoms
+    >>> from_bytes(to_bytes(small, "key", versions()), "key").freedoms
     3
     """
     arrays: dict[str, Array] = {}
-    tree = _flat(element, "", arrays)
+    tree = _flatten(element, "", arrays)
     body = io.BytesIO()
     np.savez(body, allow_pickle=False, **{str(number): value for number, value in enumerate(arrays.values())})
     head = {"what": f"flexstage {type(element).__name__.lower()}", "key": key, **_stamp(made), "tree": tree}
-    return _sealed(head, body.getvalue())
+    return _seal(head, body.getvalue())
 
 
-def read(data: bytes, key: str, made: Versions | None = None) -> Any:
-    """What was `written` into a file's bytes; else, in words, what is wrong with them: damaged, of another version, of other content.
+def from_bytes(data: bytes, key: str, made: Versions | None = None) -> Any:
+    """What was `to_bytes` into a file's bytes; else, in words, what is wrong with them: damaged, of another version, of other content.
 
-    >>> read(b"nonsense", "key")
+    >>> from_bytes(b"nonsense", "key")
     'it is damaged: it does not begin as such files do'
     """
     line, _, body = data.partition(b"\n")
@@ -110,14 +110,14 @@ def read(data: bytes, key: str, made: Versions | None = None) -> Any:
     if head.get("key") != key:
         return "it holds something else"
     with np.load(io.BytesIO(body), allow_pickle=False) as arrays:
-        return _built(head["tree"], arrays)
+        return _build(head["tree"], arrays)
 
 
 def _stamp(made: Versions) -> dict[str, Any]:
     return {field.name: getattr(made, field.name) for field in fields(made)}
 
 
-def _sealed(head: Mapping[str, Any], body: bytes) -> bytes:
+def _seal(head: Mapping[str, Any], body: bytes) -> bytes:
     return json.dumps({**head, "checksum": _checksum(head, body)}).encode() + b"\n" + body
 
 
@@ -127,26 +127,26 @@ def _checksum(head: Mapping[str, Any], body: bytes) -> str:
     return state.hexdigest()
 
 
-def _flat(value: object, path: str, arrays: dict[str, Array]) -> Any:
+def _flatten(value: object, path: str, arrays: dict[str, Array]) -> Any:
     """A value as JSON, its arrays by number in order of `arrays`."""
     if isinstance(value, np.ndarray):
         arrays[path] = value
         return {"array": len(arrays) - 1}
     if isinstance(value, Mapping):
-        return {"map": [[name, _flat(item, f"{path}/{name}", arrays)] for name, item in value.items()]}
+        return {"map": [[name, _flatten(item, f"{path}/{name}", arrays)] for name, item in value.items()]}
     if is_dataclass(value):
-        parts = {field.name: _flat(getattr(value, field.name), f"{path}.{field.name}", arrays) for field in fields(value)}
+        parts = {field.name: _flatten(getattr(value, field.name), f"{path}.{field.name}", arrays) for field in fields(value)}
         return {"record": type(value).__name__, "fields": parts}
     if value is None or isinstance(value, (int, float, str)):
         return value
     raise TypeError(f"{path} cannot be stored: {type(value).__name__}")
 
 
-def _built(tree: Any, arrays: Mapping[str, Array]) -> Any:
+def _build(tree: Any, arrays: Mapping[str, Array]) -> Any:
     if not isinstance(tree, dict):
         return tree
     if "array" in tree:
         return arrays[str(tree["array"])]
     if "map" in tree:
-        return {name: _built(item, arrays) for name, item in tree["map"]}
-    return _RECORDS[tree["record"]](**{name: _built(item, arrays) for name, item in tree["fields"].items()})
+        return {name: _build(item, arrays) for name, item in tree["map"]}
+    return _RECORDS[tree["record"]](**{name: _build(item, arrays) for name, item in tree["fields"].items()})

@@ -25,15 +25,15 @@ def straighten(mesh: ngsolve.Mesh, kept: Array) -> str | None:
 
     >>> from flexstage.solid.fea.bar import bar
     >>> from flexstage.solid.fea.fineness import Fineness
-    >>> from flexstage.solid.fea.mesh import meshed
-    >>> block = meshed(bar(), Fineness(order=2)).mesh  # has nothing curved
+    >>> from flexstage.solid.fea.mesh import mesh_component
+    >>> block = mesh_component(bar(), Fineness(order=2)).mesh  # has nothing curved
     >>> straighten(block, np.zeros(block.ne, dtype=bool)), block.deformation is None
     (None, True)
     """
     lowest, highest = jacobians(mesh)
     if np.any(lowest[kept] <= 0.0):
         return f"a curved face turns an element inside out, Jacobian {float(np.min(lowest[kept])):.3g}"
-    folded = _folded(lowest, highest) & ~kept
+    folded = _folded_elements(lowest, highest) & ~kept
     if not np.any(folded):
         return None
     shape = _shape(mesh)
@@ -42,7 +42,7 @@ def straighten(mesh: ngsolve.Mesh, kept: Array) -> str | None:
     while np.any(folded):  # ends: an element all of whose sides are straight is the mesher's own
         _flatten(shape, folded)
         lowest, highest = jacobians(mesh)
-        folded = _folded(lowest, highest) & ~(kept | _flattened(shape))
+        folded = _folded_elements(lowest, highest) & ~(kept | _flattened_edges(shape))
     worst = float(np.min(lowest))
     return None if worst > 0.0 else f"a straight element is inside out, Jacobian {worst:.3g}"
 
@@ -52,8 +52,8 @@ def jacobians(mesh: ngsolve.Mesh) -> tuple[Array, Array]:
 
     >>> from flexstage.solid.fea.bar import bar
     >>> from flexstage.solid.fea.fineness import Fineness
-    >>> from flexstage.solid.fea.mesh import meshed
-    >>> lowest, highest = jacobians(meshed(bar(), Fineness(order=2)).mesh)  # six times the volumes: straight ones are even
+    >>> from flexstage.solid.fea.mesh import mesh_component
+    >>> lowest, highest = jacobians(mesh_component(bar(), Fineness(order=2)).mesh)  # six times the volumes: straight ones are even
     >>> round(float(sum(lowest)) / 6.0, 6), bool(np.allclose(lowest, highest))
     (10000.0, True)
     """
@@ -62,7 +62,7 @@ def jacobians(mesh: ngsolve.Mesh) -> tuple[Array, Array]:
     return values.min(axis=1), values.max(axis=1)
 
 
-def _folded(lowest: Array, highest: Array) -> Array:
+def _folded_elements(lowest: Array, highest: Array) -> Array:
     return lowest < _FLAT * highest
 
 
@@ -82,7 +82,7 @@ def _flatten(shape: ngsolve.GridFunction, elements: Array) -> None:
         values[_coordinates(shape, int(number))] = 0.0
 
 
-def _flattened(shape: ngsolve.GridFunction) -> Array:
+def _flattened_edges(shape: ngsolve.GridFunction) -> Array:
     values = shape.vec.FV().NumPy()
     count = shape.space.mesh.ne
     return np.array([not np.any(values[_coordinates(shape, number)]) for number in range(count)])

@@ -17,7 +17,7 @@ _POINTS = 40
 
 
 @dataclass(frozen=True)
-class Section:
+class BeamSection:
     """A cross-section: area [m^2], second moments about y and z and torsion constant [m^4], warping constant [m^6], shear factor."""
 
     area: float
@@ -28,7 +28,7 @@ class Section:
     shear: float
 
 
-def rectangle(height: float, width: float) -> Section:
+def rectangle(height: float, width: float) -> BeamSection:
     """A rectangle, `height` along y and `width` along z [m].
 
     J = a^3 c/3 (1 - 192/pi^5 (a/c) sum_odd tanh(n pi c/2a)/n^5), a the shorter side (Saint-Venant); shear factor 5/6, Timoshenko's usual
@@ -42,7 +42,7 @@ def rectangle(height: float, width: float) -> Section:
     odd = np.arange(1, 2 * _TERMS, 2)
     series = np.sum(np.tanh(0.5 * odd * np.pi * long / short) / odd**5)
     torsion = float(short**3 * long / 3.0 * (1.0 - 192.0 / np.pi**5 * short / long * series))
-    return Section(height * width, height * width**3 / 12.0, width * height**3 / 12.0, torsion, _warping(short, long), 5.0 / 6.0)
+    return BeamSection(height * width, height * width**3 / 12.0, width * height**3 / 12.0, torsion, _warping(short, long), 5.0 / 6.0)
 
 
 def _warping(short: float, long: float) -> float:
@@ -58,7 +58,7 @@ def _warping(short: float, long: float) -> float:
     return float(weights @ function**2 @ weights * 0.25 * short * long)
 
 
-def circle(diameter: float) -> Section:
+def circle(diameter: float) -> BeamSection:
     """A full circle: J = 2 I; shear factor 9/10 (Timoshenko).
 
     >>> section = circle(2.0)
@@ -66,16 +66,16 @@ def circle(diameter: float) -> Section:
     (3.1416, 2.0, 0.9)
     """
     second = np.pi * diameter**4 / 64.0
-    return Section(0.25 * np.pi * diameter**2, second, second, 2.0 * second, 0.0, 0.9)
+    return BeamSection(0.25 * np.pi * diameter**2, second, second, 2.0 * second, 0.0, 0.9)
 
 
-def beam(section: Section, length: float, medium: Medium) -> Array:
+def beam(section: BeamSection, length: float, medium: Medium) -> Array:
     """Compliance (6, 6) of a prismatic Timoshenko beam about its centre, axis along x, one end held plane and the other free to warp.
 
     C = diag(L/EA, L^3/12EI_z + L/kGA, L^3/12EI_y + L/kGA, C_rx, L/EI_y, L/EI_z): about the centre bending and shear do not couple. Torsion
     by Vlasov: C_rx = L/GJ (1 - tanh(m)/m), m^2 = G J L^2/(E C_w): Saint-Venant's alone would take more off a wide hinge than there is.
 
-    >>> beam(Section(1.0, 1.0, 2.0, 1.0, 0.0, 1.0), 1.0, Medium(1.0, 0.0, 1.0)).diagonal()[[0, 3, 4, 5]].tolist()
+    >>> beam(BeamSection(1.0, 1.0, 2.0, 1.0, 0.0, 1.0), 1.0, Medium(1.0, 0.0, 1.0)).diagonal()[[0, 3, 4, 5]].tolist()
     [1.0, 2.0, 1.0, 0.5]
     """
     young, shear = medium.young, medium.shear
@@ -85,14 +85,14 @@ def beam(section: Section, length: float, medium: Medium) -> Array:
             length / (young * section.area),
             length**3 / (12.0 * young * section.about_z) + sliding,
             length**3 / (12.0 * young * section.about_y) + sliding,
-            length / (shear * section.torsion) * _freed(section, length, medium),
+            length / (shear * section.torsion) * _free_twist(section, length, medium),
             length / (young * section.about_y),
             length / (young * section.about_z),
         ]
     )
 
 
-def _freed(section: Section, length: float, medium: Medium) -> float:
+def _free_twist(section: BeamSection, length: float, medium: Medium) -> float:
     """Twist with one end held plane over that of Saint-Venant."""
     if section.warping == 0.0:
         return 1.0

@@ -49,7 +49,7 @@ class Superelement:
     elements: int
 
     @property
-    def joined(self) -> int:
+    def boundary_coordinates(self) -> int:
         """Number of coordinates it shares with what it is joined to: all but the internal ones."""
         return 6 * self.interfaces + self.warps
 

@@ -60,14 +60,14 @@ def von_mises(stress: Array) -> Array:
     return np.sqrt(0.5 * ((x - y) ** 2 + (y - z) ** 2 + (z - x) ** 2) + 3.0 * (xy**2 + yz**2 + zx**2))
 
 
-def moved_vertices(item: Placed, motion: Array, factor: float) -> Array:
+def vertex_places(item: Placed, motion: Array, factor: float) -> Array:
     """Places (v, 3) [m] of a component's skin in the stage's frame, moved by `factor` times the motion of coordinates (N,).
 
     >>> from types import SimpleNamespace as Of
     >>> from flexstage.spatial.frame import identity
     >>> skin = Of(vertices=np.zeros((1, 3)), motion=np.array([[[1.0], [0.0], [0.0]]]))
     >>> item = Of(element=Of(skin=skin), operator=np.eye(1), component=Of(place=identity()))
-    >>> moved_vertices(item, np.array([0.5]), 2.0).tolist()
+    >>> vertex_places(item, np.array([0.5]), 2.0).tolist()
     [[1.0, 0.0, 0.0]]
     """
     skin = item.element.skin

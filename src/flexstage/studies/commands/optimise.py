@@ -16,11 +16,11 @@ from flexstage.studies.optimisation.front import pareto_front
 from flexstage.studies.optimisation.optimum import optimise as run_optimise
 from flexstage.studies.optimisation.report import front_report, optimise_report
 from flexstage.studies.optimisation.result import Front, Optimum
-from flexstage.studies.optimisation.stage_text import design_path, design_text, optimised_text
+from flexstage.studies.optimisation.stage_text import design_path, design_text, write_optimum
 from flexstage.studies.optimisation.tables import contradiction_text, front_tables, optimise_tables
 from flexstage.studies.optimisation.values import values_of
 from flexstage.studies.sweeps.file import load_study
-from flexstage.studies.sweeps.loaded import loaded_findings, require_holding
+from flexstage.studies.sweeps.loaded import loaded_findings, require_stable
 
 
 def optimise(
@@ -51,9 +51,9 @@ def optimise(
     _require_solution(found)
     if isinstance(found, Optimum) and found.final is not None:
         values = values_of(asked, found.final.shares)
-        cautions = require_holding(asked, values)
+        cautions = require_stable(asked, values)
         if output is not None:
-            save(output, optimised_text(design_text(asked, study.parent), asked, wanted, values, where=str(study)), "--output")
+            save(output, write_optimum(design_text(asked, study.parent), asked, wanted, values, where=str(study)), "--output")
     else:
         cautions = loaded_findings(asked)
     if report is not None:
@@ -74,6 +74,6 @@ def optimise(
 def _require_solution(found: Optimum | Front) -> None:
     """Refuse what has no design that keeps the limits, or none that can be made."""
     require(Finding("limits", *contradiction_text(each, found)) for each in found.contradictions)
-    reason = found.unfinished
+    reason = found.failure
     if reason:
         raise refuse("optimise", reason, "Give more starts, widen the ranges, or make the steps finer")

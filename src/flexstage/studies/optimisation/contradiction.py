@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from flexstage.base.number import Array
 from flexstage.studies.optimisation.problem import SPARE, Problem
 from flexstage.studies.optimisation.result import Contradiction
-from flexstage.studies.optimisation.search import search, together
+from flexstage.studies.optimisation.search import run_searches, search
 from flexstage.studies.optimisation.setting import Setting
 from flexstage.studies.optimisation.values import Point
 
@@ -24,20 +24,20 @@ def contradictions(setting: Setting, starts: Sequence[Array], told: Told | None 
     either. What remains is irreducible: without any one of them the others can be kept. It is set aside, and the rest is looked through
     for further sets.
     """
-    return tuple(_sets(setting, list(starts), told))
+    return tuple(_irreducible_sets(setting, list(starts), told))
 
 
-def _sets(setting: Setting, starts: list[Array], told: Told | None) -> Iterator[Contradiction]:
+def _irreducible_sets(setting: Setting, starts: list[Array], told: Told | None) -> Iterator[Contradiction]:
     left = tuple(range(len(setting.kept)))
     for _ in range(_MOST):
-        found = _least(setting, left, starts, told)
+        found = _least_violation(setting, left, starts, told)
         if found is None or found.violation <= SPARE:
             return
         begins = [found.point.shares, starts[0]]
         held = tuple(number for number, weight in zip(left, found.weights, strict=True) if weight > _COUNTS)
-        alone = _least(setting, held, begins[:1], told)
+        alone = _least_violation(setting, held, begins[:1], told)
         suspects = held if alone is not None and alone.violation > SPARE else left
-        chosen, ended = _irreducible(setting, suspects, begins, told)
+        chosen, ended = _irreducible_set(setting, suspects, begins, told)
         yield Contradiction(tuple(setting.kept[number] for number in chosen), ended.violation, ended.point)
         left = tuple(number for number in left if number not in chosen)
 
@@ -51,15 +51,15 @@ class _Least:
     weights: tuple[float, ...]
 
 
-def _irreducible(setting: Setting, suspects: tuple[int, ...], starts: list[Array], told: Told | None) -> tuple[tuple[int, ...], _Least]:
+def _irreducible_set(setting: Setting, suspects: tuple[int, ...], starts: list[Array], told: Told | None) -> tuple[tuple[int, ...], _Least]:
     """A set of limits that cannot be kept though each left out the others can; halves are tried before single ones."""
-    ended = _least(setting, suspects, starts, told)
+    ended = _least_violation(setting, suspects, starts, told)
     assert ended is not None  # noqa: S101  one of the starts is a design already found
     size = max(1, len(suspects) // 2)
     place = 0
     while place < len(suspects):
         rest = (*suspects[:place], *suspects[place + size :])
-        without = _least(setting, rest, starts, told) if rest else None
+        without = _least_violation(setting, rest, starts, told) if rest else None
         if without is not None and without.violation > SPARE:
             suspects, ended = rest, without
             starts = [without.point.shares, *starts[1:]]
@@ -70,12 +70,12 @@ def _irreducible(setting: Setting, suspects: tuple[int, ...], starts: list[Array
     return suspects, ended
 
 
-def _least(setting: Setting, chosen: tuple[int, ...], starts: Sequence[Array], told: Told | None) -> _Least | None:
+def _least_violation(setting: Setting, chosen: tuple[int, ...], starts: Sequence[Array], told: Told | None) -> _Least | None:
     """The least largest violation, found from any of the starts; `None` where nothing is asked or no start can be evaluated."""
     if not chosen:
         return None
     problem = Problem(tuple(setting.side(number) for number in chosen), ())
-    traces = together([search(problem, start, enough=SPARE) for start in starts], setting.values, told)
+    traces = run_searches([search(problem, start, enough=SPARE) for start in starts], setting.values, told)
     ended = [
         _Least(problem.worth(trace.point), trace.point, tuple(each.total for each in trace.weights) or (1.0,) * len(chosen))
         for trace in traces

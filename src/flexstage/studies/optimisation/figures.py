@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from flexstage.show.display import shown
-from flexstage.show.figures.style import FULL, INK, MUTED, SERIES, Margins, canvas, panels, styled
+from flexstage.show.display import display_unit_of
+from flexstage.show.figures.style import FULL, INK, MUTED, SERIES, Margins, canvas, panels, style_context
 from flexstage.studies.optimisation.result import Front, Optimum
 
 
@@ -19,7 +19,7 @@ def convergence_figure(found: Optimum) -> Any:
     >>> len(convergence_figure(optimise(*leaf_study())).axes)
     2
     """
-    with styled():
+    with style_context():
         figure = canvas(FULL, 2.9)
         axes = panels(figure, 1, 2, Margins(left=0.65, across=1.1, bottom=0.5, right=0.2))
         _histories(axes[0, 0], found)
@@ -30,7 +30,7 @@ def convergence_figure(found: Optimum) -> Any:
 def _histories(ax: Any, found: Optimum) -> None:
     objective = found.wanted.objectives[0]
     values = np.concatenate([start.history[:, 0] for start in found.starts])
-    form = shown(objective.measure.quantity.si, float(np.max(np.abs(values), initial=0.0)))
+    form = display_unit_of(objective.measure.quantity.si, float(np.max(np.abs(values), initial=0.0)))
     for index, start in enumerate(found.starts):
         heights, kept = start.history[:, 0] * form.factor, start.history[:, 1] <= 1e-8
         color, places = SERIES[index % len(SERIES)], np.arange(len(heights))
@@ -62,10 +62,10 @@ def _ranges(ax: Any, found: Optimum) -> None:
 def front_figure(found: Front) -> Any:
     """Both objectives of the designs of a front, and the design as it stands."""
     forms = [
-        shown(each.measure.quantity.si, float(np.max(np.abs([*found.values[:, number], found.before.values[number]]))))
+        display_unit_of(each.measure.quantity.si, float(np.max(np.abs([*found.values[:, number], found.before.values[number]]))))
         for number, each in enumerate(found.wanted.objectives)
     ]
-    with styled():
+    with style_context():
         figure = canvas(FULL, 3.0)
         ax = panels(figure, 1, 1, Margins(left=0.7, bottom=0.5))[0, 0]
         across, up = found.values[:, 1] * forms[1].factor, found.values[:, 0] * forms[0].factor

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from flexstage.base.finding import Finding, nearest, require
-from flexstage.studies.form import OptimiseTable, placed, study_file
+from flexstage.base.finding import Finding, require, suggest_nearest
+from flexstage.studies.form import OptimiseTable, in_file, study_file
 from flexstage.studies.optimisation.wanted import Aim, Objective, Wanted
 from flexstage.studies.sweeps.definition import Study
 
@@ -20,7 +20,7 @@ def load_wanted(study: Study, where: str = "text") -> Wanted:
     table = study_file(study.text, where).optimise
     findings: list[Finding] = []
     wanted = Wanted(_objectives(table, study, findings), table.starts, table.seed, table.pareto_points, table.require)
-    require(placed(findings, where))
+    require(in_file(findings, where))
     return wanted
 
 
@@ -30,7 +30,7 @@ def _objectives(table: OptimiseTable, study: Study, findings: list[Finding]) -> 
         for name in names or ():
             at = f"optimise.{aim.value}"
             if name not in study.responses:
-                findings.append(Finding(at, f'there is no response "{name}"', nearest(name, study.responses)))
+                findings.append(Finding(at, f'there is no response "{name}"', suggest_nearest(name, study.responses)))
             elif name in (each.name for each in found):
                 findings.append(Finding(at, f'"{name}" is an objective already', "Name each once"))
             elif (same := next((each for each in found if each.measure == study.responses[name]), None)) is not None:

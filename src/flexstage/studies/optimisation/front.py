@@ -16,7 +16,7 @@ from flexstage.studies.optimisation.contradiction import contradictions
 from flexstage.studies.optimisation.optimum import Count, Progress, best_of
 from flexstage.studies.optimisation.problem import SPARE, Problem, Side
 from flexstage.studies.optimisation.result import Contradiction, Front
-from flexstage.studies.optimisation.search import Trace, search, together
+from flexstage.studies.optimisation.search import Trace, run_searches, search
 from flexstage.studies.optimisation.setting import Setting, setting
 from flexstage.studies.optimisation.values import Point
 from flexstage.studies.optimisation.wanted import Wanted
@@ -57,7 +57,7 @@ def pareto_front(study: Study, wanted: Wanted, progress: Progress | None = None)
         wanted=wanted,
         limits=set_up.kept,
         before=set_up.before,
-        points=tuple(undominated(set_up, found)),
+        points=tuple(non_dominated(set_up, found)),
         contradictions=against,
         idle=set_up.idle,
         evaluated=1 + counted.done,
@@ -72,13 +72,13 @@ def _ends(set_up: Setting, counted: Count) -> tuple[list[Point], list[Trace]]:
     all_traces: list[Trace] = []
     for number in (0, 1):
         problem = Problem((set_up.aim(number),), set_up.problem.limits)
-        traces = together([search(problem, start) for start in set_up.starts()], set_up.values, counted)
+        traces = run_searches([search(problem, start) for start in set_up.starts()], set_up.values, counted)
         best = best_of(problem, traces)
         all_traces += traces
         if best is None:
             return [], traces
         other = Problem((set_up.aim(1 - number),), (*problem.limits, _bound(set_up, number, best)))
-        again = together([search(other, best.shares)], set_up.values, counted)
+        again = run_searches([search(other, best.shares)], set_up.values, counted)
         ends.append(best_of(other, again) or best)
     return ends, all_traces
 
@@ -98,20 +98,20 @@ def _between(set_up: Setting, ends: list[Point], counted: Count) -> list[Point]:
         return []  # one design is best in both
     problems = [Problem((set_up.aim(0),), (*set_up.problem.limits, replace(set_up.aim(1), limit=float(level)))) for level in levels]
     walks = [search(problem, end.shares) for problem in problems for end in ends]
-    traces = together(walks, set_up.values, counted)
+    traces = run_searches(walks, set_up.values, counted)
     found = [best_of(problem, traces[2 * number : 2 * number + 2]) for number, problem in enumerate(problems)]
     return [point for point in found if point is not None]
 
 
-def undominated(set_up: Setting, points: Iterable[Point]) -> list[Point]:
+def non_dominated(set_up: Setting, points: Iterable[Point]) -> list[Point]:
     """The points that no other one beats in one objective and equals in the other, from the best in the first on."""
     points = list(points)
     worth = np.array([[set_up.aim(number).at(point) for number in (0, 1)] for point in points]).reshape(-1, 2)
-    kept = [number for number in range(len(points)) if not _beaten(worth, number)]
+    kept = [number for number in range(len(points)) if not _is_dominated(worth, number)]
     return [points[number] for number in sorted(kept, key=lambda each: tuple(worth[each]))]
 
 
-def _beaten(worth: Array, number: int) -> bool:
+def _is_dominated(worth: Array, number: int) -> bool:
     """Whether another design is as good in both and better in one, beyond rounding; of equals the first one stays."""
     own = worth[number]
     better = np.all(worth <= own + SPARE, axis=1) & np.any(worth < own - 10.0 * SPARE, axis=1)

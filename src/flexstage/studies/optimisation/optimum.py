@@ -14,8 +14,8 @@ from flexstage.studies.optimisation.binding import binding
 from flexstage.studies.optimisation.contradiction import contradictions
 from flexstage.studies.optimisation.problem import SPARE, Problem
 from flexstage.studies.optimisation.result import Contradiction, Optimum, Rounded, Start
-from flexstage.studies.optimisation.rounding import rounded
-from flexstage.studies.optimisation.search import Trace, search, together
+from flexstage.studies.optimisation.rounding import round_to_steps
+from flexstage.studies.optimisation.search import Trace, run_searches, search
 from flexstage.studies.optimisation.setting import Setting, setting
 from flexstage.studies.optimisation.values import Point
 from flexstage.studies.optimisation.wanted import Wanted
@@ -47,11 +47,11 @@ def optimise(study: Study, wanted: Wanted, progress: Progress | None = None) -> 
     problem, begins = set_up.problem, set_up.starts()
     counted = Count(progress, "searching")
     traces = [Trace() for _ in begins]
-    interrupted = _searched(set_up, begins, traces, counted)
+    interrupted = _search_all(set_up, begins, traces, counted)
     point = best_of(problem, traces)
     broken, against, near = interrupted, (), None
     if not interrupted:
-        against, near, interrupted = _concluded(set_up, point, traces, counted)
+        against, near, interrupted = _conclude(set_up, point, traces, counted)
     starts = tuple(_start(problem, begin, trace, point) for begin, trace in zip(begins, traces, strict=True))
     return Optimum(
         study=study,
@@ -70,23 +70,23 @@ def optimise(study: Study, wanted: Wanted, progress: Progress | None = None) -> 
     )
 
 
-def _searched(set_up: Setting, begins: Array, traces: list[Trace], counted: Count) -> bool:
+def _search_all(set_up: Setting, begins: Array, traces: list[Trace], counted: Count) -> bool:
     """Search from all starts; whether that was interrupted. The traces keep what was found."""
     try:
-        together([search(set_up.problem, start, trace) for start, trace in zip(begins, traces, strict=True)], set_up.values, counted)
+        run_searches([search(set_up.problem, start, trace) for start, trace in zip(begins, traces, strict=True)], set_up.values, counted)
     except KeyboardInterrupt:
         return True
     return False
 
 
-def _concluded(
+def _conclude(
     set_up: Setting, point: Point | None, traces: list[Trace], counted: Count
 ) -> tuple[tuple[Contradiction, ...], Rounded | None, bool]:
     """Limits that contradict where there is no design, else the design rounded; whether that was interrupted."""
     try:
         if point is not None:
             counted.about = "rounding"
-            return (), rounded(set_up, set_up.problem, point), False
+            return (), round_to_steps(set_up, set_up.problem, point), False
         counted.about = "looking for limits that contradict"
         ends = [trace.point.shares for trace in traces if trace.point is not None]
         return contradictions(set_up, ends, counted), None, False

@@ -74,7 +74,7 @@ class Linear:
         """Whether these are scalars."""
         return self.constant.ndim == 1
 
-    def cut(self, vector: Array) -> tuple[float, Array]:
+    def project(self, vector: Array) -> tuple[float, Array]:
         """Constant and gradient (n,) of v^T C v, never more than c for a unit vector."""
         return float(vector @ self.constant @ vector), np.einsum("i,pij,j->p", vector, self.slope, vector)
 
@@ -102,17 +102,17 @@ def linear(side: Side, point: Point) -> Linear:
     return Linear(sign * constant / side.scale, sign * found.spectrum.slopes[:, chosen, chosen] / side.scale)
 
 
-def corrected(side: Side, point: Point, tried: Point) -> Linear:
+def second_order_correction(side: Side, point: Point, tried: Point) -> Linear:
     """A side around a design with its slopes, but lifted so that at another design it is what was found there.
 
     >>> first, second = (Point(np.array([x]), (Scalars(np.array([x * x]), np.array([[2.0 * x]]), Extreme.LEAST),)) for x in (1.0, 2.0))
-    >>> corrected(Side(0, Sense.AT_MOST, 0.0, 1.0), first, second).constant.tolist()  # 4 - 2 (2 - 1)
+    >>> second_order_correction(Side(0, Sense.AT_MOST, 0.0, 1.0), first, second).constant.tolist()  # 4 - 2 (2 - 1)
     [2.0]
     """
     here, there = linear(side, point), linear(side, tried)
     if here.constant.shape != there.constant.shape:
         return here
-    turned = there.constant if here.diagonal else _turned(side, there.constant, tried, point)
+    turned = there.constant if here.diagonal else _change_basis(side, there.constant, tried, point)
     return Linear(turned - np.tensordot(tried.shares - point.shares, here.slope, axes=1), here.slope)
 
 
@@ -177,12 +177,12 @@ def lagrangian(problem: Problem, point: Point, weights: tuple[Weights, ...], see
         if own.values.shape[0] != at.constant.shape[0]:
             return None
         if seen_from is not None and not at.diagonal:
-            own = Weights(_turned(side, own.values, seen_from, point))
+            own = Weights(_change_basis(side, own.values, seen_from, point))
         total = total + own.gradient(at)
     return total
 
 
-def _turned(side: Side, values: Array, before: Point, now: Point) -> Array:
+def _change_basis(side: Side, values: Array, before: Point, now: Point) -> Array:
     """A matrix in the modes of one design, in those of another."""
     first, second = before.found[side.index], now.found[side.index]
     assert isinstance(first, Numbered)  # noqa: S101  a side with a matrix is of frequencies

@@ -12,7 +12,7 @@ from flexstage.studies.optimisation.result import Front, Optimum
 from flexstage.studies.optimisation.tables import front_tables, optimise_tables
 from flexstage.studies.optimisation.values import values_of
 from flexstage.studies.sweeps.definition import Study
-from flexstage.studies.sweeps.loaded import loaded_findings, require_holding
+from flexstage.studies.sweeps.loaded import loaded_findings, require_stable
 
 _SEARCH = (
     "Left: accepted designs of every start; open: some limit is not kept. Right: each variable in its range, as it stands and at the end."
@@ -25,7 +25,7 @@ def optimise_report(found: Optimum) -> str:
     Raises `DesignError` where the best design does not hold under its dead load.
     """
     study = found.study
-    cautions = () if found.final is None else require_holding(study, values_of(study, found.final.shares))
+    cautions = () if found.final is None else require_stable(study, values_of(study, found.final.shares))
     objective, variables, limits, *rest = optimise_tables(found)
     search = Picture(to_svg(convergence_figure(found), "search", "objective over accepted designs, variables in their ranges"), _SEARCH)
     sections: list[Section | None] = [

@@ -157,7 +157,7 @@ class Outcome(InNotebook):
         return self.wanted.seed
 
     @property
-    def drawn(self) -> Annotated[DesignPoint, VIEW, Called("before")]:
+    def initial(self) -> Annotated[DesignPoint, VIEW, Called("before")]:
         """The design as it stands."""
         return self.design(self.before)
 
@@ -207,7 +207,7 @@ class Optimum(Outcome):
         return self.point if self.rounded is None or self.rounded.point is None else self.rounded.point
 
     @property
-    def unfinished(self) -> str:
+    def failure(self) -> str:
         """Why there is no design to be made; empty where there is one."""
         if self.point is None:
             reasons = [start.reason for start in self.starts if start.reason]
@@ -242,7 +242,7 @@ class Front(Outcome):
         return tuple(self.design(point) for point in self.points)
 
     @property
-    def unfinished(self) -> str:
+    def failure(self) -> str:
         """Why there is no front; empty where there is one."""
         return "" if self.points else "no start found a design that keeps all limits"
 

@@ -19,7 +19,7 @@ _ROUNDS = 5
 _EDGE = 1e-9
 
 
-def rounded(setting: Setting, problem: Problem, point: Point) -> Rounded | None:
+def round_to_steps(setting: Setting, problem: Problem, point: Point) -> Rounded | None:
     """The best neighbour on the variables' steps that keeps the limits; `None` where no variable has a step.
 
     All neighbours (of more than 12 variables those nearest), ranked by the linear model of objective and limits, are evaluated in order
@@ -28,7 +28,7 @@ def rounded(setting: Setting, problem: Problem, point: Point) -> Rounded | None:
     stepped = [number for number, each in enumerate(setting.study.variables) if each.step is not None]
     if not stepped:
         return None
-    ranked = _ranked(problem, point, _neighbours(setting, point, stepped))[:_TRIED]
+    ranked = _rank(problem, point, _neighbours(setting, point, stepped))[:_TRIED]
     best, tried = None, 0
     for first in range(0, len(ranked), _BATCH):
         best = _best(problem, setting, ranked[first : first + _BATCH])
@@ -39,7 +39,7 @@ def rounded(setting: Setting, problem: Problem, point: Point) -> Rounded | None:
         reason = f"none of the {tried} nearest designs on the steps keeps all limits: make the steps finer, or the limits looser"
         return Rounded(None, None, np.nan, tried, reason)
     for _ in range(_ROUNDS):
-        around = np.array(list(_single(setting, best, stepped)))
+        around = np.array(list(_single_steps(setting, best, stepped)))
         better = _best(problem, setting, around) if len(around) else None
         tried += len(around)
         if better is None or problem.worth(better) >= problem.worth(best) - _EDGE:
@@ -72,7 +72,7 @@ def _multiples(setting: Setting, point: Point, number: int) -> list[float]:
     return [share for share in found if -_EDGE <= share <= 1.0 + _EDGE] or [float(point.shares[number])]
 
 
-def _ranked(problem: Problem, point: Point, neighbours: Array) -> Array:
+def _rank(problem: Problem, point: Point, neighbours: Array) -> Array:
     """Neighbours by the linear model: those that keep the limits first, the better objective first."""
     moves = neighbours - point.shares
     values = point.values[None] + moves @ point.gradient.T
@@ -83,12 +83,12 @@ def _ranked(problem: Problem, point: Point, neighbours: Array) -> Array:
 
 def _best(problem: Problem, setting: Setting, shares: Array) -> Point | None:
     """The best of some designs that keeps the limits."""
-    found = [point for point in setting.values.plain(shares) if isinstance(point, Point)]
+    found = [point for point in setting.values.evaluate(shares) if isinstance(point, Point)]
     kept = [point for point in found if problem.excess(point) <= SPARE]
     return min(kept, key=problem.worth, default=None)
 
 
-def _single(setting: Setting, best: Point, stepped: list[int]) -> Iterator[Array]:
+def _single_steps(setting: Setting, best: Point, stepped: list[int]) -> Iterator[Array]:
     """Designs one step of one variable away."""
     for number in stepped:
         variable = setting.study.variables[number]

@@ -52,7 +52,7 @@ def search(problem: Problem, start: Array, trace: Trace | None = None, *, enough
     >>> from flexstage.studies.optimisation.example import leaf_study
     >>> from flexstage.studies.optimisation.setting import setting
     >>> found = setting(*leaf_study())
-    >>> trace, = together([search(found.problem, found.before.shares)], found.values)
+    >>> trace, = run_searches([search(found.problem, found.before.shares)], found.values)
     >>> trace.converged, trace.point.shares.round(3).tolist()
     (True, [0.733])
     """
@@ -68,7 +68,7 @@ def search(problem: Problem, start: Array, trace: Trace | None = None, *, enough
     while len(trace.history) <= STEPS and trace.evaluated < 2 * STEPS:
         if problem.worth(point) <= enough:
             break
-        move, penalty = _steered(problem, point, hessian, Bounds(radius, penalty))
+        move, penalty = _penalty_step(problem, point, hessian, Bounds(radius, penalty))
         trace.weights = move.weights
         if move.gain <= _GAIN and not move.held:
             trace.converged = True
@@ -84,10 +84,10 @@ def search(problem: Problem, start: Array, trace: Trace | None = None, *, enough
             trace.evaluated += 1
             other = _ratio(problem, point, second, move, penalty)
             answer, ratio = (second, other) if other > ratio else (answer, ratio)
-        radius = _resized(radius, ratio, move)
+        radius = _update_radius(radius, ratio, move)
         if isinstance(answer, str) or ratio <= 1e-4:
             continue
-        hessian = _updated(problem, hessian, point, answer, move.weights, fresh=fresh)
+        hessian = _bfgs_update(problem, hessian, point, answer, move.weights, fresh=fresh)
         point, fresh = answer, False
         trace.point = point
         trace.history.append(point)
@@ -103,7 +103,7 @@ def _ratio(problem: Problem, before: Point, after: Point | str, move: Step, pena
     return -1.0 if isinstance(after, str) else (_merit(problem, before, penalty) - _merit(problem, after, penalty)) / move.gain
 
 
-def _steered(problem: Problem, point: Point, hessian: Array, bounds: Bounds) -> tuple[Step, float]:
+def _penalty_step(problem: Problem, point: Point, hessian: Array, bounds: Bounds) -> tuple[Step, float]:
     """A step that closes at least a tenth of the violation that could be closed, the penalty raised as far as that needs."""
     radius, penalty = bounds.radius, bounds.penalty
     move = step(problem, point, hessian, bounds)
@@ -117,13 +117,13 @@ def _steered(problem: Problem, point: Point, hessian: Array, bounds: Bounds) -> 
     return move, penalty
 
 
-def _resized(radius: float, ratio: float, move: Step) -> float:
+def _update_radius(radius: float, ratio: float, move: Step) -> float:
     if ratio < 0.25:
         return (0.25 if ratio < 0.0 else 0.5) * min(radius, float(np.max(np.abs(move.change))))
     return min(1.0, 2.0 * radius) if ratio > 0.7 and move.held else radius
 
 
-def _updated(problem: Problem, hessian: Array, before: Point, now: Point, weights: tuple[Weights, ...], *, fresh: bool) -> Array:
+def _bfgs_update(problem: Problem, hessian: Array, before: Point, now: Point, weights: tuple[Weights, ...], *, fresh: bool) -> Array:
     """The BFGS update of the Lagrangian's curvature, damped so that it stays positive definite."""
     change = now.shares - before.shares
     late, early = lagrangian(problem, now, weights, before), lagrangian(problem, before, weights)
@@ -141,7 +141,7 @@ def _updated(problem: Problem, hessian: Array, before: Point, now: Point, weight
     return (vectors * np.clip(values, *_CURVATURES)) @ vectors.T
 
 
-def together(
+def run_searches(
     walks: Sequence[Walk], evaluate: Callable[[Array], list[Point | str]], told: Callable[[int], None] | None = None
 ) -> list[Trace]:
     """Run searches side by side: the designs that all of them wait for are evaluated as one batch.
@@ -149,7 +149,7 @@ def together(
     >>> def still():
     ...     yield np.zeros(1)
     ...     return Trace(reason="stood still")
-    >>> together([still()], lambda shares: ["no point"] * len(shares))[0].reason
+    >>> run_searches([still()], lambda shares: ["no point"] * len(shares))[0].reason
     'stood still'
     """
     traces: list[Trace | None] = [None] * len(walks)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import scipy
 
-from flexstage.analysis.judge import bench_of, measured_on
+from flexstage.analysis.judge import bench_of, value_or_reason
 from flexstage.analysis.measures import Measure
 from flexstage.analysis.requirements import Requirement, Sense
 from flexstage.base.finding import Finding, require
@@ -81,10 +81,10 @@ def setting(study: Study, wanted: Wanted) -> Setting:
     """
     kept = limits(study, wanted)
     measures = (*(each.measure for each in wanted.objectives), *kept)
-    require(_missing(study, wanted.objectives, kept))
-    require(_outside(study))
+    require(_measure_findings(study, wanted.objectives, kept))
+    require(_range_findings(study))
     values = Values(study, tuple(measures))
-    shares = np.array([share_of(each, as_stands(study, each)) for each in study.variables])
+    shares = np.array([share_of(each, nominal_value(study, each)) for each in study.variables])
     before = values(np.clip(shares, 0.0, 1.0)[None])[0]
     if isinstance(before, str):
         require([Finding("design", before, "Mend it before it is optimised")])
@@ -92,28 +92,28 @@ def setting(study: Study, wanted: Wanted) -> Setting:
     return Setting(study, wanted, kept, values, before)
 
 
-def _missing(study: Study, objectives: tuple[Objective, ...], kept: tuple[Requirement, ...]) -> Iterator[Finding]:
+def _measure_findings(study: Study, objectives: tuple[Objective, ...], kept: tuple[Requirement, ...]) -> Iterator[Finding]:
     """Measures that this stage does not have."""
     bench = bench_of(require_valid(study.design))
     asked: list[tuple[str, Measure]] = [(f"responses.{each.name}", each.measure) for each in objectives]
     asked += [(f"limits.{each.key}", each) for each in kept]
     for where, each in asked:
-        value = measured_on(bench, each)
+        value = value_or_reason(bench, each)
         if isinstance(value, str):
             yield Finding(where, value, "Ask for what this stage has")
 
 
-def as_stands(study: Study, variable: Variable) -> float:
+def nominal_value(study: Study, variable: Variable) -> float:
     """The value of a variable in the design as it stands; 1 for a relative one.
 
     >>> from flexstage.studies.optimisation.example import leaf_study
-    >>> as_stands(leaf_study()[0], leaf_study()[0].variables[0])
+    >>> nominal_value(leaf_study()[0], leaf_study()[0].variables[0])
     0.001
     """
-    return 1.0 if variable.relative else _stated(study, variable)[0]
+    return 1.0 if variable.relative else _stated_values(study, variable)[0]
 
 
-def _stated(study: Study, variable: Variable) -> list[float]:
+def _stated_values(study: Study, variable: Variable) -> list[float]:
     """What the design states at each address, or the case for each parameter."""
     variant = variable.variant
     return [float(get(study.design, address) if variant is None else variant.value(address)) for address in variable.addresses]
@@ -131,17 +131,17 @@ def share_of(variable: Variable, value: float) -> float:
     return (value - variable.low) / (variable.high - variable.low)
 
 
-def _outside(study: Study) -> Iterator[Finding]:
+def _range_findings(study: Study) -> Iterator[Finding]:
     """Variables whose value in the design as it stands lies outside their range, or differs among their addresses."""
     for each in study.variables:
-        where, value = f"variables.{each.name}", as_stands(study, each)
+        where, value = f"variables.{each.name}", nominal_value(study, each)
         unit = "" if each.relative else f" {each.quantity.si}"
         slack = _EDGE * (each.high - each.low)
         if not each.low - slack <= value <= each.high + slack:
             what = f"the design as it stands has {value:.6g}{unit}, outside {each.low:.6g} to {each.high:.6g}{unit}"
             yield Finding(where, what, "Widen the range, or change the design")
         if not each.relative:
-            found = _stated(study, each)
+            found = _stated_values(study, each)
             if max(found) - min(found) > _EDGE * max(map(abs, found)):
                 what = f"its addresses state different values, {min(found):.6g} to {max(found):.6g}{unit}"
                 yield Finding(where, what, "Give the range in percent, or use two variables")

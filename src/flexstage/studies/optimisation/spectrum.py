@@ -32,11 +32,11 @@ class Spectrum:
     shapes: Array
     weighted: Array
 
-    def turned(self, others: Spectrum) -> Array:
+    def rotation_from(self, others: Spectrum) -> Array:
         """The orthogonal matrix (k, k) nearest to the overlap of these modes with another design's.
 
         >>> one = Spectrum(np.ones(1), np.zeros((0, 1, 1)), np.eye(1), np.eye(1))
-        >>> one.turned(one).tolist()
+        >>> one.rotation_from(one).tolist()
         [[1.0]]
         """
         left, _, right = np.linalg.svd(self.weighted.T @ others.shapes)
@@ -67,12 +67,12 @@ def spectra(mechanism: Mechanism, model: LinearModel, asked: tuple[Modes, ...], 
     first = slice(None, None, each)
     size = len(model.coordinates)
     stiffness, inertia = (
-        np.broadcast_to(assemble({name: _real(_cut(item, first)) for name, item in matrix.items()}, size), (designs, size, size))
+        np.broadcast_to(assemble({name: _real(_rows_of(item, first)) for name, item in matrix.items()}, size), (designs, size, size))
         for matrix in (model.stiffness, model.inertia)
     )
     solved = solve(stiffness, inertia, np.ones(stiffness.shape[-1]))
     picked = [
-        [_picked(mechanism, model, wanted, solved.values[design], solved.shapes[design], row=design * each) for wanted in asked]
+        [_select_modes(mechanism, model, wanted, solved.values[design], solved.shapes[design], row=design * each) for wanted in asked]
         for design in range(designs)
     ]
     result = []
@@ -92,7 +92,7 @@ def _real(item: Contribution) -> Contribution:
     return Contribution(np.real(item.operator), np.real(item.law))
 
 
-def _picked(mechanism: Mechanism, model: LinearModel, wanted: Modes, values: Array, shapes: Array, *, row: int) -> Array:
+def _select_modes(mechanism: Mechanism, model: LinearModel, wanted: Modes, values: Array, shapes: Array, *, row: int) -> Array:
     """Indices of the modes asked for and of some above them."""
     if not np.all(np.isfinite(values)):
         raise refuse("frequency", "some motion has no stiffness", "Narrow the ranges")
@@ -121,19 +121,19 @@ def _slopes(model: LinearModel, values: Array, shapes: Array, rows: slice, varia
     count = len(values)
     if not variables:
         return np.zeros((0, count, count))
-    own = [{name: _cut(item, rows) for name, item in matrix.items()} for matrix in (model.stiffness, model.inertia)]
-    stiffness, inertia = (_projected(contributions, shapes) for contributions in own)
+    own = [{name: _rows_of(item, rows) for name, item in matrix.items()} for matrix in (model.stiffness, model.inertia)]
+    stiffness, inertia = (_project(contributions, shapes) for contributions in own)
     change = stiffness - 0.5 * (values[:, None] + values[None]) * inertia
     omega = np.sqrt(values)
     return np.broadcast_to(change / (2.0 * np.pi * (omega[:, None] + omega[None])), (variables, count, count))
 
 
-def _cut(item: Contribution, rows: slice) -> Contribution:
+def _rows_of(item: Contribution, rows: slice) -> Contribution:
     operator, law = (part if part.ndim == 2 or len(part) == 1 else part[rows] for part in (item.operator, item.law))
     return Contribution(operator, law)
 
 
-def _projected(contributions: dict[str, Contribution], shapes: Array) -> Array:
+def _project(contributions: dict[str, Contribution], shapes: Array) -> Array:
     """Phi^T dA Phi (n, k, k) of a stepped matrix given as contributions; those that no variable moves are passed over."""
     total = np.zeros((shapes.shape[-1], shapes.shape[-1]))
     for item in contributions.values():

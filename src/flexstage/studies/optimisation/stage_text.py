@@ -43,7 +43,7 @@ def design_text(study: Study, folder: Path) -> str:
     return read_text(path) if path is not None else dumps(study.design, {"": f'The stage that the study "{study.name}" starts from.'})
 
 
-def optimised_text(text: str, study: Study, wanted: Wanted, values: Array | Sequence[float], *, where: str = "text") -> str:
+def write_optimum(text: str, study: Study, wanted: Wanted, values: Array | Sequence[float], *, where: str = "text") -> str:
     """The text of the design file with `values` (d,) of the study's variables, each tagged `derived optimise STUDY, OBJECTIVE`.
 
     Raises `DesignError` where the file's layout does not allow it.
@@ -51,19 +51,19 @@ def optimised_text(text: str, study: Study, wanted: Wanted, values: Array | Sequ
     >>> from flexstage.mechanism.store import dumps, loads
     >>> from flexstage.studies.optimisation.example import leaf_study
     >>> study, wanted = leaf_study()
-    >>> text = optimised_text(dumps(study.design), study, wanted, [0.00123])
+    >>> text = write_optimum(dumps(study.design), study, wanted, [0.00123])
     >>> loads(text).parts["leaf"].thickness, loads(text).tags["parts.leaf.thickness"]
     (0.00123, 'derived optimise thicker leaves, maximise f1')
     """
-    changed = dict(_changed(study, np.asarray(values, dtype=float)))
+    changed = dict(_changes(study, np.asarray(values, dtype=float)))
     aims = ", ".join(f"{each.aim.value} {each.name}" for each in wanted.objectives)
     tags = dict.fromkeys(changed, f"derived optimise {study.name}, {aims}")
     return set_tags(patch(text, changed, where=where), tags, where=where)
 
 
-def _changed(study: Study, values: Array) -> Iterator[tuple[str, float]]:
+def _changes(study: Study, values: Array) -> Iterator[tuple[str, float]]:
     """The numbers that become others, by address; those of one address each, and all that parameters of a case move."""
-    final = study.described(values)
+    final = study.mechanism_for(values)
     addresses = [address for each in study.variables if each.variant is None for address in each.addresses]
     if any(each.variant is not None for each in study.variables):
         addresses += [address for address, _, _ in node_of(Mechanism).numbers(study.design)]

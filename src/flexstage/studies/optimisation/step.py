@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexstage.base.number import Array
-from flexstage.studies.optimisation.problem import Linear, Problem, Weights, corrected, linear, sides
+from flexstage.studies.optimisation.problem import Linear, Problem, Weights, linear, second_order_correction, sides
 from flexstage.studies.optimisation.quadratic import quadratic
 from flexstage.studies.optimisation.values import Point
 
@@ -69,16 +69,16 @@ def step(problem: Problem, point: Point, hessian: Array, bounds: Bounds, tried: 
     >>> step(found.problem, found.before, np.eye(1), Bounds(0.1, 10.0)).change.round(3).tolist()
     [0.1]
     """
-    models = [linear(side, point) if tried is None else corrected(side, point, tried) for side in sides(problem)]
+    models = [linear(side, point) if tried is None else second_order_correction(side, point, tried) for side in sides(problem)]
     radius, penalty = bounds.radius, bounds.penalty
     level = problem.worth(point)
-    rows = _first(problem, models, level, radius)
+    rows = _initial_planes(problem, models, level, radius)
     low, high = np.maximum(-point.shares, -radius), np.minimum(1.0 - point.shares, radius)
-    found, multipliers = _solved(rows, hessian, low, high, penalty)
+    found, multipliers = _solve(rows, hessian, low, high, penalty)
     for _ in range(_CUTS):
-        if not _deepened(problem, models, rows, found, level):
+        if not _add_planes(problem, models, rows, found, level):
             break
-        found, multipliers = _solved(rows, hessian, low, high, penalty)
+        found, multipliers = _solve(rows, hessian, low, high, penalty)
     size = len(point.shares)
     change, rise, excess = found[:size], float(found[size]), float(found[size + 1])
     merit = rise + 0.5 * float(change @ hessian @ change) + penalty * (excess - problem.violation(point))
@@ -86,14 +86,14 @@ def step(problem: Problem, point: Point, hessian: Array, bounds: Bounds, tried: 
     return Step(change, -merit, excess, _weights(models, rows, multipliers), held)
 
 
-def _first(problem: Problem, models: list[Linear], level: float, radius: float) -> _Rows:
+def _initial_planes(problem: Problem, models: list[Linear], level: float, radius: float) -> _Rows:
     """Planes that can matter within the radius, each once; of matrices, those of the modes as they are."""
     rows = _Rows([], [], [], [])
     for number, model in enumerate(models):
         aim = number < len(problem.objective)
         if not model.diagonal:
             for own in np.eye(len(model.constant)):
-                rows.add(number, own, *model.cut(own), level=level if aim else None)
+                rows.add(number, own, *model.project(own), level=level if aim else None)
             continue
         reach = radius * np.sum(np.abs(model.slope), axis=0)
         near = model.constant + reach >= (np.max(model.constant - reach) if aim else 0.0)
@@ -104,7 +104,7 @@ def _first(problem: Problem, models: list[Linear], level: float, radius: float) 
     return rows
 
 
-def _solved(rows: _Rows, hessian: Array, low: Array, high: Array, penalty: float) -> tuple[Array, Array]:
+def _solve(rows: _Rows, hessian: Array, low: Array, high: Array, penalty: float) -> tuple[Array, Array]:
     """The model's minimiser (d, t, s) and the multipliers of its planes."""
     size = len(hessian)
     whole = np.zeros((size + 2, size + 2))
@@ -119,7 +119,7 @@ def _solved(rows: _Rows, hessian: Array, low: Array, high: Array, penalty: float
     return found.at, found.multipliers[: len(aims)]
 
 
-def _deepened(problem: Problem, models: list[Linear], rows: _Rows, found: Array, level: float) -> bool:
+def _add_planes(problem: Problem, models: list[Linear], rows: _Rows, found: Array, level: float) -> bool:
     """Add the eigenvectors whose eigenvalue after the change is above t or s; whether there were any."""
     size, added = len(found) - 2, False
     for number, model in enumerate(models):
@@ -130,7 +130,7 @@ def _deepened(problem: Problem, models: list[Linear], rows: _Rows, found: Array,
         values, vectors = model.after(found[:size])
         for value, vector in zip(values, vectors.T, strict=True):
             if value > ceiling + _CLOSE:
-                rows.add(number, vector, *model.cut(vector), level=level if aim else None)
+                rows.add(number, vector, *model.project(vector), level=level if aim else None)
                 added = True
     return added
 

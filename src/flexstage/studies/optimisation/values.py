@@ -114,13 +114,13 @@ class Values:
 
     def __call__(self, shares: Array) -> list[Point | str]:
         """Points of designs at shares (s, n) of the ranges with derivatives; in the place of one that fails, why."""
-        return self._each(np.asarray(shares, dtype=float), slopes=True)
+        return self._evaluate(np.asarray(shares, dtype=float), slopes=True)
 
-    def plain(self, shares: Array) -> list[Point | str]:
+    def evaluate(self, shares: Array) -> list[Point | str]:
         """The same without derivatives."""
-        return self._each(np.asarray(shares, dtype=float), slopes=False)
+        return self._evaluate(np.asarray(shares, dtype=float), slopes=False)
 
-    def _each(self, shares: Array, *, slopes: bool) -> list[Point | str]:
+    def _evaluate(self, shares: Array, *, slopes: bool) -> list[Point | str]:
         """All at once; where that fails, halves, until culprits stand alone."""
         try:
             found = self._batch(shares, slopes=slopes)
@@ -128,12 +128,12 @@ class Values:
             if len(shares) == 1:
                 return [str(error)]
             half = len(shares) // 2
-            return [*self._each(shares[:half], slopes=slopes), *self._each(shares[half:], slopes=slopes)]
+            return [*self._evaluate(shares[:half], slopes=slopes), *self._evaluate(shares[half:], slopes=slopes)]
         return [point if _finite(point) else "a measure has no finite value" for point in found]
 
     def _design(self, shares: Array) -> Mechanism:
         columns = [variable.at(shares[:, number]) for number, variable in enumerate(self.study.variables)]
-        return self._bare.described(np.stack(columns, axis=-1))
+        return self._bare.mechanism_for(np.stack(columns, axis=-1))
 
     def _batch(self, shares: Array, *, slopes: bool) -> list[Point]:
         designs, variables = shares.shape
@@ -149,18 +149,18 @@ class Values:
             columns: list[Sequence[Scalars | Numbered]] = []
             for asked in self.measures:
                 if asked.kind in _SPECTRAL:
-                    columns.append([self._numbered(own, asked) for own in modes])
+                    columns.append([self._nth_frequency(own, asked) for own in modes])
                 elif not asked.kind.analytic:
-                    columns.append(self._differenced(asked, shares, slopes=slopes))
+                    columns.append(self._central_differences(asked, shares, slopes=slopes))
                 else:
                     columns.append(_scalars(asked.kind.pieces(bench, asked), _extreme(asked), (designs, each), slopes=slopes))
         return [Point(shares[design], tuple(column[design] for column in columns)) for design in range(designs)]
 
-    def _numbered(self, own: tuple[Spectrum, ...], asked: Measure) -> Numbered:
+    def _nth_frequency(self, own: tuple[Spectrum, ...], asked: Measure) -> Numbered:
         platform = asked.kind is platform_frequency
         return Numbered(own[[modes.platform for modes in self._modes].index(platform)], int(asked.name))
 
-    def _differenced(self, asked: Measure, shares: Array, *, slopes: bool) -> list[Scalars]:
+    def _central_differences(self, asked: Measure, shares: Array, *, slopes: bool) -> list[Scalars]:
         designs, variables = shares.shape
         moves = np.zeros((1, variables))
         if slopes:

@@ -20,7 +20,7 @@ _ANSWER, _WORKERS = 5, 30
 """How long to wait for the scheduler, and for the first of its workers [s]."""
 
 
-def clustered(study: Study, engine: Engine, ranges: list[tuple[int, int]], folder: Path, address: str) -> Iterator[int]:
+def compute_on_cluster(study: Study, engine: Engine, ranges: list[tuple[int, int]], folder: Path, address: str) -> Iterator[int]:
     """Compute all ranges of designs at the scheduler's `address`; yields the first design of each as it is there.
 
     A worker that dies costs nothing: the scheduler gives its pieces to another. Raises `DesignError` without the extra `cluster`, where
@@ -28,12 +28,12 @@ def clustered(study: Study, engine: Engine, ranges: list[tuple[int, int]], folde
 
     >>> from flexstage.studies.sweeps.example import neck_study
     >>> from flexstage.studies.sweeps.engine import engine_of
-    >>> clustered(neck_study(), engine_of(neck_study()), [(0, 4)], Path("nowhere"), "no address")
+    >>> compute_on_cluster(neck_study(), engine_of(neck_study()), [(0, 4)], Path("nowhere"), "no address")
     Traceback (most recent call last):
         ...
     flexstage.base.finding.DesignError: scheduler: ...
     """
-    return _computed(_client(address), (study, engine), ranges, folder)
+    return _compute(_client(address), (study, engine), ranges, folder)
 
 
 def _client(address: str) -> Any:
@@ -65,7 +65,7 @@ def _client(address: str) -> Any:
     return client
 
 
-def _computed(client: Any, shared: tuple[Study, Engine], ranges: list[tuple[int, int]], folder: Path) -> Iterator[int]:
+def _compute(client: Any, shared: tuple[Study, Engine], ranges: list[tuple[int, int]], folder: Path) -> Iterator[int]:
     from distributed import as_completed
 
     with _quiet(), client:

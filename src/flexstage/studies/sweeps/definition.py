@@ -10,7 +10,7 @@ from typing import Annotated
 import numpy as np
 
 import flexstage
-from flexstage.analysis.judge import measured
+from flexstage.analysis.judge import measure_all
 from flexstage.analysis.measures import MEASURES, Measure
 from flexstage.analysis.requirements import Requirement, Verdict
 from flexstage.base.digest import digest
@@ -21,7 +21,7 @@ from flexstage.base.record import INNER, VIEW, Called
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.studies.sweeps.numbers import Numbers
 from flexstage.studies.sweeps.plan import Plan, shares
-from flexstage.studies.sweeps.variable import Variable, varied_by
+from flexstage.studies.sweeps.variable import Variable, apply_columns
 
 
 @dataclass(frozen=True)
@@ -93,38 +93,38 @@ class Study:
         return {
             "version": flexstage.__version__,
             "design": digest(self.design, physics=True)[:16],
-            "plan": _told(self.plan),
-            **{f"variables.{each.name}": _told(each) for each in self.variables},
+            "plan": _describe(self.plan),
+            **{f"variables.{each.name}": _describe(each) for each in self.variables},
             **{f"responses.{name}": f"{each.key} at {each.point}{_offer(each)}" for name, each in self.columns.items()},
         }
 
-    def drawn(self, start: int, stop: int) -> Array:
+    def sample(self, start: int, stop: int) -> Array:
         """Values (n, d) of the variables in SI for designs from `start` to before `stop` of the plan.
 
         >>> from flexstage.studies.sweeps.example import neck_study
-        >>> neck_study().drawn(1, 3).shape
+        >>> neck_study().sample(1, 3).shape
         (2, 1)
         """
         at = shares(self.plan, start, stop)
         return np.stack([variable.at(at[:, number]) for number, variable in enumerate(self.variables)], axis=-1)
 
-    def described(self, values: Array) -> Mechanism:
+    def mechanism_for(self, values: Array) -> Mechanism:
         """The design with `values` (..., d) of the variables.
 
         >>> from flexstage.studies.sweeps.example import neck_study
-        >>> neck_study().described(np.array([0.0015])).parts["neck"].thickness
+        >>> neck_study().mechanism_for(np.array([0.0015])).parts["neck"].thickness
         0.0015
         """
-        return self.drawn_from(tuple(values[..., number] for number in range(len(self.variables))))
+        return self.mechanism_at(tuple(values[..., number] for number in range(len(self.variables))))
 
-    def drawn_from(self, columns: tuple[Number, ...]) -> Mechanism:
+    def mechanism_at(self, columns: tuple[Number, ...]) -> Mechanism:
         """The same of values (...) by variable, real or complex: nothing becomes complex that does not depend on one that is.
 
         >>> from flexstage.studies.sweeps.example import neck_study
-        >>> neck_study().drawn_from((0.0015,)).parts["neck"].thickness
+        >>> neck_study().mechanism_at((0.0015,)).parts["neck"].thickness
         0.0015
         """
-        return varied_by(self.design, self.variables, columns)
+        return apply_columns(self.design, self.variables, columns)
 
     @property
     def numbers(self) -> Numbers | None:
@@ -135,21 +135,21 @@ class Study:
         """
         return None
 
-    def answered(self, mechanism: Mechanism, names: tuple[str, ...] | None = None) -> tuple[Array | str, ...]:
+    def evaluate(self, mechanism: Mechanism, names: tuple[str, ...] | None = None) -> tuple[Array | str, ...]:
         """What is asked of a design or a batch, column by column (...) or those of `names`; where a stage has none, the reason in words.
 
         >>> from flexstage.studies.sweeps.example import neck_study
-        >>> round(float(neck_study().answered(neck_study().design)[0]))
+        >>> round(float(neck_study().evaluate(neck_study().design)[0]))
         106
         """
         columns = self.columns
-        return measured(mechanism, tuple(columns[name] for name in (columns if names is None else names)))
+        return measure_all(mechanism, tuple(columns[name] for name in (columns if names is None else names)))
 
-    def kept(self, responses: Array, limits: Sequence[Requirement] | None = None) -> Array:
+    def feasible(self, responses: Array, limits: Sequence[Requirement] | None = None) -> Array:
         """Which designs (n,) keep all the study's limits, or those, given all columns' responses (n, r); those without values keep none.
 
         >>> from flexstage.studies.sweeps.example import neck_study
-        >>> neck_study().kept(np.array([[100.0], [np.nan]])).tolist()
+        >>> neck_study().feasible(np.array([[100.0], [np.nan]])).tolist()
         [True, False]
         """
         names = list(self.columns)
@@ -183,7 +183,7 @@ def name_findings(study: Study) -> Iterator[Finding]:
         owners[name] = where
 
 
-def _told(value: Plan | Variable) -> str:
+def _describe(value: Plan | Variable) -> str:
     """All fields that results depend on, in words; what is absent is left out."""
     kept = [(each.name, getattr(value, each.name)) for each in fields(value) if each.repr and each.name != "name"]
     return ", ".join(f"{name} {_word(item)}" for name, item in kept if item is not None and item is not False and item != ())

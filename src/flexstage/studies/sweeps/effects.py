@@ -11,7 +11,7 @@ from flexstage.base.number import Array
 from flexstage.studies.sweeps.interactions import (
     Interaction,
     paired_shares,
-    ranked,
+    rank_bins,
     second_order,
     single_effects,
     standard_error,
@@ -86,7 +86,7 @@ def effects(results: Results, plan: Plan) -> Effects:
     error = np.full(values.shape[1], np.nan)
     total, first, method = None, _ratios(bins, values, grid=grid), "correlation ratio of bins"
     if plan.sampling is Sampling.SALTELLI:
-        blocks = _whole(results, plan)
+        blocks = _complete_blocks(results, plan)
         first, total, error = _sobol(blocks, plan.dimensions)
         method = f"Sobol indices by Saltelli's plan from {blocks.shape[1]} of its {plan.count} rows"
     pairs, further = _pairs(results, plan, sound)
@@ -94,7 +94,7 @@ def effects(results: Results, plan: Plan) -> Effects:
         *results.names,
         len(values),
         len(sound),
-        *(_over(each, values) for each in (np.mean, np.std, np.min, np.max)),
+        *(_reduce(each, values) for each in (np.mean, np.std, np.min, np.max)),
         places=places,
         means=means,
         first=first,
@@ -106,7 +106,7 @@ def effects(results: Results, plan: Plan) -> Effects:
     )
 
 
-def _over(operation: object, values: Array) -> Array:
+def _reduce(operation: object, values: Array) -> Array:
     return operation(values, axis=0) if len(values) else np.full(values.shape[1], np.nan)  # type: ignore[operator]
 
 
@@ -115,7 +115,7 @@ def _bins(column: Array, plan: Plan) -> Array:
     if plan.sampling is Sampling.GRID:
         return np.unique(column, return_inverse=True)[1]
     count = max(1, min(_BINS, len(column) // _FEWEST, 1 + len(column) // (_SPARE * plan.dimensions)))
-    return ranked(column, count)
+    return rank_bins(column, count)
 
 
 def _ratios(bins: list[Array], values: Array, *, grid: bool) -> Array:
@@ -150,7 +150,7 @@ def _sobol(blocks: Array, dimensions: int) -> tuple[Array, Array, Array]:
     return alone.mean(axis=1), total.mean(axis=1), error
 
 
-def _whole(results: Results, plan: Plan) -> Array:
+def _complete_blocks(results: Results, plan: Plan) -> Array:
     """Responses (blocks, n, r) of Saltelli's plan, of those rows of its samples whose designs are all there and have values."""
     values = np.full((plan.designs, results.responses.shape[1]), np.nan)
     values[results.designs] = results.responses
@@ -164,7 +164,7 @@ def _pairs(results: Results, plan: Plan, sound: Array) -> tuple[Array, Array]:
     Second-order indices where the plan has them, else by analysis of variance over independent designs.
     """
     if plan.pairs:
-        return second_order(_whole(results, plan), plan.dimensions)
+        return second_order(_complete_blocks(results, plan), plan.dimensions)
     independent = sound & (results.designs < 2 * plan.count) if plan.sampling is Sampling.SALTELLI else sound
     shares = paired_shares(results.variables[independent], results.responses[independent], grid=plan.sampling is Sampling.GRID)
     return shares, np.full(results.responses.shape[1], np.nan)

@@ -23,7 +23,7 @@ from flexstage.models.batch.engine import Plan, Status, plan_family, platform_mo
 from flexstage.models.batch.kernel import kernel_name
 from flexstage.models.batch.numbers import Family, drawn_family, family
 from flexstage.studies.sweeps.definition import Study
-from flexstage.studies.sweeps.loaded import loaded
+from flexstage.studies.sweeps.loaded import needs_load_check
 from flexstage.studies.sweeps.numbers import Numbers
 
 _MODES = 6
@@ -63,10 +63,10 @@ class Engine:
         return found.frequencies[:, list(self.modes.values())], np.isin(found.status, _SURE)
 
     @property
-    def made(self) -> str:
+    def provenance(self) -> str:
         """By which versions of what numbers are computed here: where all are the same, results are the same to the bit.
 
-        >>> Engine(Table({})).made
+        >>> Engine(Table({})).provenance
         'flexstage ..., numpy ... on ...'
         """
         solver = "" if self.plan is None else f", {kernel_name()}"
@@ -81,7 +81,7 @@ def engine_covers(study: Study) -> bool:
     True
     """
     kind = type(study)
-    return kind.described is Study.described or kind.drawn_from is not Study.drawn_from or study.numbers is not None
+    return kind.mechanism_for is Study.mechanism_for or kind.mechanism_at is not Study.mechanism_at or study.numbers is not None
 
 
 def engine_of(study: Study) -> Engine:
@@ -94,7 +94,7 @@ def engine_of(study: Study) -> Engine:
     >>> dict(engine_of(neck_study()).modes)
     {'tilt': 0}
     """
-    return replace(_engine_of(study), loaded=loaded(study))
+    return replace(_engine_of(study), loaded=needs_load_check(study))
 
 
 def _engine_of(study: Study) -> Engine:
@@ -113,13 +113,13 @@ def _engine_of(study: Study) -> Engine:
 def _family(study: Study, numbers: Numbers | None) -> Family:
     if numbers is not None:
         return family(study.design, numbers.addresses)
-    return drawn_family(study.drawn_from, tuple(each.name for each in study.variables), _nominal(study))
+    return drawn_family(study.mechanism_at, tuple(each.name for each in study.variables), _nominal(study))
 
 
 def _limit_varies(study: Study) -> bool:
     if study.numbers is not None:
         return any(canonical(study.design, each) == "mode_limit" for each in study.numbers.addresses)
-    limit = study.drawn_from(tuple(_ends(study).T)).mode_limit
+    limit = study.mechanism_at(tuple(_ends(study).T)).mode_limit
     return limit is not None and np.ndim(limit) > 0
 
 
@@ -131,7 +131,7 @@ def _ends(study: Study) -> Array:
 def _nominal(study: Study) -> Array:
     """Values (d,) of the design as it stands, or as near to it as the ranges allow."""
     low, high = _ends(study)
-    return np.clip([each.stated(study.design) for each in study.variables], low, high)
+    return np.clip([each.nominal(study.design) for each in study.variables], low, high)
 
 
 def _ranges(study: Study, numbers: Numbers | None) -> tuple[Array, Array] | None:

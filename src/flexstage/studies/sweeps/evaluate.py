@@ -12,7 +12,7 @@ from flexstage.base.number import Array
 from flexstage.mechanism.checks import require_valid
 from flexstage.studies.sweeps.definition import Study
 from flexstage.studies.sweeps.engine import Engine, engine_of
-from flexstage.studies.sweeps.loaded import falling
+from flexstage.studies.sweeps.loaded import unstable_designs
 
 _LONGEST_REASON = 400
 _MOST = 256
@@ -26,7 +26,7 @@ Reasons = dict[int, str]
 class Piece:
     """Designs from `start` on: variables (n, d) and responses (n, r) in SI; `failures` gives reasons by row, their responses are NaN.
 
-    `made` says by which versions of what: where these differ, so may the last digits.
+    `provenance` says by which versions of what: where these differ, so may the last digits.
     """
 
     start: int
@@ -46,11 +46,11 @@ def piece(study: Study, start: int, stop: int, engine: Engine | None = None) -> 
     >>> found.responses.shape, dict(found.failures)
     ((2, 1), {})
     """
-    values = study.drawn(start, stop)
+    values = study.sample(start, stop)
     engine = engine_of(study) if engine is None else engine
     with np.errstate(all="ignore"):
-        responses, failures = _computed(study, values, engine)
-    return Piece(start, values, responses, failures, engine.made)
+        responses, failures = _compute(study, values, engine)
+    return Piece(start, values, responses, failures, engine.provenance)
 
 
 def nominal(study: Study) -> Array:
@@ -60,41 +60,41 @@ def nominal(study: Study) -> Array:
     >>> nominal(neck_study()).round(0).tolist()
     [106.0]
     """
-    found = study.answered(require_valid(study.design))
+    found = study.evaluate(require_valid(study.design))
     named = zip(study.columns, found, strict=True)
     require(Finding(f"responses.{name}", value, "Ask for what this stage has") for name, value in named if isinstance(value, str))
     return np.array([float(np.real(value)) for value in found if not isinstance(value, str)])
 
 
-def _computed(study: Study, values: Array, engine: Engine) -> tuple[Array, Reasons]:
+def _compute(study: Study, values: Array, engine: Engine) -> tuple[Array, Reasons]:
     """Responses (n, r) and failures. What the engine does not answer for sure is read design by design."""
     columns = tuple(study.columns)
     others = tuple(name for name in columns if name not in engine.modes)
     result = np.full((len(values), len(columns)), np.nan)
-    failures = _halved(values, 0, lambda part: _refused(study, part))[1]
-    sound = _others(values, failures)
+    failures = _bisect(values, 0, lambda part: _check(study, part))[1]
+    sound = _sound_rows(values, failures)
     if engine.loaded:
-        failures |= {int(sound[row]): reason for row, reason in falling(study, values[sound]).items()}
-        sound = _others(values, failures)
-    found, reasons = _halved(values[sound], len(others), lambda part: _batch(study, part, others))
+        failures |= {int(sound[row]): reason for row, reason in unstable_designs(study, values[sound]).items()}
+        sound = _sound_rows(values, failures)
+    found, reasons = _bisect(values[sound], len(others), lambda part: _batch(study, part, others))
     frequencies, sure = engine.answers(values[sound])
     for names, part in ((others, found), (engine.modes, frequencies)):
         result[np.ix_(sound, np.array([columns.index(name) for name in names], dtype=int))] = part
     for place in np.flatnonzero(~sure):
-        result[sound[place]], reason = _halved(values[sound[[place]]], len(columns), lambda part: _batch(study, part, columns))
+        result[sound[place]], reason = _bisect(values[sound[[place]]], len(columns), lambda part: _batch(study, part, columns))
         reasons |= {int(place): text for text in reason.values()}
     failures |= {int(sound[place]): reason for place, reason in reasons.items()}
     result[list(failures)] = np.nan
     lost = np.flatnonzero(~np.all(np.isfinite(result), axis=-1))
-    return result, {int(row): failures.get(int(row)) or _unfinished(study, result[row]) for row in lost}
+    return result, {int(row): failures.get(int(row)) or _missing_values(study, result[row]) for row in lost}
 
 
-def _others(values: Array, failures: Reasons) -> Array:
+def _sound_rows(values: Array, failures: Reasons) -> Array:
     """Rows of the designs that have not failed."""
     return np.array([row for row in range(len(values)) if row not in failures], dtype=int)
 
 
-def _halved(values: Array, width: int, batch: Callable[[Array], Array | str]) -> tuple[Array, Reasons]:
+def _bisect(values: Array, width: int, batch: Callable[[Array], Array | str]) -> tuple[Array, Reasons]:
     """What a batch gives (n, width), and failures; what fails as a batch is halved until the culprits stand alone.
 
     Designs that are read (`width` responses) are halved before they are too many: their matrices would fill the memory.
@@ -105,15 +105,15 @@ def _halved(values: Array, width: int, batch: Callable[[Array], Array | str]) ->
     if len(values) == 1:
         return np.full((1, width), np.nan), {0: found[:_LONGEST_REASON]}
     half = len(values) // 2
-    first, early = _halved(values[:half], width, batch)
-    second, late = _halved(values[half:], width, batch)
+    first, early = _bisect(values[:half], width, batch)
+    second, late = _bisect(values[half:], width, batch)
     return np.concatenate([first, second]), {**early, **{row + half: reason for row, reason in late.items()}}
 
 
-def _refused(study: Study, values: Array) -> Array | str:
+def _check(study: Study, values: Array) -> Array | str:
     """Why a description of these designs cannot be read; nothing (n, 0) where it can. One alone is told without its place in a batch."""
     try:
-        require_valid(study.described(values if len(values) > 1 else values[0]))
+        require_valid(study.mechanism_for(values if len(values) > 1 else values[0]))
     except DesignError as error:
         return str(error)
     return np.zeros((len(values), 0))
@@ -124,8 +124,8 @@ def _batch(study: Study, values: Array, names: tuple[str, ...]) -> Array | str:
     if not names or not len(values):
         return np.zeros((len(values), len(names)))
     try:
-        mechanism = study.described(values)
-        found = study.answered(mechanism) if len(names) == len(study.columns) else study.answered(mechanism, names)
+        mechanism = study.mechanism_for(values)
+        found = study.evaluate(mechanism) if len(names) == len(study.columns) else study.evaluate(mechanism, names)
     except (DesignError, np.linalg.LinAlgError) as error:
         return str(error)
     reasons = [value for value in found if isinstance(value, str)]
@@ -134,6 +134,6 @@ def _batch(study: Study, values: Array, names: tuple[str, ...]) -> Array | str:
     return np.stack([np.broadcast_to(np.real(value), len(values)) for value in found if not isinstance(value, str)], axis=-1)
 
 
-def _unfinished(study: Study, values: Array) -> str:
+def _missing_values(study: Study, values: Array) -> str:
     missing = [measure.key for measure, value in zip(study.columns.values(), values, strict=True) if not np.isfinite(value)]
     return f"{', '.join(missing)}: no finite value"

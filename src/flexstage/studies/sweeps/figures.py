@@ -10,8 +10,8 @@ import numpy as np
 from flexstage.analysis.measures import Measure
 from flexstage.base.number import Array
 from flexstage.base.unit import convert
-from flexstage.show.display import shown
-from flexstage.show.figures.style import FULL, GRID, INK, MUTED, SERIES, Margins, canvas, panels, styled
+from flexstage.show.display import display_unit_of
+from flexstage.show.figures.style import FULL, GRID, INK, MUTED, SERIES, Margins, canvas, panels, style_context
 from flexstage.studies.sweeps.definition import Study
 from flexstage.studies.sweeps.effects import Effects
 from flexstage.studies.sweeps.store import Results
@@ -46,7 +46,7 @@ def display(of: Variable | Measure, values: Array) -> Display:
     """
     if isinstance(of, Measure):
         size = np.abs(values[np.isfinite(values)])
-        form = shown(of.quantity.si, float(size.max(initial=0.0)))
+        form = display_unit_of(of.quantity.si, float(size.max(initial=0.0)))
         return Display(form.unit, form.factor)
     if of.relative:
         return Display("%", 100.0, 1.0)
@@ -56,7 +56,7 @@ def display(of: Variable | Measure, values: Array) -> Display:
 def effects_figure(study: Study, found: Effects) -> Any:
     """Mean of each response over each variable, one panel each; all panels of a response have one scale, so that steep means strong."""
     rows, columns = len(found.responses), len(found.variables)
-    with styled():
+    with style_context():
         figure = canvas(FULL, 0.55 + 1.25 * rows)
         axes = panels(figure, rows, columns, Margins(left=0.75, across=0.3, down=0.12))
         for row, name in enumerate(found.responses):
@@ -91,10 +91,10 @@ def designs_figure(study: Study, results: Results) -> Any:
     low, high = (operation(values[sound], axis=0) if len(sound) else values[:0].sum(axis=0) for operation in (np.min, np.max))
     span = np.where(high > low, high - low, 1.0)
     heights = (values[chosen] - low) / span
-    with styled():
+    with style_context():
         figure = canvas(FULL, 3.0)
         ax = panels(figure, 1, 1, Margins(left=0.45, right=0.45, bottom=0.55, top=0.3))[0, 0]
-        _lines(ax, heights, heights[:, results.variables.shape[1]], study.kept(results.responses[chosen]))
+        _lines(ax, heights, heights[:, results.variables.shape[1]], study.feasible(results.responses[chosen]))
         _axes(ax, study, low, high)
     return figure
 

@@ -17,10 +17,10 @@ from flexstage.cases.registry import Variant
 from flexstage.mechanism.address import quantity_of
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.store.file import read_text
-from flexstage.studies.form import StudyFile, SweepTable, VariedTable, amount, is_share, placed, study_file
+from flexstage.studies.form import StudyFile, SweepTable, VariedTable, in_file, is_share, parse_amount, study_file
 from flexstage.studies.sweeps.definition import Study, name_findings
 from flexstage.studies.sweeps.plan import Plan, Sampling
-from flexstage.studies.sweeps.start import one_quantity, parameters_varied, start
+from flexstage.studies.sweeps.start import one_quantity, read_parameters, start
 from flexstage.studies.sweeps.variable import Variable, variable_findings
 
 _DESIGNS = 1024
@@ -53,14 +53,14 @@ def loads_study(text: str, *, where: str = "text", folder: Path | None = None) -
     >>> study.variables[0].high, study.responses["tilt"].key, study.plan.designs
     (0.0017, 'frequency.platform.1', 8)
     """
-    head = opening(text, where, folder)
+    head = read_opening(text, where, folder)
     file, design, findings = head.file, head.design, head.findings
     variables = _variables(file.variables, head)
     plan = _plan(file.sweep, variables, findings)
     if not file.responses:
         findings.append(Finding("responses", "nothing is asked", 'Name a measure, for example f1 = "frequency.platform.1"'))
     study = Study(file.name, design, variables, Table(head.responses), head.limits, plan, text)
-    require(placed([*findings, *variable_findings(design, variables), *name_findings(study)], where))
+    require(in_file([*findings, *variable_findings(design, variables), *name_findings(study)], where))
     return study
 
 
@@ -79,18 +79,18 @@ class Opening:
     variant: Variant | None = None
 
 
-def opening(text: str, where: str, folder: Path | None) -> Opening:
+def read_opening(text: str, where: str, folder: Path | None) -> Opening:
     """Read what all studies' files have. Raises `DesignError` where there is no design to go on with.
 
     >>> text = 'format = "flexstage study 1"' + chr(10) + 'case = "parallelogram"' + chr(10) + 'responses.f = "frequency.1"'
-    >>> list(opening(text, "here", None).responses)
+    >>> list(read_opening(text, "here", None).responses)
     ['f']
     """
     file = study_file(text, where)
     try:
         design, variant = start(file, folder or Path())
     except DesignError as error:
-        raise DesignError(placed(error.findings, where)) from None
+        raise DesignError(in_file(error.findings, where)) from None
     findings: list[Finding] = []
     return Opening(file, design, _responses(file, design, findings), _limits(file, design, findings), findings, variant)
 
@@ -116,7 +116,7 @@ def _variable(table: VariedTable, name: str, head: Opening) -> Variable:
         quantity = _quantity(where, addresses, head.design)
     else:
         variant = head.variant
-        addresses, quantity = parameters_varied(table, where, variant)
+        addresses, quantity = read_parameters(table, where, variant)
     shares = (is_share(table.low), is_share(table.high))
     findings: list[Finding] = []
     if shares[0] != shares[1]:
@@ -124,7 +124,7 @@ def _variable(table: VariedTable, name: str, head: Opening) -> Variable:
     ends: list[float] = []
     for key, raw, share in zip(("from", "to"), (table.low, table.high), shares, strict=True):
         try:
-            ends.append(1.0 + amount(raw, RATIO, f"{where}.{key}") if share else amount(raw, quantity, f"{where}.{key}"))
+            ends.append(1.0 + parse_amount(raw, RATIO, f"{where}.{key}") if share else parse_amount(raw, quantity, f"{where}.{key}"))
         except DesignError as error:
             findings += error.findings
     step = _step(table, quantity, where, findings)
@@ -138,7 +138,7 @@ def _step(table: VariedTable, quantity: Quantity, where: str, findings: list[Fin
     if table.step is None:
         return None
     try:
-        step = amount(table.step, quantity, f"{where}.step")
+        step = parse_amount(table.step, quantity, f"{where}.step")
     except DesignError as error:
         findings += error.findings
         return None

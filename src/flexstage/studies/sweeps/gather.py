@@ -23,13 +23,13 @@ from flexstage.studies.sweeps.evaluate import Piece
 from flexstage.studies.sweeps.store import (
     FORMAT,
     columns_of,
-    gathered,
-    made_by,
-    opened,
+    gathered_pieces,
+    open_results,
+    pending_pieces,
+    provenance,
     read_failures,
     read_piece,
-    stored_failures,
-    waiting,
+    read_stored_failures,
 )
 
 _ROWS = 65_536
@@ -60,12 +60,12 @@ def gather(path: Path, study: Study, size: int) -> None:
     ...     read_results(Path(place, "results.h5")).complete
     False
     """
-    pieces = waiting(path)
+    pieces = pending_pieces(path)
     if path.exists() and not pieces:
         return
     with atomic_write(path) as place:
-        _written(place, path, pieces, study, size)
-    _settle(path.parent)  # the new name is on the disk before what it stands for goes
+        _write(place, path, pieces, study, size)
+    _sync(path.parent)  # the new name is on the disk before what it stands for goes
     for each in pieces.values():
         each.unlink(missing_ok=True)
 
@@ -76,7 +76,7 @@ def require_room(path: Path, study: Study) -> None:
     >>> from flexstage.studies.sweeps.example import neck_study
     >>> require_room(Path("results.h5").absolute(), neck_study())
     """
-    whole = needed(study)
+    whole = file_size(study)
     there = path.stat().st_size if path.exists() else 0
     missing, free = 2 * whole - min(there, whole), shutil.disk_usage(path.parent).free
     if free < missing:
@@ -84,11 +84,11 @@ def require_room(path: Path, study: Study) -> None:
         raise refuse(os.fspath(path.parent), what, "Free space and resume (--resume), or name a file elsewhere")
 
 
-def needed(study: Study, failures: Failures | None = None) -> int:
+def file_size(study: Study, failures: Failures | None = None) -> int:
     """Size of a study's results file [B] at most, `failures` included.
 
     >>> from flexstage.studies.sweeps.example import neck_study
-    >>> needed(neck_study(2_000_000)) - needed(neck_study(1_000_000))
+    >>> file_size(neck_study(2_000_000)) - file_size(neck_study(1_000_000))
     17000000
     """
     numbers = study.plan.designs * (8 * sum(map(len, columns_of(study)[0])) + 1)
@@ -96,7 +96,7 @@ def needed(study: Study, failures: Failures | None = None) -> int:
     return numbers + min(numbers, _UNFILLED) + reasons + _FRAME + 2 * len(study.text)
 
 
-def _settle(folder: Path) -> None:
+def _sync(folder: Path) -> None:
     """Make sure that the names in a folder are on the disk, where the system can tell."""
     if os.name != "posix":
         return
@@ -107,14 +107,14 @@ def _settle(folder: Path) -> None:
         os.close(descriptor)
 
 
-def _written(place: Path, path: Path, pieces: dict[int, Path], study: Study, size: int) -> None:
+def _write(place: Path, path: Path, pieces: dict[int, Path], study: Study, size: int) -> None:
     """The whole file."""
-    done = gathered(path)
+    done = gathered_pieces(path)
     fresh = {start: each for start, each in pieces.items() if not len(done) or not done[start // size]}
-    old = opened(path) if path.exists() else None
-    failures: Failures = [] if old is None else stored_failures(old)
+    old = open_results(path) if path.exists() else None
+    failures: Failures = [] if old is None else read_stored_failures(old)
     failures += [(start + row, reason) for start, each in fresh.items() for row, reason in read_failures(each).items()]
-    with new_hdf(place, needed(study, failures)) as file:
+    with new_hdf(place, file_size(study, failures)) as file:
         _frame(file, study, size)
         _fill(file, old, fresh)
         _put_failures(file, sorted(failures))
@@ -151,13 +151,13 @@ def _fill(new: Any, old: Hdf | None, pieces: dict[int, Path]) -> None:
     """What is there, block by block: neither file need fit into memory."""
     size, count = int(new.attrs["piece"]), int(new.attrs["planned"])
     done = np.zeros(len(new["computed"]), dtype=bool) if old is None else old.read("computed").astype(bool)
-    made = set[str]() if old is None else set(made_by(old))
+    made = set[str]() if old is None else set(provenance(old))
     step = size * max(1, _ROWS // size)
     for start in range(0, count, step):
         rows = slice(start, min(start + step, count))
         own = [read_piece(pieces[first]) for first in range(start, rows.stop, size) if first in pieces]
         if own or done[start // size : -(-rows.stop // size)].any():
-            _put(new, old, rows, own)
+            _write_rows(new, old, rows, own)
         made |= {found.made for found in own}
     done[[start // size for start in pieces]] = True
     new["computed"][:] = done
@@ -171,18 +171,18 @@ def _put_failures(new: Any, failures: Failures) -> None:
         new["failures"][first : first + len(some)] = np.array(some, dtype=new["failures"].dtype)
 
 
-def _put(new: Any, old: Hdf | None, rows: slice, own: list[Piece]) -> None:
+def _write_rows(new: Any, old: Hdf | None, rows: slice, own: list[Piece]) -> None:
     """The designs of some rows: those of the old file, and over them those of the pieces."""
     for name in _TABLES:
         shape = (rows.stop - rows.start, *new[name].shape[1:])
         table = np.full(shape, new[name].fillvalue, dtype=new[name].dtype) if old is None else old.read(name, [(rows.start, rows.stop)])
         for found in own:
-            values = _failed(found) if name == "failed" else getattr(found, name)
+            values = _failure_marks(found) if name == "failed" else getattr(found, name)
             table[found.start - rows.start : found.start - rows.start + len(values)] = values
         new[name][rows] = table
 
 
-def _failed(found: Piece) -> Array:
+def _failure_marks(found: Piece) -> Array:
     marks = np.zeros(len(found.variables), dtype=np.uint8)
     marks[list(found.failures)] = 1
     return marks

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from flexstage.base.number import Array
-from flexstage.show.figures.style import FULL, INK, PAPER, SERIES, Margins, canvas, panels, styled, text_width
+from flexstage.show.figures.style import FULL, INK, PAPER, SERIES, Margins, canvas, panels, style_context, text_width
 from flexstage.studies.sweeps.definition import Study
 from flexstage.studies.sweeps.effects import Effects
 from flexstage.studies.sweeps.figures import display
@@ -23,7 +23,7 @@ def pairs_figure(found: Effects) -> Any:
     columns = min(_WIDE if len(names) <= _WIDE else 2, count)
     rows = -(-count // columns)
     left = 0.15 + text_width(names, 7.0)
-    with styled():
+    with style_context():
         figure = canvas(FULL, 0.1 + rows * (0.5 + left + 0.26 * len(names)))
         axes = panels(figure, rows, columns, Margins(left=left, right=0.1, bottom=left + 0.1, top=0.3, across=0.25, down=left + 0.4))
         for place, ax in enumerate(axes.flat):
@@ -59,7 +59,7 @@ def _map(ax: Any, names: tuple[str, ...], shares: Array, *, labelled: bool) -> N
 
 def strongest_figure(study: Study, found: Effects) -> Any:
     """The strongest pairs: the mean response over one variable where the other is low, in the middle, and high."""
-    with styled():
+    with style_context():
         figure = canvas(FULL, 2.1)
         axes = panels(figure, 1, len(found.strongest), Margins(left=0.6, across=0.62, bottom=0.4, top=0.3))[0]
         for ax, each in zip(axes, found.strongest, strict=True):

@@ -54,12 +54,12 @@ def paired_shares(at: Array, values: Array, *, grid: bool) -> Array:
     width = _WIDEST if grid else min(_WIDEST, int(np.sqrt(count / _FEWEST)))
     if width < 2 or count < 2:
         return result
-    bins = [np.unique(column, return_inverse=True)[1] if grid else ranked(column, width) for column in at.T]
+    bins = [np.unique(column, return_inverse=True)[1] if grid else rank_bins(column, width) for column in at.T]
     rest = values - values.mean(axis=0) - sum(effect[group] for effect, group in zip(single_effects(bins, values), bins, strict=True))
     total, left = count * variance(values), np.sum(rest**2, axis=0)
     singles = sum(int(group.max()) for group in bins) + 1
     for first, second in combinations(range(dimensions), 2):
-        explained = _explained(bins[first], bins[second], rest)
+        explained = _explained_sum(bins[first], bins[second], rest)
         degrees = int(bins[first].max()) * int(bins[second].max())
         spare = count - singles - degrees
         chance = 0.0 if grid else degrees * (left - explained) / spare if spare > 0 else np.nan
@@ -78,10 +78,10 @@ def variance(values: Array) -> Array:
     return np.where(np.ptp(values, axis=0) > _ROUNDING * np.abs(values).max(axis=0), np.var(values, axis=0), np.nan)
 
 
-def ranked(column: Array, count: int) -> Array:
+def rank_bins(column: Array, count: int) -> Array:
     """Which of `count` bins of equal counts (n,) each value falls into.
 
-    >>> ranked(np.array([0.3, 0.1, 0.2, 0.9]), 2).tolist()
+    >>> rank_bins(np.array([0.3, 0.1, 0.2, 0.9]), 2).tolist()
     [1, 0, 0, 1]
     """
     rank = np.argsort(np.argsort(column, kind="stable"), kind="stable")
@@ -111,7 +111,7 @@ def single_effects(bins: Sequence[Array], values: Array) -> list[Array]:
     return [part - part[group].mean(axis=0) for part, group in zip(parts, bins, strict=True)]
 
 
-def _explained(first: Array, second: Array, rest: Array) -> Array:
+def _explained_sum(first: Array, second: Array, rest: Array) -> Array:
     """Sum of squares (r,) of the cells' means."""
     cells = first * (int(second.max()) + 1) + second
     counts = np.bincount(cells)
@@ -166,15 +166,15 @@ def strongest(at: Array, values: Array, shares: Array, *, grid: bool) -> tuple[I
     upper = [(pair, number) for pair in combinations(range(at.shape[1]), 2) for number in range(values.shape[1])]
     strong = [(float(shares[*pair, number]), pair, number) for pair, number in upper if shares[*pair, number] >= _LEAST]
     return tuple(
-        _seen(at, values[:, number], pair, share, number, grid=grid) for share, pair, number in sorted(strong, reverse=True)[:_MOST]
+        _interaction(at, values[:, number], pair, share, number, grid=grid) for share, pair, number in sorted(strong, reverse=True)[:_MOST]
     )
 
 
-def _seen(at: Array, values: Array, pair: tuple[int, int], share: float, number: int, *, grid: bool) -> Interaction:
+def _interaction(at: Array, values: Array, pair: tuple[int, int], share: float, number: int, *, grid: bool) -> Interaction:
     over, by = pair
     width = max(2, min(_WIDEST, len(at) // (_FEWEST * _LEVELS)))
-    along = np.unique(at[:, over], return_inverse=True)[1] if grid else ranked(at[:, over], width)
-    levels = np.unique(at[:, by], return_inverse=True)[1] if grid else ranked(at[:, by], _LEVELS)
+    along = np.unique(at[:, over], return_inverse=True)[1] if grid else rank_bins(at[:, over], width)
+    levels = np.unique(at[:, by], return_inverse=True)[1] if grid else rank_bins(at[:, by], _LEVELS)
     level = levels * _LEVELS // (int(levels.max()) + 1)
     width = int(along.max()) + 1
     cells = level * width + along

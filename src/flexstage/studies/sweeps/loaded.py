@@ -23,21 +23,21 @@ _MARGIN = 2.0
 """How far below what any end of the ranges has a design between them is reckoned with."""
 
 
-def loaded(study: Study) -> bool:
+def needs_load_check(study: Study) -> bool:
     """Whether designs must be asked one by one if they hold: an end of the ranges has a load factor that is not far above what is told.
 
     >>> from flexstage.studies.sweeps.example import neck_study
-    >>> loaded(neck_study())
+    >>> needs_load_check(neck_study())
     False
     """
     return _least(study)[0] < _MARGIN * DOUBTFUL
 
 
-def falling(study: Study, values: Array) -> dict[int, str]:
+def unstable_designs(study: Study, values: Array) -> dict[int, str]:
     """Why designs with `values` (n, d) of the variables do not hold, by row; those without an elastic model are told elsewhere.
 
     >>> from flexstage.studies.sweeps.example import neck_study
-    >>> falling(neck_study(), np.array([[0.00154]]))
+    >>> unstable_designs(neck_study(), np.array([[0.00154]]))
     {}
     """
     factors = _factors(study, values)
@@ -63,14 +63,14 @@ def loaded_findings(study: Study) -> tuple[Finding, ...]:
     return (Finding("variables", what, 'Add to [limits] for example buckling = "at least 20"'),)
 
 
-def require_holding(study: Study, values: Array) -> tuple[Finding, ...]:
+def require_stable(study: Study, values: Array) -> tuple[Finding, ...]:
     """Cautions about the design with `values` (d,) under its dead load. Raises `DesignError` where it does not hold.
 
     >>> from flexstage.studies.sweeps.example import neck_study
-    >>> require_holding(neck_study(), np.array([0.00154]))
+    >>> require_stable(neck_study(), np.array([0.00154]))
     ()
     """
-    factors = load_factors(study.described(values))
+    factors = load_factors(study.mechanism_for(values))
     if factors is None:
         return ()
     advice = 'Add to [limits] for example buckling = "at least 2"'
@@ -81,7 +81,7 @@ def require_holding(study: Study, values: Array) -> tuple[Finding, ...]:
 @lru_cache(maxsize=2)
 def _least(study: Study) -> tuple[float, Array]:
     """The least load factor among the ends of every range, others as drawn, and the corner of the worse ends; and the values there."""
-    if not _bears(study.design):
+    if not _has_load(study.design):
         return np.inf, np.zeros(len(study.variables))
     probes = _probes(study)
     factors = _factors(study, probes)
@@ -96,15 +96,15 @@ def _least(study: Study) -> tuple[float, Array]:
 def _probes(study: Study) -> Array:
     """The design as drawn and the low and high end of each variable in turn; of many variables the first designs."""
     if len(study.variables) > _ENDS:
-        return study.drawn(0, min(_FIRST, study.plan.designs))
-    drawn = np.array([np.clip(each.stated(study.design), each.low, each.high) for each in study.variables])
+        return study.sample(0, min(_FIRST, study.plan.designs))
+    drawn = np.array([np.clip(each.nominal(study.design), each.low, each.high) for each in study.variables])
     found = np.tile(drawn, (1 + 2 * len(drawn), 1))
     for place, each in enumerate(study.variables):
         found[1 + 2 * place, place], found[2 + 2 * place, place] = each.low, each.high
     return found
 
 
-def _bears(design: Mechanism) -> bool:
+def _has_load(design: Mechanism) -> bool:
     """Whether there is any dead load: a study may vary it, so one that is stated as nothing counts only where it stays so."""
     return bool(np.any(np.real(stack(design.gravity)) != 0.0)) or bool(design.forces)
 
@@ -114,7 +114,7 @@ def _factors(study: Study, values: Array) -> Array:
     if len(values) > _AT_ONCE:
         return np.concatenate([_factors(study, values[start : start + _AT_ONCE]) for start in range(0, len(values), _AT_ONCE)])
     try:
-        mechanism = require_valid(study.described(values))
+        mechanism = require_valid(study.mechanism_for(values))
         return np.broadcast_to(np.real(stability(mechanism, lumped(mechanism)).dead), len(values))
     except (DesignError, np.linalg.LinAlgError):
         if len(values) == 1:

@@ -92,10 +92,10 @@ def _sobol(dimensions: int, seed: int, start: int, stop: int) -> Array:
     sequence = scipy.stats.qmc.Sobol(dimensions, scramble=True, rng=np.random.default_rng(seed))
     if start:
         sequence.fast_forward(start)
-    return _drawn(sequence, stop - start)
+    return _draw(sequence, stop - start)
 
 
-def _drawn(sequence: object, count: int) -> Array:
+def _draw(sequence: object, count: int) -> Array:
     """Rows in powers of two: the sequence warns of other numbers, whose balance the plan does not need piece by piece."""
     rows = [np.zeros((0, sequence.d))]  # type: ignore[attr-defined]
     while count:

@@ -23,8 +23,17 @@ from flexstage.studies.sweeps.definition import Study, name_findings
 from flexstage.studies.sweeps.engine import engine_covers, engine_of
 from flexstage.studies.sweeps.evaluate import nominal
 from flexstage.studies.sweeps.gather import gather, require_room
-from flexstage.studies.sweeps.store import Results, computed, count_of, differences, folder_of, opened, read_results, waiting
-from flexstage.studies.sweeps.work import worked
+from flexstage.studies.sweeps.store import (
+    Results,
+    count_of,
+    differences,
+    done_pieces,
+    folder_of,
+    open_results,
+    pending_pieces,
+    read_results,
+)
+from flexstage.studies.sweeps.work import compute_in_processes
 
 PIECE = 256
 """Designs computed and kept together."""
@@ -69,20 +78,22 @@ def sweep(study: Study, path: str | os.PathLike[str], how: Run = DEFAULT, progre
     """
     target = Path(path).absolute()
     size = piece_size(study)
-    _ready(target, study, how)
+    _require_ready(target, study, how)
     nominal(study)
     folder = folder_of(target)
-    with _alone(folder):
-        done = _there(target, study, size)
+    with _locked(folder):
+        done = _done_pieces(target, study, size)
         ranges = [(start, min(start + size, study.plan.designs)) for start in (np.flatnonzero(~done) * size).tolist()]
-        _tell(progress, study, size * int(np.sum(done)))
+        _report_progress(progress, study, size * int(np.sum(done)))
         require_room(target, study)
         try:
-            for count, _ in enumerate(_gathering(_pieces(study, ranges, folder, how), target, study, size), 1 + int(np.sum(done))):
-                _tell(progress, study, size * count)
+            for count, _ in enumerate(
+                _gather_as_they_come(_pieces(study, ranges, folder, how), target, study, size), 1 + int(np.sum(done))
+            ):
+                _report_progress(progress, study, size * count)
         except BaseException:
             with contextlib.suppress(DesignError):  # the first reason is told; pieces stay as they are
-                if waiting(target):
+                if pending_pieces(target):
                     gather(target, study, size)
             require_room(target, study)
             raise
@@ -117,28 +128,28 @@ def require_memory(study: Study) -> None:
     )
 
 
-def _tell(progress: Progress | None, study: Study, count: int) -> None:
+def _report_progress(progress: Progress | None, study: Study, count: int) -> None:
     if progress is not None:
         progress(min(count, study.plan.designs), study.plan.designs)
 
 
-def _there(target: Path, study: Study, size: int) -> Array:
+def _done_pieces(target: Path, study: Study, size: int) -> Array:
     """Which pieces are there; results that were cut in another way are refused."""
     if target.exists():
-        file = opened(target)
+        file = open_results(target)
         if count_of(file, "piece") != size or file.arrays["computed"].shape != (-(-study.plan.designs // size),):
             what = f"its designs are kept in pieces of {count_of(file, 'piece')}, not {size}"
             raise refuse(os.fspath(target), what, "Resume with the version of flexstage that wrote it, or name another file")
-    return computed(target, size, study.plan.designs)
+    return done_pieces(target, size, study.plan.designs)
 
 
-def _ready(target: Path, study: Study, how: Run) -> None:
+def _require_ready(target: Path, study: Study, how: Run) -> None:
     """Refuse what cannot be begun."""
     require(name_findings(study))
     require_memory(study)
     if not target.parent.is_dir():
         raise refuse(os.fspath(target.parent), "there is no such folder", "Create it, or name another")
-    there = target.exists() or waiting(target)
+    there = target.exists() or pending_pieces(target)
     if there and not how.resume:
         raise refuse(os.fspath(target), "results are there already", "Resume (--resume), or name another file")
     if target.exists():
@@ -152,13 +163,13 @@ def _pieces(study: Study, ranges: list[tuple[int, int]], folder: Path, how: Run)
         return iter(())
     engine = engine_of(study)
     if how.scheduler is not None:
-        from flexstage.studies.sweeps.cluster import clustered
+        from flexstage.studies.sweeps.cluster import compute_on_cluster
 
-        return clustered(study, engine, ranges, folder, how.scheduler)
-    return worked(study, engine, ranges, folder, how.workers or cores())
+        return compute_on_cluster(study, engine, ranges, folder, how.scheduler)
+    return compute_in_processes(study, engine, ranges, folder, how.workers or cores())
 
 
-def _gathering(pieces: Iterator[int], target: Path, study: Study, size: int) -> Iterator[int]:
+def _gather_as_they_come(pieces: Iterator[int], target: Path, study: Study, size: int) -> Iterator[int]:
     """The pieces as they come, gathered seldom enough to cost a twentieth of the time."""
     gather(target, study, size)
     last, cost = time.monotonic(), 0.0
@@ -172,7 +183,7 @@ def _gathering(pieces: Iterator[int], target: Path, study: Study, size: int) -> 
 
 
 @contextmanager
-def _alone(folder: Path) -> Generator[None]:
+def _locked(folder: Path) -> Generator[None]:
     """Hold the folder of pieces for this process; the system lets go of it however the process ends. At the end it goes."""
     lock = FileLock(folder / ".lock", blocking=False)
     try:

@@ -33,18 +33,18 @@ def start(file: StudyFile, folder: Path) -> tuple[Mechanism, Variant | None]:
     if file.design and file.parameters:
         findings.append(Finding("parameters", "a design file has numbers, no parameters", "Leave them out, or start from a case"))
     require(findings)
-    return (load(folder / file.design), None) if file.design else _drawn(file.case or "", file.parameters)
+    return (load(folder / file.design), None) if file.design else _draw(file.case or "", file.parameters)
 
 
-def _drawn(name: str, table: Mapping[str, Any]) -> tuple[Mechanism, Variant]:
+def _draw(name: str, table: Mapping[str, Any]) -> tuple[Mechanism, Variant]:
     """The case with the parameters that the table states."""
-    own, stated = shipped_case(name).parameters, _stated(name, table)
+    own, stated = shipped_case(name).parameters, _read_parameters(name, table)
     changed = with_parameters(own, stated)
     names = (parameter(own, each).name for each in stated)
     return case(name, stated), Variant(name, tuple((each, parameter(changed, each).value) for each in names))
 
 
-def _stated(name: str, table: Mapping[str, Any]) -> dict[str, Stated]:
+def _read_parameters(name: str, table: Mapping[str, Any]) -> dict[str, Stated]:
     """What the table states: numbers of a quantity with their units."""
     found: dict[str, Stated] = {}
     findings: list[Finding] = []
@@ -71,10 +71,10 @@ def _leaves(tree: Mapping[str, Any], above: str = "") -> Iterator[tuple[str, Any
             yield f"{above}{key}", value
 
 
-def parameters_varied(table: VariedTable, where: str, variant: Variant | None) -> tuple[tuple[str, ...], Quantity]:
+def read_parameters(table: VariedTable, where: str, variant: Variant | None) -> tuple[tuple[str, ...], Quantity]:
     """The parameters that a variable's table at `where` names, by full name, and their quantity. Raises `DesignError` with all findings.
 
-    >>> names, quantity = parameters_varied(VariedTable("1 mm", "2 mm", parameter=("neck.radius",)), "variables.r", Variant("hexapod"))
+    >>> names, quantity = read_parameters(VariedTable("1 mm", "2 mm", parameter=("neck.radius",)), "variables.r", Variant("hexapod"))
     >>> names, quantity.name
     (('neck.profile.radius',), 'length')
     """

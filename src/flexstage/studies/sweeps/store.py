@@ -123,7 +123,7 @@ def read_piece(path: Path) -> Piece:
     >>> found.start, found.responses.shape, found.failures
     (256, (2, 3), {1: 'too thin'})
     """
-    with _loaded(path) as stored:
+    with _load(path) as stored:
         return Piece(int(path.stem), stored["variables"], stored["responses"], _failures(stored), str(stored["made"]))
 
 
@@ -135,12 +135,12 @@ def read_failures(path: Path) -> dict[int, str]:
     ...     read_failures(write_piece(Path(place), Piece(256, np.ones((2, 1)), np.ones((2, 3)), {1: "too thin"})))
     {1: 'too thin'}
     """
-    with _loaded(path) as stored:
+    with _load(path) as stored:
         return _failures(stored)
 
 
 @contextmanager
-def _loaded(path: Path) -> Generator[Any]:
+def _load(path: Path) -> Generator[Any]:
     """A piece's arrays. Raises `FileNotFoundError` where it is gone, `DesignError` for what is none."""
     try:
         with np.load(path) as stored:
@@ -155,10 +155,10 @@ def _failures(stored: Any) -> dict[int, str]:
     return dict(zip(stored["rows"].tolist(), stored["reasons"].tolist(), strict=True))
 
 
-def waiting(path: Path) -> dict[int, Path]:
+def pending_pieces(path: Path) -> dict[int, Path]:
     """Pieces that are not gathered yet, by their first design.
 
-    >>> waiting(Path("nowhere/results.h5"))
+    >>> pending_pieces(Path("nowhere/results.h5"))
     {}
     """
     folder = folder_of(path)
@@ -176,36 +176,36 @@ def columns_of(study: Study) -> tuple[tuple[tuple[str, ...], tuple[str, ...]], t
     return names, (tuple(each.quantity.si for each in study.variables), tuple(each.quantity.si for each in study.columns.values()))
 
 
-def computed(path: Path, size: int, designs: int) -> Array:
+def done_pieces(path: Path, size: int, designs: int) -> Array:
     """Which pieces (k,) of `size` designs are there already, gathered or waiting.
 
-    >>> computed(Path("nowhere/results.h5"), 256, 1000).tolist()
+    >>> done_pieces(Path("nowhere/results.h5"), 256, 1000).tolist()
     [False, False, False, False]
     """
-    done = gathered(path)
+    done = gathered_pieces(path)
     done = done if len(done) else np.zeros(-(-designs // size), dtype=bool)
-    for start in waiting(path):
+    for start in pending_pieces(path):
         done[start // size] = True
     return done
 
 
-def gathered(path: Path) -> Array:
+def gathered_pieces(path: Path) -> Array:
     """Which pieces (k,) the results file holds; none (0,) where there is no file.
 
-    >>> gathered(Path("nowhere/results.h5")).tolist()
+    >>> gathered_pieces(Path("nowhere/results.h5")).tolist()
     []
     """
     if not path.exists():
         return np.zeros(0, dtype=bool)
-    return opened(path).read("computed").astype(bool)
+    return open_results(path).read("computed").astype(bool)
 
 
-def opened(path: Path) -> Hdf:
+def open_results(path: Path) -> Hdf:
     """The results file, read by the process that reads all HDF5 files; nobody writes to one that is there, so that no lock is needed.
 
     Raises `FileNotFoundError` for a file that is not there, `DesignError` for one that is none.
 
-    >>> opened(Path("nowhere/results.h5"))
+    >>> open_results(Path("nowhere/results.h5"))
     Traceback (most recent call last):
         ...
     FileNotFoundError: ...
@@ -214,11 +214,11 @@ def opened(path: Path) -> Hdf:
     file = hdf(path)
     if file.attributes.get("format") != FORMAT:
         raise refuse(os.fspath(path), "it holds no results of a study", f'Name another file: its format is to be "{FORMAT}"')
-    require(_missing(file))
+    require(_damage_findings(file))
     return file
 
 
-def _missing(file: Hdf) -> Iterator[Finding]:
+def _damage_findings(file: Hdf) -> Iterator[Finding]:
     """What results have and this file has not, or not as it should."""
     advice = "It was changed or is damaged: take it away, or name another file"
     attributes = file.attributes
@@ -229,7 +229,7 @@ def _missing(file: Hdf) -> Iterator[Finding]:
         yield Finding(os.fspath(file.path), f"its {', '.join(wrong)} cannot be read", advice)
         return
     planned, size = (int(float(str(attributes[key]))) for key in ("planned", "piece"))
-    shapes = {name: (planned, len(_labelled(file, name, "names"))) for name in ("variables", "responses")}
+    shapes = {name: (planned, len(_labels(file, name, "names"))) for name in ("variables", "responses")}
     for name, shape in {**shapes, "computed": (-(-planned // size),), "failed": (planned,)}.items():
         found = file.arrays.get(name)
         if found is None or found.shape != shape or found.kind not in ("f", "u", "i", "b"):
@@ -239,7 +239,7 @@ def _missing(file: Hdf) -> Iterator[Finding]:
     if "facts" not in file.groups:
         yield Finding(f"{file.path}: facts", "they are not there", advice)
     for name in ("variables", "responses"):
-        if len(_labelled(file, name, "units")) != shapes[name][1]:
+        if len(_labels(file, name, "units")) != shapes[name][1]:
             yield Finding(f"{file.path}: {name}", "it has not as many units as names", advice)
 
 
@@ -260,9 +260,9 @@ def read_results(path: str | os.PathLike[str]) -> Results:
     if not target.exists():
         raise refuse(where, "there is no such file", "Check the path")
     for _ in range(_ATTEMPTS):  # a piece that is gathered while we look is gone from the folder, and in the file the next time
-        pieces = list(waiting(target).values())
+        pieces = list(pending_pieces(target).values())
         try:
-            return _read(opened(target), pieces)
+            return _read(open_results(target), pieces)
         except FileNotFoundError:
             continue
     raise refuse(where, "its pieces are gathered faster than they can be read", "Try again")
@@ -276,19 +276,19 @@ def _read(file: Hdf, pieces: list[Path]) -> Results:
     for found in more:
         there[found.start : found.start + len(found.variables)] = True
     designs = np.flatnonzero(there)
-    failures = dict(stored_failures(file))
+    failures = dict(read_stored_failures(file))
     failures |= {found.start + row: reason for found in more for row, reason in found.failures.items()}
     return Results(
         designs,
         _table(file.read("variables"), [(found.start, found.variables) for found in more], there),
         _table(file.read("responses"), [(found.start, found.responses) for found in more], there),
         dict(sorted(failures.items())),
-        names=(_labelled(file, "variables", "names"), _labelled(file, "responses", "names")),
-        units=(_labelled(file, "variables", "units"), _labelled(file, "responses", "units")),
+        names=(_labels(file, "variables", "names"), _labels(file, "responses", "names")),
+        units=(_labels(file, "variables", "units"), _labels(file, "responses", "units")),
         planned=planned,
         facts=_facts(file),
         text=str(file.attributes["study"]),
-        made=tuple(sorted({*made_by(file), *(found.made for found in more)})),
+        made=tuple(sorted({*provenance(file), *(found.made for found in more)})),
     )
 
 
@@ -297,13 +297,13 @@ def count_of(file: Hdf, key: str) -> int:
     return int(float(str(file.attributes[key])))
 
 
-def made_by(file: Hdf) -> tuple[str, ...]:
+def provenance(file: Hdf) -> tuple[str, ...]:
     """What computed results, one text each."""
     made = file.attributes.get("made", ())
     return made if isinstance(made, tuple) else (str(made),)
 
 
-def stored_failures(file: Hdf) -> list[tuple[int, str]]:
+def read_stored_failures(file: Hdf) -> list[tuple[int, str]]:
     """Failures by design number, with their reasons."""
     if not file.arrays["failures"].shape[0]:
         return []
@@ -321,7 +321,7 @@ def _table(values: Array, more: list[tuple[int, Array]], there: Array) -> Array:
     return values if there.all() else values[there]
 
 
-def _labelled(file: Hdf, name: str, label: str) -> tuple[str, ...]:
+def _labels(file: Hdf, name: str, label: str) -> tuple[str, ...]:
     found = file.arrays[name].attributes.get(label, ()) if name in file.arrays else ()
     return found if isinstance(found, tuple) else (str(found),)
 
@@ -338,7 +338,7 @@ def differences(path: Path, study: Study) -> Iterator[Finding]:
     ...     [each.what.partition(",")[0] for each in differences(path, neck_study(designs=8))]
     ['plan was sampling sobol']
     """
-    before = _facts(opened(path))
+    before = _facts(open_results(path))
     now = study.facts
     for key in [*before, *(key for key in now if key not in before)]:
         if before.get(key) != now.get(key):

@@ -9,8 +9,8 @@ import numpy as np
 
 from flexstage.analysis.requirements import Verdict
 from flexstage.base.labelled import NOISE
-from flexstage.show.display import NO_VALUE, number, value_with_unit
-from flexstage.show.table import Cell, Column, Mark, Table, build
+from flexstage.show.display import NO_VALUE, format_value, number
+from flexstage.show.table import Cell, Column, Mark, Table, make_table
 from flexstage.studies.sweeps.definition import Study
 from flexstage.studies.sweeps.effects import Effects
 from flexstage.studies.sweeps.result import Sweep
@@ -43,7 +43,7 @@ def variable_table(study: Study, results: Results) -> Table:
     ]
     plan = study.plan
     note = f"{len(results.designs)} of {results.planned} designs, {plan.sampling.value}" + ("" if plan.levels else f", seed {plan.seed}")
-    return build("Varied", ["variable", "number", "from", "to"], rows, notes=[f"{note}."])
+    return make_table("Varied", ["variable", "number", "from", "to"], rows, notes=[f"{note}."])
 
 
 def response_table(study: Study, results: Results, found: Effects) -> Table:
@@ -54,7 +54,7 @@ def response_table(study: Study, results: Results, found: Effects) -> Table:
         noise = NOISE * abs(found.mean[index])
         spread = 0.0 if found.deviation[index] < noise else found.deviation[index]
         cells = [
-            value_with_unit(float(each), unit, 5) if found.used else NO_VALUE
+            format_value(float(each), unit, 5) if found.used else NO_VALUE
             for each in (found.low[index], found.mean[index], spread, found.high[index])
         ]
         rows.append(
@@ -62,11 +62,11 @@ def response_table(study: Study, results: Results, found: Effects) -> Table:
                 Cell(name, Mark.STRONG),
                 f"{measure.key} at {measure.point}" if measure.kind.pointed else measure.key,
                 *cells,
-                _met(study, results, name),
+                _share_within_limits(study, results, name),
             )
         )
     heads = ["least", "mean", "deviation", "largest"]
-    return build(
+    return make_table(
         "Responses",
         ["response", "measure", *(Column(head) for head in heads), Column("limit met by", "%")],
         rows,
@@ -74,7 +74,7 @@ def response_table(study: Study, results: Results, found: Effects) -> Table:
     )
 
 
-def _met(study: Study, results: Results, name: str) -> str:
+def _share_within_limits(study: Study, results: Results, name: str) -> str:
     """Share of all designs that keep the limits on a measure; a failed design keeps none."""
     measure, values = study.columns[name], results.column(name)
     verdicts = [Verdict(each, values) for each in study.limits if (each.key, each.point) == (measure.key, measure.point)]
@@ -85,12 +85,12 @@ def _met(study: Study, results: Results, name: str) -> str:
 
 def _limit_notes(study: Study, results: Results) -> list[str]:
     """How many designs keep all limits; where none does, which are kept by none, or contradict one another."""
-    kept = study.kept(results.responses)
+    kept = study.feasible(results.responses)
     if not study.limits or not len(kept):
         return []
     if np.any(kept):
         return [f"All limits together are met by {number(100.0 * float(np.mean(kept)), 4)} % of the designs."]
-    alone = {f"{each.key} {each.text}": study.kept(results.responses, (each,)) for each in study.limits}
+    alone = {f"{each.key} {each.text}": study.feasible(results.responses, (each,)) for each in study.limits}
     never = [text for text, met in alone.items() if not np.any(met)]
     if never:
         return [f"No design meets {' nor '.join(never)}: widen the ranges, or ask for less."]
@@ -113,7 +113,7 @@ def share_table(found: Effects) -> Table:
         rows.append(cells)
     note = "Alone: share of the response's variance by the variable alone"
     note += "; in all: with its interactions." if found.total is not None else "; what is left is interaction."
-    return build("What does it", columns, rows, notes=[note, f"By {found.method}, {found.used} designs.", *_error_note(found, 0)])
+    return make_table("What does it", columns, rows, notes=[note, f"By {found.method}, {found.used} designs.", *_error_note(found, 0)])
 
 
 def _error_note(found: Effects, order: int) -> list[str]:
@@ -137,7 +137,9 @@ def pair_table(found: Effects) -> Table:
     less = "No pair" if not rows else "No other pair"
     notes = ["Share of variance that only both together explain.", f"{less} explains 1 % of anything." if len(rows) < _MOST_PAIRS else ""]
     notes += _error_note(found, 1)
-    return build("Interactions", ["variables", *(Column(name) for name in found.responses)], rows, notes=[note for note in notes if note])
+    return make_table(
+        "Interactions", ["variables", *(Column(name) for name in found.responses)], rows, notes=[note for note in notes if note]
+    )
 
 
 def _share(value: float) -> Cell:
@@ -156,4 +158,4 @@ def failure_table(results: Results) -> Table:
     rest = len(ranked) - _MOST_FAILURES
     notes = ["Reasons that differ in numbers only are told once, as the first design has them; the results file holds all."]
     notes += [f"{rest} further reasons are in the results file."] if rest > 0 else []
-    return build("Designs without values", [Column("designs"), Column("first"), "reason"], rows, notes=notes)
+    return make_table("Designs without values", [Column("designs"), Column("first"), "reason"], rows, notes=notes)

@@ -44,7 +44,7 @@ class Variable:
     variant: Annotated[Variant | None, INNER] = None
 
     @property
-    def moved(self) -> Annotated[tuple[str, ...], VIEW, Called("addresses")]:
+    def numbers(self) -> Annotated[tuple[str, ...], VIEW, Called("addresses")]:
         """The numbers of the design that it moves."""
         return self.addresses if self.variant is None else ()
 
@@ -79,12 +79,12 @@ class Variable:
         """
         return f"{100.0 * (value - 1.0):+.4g} %" if self.relative else show(value, self.quantity, digits=6)
 
-    def stated(self, mechanism: Mechanism) -> float:
+    def nominal(self, mechanism: Mechanism) -> float:
         """The value that stands for the design as it is: 1 for a relative variable, else what the first address has.
 
         >>> from flexstage.base.quantity import LENGTH
         >>> from flexstage.cases.double_triangle import double_triangle
-        >>> Variable("t", ("parts.neck.thickness",), LENGTH, 1e-3, 4e-3).stated(double_triangle())
+        >>> Variable("t", ("parts.neck.thickness",), LENGTH, 1e-3, 4e-3).nominal(double_triangle())
         0.00154...
         """
         if self.relative:
@@ -93,7 +93,7 @@ class Variable:
         return float(get(mechanism, first) if self.variant is None else self.variant.value(first))
 
 
-def varied(mechanism: Mechanism, variables: Iterable[Variable], values: Array) -> Mechanism:
+def apply(mechanism: Mechanism, variables: Iterable[Variable], values: Array) -> Mechanism:
     """The design with `values` (..., d) of the variables, in SI; with leading axes it is a batch.
 
     Parameters of a case come first: the design is drawn from them. Then shared parts are written, then departures from them, whatever the
@@ -103,24 +103,24 @@ def varied(mechanism: Mechanism, variables: Iterable[Variable], values: Array) -
     >>> from flexstage.base.quantity import LENGTH
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> neck = Variable("neck", ("parts.neck.thickness",), LENGTH, 1e-3, 2e-3)
-    >>> varied(double_triangle(), [neck], np.array([[0.0015], [0.0016]])).parts["neck"].thickness.tolist()
+    >>> apply(double_triangle(), [neck], np.array([[0.0015], [0.0016]])).parts["neck"].thickness.tolist()
     [0.0015, 0.0016]
     """
     known = tuple(variables)
-    return varied_by(mechanism, known, tuple(values[..., number] for number in range(len(known))))
+    return apply_columns(mechanism, known, tuple(values[..., number] for number in range(len(known))))
 
 
-def varied_by(mechanism: Mechanism, variables: tuple[Variable, ...], columns: tuple[Number, ...]) -> Mechanism:
+def apply_columns(mechanism: Mechanism, variables: tuple[Variable, ...], columns: tuple[Number, ...]) -> Mechanism:
     """The same of values (...) by variable: those alone that are complex make the design complex.
 
     >>> from flexstage.base.quantity import LENGTH
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> neck = Variable("neck", ("parts.neck.thickness",), LENGTH, 1e-3, 2e-3)
-    >>> varied_by(double_triangle(), (neck,), (0.0015,)).parts["neck"].thickness
+    >>> apply_columns(double_triangle(), (neck,), (0.0015,)).parts["neck"].thickness
     0.0015
     """
     moves = [(address, *move) for move in zip(variables, columns, strict=True) for address in move[0].addresses]
-    start = result = _drawn(mechanism, [move for move in moves if move[1].variant is not None])
+    start = result = _draw(mechanism, [move for move in moves if move[1].variant is not None])
     written = [move for move in moves if move[1].variant is None]
     for address, variable, value in sorted(written, key=lambda move: departure(mechanism, move[0])):
         wanted = get(start, address) * value if variable.relative else value
@@ -128,7 +128,7 @@ def varied_by(mechanism: Mechanism, variables: tuple[Variable, ...], columns: tu
     return result
 
 
-def _drawn(mechanism: Mechanism, moves: list[tuple[str, Variable, Number]]) -> Mechanism:
+def _draw(mechanism: Mechanism, moves: list[tuple[str, Variable, Number]]) -> Mechanism:
     """The design drawn from the parameters that vary; as it stands where none does."""
     variant = next((variable.variant for _, variable, _ in moves), None)
     if variant is None:
@@ -176,7 +176,7 @@ def _parameter_findings(mechanism: Mechanism, variables: tuple[Variable, ...]) -
             continue
         where = f"variables.{variable.name}"
         for name in variable.addresses:
-            moved = _moved(variable.variant, name)
+            moved = _numbers_moved_by(variable.variant, name)
             if not moved:
                 yield Finding(where, f"parameter {name} changes nothing of this design", "Vary another")
             for address in sorted(moved & set(overwritten)):
@@ -185,7 +185,7 @@ def _parameter_findings(mechanism: Mechanism, variables: tuple[Variable, ...]) -
                 yield Finding(where, what, "Let one of them move it, or vary the address in percent of what the parameter makes it")
 
 
-def _moved(variant: Variant, name: str) -> frozenset[str]:
+def _numbers_moved_by(variant: Variant, name: str) -> frozenset[str]:
     """Addresses of the numbers that depend on a parameter."""
     value = variant.value(name)
     stepped = variant.mechanism_at({name: np.asarray(complex(value, abs(value) * _STEP or _STEP))})

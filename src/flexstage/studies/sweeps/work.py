@@ -14,7 +14,7 @@ from flexstage.studies.sweeps.evaluate import piece
 from flexstage.studies.sweeps.store import write_piece
 
 
-def worked(study: Study, engine: Engine, ranges: Iterable[tuple[int, int]], folder: Path, workers: int) -> Iterator[int]:
+def compute_in_processes(study: Study, engine: Engine, ranges: Iterable[tuple[int, int]], folder: Path, workers: int) -> Iterator[int]:
     """Compute all ranges of designs into `folder`; yields the first design of each as it is there, in any order.
 
     All processes take the same `engine`. Raises `DesignError` where a piece cannot be written, or where processes die over it again and
@@ -22,7 +22,7 @@ def worked(study: Study, engine: Engine, ranges: Iterable[tuple[int, int]], fold
 
     >>> from flexstage.studies.sweeps.example import neck_study
     >>> from flexstage.studies.sweeps.engine import engine_of
-    >>> list(worked(neck_study(), engine_of(neck_study()), [], Path("nowhere"), 2))
+    >>> list(compute_in_processes(neck_study(), engine_of(neck_study()), [], Path("nowhere"), 2))
     []
     """
     try:

@@ -86,10 +86,10 @@ def allowance(study: Tolerance, results: Results, slope: Slopes, found: Summary)
     for line, column, smooth in zip(found.lines, columns, by_slope, strict=True):
         reach.append(_linear_reach(study, line, slope.gradient[column]) if smooth else _reach(study, line, values[:, column]))
         parts = found.spread.by_slope[:, column] if smooth else squares[:, column]
-        shares.append(_normed(parts))
+        shares.append(_normalise(parts))
     margin = np.array([line.margin for line in found.lines])
     share = np.stack(shares, axis=-1) if shares else np.zeros((len(study.scatters), 0))
-    room = _room(margin, np.array(reach))
+    room = _margin_ratio(margin, np.array(reach))
     labels = tuple(line.column for line in found.lines)
     left = room**2 - (1.0 - share)
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -109,17 +109,17 @@ def allowance(study: Tolerance, results: Results, slope: Slopes, found: Summary)
         alone=np.min(alone, axis=1, initial=np.inf),
         binds=tuple(labels[int(np.argmin(row))] if labels and np.isfinite(np.min(row)) else "" for row in alone),
         equal=np.min(equal, axis=1, initial=np.inf),
-        then=_then(found.lines, together, values[:, columns]),
+        then=_scaled_yield(found.lines, together, values[:, columns]),
     )
 
 
-def _room(margin: Array, reach: Array) -> Array:
+def _margin_ratio(margin: Array, reach: Array) -> Array:
     """Margins over reaches; nought where a line fails as drawn, infinite where nothing moves it."""
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.where(margin <= 0.0, 0.0, np.where(reach > 0.0, margin / reach, np.inf))
 
 
-def _normed(parts: Array) -> Array:
+def _normalise(parts: Array) -> Array:
     parts = np.nan_to_num(parts)
     whole = np.sum(parts)
     return parts / whole if whole > 0.0 else np.zeros_like(parts)
@@ -148,7 +148,7 @@ def _linear_reach(study: Tolerance, line: Line, gradient: Array) -> float:
     return float(np.quantile(worse, study.wanted))
 
 
-def _then(lines: tuple[Line, ...], factor: float, values: Array) -> Yield | None:
+def _scaled_yield(lines: tuple[Line, ...], factor: float, values: Array) -> Yield | None:
     """The sample's yield with all changes so many times as large."""
     if not lines or not np.isfinite(factor):
         return None

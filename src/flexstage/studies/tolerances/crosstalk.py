@@ -67,12 +67,12 @@ def command(bench: Bench, point: str) -> Command:
         np.asarray(gains.values),
         np.array([float(each) for each in _strokes(bench)]),
         np.asarray(reference),
-        _sensed(bench, reference),
+        _sensing_inverse(bench, reference),
         bench.kinematics.length,
     )
 
 
-def _sensed(bench: Bench, reference: Array) -> Array | None:
+def _sensing_inverse(bench: Bench, reference: Array) -> Array | None:
     rows = _gauges(bench, reference)
     weights = np.array([1.0, 1.0, 1.0, *[bench.kinematics.length] * 3])
     scaled = rows / weights

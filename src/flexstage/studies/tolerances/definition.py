@@ -10,7 +10,7 @@ from itertools import pairwise
 import numpy as np
 
 from flexstage.analysis.bench import Bench
-from flexstage.analysis.judge import bench_of, measured_on
+from flexstage.analysis.judge import bench_of, value_or_reason
 from flexstage.analysis.measures import Measure
 from flexstage.analysis.requirements import Requirement
 from flexstage.base.number import Array
@@ -19,7 +19,7 @@ from flexstage.studies.sweeps.definition import Study
 from flexstage.studies.sweeps.numbers import Numbers
 from flexstage.studies.sweeps.plan import Plan, Sampling, shares
 from flexstage.studies.tolerances.crosstalk import Command, PoseMeasure, command, pose_measures, poses
-from flexstage.studies.tolerances.scatter import Deviation, Scatter, Target, deviated, sums
+from flexstage.studies.tolerances.scatter import Deviation, Scatter, Target, apply_deviations, sums
 
 _MANY = 64
 """How many copies for each number that scatters there must be for the engine of many designs to pay for its plan."""
@@ -99,14 +99,14 @@ class Tolerance(Study):
         return tuple((line_name(each), each) for each in self.limits)
 
     @cached_property
-    def asked(self) -> Mapping[str, Measure]:
+    def measures(self) -> Mapping[str, Measure]:
         """What is measured of each copy, by name: the responses, and what the specification is about."""
         return {**self.responses, **{name: each for name, each in self.lines if name not in self.responses}}
 
     @property
     def columns(self) -> Mapping[str, Measure]:
         """All that is computed of each copy: what is measured, then poses per command where crosstalk is asked."""
-        return {**self.asked, **(pose_measures(self.commanded) if self.commanded is not None else {})}
+        return {**self.measures, **(pose_measures(self.commanded) if self.commanded is not None else {})}
 
     @property
     def facts(self) -> dict[str, str]:
@@ -115,42 +115,42 @@ class Tolerance(Study):
         point = {} if self.commanded is None else {"crosstalk": f"at {self.commanded.point}"}
         return {**plain, **{f"scatter.{each.name}": repr(each) for each in self.scatters}, **point}
 
-    def drawn(self, start: int, stop: int) -> Array:
+    def sample(self, start: int, stop: int) -> Array:
         """Deviations (n, d) of copies from `start` to before `stop`; nought where an entry does not scatter."""
         if not isinstance(self.plan, Copies):
-            return super().drawn(start, stop)
+            return super().sample(start, stop)
         rows = []
         for plan, first, last, moved in self.plan.parts(start, stop):
             at = shares(plan, first, last)
             rows.append(np.stack([self.variables[k].at(at[:, k]) * moved[k] for k in range(plan.dimensions)], axis=-1))
         return np.concatenate(rows)
 
-    def described(self, values: Array) -> Mechanism:
+    def mechanism_for(self, values: Array) -> Mechanism:
         """The design with deviations (..., d) added to its numbers."""
-        return deviated(self.design, self.targets, values)
+        return apply_deviations(self.design, self.targets, values)
 
     @property
     def numbers(self) -> Numbers | None:
         """The numbers that copies differ in; `None` for so few copies that planning for them costs more than it saves."""
         return sums(self.targets, len(self.variables)) if self.plan.designs >= _MANY * len(self.targets) else None
 
-    def answered(self, mechanism: Mechanism, names: tuple[str, ...] | None = None) -> tuple[Array | str, ...]:
+    def evaluate(self, mechanism: Mechanism, names: tuple[str, ...] | None = None) -> tuple[Array | str, ...]:
         """What is asked of a copy or a batch of them, column by column or those of `names`."""
         columns = self.columns
-        found = self.read(bench_of(mechanism), tuple(columns[name] for name in (columns if names is None else names)))
+        found = self.measure_on(bench_of(mechanism), tuple(columns[name] for name in (columns if names is None else names)))
         return tuple("nothing is asked" if each is None else each for each in found)
 
-    def read(self, bench: Bench, wanted: tuple[Measure | None, ...]) -> tuple[Array | str | None, ...]:
+    def measure_on(self, bench: Bench, wanted: tuple[Measure | None, ...]) -> tuple[Array | str | None, ...]:
         """Those of the study's columns that are wanted, on a bench; the others are left out."""
         asked = any(isinstance(each, PoseMeasure) for each in wanted)
         found = {}
         if self.commanded is not None and asked:
             found = dict(zip(pose_measures(self.commanded), poses(bench, self.commanded), strict=True))
         return tuple(
-            None if each is None else found[each.key] if isinstance(each, PoseMeasure) else measured_on(bench, each) for each in wanted
+            None if each is None else found[each.key] if isinstance(each, PoseMeasure) else value_or_reason(bench, each) for each in wanted
         )
 
-    def scaled(self, factors: tuple[float, ...]) -> Tolerance:
+    def scale(self, factors: tuple[float, ...]) -> Tolerance:
         """The same study with the deviations of each entry so many times as wide."""
         scatters = tuple(
             replace(each, distribution=each.distribution.times(factor)) for each, factor in zip(self.scatters, factors, strict=True)
@@ -169,11 +169,11 @@ def line_name(line: Requirement) -> str:
     return line.key if line.point == PLATFORM else f"{line.key} at {line.point}"
 
 
-def commanded(design: Mechanism, point: str) -> Command:
+def nominal_command(design: Mechanism, point: str) -> Command:
     """What the nominal design is commanded by at a point: raises `DesignError` where strokes do not determine its platform.
 
     >>> from flexstage.cases.parallelogram import parallelogram
-    >>> commanded(parallelogram(), "platform").coordinates
+    >>> nominal_command(parallelogram(), "platform").coordinates
     ('x',)
     """
     return command(bench_of(design), point)

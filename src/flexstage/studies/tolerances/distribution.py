@@ -59,10 +59,10 @@ class Distribution:
         return float(self.size * np.sqrt(1.0 - 2.0 * edge * density / (2.0 * scipy.special.ndtr(edge) - 1.0)))
 
     @property
-    def bounded(self) -> float | None:
+    def largest(self) -> float | None:
         """The largest deviation there is, if there is one.
 
-        >>> Distribution(Shape.NORMAL, 1.0).bounded is None
+        >>> Distribution(Shape.NORMAL, 1.0).largest is None
         True
         """
         return self.size if self.shape is Shape.UNIFORM else self.within

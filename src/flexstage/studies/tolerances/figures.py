@@ -8,8 +8,8 @@ import numpy as np
 
 from flexstage.analysis.requirements import Requirement, Sense
 from flexstage.base.number import Array
-from flexstage.show.display import number, shown
-from flexstage.show.figures.style import FAIL, FULL, INK, MUTED, PASS, SERIES, WARN, Margins, canvas, panels, styled, text_width
+from flexstage.show.display import display_unit_of, number
+from flexstage.show.figures.style import FAIL, FULL, INK, MUTED, PASS, SERIES, WARN, Margins, canvas, panels, style_context, text_width
 from flexstage.spatial.frame import COMPONENTS
 from flexstage.studies.tolerances.crosstalk import OPEN
 from flexstage.studies.tolerances.run import Toleranced
@@ -22,11 +22,11 @@ _FEWEST = 12
 
 def distributions_figure(found: Toleranced) -> Any:
     """A histogram of each response, the design as drawn and the limits on it; what misses a limit is red."""
-    names = list(found.study.asked)
+    names = list(found.study.measures)
     rows = -(-len(names) // _ACROSS)
-    with styled():
+    with style_context():
         figure = canvas(FULL, 0.3 + 1.35 * rows)
-        axes = panels_apart(figure, rows)
+        axes = separate_panels(figure, rows)
         for ax, name in zip(axes, names, strict=False):
             _distribution(ax, found, name)
         for ax in axes[len(names) :]:
@@ -34,10 +34,10 @@ def distributions_figure(found: Toleranced) -> Any:
     return figure
 
 
-def panels_apart(figure: Any, rows: int) -> list[Any]:
+def separate_panels(figure: Any, rows: int) -> list[Any]:
     """Panels in rows of three, each with axes of its own.
 
-    >>> len(panels_apart(canvas(7.0, 3.0), 2))
+    >>> len(separate_panels(canvas(7.0, 3.0), 2))
     6
     """
     width, height = figure.get_size_inches()
@@ -53,7 +53,7 @@ def _distribution(ax: Any, found: Toleranced, name: str) -> None:
     values = found.results.responses[found.results.designs < found.study.copies, column]
     values = values[np.isfinite(values)]
     nominal = float(found.slopes.values[column])
-    form = shown(found.study.asked[name].quantity.si, max(float(np.max(np.abs(values), initial=0.0)), abs(nominal)))
+    form = display_unit_of(found.study.measures[name].quantity.si, max(float(np.max(np.abs(values), initial=0.0)), abs(nominal)))
     limits = [line for own, line in found.study.lines if own == name]
     count = int(np.clip(np.sqrt(len(values)), _FEWEST, _BINS))
     _, edges, bars = ax.hist(values * form.factor, bins=count, color=SERIES[0], linewidth=0.0)
@@ -92,7 +92,7 @@ def yields_figure(found: Toleranced) -> Any:
     said = found.summary
     entries = [(line.column, line.kept) for line in said.lines]
     entries += [("all together", said.together)] if said.together is not None else []
-    with styled():
+    with style_context():
         figure = canvas(FULL, 0.55 + 0.2 * len(entries))
         ax = panels(figure, 1, 1, Margins(left=0.25 + text_width(name for name, _ in entries), right=0.35, bottom=0.4))[0, 0]
         for place, (_, kept) in enumerate(reversed(entries)):
@@ -110,9 +110,9 @@ def yields_figure(found: Toleranced) -> Any:
 
 def shares_figure(found: Toleranced) -> Any:
     """Which scatter each response's variance is from, as one bar a response."""
-    spread, names = found.summary.spread, list(found.study.asked)
+    spread, names = found.summary.spread, list(found.study.measures)
     entries = [each.name for each in found.study.scatters]
-    with styled():
+    with style_context():
         figure = canvas(FULL, 0.75 + 0.2 * len(names))
         margins = Margins(left=0.25 + text_width(names), right=0.25 + text_width(entries) + 0.3, bottom=0.4, top=0.1)
         ax = panels(figure, 1, 1, margins)[0, 0]
@@ -134,9 +134,9 @@ def shares_figure(found: Toleranced) -> Any:
 
 def crosstalk_figure(crosstalk: Crosstalk) -> Any:
     """Means and deviations of the pose error per command as a matrix; the darker, the larger against the others of its kind."""
-    shade = _shade(crosstalk)
+    shade = _relative_size(crosstalk)
     count = len(crosstalk.coordinates)
-    with styled():
+    with style_context():
         figure = canvas(FULL, 0.45 + 0.36 * len(COMPONENTS))
         ax = panels(figure, 1, 1, Margins(left=0.85, right=0.1, bottom=0.1, top=0.3))[0, 0]
         ax.imshow(shade, cmap="Blues", vmin=0.0, vmax=1.6, aspect="auto")
@@ -162,7 +162,7 @@ def _pair(mean: float, deviation: float) -> str:
     return f"{round(mean, digits) + 0.0:.{digits}f} \N{PLUS-MINUS SIGN} {deviation:.{digits}f}"
 
 
-def _shade(crosstalk: Crosstalk) -> Array:
+def _relative_size(crosstalk: Crosstalk) -> Array:
     """Deviations over the largest of the same kind: motion along or about an axis, per command along or about one."""
     shade = np.zeros_like(crosstalk.deviation)
     turns = np.array([name.startswith("r") for name in crosstalk.coordinates])

@@ -16,13 +16,13 @@ from flexstage.mechanism.address import get, quantity_of
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.mechanism.store.file import read_text
 from flexstage.models.ideal import ideal
-from flexstage.studies.form import ScatterTable, ToleranceTable, amount, is_share, placed
+from flexstage.studies.form import ScatterTable, ToleranceTable, in_file, is_share, parse_amount
 from flexstage.studies.sweeps.definition import name_findings
-from flexstage.studies.sweeps.file import Opening, opening
+from flexstage.studies.sweeps.file import Opening, read_opening
 from flexstage.studies.sweeps.start import one_quantity
 from flexstage.studies.tolerances.bounds import bound_findings
 from flexstage.studies.tolerances.crosstalk import Command
-from flexstage.studies.tolerances.definition import Copies, Tolerance, commanded
+from flexstage.studies.tolerances.definition import Copies, Tolerance, nominal_command
 from flexstage.studies.tolerances.distribution import Distribution, Shape
 from flexstage.studies.tolerances.reach import reach
 from flexstage.studies.tolerances.scatter import Scatter, targets
@@ -58,9 +58,9 @@ def loads_tolerance(text: str, *, where: str = "text", folder: Path | None = Non
     >>> [line.key for line in study.limits], study.plan.count
     (['stroke.x', 'frequency.platform.1', 'safety'], 1024)
     """
-    head = opening(text, where, folder)
+    head = read_opening(text, where, folder)
     file, findings, design = head.file, head.findings, head.design
-    bench = _Bench(design)
+    bench = _Reached(design)
     scatters = _scatters(file.scatter, bench, findings)
     if not file.scatter:
         findings.append(Finding("scatter", "nothing scatters", 'Write for example wire = { of = "hinges.thickness", normal = "5 um" }'))
@@ -70,15 +70,15 @@ def loads_tolerance(text: str, *, where: str = "text", folder: Path | None = Non
     limits = (*(_lines(design, findings) if file.tolerance.require else ()), *head.limits)
     if not head.responses and not limits and asked is None:
         findings.append(Finding("responses", "nothing is asked", 'Name a measure, for example f1 = "frequency.platform.1"'))
-    require(placed(findings, where))
+    require(in_file(findings, where))
     study = _study(head, scatters, limits, bench.shared, text=text, command=asked)
     named = (replace(each, where=each.where.replace("variables.", "scatter.", 1)) for each in name_findings(study))
-    require(placed([*bound_findings(design, study.targets, study.deviations), *named], where))
+    require(in_file([*bound_findings(design, study.targets, study.deviations), *named], where))
     return study
 
 
 @dataclass(frozen=True, eq=False)
-class _Bench:
+class _Reached:
     """The design, and which shared number each copy's own comes from."""
 
     design: Mechanism
@@ -121,7 +121,7 @@ def _lines(design: Mechanism, findings: list[Finding]) -> tuple[Requirement, ...
         return ()
 
 
-def _scatters(tables: Mapping[str, ScatterTable], bench: _Bench, findings: list[Finding]) -> tuple[Scatter, ...]:
+def _scatters(tables: Mapping[str, ScatterTable], bench: _Reached, findings: list[Finding]) -> tuple[Scatter, ...]:
     found = []
     for name, table in tables.items():
         try:
@@ -131,7 +131,7 @@ def _scatters(tables: Mapping[str, ScatterTable], bench: _Bench, findings: list[
     return tuple(found)
 
 
-def _scatter(table: ScatterTable, name: str, bench: _Bench) -> Scatter:
+def _scatter(table: ScatterTable, name: str, bench: _Reached) -> Scatter:
     """One entry; raises `DesignError` with all findings about it."""
     where = f"scatter.{name}"
     sources = table.of or (name,)
@@ -157,7 +157,7 @@ def _no_share(where: str, addresses: list[str], design: Mechanism) -> list[Findi
     return [Finding(where, f"{nought[0]} is 0, and a share of it is 0", advice)] if nought else []
 
 
-def _components(sources: tuple[str, ...], where: str, bench: _Bench, findings: list[Finding]) -> dict[str, list[str]]:
+def _components(sources: tuple[str, ...], where: str, bench: _Reached, findings: list[Finding]) -> dict[str, list[str]]:
     found: dict[str, list[str]] = {}
     for source in sources:
         try:
@@ -194,7 +194,7 @@ def _distribution(table: ScatterTable, where: str, shape: Shape, quantity: Quant
     for key, text in given.items():
         wanted = RATIO if is_share(text) else quantity
         try:
-            sizes[key] = amount(text, wanted, f"{where}.{key}")
+            sizes[key] = parse_amount(text, wanted, f"{where}.{key}")
             if not sizes[key] > 0.0:
                 findings.append(Finding(f"{where}.{key}", f"found {show(sizes[key], wanted)}", "Give a deviation above 0"))
         except DesignError as error:
@@ -210,7 +210,7 @@ def _command(table: ToleranceTable, design: Mechanism, findings: list[Finding]) 
     try:
         if table.crosstalk is None and table.point == PLATFORM and not ideal(design).actuated:
             return None
-        return commanded(design, table.point)
+        return nominal_command(design, table.point)
     except DesignError as error:
         findings += (Finding("tolerance.crosstalk", f"{each.where}: {each.what}", each.advice) for each in error.findings)
         return None

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 
-from flexstage.base.finding import DesignError, nearest, refuse
+from flexstage.base.finding import DesignError, refuse, suggest_nearest
 from flexstage.mechanism.address import get
 from flexstage.mechanism.expand import PlacedLink, copy_names, expand
 from flexstage.mechanism.locate import Place, locate, unit_of_copy
@@ -69,9 +69,9 @@ def _addresses(design: Mechanism, source: str) -> tuple[str, ...]:
     if owner in KINDS:
         return _of_links(design, source, lambda link: isinstance(_inner(link), KINDS[owner]), rest)
     if owner == "materials" and stem not in design.materials:
-        return _stated(design, source, (f"materials.{name}.{rest}" for name in design.materials))
+        return _stated_addresses(design, source, (f"materials.{name}.{rest}" for name in design.materials))
     if owner in PLACED and stem not in (*MISALIGNED, *design.units, *design.gauges):
-        raise refuse(source, f'"{stem}" is not where copies stand', nearest(stem, MISALIGNED))
+        raise refuse(source, f'"{stem}" is not where copies stand', suggest_nearest(stem, MISALIGNED))
     if stem in MISALIGNED and (names := _standing(design, owner)):
         return tuple(f"{name}.{rest}" for name in names)
     try:
@@ -79,7 +79,7 @@ def _addresses(design: Mechanism, source: str) -> tuple[str, ...]:
     except DesignError as error:
         known = (*KINDS, *PLACED)
         missed = any(f'"{owner}"' in each.what for each in error.findings)
-        if missed and "/" not in source and "." in source and (near := nearest(owner, known)).startswith("The nearest"):
+        if missed and "/" not in source and "." in source and (near := suggest_nearest(owner, known)).startswith("The nearest"):
             raise refuse(source, f'there is no "{owner}"', near) from error
         raise
     return (source,)
@@ -101,10 +101,10 @@ def _of_links(design: Mechanism, source: str, wanted: Callable[[PlacedLink], boo
     links = [link for link in expand(design).links.values() if wanted(link)]
     if not links:
         raise refuse(source, "the design has none of this kind", f"Name parts that it has: {', '.join(design.parts)}")
-    return _stated(design, source, (f"{_home(link)}.{rest}" for link in links))
+    return _stated_addresses(design, source, (f"{_home(link)}.{rest}" for link in links))
 
 
-def _stated(design: Mechanism, source: str, candidates: Iterator[str]) -> tuple[str, ...]:
+def _stated_addresses(design: Mechanism, source: str, candidates: Iterator[str]) -> tuple[str, ...]:
     """Those that the design states; the first one's complaint where it states none."""
     found: list[str] = []
     complaint: DesignError | None = None

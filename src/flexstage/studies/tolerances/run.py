@@ -52,7 +52,7 @@ class Toleranced(StudyResult):
     @property
     def responses(self) -> Annotated[tuple[ResponseSpread, ...], VIEW]:
         """What is asked, with the measures that the specification is about."""
-        return tuple(self._response(column, name) for column, name in enumerate(self.study.asked))
+        return tuple(self._response(column, name) for column, name in enumerate(self.study.measures))
 
     @property
     def allowed(self) -> Annotated[Allowance | None, VIEW]:
@@ -68,7 +68,7 @@ class Toleranced(StudyResult):
         spread, entries = self.summary.spread, [each.name for each in self.study.scatters]
         return ResponseSpread(
             name=name,
-            measure=self.study.asked[name],
+            measure=self.study.measures[name],
             nominal=float(spread.nominal[column]),
             mean=float(spread.mean[column]),
             deviation=float(spread.deviation[column]),

@@ -53,7 +53,7 @@ class Scatter:
 
     @property
     def _reach(self) -> float:
-        bounded = self.distribution.bounded
+        bounded = self.distribution.largest
         return REACH * self.distribution.size if bounded is None else bounded
 
     def _label(self, member: tuple[str, ...]) -> str:
@@ -83,7 +83,7 @@ class Deviation(Variable):
     @property
     def bounded(self) -> float | None:
         """The largest deviation there is, if there is one."""
-        return self.distribution.bounded
+        return self.distribution.largest
 
 
 @dataclass(frozen=True)
@@ -112,11 +112,11 @@ def targets(design: Mechanism, variables: Iterable[Variable], shared: dict[str, 
         for address in dict.fromkeys(variable.addresses):
             factor = float(get(design, address)) if variable.relative else 1.0
             reached[address] = (*reached.get(address, ()), (number, factor))
-    found = _gathered(design, reached, shared)
+    found = _merge_copies(design, reached, shared)
     return tuple(sorted(found, key=lambda target: departure(design, target.address)))
 
 
-def _gathered(design: Mechanism, reached: dict[str, tuple[tuple[int, float], ...]], shared: dict[str, str]) -> list[Target]:
+def _merge_copies(design: Mechanism, reached: dict[str, tuple[tuple[int, float], ...]], shared: dict[str, str]) -> list[Target]:
     copies: dict[str, list[str]] = {}
     for address, origin in shared.items():
         copies.setdefault(origin, []).append(address)
@@ -132,12 +132,12 @@ def _gathered(design: Mechanism, reached: dict[str, tuple[tuple[int, float], ...
     return [Target(address, float(get(design, address)), factors) for address, factors in written.items()]
 
 
-def deviated(design: Mechanism, reached: tuple[Target, ...], values: Array) -> Mechanism:
+def apply_deviations(design: Mechanism, reached: tuple[Target, ...], values: Array) -> Mechanism:
     """The design with deviations (..., d) added; with leading axes it is a batch.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> leaf = Target("parts.leaf.thickness", 1e-3, ((0, 1.0), (1, 1e-3)))
-    >>> float(deviated(parallelogram(), (leaf,), np.array([1e-5, 0.02])).parts["leaf"].thickness)
+    >>> float(apply_deviations(parallelogram(), (leaf,), np.array([1e-5, 0.02])).parts["leaf"].thickness)
     0.00103
     """
     plain = replace(design, tags={})

@@ -56,13 +56,13 @@ def slopes(study: Tolerance) -> Slopes:
         chosen = np.arange(start, min(start + _CHUNK, len(size)))
         step = np.zeros((len(chosen), len(size)), dtype=complex)
         step[np.arange(len(chosen)), chosen] = 1j * _STEP
-        gradient[:, chosen] = _stepped(study, step, modes)
+        gradient[:, chosen] = _derivatives(study, step, modes)
     return Slopes(values, gradient, _smooth(study, values, gradient, size))
 
 
 def _numbers(study: Tolerance, values: Array) -> Array:
     """All columns (n, r) as real numbers; NaN where there is none."""
-    found = study.answered(study.described(values))
+    found = study.evaluate(study.mechanism_for(values))
     rows = [np.full(len(values), np.nan) if isinstance(each, str) else np.broadcast_to(np.real(each), len(values)) for each in found]
     return np.stack(rows, axis=-1)
 
@@ -77,12 +77,12 @@ def _mode(bench: Bench, asked: Measure) -> tuple[float, Eigen]:
     return float(value), Eigen((2.0 * np.pi * modes.frequencies[group]) ** 2, modes.shapes[:, group])
 
 
-def _stepped(study: Tolerance, step: Array, modes: dict[int, tuple[float, Eigen]]) -> Array:
+def _derivatives(study: Tolerance, step: Array, modes: dict[int, tuple[float, Eigen]]) -> Array:
     """Derivatives (r, p) by the deviations of some steps."""
-    bench = bench_of(study.described(step))
+    bench = bench_of(study.mechanism_for(step))
     others = [None if row in modes else each for row, each in enumerate(study.columns.values())]
     found = np.zeros((len(others), len(step)))
-    for row, value in enumerate(study.read(bench, tuple(others))):
+    for row, value in enumerate(study.measure_on(bench, tuple(others))):
         if value is not None and not isinstance(value, str):
             found[row] = np.imag(np.broadcast_to(value, len(step))) / _STEP
     for row, (value, group) in modes.items():

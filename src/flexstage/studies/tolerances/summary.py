@@ -168,7 +168,7 @@ def summary(study: Tolerance, results: Results, slope: Slopes) -> Summary:
     values = results.responses[results.designs < study.copies]
     sound = np.all(np.isfinite(values), axis=1)
     lines = tuple(_line(study, values, slope, number) for number in range(len(study.lines)))
-    passed = [_passed(line.requirement, values[:, _column(study, line.column)]) for line in lines]
+    passed = [_keeps(line.requirement, values[:, _column(study, line.column)]) for line in lines]
     return Summary(
         copies=len(values),
         failed=int(np.sum(~sound)),
@@ -198,10 +198,10 @@ def _column(study: Tolerance, name: str) -> int:
 def _line(study: Tolerance, values: Array, slope: Slopes, number: int) -> Line:
     name, requirement = study.lines[number]
     column = _column(study, name)
-    return Line(requirement, name, float(slope.values[column]), binomial(_passed(requirement, values[:, column])))
+    return Line(requirement, name, float(slope.values[column]), binomial(_keeps(requirement, values[:, column])))
 
 
-def _passed(requirement: Requirement, values: Array) -> Array:
+def _keeps(requirement: Requirement, values: Array) -> Array:
     return Verdict(requirement, values).passed
 
 
@@ -213,7 +213,7 @@ def _spread(study: Tolerance, results: Results, slope: Slopes, values: Array) ->
     allowed = max(_ROUGH, _ERRORS / np.sqrt(2.0 * max(len(values), 1)))
     owners = np.array(study.owners)
     by_slope = np.stack([np.sum(parts[:, owners == number], axis=1) for number in range(len(study.scatters))])
-    alone = _alone(study, results, centre=None)
+    alone = _variance_alone(study, results, centre=None)
     percentiles = np.percentile(values, PERCENTILES, axis=0) if len(values) else np.full((len(PERCENTILES), len(linear)), np.nan)
     return Spread(
         names=tuple(study.columns),
@@ -223,16 +223,16 @@ def _spread(study: Tolerance, results: Results, slope: Slopes, values: Array) ->
         percentiles=percentiles,
         linear=linear,
         trusted=slope.smooth & (np.abs(linear - deviation) <= allowed * np.maximum(deviation, 1e-300)),
-        by_slope=_over(by_slope, np.where(slope.smooth, linear**2, 0.0)),
-        by_sample=_over(alone, np.sum(alone, axis=0)),
+        by_slope=_ratio(by_slope, np.where(slope.smooth, linear**2, 0.0)),
+        by_sample=_ratio(alone, np.sum(alone, axis=0)),
     )
 
 
-def _over(parts: Array, whole: Array) -> Array:
+def _ratio(parts: Array, whole: Array) -> Array:
     return np.divide(parts, whole, out=np.full(parts.shape, np.nan), where=np.isfinite(whole) & (whole > 0.0))
 
 
-def _alone(study: Tolerance, results: Results, centre: Array | None) -> Array:
+def _variance_alone(study: Tolerance, results: Results, centre: Array | None) -> Array:
     """Variance (m, r), or mean square about a centre, of the copies in which one entry scatters alone; a single entry is the sample."""
     count, alone = study.copies, getattr(study.plan, "alone", 0)
     rows = []
@@ -247,7 +247,7 @@ def _alone(study: Tolerance, results: Results, centre: Array | None) -> Array:
 
 def squares_alone(study: Tolerance, results: Results, centre: Array) -> Array:
     """Mean squares (m, r) about a centre (r,) of what each entry of `[scatter]` does alone."""
-    return _alone(study, results, centre)
+    return _variance_alone(study, results, centre)
 
 
 def _kinds(study: Tolerance) -> tuple[str, ...]:

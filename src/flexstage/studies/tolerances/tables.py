@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from flexstage.base.number import Array
-from flexstage.show.display import number, shown, value_with_unit
-from flexstage.show.table import Cell, Column, Mark, Table, build
+from flexstage.show.display import display_unit_of, format_value, number
+from flexstage.show.table import Cell, Column, Mark, Table, make_table
 from flexstage.spatial.frame import COMPONENTS
 from flexstage.studies.sweeps.tables import failure_table
 from flexstage.studies.tolerances.allowance import Allowance
@@ -37,16 +37,17 @@ def tolerance_tables(found: Toleranced) -> list[Table]:
 def scatter_table(found: Toleranced) -> Table:
     """What scatters, how far, and in how many numbers."""
     rows = [
-        (Cell(each.name, Mark.STRONG), ", ".join(each.source), said(each, each.distribution), _how(each)) for each in found.study.scatters
+        (Cell(each.name, Mark.STRONG), ", ".join(each.source), distribution_text(each, each.distribution), _reach_text(each))
+        for each in found.study.scatters
     ]
     plan = found.study.plan
     copies = f"{found.summary.copies} copies of {found.study.design.name}, {plan.sampling.value}, seed {plan.seed}"
     alone = getattr(plan, "alone", 0)
     notes = [f"{copies}." + (f" {alone} more for each line, which then scatters alone." if alone else "")]
-    return build("What scatters", ["", "number", "deviation", "in"], rows, notes=notes)
+    return make_table("What scatters", ["", "number", "deviation", "in"], rows, notes=notes)
 
 
-def _how(scatter: Scatter) -> str:
+def _reach_text(scatter: Scatter) -> str:
     count = len(scatter.members)
     if scatter.each:
         return f"each of {count}"
@@ -54,11 +55,11 @@ def _how(scatter: Scatter) -> str:
     return f"common to {reached}" if reached > 1 else "one"
 
 
-def said(scatter: Scatter, distribution: Distribution) -> str:
+def distribution_text(scatter: Scatter, distribution: Distribution) -> str:
     """A distribution in words: `5 um (sigma), within 10 um`.
 
     >>> from flexstage.studies.tolerances.example import leaf_study
-    >>> [said(each, each.distribution) for each in leaf_study().scatters]
+    >>> [distribution_text(each, each.distribution) for each in leaf_study().scatters]
     ['5 um (sigma)', '+-5 um']
     """
     text = _size(scatter, distribution.size)
@@ -68,24 +69,24 @@ def said(scatter: Scatter, distribution: Distribution) -> str:
 
 
 def _size(scatter: Scatter, value: float) -> str:
-    return f"{number(100.0 * value, 4)} %" if scatter.relative else value_with_unit(value, scatter.quantity.si, 4)
+    return f"{number(100.0 * value, 4)} %" if scatter.relative else format_value(value, scatter.quantity.si, 4)
 
 
 def yield_table(found: Toleranced) -> Table:
     """Each line of the specification, its nominal value and its yield; or that there is none."""
     if found.summary.together is None:
-        return build("Yield", [""], [(_NO_YIELD,)])
+        return make_table("Yield", [""], [(_NO_YIELD,)])
     spread = found.summary.spread
     rows = []
     for line in found.summary.lines:
         column, unit = spread.names.index(line.column), line.requirement.quantity.si
-        numbers = [value_with_unit(value, unit) for value in (line.nominal, float(spread.deviation[column]))]
+        numbers = [format_value(value, unit) for value in (line.nominal, float(spread.deviation[column]))]
         rows.append((Cell(line.column, Mark.STRONG), line.requirement.text, *numbers, *_yield(line.kept)))
     rows.append((Cell("all together", Mark.STRONG), "", "", "", *_yield(found.summary.together)))
     heads = ["line", "wanted", Column("as drawn"), Column("deviation"), Column("yield", "%"), Column("95 % interval", "%")]
     failed = found.summary.failed
     notes = [f"{failed} of {found.summary.copies} copies have no values and count as missing every line."] if failed else []
-    return build("Yield", heads, rows, notes=notes)
+    return make_table("Yield", heads, rows, notes=notes)
 
 
 def _yield(kept: Yield) -> tuple[Cell, Cell]:
@@ -100,7 +101,7 @@ def _percent(share: float) -> str:
 def spread_table(found: Toleranced) -> Table:
     """Distributions of the responses."""
     spread, rows = found.summary.spread, []
-    for column, (name, measure) in enumerate(found.study.asked.items()):
+    for column, (name, measure) in enumerate(found.study.measures.items()):
         values = [
             spread.nominal[column],
             spread.mean[column],
@@ -109,27 +110,27 @@ def spread_table(found: Toleranced) -> Table:
             spread.linear[column],
         ]
         largest = float(np.nanmax(np.abs(values[:-1]), initial=0.0))
-        form = shown(measure.quantity.si, largest)
+        form = display_unit_of(measure.quantity.si, largest)
         cells = [number(float(value) * form.factor, 4) for value in values]
         if not spread.trusted[column]:
             cells[-1] = "-"
         rows.append((Cell(name, Mark.STRONG), "" if form.unit == "1" else form.unit, *cells))
     heads = ["as drawn", "mean", "deviation", "1 %", "5 %", "median", "95 %", "99 %", "linear"]
     note = "linear: the deviation by exact derivatives, sqrt(sum (dy/dx s)^2); - where several equal things compete, or it bends."
-    return build("Responses", ["response", "unit", *(Column(head) for head in heads)], rows, notes=[note])
+    return make_table("Responses", ["response", "unit", *(Column(head) for head in heads)], rows, notes=[note])
 
 
 def share_table(found: Toleranced) -> Table:
     """Which scatter each response's variance is from."""
     spread, rows, sampled = found.summary.spread, [], False
-    for column, name in enumerate(found.study.asked):
+    for column, name in enumerate(found.study.measures):
         trusted = bool(spread.trusted[column])
         sampled |= not trusted
         shares = (spread.by_slope if trusted else spread.by_sample)[:, column]
         rows.append((Cell(name, Mark.STRONG), *(_share(float(value), exact=trusted) for value in shares)))
     heads: list[Column | str] = ["response", *(Column(each.name, "%") for each in found.study.scatters)]
     about = "~: from copies in which it scatters alone, over the sum of all such variances."
-    return build("What does it", heads, rows, notes=["Shares of the variance, by exact derivatives.", *([about] if sampled else [])])
+    return make_table("What does it", heads, rows, notes=["Shares of the variance, by exact derivatives.", *([about] if sampled else [])])
 
 
 def _share(value: float, *, exact: bool) -> Cell:
@@ -146,18 +147,18 @@ def allowance_table(found: Toleranced) -> Table:
         (
             Cell(each.name, Mark.STRONG),
             _size(each, each.distribution.size),
-            _times(each, float(allowed.alone[index])),
+            _scaled_size(each, float(allowed.alone[index])),
             allowed.binds[index],
-            _times(each, float(allowed.equal[index])),
-            _times(each, allowed.together),
+            _scaled_size(each, float(allowed.equal[index])),
+            _scaled_size(each, allowed.together),
         )
         for index, each in enumerate(found.study.scatters)
     ]
     heads = ["", Column("stated"), Column("alone"), "decided by", Column("equal shares"), Column("all alike")]
-    return build("What is allowed", heads, rows, notes=_allowed_notes(allowed))
+    return make_table("What is allowed", heads, rows, notes=_allowed_notes(allowed))
 
 
-def _times(scatter: Scatter, factor: float) -> Cell:
+def _scaled_size(scatter: Scatter, factor: float) -> Cell:
     if factor > _FAR:
         return Cell(f"> {_size(scatter, _FAR * scatter.distribution.size)}", Mark.FAINT)
     mark = Mark.PLAIN if factor >= 1.0 else Mark.FAIL
@@ -187,7 +188,7 @@ def crosstalk_table(found: Toleranced, crosstalk: Crosstalk) -> Table:
     where = f"At {crosstalk.point}, ({reference}) mm"
     note = f"{where}: deviation over the copies, row unit per unit of command; on the diagonal of the gain."
     how = "Lost motion of the drawn stage made up for, strokes by the nominal stacks' volts" if opened else "The loop is ideal"
-    return build(title, heads, rows, notes=[note, f"{_worst(crosstalk)} {how}."])
+    return make_table(title, heads, rows, notes=[note, f"{_worst(crosstalk)} {how}."])
 
 
 def _reference(found: Toleranced) -> Array:

@@ -10,15 +10,15 @@ from functools import lru_cache
 
 import numpy as np
 
-from flexstage.base.native import Recipe, loaded
+from flexstage.base.native import Recipe, load_library
 from flexstage.base.number import Array
 from flexstage.control.export.code.program import FLAGS, Program, Signal
 from flexstage.control.export.code.whole import loop_code
 from flexstage.control.simulation.disturbances import inflow
 from flexstage.control.simulation.machine import Machine
-from flexstage.control.simulation.result import Series, Simulated, simulated
-from flexstage.control.simulation.run import require_bounded
-from flexstage.control.system import picked
+from flexstage.control.simulation.result import Series, Simulated, simulation_result
+from flexstage.control.simulation.run import require_finite
+from flexstage.control.system import select
 
 _NONE: Mapping[str, Array] = {}
 _RUN = """
@@ -52,17 +52,17 @@ def simulate_compiled(given: Machine, reference: Array, disturbances: Mapping[st
     """
     entering = inflow(given, reference, disturbances)
     felt = tuple(index for index, channel in enumerate(given.disturbances) if channel.name in disturbances)
-    program = loop_code(_feeling(given, felt))
-    rows = _stepped(program, np.hstack([entering.reference, entering.disturbances[:, felt], entering.readings, entering.strokes]))
+    program = loop_code(_without_idle_disturbances(given, felt))
+    rows = _run_program(program, np.hstack([entering.reference, entering.disturbances[:, felt], entering.readings, entering.strokes]))
     series = _series(program, rows)
-    require_bounded(given, np.hstack([series.motions, series.command, series.stroke]))
-    return simulated(given, entering.reference, series)
+    require_finite(given, np.hstack([series.motions, series.command, series.stroke]))
+    return simulation_result(given, entering.reference, series)
 
 
-def _feeling(given: Machine, felt: tuple[int, ...]) -> Machine:
+def _without_idle_disturbances(given: Machine, felt: tuple[int, ...]) -> Machine:
     """The machine without the disturbances that are nought all the time: most of what a program would multiply."""
     names = tuple(given.disturbances[index].name for index in felt)
-    return replace(given, plant=picked(given.plant, (*given.actuators, *names), given.plant.output_names))
+    return replace(given, plant=select(given.plant, (*given.actuators, *names), given.plant.output_names))
 
 
 def _series(program: Program, rows: Array) -> Series:
@@ -81,10 +81,10 @@ def _series(program: Program, rows: Array) -> Series:
     )
 
 
-def _stepped(program: Program, inputs: Array) -> Array:
+def _run_program(program: Program, inputs: Array) -> Array:
     """Outputs (n, outputs) of a program for inputs (n, inputs), from rest."""
     numbers = sum(math.prod(state.sizes) for state in program.states)
-    library = _loaded(program.name, program.header, program.source + _driver(program), numbers)
+    library = _load(program.name, program.header, program.source + _driver(program), numbers)
     outputs = np.empty((len(inputs), _count(program.outputs)))
     state = ctypes.create_string_buffer(library[f"{program.name}_size"]())
     library[f"{program.name}_init"](state)
@@ -103,7 +103,7 @@ def _count(signals: tuple[Signal, ...]) -> int:
 
 
 @lru_cache(maxsize=32)
-def _loaded(name: str, header: str, source: str, numbers: int) -> ctypes.CDLL:
+def _load(name: str, header: str, source: str, numbers: int) -> ctypes.CDLL:
     """The library in this process; its state holds so many numbers."""
 
     def answers(library: ctypes.CDLL) -> bool:
@@ -111,4 +111,4 @@ def _loaded(name: str, header: str, source: str, numbers: int) -> ctypes.CDLL:
         size.restype = ctypes.c_long
         return all(library[f"{name}_{each}"] for each in ("init", "run")) and size() == numbers * ctypes.sizeof(ctypes.c_double)
 
-    return loaded(Recipe("the compiled simulation", {f"{name}.h": header, f"{name}.c": source}, FLAGS), answers)
+    return load_library(Recipe("the compiled simulation", {f"{name}.h": header, f"{name}.c": source}, FLAGS), answers)

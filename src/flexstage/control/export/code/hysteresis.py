@@ -7,7 +7,7 @@ import numpy as np
 from flexstage.base.finding import refuse
 from flexstage.base.number import Array
 from flexstage.control.export.code.program import State
-from flexstage.control.export.code.text import indented, table
+from flexstage.control.export.code.text import indent, table
 from flexstage.control.hysteresis.bouc_wen import BoucWen
 from flexstage.control.hysteresis.envelope import IDENTITY, Envelope
 from flexstage.control.hysteresis.inverse import inverse
@@ -15,12 +15,12 @@ from flexstage.control.hysteresis.prandtl_ishlinskii import PrandtlIshlinskii
 from flexstage.control.hysteresis.protocol import Hysteresis
 
 
-def moving(name: str, model: Hysteresis, bias: Array) -> tuple[list[str], State]:
+def hysteresis_step(name: str, model: Hysteresis, bias: Array) -> tuple[list[str], State]:
     """A function `double <name>(double *state, int axis, double value)` that takes one axis on, and its state, at the bias at first.
 
     Raises `DesignError` for a model that has no form in C.
 
-    >>> lines, state = moving("stack", PrandtlIshlinskii([0.0, 2.0], [1.0, 0.5]), np.zeros(1))
+    >>> lines, state = hysteresis_step("stack", PrandtlIshlinskii([0.0, 2.0], [1.0, 0.5]), np.zeros(1))
     >>> state.sizes, lines[-1]
     ((1, 2), '}')
     """
@@ -46,14 +46,14 @@ def _plays(name: str, model: PrandtlIshlinskii) -> list[str]:
         *after[0],
         f"static double {name}_move(double *plays, int axis, double value)",
         "{",
-        *indented(
+        *indent(
             [
                 f"const double *thresholds = {name}_thresholds[axis], *weights = {name}_weights[axis];",
                 f"const double u = {before[1].format('value')};",
                 "double sum = 0.0;",
                 "int i;",
                 f"for (i = 0; i < {count}; i++) {{",
-                *indented(_CLAMPED.format("plays[i]").splitlines()),
+                *indent(_CLAMPED.format("plays[i]").splitlines()),
                 "    sum += weights[i] * plays[i];",
                 "}",
                 f"return {after[1].format('sum')};",
@@ -80,7 +80,7 @@ def _envelope(name: str, envelope: Envelope, axes: int) -> tuple[list[str], str]
         *table(f"{name}_start", np.broadcast_to(envelope.values[:, 0], (axes,))),
         f"static double {name}(int axis, double x)",
         "{",
-        *indented(
+        *indent(
             [
                 f"const double *knots = {name}_knots[axis], *changes = {name}_changes[axis];",
                 "double sum = changes[0] * (x - knots[0]);",
@@ -95,12 +95,12 @@ def _envelope(name: str, envelope: Envelope, axes: int) -> tuple[list[str], str]
     return lines, f"{name}(axis, {{}})"
 
 
-def inverting(name: str, model: PrandtlIshlinskii) -> list[str]:
+def hysteresis_inverse(name: str, model: PrandtlIshlinskii) -> list[str]:
     """A function `double <name>_invert(const double *plays, int axis, double value)`: the input that makes a value from where plays stand.
 
     The model stays where it is; z'_j = P_j z_j + sum_{i>j} p_i z_i are the plays of its inverse (see `inverse_state`).
 
-    >>> inverting("model", PrandtlIshlinskii([0.0, 2.0], [1.0, 0.5]))[-1]
+    >>> hysteresis_inverse("model", PrandtlIshlinskii([0.0, 2.0], [1.0, 0.5]))[-1]
     '}'
     """
     turned, count = inverse(model), model.thresholds.shape[1]
@@ -113,7 +113,7 @@ def inverting(name: str, model: PrandtlIshlinskii) -> list[str]:
         *after[0],
         f"static double {name}_invert(const double *plays, int axis, double value)",
         "{",
-        *indented(
+        *indent(
             [
                 f"const double *thresholds = {name}_inverse_thresholds[axis], *weights = {name}_inverse_weights[axis];",
                 f"const double u = {before[1].format('value')};",
@@ -122,7 +122,7 @@ def inverting(name: str, model: PrandtlIshlinskii) -> list[str]:
                 f"for (i = {count} - 1; i >= 0; i--) {{",
                 f"    play = {name}_partial[axis][i] * plays[i] + behind;",
                 f"    behind += {name}_weights[axis][i] * plays[i];",
-                *indented(_CLAMPED.format("play").splitlines()),
+                *indent(_CLAMPED.format("play").splitlines()),
                 "    sum += weights[i] * play;",
                 "}",
                 f"return {after[1].format('sum')};",

@@ -8,7 +8,7 @@ import numpy as np
 
 from flexstage.base.number import Array
 from flexstage.control.export.code.code import Code
-from flexstage.control.export.code.text import number, table, wrapped
+from flexstage.control.export.code.text import number, table, wrap
 
 _WRITTEN_OUT = 200
 """Entries; more would not stay in a processor's memory for instructions."""
@@ -45,7 +45,7 @@ def product(name: str, target: str, terms: Iterable[Term], size: int) -> Code:
     """
     used = tuple((matrix, vector) for matrix, vector in terms if np.any(matrix))
     if sum(np.count_nonzero(matrix) for matrix, _ in used) <= _WRITTEN_OUT:
-        return Code(body=tuple(line for row in range(size) for line in wrapped(f"{target}[{row}] = {_sum(used, row)};")))
+        return Code(body=tuple(line for row in range(size) for line in wrap(f"{target}[{row}] = {_sum(used, row)};")))
     return _by_tables(name, target, used, size)
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from flexstage.control.export.code.code import Code
 from flexstage.control.export.code.product import MULTIPLY
-from flexstage.control.export.code.text import comment, indented, number
+from flexstage.control.export.code.text import comment, indent, number
 from flexstage.models.linear.model import Channel
 
 WARNINGS = ("-Wall", "-Wextra", "-Wpedantic", "-Werror")
@@ -67,7 +67,7 @@ class Program:
             "",
             *_struct(f"{name}_input", self.inputs),
             *_struct(f"{name}_output", self.outputs),
-            *_kept(f"{name}_state", self.states),
+            *_state_struct(f"{name}_state", self.states),
             *comment("Set the state to rest; call it once before the first step."),
             f"void {name}_init({name}_state *state);",
             "",
@@ -96,12 +96,12 @@ class Program:
             *_head(self.code),
             f"void {name}_init({name}_state *state)",
             "{",
-            *indented(line for state in self.states for line in _begun(state)),
+            *indent(line for state in self.states for line in _initialise(state)),
             "}",
             "",
             f"void {name}_step({name}_state *state, const {name}_input *in, {name}_output *out)",
             "{",
-            *indented(self.code.body),
+            *indent(self.code.body),
             "}",
         ]
         return "\n".join(lines) + "\n"
@@ -126,16 +126,16 @@ def _struct(name: str, signals: Iterable[Signal]) -> list[str]:
     for signal in signals:
         if signal.channels:
             listed = ", ".join(f"{channel.name} [{channel.unit}]" for channel in signal.channels)
-            lines += indented([*comment(f"{signal.meaning}: {listed}"), f"double {signal.field}[{len(signal.channels)}];"])
+            lines += indent([*comment(f"{signal.meaning}: {listed}"), f"double {signal.field}[{len(signal.channels)}];"])
     return [*lines, f"}} {name};", ""]
 
 
-def _kept(name: str, states: Iterable[State]) -> list[str]:
+def _state_struct(name: str, states: Iterable[State]) -> list[str]:
     fields = [f"double {state.field}{''.join(f'[{size}]' for size in state.sizes)};" for state in states if all(state.sizes)]
-    return ["typedef struct {", *indented(fields), f"}} {name};", ""]
+    return ["typedef struct {", *indent(fields), f"}} {name};", ""]
 
 
-def _begun(state: State) -> list[str]:
+def _initialise(state: State) -> list[str]:
     """Every number of a group set, axis by axis."""
     if not all(state.sizes):
         return []

@@ -34,15 +34,15 @@ def table(name: str, values: Array) -> list[str]:
     values = np.asarray(values, dtype=float)
     sizes = "".join(f"[{size}]" for size in values.shape)
     if values.ndim == 1:
-        return wrapped(f"static const double {name}{sizes} = {{{', '.join(map(number, values))}}};")
+        return wrap(f"static const double {name}{sizes} = {{{', '.join(map(number, values))}}};")
     lines = [f"    {{{', '.join(map(number, row))}}}," for row in values]
-    return [f"static const double {name}{sizes} = {{", *(part for line in lines for part in wrapped(line, "     ")), "};"]
+    return [f"static const double {name}{sizes} = {{", *(part for line in lines for part in wrap(line, "     ")), "};"]
 
 
-def indented(lines: Iterable[str], depth: int = 1) -> list[str]:
+def indent(lines: Iterable[str], depth: int = 1) -> list[str]:
     """Lines moved in.
 
-    >>> indented(["a;", ""])
+    >>> indent(["a;", ""])
     ['    a;', '']
     """
     return [f"{'    ' * depth}{line}" if line else "" for line in lines]
@@ -62,10 +62,10 @@ def comment(text: str) -> list[str]:
     return [f"/* {parts[0]}", *(f" * {part}" for part in parts[1:-1]), f" * {parts[-1]} */"]
 
 
-def wrapped(line: str, further: str = "    ") -> list[str]:
+def wrap(line: str, further: str = "    ") -> list[str]:
     """Long statements over several lines, broken at blanks.
 
-    >>> wrapped("a;")
+    >>> wrap("a;")
     ['a;']
     """
     if len(line) <= _WIDTH:

@@ -6,7 +6,7 @@ import numpy as np
 
 from flexstage.control.export.code.code import Code, statements
 from flexstage.control.export.code.controller import controller_part, controller_states, outputs
-from flexstage.control.export.code.hysteresis import moving
+from flexstage.control.export.code.hysteresis import hysteresis_step
 from flexstage.control.export.code.product import product
 from flexstage.control.export.code.program import Program, Signal, State
 from flexstage.control.export.code.text import identifier, table
@@ -58,7 +58,7 @@ def _stack(given: Machine) -> tuple[list[str], tuple[State, ...]]:
     model, bias = given.hysteresis, given.amplifiers.bias
     if model is None:
         return [], ()
-    lines, state = moving("stack", model, bias)
+    lines, state = hysteresis_step("stack", model, bias)
     return [*lines, *table("unmoved", model.step(model.start(bias), bias)[1])], (state,)
 
 

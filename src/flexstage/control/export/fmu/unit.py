@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from importlib.resources import files
 
 from flexstage.base.finding import refuse
-from flexstage.base.native import Recipe, compiled
+from flexstage.base.native import Recipe, compile_source
 from flexstage.control.export.code.program import FLAGS, Program, Signal
 from flexstage.control.export.fmu.description import description, guid
 
@@ -38,8 +38,8 @@ def fmu(program: Program, *, sources_only: bool = False) -> bytes:
     members |= {f"sources/{name}": text.encode() for name, text in texts.items()}
     if not sources_only:
         folder, suffix = _place()
-        members[f"binaries/{folder}/{program.name}.{suffix}"] = compiled(Recipe("a functional mock-up unit", texts, FLAGS))
-    return _zipped(members)
+        members[f"binaries/{folder}/{program.name}.{suffix}"] = compile_source(Recipe("a functional mock-up unit", texts, FLAGS))
+    return _zip(members)
 
 
 def fmu_sources(program: Program) -> dict[str, str]:
@@ -51,10 +51,10 @@ def fmu_sources(program: Program) -> dict[str, str]:
     """
     name = program.name
     runtime = files("flexstage.control.export.fmu").joinpath("fmi2.c").read_text(encoding="utf-8")
-    return {f"{name}.c": program.source, f"{name}.h": program.header, "fmi2.c": runtime, "model.h": _joint(program)}
+    return {f"{name}.c": program.source, f"{name}.h": program.header, "fmi2.c": runtime, "model.h": _shared_name(program)}
 
 
-def _joint(program: Program) -> str:
+def _shared_name(program: Program) -> str:
     name, upper = program.name, program.name.upper()
     lines = [
         "/* Which program the functions of FMI 2.0 are about. */",
@@ -90,7 +90,7 @@ def _place() -> tuple[str, str]:
     return _FOLDERS[kind]
 
 
-def _zipped(members: Mapping[str, bytes]) -> bytes:
+def _zip(members: Mapping[str, bytes]) -> bytes:
     """An archive without times: the same members give the same bytes."""
     content = io.BytesIO()
     with zipfile.ZipFile(content, "w", zipfile.ZIP_DEFLATED) as archive:

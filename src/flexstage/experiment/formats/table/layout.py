@@ -15,7 +15,7 @@ from pathlib import Path
 
 from flexstage.base.files import require_regular
 from flexstage.base.finding import Finding, refuse, require
-from flexstage.experiment.options import numbered
+from flexstage.experiment.options import number_names
 from flexstage.experiment.unit import plain_unit, unit_problem
 
 _HEAD = 1 << 18
@@ -69,14 +69,14 @@ class Layout:
         return count == expected or (count == expected + 1 and line.rstrip("\r ").endswith(self.delimiter))
 
 
-def layout_of(path: Path) -> Layout:
+def read_layout(path: Path) -> Layout:
     r"""The layout of a CSV file; raises `DesignError` where it is no text, has no numbers or no header.
 
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     path = Path(folder) / "a.csv"
     ...     _ = path.write_text("time [s]; u1 [V]\n0; 0,5\n0,1; 0,25\n")
-    ...     found = layout_of(path)
+    ...     found = read_layout(path)
     >>> found.names, found.units, found.delimiter, found.decimal, found.line
     (('time', 'u1'), ('s', 'V'), ';', ',', 2)
     """
@@ -88,7 +88,7 @@ def layout_of(path: Path) -> Layout:
         form = _form(lines[number : number + _LOOKED_AT]) if _may_be_numbers(line) else None
         if form is not None:
             delimiter, decimal, columns = form
-            require(_lost(path, lines[:number], form))
+            require(_broken_row(path, lines[:number], form))
             head = [_COMMENT.sub("", each) for each in lines[:number]]
             names, units = _header(head, delimiter, columns, path)
             start = sum(len(each.encode(encoding)) for each in lines[:number]) + (3 if raw.startswith(b"\xef\xbb\xbf") else 0)
@@ -96,7 +96,7 @@ def layout_of(path: Path) -> Layout:
     raise refuse(str(path), f"no line of numbers was found in its first {len(lines)} lines", _EXAMPLE)
 
 
-def _lost(path: Path, above: list[str], form: tuple[str | None, str, int]) -> Iterator[Finding]:
+def _broken_row(path: Path, above: list[str], form: tuple[str | None, str, int]) -> Iterator[Finding]:
     """The line that parts rows of numbers above from those below: it would make a header of them all."""
     rows = [number for number, line in enumerate(above) if _is_row(line)]
     if rows:
@@ -175,9 +175,9 @@ def _header(head: list[str], delimiter: str | None, columns: int, path: Path) ->
         )
         raise refuse(str(path), counts, _EXAMPLE)
     if len(found) > 1 and all(unit_problem(plain_unit(text)) is None or not plain_unit(text) for text in found[0]):
-        return numbered(_split(text)[0] for text in found[1]), tuple(plain_unit(text) for text in found[0])
-    pairs = [_split(text) for text in found[0]]
-    return numbered(name for name, _ in pairs), tuple(unit for _, unit in pairs)
+        return number_names(_name_and_unit(text)[0] for text in found[1]), tuple(plain_unit(text) for text in found[0])
+    pairs = [_name_and_unit(text) for text in found[0]]
+    return number_names(name for name, _ in pairs), tuple(unit for _, unit in pairs)
 
 
 def _candidates(head: list[str], delimiter: str | None, columns: int) -> Iterator[list[str]]:
@@ -190,6 +190,6 @@ def _candidates(head: list[str], delimiter: str | None, columns: int) -> Iterato
                 break
 
 
-def _split(text: str) -> tuple[str, str]:
+def _name_and_unit(text: str) -> tuple[str, str]:
     found = _WITH_UNIT.fullmatch(text.strip())
     return (found["name"], plain_unit(found["unit"])) if found else (text.strip(), "")

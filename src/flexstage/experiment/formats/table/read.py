@@ -11,13 +11,13 @@ from pathlib import Path
 import numpy as np
 
 from flexstage.base.files import Attribute
-from flexstage.base.finding import Finding, nearest, refuse, require
+from flexstage.base.finding import Finding, refuse, require, suggest_nearest
 from flexstage.base.number import Array
-from flexstage.experiment.clock import TIME_SCALES, Clock, Told, longest_stretch, settled
-from flexstage.experiment.formats.arrays import Contents, Held, complex_of, read_arrays
-from flexstage.experiment.formats.table.layout import Layout, layout_of
-from flexstage.experiment.formats.table.values import TableSamples, indexed
-from flexstage.experiment.options import Allow, Arrays, Kind, Options, assigned, matches, wanted
+from flexstage.experiment.clock import TIME_SCALES, Clock, StatedClock, determine_clock, longest_stretch
+from flexstage.experiment.formats.arrays import Contents, HeldArray, complex_of, read_arrays
+from flexstage.experiment.formats.table.layout import Layout, read_layout
+from flexstage.experiment.formats.table.values import TableSamples, index_lines
+from flexstage.experiment.options import Allow, Arrays, Kind, Options, assign, matches, select_names
 from flexstage.experiment.record import Channel, Record, Responses, Role
 
 _FLOAT = r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?"
@@ -48,9 +48,9 @@ def read_table(path: Path, options: Options) -> tuple[Record | Responses, ...]:
     ...     found.rate, [channel.unit for channel in found.inputs], found.values.tolist()
     (2.0, ['V'], [[1.0, 10.0], [2.0, 20.0], [3.0, 30.0]])
     """
-    layout = layout_of(path)
+    layout = read_layout(path)
     samples = _samples(path, layout, options)
-    require(_unmatched(path, layout, options.arrays))
+    require(_unknown_names(path, layout, options.arrays))
     own = next(filter(None, map(OWN_RESPONSES.match, layout.comments)), None)
     is_record = any(map(OWN.match, layout.comments))
     if own or (not is_record and _column(layout, options.arrays.frequencies) is not None):
@@ -58,12 +58,12 @@ def read_table(path: Path, options: Options) -> tuple[Record | Responses, ...]:
     return (_record(path, layout, samples, options),)
 
 
-def _unmatched(path: Path, layout: Layout, arrays: Arrays) -> Iterator[Finding]:
+def _unknown_names(path: Path, layout: Layout, arrays: Arrays) -> Iterator[Finding]:
     for meaning, name in arrays.stated():
         if meaning not in ("time", "frequencies"):
             yield Finding(f"{path}: {meaning}={name}", "of a table only time and frequencies are named", "Name channels otherwise (only)")
         elif not any(matches(each, [name]) for each in layout.names):
-            yield Finding(f"{path}: {meaning}={name}", "no column is called so", nearest(name, layout.names))
+            yield Finding(f"{path}: {meaning}={name}", "no column is called so", suggest_nearest(name, layout.names))
 
 
 def _column(layout: Layout, names: tuple[str, ...]) -> int | None:
@@ -73,14 +73,14 @@ def _column(layout: Layout, names: tuple[str, ...]) -> int | None:
 
 def _samples(path: Path, layout: Layout, options: Options) -> TableSamples:
     """All columns; a last line that is cut short is left out where allowed."""
-    lines = indexed(path, layout.start)
+    lines = index_lines(path, layout.start)
     whole = TableSamples(path, layout, lines, tuple(range(len(layout.names))), lines.count)
     own = next(filter(None, map(OWN.match, layout.comments)), None)
-    cut = _cut(path, layout, lines.end)
+    cut = _cut_short(path, layout, lines.end)
     announced = int(own["count"]) if own else None
-    if cut is None and (announced is None or (lines.count >= announced and _terminated(path))):
+    if cut is None and (announced is None or (lines.count >= announced and _ends_with_newline(path))):
         return whole
-    unsure = lines.count - 1 if cut is not None or not _terminated(path) else lines.count
+    unsure = lines.count - 1 if cut is not None or not _ends_with_newline(path) else lines.count
     if Allow.TRUNCATED in options.allow and unsure > 0:
         return replace(whole, length=unsure)
     what = f"it breaks off: {cut}" if cut is not None else f"it breaks off: it has {lines.count} of {announced} samples"
@@ -88,23 +88,23 @@ def _samples(path: Path, layout: Layout, options: Options) -> TableSamples:
     raise refuse(f"{path}: line {layout.line + lines.count - 1}", what, advice)
 
 
-def _cut(path: Path, layout: Layout, end: int) -> str | None:
+def _cut_short(path: Path, layout: Layout, end: int) -> str | None:
     """What is wrong with the last line."""
     with path.open("rb") as stream:
         stream.seek(max(layout.start, end - 100_000))
         last = stream.read(end - stream.tell()).decode(layout.encoding, "replace").splitlines()
     fields = layout.fields(last[-1]) if last else [""] * len(layout.names)
-    count = len(fields) if _terminated(path) or fields[-1] else len(fields) - 1
+    count = len(fields) if _ends_with_newline(path) or fields[-1] else len(fields) - 1
     return f"its last line has {count} of {len(layout.names)} fields" if count < len(layout.names) else None
 
 
-def _terminated(path: Path) -> bool:
+def _ends_with_newline(path: Path) -> bool:
     with path.open("rb") as stream:
         stream.seek(-1, 2)
         return stream.read(1) == b"\n"
 
 
-def _saying(layout: Layout, kind: str) -> str:
+def _comment(layout: Layout, kind: str) -> str:
     return next((line.removeprefix(SAYING[kind]) for line in layout.comments if line.startswith(SAYING[kind])), "")
 
 
@@ -116,14 +116,14 @@ def _record(path: Path, layout: Layout, samples: TableSamples, options: Options)
     channels = [Channel(layout.names[number], layout.units[number], role) for number, role in zip(columns, roles, strict=True)]
     if not channels:
         raise refuse(str(path), "it has a column of times and no other", "Give at least one channel")
-    whole = assigned(channels, options, str(path))
-    record = Record(whole, clock.rate, replace(samples, columns=columns), clock.start, name=_saying(layout, "name"), source=str(path))
-    record = record.select(wanted(record.names, options)) if options.only else record
+    whole = assign(channels, options, str(path))
+    record = Record(whole, clock.rate, replace(samples, columns=columns), clock.start, name=_comment(layout, "name"), source=str(path))
+    record = record.select(select_names(record.names, options)) if options.only else record
     return longest_stretch(record, clock)
 
 
 def _roles(layout: Layout, count: int) -> list[Role]:
-    said = [text.strip() for text in _saying(layout, "roles").split(",")]
+    said = [text.strip() for text in _comment(layout, "roles").split(",")]
     known = {role.value: role for role in Role}
     return [known[text] for text in said] if len(said) == count and all(text in known for text in said) else [Role.UNKNOWN] * count
 
@@ -140,8 +140,8 @@ def _clock(path: Path, layout: Layout, samples: TableSamples, time: int | None, 
         raise refuse(f"{path}: {layout.names[time]}", f'its unit is "{layout.units[time]}", where a time is expected', "Write s, ms or us")
     scale = TIME_SCALES.get(layout.units[time], 1.0)
     times = replace(samples, columns=(time,))
-    told = Told(stated, allow_gaps=Allow.GAPS in options.allow)
-    return settled(
+    told = StatedClock(stated, allow_gaps=Allow.GAPS in options.allow)
+    return determine_clock(
         _times(times, scale), lambda number: float(times.read(number, number + 1)[0, 0]) * scale, told, f"{path}: {layout.names[time]}"
     )
 
@@ -169,11 +169,11 @@ def _responses(
         raise refuse(str(path), what, "Write the file anew")
     columns = others.reshape(-1, outputs, inputs, parts)
     held = [
-        Held("frequencies", values[:, at or 0] * (1e3 if unit == "kHz" else 1.0)),
-        Held("responses", complex_of(columns[..., 0], columns[..., 1])),
-        *([Held("coherence", columns[..., 2])] if parts == 3 else []),
+        HeldArray("frequencies", values[:, at or 0] * (1e3 if unit == "kHz" else 1.0)),
+        HeldArray("responses", complex_of(columns[..., 0], columns[..., 1])),
+        *([HeldArray("coherence", columns[..., 2])] if parts == 3 else []),
     ]
-    said: dict[str, Attribute] = {kind: _saying(layout, kind) for kind in ("name", "window")}
+    said: dict[str, Attribute] = {kind: _comment(layout, kind) for kind in ("name", "window")}
     said |= {f"{side[:-1]}_names": tuple(name for name, _ in pairs) for side, pairs in sides.items()}
     said |= {f"{side[:-1]}_units": tuple(unit for _, unit in pairs) for side, pairs in sides.items()}
     said |= {"averages": float(own["averages"])} if own else {}
@@ -198,6 +198,6 @@ def _pairs(path: Path, layout: Layout, at: int) -> dict[str, list[tuple[str, str
 def _side(layout: Layout, side: str) -> list[tuple[str, str]]:
     """Names and units of outputs or inputs, as the comment says them."""
     try:
-        return [(str(name), str(unit)) for name, unit in json.loads(_saying(layout, side))]
+        return [(str(name), str(unit)) for name, unit in json.loads(_comment(layout, side))]
     except (ValueError, TypeError):
         return []

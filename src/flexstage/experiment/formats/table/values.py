@@ -26,13 +26,13 @@ class Lines:
     end: int
 
 
-def indexed(path: Path, start: int) -> Lines:
+def index_lines(path: Path, start: int) -> Lines:
     r"""The lines of a file from a byte on; blank ones at its end do not count.
 
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     _ = (Path(folder) / "a.csv").write_text("1\n2\n3\n\n")
-    ...     found = indexed(Path(folder) / "a.csv", 0)
+    ...     found = index_lines(Path(folder) / "a.csv", 0)
     >>> found.count, found.end, found.offsets.tolist()
     (3, 5, [0])
     """

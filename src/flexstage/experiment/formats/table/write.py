@@ -36,7 +36,7 @@ def write_table(path: str | os.PathLike[str], what: Record | Responses) -> None:
     ['time [s],S1 [um]', '0.0,0.1', '0.25,0.2']
     """
     channels = what.channels if isinstance(what, Record) else (*what.outputs, *what.inputs)
-    require(_unwritable(os.fspath(path), channels))
+    require(_name_findings(os.fspath(path), channels))
     with atomic_write(path) as place, place.open("w", encoding="utf-8", newline="") as stream:
         if isinstance(what, Record):
             _write_record(stream, what)
@@ -44,7 +44,7 @@ def write_table(path: str | os.PathLike[str], what: Record | Responses) -> None:
             _write_responses(stream, what)
 
 
-def _unwritable(where: str, channels: Iterable[Channel]) -> Iterable[Finding]:
+def _name_findings(where: str, channels: Iterable[Channel]) -> Iterable[Finding]:
     for channel in channels:
         if not channel.name.isprintable() or channel.name != channel.name.strip() or matches(channel.name, Arrays().time):
             yield Finding(f"{where}: {channel.name}", "its name cannot head a column of a CSV file", "Rename the channel")

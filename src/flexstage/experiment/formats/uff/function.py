@@ -11,7 +11,7 @@ import re
 from dataclasses import dataclass
 
 from flexstage.base.text import printable
-from flexstage.experiment.clock import nominal, printed_uncertainty
+from flexstage.experiment.clock import printed_uncertainty, round_nominal
 from flexstage.experiment.record import RATES, Role
 from flexstage.experiment.unit import plain_unit
 
@@ -89,7 +89,7 @@ class Function:
     @property
     def rate(self) -> float:
         """The rate its printed step means, in Hz; of an even time history."""
-        return nominal(1.0 / self.step, 1.01 * self.step_uncertainty + 1e-15)
+        return round_nominal(1.0 / self.step, 1.01 * self.step_uncertainty + 1e-15)
 
     @property
     def role(self) -> Role:
@@ -109,20 +109,20 @@ class Function:
         return place_name(self.reference) or "input"
 
 
-def parsed(lines: list[str]) -> Function:
+def parse_head(lines: list[str]) -> Function:
     """The head of a function from its eleven lines; raises `ValueError` that says which record cannot be read.
 
     >>> lines = ["NONE"] * 5 + ["    1         0    0         0       NONE         3   1       NONE         0   0"]
     >>> lines += ["         4       100         1  0.00000e+00  4.88281e-04  0.00000e+00"]
     >>> lines += ["        17    0    0    0 time                 s", "         8    0    0    0 NONE                 um", "", ""]
-    >>> found = parsed(lines)
+    >>> found = parse_head(lines)
     >>> found.output_name, found.rate, found.ordinate.unit, found.role.value
     ('3+X', 2048.0, 'um', 'output')
     """
     if len(lines) < HEAD_LINES:
         raise ValueError(f"its head has {len(lines)} of {HEAD_LINES} lines")
-    number, response, reference = _located(lines[5])
-    precision, count, is_even, first, step = _formed(lines[6])
+    number, response, reference = _parse_places(lines[5])
+    precision, count, is_even, first, step = _parse_form(lines[6])
     axes = [_axis(line) for line in lines[7:11]]
     texts = tuple("" if line.strip() == "NONE" else line.strip() for line in lines[:5])
     printed = re.split(r"\s+", lines[6][30:].strip())[1]
@@ -130,7 +130,7 @@ def parsed(lines: list[str]) -> Function:
     return Function(texts, number, response, reference, precision, count, is_even, first, step, uncertainty, *axes[:3])
 
 
-def _located(line: str) -> tuple[int, tuple[str, int, int], tuple[str, int, int]]:
+def _parse_places(line: str) -> tuple[int, tuple[str, int, int], tuple[str, int, int]]:
     try:
         kind = int(line[0:5])
         places = [
@@ -142,7 +142,7 @@ def _located(line: str) -> tuple[int, tuple[str, int, int], tuple[str, int, int]
     return kind, places[0], places[1]
 
 
-def _formed(line: str) -> tuple[int, int, bool, float, float]:
+def _parse_form(line: str) -> tuple[int, int, bool, float, float]:
     try:
         precision, count, spacing = (int(line[start : start + 10]) for start in (0, 10, 20))
         first, step = (float(word.lower().replace("d", "e")) for word in line[30:].split()[:2])
@@ -187,7 +187,7 @@ def head(function: Function, *, binary_bytes: int | None = None) -> bytes:
     >>> plain = Function(("S1", "", "", "", ""), 1, ("S1", 1, 0), ("", 0, 0), 4, 2, True, 0.0, 0.5, 0.0, *axes)
     >>> head(plain).decode().splitlines()[7]
     '    1         0    0         0         S1         1   0       NONE         0   0'
-    >>> parsed(head(plain).decode().splitlines()[2:]) == parsed(head(plain, binary_bytes=16).decode().splitlines()[2:])
+    >>> parse_head(head(plain).decode().splitlines()[2:]) == parse_head(head(plain, binary_bytes=16).decode().splitlines()[2:])
     True
     """
     start = (
@@ -206,10 +206,10 @@ def head(function: Function, *, binary_bytes: int | None = None) -> bytes:
     return ("\n".join(lines) + "\n").encode()
 
 
-def counted(text: str, number: int, count: int) -> str:
+def count_function(text: str, number: int, count: int) -> str:
     """A line of text with which function of how many this is: the format counts none.
 
-    >>> counted("hann", 3, 12)
+    >>> count_function("hann", 3, 12)
     'hann; function 3 of 12'
     """
     return f"{text}; function {number} of {count}" if text else f"function {number} of {count}"

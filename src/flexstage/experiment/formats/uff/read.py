@@ -13,11 +13,11 @@ import numpy as np
 
 from flexstage.base.finding import DesignError, Finding, require
 from flexstage.base.number import Array
-from flexstage.experiment.clock import Clock, Told, longest_stretch, settled
+from flexstage.experiment.clock import Clock, StatedClock, determine_clock, longest_stretch
 from flexstage.experiment.formats.arrays import SideBySide, complex_of
 from flexstage.experiment.formats.uff.function import COHERENCE, KINDS
 from flexstage.experiment.formats.uff.scan import DataSet, scan
-from flexstage.experiment.options import Allow, Kind, Options, assigned, matches, numbered, wanted
+from flexstage.experiment.options import Allow, Kind, Options, assign, matches, number_names, select_names
 from flexstage.experiment.record import Channel, Record, Responses, Role, Samples
 
 _FLOAT = r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?"
@@ -66,7 +66,7 @@ def read_uff(path: Path, options: Options) -> tuple[Record | Responses, ...]:
     require(Finding(f"{path}: {meaning}={name}", "universal files have no named arrays", "Leave it out") for meaning, name in stated)
     found, findings = scan(path)
     truncated = [Finding(_where(path, each), each.problem, _ADVICE) for each in found if each.problem is not None]
-    require([*findings, *([*truncated, *_missing(path, found)] if Allow.TRUNCATED not in options.allow else ())])
+    require([*findings, *([*truncated, *_missing_functions(path, found)] if Allow.TRUNCATED not in options.allow else ())])
     histories = [each for each in found if each.function.is_time]
     responses = [each for each in found if each.function.is_response]
     if not histories and not responses:
@@ -79,7 +79,7 @@ def read_uff(path: Path, options: Options) -> tuple[Record | Responses, ...]:
 _ADVICE = 'Export the file anew, or allow "truncated" to use what there is'
 
 
-def _missing(path: Path, found: list[DataSet]) -> Iterable[Finding]:
+def _missing_functions(path: Path, found: list[DataSet]) -> Iterable[Finding]:
     """What files written here say of how many functions there were: one cut between two functions is like a whole one otherwise."""
     told = [COUNTED.fullmatch(each.function.texts[3]) for each in found if each.function.texts[4].startswith("flexstage ")]
     stated = max((int(each["count"]) for each in told if each), default=0)
@@ -108,8 +108,8 @@ def _name(found: DataSet) -> str:
 def _record(path: Path, histories: list[DataSet], options: Options) -> Record:
     names = _history_names(histories)
     pairs = zip(names, histories, strict=True)
-    whole = assigned((Channel(name, each.function.ordinate.unit, _role(each)) for name, each in pairs), options, str(path))
-    kept = set(wanted(names, options))
+    whole = assign((Channel(name, each.function.ordinate.unit, _role(each)) for name, each in pairs), options, str(path))
+    kept = set(select_names(names, options))
     chosen = [(name, each) for name, each in zip(names, histories, strict=True) if name in kept]
     clock = _common_clock(path, chosen, options)
     samples = SideBySide(tuple(each.values if each.function.is_even else Column(each.values, 1) for _, each in chosen))
@@ -123,7 +123,7 @@ def _history_names(histories: list[DataSet]) -> tuple[str, ...]:
     entities = [each.function.response[0] for each in histories]
     if all(entities) and len(set(entities)) == len(entities) and not any(OWN.match(each.function.texts[4]) for each in histories):
         return tuple(entities)
-    return numbered(_name(each) for each in histories)
+    return number_names(_name(each) for each in histories)
 
 
 def _title(found: DataSet) -> str:
@@ -141,7 +141,7 @@ def _common_clock(path: Path, chosen: list[tuple[str, DataSet]], options: Option
     require(_lengths(path, chosen) if Allow.TRUNCATED not in options.allow else ())
     clocks = {name: _clock(path, name, each, options) for name, each in (chosen if not options.rate else chosen[:1])}
     first = next(iter(clocks.values()))
-    require(_differing(path, clocks))
+    require(_clock_findings(path, clocks))
     return replace(first, rate=options.rate or first.rate)
 
 
@@ -154,7 +154,7 @@ def _lengths(path: Path, chosen: list[tuple[str, DataSet]]) -> Iterable[Finding]
             yield Finding(f"{path}: {name}", f"it has {each.values.length} samples, others have {usual}", advice)
 
 
-def _differing(path: Path, clocks: dict[str, Clock]) -> Iterable[Finding]:
+def _clock_findings(path: Path, clocks: dict[str, Clock]) -> Iterable[Finding]:
     known, first = next(iter(clocks.items()))
     for name, clock in clocks.items():
         if abs(clock.rate / first.rate - 1.0) > 1e-6 or abs(clock.start - first.start) * first.rate > 0.01:
@@ -174,8 +174,8 @@ def _clock(path: Path, name: str, found: DataSet, options: Options) -> Clock:
         return Clock(options.rate, 0.0, ((0, found.values.length),))
     values, length = found.values, found.values.length
     blocks = (values.read(start, min(start + _BLOCK, length))[:, 0] for start in range(0, length, _BLOCK))
-    told = Told(allow_gaps=Allow.GAPS in options.allow)
-    return settled(blocks, lambda number: float(values.read(number, number + 1)[0, 0]), told, f"{path}: {name}")
+    told = StatedClock(allow_gaps=Allow.GAPS in options.allow)
+    return determine_clock(blocks, lambda number: float(values.read(number, number + 1)[0, 0]), told, f"{path}: {name}")
 
 
 def refines(text: str, field: float, *, inverse: bool = False) -> bool:
@@ -269,7 +269,7 @@ def _sides(
     below = [table[outputs[0], name].function.denominator.unit for name in inputs]
     ratio = not any(below) and any("/" in row.unit for row in rows)
     columns = [Channel(name, "1" if ratio else unit, Role.INPUT) for name, unit in zip(inputs, below, strict=True)]
-    whole = assigned((*rows, *columns), Options(units=options.units), str(path))
+    whole = assign((*rows, *columns), Options(units=options.units), str(path))
     return whole[: len(rows)], whole[len(rows) :]
 
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from flexstage.base.finding import Finding
 from flexstage.base.number import Array
-from flexstage.experiment.formats.uff.function import HEAD_LINES, Function, parsed
+from flexstage.experiment.formats.uff.function import HEAD_LINES, Function, parse_head
 from flexstage.experiment.formats.uff.values import BinaryValues, Layout, PrintedValues
 from flexstage.experiment.record import InMemory, Samples
 
@@ -57,10 +57,10 @@ def scan(path: Path) -> tuple[list[DataSet], list[Finding]]:
     return found, findings
 
 
-def decoded(raw: bytes) -> str:
+def decode(raw: bytes) -> str:
     r"""Text of a head: UTF-8, else Latin-1, which instruments write.
 
-    >>> decoded("m/s²".encode()), decoded(b"m/s\xb2")
+    >>> decode("m/s²".encode()), decode(b"m/s\xb2")
     ('m/s²', 'm/s²')
     """
     try:
@@ -98,16 +98,16 @@ def _read(path: Path, stream: BinaryIO, line: int, opening: bytes) -> DataSet:
     if not all(raw.endswith(b"\n") for raw in lines):
         raise ValueError("the file ends within its head")
     try:
-        function = parsed([decoded(raw).rstrip("\r\n") for raw in lines])
+        function = parse_head([decode(raw).rstrip("\r\n") for raw in lines])
     except ValueError:
         stream.seek(begin)
         raise
     if opening[6:7].lower() == b"b":
-        return _binary(path, stream, line, (function, opening))
-    return _printed(path, stream, line, function)
+        return _read_binary(path, stream, line, (function, opening))
+    return _read_printed(path, stream, line, function)
 
 
-def _binary(path: Path, stream: BinaryIO, line: int, head: tuple[Function, bytes]) -> DataSet:
+def _read_binary(path: Path, stream: BinaryIO, line: int, head: tuple[Function, bytes]) -> DataSet:
     function, opening = head
     words = opening[7:].split()
     if len(words) < 2:
@@ -124,7 +124,7 @@ def _binary(path: Path, stream: BinaryIO, line: int, head: tuple[Function, bytes
         stream.seek(start + layout.size * function.count)
         _skip(stream)
         return DataSet(function, BinaryValues(path, start, function.count, layout, big=order == 2), line)
-    return _broken_off(path, stream, line, function, (start, layouts[0], order == 2))
+    return _read_part(path, stream, line, function, (start, layouts[0], order == 2))
 
 
 def _closes(stream: BinaryIO, position: int) -> bool:
@@ -137,7 +137,7 @@ def _closes(stream: BinaryIO, position: int) -> bool:
     return not rest.strip() or _END.match(rest) is not None
 
 
-def _broken_off(path: Path, stream: BinaryIO, line: int, function: Function, data: tuple[int, Layout, bool]) -> DataSet:
+def _read_part(path: Path, stream: BinaryIO, line: int, function: Function, data: tuple[int, Layout, bool]) -> DataSet:
     """A function whose end is not where its head says: what there is of it."""
     start, layout, big = data
     end = _next_mark(stream, start)
@@ -164,7 +164,7 @@ def _next_mark(stream: BinaryIO, start: int) -> int:
     return position
 
 
-def _printed(path: Path, stream: BinaryIO, line: int, function: Function) -> DataSet:
+def _read_printed(path: Path, stream: BinaryIO, line: int, function: Function) -> DataSet:
     start, layout = stream.tell(), Layout.of(function)
     first = stream.readline()
     length = max(len(first), sum(layout.widths) + 1)  # the only line may be short

@@ -105,10 +105,10 @@ class PrintedValues:
         with self.path.open("rb") as stream:
             stream.seek(self.start + first * self.line)
             raw = _exactly(stream.read(size), size, self.path)
-        numbers = self._parsed(raw.ljust((last - first) * self.line), first)
+        numbers = self._parse(raw.ljust((last - first) * self.line), first)
         return numbers[begin - first * each : end - first * each].reshape(-1, columns)
 
-    def _parsed(self, raw: bytes, first: int) -> Array:
+    def _parse(self, raw: bytes, first: int) -> Array:
         """All numbers of whole lines; those that a short last line does not have are not a number."""
         widths = self.layout.widths
         fields = [(str(number), f"S{width}") for number, width in enumerate(widths)]

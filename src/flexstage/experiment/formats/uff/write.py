@@ -10,7 +10,17 @@ import numpy as np
 from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array
 from flexstage.base.store import atomic_write
-from flexstage.experiment.formats.uff.function import COHERENCE, COMPLEX_DOUBLE, REAL_DOUBLE, RESPONSE, TIME, Axis, Function, counted, head
+from flexstage.experiment.formats.uff.function import (
+    COHERENCE,
+    COMPLEX_DOUBLE,
+    REAL_DOUBLE,
+    RESPONSE,
+    TIME,
+    Axis,
+    Function,
+    count_function,
+    head,
+)
 from flexstage.experiment.record import Channel, Record, Responses, Role
 
 _BLOCK = 65_536
@@ -38,7 +48,7 @@ def write_uff(path: str | os.PathLike[str], what: Record | Responses, *, binary:
     (3.0, 'um', [[0.1], [0.2]])
     """
     channels = what.channels if isinstance(what, Record) else (*what.outputs, *what.inputs)
-    require(_unwritable(os.fspath(path), channels))
+    require(_name_findings(os.fspath(path), channels))
     with atomic_write(path) as place, place.open("wb") as stream:
         if isinstance(what, Record):
             _write_record(stream, what, binary=binary)
@@ -46,7 +56,7 @@ def write_uff(path: str | os.PathLike[str], what: Record | Responses, *, binary:
             _write_responses(stream, what, binary=binary)
 
 
-def _unwritable(where: str, channels: tuple[Channel, ...]) -> list[Finding]:
+def _name_findings(where: str, channels: tuple[Channel, ...]) -> list[Finding]:
     long = [channel.name for channel in channels if not _fits(channel.name)]
     advice = (
         f"Universal files hold names of one line and at most {_LONGEST} bytes that do not begin or end with a blank: rename the channel"
@@ -75,7 +85,7 @@ def _write_record(stream: BinaryIO, record: Record, *, binary: bool) -> None:
         own = f"flexstage {channel.role.value}; rate {float(record.rate)!r} Hz; start {float(record.start)!r} s"
         ordinate = Axis(kinds[channel.role], "", channel.unit)
         place = channel.name, number + 1, 0
-        texts = (channel.name, record.name[:_LONGEST], "", counted("", number + 1, len(record.channels)), own)
+        texts = (channel.name, record.name[:_LONGEST], "", count_function("", number + 1, len(record.channels)), own)
         axes = (Axis(17, "time", "s"), ordinate, _EMPTY)
         form = (REAL_DOUBLE, record.length, True, record.start, 1.0 / record.rate, 0.0)
         begin = head(Function(texts, TIME, place, ("", 0, 0), *form, *axes), binary_bytes=8 * record.length if binary else None)
@@ -90,7 +100,7 @@ def _write_record(stream: BinaryIO, record: Record, *, binary: bool) -> None:
         block = record.samples.read(start, min(start + _BLOCK, record.length))
         for column, origin in enumerate(starts):
             stream.seek(origin + _size(start, binary=binary))
-            stream.write(_encoded(block[:, column], binary=binary))
+            stream.write(_encode(block[:, column], binary=binary))
 
 
 def _size(count: int, *, binary: bool) -> int:
@@ -98,7 +108,7 @@ def _size(count: int, *, binary: bool) -> int:
     return 8 * count if binary else 20 * count + -(-count // _LINE)
 
 
-def _encoded(numbers: Array, *, binary: bool) -> bytes:
+def _encode(numbers: Array, *, binary: bool) -> bytes:
     if binary:
         return np.ascontiguousarray(numbers, dtype="<f8").tobytes()
     words = [f"{number:20.12E}" for number in numbers.tolist()]
@@ -112,7 +122,7 @@ def _write_responses(stream: BinaryIO, responses: Responses, *, binary: bool) ->
     for row, output in enumerate(responses.outputs):
         for column, input_ in enumerate(responses.inputs):
             number += kinds
-            counts = counted(responses.window[: _LONGEST // 2], number, kinds * len(responses.outputs) * len(responses.inputs))
+            counts = count_function(responses.window[: _LONGEST // 2], number, kinds * len(responses.outputs) * len(responses.inputs))
             texts = (output.name, input_.name, responses.name[:_LONGEST], counts, own)
             places = ((output.name, row + 1, 0), (input_.name, column + 1, 0))
             units = (Axis(18, "frequency", "Hz"), Axis(8, "", output.unit), Axis(13, "", input_.unit))
@@ -138,13 +148,13 @@ def _write_function(stream: BinaryIO, function: Function, frequencies: Array, va
     numbers = np.stack(columns, axis=-1)
     stream.write(head(function, binary_bytes=8 * numbers.size if binary else None))
     if binary or function.is_even:
-        stream.write(_encoded(numbers.ravel(), binary=binary))
+        stream.write(_encode(numbers.ravel(), binary=binary))
     else:
-        stream.write(_uneven(numbers))
+        stream.write(_encode_uneven(numbers))
     stream.write(_END)
 
 
-def _uneven(numbers: Array) -> bytes:
+def _encode_uneven(numbers: Array) -> bytes:
     """Lines with frequencies of 6 digits: one complex value a line, or two real ones."""
     form = "{:13.5E}" + "{:20.12E}" * (numbers.shape[1] - 1)
     words = [form.format(*line) for line in numbers.tolist()]

@@ -33,7 +33,7 @@ class Intrusion:
 
 
 @dataclass(frozen=True, eq=False)
-class Room(InNotebook):
+class Clearance(InNotebook):
     """What the stage occupies.
 
     `intrusions` into the `opening` (..., 2) [m], none where none is described; `low` and `high` corners (..., 3) [m] of the bounding box;
@@ -64,9 +64,9 @@ class Room(InNotebook):
     @property
     def findings(self) -> Annotated[tuple[Finding, ...], VIEW]:
         """What does not fit: outlines in the opening, edges beyond the envelope."""
-        return (*self._blocked(), *self._beyond())
+        return (*self._intrusion_findings(), *self._beyond())
 
-    def _blocked(self) -> Iterator[Finding]:
+    def _intrusion_findings(self) -> Iterator[Finding]:
         for item in self.intrusions:
             depth = show(float(np.max(item.depth)), LENGTH, digits=3)
             yield Finding(item.name, f"enters the clear opening by {depth}", "Move it outward, trim its outline or reduce the opening")
@@ -82,21 +82,21 @@ class Room(InNotebook):
 
 
 @lru_cache(maxsize=2)
-def room(mechanism: Mechanism) -> Room:
+def clearance(mechanism: Mechanism) -> Clearance:
     """The bounding box of all outlines against the envelope, and the outlines that enter the opening (a rectangle about the z axis).
 
     Convex outlines in plan, found by separating directions: exact for boxes and round discs, an upper bound of the depth for tilted
     cylinders. What has an upright hole that holds the opening stays clear. Parts without dimensions (given matrices, joints) take no room.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> room(double_triangle()).size[2].round(6).item()
+    >>> clearance(double_triangle()).size[2].round(6).item()
     0.112697
     """
     found = outlines(expand(mechanism))
     envelope = None if mechanism.envelope is None else stack(mechanism.envelope)
     opening = None if mechanism.opening is None else stack(mechanism.opening.size)
     low, high, extreme = bounds(found)
-    return Room(
+    return Clearance(
         intrusions=() if opening is None else tuple(_intrusions(found, opening)),
         low=low,
         high=high,
@@ -116,14 +116,14 @@ def bounds(found: tuple[Outline, ...]) -> tuple[Array, Array, tuple[str, ...]]:
     """
     if not found:
         return np.zeros(3), np.zeros(3), ()
-    high = [_joined([outline.reach(axis) for outline in found]) for axis in np.eye(3)]
-    low = [_joined([-outline.reach(-axis) for outline in found]) for axis in np.eye(3)]
+    high = [_join([outline.reach(axis) for outline in found]) for axis in np.eye(3)]
+    low = [_join([-outline.reach(-axis) for outline in found]) for axis in np.eye(3)]
     ends = [np.argmin(_first(values)) for values in low] + [np.argmax(_first(values)) for values in high]
-    least, most = _joined([np.min(values, axis=-1) for values in low]), _joined([np.max(values, axis=-1) for values in high])
+    least, most = _join([np.min(values, axis=-1) for values in low]), _join([np.max(values, axis=-1) for values in high])
     return least, most, tuple(found[int(index)].name for index in ends)
 
 
-def _joined(values: list[Array]) -> Array:
+def _join(values: list[Array]) -> Array:
     return np.stack(np.broadcast_arrays(*values), axis=-1)
 
 
