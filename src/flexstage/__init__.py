@@ -49,6 +49,8 @@ HOMES = {
     "analysis.complete": "Model analyse",
     "analysis.budget": "budget",
     "show.report": "report",
+    "show.matlab": "to_mat",
+    "show.sheets": "to_csv to_pandas to_xarray",
 }
 _of_core, _names = lazy_attributes(__name__, HOMES)
 

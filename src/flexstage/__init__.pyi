@@ -156,8 +156,16 @@ from flexstage.parts.profile import (
 from flexstage.parts.rod import (
     Rod as Rod,
 )
+from flexstage.show.matlab import (
+    to_mat as to_mat,
+)
 from flexstage.show.report import (
     report as report,
+)
+from flexstage.show.sheets import (
+    to_csv as to_csv,
+    to_pandas as to_pandas,
+    to_xarray as to_xarray,
 )
 
 __version__: str
