@@ -44,6 +44,8 @@ TEXTS: Mapping[str, str] = {  # of terminal, HTML and other text
     "The theories a stage can be read by": "Models of theory",
     "theory that the stage is read by as": "of the stage as",
     "^flexstage result 1$": "flexstage result 2",
+    "&quot;": "&#34;",
+    "&#x27;": "&#39;",
     r"(^|>)Room($|<)": r"\1Clearance\2",
     "Forces, strength and room": "Forces, strength and clearance",
     r"^(# [a-z0-9-]+: .*\.)$": "#:schema ./flexstage.schema.json\n\\1",

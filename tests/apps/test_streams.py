@@ -150,18 +150,16 @@ def test_signals_end_a_command_with_all_it_started(tmp_path: Path, number: signa
 
 
 @pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
-def test_workers_do_not_outlive_a_killed_command_and_the_next_one_sweeps(tmp_path: Path) -> None:
+def test_workers_do_not_outlive_a_killed_command(tmp_path: Path) -> None:
     (tmp_path / "study.toml").write_text(STUDY)
     process = started(tmp_path, "sweep", "study.toml", "-o", "results.h5", "--workers", "2")
     watched = psutil.Process(process.pid)
-    while len(children := watched.children()) < 2 or not list((tmp_path / "temporary").iterdir()):
+    while len(children := watched.children()) < 2:
         assert process.poll() is None
         time.sleep(0.02)
     process.kill()
     process.communicate()
     assert psutil.wait_procs(children, timeout=10)[1] == []
-    assert len(list((tmp_path / "temporary").iterdir())) == 1
-    assert "flexstage" in started(tmp_path, "version").communicate()[0]
     assert list((tmp_path / "temporary").iterdir()) == []
 
 

@@ -20,6 +20,7 @@ from flexstage.models.linear.frequency import Response
 from flexstage.models.linear.kinematics import Kinematics
 from flexstage.show import render
 from flexstage.show.figures.export import to_svg
+from flexstage.show.page import Prose
 from flexstage.show.scene.pictures import stage_picture
 from flexstage.show.scene.stage import scene
 from flexstage.show.table import Table, result_tables
@@ -67,5 +68,5 @@ def _picture(mechanism: Mechanism) -> str:
     try:
         figure = stage_picture(scene(mechanism))
     except DesignError as error:
-        return "".join(f"<p>{render.escape(str(finding))}</p>" for finding in error.findings)
+        return "".join(str(render.templates().prose(Prose(str(finding)))) for finding in error.findings)
     return to_svg(figure, f"stage{digest(mechanism)[:12]}", f"{mechanism.name} from above its corner")

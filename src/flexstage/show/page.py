@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from importlib import resources
 from typing import TypeAlias
 
 from flexstage.base.text import printable
-from flexstage.show.render import escape, to_html
+from flexstage.show.render import templates
 from flexstage.show.table import Table
 
 
@@ -113,59 +113,4 @@ def page(head: Head, sections: Sequence[Section]) -> str:
     True
     """
     style = resources.files("flexstage.show").joinpath("static/report.css").read_text(encoding="utf-8")
-    contents = "".join(f'<li><a href="#{_anchor(each.title)}">{escape(each.title)}</a></li>' for each in sections)
-    text = "".join(
-        [
-            '<!doctype html>\n<html lang="en"><head><meta charset="utf-8">',
-            '<meta name="viewport" content="width=device-width, initial-scale=1">',
-            f"<title>{escape(head.title)}: {escape(head.kind)}</title>\n<style>{style}</style></head>\n<body>",
-            f'<header><p class="kind">{escape(head.kind)}</p><h1>{escape(head.title)}</h1>{_origin(head)}</header>',
-            f"\n<nav><ul>{contents}</ul></nav>\n<main>",
-            *(_section(each) for each in sections),
-            "</main></body></html>\n",
-        ]
-    )
-    return printable(text, keep="\n\t")
-
-
-def _origin(head: Head) -> str:
-    items = "".join(f"<div><dt>{escape(name)}</dt><dd>{escape(value)}</dd></div>" for name, value in head.origin)
-    return f'<dl class="origin">{items}</dl>' if items else ""
-
-
-def _anchor(title: str) -> str:
-    return "".join(sign if sign.isalnum() else "-" for sign in title.lower()).strip("-")
-
-
-def _section(each: Section) -> str:
-    return f'\n<section id="{_anchor(each.title)}"><h2>{escape(each.title)}</h2>{"".join(_blocks(each.blocks))}</section>'
-
-
-def _blocks(blocks: Iterable[Block]) -> Iterator[str]:
-    for block in blocks:
-        if isinstance(block, Table):
-            yield f'<div class="table">{to_html(block)}</div>'
-        elif isinstance(block, Prose):
-            yield f"<p>{escape(block.text)}</p>"
-        elif isinstance(block, Picture):
-            caption = f"<figcaption>{escape(block.caption)}</figcaption>" if block.caption else ""
-            yield f"<figure>{block.svg}{caption}</figure>"
-        else:
-            yield _group(block)
-
-
-def _group(block: Facts | Abreast | Folded | Legend) -> str:
-    if isinstance(block, Facts):
-        return f'<div class="facts">{"".join(_fact(item) for item in block.items)}</div>'
-    if isinstance(block, Legend):
-        entries = "".join(f'<span><i style="background:{colour}"></i>{escape(name)}</span>' for colour, name in block.entries)
-        return f'<p class="legend">{entries}</p>'
-    inner = "".join(_blocks(block.blocks))
-    if isinstance(block, Folded):
-        return f"<details><summary>{escape(block.title)}</summary>{inner}</details>"
-    return f'<div class="abreast{" narrow" if block.narrow else ""}">{inner}</div>'
-
-
-def _fact(item: Fact) -> str:
-    remark = f"<small>{escape(item.remark)}</small>" if item.remark else ""
-    return f"<div><dt>{escape(item.name)}</dt><dd>{escape(item.value)}</dd>{remark}</div>"
+    return printable(templates().page(head, sections, style), keep="\n\t")

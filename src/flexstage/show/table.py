@@ -50,6 +50,11 @@ class Cell:
     mark: Mark = Mark.PLAIN
     bar: float | None = None
 
+    @property
+    def length(self) -> float:
+        """The bar's share, not beyond the cell."""
+        return min(max(self.bar or 0.0, 0.0), 1.0)
+
 
 @dataclass(frozen=True)
 class Column:
