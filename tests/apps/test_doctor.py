@@ -114,7 +114,7 @@ def test_self_test_has_its_row(rows: tuple[Row, ...]) -> None:
 
 
 def test_failing_self_test_is_a_row(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(doctor, "_installed", tuple)
+    monkeypatch.setattr(doctor, "_examine_installed", tuple)
 
     def broken() -> Row:
         raise ZeroDivisionError("no stiffness")

@@ -127,7 +127,7 @@ def test_an_interrupted_test_leaves_nothing(flexstage: Command, tmp_path: Path, 
         return computed(self, number)
 
     (tmp_path / name).write_text("old")
-    monkeypatch.setattr(Simulated, "_computed", interrupted)
+    monkeypatch.setattr(Simulated, "_compute_block", interrupted)
     ended = flexstage("rig", "stage.toml", "--seconds", "60", "--model", "mapped", "-o", name)
     assert ended.code == 2
     assert ended.err.startswith("Interrupted; nothing was written.")

@@ -35,8 +35,8 @@ ROUGH = ("--accuracy", "5 %", "--order", "3")
 @pytest.fixture
 def command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfdbinary: Any) -> Command:
     """Runs commands in a folder with a stage of few elements, read at one resolution, so that every component is reduced once."""
-    monkeypatch.setattr(resolution, "at_order", lambda _: COARSE)
-    monkeypatch.setattr(resolution, "coarser", lambda _: COARSE)
+    monkeypatch.setattr(resolution, "reduction_of_order", lambda _: COARSE)
+    monkeypatch.setattr(resolution, "coarsen", lambda _: COARSE)
     fs.dump(small(), tmp_path / "stage.toml", {"parts.neck": "As drawn."})
     return command_in(tmp_path, monkeypatch, capfdbinary)
 
