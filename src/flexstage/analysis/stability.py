@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Annotated, TypeAlias
 
 import numpy as np
@@ -93,8 +94,9 @@ def _lower(factor: float) -> float:
     return 100.0 * (1.0 - np.sqrt(1.0 - 1.0 / factor))
 
 
+@lru_cache(maxsize=2)
 def stability(mechanism: Mechanism, model: LinearModel, limits: StrokeLimits | None = None) -> Stability:
-    """Load factors of the whole stage; with `limits`, of the worst strokes between them too.
+    """Load factors of the whole stage; with `limits`, of the worst strokes between them too. Kept for what asks the same next.
 
     `model` is the lumped one. The worst strokes lie at a corner, as the reciprocal of the factor is convex in them.
 

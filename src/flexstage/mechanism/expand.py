@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, fields, replace
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from typing import TypeAlias
 
 import numpy as np
@@ -42,7 +42,7 @@ class PlacedSolid:
 class PlacedBody:
     """A body of the expanded stage: its frame, its reference point (..., 3) and its own mass properties, in the stage's frame.
 
-    `solids` are its outlines by address, those lent to it included (`platform.plate`, `B1/pad.lug`); the mass is that of all of them.
+    `drawn` is the body with those lent to it; the mass is that of all of them.
     """
 
     name: str
@@ -50,7 +50,12 @@ class PlacedBody:
     frame: Frame
     reference: Array
     mass: MassProperties | None
-    solids: Mapping[str, PlacedSolid]
+    drawn: tuple[_DrawnBody, ...]
+
+    @cached_property
+    def solids(self) -> Mapping[str, PlacedSolid]:
+        """The outlines by address, those lent to it included (`platform.plate`, `B1/pad.lug`)."""
+        return dict(solid for item in self.drawn for solid in item.solids())
 
 
 @dataclass(frozen=True, eq=False)
@@ -344,7 +349,7 @@ def _placed_body(drawn: tuple[_DrawnBody, ...], links: Mapping[str, PlacedLink],
     else:
         joints = [link.frame.position for link in links.values() if name in link.joins]
         reference = sum(joints, np.zeros(3)) / len(joints) if joints else frame.position
-    return PlacedBody(name, body, frame, reference, mass, dict(solid for item in drawn for solid in item.solids()))
+    return PlacedBody(name, body, frame, reference, mass, drawn)
 
 
 def _mass(drawn: tuple[_DrawnBody, ...], materials: Mapping[str, Material]) -> MassProperties | None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property, lru_cache
 from typing import Annotated
 
 import numpy as np
@@ -40,7 +41,7 @@ class StrokeLimits:
         """The full stroke (..., n) [m]."""
         return self.high - self.low
 
-    @property
+    @cached_property
     def from_zero(self) -> StrokeLimits:
         """The same strokes counted from no voltage, as a stage assembled without voltage feels them: negative with the volts."""
         zero = self.low if self.zero is None else self.zero
@@ -139,6 +140,7 @@ def stacks(mechanism: Mechanism) -> dict[str, Piezo]:
     return {name: part for name, part in inner.items() if isinstance(part, Piezo)}
 
 
+@lru_cache(maxsize=2)
 def stroke_limits(mechanism: Mechanism) -> StrokeLimits:
     """Strokes around the bias voltage, or around the middle of the range where none is stated.
 

@@ -20,7 +20,9 @@ def main() -> None:
         if signal.getsignal(number) is signal.SIG_DFL:
             signal.signal(number, _end)
     gc.set_threshold(100_000, 50, 50)  # a twentieth of a command's time went into looking for cycles that are not there
-    sys.exit(run(sys.argv[1:]))
+    code = run(sys.argv[1:])
+    gc.freeze()  # nor does Python look for them when it ends
+    sys.exit(code)
 
 
 def _end(number: int, _frame: object) -> None:

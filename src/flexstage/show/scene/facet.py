@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 from enum import Enum
 from functools import cached_property
+from itertools import pairwise
 from typing import TypeAlias
 
 import numpy as np
@@ -63,8 +64,12 @@ class Facet:
         """Outward unit normal (zero for a line and for a facet without area): Newell's sum of cross products."""
         if len(self.points) < 3:
             return SHARP
-        arms = self.points - self.points[0]
-        total = cross(arms[1:-1], arms[2:]).sum(axis=0)
+        first, *others = self.points.tolist()  # plain floats: facets have few points, and there are thousands
+        arms = [(x - first[0], y - first[1], z - first[2]) for x, y, z in others]
+        x, y, z = 0.0, 0.0, 0.0
+        for (a, b, c), (d, e, f) in pairwise(arms):
+            x, y, z = x + (b * f - c * e), y + (c * d - a * f), z + (a * e - b * d)
+        total = np.array([x, y, z])
         size = math.sqrt(total @ total)
         return total / size if size > 0.0 else SHARP
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import accumulate, pairwise
 
 import numpy as np
 from PIL import Image, ImageDraw
@@ -26,7 +27,8 @@ def are_visible(polygons: Sequence[Array], opaque: Sequence[bool]) -> list[bool]
     everything = np.concatenate(polygons)
     low = everything.min(axis=0)
     places = (everything - low) * ((_PIXELS - 1) / (float((everything - low).max()) or 1.0))
-    drawn = np.split(places, np.cumsum([len(each) for each in polygons])[:-1])
+    starts = [0, *accumulate(len(each) for each in polygons)]
+    drawn = [places[start:end] for start, end in pairwise(starts)]
     nearest = Image.new("I", (_PIXELS, _PIXELS), -1)
     pen = ImageDraw.Draw(nearest)
     for index, polygon in enumerate(drawn):
@@ -34,14 +36,9 @@ def are_visible(polygons: Sequence[Array], opaque: Sequence[bool]) -> list[bool]
             pen.polygon(polygon.ravel().tolist(), fill=index)
     last = np.asarray(nearest)
     shows = np.bincount(last.ravel() + 1, minlength=len(polygons) + 1)[1:] > 0
-    return [
-        bool(shows[index]) or _is_small(polygon) or (not opaque[index] and _is_before(polygon, last, index))
-        for index, polygon in enumerate(drawn)
-    ]
-
-
-def _is_small(polygon: Array) -> bool:
-    return len(polygon) < 3 or bool(np.all(np.ptp(polygon, axis=0) < 2.0))
+    small = np.all(np.maximum.reduceat(places, starts[:-1]) - np.minimum.reduceat(places, starts[:-1]) < 2.0, axis=1)
+    always = (shows | small | (np.diff(starts) < 3)).tolist()
+    return [always[index] or (not opaque[index] and _is_before(polygon, last, index)) for index, polygon in enumerate(drawn)]
 
 
 def _is_before(polygon: Array, last: Array, index: int) -> bool:

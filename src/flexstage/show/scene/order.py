@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
-from itertools import pairwise
+from dataclasses import dataclass
+from itertools import accumulate, pairwise
 
 import numpy as np
 
@@ -33,8 +33,8 @@ def partition(facets: Sequence[Facet], size: float) -> Partition | None:
     """
     if not facets:
         return None
-    if all(len(facet.points) < 3 for facet in facets):
-        return Partition(np.array([0.0, 0.0, 1.0]), tuple(facets), None, None)
+    if len(facets) == 1 or all(len(facet.points) < 3 for facet in facets):
+        return Partition(facets[0].normal, tuple(facets), None, None)
     normal, sides, distances = _best(facets, _TOLERANCE * size)
     here: list[Facet] = []
     before: list[Facet] = []
@@ -52,25 +52,23 @@ def partition(facets: Sequence[Facet], size: float) -> Partition | None:
 
 
 def _best(facets: Sequence[Facet], tolerance: float) -> tuple[Array, list[int], list[Array]]:
-    """The candidate plane that splits least; the side of each facet (0 in the plane, 1 before, -1 behind, 2 split), and distances."""
+    """The candidate plane that splits least; the side of each facet (0 in the plane, 1 before, -1 behind, 2 split), and distances.
+
+    Splits are dear, imbalance is cheap.
+    """
     points = np.concatenate([facet.points for facet in facets])
-    starts = np.concatenate([[0], np.cumsum([len(facet.points) for facet in facets])])
+    starts = [0, *accumulate(len(facet.points) for facet in facets)]
     flat = [index for index, facet in enumerate(facets) if len(facet.points) > 2]
     tried = flat[:: max(1, len(flat) // _CANDIDATES)][:_CANDIDATES]
-    trials = [(*_trial(facets[index], points, starts, tolerance), index) for index in tried]
-    _, ahead, back, distance, chosen = min(trials, key=lambda trial: trial[0])
-    sides = np.where(ahead & back, 2, ahead.astype(int) - back.astype(int))
-    sides[chosen] = 0  # also where rounding says otherwise: every step takes at least one facet away
-    return facets[chosen].normal, sides.tolist(), [distance[start:end] for start, end in pairwise(starts)]
-
-
-def _trial(divider: Facet, points: Array, starts: Array, tolerance: float) -> tuple[int, Array, Array, Array]:
-    """Cost of the plane of one facet (splits are dear, imbalance is cheap), which facets reach before and behind it, and distances."""
-    distance = (points - divider.points[0]) @ divider.normal
-    ahead = np.maximum.reduceat(distance, starts[:-1]) > tolerance
-    back = np.minimum.reduceat(distance, starts[:-1]) < -tolerance
-    first, second, both = (int(np.count_nonzero(each)) for each in (ahead, back, ahead & back))
-    return 4 * both + abs(first - second), ahead, back, distance
+    normals, origins = np.array([facets[index].normal for index in tried]), np.array([facets[index].points[0] for index in tried])
+    distances = ((points - origins[:, None]) @ normals[..., None])[..., 0]
+    ahead = np.maximum.reduceat(distances, starts[:-1], axis=1) > tolerance
+    back = np.minimum.reduceat(distances, starts[:-1], axis=1) < -tolerance
+    first, second, both = (each.sum(axis=1) for each in (ahead, back, ahead & back))
+    best = int(np.argmin(4 * both + np.abs(first - second)))
+    sides = np.where(ahead[best] & back[best], 2, ahead[best].astype(int) - back[best])
+    sides[tried[best]] = 0  # also where rounding says otherwise: every step takes at least one facet away
+    return normals[best], sides.tolist(), [distances[best, start:end] for start, end in pairwise(starts)]
 
 
 def split(facet: Facet, distance: Array) -> tuple[Facet, Facet]:
@@ -89,22 +87,22 @@ def _clip(facet: Facet, distance: Array) -> Facet:
     points: list[Array] = []
     share: list[float] = []
     edges: list[Edge] = []
-    count = len(facet.points)
+    count, reach = len(facet.points), distance.tolist()
     for index in range(count):
         after = (index + 1) % count
-        inside, onward = distance[index] >= 0.0, distance[after] >= 0.0
+        inside, onward = reach[index] >= 0.0, reach[after] >= 0.0
         if inside:
             points.append(facet.points[index])
             share.append(facet.share[index])
             edges.append(facet.edges[index])
         if inside != onward:
-            part = distance[index] / (distance[index] - distance[after])
+            part = reach[index] / (reach[index] - reach[after])
             points.append(facet.points[index] + part * (facet.points[after] - facet.points[index]))
             share.append(facet.share[index] + part * (facet.share[after] - facet.share[index]))
             edges.append(None if inside else facet.edges[index])
     if count == 2:
         points, share, edges = points[:2], share[:2], [facet.edges[0], None]
-    return replace(facet, points=np.array(points), share=np.array(share), edges=tuple(edges), whole=facet.whole or facet)
+    return Facet(np.array(points), tuple(edges), facet.paint, np.array(share), facet.whole or facet)
 
 
 def sort_by_depth(tree: Partition | None, eye: Array) -> Iterator[Facet]:

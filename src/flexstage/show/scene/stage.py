@@ -11,7 +11,7 @@ from flexstage.base.number import Array
 from flexstage.mechanism.expand import Assembly, PlacedBody, PlacedGauge, PlacedLink, PlacedSolid, expand
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
 from flexstage.parts.part import is_actuator
-from flexstage.show.scene.facet import Facet, Kind, Paint, circle, cross, extrude, line, loft, rectangle
+from flexstage.show.scene.facet import SHARP, Facet, Kind, Paint, circle, cross, extrude, line, loft, rectangle
 from flexstage.show.scene.inner import outer
 from flexstage.show.scene.order import Partition, partition
 from flexstage.show.scene.primitives import part_facets, part_length, part_section, solid_facets
@@ -175,8 +175,8 @@ def _solids(solids: Mapping[str, PlacedSolid], paint: Paint) -> list[Facet]:
 
 
 def _place(facet: Facet, frame: Frame) -> Facet:
-    turned = tuple(None if edge is None else frame.rotation @ edge for edge in facet.edges)
-    return replace(facet, points=facet.points @ frame.rotation.T + frame.position, edges=turned)
+    turned = tuple(edge if edge is None or edge is SHARP else frame.rotation @ edge for edge in facet.edges)
+    return Facet(facet.points @ frame.rotation.T + frame.position, turned, facet.paint, facet.share, facet.whole)
 
 
 def _bars(joints: list[Array], paint: Paint, thickness: float) -> list[Facet]:

@@ -76,7 +76,7 @@ def view(side: Side) -> View:
     return View(np.stack([right, np.cross(eye, right), eye]))
 
 
-@lru_cache(maxsize=2)
+@lru_cache(maxsize=len(Side))
 def order_facets(scene: Scene, seen: View) -> list[Facet]:
     """The facets that face the viewer, from the farthest to the nearest.
 
