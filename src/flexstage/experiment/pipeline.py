@@ -104,7 +104,7 @@ def identification(test: Measurement, search: Search = _DEFAULT, told: Told | No
         spectra(record, segments, _stage_progress(told, "spectra", _LOOKED + index * share, _LOOKED + (index + 1) * share))
         for index, record in enumerate(test)
     ]
-    found = identify(list(test), search, _stage_progress(told, "finding modes", _SPECTRA, 1.0))
+    found = identify(list(test), search, _stage_progress(told, "finding modes", _SPECTRA, 1.0), parts)
     names = {channel.name for channel in found.inputs}
     known = pool([part.driven(names) for part in parts])
     second = h2(known) if len(known.outputs) >= len(known.inputs) else None

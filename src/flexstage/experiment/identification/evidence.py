@@ -72,8 +72,12 @@ class Evidence:
         return np.maximum(np.median(chosen, axis=0), floor) / self.output_scale**2
 
 
-def evidence(what: Record | Responses | Sequence[Record], segments: Segments | None, tell: Tell | None = None) -> Evidence:
+def evidence(
+    what: Record | Responses | Sequence[Record], segments: Segments | None, tell: Tell | None = None, known: Sequence[Spectra] = ()
+) -> Evidence:
     """The evidence in a record, in several records of one stage, or in an analyser's responses.
+
+    Spectra of the records that are `known` already, one a record, are used where their segments are those and no tone is taken out.
 
     >>> from flexstage.experiment.example import one_mode_record
     >>> round(evidence(one_mode_record(), None).band[1], 2)
@@ -81,13 +85,16 @@ def evidence(what: Record | Responses | Sequence[Record], segments: Segments | N
     """
     if isinstance(what, Responses):
         return _of_responses(what)
-    records = (what,) if isinstance(what, Record) else tuple(what)
-    require(_findings(records))
-    quiet = (remove_tones(record, _part_progress(tell, index, _PASSES * len(records))) for index, record in enumerate(records))
+    made = (what,) if isinstance(what, Record) else tuple(what)
+    require(_findings(made))
+    quiet = (remove_tones(record, _part_progress(tell, index, _PASSES * len(made))) for index, record in enumerate(made))
     records, tones = zip(*quiet, strict=True)
     chosen = segments if segments is not None else choose_segments(records)
     told = (_part_progress(tell, len(records) + index, _PASSES * len(records)) for index in range(len(records)))
-    parts = [spectra(record, chosen, each) for record, each in zip(records, told, strict=True)]
+    parts = [
+        each if each is not None and each.segments == chosen and record is before else spectra(record, chosen, progress)
+        for record, before, each, progress in zip(records, made, known or [None] * len(made), told, strict=True)
+    ]
     together = pool([part.driven([channel.name for channel in part.inputs]) for part in parts])
     return replace(_of_records(records, together, tell), tones=tuple(itertools.chain(*tones)))
 

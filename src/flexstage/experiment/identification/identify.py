@@ -9,7 +9,7 @@ import numpy as np
 
 from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array
-from flexstage.experiment.cross_spectra import Segments, Tell
+from flexstage.experiment.cross_spectra import Segments, Spectra, Tell
 from flexstage.experiment.identification.adequacy import Reach, few_lines
 from flexstage.experiment.identification.bands import extents, sweeps
 from flexstage.experiment.identification.caution import Modes, warnings
@@ -43,10 +43,13 @@ class Search:
     segments: Segments | None = None
 
 
-def identify(what: Record | Responses | Sequence[Record], search: Search = Search(), tell: Tell | None = None) -> Identified:
+def identify(
+    what: Record | Responses | Sequence[Record], search: Search = Search(), tell: Tell | None = None, known: Sequence[Spectra] = ()
+) -> Identified:
     """Natural frequencies, damping, shapes and participations, with 95 % intervals, and whether they are there at all.
 
     `what` is a record, or several of the same stage (six with one actuator each are put together as one test), or responses of an analyser.
+    Spectra of the records that are `known` already, one a record, need not be computed again.
     Candidates are the stable poles of pLSCF on H1; each group of near ones is then fitted by maximum likelihood to the transform of the
     whole record, its transient included, so that there is neither window nor leakage: inputs are taken as exact, outputs' noise as of
     slowly varying density; intervals hold for noise correlated between outputs too (Pintelon & Schoukens 2012, ch. 9 and 10). Where the fit
@@ -63,7 +66,7 @@ def identify(what: Record | Responses | Sequence[Record], search: Search = Searc
     >>> found.frequencies.round(1).tolist(), found.damping.round(3).tolist()
     ([10.0], [0.02])
     """
-    found = _identify_once(what, search, tell)
+    found = _identify_once(what, search, tell, known)
     if len(found.frequencies) or search.segments is not None or isinstance(what, Responses):
         return found
     # Resonances sharper than the segments resolve leave no stable pole, and a blow falls into the first of them alone: look once more.
@@ -73,8 +76,10 @@ def identify(what: Record | Responses | Sequence[Record], search: Search = Searc
     return again if len(again.frequencies) else found
 
 
-def _identify_once(what: Record | Responses | Sequence[Record], search: Search, tell: Tell | None) -> Identified:
-    known = evidence(what, search.segments, tell)
+def _identify_once(
+    what: Record | Responses | Sequence[Record], search: Search, tell: Tell | None, spectra: Sequence[Spectra] = ()
+) -> Identified:
+    known = evidence(what, search.segments, tell, spectra)
     band = _band(known, search)
     diagrams, candidates, reach = _candidates(known, band, search)
     lost: list[Lost] = []

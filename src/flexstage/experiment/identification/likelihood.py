@@ -69,12 +69,25 @@ class Fit:
 
 
 @dataclass(frozen=True, eq=False)
+class _Background:
+    """Per output: Gram matrix (p, q, q) of the background's functions times inputs, scaled by `scale` (p, q), `beside` so many others."""
+
+    beside: int
+    gram: Array
+    scale: Array
+
+
+@dataclass(frozen=True, eq=False)
 class _Sums:
-    """Per output: Gram matrix (p, f, n, f, n) of functions times inputs, products with data (p, f, n), data's own power (p,)."""
+    """Per output: Gram matrix (p, f, n, f, n) of functions times inputs, products with data (p, f, n), data's own power (p,).
+
+    `background` is what was eliminated, if it was.
+    """
 
     gram: Array
     cross: Array
     power: Array
+    background: _Background | None = None
 
 
 def fit(band: Band, start: Modal, enough: float = np.inf) -> Fit:
@@ -94,18 +107,19 @@ def fit(band: Band, start: Modal, enough: float = np.inf) -> Fit:
     if not len(modal.poles):
         return Fit(modal, cost, np.zeros((0, 0)), converged=True)
     information, gradient = _normal(sums, modal)
+    newton, promised = _step(information, gradient, _FREE)
     for _ in range(_STEPS):
-        promised = _step(information, gradient, _FREE)[1]
         if promised < _CONVERGED or cost - promised > enough:
             return _as_fit(modal, cost, information, converged=promised < _CONVERGED)
-        trial = _apply_step(modal, _step(information, gradient, damping)[0])
-        trial_sums = _sums(band, trial.poles) if np.all(np.real(trial.poles) < 0.0) else None
+        trial = _apply_step(modal, newton if damping == _FREE else _step(information, gradient, damping)[0])
+        trial_sums = _sums(band, trial.poles, sums.background) if np.all(np.real(trial.poles) < 0.0) else None
         fall = -np.inf if trial_sums is None else cost - _cost(trial_sums, trial)
         if trial_sums is not None and fall >= 0.0:
             modal, sums, cost = trial, trial_sums, cost - fall
             information, gradient = _normal(sums, modal)
             if fall < 0.1 * _CONVERGED and damping < _SMALL:
                 return _as_fit(modal, cost, information, converged=True)
+            newton, promised = _step(information, gradient, _FREE)
             damping = max(damping * 0.1, _FREE)
         elif damping > 1e8:
             break
@@ -225,7 +239,7 @@ def scatter(band: Band, modal: Modal) -> Array:
     noise[alone, alone] = np.maximum(np.real(noise[alone, alone]), silence(cells, band.rounding))
     weights = (noise / band.variance[:, None, :] / band.variance[None, :, :]).reshape(outputs**2, -1)
     functions, full = _derivatives(band, modal)
-    gram = _gram(cells, weights, functions).reshape(outputs, outputs, len(full[0]), -1)
+    gram = _gram(cells, weights, functions, functions).reshape(outputs, outputs, len(full[0]), -1)
     kept = len(modal.poles) + modal.participation.size + modal.shapes.size
     total = np.zeros((full[0].shape[1],) * 2, dtype=complex)
     for first in range(outputs):
@@ -258,7 +272,8 @@ def shares(band: Band, modal: Modal, groups: Array) -> tuple[Array, Array]:
     gradient, information = [], []
     for group in range(int(np.max(groups)) + 1):
         chosen = groups == group
-        gram = _gram(cells.select_cells(chosen), 1.0 / band.variance[:, chosen], functions[chosen]).reshape(len(full), len(full[0]), -1)
+        own = _gram(cells.select_cells(chosen), 1.0 / band.variance[:, chosen], functions[chosen], functions[chosen])
+        gram = own.reshape(len(full), len(full[0]), -1)
         cross = np.sum(crossed[chosen], axis=0)
         each = [(np.conj(one.T) @ column, np.conj(one.T) @ own @ one) for one, column, own in zip(full, cross.T, gram, strict=True)]
         gradient.append(np.sum([slope for slope, _ in each], axis=0)[:kept])
@@ -360,62 +375,80 @@ def _pairs(poles: Array) -> list[tuple[int, int]]:
 
 def _raw_sums(band: Band, functions: Array) -> _Sums:
     """Sums before elimination, over the functions (c, f, 8), inputs and transients of all blocks."""
-    cells, weights = band.cells, 1.0 / band.variance
+    weights = 1.0 / band.variance
+    return _Sums(_gram(band.cells, weights, functions, functions), _cross(band.cells, weights, functions), _power(band.cells, weights))
+
+
+def _power(cells: Cells, weights: Array) -> Array:
+    return np.sum(weights * cells.own_power.T, axis=1)
+
+
+def _cross(cells: Cells, weights: Array, functions: Array) -> Array:
+    """Products (w, f, n) of functions times inputs with the outputs, summed over cells with weights (w, c)."""
     cross = np.zeros((len(weights), functions.shape[1], cells.width), dtype=complex)
     for block, columns in enumerate(cells.columns):
         chosen = np.flatnonzero(cells.block == block)
         weighted = cells.cross[chosen] * weights[:, chosen].T[:, None, None, :]
         cross[:, :, list(columns)] += np.einsum("cfa,cano->ofn", np.conj(functions[chosen]), weighted, optimize=True)
-    return _Sums(_gram(cells, weights, functions), cross, np.sum(weights * cells.own_power.T, axis=1))
+    return cross
 
 
-def _gram(cells: Cells, weights: Array, functions: Array) -> Array:
-    """Gram matrices (w, f, n, f, n) of functions times inputs, summed over cells with weights (w, c)."""
-    rows, count, total = len(weights), functions.shape[1], cells.width
-    gram = np.zeros((rows, count, total, total, count), dtype=complex)
+def _gram(cells: Cells, weights: Array, left: Array, right: Array) -> Array:
+    """Gram matrices (w, l, n, r, n) of two sets of functions times inputs, summed over cells with weights (w, c)."""
+    rows, first, last, total = len(weights), left.shape[1], right.shape[1], cells.width
+    gram = np.zeros((rows, first, total, total, last), dtype=complex)
     for block, columns in enumerate(cells.columns):
-        together = max(1, _CHUNK // (count * len(columns)) ** 2)
+        together = max(1, _CHUNK // (last * len(columns)) ** 2)
         every = np.flatnonzero(cells.block == block)
-        part = np.zeros((rows, (count * len(columns)) ** 2), dtype=complex)
+        part = np.zeros((rows, first * last * len(columns) ** 2), dtype=complex)
         for start in range(0, len(every), together):
             chosen = every[start : start + together]
-            part += weights[:, chosen] @ _products(functions[chosen], cells.own[chosen])
-        part = part.reshape(rows, count, len(columns), len(columns), count)
+            part += weights[:, chosen] @ _products(left[chosen], right[chosen], cells.own[chosen])
+        part = part.reshape(rows, first, len(columns), len(columns), last)
         if list(columns) == list(range(total)) and len(cells.columns) == 1:
             gram = part
         else:
-            gram[np.ix_(range(rows), range(count), columns, columns, range(count))] += part
+            gram[np.ix_(range(rows), range(first), columns, columns, range(last))] += part
     return gram.swapaxes(3, 4)
 
 
-def _products(functions: Array, own: Array) -> Array:
-    """Gram matrices (c, f n n f) of functions times inputs in every cell: functions first and last, inputs between."""
-    count, size, inputs = len(own), own.shape[1], own.shape[2]
-    half = np.conj(functions) @ own.reshape(count, size, -1)
-    half = half.reshape(count, -1, inputs, size, inputs).swapaxes(3, 4).reshape(count, -1, size)
-    return (half @ functions.swapaxes(1, 2)).reshape(count, -1)
+def _products(left: Array, right: Array, own: Array) -> Array:
+    """Gram matrices (c, l n n r) of functions times inputs in every cell: functions first and last, inputs between."""
+    count, size, inputs, rows = len(own), own.shape[1], own.shape[2], left.shape[1] * own.shape[2] ** 2
+    half = np.conj(left) @ own.reshape(count, size, -1)
+    half = half.reshape(count, left.shape[1], inputs, size, inputs).swapaxes(3, 4).reshape(count, rows, size)
+    return (half @ right.swapaxes(1, 2)).reshape(count, rows * right.shape[1])
 
 
-def _sums(band: Band, poles: Array) -> _Sums:
-    near = _legendre_functions(band, poles)
-    raw = _raw_sums(band, np.concatenate([near, band.background], axis=1))
-    kept = near.shape[1]
-    outputs, count, total = raw.cross.shape
+def _sums(band: Band, poles: Array, known: _Background | None = None) -> _Sums:
+    """Sums of the modes' functions, the background eliminated: what is `known` of it holds for any poles."""
+    cells, weights, near = band.cells, 1.0 / band.variance, _legendre_functions(band, poles)
+    functions = np.concatenate([near, band.background], axis=1)
+    outputs, kept, total = len(weights), near.shape[1], cells.width
     size = kept * total
-    gram = raw.gram.reshape(outputs, count * total, count * total)
-    cross = raw.cross.reshape(outputs, -1)
-    gone = np.swapaxes(np.conj(gram[:, :size, size:]), 1, 2)
-    scale = 1.0 / np.sqrt(np.real(np.diagonal(gram[:, size:, size:], axis1=1, axis2=2)))
-    inner = gram[:, size:, size:] * scale[:, :, None] * scale[:, None, :] + 1e-13 * np.eye(gone.shape[1])
-    right = np.concatenate([gone, cross[:, size:, None]], axis=2) * scale[:, :, None]
-    solved = np.linalg.solve(inner, right)
-    corrected = np.conj(np.swapaxes(right, 1, 2)) @ solved
-    left = gram[:, :size, :size] - corrected[:, :-1, :-1]
+    gram = _gram(cells, weights, near, functions).reshape(outputs, size, functions.shape[1] * total)
+    cross = _cross(cells, weights, functions).reshape(outputs, -1)
+    if known is None or known.beside != kept:
+        known = _background_sums(band, weights, functions)
+    gone = np.swapaxes(np.conj(gram[:, :, size:]), 1, 2)
+    right = np.concatenate([gone, cross[:, size:, None]], axis=2) * known.scale[:, :, None]
+    corrected = np.conj(np.swapaxes(right, 1, 2)) @ np.linalg.solve(known.gram, right)
+    left = gram[:, :, :size] - corrected[:, :-1, :-1]
     return _Sums(
         left.reshape(outputs, kept, total, kept, total),
         (cross[:, :size] - corrected[:, :-1, -1]).reshape(outputs, kept, total),
-        raw.power - corrected[:, -1, -1].real,
+        _power(cells, weights) - corrected[:, -1, -1].real,
+        known,
     )
+
+
+def _background_sums(band: Band, weights: Array, functions: Array) -> _Background:
+    """Taken from products with all functions: BLAS rounds by place, and close modes follow its last digit."""
+    count = band.background.shape[1]
+    kept, size = functions.shape[1] - count, count * band.cells.width
+    gram = _gram(band.cells, weights, band.background, functions)[:, :, :, kept:].reshape(len(weights), size, size)
+    scale = 1.0 / np.sqrt(np.real(np.diagonal(gram, axis1=1, axis2=2)))
+    return _Background(kept, gram * scale[:, :, None] * scale[:, None, :] + 1e-13 * np.eye(gram.shape[1]), scale)
 
 
 def _coefficients(band: Band, modal: Modal) -> Array:
