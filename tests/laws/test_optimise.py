@@ -41,7 +41,7 @@ def worst_error(values, shares, step):
     exact = values(shares[None])[0]
     size = len(shares)
     moves = step * np.vstack([np.eye(size), -np.eye(size)])
-    around = np.array([point.values for point in values.plain(shares + moves)])
+    around = np.array([point.values for point in values.evaluate(shares + moves)])
     differences = (around[:size] - around[size:]).T / (2.0 * step)
     scale = np.maximum(np.max(np.abs(differences), axis=1), np.abs(exact.values))
     return np.max(np.abs(exact.gradient - differences), axis=1) / scale

@@ -130,7 +130,7 @@ def test_numbers_that_depart_go_before_shared_ones_in_either_order():
 
 def test_a_study_that_describes_designs_in_its_own_way_is_read_by_it():
     class Heavier(Study):
-        def described(self, values):
+        def mechanism_for(self, values):
             return apply(STAGE, self.variables, 2.0 * values)
 
     asked = study((("materials.steel.density",),))

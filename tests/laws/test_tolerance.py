@@ -90,7 +90,7 @@ def test_single_errors_average_out_and_common_ones_do_not(guide):
 def test_common_and_single_errors_of_one_number_add_up(guide):
     both = guide('[scatter]\na = { of = "leaf.thickness", normal = "2 um" }\nb = { of = "links.l0.thickness", uniform = "5 um" }')
     values = np.array([1e-6, 3e-6])
-    changed = both.described(values)
+    changed = both.mechanism_for(values)
     assert get(changed, "links.l0.thickness") == pytest.approx(0.504e-3, rel=1e-12)
     assert get(changed, "links.l1.thickness") == pytest.approx(0.501e-3, rel=1e-12)
 
@@ -161,7 +161,7 @@ def test_what_is_allowed_keeps_what_is_wanted(guide):
         assert 0.1 < min(factors) < 10.0
         reach = ndtri(0.9) * np.linalg.norm(slope.gradient[1] * size * np.array(factors)[list(study.owners)])
         assert reach == pytest.approx(found.margin[0], rel=1e-9)
-        again = study.scaled(tuple(float(each) for each in factors))
+        again = study.scale(tuple(float(each) for each in factors))
         passed = piece(again, 0, 600).responses[:, 1] >= 4.5e3
         assert passed.mean() == pytest.approx(0.9, abs=error + 0.02), factors
     assert found.then.share == pytest.approx(0.9, abs=error + 0.02)
@@ -170,9 +170,9 @@ def test_what_is_allowed_keeps_what_is_wanted(guide):
 def test_copies_do_not_depend_on_how_they_are_cut(guide):
     for sampling in ("monte carlo", "latin hypercube", "sobol"):
         study = guide('[scatter]\na = { of = "leaf.thickness", normal = "2 um" }\nb = { of = "leaf.width", uniform = "1 %" }', 64, sampling)
-        whole = study.drawn(0, study.plan.designs)
+        whole = study.sample(0, study.plan.designs)
         edges = [0, 5, 64, 70, 97, study.plan.designs]
-        np.testing.assert_array_equal(np.concatenate([study.drawn(*pair) for pair in pairwise(edges)]), whole)
+        np.testing.assert_array_equal(np.concatenate([study.sample(*pair) for pair in pairwise(edges)]), whole)
         assert np.all(whole[64:96, 1] == 0.0)
         assert np.all(whole[96:, 0] == 0.0)
         assert np.all(np.any(whole[:64] != 0.0, axis=1))
@@ -240,7 +240,7 @@ def test_distributions_have_the_deviation_they_say(shape):
     values = shape.quantile((np.arange(20000) + 0.5) / 20000)
     assert values.mean() == pytest.approx(0.0, abs=1e-9)
     assert values.std() == pytest.approx(shape.deviation, rel=2e-3)
-    assert shape.bounded is None or np.abs(values).max() <= shape.bounded
+    assert shape.largest is None or np.abs(values).max() <= shape.largest
     assert shape.times(3.0).deviation == pytest.approx(3.0 * shape.deviation, rel=1e-12)
 
 
@@ -268,7 +268,7 @@ def test_copies_that_fail_are_kept_and_count_against_the_yield(guide):
         copies=32,
         sampling="monte carlo",
     )
-    study = study.scaled((20.0,))  # wider than a file may say: some leaves are thinner than nought
+    study = study.scale((20.0,))  # wider than a file may say: some leaves are thinner than nought
     results, slope = told(study), slopes(study)
     negative = np.flatnonzero(results.variables[:, 0] <= -1.0)
     found = summary(study, results, slope)

@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from enum import Enum
-from importlib.metadata import PackageNotFoundError, metadata, requires, version
+from importlib.metadata import PackageNotFoundError, metadata, packages_distributions, requires, version
 from pathlib import Path
 from typing import Any
 
@@ -92,7 +92,7 @@ def examine_package(need: Any) -> Row | None:
     remedy = f"pip install --force-reinstall '{asked}'"
     if not need.specifier.contains(present, prereleases=True):
         return Row(need.name, present, wanted, Verdict.BAD, remedy)
-    if not (said := _import_error(need.name.replace("-", "_"))):
+    if not (said := _import_error(_module(need.name))):
         return Row(need.name, present, wanted, Verdict.GOOD)
     if need.name == "ngsolve" and quadmath.missing_place(sys.path):
         remedy = f"{quadmath.COMMAND}; or on Debian: apt-get install libquadmath0"
@@ -102,6 +102,13 @@ def examine_package(need: Any) -> Row | None:
 def _run(code: str) -> subprocess.CompletedProcess[str]:
     command = [sys.executable, "-c", code]
     return subprocess.run(command, capture_output=True, text=True, check=False, timeout=_TIME_LIMIT)
+
+
+def _module(package: str) -> str:
+    """What is imported of a package: the module of its name, or the first it brings (PIL of pillow)."""
+    own = package.replace("-", "_")
+    known = [module for module, owners in packages_distributions().items() if package in map(str.lower, owners)]
+    return own if own in known else next(iter(known), own)
 
 
 def _import_error(module: str) -> str:
