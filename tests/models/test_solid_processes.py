@@ -91,12 +91,12 @@ def code(text: str) -> Bomb:
 
 FIRST_TIME = """
 import time, os, flexstage.solid.fea.mesh as mesh
-plain = mesh._attempt
+plain = mesh._attempt_mesh
 def attempted(drawing, order, sizes):
     if sizes["grading"] == 0.6:  # the first attempt: the second grades more slowly
         {what}
     return plain(drawing, order, sizes)
-mesh._attempt = attempted
+mesh._attempt_mesh = attempted
 """
 
 
@@ -135,7 +135,7 @@ tries = []
 def attempted(*_):
     tries.append(1)
     return "no" if len(tries) < 7 else os.abort()
-mesh._attempt = attempted
+mesh._attempt_mesh = attempted
 """
     (finding,) = told(mined("lever", code(text)))
     assert finding.what == "its process crashed while meshing (SIGABRT)"
@@ -195,7 +195,7 @@ def test_no_mesh_has_fewer_elements_than_expected(neck: float) -> None:
 def test_more_memory_than_allowed_is_not_given(folder: Path) -> None:
     text = """
 import flexstage.solid.fea.mesh as mesh
-mesh._attempt = lambda *_: bytearray(int(4e9))
+mesh._attempt_mesh = lambda *_: bytearray(int(4e9))
 """
     (finding,) = told(mined("lever", code(text)), limits=Limits(memory=1e9))
     assert finding == Finding("lever", "it took more memory while meshing than it may", finding.advice)
