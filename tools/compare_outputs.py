@@ -44,6 +44,11 @@ TEXTS: Mapping[str, str] = {  # of terminal, HTML and other text
     "The theories a stage can be read by": "Models of theory",
     "theory that the stage is read by as": "of the stage as",
     "^flexstage result 1$": "flexstage result 2",
+    r"\bAmplifying\b": "AmplifierSetup",  # classes in schemas
+    r"\bControlling\b": "ControllerSetup",
+    r"\bGauging\b": "GaugeSetup",
+    r"\bShaking\b": "VibrationSetup",
+    r"\bCommanded\b(?! less)": "TrajectorySetup",
     "&quot;": "&#34;",
     "&#x27;": "&#39;",
     r"(^|>)Room($|<)": r"\1Clearance\2",
@@ -174,6 +179,13 @@ COME: Mapping[str, str] = {  # paths that stand in the working tree only
 RULES: tuple[Rule, ...] = (  # numbers whose arithmetic or its order changed; searched() gives those of searches
     Rule(r"(room|clearance)\.intrusions$", "was by body, is a list", np.inf),
     Rule(r"^printed/01-schema", "designs name the packages that they need", np.inf),
+    Rule(r"^printed/02-schema", "classes have other names, and are sorted by them", np.inf),
+    Rule(r"^test-.*provenance$", "a digest of what was identified", np.inf),
+    Rule(
+        r"^(test-[a-z-]+|records)/.*\.json:",
+        "the background is summed once: the search ends within its tolerance",
+        1e-6,
+    ),
     Rule(r"\bbuckling\.", "products of a beam's shapes are summed as products of matrices"),
 )
 
