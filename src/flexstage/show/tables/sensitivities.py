@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from flexstage.analysis.sensitivities import Sensitivities
@@ -23,7 +25,7 @@ def frequency_sensitivity_table(found: Sensitivities, *, modes: int = 6, top: in
     values = relative.values[:, :modes]
     heads = [f"{name} ({frequency:.5g} Hz)" for name, frequency in zip(relative.columns[:modes], found.frequencies, strict=False)]
     note = "Relative change of the frequency per relative change of the parameter; for repeated modes that of their mean."
-    return _ranking_table("What moves the frequencies", found, values, (heads, top, note))
+    return _ranking_table("What moves the frequencies", found, values, heads=heads, top=top, note=note)
 
 
 def loss_sensitivity_table(found: Sensitivities, *, top: int = 15) -> Table | None:
@@ -39,11 +41,10 @@ def loss_sensitivity_table(found: Sensitivities, *, top: int = 15) -> Table | No
         return None
     matrix = found.relative_loss
     note = "Change of the loss (a share of the stroke) per relative change of the parameter."
-    return _ranking_table("What changes the lost motion", found, matrix.values, (list(matrix.columns), top, note))
+    return _ranking_table("What changes the lost motion", found, matrix.values, heads=matrix.columns, top=top, note=note)
 
 
-def _ranking_table(title: str, found: Sensitivities, values: Array, layout: tuple[list[str], int, str]) -> Table:
-    heads, top, note = layout
+def _ranking_table(title: str, found: Sensitivities, values: Array, *, heads: Sequence[str], top: int, note: str) -> Table:
     largest = np.max(np.abs(values), axis=1, initial=0.0)
     order = np.argsort(-np.round(largest, 9), kind="stable")[:top]
     rows = [

@@ -21,7 +21,7 @@ from flexstage.solid.fea.contribution import contributions
 from flexstage.solid.fea.field import Field, Solver, apply_form, degrees_of, field, inertia, rigid, stiffness, stroke_force, times
 from flexstage.solid.fea.fineness import Reduction
 from flexstage.solid.fea.hold import is_rigid, support
-from flexstage.solid.fea.mesh import PieceMesh, centroids, mesh_component
+from flexstage.solid.fea.mesh import PieceMesh, centroids
 from flexstage.solid.fea.piece import span
 from flexstage.solid.fea.progress import Report, Stage, silent
 from flexstage.solid.fea.skin import skin
@@ -43,8 +43,10 @@ class _Problem:
     solve: Solver
 
 
-def reduce_component(component: Component, reduction: Reduction, springs: Array | None = None) -> Superelement:
-    """Mesh, assemble and reduce a component.
+def reduce_mesh(
+    component: Component, mesh: PieceMesh, reduction: Reduction, springs: Array | None = None, report: Report = silent
+) -> Superelement:
+    """Assemble and reduce a component that is meshed already, telling how far it is.
 
     With `springs` (6 m, 6 m) between its interfaces the modes kept are those of the component free at its interfaces and joined by the
     springs, in place of the fixed-interface modes: so a whole stage in one piece has its own modes, exactly. Its statics is then exact
@@ -52,23 +54,11 @@ def reduce_component(component: Component, reduction: Reduction, springs: Array 
 
     >>> from flexstage.solid.fea.bar import bar
     >>> from flexstage.solid.fea.fineness import Fineness
-    >>> element = reduce_component(bar(), Reduction(Fineness(order=2)))
+    >>> from flexstage.solid.fea.mesh import mesh_component
+    >>> plan = Reduction(Fineness(order=2))
+    >>> element = reduce_mesh(bar(), mesh_component(bar(), plan.fineness), plan)
     >>> round(float(element.stiffness["bar"][0, 0]) * 1e-6, 6)  # E A / L, N/um
     100.0
-    """
-    return reduce_mesh(component, mesh_component(component, reduction.fineness), reduction, springs)
-
-
-def reduce_mesh(
-    component: Component, mesh: PieceMesh, reduction: Reduction, springs: Array | None = None, report: Report = silent
-) -> Superelement:
-    """Assemble and reduce a component that is meshed already, telling how far it is.
-
-    >>> from flexstage.solid.fea.bar import bar
-    >>> from flexstage.solid.fea.fineness import Fineness
-    >>> plan = Reduction(Fineness(order=2), modes=0)
-    >>> reduce_mesh(bar(), mesh_component(bar(), plan.fineness), plan).interfaces
-    1
     """
     problem = _problem(component, mesh, reduction, report)
     report(Stage.REDUCING, 0.0)

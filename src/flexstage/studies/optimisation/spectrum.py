@@ -32,16 +32,6 @@ class Spectrum:
     shapes: Array
     weighted: Array
 
-    def rotation_from(self, others: Spectrum) -> Array:
-        """The orthogonal matrix (k, k) nearest to the overlap of these modes with another design's.
-
-        >>> one = Spectrum(np.ones(1), np.zeros((0, 1, 1)), np.eye(1), np.eye(1))
-        >>> one.rotation_from(one).tolist()
-        [[1.0]]
-        """
-        left, _, right = np.linalg.svd(self.weighted.T @ others.shapes)
-        return left @ right
-
 
 @dataclass(frozen=True)
 class Modes:
