@@ -13,14 +13,19 @@ from functools import lru_cache
 import numpy as np
 
 from flexstage.base.finding import DesignError, refuse
-from flexstage.base.number import Array
+from flexstage.base.number import Array, first_design
 from flexstage.beams import LAWS
 from flexstage.beams.beam import Beam
 from flexstage.beams.law import PartLaw
-from flexstage.parts.freedom import Freedom, others
+from flexstage.parts.freedom import ALL, Freedom, others
 from flexstage.parts.given import Joint
 from flexstage.parts.material import Material
 from flexstage.parts.part import Elastic, Part, Restricted, inner, material_of
+
+_SINGULAR = 1e-12
+"""Share of a stated stiffness that counts as none: rounding."""
+_NAMED = 1e-6
+_EVERY: Array = np.arange(6)
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,19 +39,22 @@ class Law:
 def compliance(part: Elastic, material: Material | None) -> Array:
     """Compliance (..., 6, 6) of a part about its centre, rows (x, y, z, rx, ry, rz), SI; diagonal but for a `Given` part.
 
-    `material` is needed by notches, necks, leaves and rods. Raises `DesignError` if it is missing.
+    `material` is needed by notches, necks, leaves and rods. Raises `DesignError` if it is missing, and for a part that states its stiffness
+    and has none in some motion: its compliance does not exist.
 
     >>> steel = Material(young=200e9, poisson=0.3, density=7750.0)
     >>> from flexstage.parts.rod import Rod
     >>> compliance(Rod("steel", length=0.1, diameter=0.002), steel).shape
     (6, 6)
     """
-    whole = _law_of(part).compliance
-    return _diagonal_matrix(_diagonal(part, material)) if whole is None else whole(part)
+    known = _law_of(part)
+    if known.stiffness is not None:
+        return np.linalg.inv(_regular(part, known.stiffness(part)))
+    return _diagonal_matrix(_diagonal(part, material)) if known.compliance is None else known.compliance(part)
 
 
 def stiffness(part: Elastic, material: Material | None) -> Array:
-    """Stiffness (..., 6, 6) of a part about its centre, the inverse of its compliance.
+    """Stiffness (..., 6, 6) of a part about its centre, as stated, or the inverse of its compliance.
 
     >>> steel = Material(young=200e9, poisson=0.3, density=7750.0)
     >>> from flexstage.parts.rod import Rod
@@ -54,9 +62,11 @@ def stiffness(part: Elastic, material: Material | None) -> Array:
     >>> bool(np.allclose(stiffness(rod, steel) @ compliance(rod, steel), np.eye(6)))
     True
     """
-    whole = _law_of(part).compliance
-    if whole is not None:
-        return np.linalg.inv(whole(part))
+    known = _law_of(part)
+    if known.stiffness is not None:
+        return known.stiffness(part)
+    if known.compliance is not None:
+        return np.linalg.inv(known.compliance(part))
     return _diagonal_matrix(1.0 / _diagonal(part, material))
 
 
@@ -64,7 +74,7 @@ def law(part: Part, material: Material | None) -> Law:
     """The law of any part.
 
     A `Joint` has no stiffness and locks what is not free. A `Restricted` part starts from K = C^-1: locked rows and columns are deleted,
-    freed ones condensed out, K_ee - K_ef K_ff^-1 K_fe. Ordinary parts lock nothing.
+    freed ones condensed out, K_ee - K_ef K_ff^-1 K_fe; those without any stiffness are free already. Ordinary parts lock nothing.
 
     >>> law(Joint((Freedom.RZ,)), None).locked == others((Freedom.RZ,))
     True
@@ -74,11 +84,11 @@ def law(part: Part, material: Material | None) -> Law:
     if not isinstance(part, Restricted):
         return Law(stiffness(part, material))
     full = stiffness(part.part, material)
-    kept, freed = _indices(part.elastic), _indices(part.free)
+    kept, freed = _indices(part.elastic), _stiff_among(_indices(part.free), full)
     block = full[..., kept[:, None], kept]
     if len(freed) and len(kept):
         mixed = full[..., kept[:, None], freed]
-        block = block - mixed @ np.linalg.solve(full[..., freed[:, None], freed], np.swapaxes(mixed, -1, -2))
+        block = block - mixed @ np.linalg.solve(_regular(part.part, full[..., freed[:, None], freed], freed), np.swapaxes(mixed, -1, -2))
     result = np.zeros_like(full)
     result[..., kept[:, None], kept] = block
     return Law(result, locked_freedoms(part))
@@ -133,6 +143,26 @@ def _required_material(part: Part, material: Material | None) -> Material:
         where = f"{inner(part).kind} of {material_of(part)}"
         raise refuse(where, "its stiffness was asked for without a material", f"pass the material {material_of(part)}")
     return material
+
+
+def _regular(part: Elastic, stated: Array, freedoms: Array = _EVERY) -> Array:
+    """A stiffness (..., k, k) in some freedoms that has an inverse: NaN for designs where it has none, refused where the first has none."""
+    size = np.sqrt(np.max(np.abs(np.real(stated)), axis=-1))
+    size = np.where(size > 0.0, size, 1.0)
+    _, values, motions = np.linalg.svd(np.real(stated) / size[..., :, None] / size[..., None, :])
+    none = np.asarray(values <= _SINGULAR * values[..., :1])
+    if np.any(first_design(none, 1)):
+        moved = np.max(np.abs(first_design(motions, 2)[first_design(none, 1)]), axis=0) > _NAMED
+        names = ", ".join(ALL[index].value for index in freedoms[moved])
+        what = f"it has no stiffness in some motion of {names}, so that its compliance does not exist"
+        raise refuse(f"a part of kind {part.kind}", what, "State a stiffness there, or use the lumped model, which needs none")
+    return np.where(none.any(axis=-1)[..., None, None], np.nan, stated)
+
+
+def _stiff_among(freedoms: Array, stiffness: Array) -> Array:
+    """Those of the freedoms in which any design has stiffness."""
+    rows = np.any(np.real(stiffness[..., freedoms, :]) != 0.0, axis=-1)
+    return freedoms[np.any(rows, axis=tuple(range(rows.ndim - 1)))]
 
 
 def _diagonal_matrix(diagonal: Array) -> Array:

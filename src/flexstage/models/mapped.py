@@ -7,7 +7,7 @@ bending stiffness.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated
 
 import numpy as np
@@ -244,10 +244,14 @@ def _compliance(link: PlacedLink) -> Array:
     part = link.part
     if isinstance(part, Joint) or (isinstance(part, Restricted) and Freedom.X in part.free):
         raise refuse(link.name, "it is an ideal joint or has no axial stiffness, and the unit's stiffness needs one", "")
+    try:
+        whole = compliance(part.part if isinstance(part, Restricted) else part, link.material)
+    except DesignError as error:
+        raise DesignError(replace(finding, where=link.name) for finding in error.findings) from error
     if isinstance(part, Restricted):
         elastic = np.array([freedom in part.elastic for freedom in ALL])
-        return np.where(elastic[:, None] & elastic, compliance(part.part, link.material), 0.0)
-    return compliance(part, link.material)
+        return np.where(elastic[:, None] & elastic, whole, 0.0)
+    return whole
 
 
 def _perpendicular(arm: Array, axis: Array) -> Array:
