@@ -19,7 +19,7 @@ HOMES = {
     "parts.profile": "Circular Elliptic Filleted Straight",
     "parts.notch": "Notch",
     "parts.neck": "Neck",
-    "parts.leaf": "Leaf",
+    "parts.leaf": "Leaf LeafSection",
     "parts.rod": "Rod",
     "parts.given": "Given Joint",
     "parts.piezo": "Piezo",

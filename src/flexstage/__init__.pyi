@@ -134,6 +134,7 @@ from flexstage.parts.given import (
 )
 from flexstage.parts.leaf import (
     Leaf as Leaf,
+    LeafSection as LeafSection,
 )
 from flexstage.parts.material import (
     Material as Material,

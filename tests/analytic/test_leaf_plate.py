@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from flexstage.beams.plate import moment_factor, shear_factor
-from flexstage.parts.leaf import Leaf
+from flexstage.parts.leaf import Leaf, LeafSection
 from flexstage.parts.material import Material
 from tests.analytic.hinges import UNIT, diagonal
 from tests.analytic.plate_ritz import factor
@@ -78,3 +78,18 @@ def test_without_contraction_a_leaf_is_a_beam():
     shear = 1.2 / (0.5 * area)
     expected = (1.0 / area, 1.0 / (12.0 * rigidity) + shear, 1.0 / (12.0 * across) + shear, 1.0 / across, 1.0 / rigidity)
     np.testing.assert_allclose(found[[0, 1, 2, 4, 5]], expected, rtol=1e-13)
+
+
+@pytest.mark.parametrize("width", [0.05, 0.5, 2.0])
+def test_a_section_of_a_beam_is_the_frame_element(width):
+    """Tension, Timoshenko's bending with Cowper's factor, Saint-Venant's torsion: nothing of the plate, nothing of warping."""
+    thickness, nu = 0.02, UNIT.poisson
+    area, upright, flat = width * thickness, thickness * width**3 / 12.0, width * thickness**3 / 12.0
+    short, long = min(width, thickness), max(width, thickness)
+    odd = np.arange(1.0, 400.0, 2.0)
+    torsion = short**3 * long / 3.0 * (1.0 - 192.0 / np.pi**5 * short / long * np.sum(np.tanh(0.5 * odd * np.pi * long / short) / odd**5))
+    shear = (12.0 + 11.0 * nu) / (10.0 * (1.0 + nu)) / (UNIT.shear * area)
+    bending = [1.0 / (12.0 * flat) + shear, 1.0 / (12.0 * upright) + shear]
+    expected = [1.0 / area, *bending, 1.0 / (UNIT.shear * torsion), 1.0 / upright, 1.0 / flat]
+    found = diagonal(Leaf("m", length=1.0, thickness=thickness, width=width, section=LeafSection.BEAM), UNIT)
+    np.testing.assert_allclose(found * UNIT.young, expected, rtol=1e-11)

@@ -15,7 +15,7 @@ from flexstage.beams.mass import mass
 from flexstage.beams.stress import stress
 from flexstage.parts.freedom import ALL, Freedom
 from flexstage.parts.given import Given, Joint
-from flexstage.parts.leaf import Leaf
+from flexstage.parts.leaf import Leaf, LeafSection
 from flexstage.parts.material import Material
 from flexstage.parts.neck import Neck
 from flexstage.parts.notch import Notch
@@ -35,7 +35,7 @@ profiles = st.one_of(
 beams = st.one_of(
     st.builds(Notch, material=st.just("m"), thickness=sizes, width=sizes, profile=profiles),
     st.builds(Neck, material=st.just("m"), thickness=sizes, width=st.none() | sizes, profile=profiles),
-    st.builds(Leaf, material=st.just("m"), length=sizes, thickness=sizes, width=sizes),
+    st.builds(Leaf, material=st.just("m"), length=sizes, thickness=sizes, width=sizes, section=st.sampled_from(LeafSection)),
     st.builds(Rod, material=st.just("m"), length=sizes, diameter=sizes),
     st.builds(
         Piezo, stroke=sizes, stiffness=sizes, length=sizes, diameter=sizes, mass=sizes, bending_rigidity=st.none() | sizes,

@@ -94,7 +94,7 @@ def records(node: RecordNode) -> st.SearchStrategy[Any]:
 def mechanisms(draw: st.DrawFn) -> Mechanism:
     """Any description whose addresses are sound; it need not make sense."""
     stage = draw(values(RecordNode(Mechanism)))
-    stage = dataclasses.replace(stage, changes={}, tags={}, place={})
+    stage = dataclasses.replace(stage, changes={}, tags={}, place={}, packages=())  # a package that is named has to be installed
     if stage.parts:
         stage = _with_departures(draw, stage)
     numbers = addresses(stage)

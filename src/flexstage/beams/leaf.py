@@ -1,4 +1,4 @@
-"""Leaf springs by beam theory, with plate action and constrained warping."""
+"""Leaf springs by beam theory: with plate action and constrained warping, or, with `section` beam, without both."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from flexstage.beams.law import PartLaw, Range, ratio
 from flexstage.beams.plate import moment_factor, shear_factor
 from flexstage.beams.quadrature import Stations, stations
 from flexstage.beams.section import Section, cowper_rectangle, rectangle
-from flexstage.beams.torsion import Twisting
-from flexstage.parts.leaf import Leaf
+from flexstage.beams.torsion import Twisting, free_twist
+from flexstage.parts.leaf import Leaf, LeafSection
 from flexstage.parts.material import Material
 from flexstage.parts.profile import Straight
 
 
 def leaf_beam(part: Leaf, material: Material) -> Beam:
-    """The leaf as a Timoshenko beam without plate action (Cowper's shear factor), its ends kept from warping.
+    """The leaf as a Timoshenko beam without plate action (Cowper's shear factor), its ends kept from warping unless its section is a beam.
 
     >>> steel = Material(young=200e9, poisson=0.3, density=7750.0)
     >>> leaf = leaf_beam(Leaf("steel", length=0.05, thickness=0.0005, width=0.01), steel)
@@ -28,7 +28,7 @@ def leaf_beam(part: Leaf, material: Material) -> Beam:
     thickness, width = np.asarray(part.thickness)[..., None] + points.growth, np.asarray(part.width)[..., None]
     section = rectangle(thickness, width, np.asarray(cowper_rectangle(material.poisson))[..., None])
     young, shear = np.asarray(material.young)[..., None], np.asarray(material.shear)[..., None]
-    twisting = _twisting(part, points, section, material)
+    twisting = free_twist(section, shear) if part.section is LeafSection.BEAM else _twisting(part, points, section, material)
     density = np.asarray(material.density)[..., None]
     return Beam(points, section, flexibility(section, young, shear, twisting), inertia(section, density), twisting)
 
@@ -37,13 +37,16 @@ def leaf_diagonal(part: Leaf, material: Material) -> Array:
     """The diagonal (..., 6) of the leaf's compliance about its centre.
 
     Timoshenko's beam, its bending about the width divided by the plate factors of `beams.plate`, and the torsion of `torsional_compliance`.
-    In-plane bending and tension are a beam's: their restrained contraction (up to 1 - nu^2 softer than stated for b >> L) is left out.
+    In-plane bending and tension are a beam's: their restrained contraction (up to 1 - nu^2 softer than stated for b >> L) is left out. With
+    `section` beam all six are those of `leaf_beam`, with Saint-Venant's torsion: the frame element of textbooks.
 
     >>> soft = Material(young=1.0, poisson=0.3, density=1.0)
     >>> wide = leaf_diagonal(Leaf("soft", length=1.0, thickness=1e-3, width=0.5), soft)
     >>> round(float(1.0 / (wide[5] * 0.5e-9 / 12.0)), 3)  # reference B6: 1.0377 at b/L = 0.5
     1.037
     """
+    if part.section is LeafSection.BEAM:
+        return leaf_beam(part, material).diagonal()
     slenderness, area = part.length / part.width, part.thickness * part.width
     inertia_y, inertia_z = area * part.width * part.width / 12.0, area * part.thickness * part.thickness / 12.0
     lateral = cowper_rectangle(material.poisson) * part.length / (material.shear * area)
@@ -94,4 +97,8 @@ def _ranges(part: Leaf) -> tuple[Range, ...]:
     return thin, Range("length over thickness", ratio(part.length, part.thickness), low=10.0)
 
 
-LEAF = PartLaw(leaf_beam, leaf_diagonal, concentration=lambda _: 1.0, ranges=_ranges, family=lambda _: "leaf")
+def _family(part: Leaf) -> str | None:
+    return None if part.section is LeafSection.BEAM else "leaf"
+
+
+LEAF = PartLaw(leaf_beam, leaf_diagonal, concentration=lambda _: 1.0, ranges=_ranges, family=_family)

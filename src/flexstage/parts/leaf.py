@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from enum import Enum
 from typing import Annotated, ClassVar
 
 from flexstage.base.number import Number
@@ -12,11 +13,19 @@ from flexstage.parts.freedom import Freedom
 from flexstage.parts.shape import Order, Section, Shaped
 
 
+class LeafSection(Enum):
+    """What bends in a leaf: a `PLATE`, which its width stiffens, or the `BEAM` that many sources take it for."""
+
+    PLATE = "plate"
+    BEAM = "beam"
+
+
 @dataclass(frozen=True, eq=False)
 class Leaf(Shaped):
     """A leaf spring: `length` along x, `thickness` along y, `width` along z.
 
-    Intended freedoms: translation along y, bending about z, twist about x.
+    Intended freedoms: translation along y, bending about z, twist about x. With `section` beam its law leaves plate action out, and its
+    ends are free to warp.
     """
 
     kind: ClassVar[str] = "leaf"
@@ -25,6 +34,7 @@ class Leaf(Shaped):
     length: Annotated[Number, LENGTH, POSITIVE]
     thickness: Annotated[Number, LENGTH, POSITIVE]
     width: Annotated[Number, LENGTH, POSITIVE]
+    section: LeafSection = LeafSection.PLATE
 
     @property
     def intended(self) -> tuple[Freedom, ...]:
