@@ -30,10 +30,15 @@ _EVERY: Array = np.arange(6)
 
 @dataclass(frozen=True, eq=False)
 class Law:
-    """What a link does between its bodies: `stiffness` (..., 6, 6), zero in free and locked rows, and the `locked` freedoms."""
+    """What a link does between its bodies: `stiffness` (..., 6, 6), zero in free and locked rows, and the `locked` freedoms.
+
+    `inner` (..., m) [1/s^2] are the squares of the angular frequencies of the modes it has while its ends are held, mass-normalised: m more
+    coordinates of the lumped model. The link's mass is then (..., 12 + m, 12 + m), theirs after those of its ends (absent: none).
+    """
 
     stiffness: Array
     locked: tuple[Freedom, ...] = ()
+    inner: Array | None = None
 
 
 def compliance(part: Elastic, material: Material | None) -> Array:

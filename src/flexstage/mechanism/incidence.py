@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from flexstage.base.finding import refuse
 from flexstage.base.memory import require_memory
-from flexstage.base.number import Array
+from flexstage.base.number import Array, Table
 from flexstage.mechanism.expand import Assembly, PlacedLink
 from flexstage.mechanism.mechanism import GROUND, PLATFORM
 from flexstage.spatial.frame import COMPONENTS, Frame, transport, twist_transform
@@ -16,19 +17,24 @@ from flexstage.spatial.frame import COMPONENTS, Frame, transport, twist_transfor
 
 @dataclass(frozen=True, eq=False)
 class Layout:
-    """Where each body's twist stands in the coordinate vector: six coordinates a body, the platform's first."""
+    """Where each body's twist stands in the coordinate vector: six coordinates a body, the platform's first; then the `inner` ones.
+
+    `inner` is how many inner coordinates a link has, by its name: amplitudes of its modes while its ends are held, zero in rigid motion.
+    """
 
     bodies: tuple[str, ...]
+    inner: Mapping[str, int] = field(default_factory=lambda: Table({}))
 
     @property
     def size(self) -> int:
         """Number of coordinates."""
-        return 6 * len(self.bodies)
+        return 6 * len(self.bodies) + sum(self.inner.values())
 
     @property
     def coordinates(self) -> tuple[str, ...]:
-        """Names of the coordinates, `platform.x` to `B6/pole.rz`."""
-        return tuple(f"{body}.{component}" for body in self.bodies for component in COMPONENTS)
+        """Names of the coordinates, `platform.x` to `B6/pole.rz`, then `B1/leaf.mode1` and so on."""
+        twists = (f"{body}.{component}" for body in self.bodies for component in COMPONENTS)
+        return (*twists, *(f"{link}.mode{number + 1}" for link, count in self.inner.items() for number in range(count)))
 
     def columns(self, body: str) -> slice:
         """The coordinates of a body."""
@@ -41,9 +47,15 @@ class Layout:
         result[:, self.columns(body)] = np.eye(6)
         return result
 
+    def inner_selector(self, link: str) -> Array:
+        """The (m, n) matrix that picks a link's inner coordinates; without rows where it has none."""
+        before = list(self.inner).index(link) if link in self.inner else len(self.inner)
+        start = 6 * len(self.bodies) + sum(list(self.inner.values())[:before])
+        return np.eye(self.inner.get(link, 0), self.size, k=start)
 
-def layout(assembly: Assembly) -> Layout:
-    """The coordinate layout of an expanded stage.
+
+def layout(assembly: Assembly, inner: Mapping[str, int] | None = None) -> Layout:
+    """The coordinate layout of an expanded stage whose links have so many `inner` coordinates (absent: none).
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.mechanism.expand import expand
@@ -52,7 +64,7 @@ def layout(assembly: Assembly) -> Layout:
     """
     names = tuple(assembly.bodies)
     first = tuple(name for name in names if name == "platform")
-    return Layout(first + tuple(name for name in names if name != "platform"))
+    return Layout(first + tuple(name for name in names if name != "platform"), Table(inner or {}))
 
 
 def require_room(assembly: Assembly, matrices: float) -> None:
@@ -118,7 +130,7 @@ def deformation(assembly: Assembly, order: Layout, link: PlacedLink) -> Array:
 def with_ground(assembly: Assembly, order: Layout) -> Array:
     """The (..., n, 6) rigid motion of all bodies moving with the ground, whose twist is given at the platform's reference point.
 
-    Raises `DesignError` where there is no platform.
+    Inner coordinates rest in it. Raises `DesignError` where there is no platform.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.mechanism.expand import expand
@@ -131,4 +143,5 @@ def with_ground(assembly: Assembly, order: Layout) -> Array:
     centre = assembly.bodies[PLATFORM].reference
     carries = [transport(assembly.bodies[body].reference - centre) for body in order.bodies]
     batch = np.broadcast_shapes(*(carry.shape[:-2] for carry in carries))
-    return np.concatenate([np.broadcast_to(carry, (*batch, 6, 6)) for carry in carries], axis=-2)
+    moving = [np.broadcast_to(carry, (*batch, 6, 6)) for carry in carries]
+    return np.concatenate([*moving, np.zeros((*batch, order.size - 6 * len(order.bodies), 6))], axis=-2)

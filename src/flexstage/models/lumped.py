@@ -15,7 +15,7 @@ import numpy as np
 from flexstage.base.digest import digest
 from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.number import Array, Number, first_design
-from flexstage.beams.compliance import law
+from flexstage.beams.compliance import Law, law
 from flexstage.beams.mass import mass
 from flexstage.mechanism.drawn import as_drawn
 from flexstage.mechanism.expand import Assembly, PlacedLink, expand
@@ -34,12 +34,13 @@ from flexstage.models.linear.channels import (
     twist_places,
     wrench_places,
 )
+from flexstage.models.linear.eigen import sign_weights
 from flexstage.models.linear.elimination import Elimination, eliminate, imposed_motion, pivoted_qr
 from flexstage.models.linear.model import Contribution, LinearModel, assemble, strain_forces
 from flexstage.parts.freedom import Freedom
 from flexstage.parts.material import Material
 from flexstage.parts.part import Part, Restricted
-from flexstage.spatial.frame import COMPONENTS, FORCES, twist_transform
+from flexstage.spatial.frame import FORCES, twist_transform
 
 _SINGULAR = 1e-11
 _ROUNDING = 1e-12
@@ -159,17 +160,34 @@ class _Kept:
 def _stage(mechanism: Mechanism) -> _Stage:
     assembly = expand(mechanism)
     require_room(assembly, _MATRICES)
-    order = layout(assembly)
     with np.errstate(all="ignore"):  # what comes of it is told below
         laws = _by_part(law, assembly)
+    order = layout(assembly, {name: item.inner.shape[-1] for name, item in laws.items() if item.inner is not None})
     ends = {name: end_twists(assembly, order, link) for name, link in assembly.links.items()}
     strains: dict[str, Contribution] = {}
     for name, link in assembly.links.items():
-        operator = ends[name][1] - ends[name][0]
-        strains[name] = Contribution(operator, laws[name].stiffness, _loss_factor(as_drawn(mechanism, link)))
+        operator = _with_inner(order, name, (ends[name][1] - ends[name][0],))
+        strains[name] = Contribution(operator, _whole_law(laws[name]), _loss_factor(as_drawn(mechanism, link)))
     require(_endless(assembly, {name: item.stiffness for name, item in laws.items()}, "stiffness"))
     locked = {name: item.locked for name, item in laws.items() if item.locked}
     return _Stage(assembly, order, ends, strains, locked, with_ground(assembly, order))
+
+
+def _with_inner(order: Layout, link: str, rows: tuple[Array, ...]) -> Array:
+    """Rows (..., r, N) of a link one above the other, and below them those of its inner coordinates."""
+    return np.concatenate(_broadcast((*rows, order.inner_selector(link))), axis=-2)
+
+
+def _whole_law(law: Law) -> Array:
+    """The stiffness (..., 6 + m, 6 + m) of a link's relative twist and its inner coordinates, which do not feel one another."""
+    if law.inner is None:
+        return law.stiffness
+    modes = law.inner[..., None] * np.eye(law.inner.shape[-1])
+    batch = np.broadcast_shapes(law.stiffness.shape[:-2], modes.shape[:-2])
+    size = 6 + modes.shape[-1]
+    result = np.zeros((*batch, size, size), dtype=np.result_type(law.stiffness, modes))
+    result[..., :6, :6], result[..., 6:, 6:] = law.stiffness, modes
+    return result
 
 
 def _endless(assembly: Assembly, values: Mapping[str, Array], what: str) -> Iterator[Finding]:
@@ -187,14 +205,14 @@ def _endless(assembly: Assembly, values: Mapping[str, Array], what: str) -> Iter
 
 def _require_told_apart(stage: _Stage, loose: Array, basis: Array | None) -> None:
     """A motion that stretches a link is not loose: where rounding of stiffer links hides it, no answer would be right."""
-    stiffness = {name: np.diag(np.real(first_design(item.law, 2))) / _OVER**2 for name, item in stage.strains.items()}
+    stiffness = {name: np.diag(np.real(first_design(item.law, 2)))[:6] / _OVER**2 for name, item in stage.strains.items()}
     full = loose if basis is None else np.real(first_design(basis, 2)) @ loose
-    weights = np.array([_OVER[COMPONENTS.index(name.rpartition(".")[2])] for name in stage.order.coordinates])
+    weights = sign_weights(stage.order.coordinates)
     size = np.max(np.abs(full) * weights[:, None], axis=0)
     hidden = [
         name
         for name, item in stage.strains.items()
-        if np.any((np.abs(np.real(first_design(item.operator, 2)) @ full) * _OVER[:, None])[stiffness[name] > 0.0] > _STRETCHES * size)
+        if np.any((np.abs(np.real(first_design(item.operator, 2))[:6] @ full) * _OVER[:, None])[stiffness[name] > 0.0] > _STRETCHES * size)
     ]
     if hidden:
         ends = {name: value[value > 0.0] for name, value in stiffness.items() if np.any(value > 0.0)}
@@ -410,7 +428,7 @@ def _inertia(mechanism: Mechanism, stage: _Stage, masses: Masses) -> dict[str, C
         own = _by_part(mass, stage.assembly)
         require(_endless(stage.assembly, own, "inertia"))
         for name, matrix in own.items():
-            result[_of_link(name)] = Contribution(np.concatenate(_broadcast(stage.ends[name]), axis=-2), matrix)
+            result[_of_link(name)] = Contribution(_with_inner(stage.order, name, stage.ends[name]), matrix)
     return result
 
 
@@ -424,7 +442,8 @@ def _carrier_forces(stage: _Stage, inertia: Mapping[str, Contribution]) -> Array
     seen = {name: stage.rigid[..., stage.order.columns(name), :] for name in stage.order.bodies}
     for name, link in stage.assembly.links.items():
         carry = twist_transform(link.frame, centre)
-        seen[_of_link(name)] = np.concatenate([carry, carry], axis=-2)
+        still = np.zeros((*carry.shape[:-2], stage.order.inner.get(name, 0), 6))
+        seen[_of_link(name)] = np.concatenate([carry, carry, still], axis=-2)
     return strain_forces(inertia, seen) if inertia else np.zeros((stage.order.size, 6))
 
 
@@ -442,7 +461,8 @@ def _inputs(stage: _Stage, driven: Array | None) -> tuple[Array, dict[str, Array
     drives = stage.assembly.actuators
     wrenches = [_transpose(rows) for rows in place_twists(wrench_places(stage.assembly), stage.motions)]
     columns = _broadcast((np.zeros((stage.order.size, len(drives))), *wrenches))
-    imposed = imposed_strokes(stage.assembly, dict.fromkeys(drives.values(), _STRETCHED))
+    stretched = {link: np.append(_STRETCHED, np.zeros(stage.order.inner.get(link, 0))) for link in drives.values()}
+    imposed = imposed_strokes(stage.assembly, stretched)
     if driven is not None:
         imposed = {name: imposed.get(name, 0.0) - item.operator @ driven for name, item in stage.strains.items()}
     return np.concatenate(columns, axis=-1), imposed
@@ -453,8 +473,8 @@ def _outputs(stage: _Stage, imposed: Mapping[str, Array]) -> tuple[Array, Array]
     inputs = len(input_channels(stage.assembly))
     passed = [np.zeros((row.shape[-2], inputs)) for row in rows]
     for name, item in stage.strains.items():
-        rows.append(item.law @ item.operator)
-        passed.append(-item.law @ imposed[name] if name in imposed else np.zeros((6, inputs)))
+        rows.append(item.law[..., :6, :] @ item.operator)
+        passed.append(-item.law[..., :6, :] @ imposed[name] if name in imposed else np.zeros((6, inputs)))
     return np.concatenate(_broadcast(tuple(rows)), axis=-2), np.concatenate(_broadcast(tuple(passed)), axis=-2)
 
 

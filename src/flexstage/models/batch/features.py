@@ -56,7 +56,8 @@ class Feature:
 class Topology:
     """Who is joined to whom: `links` are (part, first body, second body), bodies by number, the platform first.
 
-    `locked` says that some link locks freedoms, or leaves some without stiffness: then bodies do not move freely as six coordinates each.
+    `locked` says that some link locks freedoms, leaves some without stiffness or has inner coordinates: then the coordinates are not six
+    free ones a body.
     """
 
     bodies: tuple[str, ...]
@@ -101,7 +102,7 @@ def topology(assembly: Assembly) -> Topology:
     parts = _distinct(assembly)
     links = tuple((_number(parts, link), numbers[link.joins[0]], numbers[link.joins[1]]) for link in assembly.links.values())
     laws = [law_and_mass(link.part, link.material)[0] for link in parts.values()]
-    loose = any(bool(item.locked) or not np.all(np.any(np.real(item.stiffness) != 0.0, axis=-1)) for item in laws)
+    loose = any(bool(item.locked) or item.inner is not None or not np.all(np.any(np.real(item.stiffness) != 0.0, axis=-1)) for item in laws)
     return Topology(bodies, links, len(parts), loose)
 
 
