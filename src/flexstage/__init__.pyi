@@ -121,6 +121,15 @@ from flexstage.parts.body import (
     Inertia as Inertia,
     Payload as Payload,
 )
+from flexstage.parts.cartwheel import (
+    Cartwheel as Cartwheel,
+)
+from flexstage.parts.cross_hinge import (
+    CrossHinge as CrossHinge,
+)
+from flexstage.parts.folded_leaf import (
+    FoldedLeaf as FoldedLeaf,
+)
 from flexstage.parts.freedom import (
     Freedom as Freedom,
 )

@@ -91,6 +91,15 @@ def test_check_analyse_and_schema_know_it(work, package):
     assert known["Encoder"]["properties"]["kind"] == {"const": "encoder"}
 
 
+def test_its_compound_is_its_members(work, package):
+    pair = SMALL.replace('kind = "taper"', 'kind = "blade_pair"\ndistance = "50 mm"').replace('end_thickness = "3 mm"\n', "")
+    pair = pair[: pair.index("left = ")] + 'pair = { joins = ["ground", "platform"], part = "leaf", at = ["0 mm", "27.5 mm", "0 mm"], '
+    (work / "pair.toml").write_text(f'{pair}along = "-y", bends = "z" }}\n')
+    told = flexstage(work, "check", "pair.toml", path=package)
+    assert "2 leaf" in told
+    assert "no findings" in told
+
+
 def test_a_sweep_in_two_processes_asks_its_law_and_its_measure(work, package):
     for workers in ("1", "2"):
         flexstage(work, "sweep", "study.toml", "-o", f"{workers}.h5", "--workers", workers, "--json", f"{workers}.json", path=package)

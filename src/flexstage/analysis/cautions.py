@@ -36,7 +36,7 @@ from flexstage.models.linear.model import LinearModel
 from flexstage.models.lumped import lumped
 from flexstage.parts.body import Body
 from flexstage.parts.given import Given, Joint
-from flexstage.parts.part import Restricted, material_of
+from flexstage.parts.part import Part, Restricted, material_of
 from flexstage.parts.piezo import Piezo
 from flexstage.parts.plausible import implausible
 
@@ -193,7 +193,7 @@ def _catalogue_items(mechanism: Mechanism) -> Iterator[tuple[str, Any]]:
     for name in ("materials", "parts", "sensors", "payloads"):
         yield from ((f"{name}.{key}", item) for key, item in getattr(mechanism, name).items())
     for link in expand(mechanism).links.values():
-        if link.part != mechanism.parts[link.link.part]:
+        if link.described.part != mechanism.parts[link.link.part]:
             yield link.name, link.part
     for where, body in _drawn_bodies(mechanism).items():
         yield where, body
@@ -336,12 +336,12 @@ def part_cautions(mechanism: Mechanism) -> tuple[Finding, ...]:
 
 def _validity(mechanism: Mechanism) -> Iterator[Finding]:
     shared = mechanism.parts
-    told: set[str] = set()
+    told: set[tuple[str, Part]] = set()
     for link in expand(mechanism).links.values():
-        departs = link.part != shared[link.link.part]
+        departs = link.described.part != shared[link.link.part]
         where = link.name if departs else f"parts.{link.link.part}"
-        if where not in told:
-            told.add(where)
+        if (where, link.part) not in told:
+            told.add((where, link.part))
             yield from validity(link.part, where).findings
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, fields, replace
 from functools import cached_property, lru_cache
 from typing import TypeAlias
@@ -17,10 +17,11 @@ from flexstage.mechanism.misalignment import MISALIGNED, misalign
 from flexstage.mechanism.path import complete, replace_member
 from flexstage.mechanism.pattern import Facing, Pattern, Polar
 from flexstage.parts.body import Body, Solid, owner_of, solid_frame
+from flexstage.parts.compound import FIRST, SECOND, Composition, Compound
 from flexstage.parts.gauge import DisplacementGauge, Positive
 from flexstage.parts.mass import MassProperties, combine, drawn_solids, mass_properties, union_properties, within
 from flexstage.parts.material import Material
-from flexstage.parts.part import Part, is_actuator, material_of
+from flexstage.parts.part import Part, Restricted, inner, is_actuator, material_of
 from flexstage.spatial.frame import Frame, axes, identity, turn_z
 
 _Copy: TypeAlias = tuple[str, str, Frame]
@@ -62,7 +63,8 @@ class PlacedBody:
 class PlacedLink:
     """A link of the expanded stage: bodies joined by name, the part with its departures applied, the link frame in the stage's frame.
 
-    `drawn` is its address in the description (`horizontal/front`), `name` that of this copy (`B1/front`).
+    `drawn` is its address in the description (`horizontal/front`), `name` that of this copy (`B1/front`). A link that stands for a member
+    of a compound (`B1/pivot.left`) is `of` the one that the description has (`B1/pivot`).
     """
 
     name: str
@@ -72,6 +74,12 @@ class PlacedLink:
     part: Part
     material: Material | None
     frame: Frame
+    of: PlacedLink | None = None
+
+    @property
+    def described(self) -> PlacedLink:
+        """The link as the description has it: itself, or the one whose part it is a member of."""
+        return self.of or self
 
 
 @dataclass(frozen=True, eq=False)
@@ -168,10 +176,12 @@ class _Same:
 def _assembly(key: _Same) -> Assembly:
     """The assembly, kept for the next model or analysis of the same description: each of them asks for it."""
     mechanism = key.mechanism
-    require(_unknown_names(mechanism))
+    require([*_unknown_names(mechanism), *compound_findings(mechanism)])
     placed = tuple(copies(mechanism))
-    links = {link.name: link for link in _links(mechanism, placed)}
-    drawn = tuple(_bodies(mechanism, placed))
+    described = tuple(_links(mechanism, placed))
+    compositions = _compositions(described)
+    links = {link.name: link for whole in described for link in _members(mechanism, whole, compositions.get(id(whole.part)))}
+    drawn = (*_bodies(mechanism, placed), *_inner_bodies(mechanism, described, compositions))
     lent = _by_owner(drawn)
     bodies = {
         item.name: _placed_body((item, *lent.get(item.name, ())), links, mechanism.materials) for item in drawn if item.body.of is None
@@ -296,6 +306,61 @@ def _links(mechanism: Mechanism, placed: tuple[_Copy, ...]) -> Iterator[PlacedLi
             ends = [body if body not in own else own[body].of or f"{copy}/{body}" for body in drawn.link.joins]
             first, second = (owner_of(mechanism.bodies, end) for end in ends)
             yield _placed_link(mechanism, drawn, frame, f"{copy}/{name}", (first, second))
+
+
+def compound_findings(mechanism: Mechanism) -> Iterator[Finding]:
+    """Restrictions of compounds, and links that state the freedoms of one: their members are what has freedoms.
+
+    >>> list(compound_findings(Mechanism("")))
+    []
+    """
+    advice = "State it of the members: draw them as links of their own"
+    compounds = {name for name, part in mechanism.parts.items() if isinstance(inner(part), Compound)}
+    drawn = [(f"links.{name}", link) for name, link in mechanism.links.items()]
+    drawn += [(f"units.{unit}.links.{name}", link) for unit, item in mechanism.units.items() for name, link in item.links.items()]
+    for name in sorted(compounds):
+        if isinstance(mechanism.parts[name], Restricted):
+            yield Finding(f"parts.{name}", "it restricts a part that consists of several", advice)
+    for where, link in drawn:
+        if link.free is not None and link.part in compounds:
+            yield Finding(f"{where}.free", f"part {link.part} consists of several, each with freedoms of its own", advice)
+
+
+def _compositions(links: Iterable[PlacedLink]) -> dict[int, Composition]:
+    """What the compounds among the parts of links consist of, by their identity: copies of one part share its members."""
+    parts = {id(link.part): link.part for link in links}
+    return {key: part.composition for key, part in parts.items() if isinstance(part, Compound)}
+
+
+def _members(mechanism: Mechanism, whole: PlacedLink, composition: Composition | None) -> Iterator[PlacedLink]:
+    """The links that stand for one of the description: its members, else itself."""
+    if composition is None:
+        yield whole
+        return
+    ends = {FIRST: whole.joins[0], SECOND: whole.joins[1]}
+    for name, member in composition.members.items():
+        first, second = (ends.get(body) or f"{whole.name}.{body}" for body in member.joins)
+        frame = Frame(axes(member.along, member.bends), stack(member.at)).within(whole.frame)
+        material = material_of(member.part)
+        yield PlacedLink(
+            f"{whole.name}.{name}",
+            f"{whole.drawn}.{name}",
+            (first, second),
+            replace(whole.link, joins=(first, second)),
+            member.part,
+            mechanism.materials[material] if material else None,
+            frame,
+            whole,
+        )
+
+
+def _inner_bodies(mechanism: Mechanism, links: Iterable[PlacedLink], compositions: Mapping[int, Composition]) -> Iterator[_DrawnBody]:
+    """The bodies within compounds."""
+    for whole in links:
+        if (composition := compositions.get(id(whole.part))) is not None:
+            for name, body in composition.bodies.items():
+                own = mass_properties(body, mechanism.materials, f"{whole.name}.{name}")
+                yield _DrawnBody(f"{whole.name}.{name}", body, own, whole.frame, whole.frame)
 
 
 def _drawn_links(owner: str, links: Mapping[str, Link]) -> dict[str, _DrawnLink]:

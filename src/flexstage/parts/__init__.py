@@ -1,6 +1,9 @@
 """What a stage is made of: data, intended freedoms and profiles; no stiffness, no CAD."""
 
 from flexstage.base.register import Register
+from flexstage.parts.cartwheel import Cartwheel
+from flexstage.parts.cross_hinge import CrossHinge
+from flexstage.parts.folded_leaf import FoldedLeaf
 from flexstage.parts.gauge import DisplacementGauge, Gauge
 from flexstage.parts.given import Given
 from flexstage.parts.leaf import Leaf
@@ -10,8 +13,11 @@ from flexstage.parts.piezo import Piezo
 from flexstage.parts.rod import Rod
 from flexstage.parts.shape import Elastic
 
-PARTS: Register[type[Elastic]] = Register("flexstage.parts", {part.kind: part for part in (Notch, Neck, Leaf, Rod, Given, Piezo)})
-"""Kinds of parts that have a stiffness of their own."""
+_COMPOUNDS = (CrossHinge, Cartwheel, FoldedLeaf)
+PARTS: Register[type[Elastic]] = Register(
+    "flexstage.parts", {part.kind: part for part in (Notch, Neck, Leaf, Rod, Given, Piezo, *_COMPOUNDS)}
+)
+"""Kinds of parts that have a stiffness of their own, or whose members have."""
 
 GAUGES: Register[type[DisplacementGauge]] = Register("flexstage.gauges", {Gauge.kind: Gauge})
 """Kinds of gauges; one that states no kind is a `Gauge`."""

@@ -77,6 +77,11 @@ class Elastic(Description):
         """Which of its numbers must be below which others."""
         yield from ()
 
+    @property
+    def is_round(self) -> bool:
+        """Whether it behaves alike in all directions across its axis, so that links need not say which way it bends."""
+        return True
+
 
 class Shaped(Elastic):
     """A part with a shape: x along it, its centre at the origin, alike on both sides of its three planes.
@@ -87,6 +92,11 @@ class Shaped(Elastic):
 
     material: str
     slender: ClassVar[bool] = False
+
+    @property
+    def is_round(self) -> bool:
+        """Whether its throat is."""
+        return self.throat.is_round
 
     @property
     def span(self) -> Number:

@@ -20,6 +20,7 @@ from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import Link, Mechanism
 from flexstage.mechanism.store import loads
 from flexstage.mechanism.store.stand_in import KEPT, StandIn, write_stand_ins
+from flexstage.parts.compound import Compound
 from flexstage.parts.given import Given, Origin
 from flexstage.solid.fea.hinge_form import LEAVE, NO_ESTIMATE
 from flexstage.solid.hinges import STANDARD_HINGES, Hinges, SolidHinge, solid_hinges
@@ -50,11 +51,12 @@ class Calibration(InNotebook):
 def calibrate(text: str, compute: Hinges = STANDARD_HINGES, *, where: str = "text") -> Calibration:
     """Compute the 6x6 of every distinct hinge in a design file's text and put them in, comments kept.
 
-    Raises `DesignError` for hinges that are calibrated already, that single copies depart from, or whose 6x6 FEA could not find.
+    Raises `DesignError` for hinges that are calibrated already, that single copies depart from, that are members of a compound, or whose
+    6x6 FEA could not find.
     """
     mechanism = loads(text, where=where)
     require(_refuse_calibrated(mechanism))
-    require(_refuse_departures(mechanism))
+    require([*_refuse_members(mechanism), *_refuse_departures(mechanism)])
     found = solid_hinges(mechanism, compute)
     parts = stand_ins(found)
     errors = max(hinge.found.error for hinge in found.values())
@@ -98,7 +100,7 @@ def _doubt(name: str, error: float | None) -> Finding:
 
 
 def substitute_parts(mechanism: Mechanism, found: Mapping[str, SolidHinge]) -> Mechanism:
-    """The stage with the computed hinges as given parts, those of which no copy departs.
+    """The stage with the computed hinges as given parts, those of which no copy departs; members of compounds stay as they are drawn.
 
     Raises `DesignError` where copies depart from a shared hinge.
 
@@ -107,6 +109,7 @@ def substitute_parts(mechanism: Mechanism, found: Mapping[str, SolidHinge]) -> M
     True
     """
     require(_refuse_departures(mechanism))
+    found = {name: hinge for name, hinge in found.items() if not isinstance(mechanism.parts[hinge.shared], Compound)}
     parts = stand_ins(found)
     kept = {hinge.shared + KEPT: hinge.form.part for hinge in found.values()}
     others = {name: part for name, part in mechanism.parts.items() if name + KEPT not in kept}
@@ -125,10 +128,15 @@ def _refuse_calibrated(mechanism: Mechanism) -> Iterator[Finding]:
         yield Finding(f"parts.{name}", "its 6x6 is of FEA origin already", "Calibrate the file that it was made from")
 
 
+def _refuse_members(mechanism: Mechanism) -> Iterator[Finding]:
+    for name in {link.link.part: link for link in expand(mechanism).links.values() if link.of is not None}:
+        what = "it consists of several hinges: no 6x6 can stand for one of them"
+        yield Finding(f"parts.{name}", what, "Draw them as links of their own to calibrate them")
+
+
 def _refuse_departures(mechanism: Mechanism) -> Iterator[Finding]:
     for link in expand(mechanism).links.values():
-        shared = mechanism.parts[link.link.part]
-        if link.part != shared:
+        if link.described.part != mechanism.parts[link.link.part]:
             yield Finding(link.name, f"departs from its part {link.link.part}, whose 6x6 is shared", "Give that link a part of its own")
 
 

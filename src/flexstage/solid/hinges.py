@@ -141,7 +141,8 @@ def distinct_hinges(mechanism: Mechanism) -> dict[str, DistinctHinge]:
     for link in assembly.links.values():
         if isinstance(link.part, Shaped) and link.material is not None:
             form = HingeForm(link.part, link.material, roots_of(assembly, link))
-            key = f"{digest(form.part, physics=True)} {digest(form.material, physics=True)} {form.roots}"
+            whole = "" if link.of is None else link.link.part
+            key = f"{digest(form.part, physics=True)} {digest(form.material, physics=True)} {form.roots} {whole}"
             forms[key] = form
             alike.setdefault(key, []).append(link)
     links = {key: tuple(dict.fromkeys(link.drawn for link in each)) for key, each in alike.items()}
@@ -151,10 +152,10 @@ def distinct_hinges(mechanism: Mechanism) -> dict[str, DistinctHinge]:
 
 def _name(shape: Mechanism, links: list[PlacedLink], everything: list[list[PlacedLink]]) -> str:
     first = links[0]
-    if first.part != shape.parts[first.link.part]:
+    if first.described.part != shape.parts[first.link.part]:
         return first.name
     others = [each[0] for each in everything if each is not links and each[0].link.part == first.link.part]
-    same = [other for other in others if other.part == first.part]
+    same = [other for other in others if other.described.part == first.described.part]
     if not same:
         return first.link.part
     unit, _, link = first.drawn.rpartition("/")

@@ -17,6 +17,7 @@ from flexstage.mechanism.checks.name import copy_findings, name_findings
 from flexstage.mechanism.checks.orientation import orientation_findings
 from flexstage.mechanism.checks.provenance import change_findings, tag_findings
 from flexstage.mechanism.checks.value import value_findings
+from flexstage.mechanism.expand import compound_findings
 from flexstage.mechanism.mechanism import Mechanism
 
 __all__ = ["check", "copy_findings", "package_findings", "require_valid"]
@@ -36,7 +37,7 @@ def check(mechanism: Mechanism) -> tuple[Finding, ...]:
             return findings
     if findings := tuple(package_findings(mechanism.packages)):
         return findings
-    names = tuple(name_findings(mechanism))
+    names = (*name_findings(mechanism), *compound_findings(mechanism))
     changes = tuple(change_findings(mechanism))
     sound = mechanism if not changes else replace(mechanism, changes=Table({}))
     values = tuple(value_findings(sound))

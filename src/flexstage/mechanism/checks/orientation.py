@@ -15,7 +15,6 @@ from flexstage.parts.body import Body, Cylinder
 from flexstage.parts.freedom import Freedom
 from flexstage.parts.given import Given, Joint
 from flexstage.parts.part import Part, Restricted
-from flexstage.parts.shape import Shaped
 
 _TOLERANCE = np.deg2rad(0.1)
 """Directions written with three digits are perpendicular to this; frames are then made exactly so."""
@@ -63,7 +62,7 @@ def is_round(part: Part, free: tuple[Freedom, ...] | None = None) -> bool:
         return _even(part.free)
     if isinstance(part, Given):
         return _even(part.free) and _turns_into_itself(part)
-    return not isinstance(part, Shaped) or part.throat.is_round
+    return part.is_round
 
 
 def _even(freedoms: tuple[Freedom, ...]) -> bool:

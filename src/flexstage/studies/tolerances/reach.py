@@ -12,6 +12,7 @@ from flexstage.mechanism.locate import Place, locate, unit_of_copy
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.misalignment import MISALIGNED
 from flexstage.mechanism.node import NumberNode, VectorNode
+from flexstage.parts.compound import Compound
 from flexstage.parts.leaf import Leaf
 from flexstage.parts.neck import Neck
 from flexstage.parts.notch import Notch
@@ -20,14 +21,14 @@ from flexstage.parts.piezo import Piezo
 from flexstage.parts.rod import Rod
 
 KINDS: Mapping[str, tuple[type, ...]] = {
-    "hinges": (Notch, Neck, Leaf),
+    "hinges": (Notch, Neck, Leaf, Compound),
     "notches": (Notch,),
     "necks": (Neck,),
     "leaves": (Leaf,),
     "rods": (Rod,),
     "stacks": (Piezo,),
 }
-"""Kinds of parts that an entry may name: `hinges.thickness` is that of every notch, neck and leaf."""
+"""Kinds of parts that an entry may name: `hinges.thickness` is that of every notch, neck, leaf and compound hinge."""
 PLACED = ("units", "gauges")
 """Kinds that stand somewhere: `units.shift` is that of every copy of a unit."""
 
@@ -55,7 +56,7 @@ def reach(design: Mechanism, source: str) -> Reached:
     """
     shared: dict[str, str] = {}
     components: dict[str, list[str]] = {}
-    links = tuple(expand(design).links.values())
+    links = _described(design)
     for address in _addresses(design, source.strip()):
         for component, number in _numbers(design, address):
             components.setdefault(component, []).extend(_copies(design, locate(design, number), links, shared))
@@ -85,6 +86,11 @@ def _addresses(design: Mechanism, source: str) -> tuple[str, ...]:
     return (source,)
 
 
+def _described(design: Mechanism) -> tuple[PlacedLink, ...]:
+    """The links of all copies as the description has them, compounds whole."""
+    return tuple(dict.fromkeys(link.described for link in expand(design).links.values()))
+
+
 def _standing(design: Mechanism, owner: str) -> tuple[str, ...]:
     """The copies that a kind, a unit or a pattern means."""
     copies = unit_of_copy(design)
@@ -98,7 +104,7 @@ def _standing(design: Mechanism, owner: str) -> tuple[str, ...]:
 
 
 def _of_links(design: Mechanism, source: str, wanted: Callable[[PlacedLink], bool], rest: str) -> tuple[str, ...]:
-    links = [link for link in expand(design).links.values() if wanted(link)]
+    links = [link for link in _described(design) if wanted(link)]
     if not links:
         raise refuse(source, "the design has none of this kind", f"Name parts that it has: {', '.join(design.parts)}")
     return _stated_addresses(design, source, (f"{_home(link)}.{rest}" for link in links))

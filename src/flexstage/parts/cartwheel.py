@@ -1,0 +1,72 @@
+"""Cartwheel hinges: two pairs of leaves in series, which meet in a hub."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Annotated, ClassVar
+
+import numpy as np
+
+from flexstage.base.number import Number
+from flexstage.base.quantity import ANGLE, LENGTH, MASS, NOT_NEGATIVE, POSITIVE
+from flexstage.parts.body import Body, Inertia
+from flexstage.parts.compound import FIRST, SECOND, Composition, Compound, Member, radial_leaf
+from flexstage.parts.freedom import Freedom
+from flexstage.parts.leaf import Leaf, LeafSection
+from flexstage.parts.shape import Order
+
+
+@dataclass(frozen=True, eq=False)
+class Cartwheel(Compound):
+    """Four leaves of `length` like spokes, two from the first body to a hub and two from there to the second; it turns about z.
+
+    The link's origin is the hub's middle, x points from the first body to the second and halves both pairs, `angle` is that between the
+    leaves of a pair. The leaves end on the hub's `hub_diameter`. The hub is rigid; its `hub_mass` is that of a disc of this diameter and as
+    wide as the leaves: I_z = m d^2 / 8, I_x = I_y = m (d^2 / 16 + b^2 / 12).
+    """
+
+    kind: ClassVar[str] = "cartwheel"
+    material: str
+    length: Annotated[Number, LENGTH, POSITIVE]
+    thickness: Annotated[Number, LENGTH, POSITIVE]
+    width: Annotated[Number, LENGTH, POSITIVE]
+    angle: Annotated[Number, ANGLE, POSITIVE]
+    hub_diameter: Annotated[Number, LENGTH, NOT_NEGATIVE] = 0.0
+    hub_mass: Annotated[Number, MASS, NOT_NEGATIVE] | None = None
+    section: LeafSection = LeafSection.PLATE
+
+    @property
+    def intended(self) -> tuple[Freedom, ...]:
+        """The rotation about z."""
+        return (Freedom.RZ,)
+
+    @property
+    def composition(self) -> Composition:
+        """`first_left`, `first_right`, `second_left`, `second_right` (y is left) and the `hub`."""
+        along, across = np.cos(0.5 * self.angle), np.sin(0.5 * self.angle)
+        centre = 0.5 * (self.hub_diameter + self.length)
+        leaf = Leaf(self.material, self.length, self.thickness, self.width, self.section)
+
+        def spoke(side: float) -> Member:
+            return radial_leaf(leaf, ("hub", SECOND), (along, side * across), centre=centre)
+
+        def inward(side: float) -> Member:
+            return radial_leaf(leaf, (FIRST, "hub"), (along, side * across), centre=-centre)
+
+        members = {"first_left": inward(-1.0), "first_right": inward(1.0), "second_left": spoke(1.0), "second_right": spoke(-1.0)}
+        return Composition(members, {"hub": self._hub})
+
+    @property
+    def _hub(self) -> Body:
+        if self.hub_mass is None:
+            return Body(reference=(0.0, 0.0, 0.0))
+        squared, across = self.hub_diameter * self.hub_diameter, self.width * self.width / 12.0
+        tilting = self.hub_mass * (squared / 16.0 + across)
+        return Body(mass=self.hub_mass, inertia=Inertia(tilting, tilting, self.hub_mass * squared / 8.0))
+
+    @property
+    def orders(self) -> Iterator[Order]:
+        """Its leaves are thinner than wide, and each pair points one way."""
+        yield Order("angle", self.angle, np.pi, "a straight angle", "Give the angle between the leaves of a pair", ANGLE)
+        yield Order("thickness", self.thickness, self.width, "the width", "Exchange them, or turn the link's bends")

@@ -1,0 +1,69 @@
+"""Cross hinges: leaves that cross at an angle, in planes side by side."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Annotated, ClassVar
+
+import numpy as np
+
+from flexstage.base.number import Number
+from flexstage.base.quantity import ANGLE, LENGTH, POSITIVE, RATIO
+from flexstage.parts.compound import FIRST, SECOND, Composition, Compound, Member, radial_leaf
+from flexstage.parts.freedom import Freedom
+from flexstage.parts.leaf import Leaf, LeafSection
+from flexstage.parts.shape import Order
+
+
+@dataclass(frozen=True, eq=False)
+class CrossHinge(Compound):
+    """A cross-axis pivot: two leaves that cross at an `angle`, each of `length` from body to body; it turns about z where they cross.
+
+    The link's origin is the crossing, x the bisector of both leaves. `crossing` is the way from the first body to the crossing over the
+    length (Wittrick's lambda); `spacing` the distance along z between the middle planes of neighbouring leaves. With a `middle_width` it
+    has three leaves: two of `width` on either side of a middle one of that width, so that it is alike above and below.
+    """
+
+    kind: ClassVar[str] = "cross_hinge"
+    material: str
+    length: Annotated[Number, LENGTH, POSITIVE]
+    thickness: Annotated[Number, LENGTH, POSITIVE]
+    width: Annotated[Number, LENGTH, POSITIVE]
+    spacing: Annotated[Number, LENGTH, POSITIVE]
+    angle: Annotated[Number, ANGLE, POSITIVE] = 0.5 * np.pi
+    crossing: Annotated[Number, RATIO] = 0.5
+    middle_width: Annotated[Number, LENGTH, POSITIVE] | None = None
+    section: LeafSection = LeafSection.PLATE
+
+    @property
+    def intended(self) -> tuple[Freedom, ...]:
+        """The rotation about z."""
+        return (Freedom.RZ,)
+
+    @property
+    def composition(self) -> Composition:
+        """`left` and `right`, which run to the left and to the right of x; of three, `left_low`, `left_high` and `right` between them."""
+        along, across = np.cos(0.5 * self.angle), np.sin(0.5 * self.angle)
+        centre = (0.5 - self.crossing) * self.length
+        leaf = Leaf(self.material, self.length, self.thickness, self.width, self.section)
+
+        def member(part: Leaf, side: float, height: Number) -> Member:
+            return radial_leaf(part, (FIRST, SECOND), (along, side * across), centre=centre, height=height)
+
+        if self.middle_width is None:
+            return Composition({"left": member(leaf, 1.0, -0.5 * self.spacing), "right": member(leaf, -1.0, 0.5 * self.spacing)})
+        middle = Leaf(self.material, self.length, self.thickness, self.middle_width, self.section)
+        outer = {"left_low": member(leaf, 1.0, -self.spacing), "left_high": member(leaf, 1.0, self.spacing)}
+        return Composition({**outer, "right": member(middle, -1.0, 0.0)})
+
+    @property
+    def orders(self) -> Iterator[Order]:
+        """Its leaves are thinner than wide, cross, and are clear of one another."""
+        yield Order("angle", self.angle, np.pi, "a straight angle", "Give the angle between the leaves", ANGLE)
+        yield Order("thickness", self.thickness, self.width, "the width", "Exchange them, or turn the link's bends")
+        middle = self.width if self.middle_width is None else self.middle_width
+        yield Order("thickness", self.thickness, middle, "the middle width", "Make the middle leaf wider")
+        yield Order(
+            "width", 0.5 * (self.width + middle), self.spacing, "the spacing", "Leaves side by side need room: space them", strict=False
+        )

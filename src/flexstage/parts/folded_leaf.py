@@ -1,0 +1,60 @@
+"""Folded leaves: two leaves in series at a right angle."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import Annotated, ClassVar
+
+from flexstage.base.number import Number
+from flexstage.base.quantity import LENGTH, POSITIVE
+from flexstage.parts.body import Block, Body
+from flexstage.parts.compound import FIRST, SECOND, Composition, Compound, radial_leaf
+from flexstage.parts.freedom import Freedom, others
+from flexstage.parts.leaf import Leaf, LeafSection
+from flexstage.parts.shape import Order
+
+
+@dataclass(frozen=True, eq=False)
+class FoldedLeaf(Compound):
+    """A leaf folded at a right angle: it holds along its fold, z, alone.
+
+    The link's origin is the fold. The first leaf of `length` comes along x from the first body, the second of `second_length` (absent: as
+    long) leaves along y to the second. Lengths are those of the leaves; `corner` is the side of the solid square that they end on (absent:
+    they meet at the fold, which is stiff and has no mass).
+    """
+
+    kind: ClassVar[str] = "folded_leaf"
+    material: str
+    length: Annotated[Number, LENGTH, POSITIVE]
+    thickness: Annotated[Number, LENGTH, POSITIVE]
+    width: Annotated[Number, LENGTH, POSITIVE]
+    second_length: Annotated[Number, LENGTH, POSITIVE] | None = None
+    corner: Annotated[Number, LENGTH, POSITIVE] | None = None
+    section: LeafSection = LeafSection.PLATE
+
+    @property
+    def intended(self) -> tuple[Freedom, ...]:
+        """All but the translation along the fold."""
+        return others((Freedom.Z,))
+
+    @property
+    def composition(self) -> Composition:
+        """`inner` from the first body to the `fold`, `outer` from there to the second."""
+        first = Leaf(self.material, self.length, self.thickness, self.width, self.section)
+        second = first if self.second_length is None else replace(first, length=self.second_length)
+        half = 0.0 if self.corner is None else 0.5 * self.corner
+        inner = radial_leaf(first, (FIRST, "fold"), (1.0, 0.0), centre=-half - 0.5 * first.length)
+        outer = radial_leaf(second, ("fold", SECOND), (0.0, 1.0), centre=half + 0.5 * second.length)
+        return Composition({"inner": inner, "outer": outer}, {"fold": self._fold})
+
+    @property
+    def _fold(self) -> Body:
+        solids = {} if self.corner is None else {"corner": Block(self.material, (self.corner, self.corner, self.width))}
+        return Body(solids, reference=(0.0, 0.0, 0.0))
+
+    @property
+    def orders(self) -> Iterator[Order]:
+        """Its leaves are thinner than wide, and no thicker than the corner."""
+        yield Order("thickness", self.thickness, self.width, "the width", "Exchange them, or turn the link's bends")
+        yield Order("thickness", self.thickness, self.corner, "the corner", "Make the corner larger", strict=False)
