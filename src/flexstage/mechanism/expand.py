@@ -10,21 +10,23 @@ from typing import TypeAlias
 
 import numpy as np
 
-from flexstage.base.finding import Finding, require, suggest_nearest
+from flexstage.base.finding import Finding, refuse, require, suggest_nearest
 from flexstage.base.number import Array, Number, Table, stack
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Link, Mechanism, Probe
 from flexstage.mechanism.misalignment import MISALIGNED, misalign
 from flexstage.mechanism.path import complete, replace_member
-from flexstage.mechanism.pattern import Facing, Pattern, Polar
+from flexstage.mechanism.pattern import Facing, Normal, Pattern, Polar
 from flexstage.parts.body import Body, Solid, owner_of, solid_frame
 from flexstage.parts.compound import FIRST, SECOND, Composition, Compound
 from flexstage.parts.gauge import DisplacementGauge, Positive
 from flexstage.parts.mass import MassProperties, combine, drawn_solids, mass_properties, union_properties, within
 from flexstage.parts.material import Material
 from flexstage.parts.part import Part, Restricted, inner, is_actuator, material_of
-from flexstage.spatial.frame import Frame, axes, identity, turn_z
+from flexstage.spatial.frame import Frame, axes, identity, reflection, turn_z
 
 _Copy: TypeAlias = tuple[str, str, Frame]
+NO_IMAGE = ("the mirror image of its part is not known", "Draw the other side in a unit of its own, or mirror a unit without it")
+"""What is said of a link in a mirrored copy whose part does not say what it looks like there, and advice."""
 _LINK_FIELDS = frozenset(field.name for field in fields(Link))
 
 
@@ -133,9 +135,14 @@ def copy_frames(pattern: Pattern, count: int) -> tuple[Frame, ...]:
     [[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]]
     """
     if not isinstance(pattern, Polar):
-        return (Frame(axes(pattern.along, pattern.up), stack(pattern.at)),) * count
+        return (_reflect(Frame(axes(pattern.along, pattern.up), stack(pattern.at)), pattern.mirror),) * count
     step = pattern.step if pattern.step is not None else 2.0 * np.pi / count
-    return tuple(_polar_frame(pattern, pattern.first + number * step) for number in range(count))
+    return tuple(_reflect(_polar_frame(pattern, pattern.first + number * step), pattern.mirror) for number in range(count))
+
+
+def _reflect(frame: Frame, mirror: Normal | None) -> Frame:
+    """The frame, or its image in the stage's plane of that normal."""
+    return frame if mirror is None else frame.within(reflection("xyz".index(mirror.value)))
 
 
 def _polar_frame(pattern: Polar, angle: Number) -> Frame:
@@ -234,6 +241,29 @@ def copies(mechanism: Mechanism) -> Iterator[tuple[str, str, Frame]]:
             yield name, placement.unit, misalign(frame, mechanism.changes, name)
 
 
+def placed_bodies(mechanism: Mechanism) -> dict[str, Body]:
+    """Every body by the name that links, gauges and loads call it by: those of the stage, and `copy/body` of placed units.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> list(placed_bodies(double_triangle()))[:3]
+    ['platform', 'B1/base', 'B1/tip']
+    """
+    drawn = {name: unit.bodies for name, unit in mechanism.units.items()}
+    placed = [(copy, drawn.get(placement.unit, {})) for key, placement in mechanism.place.items() for copy in copy_names(key)]
+    return dict(mechanism.bodies) | {f"{copy}/{name}": body for copy, bodies in placed for name, body in bodies.items()}
+
+
+def joined(link: Link, bodies: Mapping[str, Body], copy: str = "", own: Iterable[str] = ()) -> tuple[str, str]:
+    """The bodies that move at a link's ends, owners in the places of bodies that are `of` them; `own` are those of its unit.
+
+    >>> strut = Link(("pad", "W/slide"), "wire", at=(0.0, 0.0, 0.0), along=(1.0, 0.0, 0.0))
+    >>> joined(strut, {"pad": Body(of="ground"), "W/slide": Body()})
+    ('ground', 'W/slide')
+    """
+    first, second = (owner_of(bodies, f"{copy}/{name}" if name in own else name) for name in link.joins)
+    return first, second
+
+
 @dataclass(frozen=True, eq=False)
 class _DrawnBody:
     """A body and its own mass properties, seen from the frame it is drawn in; `frame` is that of this copy, `aligned` as it is meant."""
@@ -251,7 +281,7 @@ class _DrawnBody:
     def solids(self) -> Iterator[tuple[str, PlacedSolid]]:
         """The outlines by address, in the stage's frame."""
         for name, solid in self.body.solids.items():
-            yield f"{self.name}.{name}", PlacedSolid(solid, solid_frame(solid).within(self.frame))
+            yield f"{self.name}.{name}", PlacedSolid(solid, solid_frame(solid).within(self.frame).right_handed)
 
 
 @dataclass(frozen=True, eq=False)
@@ -296,16 +326,14 @@ def _points(drawn: tuple[_DrawnBody, ...]) -> Iterator[tuple[str, tuple[str, Arr
 
 
 def _links(mechanism: Mechanism, placed: tuple[_Copy, ...]) -> Iterator[PlacedLink]:
+    bodies = placed_bodies(mechanism)
     for name, drawn in _drawn_links("links.", mechanism.links).items():
-        first, second = (owner_of(mechanism.bodies, body) for body in drawn.link.joins)
-        yield _placed_link(mechanism, drawn, identity(), name, (first, second))
+        yield _placed_link(mechanism, drawn, identity(), name, joined(drawn.link, bodies))
     units = {name: _drawn_links(f"{name}/", unit.links) for name, unit in mechanism.units.items()}
     for copy, unit, frame in placed:
         own = mechanism.units[unit].bodies
         for name, drawn in units[unit].items():
-            ends = [body if body not in own else own[body].of or f"{copy}/{body}" for body in drawn.link.joins]
-            first, second = (owner_of(mechanism.bodies, end) for end in ends)
-            yield _placed_link(mechanism, drawn, frame, f"{copy}/{name}", (first, second))
+            yield _placed_link(mechanism, drawn, frame, f"{copy}/{name}", joined(drawn.link, bodies, copy, own))
 
 
 def compound_findings(mechanism: Mechanism) -> Iterator[Finding]:
@@ -335,14 +363,14 @@ def _compositions(links: Iterable[PlacedLink]) -> dict[int, Composition]:
 def _members(mechanism: Mechanism, whole: PlacedLink, composition: Composition | None) -> Iterator[PlacedLink]:
     """The links that stand for one of the description: its members, else itself."""
     if composition is None:
-        yield whole
+        yield _image(whole)
         return
     ends = {FIRST: whole.joins[0], SECOND: whole.joins[1]}
     for name, member in composition.members.items():
         first, second = (ends.get(body) or f"{whole.name}.{body}" for body in member.joins)
         frame = Frame(axes(member.along, member.bends), stack(member.at)).within(whole.frame)
         material = material_of(member.part)
-        yield PlacedLink(
+        link = PlacedLink(
             f"{whole.name}.{name}",
             f"{whole.drawn}.{name}",
             (first, second),
@@ -352,6 +380,7 @@ def _members(mechanism: Mechanism, whole: PlacedLink, composition: Composition |
             frame,
             whole,
         )
+        yield _image(link)
 
 
 def _inner_bodies(mechanism: Mechanism, links: Iterable[PlacedLink], compositions: Mapping[int, Composition]) -> Iterator[_DrawnBody]:
@@ -376,6 +405,16 @@ def _placed_link(mechanism: Mechanism, drawn: _DrawnLink, outer: Frame, name: st
     material = material_of(part)
     frame = drawn.frame if link is drawn.link else _link_frame(link)
     return PlacedLink(name, drawn.address, joins, link, part, mechanism.materials[material] if material else None, frame.within(outer))
+
+
+def _image(link: PlacedLink) -> PlacedLink:
+    """The link in a right-handed frame: in a mirrored copy it is of the part's mirror image."""
+    if not link.frame.mirrored:
+        return link
+    part = link.part.mirrored
+    if part is None:
+        raise refuse(link.name, *NO_IMAGE)
+    return replace(link, part=part, frame=link.frame.right_handed)
 
 
 def apply_changes(mechanism: Mechanism, link: Link, owners: tuple[str, ...]) -> tuple[Link, Part]:
@@ -452,4 +491,4 @@ def _gauges(mechanism: Mechanism) -> Iterator[tuple[str, PlacedGauge]]:
 
 def _placed_gauge(mechanism: Mechanism, probe: Probe, name: str, frame: Frame) -> PlacedGauge:
     sign = 1.0 if probe.positive is Positive.OPENS else -1.0
-    return PlacedGauge(name, mechanism.sensors[probe.gauge], probe.body, probe.base or GROUND, frame, sign)
+    return PlacedGauge(name, mechanism.sensors[probe.gauge], probe.body, probe.base or GROUND, frame.right_handed, sign)

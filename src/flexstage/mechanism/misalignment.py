@@ -56,4 +56,4 @@ def misalign(frame: Frame, changes: Mapping[str, Any], copy: str) -> Frame:
     if not any(address.partition(".")[0] == copy for address in changes):
         return frame
     found = misalignment_of(changes, copy)
-    return Frame(np.asarray(frame.rotation) @ exponential(stack(found.rotation)), frame.point(stack(found.shift)))
+    return Frame(np.asarray(frame.rotation) @ exponential(stack(found.rotation)), frame.point(stack(found.shift)), frame.mirrored)

@@ -20,13 +20,22 @@ class Facing(Enum):
     AXIS = "axis"
 
 
+class Normal(Enum):
+    """The normal of a plane through the stage's origin that copies are mirrored in."""
+
+    X = "x"
+    Y = "y"
+    Z = "z"
+
+
 @dataclass(frozen=True, eq=False)
 class Polar(Description):
     """Copies at equal steps on a circle around the stage's z axis.
 
     `first` is the *position angle* of the first copy, counted from x towards y; `facing` the direction of each copy's x axis, then
     turned by `turn` about z. Each copy's z axis is the stage's z axis (for `Facing.AXIS`: x is up and z points inward, before `turn`).
-    `step` is the angle between copies; absent: a full circle shared by the copies.
+    `step` is the angle between copies; absent: a full circle shared by the copies. With `mirror` all copies are the images of these in
+    the stage's plane of that normal.
     """
 
     radius: Annotated[Number, LENGTH, NOT_NEGATIVE]
@@ -35,15 +44,20 @@ class Polar(Description):
     height: Annotated[Number, LENGTH] = 0.0
     turn: Annotated[Number, ANGLE] = 0.0
     step: Annotated[Number, ANGLE] | None = None
+    mirror: Normal | None = None
 
 
 @dataclass(frozen=True, eq=False)
 class Pose(Description):
-    """A single copy: its origin `at`, its x axis `along`, its z axis `up` (directions need no unit length; they must be perpendicular)."""
+    """A single copy: its origin `at`, its x axis `along`, its z axis `up` (directions need no unit length; they must be perpendicular).
+
+    With `mirror` the copy is the image of that one in the stage's plane of that normal.
+    """
 
     at: Annotated[Vector, LENGTH] = (0.0, 0.0, 0.0)
     along: Annotated[Vector, DIRECTION] = (1.0, 0.0, 0.0)
     up: Annotated[Vector, DIRECTION] = (0.0, 0.0, 1.0)
+    mirror: Normal | None = None
 
 
 Pattern: TypeAlias = Polar | Pose

@@ -50,6 +50,11 @@ class Compound(Elastic):
         return False
 
     @property
+    def mirrored(self) -> Compound:
+        """Itself: each of its members is mirrored where it stands."""
+        return self
+
+    @property
     def composition(self) -> Composition:
         """Its members and inner bodies."""
         raise NotImplementedError

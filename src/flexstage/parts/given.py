@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import Enum
 from typing import Annotated, ClassVar
+
+import numpy as np
 
 from flexstage.base.digest import DOCUMENT_ONLY, Description
 from flexstage.base.number import Number
 from flexstage.base.quantity import COMPLIANCE_MATRIX, MASS, NOT_NEGATIVE
 from flexstage.parts.freedom import Freedom
 from flexstage.parts.shape import Elastic
+from flexstage.spatial.frame import mirror
 
 
 class Origin(Enum):
@@ -43,6 +46,16 @@ class Given(Elastic):
         """The freedoms the part is meant to have."""
         return self.free
 
+    @property
+    def mirrored(self) -> Given:
+        """Its compliance with the entries reversed that tell a motion along y, or a rotation about x or z, with another one."""
+        signs = [float(sign) for sign in np.diag(mirror(1))]
+        rows = tuple(
+            tuple(one * other * entry for other, entry in zip(signs, row, strict=True))
+            for one, row in zip(signs, self.compliance, strict=True)
+        )
+        return replace(self, compliance=rows)
+
 
 @dataclass(frozen=True, eq=False)
 class Joint(Description):
@@ -55,3 +68,8 @@ class Joint(Description):
     def intended(self) -> tuple[Freedom, ...]:
         """The freedoms the joint leaves free."""
         return self.free
+
+    @property
+    def mirrored(self) -> Joint:
+        """Itself: freedoms have no sign."""
+        return self

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import ClassVar, TypeAlias
 
 from flexstage.base.digest import Description
@@ -29,6 +29,12 @@ class Restricted(Description):
         """The intended freedoms of the part, as far as they are not locked."""
         left = self.elastic + self.free
         return tuple(freedom for freedom in self.part.intended if freedom in left)
+
+    @property
+    def mirrored(self) -> Restricted | None:
+        """The part in a mirror, restricted alike."""
+        inside = self.part.mirrored
+        return None if inside is None else self if inside is self.part else replace(self, part=inside)
 
 
 Part: TypeAlias = Elastic | Joint | Restricted

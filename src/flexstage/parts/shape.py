@@ -82,6 +82,11 @@ class Elastic(Description):
         """Whether it behaves alike in all directions across its axis, so that links need not say which way it bends."""
         return True
 
+    @property
+    def mirrored(self) -> Elastic | None:
+        """The part as its own mirror across its y axis shows it; `None` where a kind does not say: then no copy of it can be mirrored."""
+        return None
+
 
 class Shaped(Elastic):
     """A part with a shape: x along it, its centre at the origin, alike on both sides of its three planes.
@@ -97,6 +102,11 @@ class Shaped(Elastic):
     def is_round(self) -> bool:
         """Whether its throat is."""
         return self.throat.is_round
+
+    @property
+    def mirrored(self) -> Elastic | None:
+        """Itself: it is alike on both sides."""
+        return self
 
     @property
     def span(self) -> Number:

@@ -12,7 +12,7 @@ from flexstage.base.number import Array, first_design
 from flexstage.mechanism.expand import copy_names, expand
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.mechanism.outline import outlines
-from flexstage.mechanism.pattern import Polar
+from flexstage.mechanism.pattern import Normal, Polar
 from flexstage.parts.body import Block, Cylinder
 from flexstage.show.display import number
 from flexstage.show.figures.style import FULL, INK, MUTED, PAPER, SERIES, canvas, style_context
@@ -51,7 +51,10 @@ def rings(mechanism: Mechanism) -> tuple[Ring, ...]:
 
 def _ring(names: tuple[str, ...], pattern: Polar) -> Ring:
     step = 360.0 / len(names) if pattern.step is None else float(np.rad2deg(first_value(pattern.step)))
-    return Ring(names, 1e3 * first_value(pattern.radius), float(np.rad2deg(first_value(pattern.first))), step)
+    first = float(np.rad2deg(first_value(pattern.first)))
+    if pattern.mirror in (Normal.X, Normal.Y):
+        first, step = (180.0 if pattern.mirror is Normal.X else 0.0) - first, -step
+    return Ring(names, 1e3 * first_value(pattern.radius), first, step)
 
 
 def plan_figure(mechanism: Mechanism, scene: Scene) -> Any:

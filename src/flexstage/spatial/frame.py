@@ -27,10 +27,15 @@ _NEXT, _AFTER_NEXT = [1, 2, 0], [2, 0, 1]
 
 @dataclass(frozen=True, eq=False)
 class Frame:
-    """A frame in another: `rotation` (..., 3, 3), columns are its axes, and `position` (..., 3) of its origin."""
+    """A frame in another: `rotation` (..., 3, 3), columns are its axes, and `position` (..., 3) of its origin.
+
+    `mirrored`: its axes are left-handed, as those of a frame seen in a mirror; points, directions and inertias go through it as through
+    any other, twists do not: their frame is made `right_handed` first.
+    """
 
     rotation: Array
     position: Array
+    mirrored: bool = False
 
     def within(self, outer: Frame) -> Frame:
         """The same frame seen from the frame that `outer` stands in.
@@ -39,7 +44,16 @@ class Frame:
         >>> inner.within(Frame(turn_z(np.pi / 2), np.zeros(3))).position.round(12).tolist()
         [0.0, 1.0, 0.0]
         """
-        return Frame(outer.rotation @ self.rotation, outer.point(self.position))
+        return Frame(outer.rotation @ self.rotation, outer.point(self.position), self.mirrored != outer.mirrored)
+
+    @property
+    def right_handed(self) -> Frame:
+        """The same frame, its y axis reversed if it is mirrored.
+
+        >>> reflection(0).right_handed.rotation.diagonal().tolist()
+        [-1.0, -1.0, 1.0]
+        """
+        return Frame(self.rotation * np.array([1.0, -1.0, 1.0]), self.position) if self.mirrored else self
 
     def point(self, point: Array) -> Array:
         """A point (..., 3) given in this frame, in the frame it stands in."""
@@ -57,6 +71,15 @@ def identity() -> Frame:
     [0.0, 0.0, 0.0]
     """
     return Frame(np.eye(3), np.zeros(3))
+
+
+def reflection(axis: int) -> Frame:
+    """The left-handed frame in which everything is its own image in the plane through the origin across an axis (0, 1, 2).
+
+    >>> reflection(1).point(np.array([1.0, 2.0, 3.0])).tolist()
+    [1.0, -2.0, 3.0]
+    """
+    return Frame(np.diag(np.where(np.arange(3) == axis, -1.0, 1.0)), np.zeros(3), mirrored=True)
 
 
 def cross_matrix(vector: Array) -> Array:

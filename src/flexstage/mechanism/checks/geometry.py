@@ -14,7 +14,7 @@ from flexstage.base.number import Number, stack
 from flexstage.base.quantity import LENGTH, Quantity
 from flexstage.base.unit import show
 from flexstage.mechanism.checks.value import first_failing
-from flexstage.mechanism.expand import apply_changes
+from flexstage.mechanism.expand import NO_IMAGE, apply_changes, placed_bodies
 from flexstage.mechanism.locate import locate
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.parts.body import Body, Cylinder, Imported, Inertia, Solid
@@ -40,16 +40,34 @@ def geometry_findings(mechanism: Mechanism, *, departures: bool = True) -> Itera
     if departures:
         for owner, part in _departed_parts(mechanism):
             yield from _part(owner, part)
+    stage = placed_bodies(mechanism)
     bodies = {f"bodies.{name}": body for name, body in mechanism.bodies.items()}
     for unit, drawn in mechanism.units.items():
         bodies |= {f"units.{unit}.bodies.{name}": body for name, body in drawn.bodies.items()}
     for where, body in bodies.items():
-        yield from _body(where, body) if body.of is None else _lent(where, body, mechanism.bodies.get(body.of))
+        yield from _body(where, body) if body.of is None else _lent(where, body, stage.get(body.of))
+    yield from _without_image(mechanism)
     for name, payload in mechanism.payloads.items():
         if payload.point and payload.inertia is not None:
             yield Finding(f"payloads.{name}.point", "it states an inertia, and a point has none", "Leave one of them out")
         if payload.inertia is not None:
             yield from _inertia(f"payloads.{name}.inertia", payload.inertia)
+
+
+def _without_image(mechanism: Mechanism) -> Iterator[Finding]:
+    """Mirrored copies of what has no mirror image, or none that is known."""
+    for key, placement in mechanism.place.items():
+        unit = mechanism.units.get(placement.unit)
+        if placement.pattern.mirror is None or unit is None:
+            continue
+        for name, link in unit.links.items():
+            part = mechanism.parts.get(link.part)
+            if part is not None and part.mirrored is None:
+                yield Finding(f"place.{key}", f"{placement.unit}/{name}: {NO_IMAGE[0]}", NO_IMAGE[1])
+        for name, body in unit.bodies.items():
+            for solid in [each for each, form in body.solids.items() if isinstance(form, Imported)]:
+                what = f"{placement.unit}/{name}.{solid} is drawn in a STEP file, which cannot be mirrored"
+                yield Finding(f"place.{key}", what, "Draw the other side in a unit of its own, with a file of its own")
 
 
 def _departed_parts(mechanism: Mechanism) -> Iterator[tuple[str, Part]]:

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from flexstage.base.finding import Finding
-from flexstage.mechanism.expand import copy_names
-from flexstage.mechanism.mechanism import GROUND, PLATFORM, Link, Mechanism
-from flexstage.parts.body import Body, owner_of
+from flexstage.mechanism.expand import copy_names, joined, placed_bodies
+from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
 from flexstage.parts.part import is_actuator
 
 
@@ -41,26 +40,13 @@ def graph_findings(mechanism: Mechanism) -> Iterator[Finding]:
 
 
 def _graph(mechanism: Mechanism) -> tuple[list[str], list[_Edge]]:
-    stage = {body: owner_of(mechanism.bodies, body) for body in mechanism.bodies}
-    bodies = list(_moving(mechanism.bodies, stage))
-    edges = [_edge(name, link, stage) for name, link in mechanism.links.items()]
+    bodies = placed_bodies(mechanism)
+    edges = [_Edge(name, joined(link, bodies), link.part) for name, link in mechanism.links.items()]
     for key, placement in mechanism.place.items():
         unit = mechanism.units[placement.unit]
         for copy in copy_names(key):
-            own = {body: drawn.of or f"{copy}/{body}" for body, drawn in unit.bodies.items()}
-            bodies += _moving(unit.bodies, own)
-            edges += [_edge(f"{copy}/{name}", link, stage | own) for name, link in unit.links.items()]
-    return bodies, edges
-
-
-def _moving(bodies: Mapping[str, Body], names: Mapping[str, str]) -> Iterator[str]:
-    """The names in the expanded stage of those bodies that are not of another one."""
-    return (names[name] for name, body in bodies.items() if body.of is None)
-
-
-def _edge(name: str, link: Link, bodies: Mapping[str, str]) -> _Edge:
-    first, second = (bodies.get(body, body) for body in link.joins)
-    return _Edge(name, (first, second), link.part)
+            edges += [_Edge(f"{copy}/{name}", joined(link, bodies, copy, unit.bodies), link.part) for name, link in unit.links.items()]
+    return [name for name, body in bodies.items() if body.of is None], edges
 
 
 def _reach(edges: Iterable[_Edge]) -> set[str]:

@@ -7,7 +7,7 @@ from collections import Counter
 from collections.abc import Iterable, Iterator
 
 from flexstage.base.finding import Finding, suggest_nearest
-from flexstage.mechanism.expand import copy_names
+from flexstage.mechanism.expand import copy_names, joined, placed_bodies
 from flexstage.mechanism.grammar import RESERVED
 from flexstage.mechanism.mechanism import GROUND, NOT_GROWING, PLATFORM, Link, Mechanism, Unit
 from flexstage.parts.body import Body, owner_of
@@ -32,6 +32,7 @@ def name_findings(mechanism: Mechanism) -> Iterator[Finding]:
     yield from _materials(mechanism)
     yield from _check_placement(mechanism)
     yield from _clashes(mechanism)
+    yield from _loops(mechanism)
     for where, link, bodies in _links(mechanism):
         yield from _link(mechanism, where, link, bodies)
 
@@ -95,7 +96,7 @@ def _all_bodies(mechanism: Mechanism) -> Iterator[tuple[str, Body]]:
 
 def _links(mechanism: Mechanism) -> Iterator[tuple[str, Link, dict[str, Body]]]:
     """Every drawn link, where it stands, and the bodies it may join beside the ground."""
-    stage = dict(mechanism.bodies)
+    stage = placed_bodies(mechanism)
     for name, link in mechanism.links.items():
         yield f"links.{name}", link, stage
     for unit, drawn in mechanism.units.items():
@@ -105,11 +106,12 @@ def _links(mechanism: Mechanism) -> Iterator[tuple[str, Link, dict[str, Body]]]:
 
 def _owners(mechanism: Mechanism) -> Iterator[Finding]:
     """A body that is `of` another one names a body of the stage that moves by itself, or the ground."""
+    stage = placed_bodies(mechanism)
     for where, body in _all_bodies(mechanism):
         if body.of is None:
             continue
-        yield from _check_known(f"{where}.of", "body of the stage", body.of, {GROUND, *mechanism.bodies})
-        owner = mechanism.bodies.get(body.of)
+        yield from _check_known(f"{where}.of", "body of the stage", body.of, {GROUND, *stage})
+        owner = stage.get(body.of)
         if where == f"bodies.{PLATFORM}":
             yield Finding(f"{where}.of", "the platform moves by itself", "Let the other body be of the platform")
         elif owner is not None and owner.of is not None:
@@ -145,11 +147,9 @@ def _check_known(where: str, kind: str, name: str | None, names: Iterable[str]) 
 
 
 def _check_placement(mechanism: Mechanism) -> Iterator[Finding]:
-    bodies = {GROUND, *mechanism.bodies}
     for name, placement in mechanism.place.items():
         yield from _check_known(f"place.{name}.unit", "unit", placement.unit, mechanism.units)
-    gauged = {name for name in bodies if owner_of(mechanism.bodies, name) == name}
-    gauged |= {f"{copy}/{name}" for copy, unit in _copies(mechanism) for name, body in unit.bodies.items() if body.of is None}
+    gauged = {GROUND, *(name for name, body in placed_bodies(mechanism).items() if body.of is None)}
     for name, probe in mechanism.gauges.items():
         yield from _check_known(f"gauges.{name}.gauge", "sensor", probe.gauge, mechanism.sensors)
         yield from _check_known(f"gauges.{name}.body", "body", probe.body, gauged)
@@ -159,11 +159,18 @@ def _check_placement(mechanism: Mechanism) -> Iterator[Finding]:
             yield from _check_known(f"{section}.{name}.body", "body", item.body, gauged - {GROUND})
 
 
-def _copies(mechanism: Mechanism) -> Iterator[tuple[str, Unit]]:
+def _loops(mechanism: Mechanism) -> Iterator[Finding]:
+    """Links of a unit that join a body of one copy: in that copy both ends may be the same."""
+    bodies = placed_bodies(mechanism)
     for key, placement in mechanism.place.items():
-        if placement.unit in mechanism.units:
-            for name in copy_names(key):
-                yield name, mechanism.units[placement.unit]
+        unit = mechanism.units.get(placement.unit, Unit({}, {}))
+        far = {name: link for name, link in unit.links.items() if any("/" in body for body in link.joins)}
+        for copy in copy_names(key) if far else ():
+            for name, link in far.items():
+                first, second = joined(link, bodies, copy, unit.bodies)
+                if first == second:
+                    advice = "Draw that link in the stage itself, or in a unit of its own"
+                    yield Finding(f"{copy}/{name}.joins", f'in this copy both ends join "{first}"', advice)
 
 
 def _clashes(mechanism: Mechanism) -> Iterator[Finding]:

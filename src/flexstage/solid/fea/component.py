@@ -91,7 +91,7 @@ def components(mechanism: Mechanism, cut: Cut = Cut.UNITS) -> tuple[Component, .
     forms = _forms(assembly)
     joints = {name: link_joints(assembly.links[name], form) for name, form in forms.items()}
     graph = _Graph(assembly, mechanism.materials, forms, joints, _owners(assembly, forms, cut))
-    frames = {name: frame for name, _, frame in copies(mechanism)}
+    frames = {name: frame.right_handed for name, _, frame in copies(mechanism)}
     members: dict[str, list[str]] = {}
     for node, owner in graph.owner.items():
         members.setdefault(owner, []).append(node)
