@@ -45,9 +45,9 @@ _DRIFTLESS = "the error budget needs the drift"
 class Analysis:
     """All results of one model of a stage; `None` where a model or a stage does not give them, and `missing` says why, by field name.
 
-    `response` is that of the platform's twist and all gauges to the strokes, `transmissibility` that of the platform to the ground.
-    `deflection` under dead load, `buckling` under it and all strokes, drift, error budget, `units` (each distinct unit alone) and the
-    `verdicts` on the requirements are those of the lumped model; all but the verdicts are missing for the others. The error budget is
+    `response` is that of the platform's twist and all gauges to the actuators' inputs, `transmissibility` that of the platform to the
+    ground. `deflection` under dead load, `buckling` under it and all strokes, drift, error budget, `units` (each distinct unit alone) and
+    the `verdicts` on the requirements are those of the lumped model; all but the verdicts are missing for the others. The error budget is
     that of the required strokes, or of all single-axis strokes at once, and of one kelvin.
     """
 
@@ -117,7 +117,7 @@ def analyse(mechanism: Mechanism, model: Model = Model.LUMPED) -> Analysis:
         buckling=attempt.of_ground("buckling", hinged, _UNLUMPED, lambda known: _buckling(mechanism, known, reach)),
         lost_motion=lost,
         modes=attempt.of_ground("modes", linear, _RIGID, lambda known: platform_modes(mechanism, known)),
-        response=attempt.of_ground("response", linear, _RIGID, lambda known: response(known, seen, kinematics.actuators)),
+        response=attempt.of_ground("response", linear, _RIGID, lambda known: response(known, seen, known.actuators)),
         transmissibility=attempt.of_ground("transmissibility", linear, _RIGID, transmissibility),
         workspace=reach,
         drift=drifted,

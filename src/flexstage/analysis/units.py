@@ -61,7 +61,7 @@ def driven_units(mechanism: Mechanism) -> dict[str, tuple[str, Array]]:
     >>> {unit: copy for unit, (copy, _) in driven_units(double_triangle()).items()}
     {'horizontal': 'B1', 'vertical': 'B4'}
     """
-    actuators = expand(mechanism).actuators
+    actuators = expand(mechanism).strokes
     mapping = ideal(mechanism).mapping
     first: dict[str, tuple[str, Array]] = {}
     for copy, unit, frame in copies(mechanism):

@@ -1,6 +1,7 @@
 """Compliance and mass of parts by beam theory."""
 
 from flexstage.base.register import Register
+from flexstage.beams.force_actuator import FORCE_ACTUATOR
 from flexstage.beams.given import GIVEN
 from flexstage.beams.law import PartLaw
 from flexstage.beams.leaf import LEAF
@@ -8,6 +9,7 @@ from flexstage.beams.neck import NECK
 from flexstage.beams.notch import NOTCH
 from flexstage.beams.piezo import PIEZO
 from flexstage.beams.rod import ROD
+from flexstage.parts.force_actuator import ForceActuator
 from flexstage.parts.given import Given
 from flexstage.parts.leaf import Leaf
 from flexstage.parts.neck import Neck
@@ -15,6 +17,6 @@ from flexstage.parts.notch import Notch
 from flexstage.parts.piezo import Piezo
 from flexstage.parts.rod import Rod
 
-_OWN = {Notch: NOTCH, Neck: NECK, Leaf: LEAF, Rod: ROD, Given: GIVEN, Piezo: PIEZO}
+_OWN = {Notch: NOTCH, Neck: NECK, Leaf: LEAF, Rod: ROD, Given: GIVEN, Piezo: PIEZO, ForceActuator: FORCE_ACTUATOR}
 LAWS: Register[PartLaw] = Register("flexstage.laws", {part.kind: law for part, law in _OWN.items()})
 """The laws of parts by kind."""

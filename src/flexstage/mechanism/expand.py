@@ -16,12 +16,13 @@ from flexstage.mechanism.mechanism import GROUND, PLATFORM, Link, Mechanism, Pro
 from flexstage.mechanism.misalignment import MISALIGNED, misalign
 from flexstage.mechanism.path import complete, replace_member
 from flexstage.mechanism.pattern import Facing, Normal, Pattern, Polar
+from flexstage.parts.actuator import Actuator
 from flexstage.parts.body import Body, Solid, owner_of, solid_frame
 from flexstage.parts.compound import FIRST, SECOND, Composition, Compound
 from flexstage.parts.gauge import DisplacementGauge, Positive
 from flexstage.parts.mass import MassProperties, combine, drawn_solids, mass_properties, union_properties, within
 from flexstage.parts.material import Material
-from flexstage.parts.part import Part, Restricted, inner, is_actuator, material_of
+from flexstage.parts.part import Part, Restricted, actuator_of, inner, is_actuator, material_of
 from flexstage.spatial.frame import Frame, axes, identity, reflection, turn_z
 
 _Copy: TypeAlias = tuple[str, str, Frame]
@@ -100,7 +101,8 @@ class PlacedGauge:
 class Assembly:
     """The expanded stage: every body that moves, every link and gauge by name. `actuators` maps input names to link names.
 
-    Bodies that are `of` another one are no bodies here: their solids are their owner's, or among `ground`, the outlines of the ground.
+    `strokes` are those of them that impose a stroke, `thrusts` those that exert a force. Bodies that are `of` another one are no bodies
+    here: their solids are their owner's, or among `ground`, the outlines of the ground.
     """
 
     bodies: Mapping[str, PlacedBody]
@@ -109,6 +111,20 @@ class Assembly:
     actuators: Mapping[str, str]
     points: Mapping[str, tuple[str, Array]]
     ground: Mapping[str, PlacedSolid]
+
+    def actuator(self, name: str) -> Actuator:
+        """The part of an input, by the input's name."""
+        return actuator_of(self.links[self.actuators[name]].part)
+
+    @cached_property
+    def strokes(self) -> Mapping[str, str]:
+        """Input name to link name of the stroke actuators."""
+        return {name: link for name, link in self.actuators.items() if self.actuator(name).takes_stroke}
+
+    @cached_property
+    def thrusts(self) -> Mapping[str, str]:
+        """Input name to link name of the force actuators."""
+        return {name: link for name, link in self.actuators.items() if not self.actuator(name).takes_stroke}
 
 
 def copy_names(key: str) -> tuple[str, ...]:

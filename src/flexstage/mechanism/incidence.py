@@ -127,6 +127,24 @@ def deformation(assembly: Assembly, order: Layout, link: PlacedLink) -> Array:
     return second - first
 
 
+def free_deformations(assembly: Assembly) -> Array:
+    """The (..., 6 L, n) deformations of all links if the n strokes, each a unit, met no resistance, in the links' frames.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.mechanism.expand import expand
+    >>> free_deformations(expand(double_triangle())).sum(axis=0).tolist()
+    [1.0, 1.0, 1.0, 1.0, 1.0, 1.0]
+    """
+    places = {name: number for number, name in enumerate(assembly.links)}
+    columns = []
+    for name, link in assembly.strokes.items():
+        own = assembly.actuator(name).free_deformation
+        column = np.zeros((*own.shape[:-1], 6 * len(places)), dtype=own.dtype)
+        column[..., 6 * places[link] : 6 * places[link] + 6] = own
+        columns.append(column)
+    return np.stack(np.broadcast_arrays(*columns), axis=-1) if columns else np.zeros((6 * len(places), 0))
+
+
 def with_ground(assembly: Assembly, order: Layout) -> Array:
     """The (..., n, 6) rigid motion of all bodies moving with the ground, whose twist is given at the platform's reference point.
 

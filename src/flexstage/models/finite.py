@@ -1,7 +1,8 @@
 """Finite motion of the ideal model: inverse (pose to strokes) and forward (strokes to pose) kinematics on SE(3).
 
-Unknowns are the poses of all bodies. Every link's locked components of the relative pose vanish, an actuator's axial translation equals its
-stroke. Closed loops and any topology; idle freedoms follow steps of least norm, redundant constraints are met by least squares.
+Unknowns are the poses of all bodies. Every link's locked components of the relative pose vanish, an actuator's equal its free deformation
+times its stroke; force actuators hold nothing. Closed loops and any topology; idle freedoms follow steps of least norm, redundant
+constraints are met by least squares.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ import numpy as np
 from flexstage.base.finding import refuse
 from flexstage.base.number import Array
 from flexstage.mechanism.expand import Assembly, PlacedLink, expand
-from flexstage.mechanism.incidence import layout
+from flexstage.mechanism.incidence import free_deformations, layout
 from flexstage.mechanism.mechanism import GROUND, Mechanism
 from flexstage.models.linear.arguments import takes_models
 from flexstage.models.linear.kinematics import Kinematics
@@ -83,7 +84,7 @@ class _Links:
     second_arm: Array
     axes: Array
     locked: list[int]
-    drives: list[int]
+    drives: Array
     beams: list[int]
     spans: Array
     round: Array
@@ -92,7 +93,8 @@ class _Links:
 
     @property
     def shape(self) -> tuple[int, ...]:
-        return np.broadcast_shapes(self.first_arm.shape[:-2], self.second_arm.shape[:-2], self.axes.shape[:-3], self.spans.shape[:-1])
+        own = (self.first_arm.shape[:-2], self.second_arm.shape[:-2], self.axes.shape[:-3], self.spans.shape[:-1])
+        return np.broadcast_shapes(*own, self.drives.shape[:-2])
 
     @property
     def row_weights(self) -> Array:
@@ -227,7 +229,7 @@ def _links(mechanism: Mechanism, kinematics: Kinematics, *, posed: bool) -> _Lin
         second_arm=_together([_arm(assembly, link, link.joins[1]) for link in placed], 1),
         axes=_together([link.frame.rotation for link in placed], 2),
         locked=_locked_rows(placed, kinematics),
-        drives=[6 * list(assembly.links).index(name) for name in assembly.actuators.values()],
+        drives=free_deformations(assembly),
         beams=beams,
         spans=_together([np.asarray(part.span) for part in slender], 0),
         round=np.array([part.throat.is_round for part in slender], dtype=float),
@@ -280,7 +282,7 @@ def _residual(links: _Links, state: _State, relative: _Relative) -> Array:
     """Weighted constraint errors (..., m): locked components less strokes and shortenings, then pose components less the wanted ones."""
     values = np.concatenate([relative.translation, relative.vector], axis=-1)
     flat = values.reshape(*values.shape[:-2], -1)
-    flat[..., links.drives] -= state.strokes
+    flat = flat - (links.drives @ state.strokes[..., None])[..., 0]
     if links.beams:
         flat[..., [6 * number for number in links.beams]] += _shortening(links, relative)
     errors = flat[..., links.locked]
@@ -332,9 +334,8 @@ def _slopes(links: _Links, state: _State, relative: _Relative) -> Array:
     slopes = blocks[..., :bodies, :].reshape(*lead, 6 * count, 6 * bodies)[..., links.locked, :]
     if not links.posed:
         return slopes
-    driven = np.zeros((*lead, len(links.locked), len(links.drives)))
-    driven[..., [links.locked.index(drive) for drive in links.drives], range(len(links.drives))] = -1.0
-    pose = np.zeros((*lead, 6, 6 * bodies + len(links.drives)), dtype=slopes.dtype)
+    driven = np.broadcast_to(-links.drives[..., links.locked, :], (*lead, len(links.locked), links.drives.shape[-1]))
+    pose = np.zeros((*lead, 6, 6 * bodies + links.drives.shape[-1]), dtype=slopes.dtype)
     pose[..., :3, :3] = np.eye(3)
     pose[..., 3:, 3:6] = logarithm_rate(logarithm(state.turn[..., 0, :, :]))
     return np.concatenate([np.concatenate([slopes, driven], axis=-1), pose[..., list(links.posed), :]], axis=-2)

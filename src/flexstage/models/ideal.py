@@ -1,7 +1,9 @@
 """Ideal model: rigid bodies, hinges free about their intended freedoms and locked in all others.
 
-Unknowns are the twists of all bodies and the strokes; every link's locked deformations vanish. From the motions that are left follow
-R_a = da/dx and R_s = ds/dx (Eqs. 13 and 14 of Shin & Moon), the platform's mobility, idle freedoms and redundant constraints.
+Unknowns are the twists of all bodies and the strokes; every link's locked deformations vanish, an actuator's equal its free deformation
+times its stroke. From the motions that are left follow R_a = da/dx and R_s = ds/dx (Eqs. 13 and 14 of Shin & Moon), the platform's
+mobility, idle freedoms and redundant constraints. Force actuators constrain nothing; what they exert on the ideal motions follows by
+virtual work.
 """
 
 from __future__ import annotations
@@ -17,7 +19,7 @@ from flexstage.base.finding import DesignError, Finding, refuse, require
 from flexstage.base.number import Array, first_design
 from flexstage.beams.compliance import law
 from flexstage.mechanism.expand import Assembly, PlacedLink, expand
-from flexstage.mechanism.incidence import Layout, deformation, layout, require_room, twist_at
+from flexstage.mechanism.incidence import Layout, deformation, free_deformations, layout, require_room, twist_at
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.models.linear.blockage import Blockage, blockage
 from flexstage.models.linear.elimination import Elimination, echelon, eliminate, null_space, pivoted_qr
@@ -74,12 +76,13 @@ def ideal(mechanism: Mechanism) -> Kinematics:
     _require_paths(graph, idle[size:])
     motion = _without_idle(graph, solution, columns, rest)
     bodies, strokes = motion[..., :size, :], motion[..., size:, :]
+    sensed = _sense(graph, solution, columns, rest, bodies)
     found = Kinematics(
-        actuators=tuple(graph.assembly.actuators),
+        actuators=tuple(graph.assembly.strokes),
         coordinates=tuple(COMPONENTS[index] for index in freedoms),
         gauges=tuple(graph.assembly.gauges),
         actuation=strokes,
-        sensing=_sensing(graph, _sense(graph, solution, columns, rest, bodies)),
+        sensing=_sensing(graph, sensed),
         motion=bodies[..., :6, :],
         body_coordinates=graph.order.coordinates,
         bodies=bodies,
@@ -89,6 +92,9 @@ def ideal(mechanism: Mechanism) -> Kinematics:
         redundant=_redundant(graph),
         length=graph.length,
         provenance=f"ideal model of {digest(mechanism, physics=True)[:16]}",
+        thrusts=tuple(graph.assembly.thrusts),
+        thrust_inputs=tuple(graph.assembly.actuator(name).input.si for name in graph.assembly.thrusts),
+        thrust=_thrust(graph, sensed),
     )
     return replace(found, blocked=_blockages(graph, found.immobile)) if found.immobile else found
 
@@ -100,7 +106,7 @@ def _blockages(graph: _Graph, immobile: tuple[str, ...]) -> dict[str, Blockage]:
     ends = [name.rpartition(".") for name in graph.names]
     names = tuple(f"{links[link]}.{freedom}" for link, _, freedom in ends)
     meant = {f"{links[name]}.{freedom.value}" for name, link in graph.assembly.links.items() for freedom in link.part.intended}
-    actuators = list(graph.assembly.actuators)
+    actuators = list(graph.assembly.strokes)
     return {name: blockage(rows, graph.order.size + actuators.index(name), names, frozenset(meant)) for name in immobile}
 
 
@@ -121,24 +127,21 @@ def _graph(mechanism: Mechanism) -> _Graph:
     batch = np.broadcast_shapes(*{operator.shape[:-2] for operator in operators})
     strain = np.concatenate([np.broadcast_to(operator, (*batch, *operator.shape[-2:])) for operator in operators], axis=-2)
     length = _length(assembly)
-    scale = np.concatenate([np.tile(_weights(1.0 / length), len(order.bodies)), np.ones(len(assembly.actuators))])
+    scale = np.concatenate([np.tile(_weights(1.0 / length), len(order.bodies)), np.ones(len(assembly.strokes))])
     constraints, names = _constraints(assembly, strain)
     return _Graph(assembly, order, strain, constraints, names, scale, length)
 
 
 def _constraints(assembly: Assembly, strain: Array) -> tuple[Array, tuple[str, ...]]:
-    """Constraint rows and their names: locked deformations vanish; an actuator's axial one equals its stroke."""
-    drives = {f"{link}.{Freedom.X.value}": number for number, link in enumerate(assembly.actuators.values())}
+    """Constraint rows and their names: locked deformations vanish; an actuator's equal its free deformation times its stroke."""
     locked: dict[str, int] = {}
     for place, (name, link) in enumerate(assembly.links.items()):
         free = free_freedoms(link)
         locked |= {f"{name}.{freedom.value}": 6 * place + index for index, freedom in enumerate(ALL) if freedom not in free}
-    strokes = np.zeros((len(locked), len(drives)))
-    for row, name in enumerate(locked):
-        if name in drives:
-            strokes[row, drives[name]] = -1.0
-    rows = strain[..., list(locked.values()), :]
-    return np.concatenate([rows, np.broadcast_to(strokes, (*rows.shape[:-1], len(drives)))], axis=-1), tuple(locked)
+    places = list(locked.values())
+    rows, strokes = strain[..., places, :], -free_deformations(assembly)[..., places, :]
+    batch = np.broadcast_shapes(rows.shape[:-2], strokes.shape[:-2])
+    return np.concatenate([np.broadcast_to(part, (*batch, *part.shape[-2:])) for part in (rows, strokes)], axis=-1), tuple(locked)
 
 
 def _by_link(strains: Array) -> Array:
@@ -166,7 +169,7 @@ def _require_paths(graph: _Graph, idle_strokes: Array) -> None:
             f"actuator {name} can move while the platform stands still: its stroke has no path to the platform",
             "Join its unit to the platform, or lock the freedom that lets it slip",
         )
-        for (name, link), slips in zip(graph.assembly.actuators.items(), moving, strict=True)
+        for (name, link), slips in zip(graph.assembly.strokes.items(), moving, strict=True)
         if slips
     )
 
@@ -184,21 +187,25 @@ def _without_idle(graph: _Graph, solution: Elimination, columns: list[int], rest
 
 
 def _sense(graph: _Graph, solution: Elimination, columns: list[int], rest: list[int], bodies: Array) -> Array:
-    """The bodies' motions (..., N, f) as gauges see them: idle motions that one sees store the least energy in the links they strain."""
+    """The bodies' motions (..., N, f) as gauges and force actuators see them.
+
+    Idle motions that one of them sees store the least energy in the links they strain: so do forces on idle bodies reach the platform.
+    """
     size = graph.order.size
     wanted, idle = solution.basis[..., :size, columns], solution.basis[..., :size, rest]
     still = np.real(first_design(idle, 2))
-    rows = {name: np.real(first_design(_reading(graph, name), 2)) for name in graph.assembly.gauges}
-    watching = [name for name, row in rows.items() if _sees(row, still)]
+    rows = [*((name, _reading(graph, name)) for name in graph.assembly.gauges), *_elongations(graph).items()]
+    seen = [(name, np.real(first_design(row, 2))) for name, row in rows]
+    watching = [(name, row) for name, row in seen if _sees(row, still)]
     if not watching:
         return bodies
     energy, mixed = np.zeros((len(rest), len(rest))), np.zeros((len(rest), len(columns)))
-    for place, stiffness in _stiffnesses(graph, still, watching):
+    for place, stiffness in _stiffnesses(graph, still, [name for name, _ in watching]):
         strain = graph.strain[..., place, :]
         force = np.swapaxes(stiffness @ (strain @ idle), -1, -2)
         energy, mixed = energy + force @ (strain @ idle), mixed + force @ (strain @ wanted)
     held, loose = _split_by_energy(np.real(first_design(energy, 2)))
-    require(_undetermined_findings(graph, [name for name in watching if _sees(rows[name], still @ loose)], still @ loose))
+    require(_undetermined_findings(graph, [name for name, row in watching if _sees(row, still @ loose)], still @ loose))
     return wanted - idle[..., held] @ np.linalg.solve(energy[..., held, :][..., held], mixed[..., held, :])
 
 
@@ -237,10 +244,11 @@ def _undetermined_findings(graph: _Graph, gauges: list[str], motions: Array) -> 
     moving = np.max(np.abs(_by_link(motions)), axis=(1, 2), initial=0.0) > _NEGLIGIBLE * np.max(np.abs(motions), initial=0.0)
     bodies = ", ".join(itertools.compress(graph.order.bodies, moving))
     for name in gauges:
+        what = "its reading does not follow from" if name in graph.assembly.gauges else "its force does not reach"
         yield Finding(
             name,
-            f"it sees an idle motion that no link resists ({bodies}): its reading does not follow from the platform's motion",
-            "Move the gauge to the platform, give a link of these bodies stiffness in that freedom, or lock it",
+            f"it sees an idle motion that no link resists ({bodies}): {what} the platform's motion",
+            "Move it to the platform, give a link of these bodies stiffness in that freedom, or lock it",
         )
 
 
@@ -249,6 +257,22 @@ def _reading(graph: _Graph, name: str) -> Array:
     gauge = graph.assembly.gauges[name]
     ends = [twist_at(graph.assembly, graph.order, body, gauge.frame)[..., :1, :] for body in (gauge.body, gauge.base)]
     return gauge.sign * (ends[0] - ends[1])
+
+
+def _elongations(graph: _Graph) -> dict[str, Array]:
+    """The work (..., 1, N) of every force actuator per unit of its input and of the bodies' motions, w^T times its deformation."""
+    assembly, places = graph.assembly, {name: 6 * number for number, name in enumerate(graph.assembly.links)}
+    return {
+        name: assembly.actuator(name).wrench[..., None, :] @ graph.strain[..., places[link] : places[link] + 6, :]
+        for name, link in assembly.thrusts.items()
+    }
+
+
+def _thrust(graph: _Graph, bodies: Array) -> Array:
+    """Generalised force (..., f, t) on every platform coordinate per unit input of each force actuator, by virtual work."""
+    rows = [row @ bodies for row in _elongations(graph).values()]
+    none = np.zeros((*bodies.shape[:-2], 0, bodies.shape[-1]))
+    return np.swapaxes(np.concatenate(np.broadcast_arrays(*rows), axis=-2) if rows else none, -1, -2)
 
 
 def _sensing(graph: _Graph, bodies: Array) -> Array:

@@ -1,6 +1,7 @@
 """Lumped model: rigid bodies of six freedoms each, joined by 6x6 links.
 
-K = sum H^T k H with H the relative twist at each link; M from bodies and parts; strokes are imposed deformations of the stacks.
+K = sum H^T k H with H the relative twist at each link; M from bodies and parts; strokes are imposed deformations of their actuators, forces
+equal and opposite wrenches H^T w on the two bodies of theirs.
 """
 
 from __future__ import annotations
@@ -26,6 +27,7 @@ from flexstage.mechanism.moving_mass import moving_inertia
 from flexstage.models.linear.channels import (
     Motions,
     absolute,
+    exerted_wrenches,
     gauge_rows,
     imposed_strokes,
     input_channels,
@@ -52,7 +54,6 @@ _MATRICES = 20.0
 _STRETCHES = 1e-5
 _OVER: Array = np.array([1.0, 1.0, 1.0, 0.1, 0.1, 0.1])
 """Rotations are compared with translations over 0.1 m."""
-_STRETCHED: Array = np.eye(6)[0]
 
 _Value = TypeVar("_Value")
 
@@ -270,18 +271,15 @@ def _keep(stage: _Stage, inertia: Mapping[str, Contribution]) -> _Kept:
 
 
 def _stroke_motion(stage: _Stage, solution: Elimination, rows: Array) -> Array | None:
-    """The motion (..., N, inputs) that strokes of locked stacks impose; absent where no stack is locked along its axis."""
-    channels = len(input_channels(stage.assembly))
-    strokes = {(link, Freedom.X): number for number, link in enumerate(stage.assembly.actuators.values())}
+    """The motion (..., N, inputs) that strokes impose on locked freedoms; absent where no actuator is locked along its stroke."""
     locked = [(name, freedom) for name, freedoms in stage.freedoms.items() for freedom in freedoms]
-    imposed = np.zeros((len(locked), channels))
-    for row, key in enumerate(locked):
-        if key in strokes:
-            imposed[row, strokes[key]] = 1.0
+    none = np.zeros((6, len(input_channels(stage.assembly))))
+    strokes = _strokes(stage)
+    imposed = np.stack(np.broadcast_arrays(*(strokes.get(name, none)[..., freedom.index, :] for name, freedom in locked)), axis=-2)
     if not imposed.any():
         return None
     motion = imposed_motion(solution, rows, imposed)
-    missed = np.abs(np.real(first_design(rows @ motion, 2)) - imposed) > _BLOCKED
+    missed = np.abs(np.real(first_design(rows @ motion - imposed, 2))) > _BLOCKED
     require(_blocked_findings(stage, locked, missed))
     return motion
 
@@ -457,24 +455,37 @@ def _idle_inertia(stage: _Stage, inertia: Mapping[str, Contribution], idle: _Idl
 
 
 def _inputs(stage: _Stage, driven: Array | None) -> tuple[Array, dict[str, Array]]:
-    """Direct forces, and what the inputs impose on links: strokes of sprung stacks, less what a motion imposed elsewhere takes up."""
-    drives = stage.assembly.actuators
+    """Direct forces, and what the inputs impose on links: strokes of sprung actuators, less what a motion imposed elsewhere takes up."""
     wrenches = [_transpose(rows) for rows in place_twists(wrench_places(stage.assembly), stage.motions)]
-    columns = _broadcast((np.zeros((stage.order.size, len(drives))), *wrenches))
-    stretched = {link: np.append(_STRETCHED, np.zeros(stage.order.inner.get(link, 0))) for link in drives.values()}
-    imposed = imposed_strokes(stage.assembly, stretched)
+    columns = _broadcast((np.zeros((stage.order.size, len(stage.assembly.actuators))), *wrenches))
+    force = np.concatenate(columns, axis=-1)
+    for name, wrench in exerted_wrenches(stage.assembly).items():
+        force = force + _transpose(stage.strains[name].operator[..., :6, :]) @ wrench
+    imposed = _strokes(stage)
     if driven is not None:
         imposed = {name: imposed.get(name, 0.0) - item.operator @ driven for name, item in stage.strains.items()}
-    return np.concatenate(columns, axis=-1), imposed
+    return force, imposed
+
+
+def _strokes(stage: _Stage) -> dict[str, Array]:
+    """What every input imposes on the links of stroke actuators (..., r, inputs): their free deformations, nothing on inner coordinates."""
+    free: dict[str, Array] = {}
+    for name, link in stage.assembly.strokes.items():
+        own = stage.assembly.actuator(name).free_deformation
+        inner = np.zeros((*own.shape[:-1], stage.order.inner.get(link, 0)))
+        free[link] = np.concatenate([own, inner], axis=-1)
+    return imposed_strokes(stage.assembly, free)
 
 
 def _outputs(stage: _Stage, imposed: Mapping[str, Array]) -> tuple[Array, Array]:
     rows = [*place_twists(twist_places(stage.assembly), stage.motions), *gauge_rows(stage.assembly, stage.motions)]
     inputs = len(input_channels(stage.assembly))
     passed = [np.zeros((row.shape[-2], inputs)) for row in rows]
+    exerted = exerted_wrenches(stage.assembly)
     for name, item in stage.strains.items():
         rows.append(item.law[..., :6, :] @ item.operator)
-        passed.append(-item.law[..., :6, :] @ imposed[name] if name in imposed else np.zeros((6, inputs)))
+        own = -item.law[..., :6, :] @ imposed[name] if name in imposed else np.zeros((6, inputs))
+        passed.append(own - exerted[name] if name in exerted else own)
     return np.concatenate(_broadcast(tuple(rows)), axis=-2), np.concatenate(_broadcast(tuple(passed)), axis=-2)
 
 

@@ -133,7 +133,7 @@ def unit_stiffness(mechanism: Mechanism, assembly: Assembly) -> dict[str, Number
     unit_of = {copy: unit for copy, unit, _ in copies(mechanism)}
     findings: list[Finding] = []
     result: dict[str, Number] = {}
-    for name, drive in assembly.actuators.items():
+    for name, drive in assembly.strokes.items():
         copy = drive.rpartition("/")[0]
         stated = mechanism.units[unit_of[copy]].stiffness if copy else None
         try:

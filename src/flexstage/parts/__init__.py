@@ -4,6 +4,7 @@ from flexstage.base.register import Register
 from flexstage.parts.cartwheel import Cartwheel
 from flexstage.parts.cross_hinge import CrossHinge
 from flexstage.parts.folded_leaf import FoldedLeaf
+from flexstage.parts.force_actuator import ForceActuator
 from flexstage.parts.gauge import DisplacementGauge, Gauge
 from flexstage.parts.given import Given
 from flexstage.parts.leaf import Leaf
@@ -14,8 +15,9 @@ from flexstage.parts.rod import Rod
 from flexstage.parts.shape import Elastic
 
 _COMPOUNDS = (CrossHinge, Cartwheel, FoldedLeaf)
+_ACTUATORS = (Piezo, ForceActuator)
 PARTS: Register[type[Elastic]] = Register(
-    "flexstage.parts", {part.kind: part for part in (Notch, Neck, Leaf, Rod, Given, Piezo, *_COMPOUNDS)}
+    "flexstage.parts", {part.kind: part for part in (Notch, Neck, Leaf, Rod, Given, *_COMPOUNDS, *_ACTUATORS)}
 )
 """Kinds of parts that have a stiffness of their own, or whose members have."""
 

@@ -6,9 +6,10 @@ from dataclasses import dataclass, replace
 from typing import ClassVar, TypeAlias
 
 from flexstage.base.digest import Description
+from flexstage.base.finding import refuse
+from flexstage.parts.actuator import Actuator
 from flexstage.parts.freedom import Freedom
 from flexstage.parts.given import Joint
-from flexstage.parts.piezo import Piezo
 from flexstage.parts.shape import Elastic
 
 
@@ -46,12 +47,25 @@ def inner(part: Part) -> Elastic | Joint:
 
 
 def is_actuator(part: Part) -> bool:
-    """Whether the part has an imposed stroke.
+    """Whether the part has an input.
 
     >>> is_actuator(Joint())
     False
     """
-    return isinstance(inner(part), Piezo)
+    return isinstance(inner(part), Actuator)
+
+
+def actuator_of(part: Part) -> Actuator:
+    """The actuator that a part is, or that a restricted one restricts; refused for what has no input.
+
+    >>> from flexstage.parts.force_actuator import ForceActuator
+    >>> actuator_of(Restricted(ForceActuator(), ())).input.si
+    'N'
+    """
+    own = inner(part)
+    if not isinstance(own, Actuator):
+        raise refuse(f"a part of kind {own.kind}", "it has no input", "Ask an actuator")
+    return own
 
 
 def material_of(part: Part) -> str | None:

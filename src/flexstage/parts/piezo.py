@@ -23,12 +23,12 @@ from flexstage.base.quantity import (
     STIFFNESS,
     VOLTAGE,
 )
-from flexstage.parts.freedom import Freedom
+from flexstage.parts.actuator import ChargedActuator
 from flexstage.parts.shape import Order, Section, Shaped, circle
 
 
 @dataclass(frozen=True, eq=False)
-class Piezo(Shaped):
+class Piezo(ChargedActuator, Shaped):
     """A piezo stack along x: an axial spring with an imposed free stroke u (u > 0 expands), elsewhere the stiffness of its section.
 
     `stroke` is the full free stroke over the voltage range; `stiffness` the axial stiffness; `diameter` that of the ceramic. The
@@ -58,11 +58,6 @@ class Piezo(Shaped):
     source: str = field(default="", metadata=DOCUMENT_ONLY)
 
     @property
-    def intended(self) -> tuple[Freedom, ...]:
-        """No passive freedom: the translation along x is the stroke."""
-        return ()
-
-    @property
     def blocking_force(self) -> Number:
         """Force of the fully driven stack held at its length: stroke x stiffness [N].
 
@@ -85,6 +80,4 @@ class Piezo(Shaped):
     def orders(self) -> Iterator[Order]:
         """Its preload is within its load, its bias within its voltages."""
         yield Order("preload", self.preload, self.maximum_load, "the maximum load", "Give a smaller preload", FORCE, strict=False)
-        yield Order("voltage_low", self.voltage_low, self.voltage_high, "voltage_high", "Exchange them", VOLTAGE)
-        advice = "Give a bias within the range of the stack"
-        yield Order("bias", self.bias, self.voltage_high, "voltage_high", advice, VOLTAGE, strict=False)
+        yield from super().orders

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import numpy as np
 
-from flexstage.analysis.workspace.stroke import StrokeLimits, stacks
+from flexstage.analysis.workspace.stroke import StrokeLimits, stroke_actuators
 from flexstage.base.labelled import Matrix, ratio_units
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, Number, magnitude, stack
@@ -80,12 +80,12 @@ def stack_lines(mechanism: Mechanism, model: LinearModel) -> StackLine:
     True
     """
     assembly = expand(mechanism)
-    links = tuple(assembly.actuators.values())
-    names = tuple(assembly.actuators)
+    links = tuple(assembly.strokes.values())
+    names = tuple(assembly.strokes)
     forces = static_gain(model, tuple(f"{link}.fx" for link in links), names).values
     slope = -np.diagonal(forces, axis1=-2, axis2=-1)
     own = np.stack(np.broadcast_arrays(*(model.stiffness[link].law[..., 0, 0] for link in links)), axis=-1)
-    free = stack([piezo.stroke for piezo in stacks(mechanism).values()])
+    free = stack([part.stroke for part in stroke_actuators(mechanism).values()])
     against = slope * own / (own - slope)
     return StackLine(
         actuators=names,

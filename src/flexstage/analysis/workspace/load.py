@@ -8,7 +8,7 @@ from typing import Annotated
 
 import numpy as np
 
-from flexstage.analysis.workspace.stroke import StrokeLimits, stacks
+from flexstage.analysis.workspace.stroke import StrokeLimits, stroke_actuators
 from flexstage.base.finding import Finding, refuse
 from flexstage.base.labelled import Matrix, ratio_units
 from flexstage.base.notebook import InNotebook
@@ -137,24 +137,24 @@ def load_share(mechanism: Mechanism, model: LinearModel) -> LoadShare:
     -2.9
     """
     assembly = expand(mechanism)
-    names = tuple(assembly.actuators)
+    names = tuple(assembly.strokes)
     if not names:
         raise refuse("stacks", "the stage has none, so none shares its loads", "Ask for the deflection under dead load instead")
-    axial = tuple(f"{link}.fx" for link in assembly.actuators.values())
+    axial = tuple(f"{link}.fx" for link in assembly.strokes.values())
     require_known(model, axial)
     causes = dead_loads(mechanism, model)
     motion = displacement(model, np.stack(np.broadcast_arrays(*causes.values()), axis=-1))
     loads = -(model.output[..., model.output_index(axial), :] @ motion)
     wrench = static_gain(model, axial, tuple(f"{PLATFORM}.{name}" for name in FORCES)).values
-    piezos = stacks(mechanism).values()
+    parts = stroke_actuators(mechanism).values()
     return LoadShare(
         actuators=names,
         loads=Matrix(loads, names, tuple(causes), "N"),
         share=Matrix(-wrench, names, FORCES, ratio_units(("N",) * len(names), WRENCH_UNITS)),
         stroke=Matrix(-static_gain(model, axial, names).values, names, names, "N/m"),
-        maximum=_stated([piezo.maximum_load for piezo in piezos]),
-        preload=_stated([piezo.preload for piezo in piezos]),
-        tensile=_stated([piezo.tensile_limit for piezo in piezos]),
+        maximum=_stated([part.maximum_load for part in parts]),
+        preload=_stated([part.preload for part in parts]),
+        tensile=_stated([part.tensile_limit for part in parts]),
         reference=assembly.bodies[PLATFORM].reference,
         provenance=model.provenance,
     )

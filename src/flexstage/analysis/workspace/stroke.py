@@ -19,8 +19,7 @@ from flexstage.mechanism.expand import expand
 from flexstage.mechanism.incidence import layout, twist_at
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.models.linear.kinematics import Kinematics
-from flexstage.parts.part import Restricted
-from flexstage.parts.piezo import Piezo
+from flexstage.parts.actuator import ChargedActuator, StrokeActuator
 from flexstage.spatial.frame import COMPONENTS, MOTION, TWIST_UNITS, Frame
 
 
@@ -127,17 +126,26 @@ def beside(points: Array, depth: int) -> Array:
     return points.reshape(points.shape[0], *(1,) * missing, *points.shape[1:])
 
 
-def stacks(mechanism: Mechanism) -> dict[str, Piezo]:
-    """The piezo stack of every actuator, by input name, with departures applied.
+def stacks(mechanism: Mechanism) -> dict[str, ChargedActuator]:
+    """The piezo actuator of every input that has one, by input name, with departures applied: what has volts and a capacitance.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> stacks(double_triangle())["B4"].length
     0.201
     """
+    return {name: part for name, part in stroke_actuators(mechanism).items() if isinstance(part, ChargedActuator)}
+
+
+def stroke_actuators(mechanism: Mechanism) -> dict[str, StrokeActuator]:
+    """The part of every stroke input, by input name, with departures applied.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> list(stroke_actuators(double_triangle()))
+    ['B1', 'B2', 'B3', 'B4', 'B5', 'B6']
+    """
     assembly = expand(mechanism)
-    parts = {name: assembly.links[link].part for name, link in assembly.actuators.items()}
-    inner = {name: part.part if isinstance(part, Restricted) else part for name, part in parts.items()}
-    return {name: part for name, part in inner.items() if isinstance(part, Piezo)}
+    parts = {name: assembly.actuator(name) for name in assembly.strokes}
+    return {name: part for name, part in parts.items() if isinstance(part, StrokeActuator)}
 
 
 @lru_cache(maxsize=2)
@@ -149,24 +157,11 @@ def stroke_limits(mechanism: Mechanism) -> StrokeLimits:
     >>> (1e6 * limits.low).round(6).tolist(), (1e6 * limits.high).round(6).tolist()
     ([-75.0, -75.0, -75.0, -100.0, -100.0, -100.0], [75.0, 75.0, 75.0, 100.0, 100.0, 100.0])
     """
-    piezos = stacks(mechanism)
-    low = stack([-piezo.stroke * _below_bias(piezo) for piezo in piezos.values()])
-    full = stack([piezo.stroke for piezo in piezos.values()])
-    below = stack([piezo.stroke * _below_zero(piezo) for piezo in piezos.values()])
-    return StrokeLimits(tuple(piezos), *np.broadcast_arrays(low, low + full, low + below))
-
-
-def _below_bias(piezo: Piezo) -> Number:
-    if piezo.bias is None or piezo.voltage_low is None or piezo.voltage_high is None:
-        return 0.5
-    return (piezo.bias - piezo.voltage_low) / (piezo.voltage_high - piezo.voltage_low)
-
-
-def _below_zero(piezo: Piezo) -> Number:
-    """The share of the stroke that lies below no voltage (negative: the range begins above it); none where no range is stated."""
-    if piezo.voltage_low is None or piezo.voltage_high is None:
-        return 0.0
-    return -piezo.voltage_low / (piezo.voltage_high - piezo.voltage_low)
+    parts = stroke_actuators(mechanism)
+    low = stack([-part.stroke * part.below_rest for part in parts.values()])
+    full = stack([part.stroke for part in parts.values()])
+    below = stack([part.stroke * part.below_zero for part in parts.values()])
+    return StrokeLimits(tuple(parts), *np.broadcast_arrays(low, low + full, low + below))
 
 
 def mapping_at(mechanism: Mechanism, kinematics: Kinematics, point: str = PLATFORM, *, mapping: Matrix | None = None) -> Matrix:

@@ -98,6 +98,7 @@ def _analysis_tables(analysis: Analysis) -> Iterator[Table | None]:
     found = analysis.kinematics
     yield kinematics.mobility_table(found)
     yield kinematics.mapping_table(found) if found.actuated else None
+    yield kinematics.force_table(found)
     yield kinematics.gauge_table(found) if found.gauges else None
     if analysis.statics is not None:
         yield statics.stiffness_table(analysis.statics)

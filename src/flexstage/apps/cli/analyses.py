@@ -53,7 +53,7 @@ def mapping(design: Design, *, model: ModelName = Model.IDEAL, changes: Changes 
     answer(
         "mapping",
         mechanism,
-        lambda: walk(kinematics) | ({} if linear is None else {"elastic_jacobian": static_gain(linear, twist, kinematics.actuators)}),
+        lambda: walk(kinematics) | ({} if linear is None else {"elastic_jacobian": static_gain(linear, twist, linear.actuators)}),
         lambda: _mapping_tables(kinematics),
         model=model,
         json=json,
@@ -65,6 +65,7 @@ def _mapping_tables(kinematics: Kinematics) -> Iterator[Table | None]:
     yield motion_tables.mobility_table(kinematics)
     if kinematics.actuated:
         yield motion_tables.mapping_table(kinematics)
+    yield motion_tables.force_table(kinematics)
     yield motion_tables.gauge_table(kinematics) if kinematics.gauges else None
     yield motion_tables.motion_table(kinematics)
     yield motion_tables.freedom_table(kinematics)

@@ -1,7 +1,7 @@
 """Inputs and outputs of a stage, by name and in order, as every elastic model gives them: so their answers can be compared by name.
 
-Inputs: strokes; wrenches on the platform and the named points. Outputs: twists of the platform, the points and all other bodies; readings
-of the gauges; stress resultants of every link, at its centre in its frame.
+Inputs: strokes and forces of the actuators; wrenches on the platform and the named points. Outputs: twists of the platform, the points and
+all other bodies; readings of the gauges; stress resultants of every link, at its centre in its frame.
 """
 
 from __future__ import annotations
@@ -59,14 +59,15 @@ def twist_places(assembly: Assembly) -> dict[str, Place]:
 
 
 def input_channels(assembly: Assembly) -> tuple[Channel, ...]:
-    """Strokes by actuator, then wrenches by place.
+    """Strokes and forces by actuator, then wrenches by place.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.mechanism.expand import expand
     >>> [channel.name for channel in input_channels(expand(parallelogram()))][:3]
     ['B', 'platform.fx', 'platform.fy']
     """
-    return (*(Channel(name, "m") for name in assembly.actuators), *_components(wrench_places(assembly), FORCES, WRENCH_UNITS))
+    drives = (Channel(name, assembly.actuator(name).input.si) for name in assembly.actuators)
+    return (*drives, *_components(wrench_places(assembly), FORCES, WRENCH_UNITS))
 
 
 def output_channels(assembly: Assembly) -> tuple[Channel, ...]:
@@ -130,16 +131,28 @@ def gauge_rows(assembly: Assembly, motions: Motions) -> list[Array]:
 
 
 def imposed_strokes(assembly: Assembly, deformations: Mapping[str, Array]) -> dict[str, Array]:
-    """What every input imposes on each driven link (r, m): its stroke the deformation (r,) stated by link, all others nothing.
+    """What every input imposes on each link (..., r, m) that strokes: its stroke the deformation (..., r) stated by link, others nothing.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.mechanism.expand import expand
     >>> imposed_strokes(expand(parallelogram()), {"B/pzt": np.array([1.0, 0.0])})["B/pzt"][:, :2].tolist()
     [[1.0, 0.0], [0.0, 0.0]]
     """
-    inputs = len(input_channels(assembly))
-    result: dict[str, Array] = {}
-    for number, link in enumerate(assembly.actuators.values()):
-        result[link] = np.zeros((len(deformations[link]), inputs))
-        result[link][:, number] = deformations[link]
-    return result
+    inputs = np.eye(len(input_channels(assembly)))
+    numbers = {name: number for number, name in enumerate(assembly.actuators)}
+    return {link: deformations[link][..., None] * inputs[numbers[name]] for name, link in assembly.strokes.items()}
+
+
+def exerted_wrenches(assembly: Assembly) -> dict[str, Array]:
+    """The wrench (..., 6, m) that every input exerts on the second body of each link with a force actuator, in the link's frame.
+
+    The opposite acts on the first body, both at the link's centre.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.mechanism.expand import expand
+    >>> exerted_wrenches(expand(parallelogram()))  # a stack alone
+    {}
+    """
+    inputs = np.eye(len(input_channels(assembly)))
+    numbers = {name: number for number, name in enumerate(assembly.actuators)}
+    return {link: assembly.actuator(name).wrench[..., None] * inputs[numbers[name]] for name, link in assembly.thrusts.items()}

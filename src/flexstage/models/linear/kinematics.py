@@ -16,7 +16,7 @@ from flexstage.base.quantity import LENGTH
 from flexstage.base.record import INNER, VIEW, Called
 from flexstage.models.linear.blockage import Blockage
 from flexstage.parts.freedom import Freedom
-from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
+from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNITS
 
 
 @dataclass(frozen=True)
@@ -43,6 +43,9 @@ class Kinematics(InNotebook):
     xi (..., N, f), `strains` each link's deformation per xi (..., 6, f) in its frame (only intended freedoms and strokes non-zero).
     `free` says which freedoms were taken as free at each link. `length` is the scale that makes rotations comparable with translations.
     `blocked` says of each immobile actuator which locked freedoms hold its stroke.
+
+    `actuators` are those with a stroke. Force actuators, `thrusts`, determine no motion; `thrust` (..., f, t) is the generalised force that
+    a unit of their input (`thrust_inputs`, N or A) exerts on xi, V^T W.
     """
 
     actuators: tuple[str, ...]
@@ -60,6 +63,9 @@ class Kinematics(InNotebook):
     length: Annotated[float, LENGTH]
     provenance: str
     blocked: Annotated[Mapping[str, Blockage], INNER] = field(default_factory=dict)
+    thrusts: tuple[str, ...] = ()
+    thrust_inputs: Annotated[tuple[str, ...], INNER] = ()
+    thrust: Array = field(default_factory=lambda: np.zeros((6, 0)))
 
     @property
     def mobility(self) -> Annotated[int, VIEW]:
@@ -85,6 +91,32 @@ class Kinematics(InNotebook):
         """R_a = da/dxi (Eq. 13 of Shin & Moon; da/dx for six freedoms). Raises `DesignError` where the stage is under-actuated."""
         self._require_actuated()
         return Matrix(self.actuation, self.actuators, self.coordinates, ratio_units(("m",) * len(self.actuators), self._units))
+
+    @property
+    def force_map(self) -> Annotated[Matrix, Called("W")]:
+        """V^T W: what a unit input of each force actuator exerts on the platform along its ideal motions, by virtual work.
+
+        With six freedoms V is the identity and this is the platform's whole wrench at its reference point, W = R_f^T with R_f the force
+        actuators' d(elongation)/dx, times force per unit input. With fewer, no more of W is known than its work in the ideal motions: the
+        rest is borne by locked freedoms, and a row is the force conjugate to its coordinate. Positive inputs push apart.
+        """
+        rows = [COMPONENTS.index(name) for name in self.coordinates]
+        units = ratio_units(tuple(WRENCH_UNITS[row] for row in rows), self.thrust_inputs)
+        return Matrix(self.thrust, tuple(FORCES[row] for row in rows), self.thrusts, units)
+
+    @property
+    def commanded(self) -> Annotated[tuple[str, ...], VIEW]:
+        """Platform coordinates that strokes and forces together can command alone: an input combination exerts on no other (first design).
+
+        Those of all ideal motions if R_a and V^T W together have rank f; without force actuators, what the strokes hold.
+        """
+        first = np.real(self.actuation[(0,) * (self.actuation.ndim - 2)]), np.real(self.thrust[(0,) * (self.thrust.ndim - 2)])
+        scale = _scales(self.coordinates, 1.0 / self.length)
+        columns = np.concatenate([first[0].T, first[1]], axis=1) * scale[:, None]
+        basis = np.linalg.svd(columns / np.maximum(np.linalg.norm(columns, axis=0), 1e-300), full_matrices=False)
+        spanned = basis[0][:, basis[1] > 1e-9]
+        missed = np.linalg.norm(np.eye(len(scale)) - spanned @ spanned.T, axis=0)
+        return tuple(name for name, miss in zip(self.coordinates, missed, strict=True) if miss < 1e-7)
 
     @property
     def motions(self) -> Annotated[Matrix, VIEW]:
@@ -126,12 +158,19 @@ class Kinematics(InNotebook):
             strokes = "1 stroke does" if len(self.actuators) == 1 else f"{len(self.actuators)} strokes do"
             motions = f"{self.mobility} ideal motion{'' if self.mobility == 1 else 's'}"
             held = f"; the links hold {', '.join(self.immobile)}" if self.immobile else ""
-            mend = [finding.advice for finding in self.blockages] or ["Add actuators or lock freedoms of links"]
+            mend = [finding.advice for finding in self.blockages] or [self._advice]
             raise refuse(
                 "mapping",
                 f"{strokes} not determine the platform's {motions} ({', '.join(self.coordinates) or 'none'}){held}",
                 f"{'; '.join(mend)}; stiffness, modes and response are given all the same",
             )
+
+    @property
+    def _advice(self) -> str:
+        """What to do where strokes do not determine the platform."""
+        if not self.thrusts:
+            return "Add actuators or lock freedoms of links"
+        return f"Forces ({', '.join(self.thrusts)}) determine no motion: ask the elastic model how far they move it"
 
     @property
     def blockages(self) -> tuple[Finding, ...]:

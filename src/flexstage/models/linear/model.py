@@ -113,6 +113,11 @@ class LinearModel:
         """Names of the stroke inputs."""
         return tuple(channel.name for channel in self.inputs if channel.unit == "m")
 
+    @property
+    def actuators(self) -> tuple[str, ...]:
+        """Names of the actuators' inputs, strokes and forces; all others are components of wrenches."""
+        return tuple(channel.name for channel in self.inputs if "." not in channel.name)
+
 
 def assemble(contributions: Contributions, size: int) -> Array:
     """Sum of contributions as one matrix (..., n, n), symmetric by construction.

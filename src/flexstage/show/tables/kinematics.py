@@ -7,7 +7,7 @@ from flexstage.models.linear.kinematics import Kinematics
 from flexstage.parts.freedom import Freedom
 from flexstage.show.display import number
 from flexstage.show.table import Cell, Column, Mark, Table, make_table, matrix_table
-from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
+from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNITS
 
 
 def mobility_table(kinematics: Kinematics) -> Table:
@@ -22,6 +22,7 @@ def mobility_table(kinematics: Kinematics) -> Table:
     rows = [
         ("platform freedoms", str(mobility), ", ".join(kinematics.coordinates)),
         ("actuators", str(strokes), ", ".join(kinematics.actuators)),
+        *([("force actuators", str(len(kinematics.thrusts)), ", ".join(kinematics.thrusts))] if kinematics.thrusts else []),
         ("gauges", str(len(kinematics.gauges)), ", ".join(kinematics.gauges)),
         ("idle freedoms", str(len(kinematics.idle)), "move neither platform nor stroke"),
         ("redundant constraints", str(len(kinematics.redundant)), "stress the stage where parts do not fit exactly"),
@@ -32,22 +33,54 @@ def mobility_table(kinematics: Kinematics) -> Table:
 
 
 def actuation_text(kinematics: Kinematics) -> str:
-    """In one sentence, whether the strokes determine the platform.
+    """In one sentence or two, whether the strokes determine the platform, and what forces can command.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal
     >>> actuation_text(ideal(double_triangle()))
     'Six actuators drive six freedoms: the strokes determine the platform, and every command is free of stress in the ideal stage.'
     """
+    if kinematics.thrusts and not kinematics.actuators:
+        return _command_text(kinematics)
     strokes, mobility = len(kinematics.actuators), kinematics.mobility
     counted = f"{_count(strokes)} actuator{'s' if strokes != 1 else ''} drive{'s' if strokes == 1 else ''} {_count(mobility)} freedom"
     counted = counted[:1].upper() + counted[1:] + ("s" if mobility != 1 else "")
+    if kinematics.thrusts and not kinematics.actuated:
+        return f"{counted}: the strokes do not determine the platform, and the mapping R_a is refused. {_command_text(kinematics)}"
     if not kinematics.actuated:
         held = f", but the links hold {', '.join(kinematics.immobile)}" if kinematics.immobile and mobility else ""
         return f"{counted}{held}: the strokes do not determine the platform, and the mapping R_a is refused."
     if strokes > mobility:
         return f"{counted}: redundant actuation, commands outside the range of R_a only stress the stage."
     return f"{counted}: the strokes determine the platform, and every command is free of stress in the ideal stage."
+
+
+def _command_text(kinematics: Kinematics) -> str:
+    """Which ideal motions forces, with the strokes, can command."""
+    known, count = kinematics.commanded, len(kinematics.thrusts)
+    left = [name for name in kinematics.coordinates if name not in known]
+    forces = f"{_count(count)} force actuator{'s' if count != 1 else ''} determine{'s' if count == 1 else ''} no motion"
+    reach = f"with any strokes {'they' if count != 1 else 'it'} can push along {', '.join(known)}" if known else "none can be pushed alone"
+    rest = f", not along {', '.join(left)} alone" if known and left else ""
+    return f"{forces[:1].upper()}{forces[1:]}; {reach}{rest}. How far is the elastic model's answer."
+
+
+def force_table(kinematics: Kinematics) -> Table | None:
+    """V^T W: what a unit of each force actuator's input exerts along the ideal motions; `None` without force actuators.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.models.ideal import ideal
+    >>> force_table(ideal(double_triangle())) is None
+    True
+    """
+    if not kinematics.thrusts or not kinematics.mobility:
+        return None
+    whole = kinematics.mobility == len(COMPONENTS)
+    note = "The platform's wrench at its reference point." if whole else "The work in each ideal motion: of the wrench no more is known."
+    found = kinematics.force_map
+    rows = tuple(f"{name} [{WRENCH_UNITS[FORCES.index(name)]}]" for name in found.rows)
+    columns = tuple(f"{name} [{unit}]" for name, unit in zip(found.columns, kinematics.thrust_inputs, strict=True))
+    return matrix_table("Force map W" if whole else "Force map V^T W", Matrix(found.values, rows, columns, "1"), notes=[note])
 
 
 def _count(number_of: int) -> str:

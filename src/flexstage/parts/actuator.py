@@ -1,0 +1,110 @@
+"""Actuators: parts with an input, which is a stroke that they impose or a force that they exert between their two faces."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import ClassVar
+
+import numpy as np
+
+from flexstage.base.number import Array, Number
+from flexstage.base.quantity import DISPLACEMENT, VOLTAGE, Quantity
+from flexstage.parts.freedom import ALL, Freedom
+from flexstage.parts.shape import Elastic, Order
+
+
+class Actuator(Elastic):
+    """A part with an input, of which `input` is the quantity.
+
+    A stroke actuator (`input` a displacement) deforms freely by `free_deformation` per unit of stroke and resists all else: its force is
+    k (dx - s u). A force actuator (`input` a force or a current) exerts `wrench` per unit of input on its second face and the opposite
+    on its first, whatever their motion, and leaves all freedoms free; what stiffness it has of its own adds to that. Positive pushes
+    the faces apart.
+    """
+
+    input: ClassVar[Quantity] = DISPLACEMENT
+
+    @property
+    def takes_stroke(self) -> bool:
+        """Whether its input is a stroke; else it is a force, or what makes one."""
+        return self.input is DISPLACEMENT
+
+    @property
+    def intended(self) -> tuple[Freedom, ...]:
+        """No passive freedom of a stroke actuator, all six of a force actuator."""
+        return () if self.takes_stroke else ALL
+
+    @property
+    def free_deformation(self) -> Array:
+        """Deformation (..., 6) of the second face against the first per unit of stroke if nothing holds it, in the link's frame: along x.
+
+        Zero of a force actuator.
+        """
+        return np.eye(6)[0] if self.takes_stroke else np.zeros(6)
+
+    @property
+    def thrust(self) -> Number:
+        """Force along x per unit of input: N/N or N/A, zero of a stroke actuator."""
+        return 0.0
+
+    @property
+    def wrench(self) -> Array:
+        """What the faces feel (..., 6) per unit of input, in the link's frame at its centre: `thrust` along x, apart if positive."""
+        return np.asarray(self.thrust)[..., None] * np.eye(6)[0]
+
+
+class StrokeActuator(Actuator):
+    """An actuator that imposes a stroke; a kind states the full free `stroke` and what its force is as it is blocked.
+
+    What it bears is not known where a kind does not state it.
+    """
+
+    stroke: Number
+    maximum_load: Number | None = None
+    tensile_limit: Number | None = None
+    preload: Number | None = None
+
+    @property
+    def blocking_force(self) -> Number:
+        """Force of the fully driven actuator held at its length [N]."""
+        raise NotImplementedError
+
+    @property
+    def below_rest(self) -> Number:
+        """The share of its stroke that lies below where it rests: half."""
+        return 0.5
+
+    @property
+    def below_zero(self) -> Number:
+        """The share of its stroke that lies below where it is without volts: none."""
+        return 0.0
+
+
+class ChargedActuator(StrokeActuator):
+    """A stroke actuator of piezo ceramic: volts between `voltage_low` and `voltage_high` give the stroke; it rests at its `bias`."""
+
+    voltage_low: Number | None
+    voltage_high: Number | None
+    bias: Number | None
+    capacitance: Number | None
+
+    @property
+    def below_rest(self) -> Number:
+        """The share of its stroke below its bias; half where none is stated."""
+        if self.bias is None or self.voltage_low is None or self.voltage_high is None:
+            return 0.5
+        return (self.bias - self.voltage_low) / (self.voltage_high - self.voltage_low)
+
+    @property
+    def below_zero(self) -> Number:
+        """The share of its stroke below no voltage (negative: the range begins above it); none where no range is stated."""
+        if self.voltage_low is None or self.voltage_high is None:
+            return 0.0
+        return -self.voltage_low / (self.voltage_high - self.voltage_low)
+
+    @property
+    def orders(self) -> Iterator[Order]:
+        """Its bias is within its voltages."""
+        yield Order("voltage_low", self.voltage_low, self.voltage_high, "voltage_high", "Exchange them", VOLTAGE)
+        advice = "Give a bias within the range of the stack"
+        yield Order("bias", self.bias, self.voltage_high, "voltage_high", advice, VOLTAGE, strict=False)

@@ -1,0 +1,30 @@
+"""Bare force actuators: a force between two bodies, of which nothing is known but how large it may be."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Annotated, ClassVar
+
+from flexstage.base.digest import DOCUMENT_ONLY
+from flexstage.base.number import Number
+from flexstage.base.quantity import FORCE, MASS, NOT_NEGATIVE, POSITIVE
+from flexstage.parts.actuator import Actuator
+
+
+@dataclass(frozen=True, eq=False)
+class ForceActuator(Actuator):
+    """A force along x between two bodies, positive pushing them apart; it has no stiffness.
+
+    `maximum` is the largest force in either direction (absent: not known), `mass` its own, half on each body.
+    """
+
+    kind: ClassVar[str] = "force"
+    input = FORCE
+    maximum: Annotated[Number, FORCE, POSITIVE] | None = None
+    mass: Annotated[Number, MASS, NOT_NEGATIVE] = 0.0
+    source: str = field(default="", metadata=DOCUMENT_ONLY)
+
+    @property
+    def thrust(self) -> Number:
+        """The input is the force."""
+        return 1.0
