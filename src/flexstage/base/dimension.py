@@ -44,6 +44,8 @@ hertz = 1 / second = Hz
 coulomb = ampere * second = C
 volt = watt / ampere = V
 farad = coulomb / volt = F
+henry = volt * second / ampere = H
+tesla = volt * second / meter ** 2 = T
 ohm = volt / ampere
 bar = 1e5 * pascal
 minute = 60 * second = min

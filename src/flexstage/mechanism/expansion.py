@@ -15,7 +15,6 @@ from flexstage.mechanism.mechanism import GROUND, NOT_GROWING, Mechanism
 from flexstage.parts.body import Solid
 from flexstage.parts.mass import solid_properties
 from flexstage.parts.part import Part, inner, material_of
-from flexstage.parts.piezo import Piezo
 from flexstage.parts.shape import Shaped
 
 _STATED, _ASKED = "as stated", "as asked"
@@ -110,9 +109,8 @@ def coefficient(link: PlacedLink) -> Number:
     >>> coefficient(expand(double_triangle()).links["B1/pzt"])
     -3e-06
     """
-    part = inner(link.part)
-    holder = part if isinstance(part, Piezo) else link.material
-    value = None if holder is None else holder.expansion
+    holder = inner(link.part) if link.material is None else link.material
+    value = getattr(holder, "expansion", None)
     return np.nan if value is None else value
 
 

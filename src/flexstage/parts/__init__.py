@@ -13,9 +13,10 @@ from flexstage.parts.notch import Notch
 from flexstage.parts.piezo import Piezo
 from flexstage.parts.rod import Rod
 from flexstage.parts.shape import Elastic
+from flexstage.parts.voice_coil import VoiceCoil
 
 _COMPOUNDS = (CrossHinge, Cartwheel, FoldedLeaf)
-_ACTUATORS = (Piezo, ForceActuator)
+_ACTUATORS = (Piezo, ForceActuator, VoiceCoil)
 PARTS: Register[type[Elastic]] = Register(
     "flexstage.parts", {part.kind: part for part in (Notch, Neck, Leaf, Rod, Given, *_COMPOUNDS, *_ACTUATORS)}
 )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
@@ -30,27 +31,52 @@ class Actuator(Elastic):
         return self.input is DISPLACEMENT
 
     @property
-    def intended(self) -> tuple[Freedom, ...]:
-        """No passive freedom of a stroke actuator, all six of a force actuator."""
-        return () if self.takes_stroke else ALL
-
-    @property
     def free_deformation(self) -> Array:
-        """Deformation (..., 6) of the second face against the first per unit of stroke if nothing holds it, in the link's frame: along x.
+        """Deformation (..., 6) of the second face against the first per unit of stroke if nothing holds it, in the link's frame.
 
         Zero of a force actuator.
         """
-        return np.eye(6)[0] if self.takes_stroke else np.zeros(6)
-
-    @property
-    def thrust(self) -> Number:
-        """Force along x per unit of input: N/N or N/A, zero of a stroke actuator."""
-        return 0.0
+        return np.zeros(6)
 
     @property
     def wrench(self) -> Array:
-        """What the faces feel (..., 6) per unit of input, in the link's frame at its centre: `thrust` along x, apart if positive."""
+        """What the second face feels (..., 6) per unit of input, in the link's frame at its centre; zero of a stroke actuator."""
+        return np.zeros(6)
+
+
+@dataclass(frozen=True, eq=False)
+class ForceLimit:
+    """What bounds a force actuator's input, by `name`: the largest that it may be `held` for ever, and in `short` use (None: not known)."""
+
+    name: str
+    held: Number | None
+    short: Number | None
+
+
+class ThrustActuator(Actuator):
+    """An actuator that exerts a force along x, positive pushing its faces apart."""
+
+    travel: Number | None = None
+
+    @property
+    def thrust(self) -> Number:
+        """Force along x per unit of input: N/N or N/A."""
+        raise NotImplementedError
+
+    @property
+    def intended(self) -> tuple[Freedom, ...]:
+        """All six: it holds nothing."""
+        return ALL
+
+    @property
+    def wrench(self) -> Array:
+        """Its thrust along x."""
         return np.asarray(self.thrust)[..., None] * np.eye(6)[0]
+
+    @property
+    def limits(self) -> Iterator[ForceLimit]:
+        """What bounds its input."""
+        yield from ()
 
 
 class StrokeActuator(Actuator):
@@ -63,6 +89,16 @@ class StrokeActuator(Actuator):
     maximum_load: Number | None = None
     tensile_limit: Number | None = None
     preload: Number | None = None
+
+    @property
+    def intended(self) -> tuple[Freedom, ...]:
+        """No passive freedom: what moves is its stroke."""
+        return ()
+
+    @property
+    def free_deformation(self) -> Array:
+        """Along x."""
+        return np.eye(6)[0]
 
     @property
     def blocking_force(self) -> Number:

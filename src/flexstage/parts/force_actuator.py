@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Annotated, ClassVar
 
 from flexstage.base.digest import DOCUMENT_ONLY
 from flexstage.base.number import Number
 from flexstage.base.quantity import FORCE, MASS, NOT_NEGATIVE, POSITIVE
-from flexstage.parts.actuator import Actuator
+from flexstage.parts.actuator import ForceLimit, ThrustActuator
 
 
 @dataclass(frozen=True, eq=False)
-class ForceActuator(Actuator):
+class ForceActuator(ThrustActuator):
     """A force along x between two bodies, positive pushing them apart; it has no stiffness.
 
     `maximum` is the largest force in either direction (absent: not known), `mass` its own, half on each body.
@@ -28,3 +29,8 @@ class ForceActuator(Actuator):
     def thrust(self) -> Number:
         """The input is the force."""
         return 1.0
+
+    @property
+    def limits(self) -> Iterator[ForceLimit]:
+        """Its largest force."""
+        yield ForceLimit("maximum force", self.maximum, self.maximum)

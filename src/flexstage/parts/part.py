@@ -55,6 +55,16 @@ def is_actuator(part: Part) -> bool:
     return isinstance(inner(part), Actuator)
 
 
+def imposes_stroke(part: Part) -> bool:
+    """Whether the part is an actuator whose input is a stroke.
+
+    >>> from flexstage.parts.force_actuator import ForceActuator
+    >>> imposes_stroke(ForceActuator())
+    False
+    """
+    return is_actuator(part) and actuator_of(part).takes_stroke
+
+
 def actuator_of(part: Part) -> Actuator:
     """The actuator that a part is, or that a restricted one restricts; refused for what has no input.
 

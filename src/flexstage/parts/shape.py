@@ -13,6 +13,7 @@ from typing import ClassVar
 import numpy as np
 
 from flexstage.base.digest import Description
+from flexstage.base.finding import Finding
 from flexstage.base.number import Number
 from flexstage.base.quantity import LENGTH, Quantity
 from flexstage.parts.freedom import Freedom
@@ -86,6 +87,11 @@ class Elastic(Description):
     def mirrored(self) -> Elastic | None:
         """The part as its own mirror across its y axis shows it; `None` where a kind does not say: then no copy of it can be mirrored."""
         return None
+
+    @property
+    def faults(self) -> Iterator[Finding]:
+        """What else is wrong with its numbers, by field."""
+        yield from ()
 
 
 class Shaped(Elastic):

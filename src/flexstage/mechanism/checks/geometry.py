@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -88,6 +88,8 @@ def _part(where: str, part: Part) -> Iterator[Finding]:
     for order in part.orders if isinstance(part, Elastic) else ():
         compared = _Order(f"{where}.{order.field}", order.quantity, order.other, order.advice)
         yield from (compared.strict if order.strict else compared.loose)(order.small, order.large)
+    for fault in part.faults if isinstance(part, Elastic) else ():
+        yield replace(fault, where=f"{where}.{fault.where}")
     if isinstance(part, Given):
         yield from _given_findings(where, part)
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from flexstage.base.finding import Finding
 from flexstage.mechanism.expand import copy_names, joined, placed_bodies
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
-from flexstage.parts.part import is_actuator
+from flexstage.parts.part import imposes_stroke
 
 
 @dataclass(frozen=True)
@@ -34,7 +34,7 @@ def graph_findings(mechanism: Mechanism) -> Iterator[Finding]:
             yield Finding(body, "no chain of links leads from it to the ground", "Join it by a link, or remove it")
     used = _on_a_path(edges) if PLATFORM in reached else {edge.name for edge in edges}
     for edge in edges:
-        if is_actuator(mechanism.parts[edge.part]) and edge.name not in used and set(edge.joins) <= reached:
+        if imposes_stroke(mechanism.parts[edge.part]) and edge.name not in used and set(edge.joins) <= reached:
             what = f"the actuator joins {edge.joins[0]} and {edge.joins[1]}, on no path between ground and platform"
             yield Finding(edge.name, what, "Lead one of its ends to the ground and the other to the platform, or remove it")
 

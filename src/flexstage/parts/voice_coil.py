@@ -1,0 +1,140 @@
+"""Voice coils: linear motors of a coil in the field of a magnet, whose force is proportional to the current."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from enum import Enum
+from typing import Annotated, ClassVar
+
+from flexstage.base.digest import DOCUMENT_ONLY
+from flexstage.base.finding import Finding
+from flexstage.base.number import Number
+from flexstage.base.quantity import (
+    CURRENT,
+    DISPLACEMENT,
+    FORCE,
+    FORCE_CONSTANT,
+    INDUCTANCE,
+    MASS,
+    NOT_NEGATIVE,
+    POSITIVE,
+    RATIO,
+    RESISTANCE,
+    STIFFNESS,
+    TEMPERATURE,
+    THERMAL_RESISTANCE,
+    VISCOUS_DAMPING,
+    VOLTAGE,
+    Bound,
+)
+from flexstage.parts.actuator import ForceLimit, ThrustActuator
+from flexstage.parts.shape import Order
+
+_DUTY = Bound(low=0.0, high=1.0, open_low=True)
+
+
+class Drive(Enum):
+    """What the amplifier imposes: the current, or the voltage, of which the coil's motion takes k_f v."""
+
+    CURRENT = "current"
+    VOLTAGE = "voltage"
+
+
+class Side(Enum):
+    """One of the two bodies that a link joins, in the order of its `joins`."""
+
+    FIRST = "first"
+    SECOND = "second"
+
+
+@dataclass(frozen=True, eq=False)
+class VoiceCoil(ThrustActuator):
+    """A voice coil along x: force = `force_constant` x current between two bodies, positive pushing them apart.
+
+    `mass` is that of the coil's side, which the body named by `coil` carries, `magnet_mass` that of the other side, carried by the other
+    body; both count at the link's centre, without rotary inertia. `stiffness` is the magnets' own along x (negative: they pull away from
+    the middle), `damping` the coil's own (eddy currents of its former); with `drive` "voltage" the coil's motion induces a voltage that
+    the amplifier does not make up for, and damps with k_f^2 / R more. `travel` is the whole range of motion along x for which the force
+    constant holds, half of it to either side. `temperature_rise` of the coil is what it bears, through `thermal_resistance` to its
+    surroundings; `duty` the share of time that the current flows in short use. The input is the current at rest: of a voltage drive V/R.
+
+    Not modelled: the change of R with temperature, saturation, and the lag L/R of the current under a voltage drive, which counts above
+    R / (2 pi L).
+    """
+
+    kind: ClassVar[str] = "voice_coil"
+    input = CURRENT
+    force_constant: Annotated[Number, FORCE_CONSTANT, POSITIVE]
+    peak_current: Annotated[Number, CURRENT, POSITIVE] | None = None
+    continuous_current: Annotated[Number, CURRENT, POSITIVE] | None = None
+    voltage: Annotated[Number, VOLTAGE, POSITIVE] | None = None
+    maximum_force: Annotated[Number, FORCE, POSITIVE] | None = None
+    resistance: Annotated[Number, RESISTANCE, POSITIVE] | None = None
+    inductance: Annotated[Number, INDUCTANCE, POSITIVE] | None = None
+    mass: Annotated[Number, MASS, NOT_NEGATIVE] = 0.0
+    magnet_mass: Annotated[Number, MASS, NOT_NEGATIVE] = 0.0
+    coil: Side = Side.SECOND
+    drive: Drive = Drive.CURRENT
+    stiffness: Annotated[Number, STIFFNESS] = 0.0
+    damping: Annotated[Number, VISCOUS_DAMPING, NOT_NEGATIVE] = 0.0
+    travel: Annotated[Number, DISPLACEMENT, POSITIVE] | None = None
+    thermal_resistance: Annotated[Number, THERMAL_RESISTANCE, POSITIVE] | None = None
+    temperature_rise: Annotated[Number, TEMPERATURE, POSITIVE] | None = None
+    duty: Annotated[Number, RATIO, _DUTY] = 1.0
+    source: str = field(default="", metadata=DOCUMENT_ONLY)
+
+    @property
+    def thrust(self) -> Number:
+        """The force constant [N/A]."""
+        return self.force_constant
+
+    @property
+    def viscous_damping(self) -> Number:
+        """Its own damping along x and, under a voltage drive, that of the induced voltage, k_f^2 / R [N s/m].
+
+        >>> VoiceCoil(force_constant=10.0, resistance=5.0, damping=1.0, drive=Drive.VOLTAGE).viscous_damping
+        21.0
+        """
+        if self.drive is Drive.CURRENT or self.resistance is None:
+            return self.damping
+        return self.damping + self.force_constant**2 / self.resistance
+
+    @property
+    def limits(self) -> Iterator[ForceLimit]:
+        """What bounds its current: by name, held for ever, and in short use."""
+        yield ForceLimit("peak current", self.peak_current, self.peak_current)
+        rested = self.duty**-0.5
+        if self.continuous_current is not None:
+            yield ForceLimit("continuous current", self.continuous_current, self.continuous_current * rested)
+        if self.heat_current is not None:
+            yield ForceLimit("heat", self.heat_current, self.heat_current * rested)
+        if self.voltage is not None and self.resistance is not None:
+            yield ForceLimit("voltage", self.voltage / self.resistance, self.voltage / self.resistance)
+        if self.maximum_force is not None:
+            yield ForceLimit("maximum force", self.maximum_force / self.force_constant, self.maximum_force / self.force_constant)
+
+    @property
+    def heat_current(self) -> Number | None:
+        """The direct current whose heat i^2 R warms the coil by what it bears [A]; None where one of these numbers is not stated.
+
+        >>> VoiceCoil(force_constant=10.0, resistance=5.0, thermal_resistance=4.0, temperature_rise=80.0).heat_current
+        2.0
+        """
+        if self.resistance is None or self.thermal_resistance is None or self.temperature_rise is None:
+            return None
+        return (self.temperature_rise / (self.thermal_resistance * self.resistance)) ** 0.5
+
+    @property
+    def orders(self) -> Iterator[Order]:
+        """Its continuous current is at most its peak current."""
+        advice = "Exchange them"
+        yield Order("continuous_current", self.continuous_current, self.peak_current, "the peak current", advice, CURRENT, strict=False)
+
+    @property
+    def faults(self) -> Iterator[Finding]:
+        """A voltage drive damps by the coil's resistance, and a limit of volts bounds the current by it."""
+        for name, asked in (("drive", self.drive is Drive.VOLTAGE), ("voltage", self.voltage is not None)):
+            if asked and self.resistance is None:
+                what = "it states no resistance, and the current that a voltage drives follows from it"
+                yield Finding(name, what, 'Add for example resistance = "5 ohm"')
