@@ -99,6 +99,23 @@ def law(part: Part, material: Material | None) -> Law:
     return Law(result, locked_freedoms(part))
 
 
+def viscous_damping(part: Part) -> Array | None:
+    """The viscous damping (..., 6, 6) [N s/m] that a part states, about its centre; `None` of a part that states none.
+
+    A restricted part keeps it in its elastic freedoms.
+
+    >>> from flexstage.parts.voice_coil import VoiceCoil
+    >>> viscous_damping(VoiceCoil(force_constant=10.0, damping=2.0)).diagonal().tolist()
+    [2.0, 0.0, 0.0, 0.0, 0.0, 0.0]
+    """
+    known = law_of(part)
+    if known is None or known.damping is None:
+        return None
+    kept: Array = np.array([freedom in part.elastic for freedom in ALL]) if isinstance(part, Restricted) else np.ones(6, dtype=bool)
+    own = np.where(kept[:, None] & kept, known.damping(inner(part)), 0.0)
+    return own if np.any(own) else None
+
+
 def locked_freedoms(part: Part) -> tuple[Freedom, ...]:
     """The freedoms that a part locks."""
     if isinstance(part, Joint):

@@ -16,8 +16,8 @@ from flexstage.base.record import INNER
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.parts import amplifier
+from flexstage.parts.actuator import ChargedActuator
 from flexstage.parts.gauge import DisplacementGauge
-from flexstage.parts.piezo import Piezo
 
 
 @dataclass(frozen=True)
@@ -155,7 +155,7 @@ def _by_name(given: _Setting | Mapping[str, _Setting] | None, names: tuple[str, 
     return {name: given.get(name, none) for name in names}
 
 
-def _amplifier(setting: AmplifierSettings, piezo: Piezo, low: float, high: float) -> Amplifier:
+def _amplifier(setting: AmplifierSettings, piezo: ChargedActuator, low: float, high: float) -> Amplifier:
     gain = _gain(piezo)
     capacitance = np.nan if piezo.capacitance is None else float(piezo.capacitance)
     return Amplifier(
@@ -174,7 +174,7 @@ def _slew(setting: AmplifierSettings, gain: float, capacitance: float) -> float:
     return min(by_current, np.inf if setting.slew is None else setting.slew * gain)
 
 
-def _gain(piezo: Piezo) -> float:
+def _gain(piezo: ChargedActuator) -> float:
     """Free stroke per volt [m/V]; NaN where no range is stated."""
     if piezo.voltage_low is None or piezo.voltage_high is None:
         return np.nan
@@ -200,7 +200,7 @@ def _first_stated(*values: object) -> float:
     return next(float(value) for value in values if value is not None)  # type: ignore[arg-type]
 
 
-def _amplifier_findings(name: str, setting: AmplifierSettings, piezo: Piezo) -> Iterator[Finding]:
+def _amplifier_findings(name: str, setting: AmplifierSettings, piezo: ChargedActuator) -> Iterator[Finding]:
     if setting.resistance is not None and setting.bandwidth is not None:
         what = f"bandwidth {setting.bandwidth:g} Hz and resistance {setting.resistance:g} ohm are both given"
         yield Finding(name, what, "Give the one that limits")

@@ -16,7 +16,7 @@ import numpy as np
 from flexstage.base.digest import digest
 from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.number import Array, Number, first_design
-from flexstage.beams.compliance import Law, law
+from flexstage.beams.compliance import Law, law, viscous_damping
 from flexstage.beams.mass import mass
 from flexstage.mechanism.drawn import as_drawn
 from flexstage.mechanism.expand import Assembly, PlacedLink, expand
@@ -129,6 +129,7 @@ def lumped(mechanism: Mechanism, masses: Masses = Masses.ALL) -> LinearModel:
         inertial=None if kept.driven is None else _project(_momentum(inertia, kept.driven), basis),
         idle_output=None if idle is None else output @ idle.motions,
         idle_inertia=None if idle is None else _idle_inertia(stage, inertia, idle, carried),
+        viscous=_viscous(stage.assembly),
         unknown=tuple(f"{name}.{FORCES[freedom.index]}" for name, freedoms in stage.freedoms.items() for freedom in freedoms),
     )
 
@@ -189,6 +190,12 @@ def _whole_law(law: Law) -> Array:
     result = np.zeros((*batch, size, size), dtype=np.result_type(law.stiffness, modes))
     result[..., :6, :6], result[..., 6:, 6:] = law.stiffness, modes
     return result
+
+
+def _viscous(assembly: Assembly) -> dict[str, Array]:
+    """What parts damp by themselves, by link."""
+    found = _by_part(lambda part, _: viscous_damping(part), assembly)
+    return {name: damping for name, damping in found.items() if damping is not None}
 
 
 def _endless(assembly: Assembly, values: Mapping[str, Array], what: str) -> Iterator[Finding]:

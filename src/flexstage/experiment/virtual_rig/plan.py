@@ -13,8 +13,8 @@ from flexstage.experiment.virtual_rig.setup import RigSetup
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.linear.model import LinearModel
+from flexstage.parts.actuator import ChargedActuator
 from flexstage.parts.gauge import DisplacementGauge
-from flexstage.parts.piezo import Piezo
 
 _DEFAULT_SHARE = 0.01
 _RATE_OVER_HIGHEST = 10.0
@@ -118,7 +118,7 @@ def highest_mode(mechanism: Mechanism, model: LinearModel) -> float:
     return float(np.max(platform_modes(mechanism, model).platform_frequencies))
 
 
-def volts_per_metre(piezo: Piezo) -> float:
+def volts_per_metre(piezo: ChargedActuator) -> float:
     """Voltage per free stroke [V/m]: the range of voltage over the full stroke; NaN where no range is stated.
 
     >>> from flexstage.cases.double_triangle import double_triangle
@@ -130,7 +130,7 @@ def volts_per_metre(piezo: Piezo) -> float:
     return float(np.real((piezo.voltage_high - piezo.voltage_low) / piezo.stroke))
 
 
-def _commanded_rms(setup: RigSetup, piezos: list[Piezo], volts: Array) -> Array:
+def _commanded_rms(setup: RigSetup, piezos: list[ChargedActuator], volts: Array) -> Array:
     if setup.drive.stroke is not None:
         return np.full(len(piezos), setup.drive.stroke)
     if setup.drive.voltage is not None:

@@ -31,7 +31,36 @@ def damping_law(model: LinearModel, damping: Damping | None = None) -> Damping:
 
 
 def modal_ratios(model: LinearModel, solved: Eigen, damping: Damping) -> Array:
-    """Damping ratio zeta_r (..., k) of each mode.
+    """Damping ratio zeta_r (..., k) of each mode: that of the law, and what dampers add, phi^T D phi / (2 omega_r).
+
+    The latter is what a mode alone would have: dampers couple modes, which `transfer` and `state_space` reckon with.
+    """
+    return law_ratios(model, solved, damping) + _diagonal(viscous_coupling(model, solved)) / (2.0 * np.sqrt(solved.values))
+
+
+def _diagonal(matrix: Array) -> Array:
+    return np.diagonal(matrix, axis1=-2, axis2=-1)
+
+
+def viscous_coupling(model: LinearModel, solved: Eigen) -> Array:
+    """Phi^T D Phi (..., k, k): what the dampers of parts resist in modal coordinates [1/s].
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.models.linear.eigen import eigen
+    >>> from flexstage.models.lumped import lumped
+    >>> model = lumped(parallelogram())
+    >>> bool(viscous_coupling(model, eigen(model)).any())  # no part states a damping
+    False
+    """
+    total: Array = np.zeros((solved.shapes.shape[-1],) * 2)
+    for name, law in model.viscous.items():
+        strain = model.stiffness[name].operator[..., :6, :] @ solved.shapes
+        total = total + np.swapaxes(strain, -1, -2) @ law @ strain
+    return total
+
+
+def law_ratios(model: LinearModel, solved: Eigen, damping: Damping) -> Array:
+    """Damping ratio zeta_r (..., k) that a law gives each mode.
 
     Modal: as stated. Rayleigh: zeta_r = (alpha/omega_r + beta omega_r)/2, exact. Structural: zeta_r = sum_p eta_p phi^T K_p phi / (2
     omega_r^2), the *equivalent* ratio by modal strain energy (Ungar and Kerwin 1962), right at the resonance for small loss factors.
@@ -41,7 +70,7 @@ def modal_ratios(model: LinearModel, solved: Eigen, damping: Damping) -> Array:
     >>> from flexstage.models.linear.eigen import eigen
     >>> from flexstage.models.lumped import lumped
     >>> model = lumped(parallelogram())
-    >>> ratios = modal_ratios(model, eigen(model), StructuralDamping())
+    >>> ratios = law_ratios(model, eigen(model), StructuralDamping())
     >>> bool(np.all((ratios > 0.0005) & (ratios < 0.01)))  # half the loss factors of aluminium, 0.001, and of the stack, 0.02
     True
     """

@@ -15,7 +15,7 @@ from flexstage.base.number import Array
 from flexstage.base.quantity import FREQUENCY
 from flexstage.base.record import INNER, VIEW, Axes, Called
 from flexstage.mechanism.mechanism import Damping, RayleighDamping, StructuralDamping
-from flexstage.models.linear.damping import modal_ratios, structural_stiffness
+from flexstage.models.linear.damping import law_ratios, structural_stiffness
 from flexstage.models.linear.eigen import Eigen, eigen
 from flexstage.models.linear.model import Channel, LinearModel
 from flexstage.models.linear.port import Ports
@@ -91,7 +91,8 @@ def transfer(model: LinearModel, chosen: Ports, frequencies: Array, damping: Dam
     Modal and Rayleigh damping by exact superposition of all modes, H = C Phi d(omega)^-1 Phi^T (B + omega^2 M_b) + R B + D_f;
     the remainder R = C K^-1 - C Phi Lambda^-1 Phi^T makes the freedoms without inertia exact. Structural damping by direct
     solves of K* - omega^2 M, where a stroke u exerts K_p (1 + j eta_p) u and a link's force is lost alike. A frequency of zero gives the
-    static gain.
+    static gain. A model with dampers of parts (`LinearModel.viscous`), which couple modes, is solved
+    directly under any law.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.linear.port import ports
@@ -112,14 +113,75 @@ def transfer(model: LinearModel, chosen: Ports, frequencies: Array, damping: Dam
         lambda there: f"Ask for {int(there / each):,} lines at most, or for fewer outputs and inputs",
     )
     if isinstance(damping, StructuralDamping):
-        lossy = replace(chosen, force=chosen.force + 1j * chosen.lost)
-        found = direct(structural_stiffness(model), model.inertia_matrix, lossy, frequencies)
-        return found * (1.0 + 1j * np.asarray(chosen.loss))[..., None, :, None]
+        return _structural(model, chosen, frequencies)
     return superpose(model, chosen, frequencies, damping)
 
 
-def direct(stiffness: Array, inertia: Array, chosen: Ports, frequencies: Array) -> Array:
+def _structural(model: LinearModel, chosen: Ports, frequencies: Array) -> Array:
+    lossy = replace(chosen, force=chosen.force + 1j * chosen.lost)
+    stiffness = structural_stiffness(model)
+    if model.viscous:
+        found = _with_dampers(model, lossy, frequencies, StructuralDamping(), stiffness)
+    else:
+        found = direct(stiffness, model.inertia_matrix, lossy, frequencies)
+    return found * (1.0 + 1j * np.asarray(chosen.loss))[..., None, :, None]
+
+
+def _with_dampers(model: LinearModel, chosen: Ports, frequencies: Array, damping: Damping, stiffness: Array) -> Array:
+    """H (..., f, p, m) by direct solves where parts damp by themselves: M z'' + (D_law + D) z' + K z = B u + G^T D_p imposed u' - M_b u''.
+
+    D_law is alpha M + beta K, or M Phi diag(2 zeta omega) Phi^T M; none for a `stiffness` that is complex.
+    """
+    resisted: Array = np.zeros((len(model.coordinates),) * 2)
+    dragged: Array = np.zeros((len(model.coordinates), len(chosen.inputs)))
+    for name, law in model.viscous.items():
+        rows = model.stiffness[name].operator[..., :6, :]
+        push = np.swapaxes(rows, -1, -2) @ law
+        resisted = resisted + push @ rows
+        dragged = dragged + push @ imposed_on(model, name, chosen)
+    if not np.iscomplexobj(stiffness):
+        resisted = resisted + _law_matrix(model, damping)
+    return direct(stiffness, model.inertia_matrix, chosen, frequencies, Dampers(resisted, dragged))
+
+
+def _law_matrix(model: LinearModel, damping: Damping) -> Array:
+    """What a damping law resists (..., n, n) [N s/m]."""
+    if isinstance(damping, RayleighDamping):
+        mass, stiffness = (np.asarray(factor)[..., None, None] for factor in (damping.mass_factor, damping.stiffness_factor))
+        return mass * model.inertia_matrix + stiffness * model.stiffness_matrix
+    solved = eigen(model)
+    momenta = model.inertia_matrix @ solved.shapes
+    return (momenta * (2.0 * law_ratios(model, solved, damping) * np.sqrt(solved.values))[..., None, :]) @ np.swapaxes(momenta, -1, -2)
+
+
+def imposed_on(model: LinearModel, name: str, chosen: Ports) -> Array:
+    """What the chosen inputs impose on a link (..., 6, m).
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.models.linear.port import ports
+    >>> from flexstage.models.lumped import lumped
+    >>> model = lumped(parallelogram())
+    >>> imposed_on(model, "B/pzt", ports(model, ["S"], ["B", "ground.x"])).tolist()[0]
+    [1.0, 0.0]
+    """
+    own = {channel.name: number for number, channel in enumerate(model.inputs)}
+    imposed = model.imposed.get(name, np.zeros((6, len(model.inputs))))[..., :6, :]
+    columns = [imposed[..., own[each.name]] if each.name in own else np.zeros(imposed.shape[:-1]) for each in chosen.inputs]
+    return np.stack(columns, axis=-1)
+
+
+@dataclass(frozen=True, eq=False)
+class Dampers:
+    """What resists the rates of the coordinates (..., n, n), and what rates of the inputs exert through it (..., n, m)."""
+
+    resisted: Array
+    dragged: Array
+
+
+def direct(stiffness: Array, inertia: Array, chosen: Ports, frequencies: Array, dampers: Dampers | None = None) -> Array:
     """H (..., f, p, m) by solving (K - omega^2 M) z = (B + omega^2 M_b) u at each frequency; K may be complex.
+
+    With `dampers` j omega of what they resist is added on the left, of what inputs drag along on the right.
 
     >>> one, none = np.ones((1, 1)), np.zeros((1, 1))
     >>> force = Ports((Channel("fx", "N"),), (Channel("x", "m"),), one, none, one, none)
@@ -128,14 +190,17 @@ def direct(stiffness: Array, inertia: Array, chosen: Ports, frequencies: Array) 
     """
     omega = 2.0 * np.pi * frequencies
     size = max(1, int(_CHUNK / max(1, stiffness.size)))
-    pieces = [_direct(stiffness, inertia, chosen, omega[start : start + size]) for start in range(0, len(omega), size)]
+    pieces = [_direct(stiffness, inertia, chosen, omega[start : start + size], dampers) for start in range(0, len(omega), size)]
     return np.concatenate(pieces, axis=-3)
 
 
-def _direct(stiffness: Array, inertia: Array, chosen: Ports, omega: Array) -> Array:
+def _direct(stiffness: Array, inertia: Array, chosen: Ports, omega: Array, dampers: Dampers | None) -> Array:
     square = (omega**2)[:, None, None]
     dynamic = stiffness[..., None, :, :] - square * inertia[..., None, :, :]
     load = chosen.force[..., None, :, :] + square * chosen.inertial[..., None, :, :]
+    if dampers is not None:
+        rate = 1j * omega[:, None, None]
+        dynamic, load = dynamic + rate * dampers.resisted[..., None, :, :], load + rate * dampers.dragged[..., None, :, :]
     batch = np.broadcast_shapes(dynamic.shape[:-2], load.shape[:-2])
     motion = np.linalg.solve(np.broadcast_to(dynamic, (*batch, *dynamic.shape[-2:])), np.broadcast_to(load, (*batch, *load.shape[-2:])))
     return chosen.output[..., None, :, :] @ motion + chosen.feedthrough[..., None, :, :]
@@ -154,6 +219,8 @@ def superpose(model: LinearModel, chosen: Ports, frequencies: Array, damping: Da
     >>> bool(np.allclose(*ways, rtol=0.05)), bool(np.allclose(*ways, rtol=1e-6))
     (True, False)
     """
+    if model.viscous:
+        return _with_dampers(model, chosen, frequencies, damping, model.stiffness_matrix)
     solved = eigen(model)
     omega = 2.0 * np.pi * frequencies
     square = (omega**2)[:, None, None]
@@ -200,7 +267,7 @@ def residual(model: LinearModel, solved: Eigen, chosen: Ports) -> Array:
 def _denominators(model: LinearModel, solved: Eigen, omega: Array, damping: Damping) -> Array:
     """omega_r^2 - omega^2 + 2 j zeta_r omega_r omega, (..., f, k)."""
     natural = np.sqrt(solved.values)
-    rate = 2.0 * modal_ratios(model, solved, damping) * natural
+    rate = 2.0 * law_ratios(model, solved, damping) * natural
     return solved.values[..., None, :] - (omega**2)[:, None] + 1j * omega[:, None] * rate[..., None, :]
 
 

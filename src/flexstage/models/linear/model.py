@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TypeAlias
 
@@ -45,6 +45,9 @@ class LinearModel:
     M_u, what inputs that impose a motion accelerate (absent: none do). `unknown` names outputs that the model cannot tell: forces of locked
     freedoms. Batch axes lead, and only where something varies: an array without them holds for every design.
 
+    `viscous` are the dampers (..., 6, 6) [N s/m] that parts state, by stiffness contribution: they resist the rate of its deformation, G q
+    less what is imposed, in its first six rows, beside the damping law of the whole. Link forces are told without theirs.
+
     `idle` names coordinates that no stiffness holds. They are left out with their zero modes: what is kept is M-orthogonal to them, so that
     neither frequencies nor shapes depend on which were named. `idle_output` (..., p, k) is how the outputs see the k idle motions,
     `idle_inertia` (..., k, 6) what accelerating the ground exerts on them (both absent: there are none).
@@ -69,6 +72,7 @@ class LinearModel:
     idle_output: Array | None = None
     idle_inertia: Array | None = None
     unknown: tuple[str, ...] = ()
+    viscous: Mapping[str, Array] = field(default_factory=dict)
 
     @cached_property
     def stiffness_matrix(self) -> Array:

@@ -9,9 +9,9 @@ import numpy as np
 
 from flexstage.base.number import Array
 from flexstage.mechanism.mechanism import Damping, ModalDamping, RayleighDamping
-from flexstage.models.linear.damping import modal_ratios
+from flexstage.models.linear.damping import law_ratios, modal_ratios, viscous_coupling
 from flexstage.models.linear.eigen import Eigen, eigen
-from flexstage.models.linear.frequency import modal_forces, residual
+from flexstage.models.linear.frequency import imposed_on, modal_forces, residual
 from flexstage.models.linear.model import Channel, LinearModel
 from flexstage.models.linear.port import Ports
 
@@ -51,9 +51,10 @@ class StateSpace:
 def state_space(model: LinearModel, chosen: Ports, damping: Damping, modes: int | None = None) -> StateSpace:
     """Modal state space between chosen ports, with the lowest `modes` modes (absent: all) and the rest as a static term in D.
 
-    eta'' + 2 zeta omega eta' + omega^2 eta = Phi^T B u - Phi^T M_b u''. A ground displacement as input is absorbed into the states, eta +
-    Phi^T M_b u, so that no input is differentiated. Modal damping is exact; Rayleigh damping is exact but for the freedoms left
-    out; structural damping has no time-domain form: each mode takes its equivalent ratio, and `note` says so.
+    eta'' + R eta' + omega^2 eta = Phi^T B u - Phi^T M_b u'', R = 2 zeta omega and between modes what dampers of parts resist, Phi^T D Phi.
+    A ground displacement as input is absorbed into the states, eta + Phi^T M_b u, so that no input is differentiated. Modal damping is
+    exact; Rayleigh damping is exact but for the freedoms left out; structural damping has no time-domain form: each mode takes its
+    equivalent ratio, and `note` says so.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.linear.port import ports
@@ -64,23 +65,23 @@ def state_space(model: LinearModel, chosen: Ports, damping: Damping, modes: int 
     ((12, 12), 'modal damping, exact; modes above the first 6 as a static term')
     """
     solved = _lowest(eigen(model), modes)
-    ratios = modal_ratios(model, solved, damping)
     omega = np.sqrt(solved.values)
+    rate = _square(2.0 * law_ratios(model, solved, damping) * omega) + viscous_coupling(model, solved)
     force, inertial = modal_forces(solved, chosen)
     seen = chosen.output @ solved.shapes
-    rate, square = (2.0 * ratios * omega)[..., None], solved.values[..., None]
-    lower = force + (square - rate**2) * inertial
+    carried = rate @ inertial + _damped_by_inputs(model, solved, chosen)
+    lower = force + solved.values[..., None] * inertial - rate @ carried
     zero = np.zeros_like(seen)
     return StateSpace(
-        A=_dynamics(solved.values, rate[..., 0]),
-        B=np.concatenate(np.broadcast_arrays(rate * inertial, lower), axis=-2),
+        A=_dynamics(solved.values, rate),
+        B=np.concatenate(np.broadcast_arrays(carried, lower), axis=-2),
         C=np.concatenate([seen, zero], axis=-1),
         D=chosen.feedthrough + residual(model, solved, chosen) - seen @ inertial,
         states=tuple(f"mode{number + 1}{mark}" for mark in ("", "'") for number in range(omega.shape[-1])),
         inputs=chosen.inputs,
         outputs=chosen.outputs,
-        ratios=ratios,
-        note=_note(damping, modes),
+        ratios=modal_ratios(model, solved, damping),
+        note=_note(model, damping, modes),
         provenance=model.provenance,
     )
 
@@ -89,18 +90,35 @@ def _lowest(solved: Eigen, modes: int | None) -> Eigen:
     return solved if modes is None else replace(solved, values=solved.values[..., :modes], shapes=solved.shapes[..., :modes])
 
 
+def _square(diagonal: Array) -> Array:
+    return diagonal[..., None] * np.eye(diagonal.shape[-1])
+
+
+def _damped_by_inputs(model: LinearModel, solved: Eigen, chosen: Ports) -> Array:
+    """What dampers exert on the modes per rate of the inputs (..., k, m): imposed deformations are damped like any other."""
+    total: Array = np.zeros((solved.shapes.shape[-1], len(chosen.inputs)))
+    for name, law in model.viscous.items():
+        strain = model.stiffness[name].operator[..., :6, :] @ solved.shapes
+        total = total + np.swapaxes(strain, -1, -2) @ law @ imposed_on(model, name, chosen)
+    return total
+
+
 def _dynamics(values: Array, rate: Array) -> Array:
-    """A = [[0, I], [-Lambda, -2 Z Omega]]."""
-    values, rate = np.broadcast_arrays(values, rate)
+    """A = [[0, I], [-Lambda, -R]], R = 2 Z Omega + Phi^T D Phi."""
     count = values.shape[-1]
-    result = np.zeros((*values.shape[:-1], 2 * count, 2 * count))
+    result = np.zeros((*np.broadcast_shapes(values.shape[:-1], rate.shape[:-2]), 2 * count, 2 * count))
     result[..., :count, count:] = np.eye(count)
     result[..., count:, :count] = -values[..., None] * np.eye(count)
-    result[..., count:, count:] = -rate[..., None] * np.eye(count)
+    result[..., count:, count:] = -rate
     return result
 
 
-def _note(damping: Damping, modes: int | None) -> str:
+def _note(model: LinearModel, damping: Damping, modes: int | None) -> str:
+    dampers = f"; dampers of {', '.join(model.viscous)} between the modes that are kept" if model.viscous else ""
+    return f"{_law_note(damping, modes)}{dampers}"
+
+
+def _law_note(damping: Damping, modes: int | None) -> str:
     left = "freedoms without inertia" if modes is None else f"modes above the first {modes}"
     if isinstance(damping, ModalDamping):
         return f"modal damping, exact; {left} as a static term"
