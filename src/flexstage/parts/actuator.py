@@ -69,6 +69,11 @@ class ThrustActuator(Actuator):
         return ALL
 
     @property
+    def mirrored(self) -> ThrustActuator:
+        """Itself: a line has no sides."""
+        return self
+
+    @property
     def wrench(self) -> Array:
         """Its thrust along x."""
         return np.asarray(self.thrust)[..., None] * np.eye(6)[0]
