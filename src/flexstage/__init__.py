@@ -31,7 +31,7 @@ HOMES = {
     "parts.freedom": "Freedom",
     "beams.validity": "validity",
     "mechanism.pattern": "Polar Pose Facing",
-    "mechanism.mechanism": "Mechanism Link Unit Placement Probe Force Opening ModalDamping StructuralDamping RayleighDamping",
+    "mechanism.mechanism": "Mechanism NamedNumber Link Unit Placement Probe Force Opening ModalDamping StructuralDamping RayleighDamping",
     "mechanism.store": "dump dumps load loads",
     "mechanism.checks": "check",
     "cases.registry": "case",

@@ -79,6 +79,7 @@ from flexstage.mechanism.mechanism import (
     Link as Link,
     Mechanism as Mechanism,
     ModalDamping as ModalDamping,
+    NamedNumber as NamedNumber,
     Opening as Opening,
     Placement as Placement,
     Probe as Probe,

@@ -8,12 +8,26 @@ from typing import Any
 
 from hypothesis import strategies as st
 
+from flexstage.base.finding import DesignError
 from flexstage.base.number import Table
-from flexstage.mechanism.address import addresses
+from flexstage.base.unit import quantity_of_unit, show
+from flexstage.mechanism.address import addresses, quantity_of, set_text
+from flexstage.mechanism.formulas import spelling_findings
 from flexstage.mechanism.grammar import RESERVED, ListNode, RecordNode, TableNode, UnionNode
 from flexstage.mechanism.locate import locate
-from flexstage.mechanism.mechanism import Link, Mechanism, Placement, Unit
-from flexstage.mechanism.node import ChoiceNode, DirectionNode, FlagNode, MatrixNode, Node, NumberNode, RowNode, TextNode, VectorNode
+from flexstage.mechanism.mechanism import Link, Mechanism, NamedNumber, Placement, Unit
+from flexstage.mechanism.node import (
+    ChoiceNode,
+    DirectionNode,
+    FlagNode,
+    MatrixNode,
+    NamedNode,
+    Node,
+    NumberNode,
+    RowNode,
+    TextNode,
+    VectorNode,
+)
 from flexstage.spatial.frame import COMPONENTS
 
 TEXT = """# A stage of one wire.
@@ -53,13 +67,18 @@ NAMES = st.from_regex(r"[A-Za-z_äΔ][A-Za-z0-9_\-äΔ]{0,8}", fullmatch=True).f
     lambda name: name not in RESERVED and not re.search(r"\d-", name)
 )
 TEXTS = st.text(st.characters(exclude_categories=["Cs"]), max_size=20)
+NUMBER_NAMES = st.from_regex(r"[A-Za-z][A-Za-z0-9_]{0,8}", fullmatch=True).filter(lambda name: not [*spelling_findings(name)])
 DIRECTIONS = st.one_of(st.sampled_from([(1.0, 0.0, 0.0), (0.0, -1.0, 0.0), (-0.0, 0.0, 1.0)]), st.tuples(FINITE, FINITE, FINITE))
 
 
 def values(node: Node) -> st.SearchStrategy[Any]:
     """Any value of a node."""
-    if isinstance(node, NumberNode):
-        return FINITE
+    if isinstance(node, (NumberNode, NamedNode)):
+        return (
+            FINITE
+            if isinstance(node, NumberNode)
+            else st.builds(NamedNumber, FINITE, st.sampled_from(["mm", "deg", "%", "1", "m^2", "N/um"]))
+        )
     if isinstance(node, VectorNode):
         return st.tuples(*(values(item) for item in node.items))
     if isinstance(node, DirectionNode):
@@ -74,7 +93,8 @@ def values(node: Node) -> st.SearchStrategy[Any]:
         length = {"min_size": node.length, "max_size": node.length} if node.length is not None else {"max_size": 3}
         return st.lists(values(node.item), **length).map(tuple)
     if isinstance(node, TableNode):
-        return st.dictionaries(NAMES, values(node.item), max_size=2)
+        names = NUMBER_NAMES if isinstance(node.item, NamedNode) else NAMES
+        return st.dictionaries(names, values(node.item), max_size=2)
     if isinstance(node, UnionNode):
         return st.one_of(*(values(option) for _, option in node.options))
     return records(node) if isinstance(node, RecordNode) else st.just({})
@@ -98,8 +118,21 @@ def mechanisms(draw: st.DrawFn) -> Mechanism:
     if stage.parts:
         stage = _with_departures(draw, stage)
     numbers = addresses(stage)
+    for address in draw(st.lists(st.sampled_from(numbers), max_size=3, unique=True)) if numbers else []:
+        stage = _with_formula(draw, stage, address)
     tagged = draw(st.lists(st.sampled_from(numbers), max_size=4, unique=True)) if numbers else []
     return dataclasses.replace(stage, tags={address: f"stated {draw(TEXTS)}" for address in tagged})
+
+
+def _with_formula(draw: st.DrawFn, stage: Mechanism, address: str) -> Mechanism:
+    """The stage with a formula at an address: of named numbers of that quantity if there are any; where that is no number, as it was."""
+    quantity = quantity_of(stage, address)
+    alike = [f"{name} + " for name, number in stage.numbers.items() if quantity_of_unit(number.unit).si == quantity.si]
+    text = draw(st.sampled_from(["", *alike])) + f"2 * {show(draw(FINITE), quantity)}".replace("* -", "* -1 * ")
+    try:
+        return set_text(stage, address, text)
+    except DesignError:
+        return stage
 
 
 def _with_departures(draw: st.DrawFn, stage: Mechanism) -> Mechanism:

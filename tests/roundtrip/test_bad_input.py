@@ -367,3 +367,45 @@ def test_a_departed_part_is_checked_too() -> None:
     notched = linked(Notch("steel", 0.001, 0.01, Circular(0.005)), bends=Z)
     lines = [str(finding) for finding in check(dataclasses.replace(notched, changes={"links.l.thickness": 0.02}))]
     assert any("links.l.thickness" in line and "20 mm" in line for line in lines), lines
+
+
+NUMBERS = TEXT.replace('length = "30 mm"         # as drawn', 'length = "long"').replace(
+    "[materials.steel]", '[numbers]\nlong = "2*arm"\narm = "15 mm"\nlean = "3 deg"\n\n[materials.steel]'
+)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ('"long"', '"lnog"', ["parts.wire.length", 'no number "lnog"', "long"]),
+        ('"long"', '"long + 3 N"', ["parts.wire.length", '"long + 3 N"', "a length and a force"]),
+        ('"long"', '"long*arm"', ["parts.wire.length", "a quantity in m^2", "a length is expected"]),
+        ('"long"', '"sin(arm)*long"', ["parts.wire.length", '"sin(arm)"', "an angle", "a length"]),
+        ('"long"', '"long/(arm - arm)"', ["parts.wire.length", "divides by nothing"]),
+        ('"long"', '"sqrt(-long*long)"', ["parts.wire.length", "root", "below 0"]),
+        ('"long"', '"long*1e300*1e300"', ["parts.wire.length", "not finite"]),
+        ('"long"', '"long^2"', ["parts.wire.length", '"^"', "arm*arm"]),
+        ('"long"', '"2 long"', ["parts.wire.length", "long", "2*long"]),
+        ('"long"', '"2*mm"', ["parts.wire.length", "mm is a unit", "1 mm"]),
+        ('"long"', '"abs(long)"', ["parts.wire.length", 'no function "abs"', "sqrt, sin, cos, tan"]),
+        ('"long"', '"2,5*long"', ["parts.wire.length", '","', "point"]),
+        ('"long"', '"long*"', ["parts.wire.length", "ends too early"]),
+        ('"long"', f'"{"(" * 30}long{")" * 30}"', ["parts.wire.length", "deeper than 20"]),
+        ('"long"', f'"{"long+" * 80}long"', ["parts.wire.length", "at most 300"]),
+        ('"long"', "\"__import__('os')\"", ["parts.wire.length", "__import__"]),
+        ('"15 mm"', '"long/2"', ["numbers.arm", "arm -> long -> arm", "a number"]),
+        ('"15 mm"', '"arm"', ["numbers.arm", "arm -> arm"]),
+        ('"15 mm"', '"15 furlong"', ["numbers.arm", '"furlong" is not a known unit']),
+        ('"15 mm"', '["15 mm"]', ["numbers.arm", "no number", "26 mm"]),
+        ('"15 mm"', '"sqrt(sqrt(2 m))"', ["numbers.arm", "m^0.25"]),
+        ("lean =", "t =", ["numbers.t", "t is a unit", "t_1"]),
+        ("lean =", "sin =", ["numbers.sin", "meaning of its own"]),
+        ("lean =", '"a-b" =', ["numbers.a-b", "letters, digits"]),
+        ("[numbers]", "[number]", ["number:", "not known", "numbers"]),
+    ],
+)
+def test_each_mistake_in_a_formula_is_told_with_its_object_and_remedy(old: str, new: str, words: list[str]) -> None:
+    assert check(loads(NUMBERS)) == ()
+    assert old in NUMBERS
+    lines = told(NUMBERS.replace(old, new, 1))
+    assert any(all(word in line for word in words) for line in lines), lines

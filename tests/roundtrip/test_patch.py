@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from flexstage.base.finding import DesignError
 from flexstage.cases.registry import CASES
-from flexstage.mechanism.address import addresses, get, set_value, tag_of
+from flexstage.mechanism.address import addresses, assign, get, set_value, tag_of
 from flexstage.mechanism.store import dumps, loads, patch, round_to_digits, write
 from tests.conftest import examples
 from tests.roundtrip.designs import TEXT
@@ -130,3 +130,50 @@ def test_a_protected_file_is_not_replaced(tmp_path: Path, monkeypatch: pytest.Mo
     with pytest.raises(DesignError, match="write-protected"):
         write(target, "new")
     assert target.read_text() == "old"
+
+
+NUMBERS = TEXT.replace('length = "30 mm"         # as drawn', 'length = "2*arm"         # as drawn').replace(
+    "[materials.steel]", '[numbers]\narm = "15 mm"   # measured\ntags = { arm = "stated paper 2" }\n\n[materials.steel]'
+)
+
+
+def test_a_named_number_changes_in_its_place_and_formulas_stay() -> None:
+    """The tags of the number and of what depends on it are taken out: what was stated of them is not true any more."""
+    found = patch(NUMBERS, {"numbers.arm": 0.02})
+    wanted = NUMBERS.replace('"15 mm"', '"20 mm"').replace('tags = { arm = "stated paper 2" }\n', "")
+    assert found.split() == wanted.replace('length = "stated paper 2", ', "").split()
+    assert loads(found).parts["wire"].length == 0.04
+
+
+def test_a_formula_is_replaced_by_a_number_or_by_another() -> None:
+    assert 'length = "31 mm"  ' in patch(NUMBERS, {"wire.length": "31 mm"})
+    found = patch(
+        NUMBERS, {"wire.length": "3*arm", "wire.diameter": "arm/15", "leg/front.at.x": "arm - 1 mm", "L2/front.diameter": "arm/16"}
+    )
+    stage = loads(found)
+    assert (stage.parts["wire"].length, stage.units["leg"].links["front"].at[0]) == (3 * 0.015, 0.015 - 0.001)
+    assert '["arm - 1 mm", "0 mm", "0 mm"]' in found
+    assert '"L2/front.diameter" = "arm/16"' in found
+    assert loads(dumps(stage)) == stage
+
+
+@pytest.mark.parametrize(
+    ("assignment", "address", "value"),
+    [
+        ("numbers.arm=+10%", "wire.length", 0.03 * 1.1),
+        ("arm = 20 mm", "wire.length", 0.04),
+        ("wire.diameter=-5 %", "wire.diameter", 0.00095),
+        ("wire.length=+10%", "wire.length", 0.033),
+        ("steel.poisson=+10%", "steel.poisson", 0.1),  # of a ratio it is the value
+    ],
+)
+def test_assignments_in_percent(assignment: str, address: str, value: float) -> None:
+    assert get(assign(loads(NUMBERS), assignment), address) == pytest.approx(value, rel=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("assignment", "words"), [("leg/front.at.y=+10%", "it is 0"), ("numbers.arm=3 N", "a force"), ("mode_limit=-5%", "state it")]
+)
+def test_assignments_that_are_refused(assignment: str, words: str) -> None:
+    with pytest.raises(DesignError, match=words):
+        assign(loads(NUMBERS), assignment)

@@ -27,11 +27,13 @@ START = 'format = "flexstage 1"\nname = "a"\n'
 
 
 def order(value: Any) -> Any:
-    """The names in a description in their order, all the way down; tags may stand anywhere."""
+    """The names in a description in their order, all the way down; tags and formulas may stand anywhere."""
     if isinstance(value, Mapping):
         return [(name, order(item)) for name, item in value.items()]
     if dataclasses.is_dataclass(value):
-        return [(field.name, order(getattr(value, field.name))) for field in dataclasses.fields(value) if field.name != "tags"]
+        return [
+            (field.name, order(getattr(value, field.name))) for field in dataclasses.fields(value) if field.name not in ("tags", "formulas")
+        ]
     return [order(item) for item in value] if isinstance(value, tuple) else None
 
 

@@ -24,6 +24,7 @@ from flexstage.base.quantity import FREQUENCY
 from flexstage.base.record import VIEW, Along, Called
 from flexstage.base.threads import one_thread
 from flexstage.mechanism.address import addresses, get, quantity_of, set_value
+from flexstage.mechanism.formulas import depth
 from flexstage.mechanism.locate import locate
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.node import NumberNode
@@ -163,22 +164,28 @@ def not_numbers(mechanism: Mechanism, names: tuple[str, ...]) -> Iterator[Findin
 def departure(mechanism: Mechanism, name: str) -> int:
     """What an address departs from: 0 nothing, 1 a part as all copies of a unit have it, 2 that as a single copy has it.
 
+    Above that named numbers, each after those it is worked out of: they write what formulas work out of them.
+
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> [departure(double_triangle(), f"{place}.thickness") for place in ("parts.neck", "horizontal/front", "B1/front")]
     [0, 1, 2]
     """
+    if number := locate(mechanism, name).number:
+        return 3 + depth(mechanism, number)
     return 0 if "/" not in name else 1 if name.partition("/")[0] in mechanism.units else 2
 
 
 def steppable(mechanism: Mechanism, names: tuple[str, ...]) -> Iterator[list[int]]:
-    """Positions of parameters that can be stepped together: a departure hides the number it departs from, so each level goes alone.
+    """Positions of parameters that can be stepped together.
+
+    A departure hides the number it departs from, and a named number is hidden by what is worked out of it: each level goes alone.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> list(steppable(double_triangle(), ("parts.neck.thickness", "horizontal/front.thickness", "materials.steel.young")))
     [[0, 2], [1]]
     """
     level = [departure(mechanism, name) for name in names]
-    for wanted in range(3):
+    for wanted in sorted(set(level)):
         members = [position for position, found in enumerate(level) if found == wanted]
         for start in range(0, len(members), _CHUNK):
             yield members[start : start + _CHUNK]

@@ -116,10 +116,19 @@ def dimension_of(unit: str) -> Dimension:
 _ONE = Dimension(Fraction(1))
 
 
-def _tokens(unit: str) -> Iterator[re.Match[str]]:
-    plain = unit[: _LONGEST + 1]
+def common_spelling(text: str) -> str:
+    """The text with other signs of products, powers and degrees in their common form.
+
+    >>> common_spelling("kg·m²")
+    'kg m^2'
+    """
     for spelling, meaning in _SPELLINGS:
-        plain = plain.replace(spelling, meaning)
+        text = text.replace(spelling, meaning)
+    return text
+
+
+def _tokens(unit: str) -> Iterator[re.Match[str]]:
+    plain = common_spelling(unit[: _LONGEST + 1])
     plain = f"1{plain}" if plain.startswith("/") else plain
     if _OFFSET_SCALE.search(plain):
         raise ValueError("degC and degF have an offset; a difference of temperature is given in K")

@@ -115,3 +115,6 @@ DIRECTION = Quantity("direction", "1", "1", "x")
 
 COMPLIANCE_MATRIX = Quantity("compliance matrix", "mixed", "mixed", "2.91 um/N")
 """A 6x6 whose blocks are `COMPLIANCE`, `COUPLING` and `ROTATIONAL_COMPLIANCE`."""
+
+ANY = Quantity("number", "mixed", "mixed", "26 mm")
+"""A number of the quantity that stands beside it."""

@@ -6,7 +6,9 @@ a text is rounded once, to the float nearest to what it says, so that "1.54 mm" 
 
 from __future__ import annotations
 
+import functools
 import re
+from dataclasses import replace
 from decimal import Decimal, localcontext
 from fractions import Fraction
 from typing import Any
@@ -86,6 +88,81 @@ def missing_unit(found: Any, quantity: Quantity, *, where: str) -> DesignError:
     return refuse(where, f"found {shown} without a unit", f'Write for example "{quantity.example}"')
 
 
+def number_with_unit(number: str, unit: str) -> tuple[float, Dimension]:
+    """The value in coherent SI units of a number's text with a unit (none: a ratio), and its dimension.
+
+    >>> number_with_unit("26", "mm")[0], number_with_unit("5", "%")[0], number_with_unit("3", "kN")[0]
+    (0.026, 0.05, 3000.0)
+    """
+    dimension = dimension_of(unit or "1")
+    return _to_float(Fraction(number) * dimension.size / _coherent_size(dimension)), Dimension(Fraction(1), dimension.powers)
+
+
+def split_unit(text: str) -> tuple[str, str]:
+    """The number that a text begins with (empty: none) and what follows it, its unit.
+
+    >>> split_unit("26 mm"), split_unit("0.3"), split_unit("arm / 2")
+    (('26', 'mm'), ('0.3', '1'), ('', 'arm / 2'))
+    """
+    match = _NUMBER.match(text.strip())
+    number = match[0] if match else ""
+    return number, text.strip()[len(number) :].strip() or "1"
+
+
+def quantity_of_dimension(dimension: Dimension, unit: str = "") -> Quantity:
+    """The first known quantity of a dimension, shown in `unit` if that is given; of another dimension one that is named by its SI unit.
+
+    >>> quantity_of_dimension(dimension_of("mm"), "mm").noun, quantity_of_dimension(dimension_of("mm^3")).si
+    ('a length', 'm^3')
+    """
+    return _quantity(dimension.powers, unit)
+
+
+@functools.lru_cache(maxsize=512)
+def _quantity(powers: tuple[tuple[str, Fraction], ...], unit: str) -> Quantity:
+    known = (each for each in vars(quantities).values() if isinstance(each, Quantity) and each.si != "mixed")
+    found = next((each for each in known if dimension_of(each.si).powers == powers), None)
+    si = _si_text(powers)
+    found = found or Quantity(f"quantity in {si}", si, si, f"1 {si}")
+    return found if unit in ("", found.shown) else replace(found, shown=unit, example=f"1 {unit}")
+
+
+def quantity_of_unit(unit: str) -> Quantity:
+    """The quantity that a unit is one of, shown in it; raises `ValueError` for what is no unit.
+
+    >>> quantity_of_unit("mm").noun, quantity_of_unit("mm").shown
+    ('a length', 'mm')
+    """
+    return quantity_of_dimension(dimension_of(unit), unit)
+
+
+def si_unit(dimension: Dimension) -> str:
+    """The coherent SI unit of a dimension.
+
+    >>> si_unit(dimension_of("N/um")), si_unit(dimension_of("mm^3"))
+    ('kg/s^2', 'm^3')
+    """
+    return _si_text(dimension.powers)
+
+
+_SI_NAMES = {"length": "m", "mass": "kg", "time": "s", "temperature": "K", "angle": "rad", "memory": "B", "current": "A"}
+ANGLE_POWERS = (("[angle]", Fraction(1)),)
+
+
+def _si_text(powers: tuple[tuple[str, Fraction], ...]) -> str:
+    def factor(name: str, power: Fraction) -> str:
+        return _SI_NAMES[name.strip("[]")] + ("" if power == 1 else f"^{float(power):g}")
+
+    above = " ".join(factor(name, power) for name, power in powers if power > 0)
+    below = "".join(f"/{factor(name, -power)}" for name, power in powers if power < 0)
+    return (above or "1") + below
+
+
+def _coherent_size(dimension: Dimension) -> Fraction:
+    """The size of the coherent SI unit of a dimension: a kilogram is a thousand of the base unit gram."""
+    return Fraction(1000 ** dict(dimension.powers).get("[mass]", Fraction(0)))
+
+
 def _split(text: str, quantity: Quantity, where: str) -> tuple[str, str]:
     text = text.strip()
     match = _NUMBER.match(text)
@@ -140,10 +217,8 @@ def _unit_scale(unit: str, quantity: Quantity, where: str, text: str) -> Fractio
 
 
 def _dimension_name(unit: str, dimension: Dimension) -> str:
-    for known in vars(quantities).values():
-        if isinstance(known, Quantity) and known.si != "mixed" and dimension_of(known.si).powers == dimension.powers:
-            return known.noun
-    return f"a quantity in {unit}"
+    known = quantity_of_dimension(dimension)
+    return f"a quantity in {unit}" if known.name.startswith("quantity in ") else known.noun
 
 
 def _show_range(value: Any, quantity: Quantity, unit: str | None, digits: int | None) -> str:

@@ -6,6 +6,7 @@
     horizontal/front.thickness               the part of one link of a unit, in all copies: a departure, kept in `changes`
     B2/front.thickness                       in one copy: a departure that goes before that of all copies
     links.strut.thickness                    the part of a link of the stage itself: a departure too
+    numbers.arm                              a named number: what formulas work out of it changes with it
     B2.shift.x, S1.rotation.z                where a copy of a unit, or a gauge, stands against its pattern: a departure, nought if not made
 
 Levels may be skipped where that is unique: `horizontal/front.radius` for `horizontal/front.profile.radius`, `neck.thickness` for
@@ -14,18 +15,25 @@ Levels may be skipped where that is unique: `horizontal/front.radius` for `horiz
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
+from functools import reduce
 from typing import Any
 
+import numpy as np
+
+from flexstage.base.expression import parse_expression
 from flexstage.base.finding import DesignError, refuse
-from flexstage.base.number import Table, freeze
+from flexstage.base.number import Number, Table, freeze
 from flexstage.base.quantity import Quantity
 from flexstage.mechanism.expand import apply_changes
+from flexstage.mechanism.formulas import NUMBERS, dependents, formula_value, is_formula, scope_of
 from flexstage.mechanism.grammar import node_of
 from flexstage.mechanism.locate import Place, canonical, locate
 from flexstage.mechanism.mechanism import Link, Mechanism
 from flexstage.mechanism.misalignment import misalignment_of
+from flexstage.mechanism.node import NumberNode
 from flexstage.mechanism.path import member, replace_member
 from flexstage.parts.part import Part
 
@@ -55,7 +63,8 @@ def get(mechanism: Mechanism, address: str) -> Any:
 def set_value(mechanism: Mechanism, address: str, value: Any) -> Mechanism:
     """Return the mechanism with another value (SI number, array, or name) at an address; a tag of the old value is dropped.
 
-    A departure is written to `changes`. An entry of a compliance matrix is written with its mirror image.
+    A departure is written to `changes`. An entry of a compliance matrix is written with its mirror image. What formulas work out of a named
+    number is worked out anew; of a value that has a formula the formula is dropped.
 
     >>> from flexstage.parts.rod import Rod
     >>> stage = Mechanism("", parts={"wire": Rod("steel", 0.03, 0.001)})
@@ -64,11 +73,81 @@ def set_value(mechanism: Mechanism, address: str, value: Any) -> Mechanism:
     """
     place = locate(mechanism, address)
     fitting = place.node.fit(freeze(value), address)
-    changed = mechanism
+    changed, lost = mechanism, [place.address]
     for path in _with_mirror(place.path):
-        changed = _write(changed, replace(place, path=path), fitting)
-    tags = {key: tag for key, tag in mechanism.tags.items() if canonical(mechanism, key) != place.address}
+        written = replace(place, path=path)
+        changed = _without_formulas(_write(changed, written, fitting), written.address)
+    if place.number:
+        moved = dependents(changed, place.number)
+        changed = reduce(_work_out, moved, changed)
+        lost += moved
+    tags = {key: tag for key, tag in mechanism.tags.items() if canonical(mechanism, key) not in lost}
     return changed if len(tags) == len(mechanism.tags) else replace(changed, tags=Table(tags))
+
+
+def set_text(mechanism: Mechanism, address: str, text: str) -> Mechanism:
+    """Return the mechanism with what a text means at an address: a value, a relative change of a number (`+10%`), or a formula.
+
+    Of a ratio, a percentage is the value itself.
+
+    >>> from flexstage.mechanism.mechanism import NamedNumber
+    >>> from flexstage.parts.rod import Rod
+    >>> stage = Mechanism("", parts={"wire": Rod("steel", 0.03, 0.001)}, numbers={"arm": NamedNumber(0.026, "mm")})
+    >>> stage = set_text(set_text(stage, "wire.length", "2*arm"), "numbers.arm", "+100 %")
+    >>> stage.parts["wire"].length, stage.formulas["parts.wire.length"]
+    (0.104, '2*arm')
+    """
+    place, where = locate(mechanism, address), address.strip()
+    if not place.node.single:
+        raise _several(mechanism, place, where)
+    try:
+        return set_value(mechanism, where, place.node.parse(text.strip(), where))
+    except DesignError:
+        if not isinstance(place.node, NumberNode):
+            raise
+        if (share := _SHARE.fullmatch(text.strip())) is not None:
+            return set_value(mechanism, where, _share_of(mechanism, where, 1.0 + float(share[1]) / 100.0))
+        if not is_formula(text, scope_of(mechanism)):
+            raise
+    return _set_formula(mechanism, place, where, text.strip())
+
+
+_SHARE = re.compile(r"([+-]\d+\.?\d*|[+-]\.\d+)\s*%")
+
+
+def _share_of(mechanism: Mechanism, where: str, factor: float) -> Number:
+    """What a number becomes by a factor."""
+    value = get(mechanism, where)
+    if value is None:
+        raise refuse(where, "the description does not state it, and so no share of it", "Give it a value with its unit")
+    if np.all(np.equal(value, 0.0)):
+        raise refuse(where, "it is 0, of which every share is 0", "Give it a value with its unit")
+    return value * factor  # type: ignore[no-any-return]
+
+
+def _set_formula(mechanism: Mechanism, place: Place, where: str, text: str) -> Mechanism:
+    value = formula_value(text, quantity_of(mechanism, where), scope_of(mechanism), where)
+    circle = {
+        number for number in parse_expression(text).names if f"{NUMBERS}.{number}" in (place.address, *dependents(mechanism, place.number))
+    }
+    if place.number and circle:
+        what = f'"{text}" is worked out of {", ".join(sorted(circle))}, and so of {place.number} itself'
+        raise refuse(where, what, "Give it a number, or a formula of others")
+    changed = set_value(mechanism, where, value)
+    own = {replace(place, path=path).address: text for path in _with_mirror(place.path)}
+    return replace(changed, formulas=Table({**changed.formulas, **own}))
+
+
+def _without_formulas(mechanism: Mechanism, address: str) -> Mechanism:
+    """The mechanism without the formulas of a value and of what it holds."""
+    kept = {key: text for key, text in mechanism.formulas.items() if key != address and not key.startswith(f"{address}.")}
+    return mechanism if len(kept) == len(mechanism.formulas) else replace(mechanism, formulas=Table(kept))
+
+
+def _work_out(mechanism: Mechanism, address: str) -> Mechanism:
+    """The mechanism with the value that the formula at an address gives."""
+    value = formula_value(mechanism.formulas[address], quantity_of(mechanism, address), scope_of(mechanism), address)
+    return _write(mechanism, locate(mechanism, address), value)
 
 
 def assign(mechanism: Mechanism, assignment: str) -> Mechanism:
@@ -82,10 +161,7 @@ def assign(mechanism: Mechanism, assignment: str) -> Mechanism:
     address, equals, text = assignment.partition("=")
     if not equals:
         raise refuse(f'"{assignment}"', "an assignment needs an equals sign", 'Write for example "parts.neck.thickness=1.4 mm"')
-    place, where = locate(mechanism, address), address.strip()
-    if not place.node.single:
-        raise _several(mechanism, place, where)
-    return set_value(mechanism, where, place.node.parse(text.strip(), where))
+    return set_text(mechanism, address, text)
 
 
 def _several(mechanism: Mechanism, place: Place, where: str) -> DesignError:

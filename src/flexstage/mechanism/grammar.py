@@ -20,7 +20,7 @@ from flexstage.base.digest import digest
 from flexstage.base.finding import refuse, suggest_nearest
 from flexstage.base.number import Table
 from flexstage.base.quantity import COMPLIANCE_MATRIX, DIRECTION, Bound, Quantity
-from flexstage.mechanism.mechanism import Mechanism, ModalDamping, RayleighDamping, StructuralDamping
+from flexstage.mechanism.mechanism import BESIDE, Mechanism, ModalDamping, NamedNumber, RayleighDamping, StructuralDamping
 from flexstage.mechanism.node import (
     BAD,
     ChoiceNode,
@@ -28,6 +28,7 @@ from flexstage.mechanism.node import (
     DirectionNode,
     FlagNode,
     MatrixNode,
+    NamedNode,
     Node,
     NumberNode,
     Reader,
@@ -247,14 +248,15 @@ class RecordNode(Node):
         return _without_like(merged)
 
     def write(self, value: Any, where: str, writer: Writer) -> dict[str, Any]:
-        """A table of the fields that are not at their defaults."""
+        """A table of the fields that are not at their defaults, or have a formula."""
         return dict(self._entries(value, where, writer))
 
     def _entries(self, record: Any, where: str, writer: Writer) -> Iterator[tuple[str, Any]]:
         for name, slot in self.fields.items():
             value = getattr(record, name)
             default = name not in _ALWAYS and not slot.required and digest(value) == digest(slot.default)
-            if not default and name != TAGS and slot.node is not CHANGES:
+            stated = not default or writer.has_formula(join(where, name))
+            if stated and name != TAGS and slot.node is not CHANGES:
                 yield self.key(record, name), writer.write(slot.node, value, join(where, name))
 
     def schema(self, definitions: Definitions, key: str | None = None, name: str | None = None) -> dict[str, Any]:
@@ -463,7 +465,11 @@ def node_of(record: type) -> RecordNode:
 @functools.cache
 def _slots(record: type) -> Mapping[str, Slot]:
     hints = typing.get_type_hints(record, include_extras=True)
-    return {field.name: _slot(record, field, hints[field.name]) for field in dataclasses.fields(record)}
+    return {
+        field.name: _slot(record, field, hints[field.name])
+        for field in dataclasses.fields(record)
+        if not BESIDE.items() <= field.metadata.items()
+    }
 
 
 def _slot(record: type, field: dataclasses.Field[Any], hint: Any) -> Slot:
@@ -489,6 +495,8 @@ def _node(hint: Any) -> Node:
     origin = typing.get_origin(hint)
     if origin is Annotated:
         return _annotated_node(hint)
+    if hint is NamedNumber:
+        return NamedNode()
     if hint is DisplacementGauge:
         kinds = {name: RecordNode(option) for name, option in GAUGES.all.items()}
         return UnionNode(_KIND, tuple(kinds.items()), Gauge.kind)

@@ -7,14 +7,15 @@ from typing import Any
 
 from flexstage.base.finding import DesignError, refuse, suggest_nearest
 from flexstage.mechanism.expand import copy_names
+from flexstage.mechanism.formulas import NUMBERS
 from flexstage.mechanism.grammar import RecordNode, node_of
-from flexstage.mechanism.mechanism import Link, Mechanism
+from flexstage.mechanism.mechanism import Link, Mechanism, NamedNumber
 from flexstage.mechanism.misalignment import MISALIGNED, Misalignment
 from flexstage.mechanism.node import Node
 from flexstage.mechanism.path import completions, has_member, member
 from flexstage.spatial.frame import COMPONENTS
 
-_DOCUMENT = ("tags", "sources", "requirements", "changes")
+_DOCUMENT = ("tags", "sources", "requirements", "changes", "formulas")
 _TOPOLOGY = ("joins", "part")
 
 
@@ -41,7 +42,13 @@ class Place:
     def address(self) -> str:
         """The address in full; the part within a restricted part is not named, `part` being the link's own."""
         inside = bool(self.owners) and not self.in_link and self.path[:1] == ("part",)
-        return ".".join((*self.owners[-1:], *self.path[inside:]))
+        path = self.path[:2] if self.number else self.path
+        return ".".join((*self.owners[-1:], *path[inside:]))
+
+    @property
+    def number(self) -> str:
+        """The name of the number that it is; empty if it is anything else."""
+        return self.path[1] if not self.owners and self.path[:1] == (NUMBERS,) and len(self.path) > 1 else ""
 
 
 def locate(mechanism: Mechanism, address: str) -> Place:
@@ -119,9 +126,11 @@ def _descend(value: Any, address: str, start: Place, steps: tuple[str, ...]) -> 
     for number, step in enumerate(steps):
         if isinstance(value, Link) and not has_member(value, step):
             return _in_link(mechanism, address, path, _owners(path), steps[number:])
-        for name in _complete(value, address, node, step):
+        for name in _complete(value, address, node, step, last=number == len(steps) - 1):
             node, value = node.child(value, name), member(value, name)
             path += (name,)
+    if isinstance(value, NamedNumber):
+        return replace(start, path=(*path, "value"), node=node.child(value, "value"))
     return replace(start, path=path, node=node)
 
 
@@ -130,11 +139,12 @@ def _owners(tree: tuple[str, ...]) -> tuple[str, ...]:
     return (tree[1], f"links.{tree[1]}") if tree[0] == "links" else (f"{tree[1]}/{tree[3]}",)
 
 
-def _complete(value: Any, address: str, node: Node, step: str) -> tuple[str, ...]:
+def _complete(value: Any, address: str, node: Node, step: str, *, last: bool) -> tuple[str, ...]:
+    """The names that a step stands for; a named number holds nothing, and so is meant by a last step alone."""
     if isinstance(value, tuple):
         return (_component(value, address, node, step),)
     step = node.field_called(value, step)
-    found = [path for path in completions(value, step) if path[0] not in _DOCUMENT]
+    found = [path for path in completions(value, step) if path[0] not in _DOCUMENT and (last or path[:-1] != (NUMBERS,))]
     if len(found) == 1:
         return found[0]
     if found:

@@ -11,6 +11,7 @@ from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Number, Table, Vector
 from flexstage.base.quantity import (
     ACCELERATION,
+    ANY,
     DIRECTION,
     FORCE,
     FREQUENCY,
@@ -34,9 +35,20 @@ PLATFORM = "platform"
 NOT_GROWING = "none"
 """Said of the ground in place of a material: it does not grow with temperature."""
 
+BESIDE = {"beside": True}
+"""Metadata of a field that has no key of its own in a file: formulas stand where the values do."""
+
 
 def _empty() -> Any:
     return field(default_factory=lambda: Table({}))
+
+
+@dataclass(frozen=True, eq=False)
+class NamedNumber(Description):
+    """A number that formulas refer to by name: its value [SI] and the unit that files show it in (`1`: a ratio)."""
+
+    value: Annotated[Number, ANY]
+    unit: str
 
 
 @dataclass(frozen=True, eq=False)
@@ -138,7 +150,8 @@ class Mechanism(InNotebook, Description):
     implied, body `platform` is the moving part. `changes` are departures of link parts from the shared part, by address
     (`horizontal/front.thickness`, `B2/front.thickness`). `mode_limit` is the frequency below which the platform's modes are looked for.
     `ground` names the material that the ground grows with (`none`: it does not grow). `packages` are those that its kinds of parts,
-    gauges and measures come from, each perhaps with versions: `tapered-leaf >= 1`.
+    gauges and measures come from, each perhaps with versions: `tapered-leaf >= 1`. `formulas` say, by address, what values are worked out
+    of `numbers`; values are kept as they come out.
     """
 
     name: str = field(metadata=DOCUMENT_ONLY)
@@ -165,3 +178,5 @@ class Mechanism(InNotebook, Description):
     packages: tuple[str, ...] = field(default=(), metadata=DOCUMENT_ONLY)
     tags: Mapping[str, str] = field(default_factory=lambda: Table({}), metadata=DOCUMENT_ONLY)
     sources: Mapping[str, str] = field(default_factory=lambda: Table({}), metadata=DOCUMENT_ONLY)
+    numbers: Mapping[str, NamedNumber] = field(default_factory=lambda: Table({}), metadata=DOCUMENT_ONLY)
+    formulas: Mapping[str, str] = field(default_factory=lambda: Table({}), metadata=DOCUMENT_ONLY | BESIDE)

@@ -16,10 +16,13 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from flexstage.base.expression import UnknownAmountError
 from flexstage.base.finding import DesignError, Finding, refuse
 from flexstage.base.quantity import COMPLIANCE, COUPLING, DIRECTION, RATIO, ROTATIONAL_COMPLIANCE, Bound, Quantity
-from flexstage.base.unit import parse, show
+from flexstage.base.unit import parse, quantity_of_unit, show
 from flexstage.mechanism.catalogue import Catalogue
+from flexstage.mechanism.formulas import Numbers, formula_value, is_formula
+from flexstage.mechanism.mechanism import NamedNumber
 from flexstage.spatial.frame import COMPONENTS
 
 MOST_FINDINGS = 100
@@ -36,6 +39,10 @@ DIRECTIONS: Mapping[str, tuple[float, float, float]] = {
 
 _NUMBER = r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]{1,3})?"
 _WITH_UNIT = rf"^(?![0-9.eE+-]*$){_NUMBER}(\s*[A-Za-zµμ°%/(].*|\s+1/.*)$"
+_OPERAND = (
+    rf"(-|\(|(sqrt|sin|cos|tan)\s*\(|\s)*([A-Za-z]\w*|{_NUMBER.removeprefix('[+-]?')}(\s*[A-Za-zµμ°%/(][A-Za-zµμ°%0-9^./() ]*)?)[)\s]*"
+)
+_FORMULA = rf"^(?![0-9.eE+-]*$){_OPERAND}([-+*/]{_OPERAND})*$"
 
 Wanted = tuple[str, str] | None
 """What is expected instead of a value, and advice; `None` if the value is of the right kind."""
@@ -56,7 +63,8 @@ class EnoughError(Exception):
 class Reader:
     """Gathers what reading finds: findings, tags by address, and sources that catalogue entries bring along.
 
-    `tagged`: tables may have tags; otherwise that is a name as any other.
+    `tagged`: tables may have tags; otherwise that is a name as any other. `numbers` are those that formulas may refer to, `formulas` those
+    that were found, by address; without `numbers` there are none.
     """
 
     catalogue: Catalogue
@@ -64,6 +72,8 @@ class Reader:
     findings: list[Finding] = field(default_factory=list)
     tags: dict[str, str] = field(default_factory=dict)
     sources: dict[str, str] = field(default_factory=dict)
+    numbers: Numbers | None = None
+    formulas: dict[str, str] = field(default_factory=dict)
 
     def read(self, node: Node, raw: Any, where: str) -> Any:
         """The value that `raw` means as a `node`; `BAD` after a finding."""
@@ -71,6 +81,16 @@ class Reader:
             return node.read(raw, where, self)
         except DesignError as error:
             return self.note(error.findings)
+
+    def formula(self, text: str, quantity: Quantity, where: str) -> Any:
+        """The value of a formula, which is noted; `BAD` where a number it refers to could not be read."""
+        scope = self.numbers.scope if self.numbers is not None else {}
+        try:
+            value = formula_value(text, quantity, scope, where)
+        except UnknownAmountError:
+            return BAD
+        self.formulas[where] = text
+        return value
 
     def refuse(self, where: str, what: str, advice: str) -> Bad:
         """Note a finding."""
@@ -86,9 +106,14 @@ class Reader:
 
 @dataclass
 class Writer:
-    """Gathers what writing finds."""
+    """Gathers what writing finds. What has a formula, by address, is written as that."""
 
     findings: list[Finding] = field(default_factory=list)
+    formulas: Mapping[str, str] = field(default_factory=dict)
+
+    def has_formula(self, where: str) -> bool:
+        """Whether a value, or anything it holds, has one."""
+        return any(key == where or key.startswith(f"{where}.") for key in self.formulas)
 
     def write(self, node: Node, value: Any, where: str) -> Any:
         """The form of a value in a file; `None` after a finding."""
@@ -103,11 +128,12 @@ class Writer:
 class Definitions:
     """The schemas of classes by name, which others refer to, and the catalogue that `like` may name entries of.
 
-    `tagged`: tables may have tags.
+    `tagged`: tables may have tags. `formulas`: numbers may be formulas.
     """
 
     catalogue: Catalogue
     tagged: bool = True
+    formulas: bool = False
     known: dict[str, Any] = field(default_factory=dict)
 
 
@@ -206,9 +232,14 @@ class NumberNode(Node):
         """A text as it may stand in a file."""
         return self.quantity.example if self.quantity is RATIO else f'"{self.quantity.example}"'
 
-    def read(self, raw: Any, where: str, reader: Reader) -> float:
-        """The number in SI."""
-        return self.si(raw, where)
+    def read(self, raw: Any, where: str, reader: Reader) -> Any:
+        """The number in SI, or what a formula gives."""
+        try:
+            return self.si(raw, where)
+        except DesignError:
+            if not isinstance(raw, str) or reader.numbers is None or not is_formula(raw, reader.numbers.scope):
+                raise
+        return reader.formula(raw, self.quantity, where)
 
     def si(self, raw: Any, where: str) -> float:
         """The number in SI of what a file has; raises `DesignError` at `where` if that is none."""
@@ -222,8 +253,10 @@ class NumberNode(Node):
         return _float(raw, where)
 
     def write(self, value: Any, where: str, writer: Writer) -> Any:
-        """The shortest text that is read back to the same bits; a ratio as it is."""
+        """Its formula, or the shortest text that is read back to the same bits; a ratio as it is."""
         require_single(value, where)
+        if where in writer.formulas:
+            return writer.formulas[where]
         return value if self.quantity is RATIO else show(value, self.quantity)
 
     def schema(self, definitions: Definitions) -> dict[str, Any]:
@@ -231,9 +264,10 @@ class NumberNode(Node):
         said = f", {self.bound.text()}" if self.bound and self.bound.text() else ""
         text = {"type": "string", "pattern": _WITH_UNIT}
         told = {"description": f"{self.quantity.name}{said}", "examples": [self.quantity.example]}
+        texts = [text, {"type": "string", "pattern": _FORMULA}] if definitions.formulas else [text]
         if self.quantity is not RATIO:
-            return text | told
-        return {"anyOf": [{"type": "number", **_limits(self.bound)}, text]} | told | {"examples": [float(self.quantity.example)]}
+            return ({"anyOf": texts} if definitions.formulas else text) | told
+        return {"anyOf": [{"type": "number", **_limits(self.bound)}, *texts]} | told | {"examples": [float(self.quantity.example)]}
 
     def wanted(self, value: Any) -> Wanted:
         """A float, a complex number or an array of them."""
@@ -253,6 +287,42 @@ class NumberNode(Node):
         """The number itself."""
         if value is not None:
             yield where, value, self
+
+
+@dataclass(frozen=True)
+class NamedNode(Node):
+    """A named number of any quantity, which its unit says."""
+
+    single: ClassVar[bool] = True
+    shown: ClassVar[str] = '"26 mm"'
+
+    def read(self, raw: Any, where: str, reader: Reader) -> Any:
+        """The number of that name, which was read before all else."""
+        return reader.numbers.values.get(where.partition(".")[2], BAD) if reader.numbers is not None else BAD
+
+    def write(self, value: Any, where: str, writer: Writer) -> Any:
+        """Its formula, or the shortest text in its unit that is read back to the same bits."""
+        return self.child(value, "value").write(value.value, where, writer)
+
+    def schema(self, definitions: Definitions) -> dict[str, Any]:
+        """A number, a text with a unit, or a formula."""
+        texts = [{"type": "string", "pattern": pattern} for pattern in (_WITH_UNIT, _FORMULA)]
+        said = 'a number that formulas refer to by name: "26 mm", a ratio, or a formula of others, "arm / 2"'
+        return {"anyOf": [{"type": "number"}, *texts], "description": said}
+
+    def wanted(self, value: Any) -> Wanted:
+        """A number and the text of a unit."""
+        advice = 'Give for example NamedNumber(26 * fs.mm, "mm")'
+        fits = type(value) is NamedNumber and _is_number(value.value) and isinstance(value.unit, str)
+        return None if fits else ("a named number", advice)
+
+    def child(self, value: Any, name: str) -> NumberNode:
+        """Its value."""
+        return NumberNode(quantity_of_unit(value.unit))
+
+    def numbers(self, value: Any, where: str = "") -> Iterator[tuple[str, Any, NumberNode]]:
+        """Its value."""
+        yield where, value.value, self.child(value, "value")
 
 
 @dataclass(frozen=True)
@@ -321,19 +391,31 @@ class DirectionNode(Node):
         advice = f"Write one of {', '.join(DIRECTIONS)}, or three numbers without units"
         if isinstance(raw, str):
             return DIRECTIONS.get(raw) or reader.refuse(where, f'found "{short(raw)}" where a direction is expected', advice)
-        if not isinstance(raw, list) or len(raw) != 3 or not all(is_bare(item) for item in raw):
+        formulas = reader.numbers is not None
+        if not isinstance(raw, list) or len(raw) != 3 or not all(is_bare(item) or (formulas and isinstance(item, str)) for item in raw):
             return reader.refuse(where, f"found {kind(raw)} where a direction is expected", advice)
-        return tuple(_float(item, where) for item in raw)
+        component = NumberNode(RATIO)
+        return every(
+            [
+                reader.read(component, item, f"{where}.{name}") if isinstance(item, str) else _float(item, where)
+                for name, item in zip(COMPONENTS, raw, strict=False)
+            ]
+        )
 
     def write(self, value: Any, where: str, writer: Writer) -> Any:
         """Its name, or its components."""
         for item in value:
             require_single(item, where)
+        formulas = [writer.formulas.get(f"{where}.{name}") for name in COMPONENTS[:3]]
+        if any(formulas):
+            return [formula or item for formula, item in zip(formulas, value, strict=True)]
         return next((name for name, direction in DIRECTIONS.items() if repr(direction) == repr(value)), list(value))
 
     def schema(self, definitions: Definitions) -> dict[str, Any]:
         """A name or three numbers."""
-        return {"oneOf": [{"enum": list(DIRECTIONS)}, row_schema([{"type": "number"}] * 3)]}
+        text = {"type": "string", "pattern": _FORMULA}
+        component = {"anyOf": [{"type": "number"}, text]} if definitions.formulas else {"type": "number"}
+        return {"oneOf": [{"enum": list(DIRECTIONS)}, row_schema([component] * 3)]}
 
     def wanted(self, value: Any) -> Wanted:
         """A tuple of three numbers."""
@@ -376,7 +458,9 @@ class RowNode(Node):
     def write(self, value: Any, where: str, writer: Writer) -> list[Any]:
         """The entries, of which zero stands without unit."""
         return [
-            0 if part == 0.0 and str(part) == "0.0" else self.child(value, name).write(part, where, writer)
+            0
+            if part == 0.0 and str(part) == "0.0" and f"{where}.{name}" not in writer.formulas
+            else self.child(value, name).write(part, f"{where}.{name}", writer)
             for name, part in zip(COMPONENTS, value, strict=True)
         ]
 
@@ -414,7 +498,7 @@ class MatrixNode(Node):
 
     def write(self, value: Any, where: str, writer: Writer) -> list[Any]:
         """Six rows."""
-        return [RowNode(row).write(parts, where, writer) for row, parts in enumerate(value)]
+        return [RowNode(row).write(parts, f"{where}.{COMPONENTS[row]}", writer) for row, parts in enumerate(value)]
 
     def schema(self, definitions: Definitions) -> dict[str, Any]:
         """Six rows."""

@@ -18,6 +18,7 @@ from flexstage.mechanism.checks.orientation import orientation_findings
 from flexstage.mechanism.checks.provenance import change_findings, tag_findings
 from flexstage.mechanism.checks.value import value_findings
 from flexstage.mechanism.expand import compound_findings
+from flexstage.mechanism.formulas import formula_findings
 from flexstage.mechanism.mechanism import Mechanism
 
 __all__ = ["check", "copy_findings", "package_findings", "require_valid"]
@@ -40,7 +41,7 @@ def check(mechanism: Mechanism) -> tuple[Finding, ...]:
     names = (*name_findings(mechanism), *compound_findings(mechanism))
     changes = tuple(change_findings(mechanism))
     sound = mechanism if not changes else replace(mechanism, changes=Table({}))
-    values = tuple(value_findings(sound))
+    values = (*formula_findings(mechanism), *value_findings(sound))
     findings = (*names, *changes, *tag_findings(mechanism), *values)
     if not values:
         findings += (*geometry_findings(sound, departures=not findings), *orientation_findings(sound))

@@ -10,8 +10,9 @@ from flexstage.base.number import Table
 from flexstage.mechanism.catalogue import Catalogue
 from flexstage.mechanism.checks import copy_findings, package_findings
 from flexstage.mechanism.checks.value import number_findings
+from flexstage.mechanism.formulas import NUMBERS, read_numbers
 from flexstage.mechanism.grammar import CHANGES, TAGS, node_of
-from flexstage.mechanism.locate import locate
+from flexstage.mechanism.locate import canonical, locate
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.node import BAD, MOST_FINDINGS, EnoughError, Reader, kind, short
 
@@ -27,7 +28,9 @@ def mechanism_from(raw: dict[str, Any], catalogue: Catalogue) -> Mechanism:
     >>> mechanism_from({"format": "flexstage 1", "name": "empty"}, shipped_catalogue()).name
     'empty'
     """
-    reader = Reader(catalogue)
+    table = raw.get(NUMBERS)
+    numbers = read_numbers({name: value for name, value in table.items() if name != TAGS} if isinstance(table, dict) else {})
+    reader = Reader(catalogue, numbers=numbers, formulas=dict(numbers.formulas))
     mechanism: Any = None
     try:
         mechanism = _mechanism(reader, raw)
@@ -68,6 +71,7 @@ def _check_format(reader: Reader, raw: dict[str, Any], form: str) -> None:
 
 def _mechanism(reader: Reader, raw: dict[str, Any]) -> Any:
     _check_format(reader, raw, FORMAT)
+    reader.note(reader.numbers.findings if reader.numbers is not None else ())
     packages = raw.get("packages")
     if isinstance(packages, list) and (missing := tuple(package_findings(each for each in packages if isinstance(each, str)))):
         return reader.note(missing)  # what they offer is not known, which says nothing about the rest
@@ -78,9 +82,12 @@ def _mechanism(reader: Reader, raw: dict[str, Any]) -> Any:
     if faults := tuple(copy_findings(mechanism)):
         return reader.note(faults)
     changes = raw.get("change", {})
+    formulas = {canonical(mechanism, where): text for where, text in reader.formulas.items()}
+    reader.formulas.clear()
     values = _changes(reader, mechanism, changes) if isinstance(changes, dict) else reader.read(CHANGES, changes, "change")
     sources = reader.sources | dict(mechanism.sources)
-    return replace(mechanism, changes=values, tags=Table(reader.tags), sources=Table(sources))
+    formulas |= reader.formulas
+    return replace(mechanism, changes=values, tags=Table(reader.tags), sources=Table(sources), formulas=Table(formulas))
 
 
 def _changes(reader: Reader, mechanism: Mechanism, raw: dict[str, Any]) -> dict[str, Any]:
@@ -91,7 +98,10 @@ def _changes(reader: Reader, mechanism: Mechanism, raw: dict[str, Any]) -> dict[
             reader.refuse(where, "this is no address", "Tags of changes stand in [tags], by address")
             continue
         try:
-            values[address] = reader.read(locate(mechanism, address).node, value, where)
+            place = locate(mechanism, address)
+            values[address] = reader.read(place.node, value, where)
+            for key in [key for key in reader.formulas if key.startswith(where)]:
+                reader.formulas[place.address + key.removeprefix(where)] = reader.formulas.pop(key)
         except DesignError as error:
             reader.note(replace(finding, where=where) for finding in error.findings)
     return values

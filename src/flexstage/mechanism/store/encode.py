@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 from flexstage.base.finding import require
@@ -12,6 +13,7 @@ from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.node import Node, Writer
 from flexstage.mechanism.store.decode import FORMAT
 
+_FIRST = ("format", "name", "numbers")
 _LAST = ("change", "require", "sources", TAGS)
 
 
@@ -24,26 +26,28 @@ def tree_of(mechanism: Mechanism) -> dict[str, Any]:
     {'format': 'flexstage 1', 'name': 'empty', 'gravity': ['0 m/s^2', '0 m/s^2', '-9.80665 m/s^2']}
     """
     require(kind_findings(mechanism))
-    writer = Writer()
+    writer = Writer(formulas=mechanism.formulas)
     tree = {"format": FORMAT} | writer.write(node_of(Mechanism), mechanism, "")
-    changes = {key: writer.write(locate(mechanism, key).node, value, f'change."{key}"') for key, value in mechanism.changes.items()}
+    places = {key: locate(mechanism, key) for key in mechanism.changes}
+    changes = {key: writer.write(place.node, mechanism.changes[key], place.address) for key, place in places.items()}
     require(writer.findings)
     tree |= {"change": changes} if changes else {}
     for address, tag in mechanism.tags.items():
         table, key = _home(tree, address)
         table.setdefault(TAGS, {})[key] = tag
-    return {key: tree[key] for key in (*(key for key in tree if key not in _LAST), *(key for key in _LAST if key in tree))}
+    ordered = (*_FIRST, *(key for key in tree if key not in (*_FIRST, *_LAST)), *_LAST)
+    return {key: tree[key] for key in ordered if key in tree}
 
 
-def plain(node: Node, value: Any, where: str) -> Any:
-    """Return the form of a single value in a file; raises `DesignError` at `where` if it has none.
+def plain(node: Node, value: Any, where: str, formulas: Mapping[str, str] | None = None) -> Any:
+    """Return the form of a single value in a file, of what has a formula at its address that; raises `DesignError` if it has none.
 
     >>> from flexstage.base.quantity import LENGTH
     >>> from flexstage.mechanism.node import NumberNode
     >>> plain(NumberNode(LENGTH), 0.00154, "parts.neck.thickness")
     '1.54 mm'
     """
-    writer = Writer()
+    writer = Writer(formulas=formulas or {})
     form = writer.write(node, value, where)
     require(writer.findings)
     return form

@@ -9,7 +9,7 @@ import tomlkit
 from tomlkit.exceptions import TOMLKitError
 
 from flexstage.base.finding import DesignError, refuse
-from flexstage.mechanism.address import set_value
+from flexstage.mechanism.address import set_text, set_value
 from flexstage.mechanism.catalogue import shipped_catalogue
 from flexstage.mechanism.grammar import TAGS, node_of
 from flexstage.mechanism.locate import canonical, locate
@@ -35,9 +35,8 @@ def patch(text: str, values: Mapping[str, Any], *, where: str = "text") -> str:
     mechanism = mechanism_from(parse_toml(text, where), shipped_catalogue())
     steps: list[_Step] = []
     for address, value in values.items():
-        place = locate(mechanism, address)
-        kept = place.node.parse(value, address) if isinstance(value, str) else value
-        steps.append((mechanism, set_value(mechanism, address, kept), address))
+        change = set_text if isinstance(value, str) else set_value
+        steps.append((mechanism, change(mechanism, address, value), address))
         mechanism = steps[-1][1]
     try:
         return _write(text, [steps], mechanism, where)
@@ -87,7 +86,8 @@ def _set_changes(document: Any, mechanism: Mechanism, changed: Mechanism) -> Non
         del table[key]
     for key, value in changed.changes.items():
         if key not in mechanism.changes or mechanism.changes[key] is not value:
-            table[key] = plain(locate(changed, key).node, value, key)
+            place = locate(changed, key)
+            table[key] = plain(place.node, value, place.address, changed.formulas)
 
 
 def _set_at(document: Any, changed: Mechanism, path: tuple[str, ...]) -> None:
@@ -100,7 +100,7 @@ def _set_at(document: Any, changed: Mechanism, path: tuple[str, ...]) -> None:
         node, value = node.child(value, name), member(value, name)
         last = number == len(path) - 1
         if last or not _holds(table, key) or isinstance(table[key], str):
-            table[key] = plain(node, value, ".".join(path))
+            table[key] = plain(node, value, ".".join(path[: number + 1]), changed.formulas)
             return
         table = table[key]
 

@@ -17,17 +17,19 @@ def schema() -> dict[str, Any]:
     >>> schema()["properties"]["mode_limit"]["examples"]
     ['4 kHz']
     """
-    return schema_of(Mechanism, FORMAT, "flexstage design")
+    return schema_of(Mechanism, FORMAT, "flexstage design", formulas=True)
 
 
-def schema_of(record: type, form: str, title: str, *, tagged: bool = True) -> dict[str, Any]:
+def schema_of(record: type, form: str, title: str, *, tagged: bool = True, formulas: bool = False) -> dict[str, Any]:
     """Return the JSON Schema of a file that holds one record and says `format = form`; `tagged`: its tables may have tags.
+
+    `formulas`: its numbers may be formulas.
 
     >>> from flexstage.parts.rod import Rod
     >>> schema_of(Rod, "rod 1", "rod")["properties"]["format"]
     {'const': 'rod 1'}
     """
-    definitions = Definitions(shipped_catalogue(), tagged)
+    definitions = Definitions(shipped_catalogue(), tagged, formulas)
     root = node_of(record).definition(definitions)
     properties = {"format": {"const": form}, **root.pop("properties")}
     return {

@@ -2,7 +2,12 @@
 
 from __future__ import annotations
 
-from flexstage.base.unit import parse, show
+from collections.abc import Callable
+from functools import reduce
+
+from flexstage.base.unit import parse, quantity_of_unit, show
+from flexstage.mechanism.address import set_value
+from flexstage.mechanism.formulas import NUMBERS
 from flexstage.mechanism.grammar import node_of
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.path import replace_member
@@ -17,9 +22,23 @@ def round_to_digits(mechanism: Mechanism, digits: int = 12) -> Mechanism:
     >>> round_to_digits(Mechanism("", parts={"wire": Rod("steel", 1.54 * 1e-3, 0.001)})).parts["wire"].length
     0.00154
     """
-    result = mechanism
+    result = reduce(_round_number(digits), mechanism.numbers, mechanism)
     for address, value, node in node_of(Mechanism).numbers(mechanism):
-        if isinstance(value, float):
+        if isinstance(value, float) and not address.startswith(NUMBERS) and address not in mechanism.formulas:
             tidy = parse(show(value, node.quantity, digits=digits), node.quantity, where=address)
             result = result if tidy == value else replace_member(result, tuple(address.split(".")), tidy)
     return result
+
+
+def _round_number(digits: int) -> Callable[[Mechanism, str], Mechanism]:
+    """Rounds a named number that is no formula, and works out anew what depends on it."""
+
+    def round_number(mechanism: Mechanism, name: str) -> Mechanism:
+        address, number = f"{NUMBERS}.{name}", mechanism.numbers[name]
+        if address in mechanism.formulas or not isinstance(number.value, float):
+            return mechanism
+        quantity = quantity_of_unit(number.unit)
+        tidy = parse(show(number.value, quantity, digits=digits), quantity, where=address)
+        return mechanism if tidy == number.value else set_value(mechanism, address, tidy)
+
+    return round_number

@@ -16,6 +16,7 @@ _HEADED = ("materials", "parts", "bodies", "units", "sensors")
 """Sections whose entries have a heading each; entries of the others stand on one line where they fit."""
 
 HEADINGS: Mapping[str, str] = {
+    "numbers": "Numbers by name: formulas anywhere in this file may refer to them.",
     "materials": "Materials: Young's modulus, Poisson's ratio and density; like = \"...\" starts from the catalogue.",
     "parts": "Parts: one entry per distinct part; links refer to it by name.",
     "bodies": "Bodies of the stage. The ground is implied; the platform is the moving part.",

@@ -168,7 +168,7 @@ def _set(family_: Family, mechanism: Mechanism, values: Mapping[int, Array]) -> 
     for number, value in values.items():
         address = family_.addresses[number]
         place = locate(mechanism, address)
-        plain = not place.owners and "compliance" not in place.path
+        plain = not place.owners and not place.number and "compliance" not in place.path
         mechanism = replace_member(mechanism, place.path, value) if plain else set_value(mechanism, address, value)
     return mechanism
 
