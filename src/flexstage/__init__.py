@@ -16,7 +16,7 @@ HOMES = {
     "base.finding": "DesignError",
     "base.scale": "X Y Z m mm um nm rad mrad urad nrad deg kg N kN N_per_m N_per_um Pa MPa GPa Hz kHz V uF K",
     "parts.material": "Material",
-    "parts.profile": "Circular Elliptic Filleted Straight",
+    "parts.profile": "Circular Elliptic Filleted Straight Parabolic Hyperbolic Power Vee FreeForm",
     "parts.notch": "Notch",
     "parts.neck": "Neck",
     "parts.leaf": "Leaf LeafSection",

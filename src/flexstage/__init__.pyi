@@ -162,7 +162,12 @@ from flexstage.parts.profile import (
     Circular as Circular,
     Elliptic as Elliptic,
     Filleted as Filleted,
+    FreeForm as FreeForm,
+    Hyperbolic as Hyperbolic,
+    Parabolic as Parabolic,
+    Power as Power,
     Straight as Straight,
+    Vee as Vee,
 )
 from flexstage.parts.rod import (
     Rod as Rod,

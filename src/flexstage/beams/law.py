@@ -58,8 +58,8 @@ class PartLaw:
     that is not the beam's own (plates). A part without a beam states its whole `compliance` (..., 6, 6), or its `stiffness` (..., 6, 6)
     where that may be singular or negative in some freedoms (then its compliance need not exist), and `mass` (..., 12, 12), all about its
     centre. `damping` is the viscous one (..., 6, 6) [N s/m] of a part that states it, about its centre too. `concentration` is the factor
-    of its notches on the nominal stress; without it its stress is unknown. `ranges` are those in which the law was compared with
-    elasticity, `family` names the fitted laws that tell its error.
+    of its notches on the nominal stress; without it, or where it is `None`, its stress is unknown. `ranges` are those in which the law
+    was compared with elasticity, `family` names the fitted laws that tell its error.
     """
 
     beam: Callable[[Any, Any], Beam] | None = None
@@ -68,7 +68,7 @@ class PartLaw:
     stiffness: Callable[[Any], Array] | None = None
     mass: Callable[[Any], Array] | None = None
     damping: Callable[[Any], Array] | None = None
-    concentration: Callable[[Any], Number] | None = None
+    concentration: Callable[[Any], Number | None] | None = None
     ranges: Callable[[Any], tuple[Range, ...]] = _no_ranges
     family: Callable[[Any], str | None] = _no_family
     needs_material: bool = True

@@ -7,7 +7,7 @@ import numpy as np
 from flexstage.base.number import Array, Number
 from flexstage.beams.beam import Beam, beam
 from flexstage.beams.law import PartLaw, Range
-from flexstage.beams.profiled import concentration, proportion
+from flexstage.beams.profiled import concentration, proportions
 from flexstage.beams.quadrature import stations
 from flexstage.beams.section import circle, cowper_circle, rectangle
 from flexstage.parts.material import Material
@@ -37,7 +37,7 @@ def _grow(size: Number, growth: Array) -> Array:
 
 
 def _ranges(part: Neck) -> tuple[Range, ...]:
-    return (proportion(part.profile, part.thickness, "toroid" if part.width is None else "notch"),)
+    return proportions(part.profile, part.thickness, "toroid" if part.width is None else "notch")
 
 
 def _family(part: Neck) -> str | None:

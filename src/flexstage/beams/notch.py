@@ -6,12 +6,12 @@ import numpy as np
 
 from flexstage.beams.beam import Beam, beam
 from flexstage.beams.law import PartLaw, Range, ratio
-from flexstage.beams.profiled import concentration, proportion
+from flexstage.beams.profiled import concentration, proportions
 from flexstage.beams.quadrature import stations
 from flexstage.beams.section import rectangle
 from flexstage.parts.material import Material
 from flexstage.parts.notch import Notch
-from flexstage.parts.profile import Filleted, Straight
+from flexstage.parts.profile import Contour, Filleted, Straight
 
 
 def notch_beam(part: Notch, material: Material) -> Beam:
@@ -29,10 +29,12 @@ def notch_beam(part: Notch, material: Material) -> Beam:
 
 
 def _ranges(part: Notch) -> tuple[Range, ...]:
-    return Range("width over thickness", ratio(part.width, part.thickness), low=1.0), proportion(part.profile, part.thickness, "notch")
+    return Range("width over thickness", ratio(part.width, part.thickness), low=1.0), *proportions(part.profile, part.thickness, "notch")
 
 
-def _family(part: Notch) -> str:
+def _family(part: Notch) -> str | None:
+    if isinstance(part.profile, Contour):
+        return None
     return "bar" if isinstance(part.profile, Straight) else "fillet" if isinstance(part.profile, Filleted) else "notch"
 
 

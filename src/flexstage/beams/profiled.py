@@ -6,18 +6,22 @@ import numpy as np
 
 from flexstage.base.number import Number
 from flexstage.beams.law import Range, ratio
-from flexstage.parts.profile import Circular, Elliptic, Filleted, Profile, Straight
+from flexstage.parts.profile import Circular, Contour, Elliptic, Filleted, Profile, Straight
 
 HIGHEST = {"notch": 0.8, "fillet": 1.0, "toroid": 0.5}
 """The largest thickness over radius that was compared."""
 
 
-def concentration(profile: Profile, thickness: Number) -> Number:
+def concentration(profile: Profile, thickness: Number) -> Number | None:
     """Stress concentration factor of a notch in bending, K_t = (1 + t/2R)^(9/20) (Smith, Flexures, 2000), R the radius at the throat.
 
     R is a^2/c for an ellipse, the fillet's radius for a corner-filleted hinge; a straight hinge has 1 (its corners are not described).
     Against plane-stress finite elements with full-height blocks, for t/2R up to 1 (tests/elsewhere): circular notch in bending +1 to +2 %,
     in tension 0 to -13 %; fillets in bending +3 to +7 %, in tension -2 to -10 %.
+
+    Parabolas, hyperbolas and the tips of a V have it by their radius too: the factor of a deep notch depends on thickness and radius at the
+    throat alone (Neuber, Kerbspannungslehre, 1958). Of powers, whose curvature vanishes or is endless there, and of tables no source states
+    it: `None`.
 
     >>> from flexstage.parts.profile import Circular
     >>> round(float(concentration(Circular(0.005), 0.001)), 4)
@@ -27,11 +31,18 @@ def concentration(profile: Profile, thickness: Number) -> Number:
         return 1.0
     if isinstance(profile, Elliptic):
         return (1.0 + thickness * profile.across / (2.0 * profile.along * profile.along)) ** 0.45
+    if isinstance(profile, Contour):
+        radius = profile.radius_at_throat
+        return None if radius is None else (1.0 + thickness / (2.0 * radius)) ** 0.45
     return (1.0 + thickness / (2.0 * profile.radius)) ** 0.45
 
 
-def proportion(profile: Profile, thickness: Number, family: str) -> Range:
-    """Thickness over the radius at the throat; of a straight profile length over thickness."""
+def proportions(profile: Profile, thickness: Number, family: str) -> tuple[Range, ...]:
+    """Thickness over the radius at the throat; of a straight profile length over thickness; nothing of curves, which were not compared."""
+    return () if isinstance(profile, Contour) else (_proportion(profile, thickness, family),)
+
+
+def _proportion(profile: Circular | Elliptic | Filleted | Straight, thickness: Number, family: str) -> Range:
     highest = HIGHEST["fillet" if isinstance(profile, Filleted) else family]
     if isinstance(profile, Circular | Filleted):
         return Range("thickness over radius", ratio(thickness, profile.radius), high=highest)

@@ -30,7 +30,7 @@ class Stress:
 
 
 def has_section(part: Part) -> bool:
-    """Whether beam theory knows the part's section, so that `stress` has something to say of it.
+    """Whether beam theory knows the part's section and the factor of its notches, so that `stress` has something to say of it.
 
     >>> from flexstage.parts.notch import Notch
     >>> from flexstage.parts.profile import Circular
@@ -38,7 +38,7 @@ def has_section(part: Part) -> bool:
     True
     """
     known = law_of(part)
-    return known is not None and known.concentration is not None
+    return known is not None and known.concentration is not None and known.concentration(inner(part)) is not None
 
 
 def stress(part: Part, material: Material | None, wrench: Array) -> Stress | None:
@@ -47,7 +47,7 @@ def stress(part: Part, material: Material | None, wrench: Array) -> Stress | Non
     Beam theory at every station from end to end, N = F_x, M_z = m_z - x F_y, M_y = m_y + x F_z: sigma = |N|/A + |M_z| t/(2 I_z) +
     |M_y| b/(2 I_y) + warping (round: |N|/A + |M| d/(2 I)), tau the sum of the largest of shear and torsion, sqrt(sigma^2 + 3 tau^2). The
     maxima of a section are added although they stand at different points of it: an upper bound of the nominal stress. `None` for
-    parts without a known section (piezo stacks have limits of load instead).
+    parts without a known section (piezo stacks have limits of load instead) or without a known factor.
 
     >>> steel = Material(young=200e9, poisson=0.3, density=7750.0)
     >>> from flexstage.parts.leaf import Leaf
@@ -58,7 +58,8 @@ def stress(part: Part, material: Material | None, wrench: Array) -> Stress | Non
     """
     own = inner(part)
     known = law_of(own)
-    if known is None or known.beam is None or known.concentration is None:  # as has_section says
+    factor = None if known is None or known.beam is None or known.concentration is None else known.concentration(own)
+    if factor is None:  # as has_section says
         return None
     beam = beam_of(own, material)
     position = np.stack([-beam.points.position, beam.points.position], axis=-2)
@@ -67,7 +68,6 @@ def stress(part: Part, material: Material | None, wrench: Array) -> Stress | Non
     equivalent, position = (item.reshape(*item.shape[:-2], -1) for item in np.broadcast_arrays(equivalent, position))
     where = np.argmax(equivalent, axis=-1)[..., None]
     nominal = np.take_along_axis(equivalent, where, axis=-1)[..., 0]
-    factor = known.concentration(own)
     return Stress(nominal, np.take_along_axis(position, where, axis=-1)[..., 0], np.asarray(factor))
 
 

@@ -125,6 +125,23 @@ class ListNode(Node):
 
 
 @dataclass(frozen=True)
+class NumbersNode(ListNode):
+    """Numbers in a row, any number of them, each of which has an address: its place, counted from nought."""
+
+    def members(self, value: Any) -> Iterator[tuple[str, Node, Any]]:
+        """Its items by place."""
+        return ((str(place), self.item, item) for place, item in enumerate(value))
+
+    def child(self, value: Any, name: str) -> Node:
+        """A number."""
+        return self.item
+
+    def key(self, value: Any, name: str) -> int:
+        """The place of a number."""
+        return int(name)
+
+
+@dataclass(frozen=True)
 class TableNode(Node):
     """Values by name."""
 
@@ -547,5 +564,5 @@ def _tuple(items: tuple[Any, ...]) -> VectorNode | ListNode:
     nodes = [_node(item) for item in items if item is not Ellipsis]
     numbers = tuple(node for node in nodes if isinstance(node, NumberNode))
     if numbers:
-        return ListNode(numbers[0], None) if Ellipsis in items else VectorNode(numbers)
+        return NumbersNode(numbers[0], None) if Ellipsis in items else VectorNode(numbers)
     return ListNode(_named_node(items[0]), None if Ellipsis in items else len(items))

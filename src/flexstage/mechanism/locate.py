@@ -8,7 +8,7 @@ from typing import Any
 from flexstage.base.finding import DesignError, refuse, suggest_nearest
 from flexstage.mechanism.expand import copy_names
 from flexstage.mechanism.formulas import NUMBERS
-from flexstage.mechanism.grammar import RecordNode, node_of
+from flexstage.mechanism.grammar import NumbersNode, RecordNode, node_of
 from flexstage.mechanism.mechanism import Link, Mechanism, NamedNumber
 from flexstage.mechanism.misalignment import MISALIGNED, Misalignment
 from flexstage.mechanism.node import Node
@@ -155,6 +155,10 @@ def _complete(value: Any, address: str, node: Node, step: str, *, last: bool) ->
 
 
 def _component(value: Any, address: str, node: Node, step: str) -> str:
+    if isinstance(node, NumbersNode):
+        if step.isdecimal() and has_member(value, step):
+            return step
+        raise refuse(address, f'there is no number "{step}"', f"They are counted from 0 to {len(value) - 1}")
     if not node.components or not has_member(value, step):
         raise refuse(address, f'there is no component "{step}"', suggest_nearest(step, COMPONENTS[: len(value)]))
     return COMPONENTS[int(step)] if step in "012345" else step

@@ -8,7 +8,12 @@ from typing import Any
 
 from flexstage.base.number import Table
 
-_INDEX = {"x": 0, "y": 1, "z": 2, "rx": 3, "ry": 4, "rz": 5} | {str(index): index for index in range(6)}
+_INDEX = {"x": 0, "y": 1, "z": 2, "rx": 3, "ry": 4, "rz": 5}
+
+
+def _index(name: str) -> int:
+    """The place of a component, by its name or its number; -1 for what is neither."""
+    return int(name) if name.isdecimal() else _INDEX.get(name, -1)
 
 
 def member(value: Any, name: str) -> Any:
@@ -20,7 +25,7 @@ def member(value: Any, name: str) -> Any:
     if isinstance(value, Mapping):
         return value[name]
     if isinstance(value, tuple):
-        return value[_INDEX[name]]
+        return value[_index(name)]
     return getattr(value, name)
 
 
@@ -33,7 +38,7 @@ def has_member(value: Any, name: str) -> bool:
     if isinstance(value, Mapping):
         return name in value
     if isinstance(value, tuple):
-        return _INDEX.get(name, len(value)) < len(value)
+        return 0 <= _index(name) < len(value)
     return is_dataclass(value) and any(field.name == name for field in fields(value))
 
 
@@ -88,6 +93,6 @@ def replace_member(value: Any, path: tuple[str, ...], new: Any) -> Any:
     if isinstance(value, Mapping):
         return Table({**value, path[0]: inner})
     if isinstance(value, tuple):
-        index = _INDEX[path[0]]
+        index = _index(path[0])
         return (*value[:index], inner, *value[index + 1 :])
     return replace(value, **{path[0]: inner})

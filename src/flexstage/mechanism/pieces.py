@@ -14,7 +14,7 @@ import numpy as np
 from flexstage.base.number import Array
 from flexstage.parts.body import Block, Cylinder, Imported
 from flexstage.parts.part import Part, inner
-from flexstage.parts.profile import Elliptic, Filleted, Profile, Straight, length, single
+from flexstage.parts.profile import Contour, Elliptic, Filleted, Profile, Straight, length, single
 from flexstage.parts.shape import Profiled, Shaped
 from flexstage.spatial.convex import Convex, cuboid, frustum
 
@@ -156,6 +156,8 @@ def rise_at(profile: Profile, station: float) -> float:
     """
     if isinstance(profile, Straight):
         return 0.0
+    if isinstance(profile, Contour):
+        return float(np.max(profile.height(station * np.array(profile.knots))))
     height = single(profile.across if isinstance(profile, Elliptic) else profile.radius)
     return height * (1.0 - np.sqrt(max(0.0, 1.0 - station * station)))
 
@@ -165,6 +167,9 @@ def _slabs(profile: Profile, trim: float) -> Iterator[tuple[tuple[float, float],
     half = 0.5 * single(length(profile)) - trim
     if isinstance(profile, Straight):
         yield (-half, half), (0.0, 0.0)
+        return
+    if isinstance(profile, Contour):
+        yield from _chords(profile, half)
         return
     along = single(profile.along if isinstance(profile, Elliptic) else profile.radius)
     across = single(profile.across if isinstance(profile, Elliptic) else profile.radius)
@@ -182,3 +187,19 @@ def _slabs(profile: Profile, trim: float) -> Iterator[tuple[tuple[float, float],
         at, height = straight + along * np.sin(middle), across * (1.0 - np.cos(middle))
         low, high = (max(0.0, height + slope * (x - at)) for x in (here, there))
         yield ((here, there), (low, high)) if side > 0.0 else ((-there, -here), (high, low))
+
+
+def _chords(contour: Contour, half: float) -> Iterator[tuple[tuple[float, float], tuple[float, float]]]:
+    """Chords between stations up to `half`, each lowered by what it rises above the contour."""
+    for start, end in pairwise(contour.knots):
+        samples = np.linspace(start, end, 4 * _MOST + 1)
+        bend = float(np.max(np.abs(np.diff(contour.height(samples), 2)))) * (4.0 * _MOST) ** 2
+        count = int(np.clip(np.ceil(np.sqrt(bend / (8.0 * SAGITTA))), 2, _MOST // 2))
+        for (here, there), side in product(pairwise(np.linspace(start, end, count + 1)), (1.0, -1.0)):
+            far = min(half, there)
+            if far <= here:
+                continue
+            heights = contour.height(np.linspace(here, far, 9))
+            above = float(np.max(np.linspace(heights[0], heights[-1], 9) - heights))
+            low, high = (max(0.0, float(height) - above) for height in (heights[0], heights[-1]))
+            yield ((here, far), (low, high)) if side > 0.0 else ((-far, -here), (high, low))

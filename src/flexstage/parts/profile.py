@@ -6,14 +6,16 @@ section's thickness there is t + 2 w. Stations let the quadrature concentrate wh
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Annotated, TypeAlias
+from itertools import pairwise
+from typing import Annotated, ClassVar, TypeAlias
 
 import numpy as np
 
 from flexstage.base.digest import Description
 from flexstage.base.number import Array, Number
-from flexstage.base.quantity import LENGTH, POSITIVE
+from flexstage.base.quantity import ANGLE, LENGTH, NOT_NEGATIVE, POSITIVE, RATIO, Bound
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,9 +48,259 @@ class Straight(Description):
     length: Annotated[Number, LENGTH, POSITIVE]
 
 
-_ARC = np.deg2rad([0.0, 45.0, 90.0])
+class Contour(Description):
+    """A profile known by the height of its cuts over the station, alike on both sides of the middle.
 
-Profile: TypeAlias = Circular | Elliptic | Filleted | Straight
+    `TOLD_BY` is how files call it. Its ends are corners: it meets the blocks it grows on at an angle.
+    """
+
+    TOLD_BY: ClassVar[tuple[str, str]]
+
+    @property
+    def span(self) -> Number:
+        """Total length [m]."""
+        raise NotImplementedError
+
+    @property
+    def rise(self) -> Number:
+        """Height of the cuts at both ends [m]."""
+        raise NotImplementedError
+
+    @property
+    def radius_at_throat(self) -> Number | None:
+        """Radius of curvature where it is thinnest [m]; `None` where that is not one number."""
+        return None
+
+    @property
+    def has_arc(self) -> bool:
+        """Whether it is thinnest in its middle alone."""
+        return True
+
+    @property
+    def knots(self) -> tuple[float, ...]:
+        """Stations [m] from the middle to an end, both included, between which it is smooth, of the first design."""
+        return 0.0, 0.5 * single(self.span)
+
+    def height(self, station: Array) -> Array:
+        """Height of the cuts at stations [m] from the middle, none beyond the ends, of the first design."""
+        raise NotImplementedError
+
+
+class _Conic(Contour):
+    """A curve of half length `along` that rises by `across`."""
+
+    along: Annotated[Number, LENGTH, POSITIVE]
+    across: Annotated[Number, LENGTH, POSITIVE]
+
+    @property
+    def span(self) -> Number:
+        """Twice `along` [m]."""
+        return 2.0 * self.along
+
+    @property
+    def rise(self) -> Number:
+        """`across` [m]."""
+        return self.across
+
+    def _share(self, station: Array) -> Array:
+        return np.abs(station) / single(self.along)
+
+
+@dataclass(frozen=True, eq=False)
+class Parabolic(_Conic):
+    """Two parabolic cuts, w = c (x/a)^2: `along` = a is half the length, `across` = c (Lobontiu et al., Precision Engineering 26, 2002)."""
+
+    TOLD_BY: ClassVar[tuple[str, str]] = ("shape", "parabolic")
+    along: Annotated[Number, LENGTH, POSITIVE]
+    across: Annotated[Number, LENGTH, POSITIVE]
+
+    @property
+    def radius_at_throat(self) -> Number:
+        """a^2 / 2c [m]."""
+        return self.along * self.along / (2.0 * self.across)
+
+    def height(self, station: Array) -> Array:
+        """c (x/a)^2 [m]."""
+        return single(self.across) * self._share(station) ** 2
+
+
+@dataclass(frozen=True, eq=False)
+class Hyperbolic(_Conic):
+    """Two hyperbolic cuts, w = (q^2 + c (c + 2 q) (x/a)^2)^1/2 - q: `along` = a is half the length, `across` = c, `semi_axis` = q.
+
+    The semi-axis lies across the hinge. With q half the thickness both cuts are branches of one hyperbola, that of Lobontiu et al.
+    (Precision Engineering 26, 2002). q large: a parabola; q small: straight flanks that meet at a corner.
+    """
+
+    TOLD_BY: ClassVar[tuple[str, str]] = ("shape", "hyperbolic")
+    along: Annotated[Number, LENGTH, POSITIVE]
+    across: Annotated[Number, LENGTH, POSITIVE]
+    semi_axis: Annotated[Number, LENGTH, POSITIVE]
+
+    @property
+    def steepness(self) -> Number:
+        """c (c + 2 q) / q^2: the square of a over the semi-axis along the hinge."""
+        share = self.across / self.semi_axis
+        return share * (share + 2.0)
+
+    @property
+    def radius_at_throat(self) -> Number:
+        """a^2 q / (c (c + 2 q)) [m]."""
+        return self.along * self.along / (self.semi_axis * self.steepness)
+
+    def height(self, station: Array) -> Array:
+        """q ((1 + c (c + 2 q) / q^2 (x/a)^2)^1/2 - 1) [m]."""
+        inside = single(self.steepness) * self._share(station) ** 2
+        return single(self.semi_axis) * inside / (np.sqrt(1.0 + inside) + 1.0)
+
+
+@dataclass(frozen=True, eq=False)
+class Power(_Conic):
+    """Two cuts of a power, w = c |x/a|^n: `along` = a is half the length, `across` = c, `exponent` = n.
+
+    Linss, Henning & Zentner (Modeling and design of flexure hinge-based compliant mechanisms, in Kinematics, 2019). n = 1: straight flanks
+    that meet at a corner, 2: a parabola, large: a leaf.
+    """
+
+    TOLD_BY: ClassVar[tuple[str, str]] = ("shape", "power")
+    along: Annotated[Number, LENGTH, POSITIVE]
+    across: Annotated[Number, LENGTH, POSITIVE]
+    exponent: Annotated[Number, RATIO, Bound(low=1.0, high=16.0)]
+
+    def height(self, station: Array) -> Array:
+        """c |x/a|^n [m]."""
+        return single(self.across) * self._share(station) ** single(self.exponent)
+
+
+@dataclass(frozen=True, eq=False)
+class Vee(Contour):
+    """Two V cuts: flanks at an `angle` to one another, rounded at the tip by a `radius`; `length` from end to end.
+
+    With e = (180 degrees - angle)/2 a flank's slope: an arc x = r sin p, w = r (1 - cos p) up to p = e, a straight flank from there on.
+    """
+
+    TOLD_BY: ClassVar[tuple[str, str]] = ("shape", "v")
+    length: Annotated[Number, LENGTH, POSITIVE]
+    radius: Annotated[Number, LENGTH, POSITIVE]
+    angle: Annotated[Number, ANGLE, Bound(low=0.0, high=np.pi, open_low=True, open_high=True)]
+
+    @property
+    def slope(self) -> Number:
+        """Angle e between a flank and the hinge's axis [rad]."""
+        return 0.5 * (np.pi - self.angle)
+
+    @property
+    def tip(self) -> Number:
+        """Where the arc ends, r sin e from the middle [m]."""
+        return self.radius * np.sin(self.slope)
+
+    @property
+    def span(self) -> Number:
+        """`length` [m]."""
+        return self.length
+
+    @property
+    def rise(self) -> Number:
+        """r (1 - cos e) and what the flank rises [m]."""
+        return 2.0 * self.radius * np.sin(0.5 * self.slope) ** 2 + (0.5 * self.length - self.tip) * np.tan(self.slope)
+
+    @property
+    def radius_at_throat(self) -> Number:
+        """`radius` [m]."""
+        return self.radius
+
+    @property
+    def knots(self) -> tuple[float, ...]:
+        """The arc's end, and the flank's, where it has one."""
+        tip, half = single(self.tip), 0.5 * single(self.length)
+        return (0.0, tip, half) if tip < half else (0.0, half)
+
+    def height(self, station: Array) -> Array:
+        """That of the arc, or of the flank [m]."""
+        radius, tip, slope = single(self.radius), single(self.tip), np.tan(single(self.slope))
+        on_arc = np.minimum(np.abs(station), tip)
+        return radius - np.sqrt(radius * radius - on_arc * on_arc) + slope * (np.abs(station) - on_arc)
+
+
+@dataclass(frozen=True, eq=False)
+class FreeForm(Contour):
+    """Cuts by a table: `heights` added on each side at `stations` from the middle to an end; the least height is nought.
+
+    Between stations it is a cubic (Hermite) with the slopes of Fritsch & Butland (SIAM J. Sci. Stat. Comput. 5, 1984), as PCHIP has them of
+    the table and its mirror image: it is smooth, and never leaves the interval between two heights.
+    """
+
+    TOLD_BY: ClassVar[tuple[str, str]] = ("shape", "free")
+    stations: tuple[Annotated[Number, LENGTH, NOT_NEGATIVE], ...]
+    heights: tuple[Annotated[Number, LENGTH, NOT_NEGATIVE], ...]
+
+    @property
+    def span(self) -> Number:
+        """Twice the last station [m]."""
+        return 2.0 * self.stations[-1]
+
+    @property
+    def rise(self) -> Number:
+        """The last height [m]."""
+        return self.heights[-1]
+
+    @property
+    def has_arc(self) -> bool:
+        """Whether the height is nought in the middle alone."""
+        return single(self.heights[0]) == 0.0 < min(single(height) for height in self.heights[1:])
+
+    @property
+    def knots(self) -> tuple[float, ...]:
+        """Its stations."""
+        return tuple(single(station) for station in self.stations)
+
+    @property
+    def slopes(self) -> tuple[Number, ...]:
+        """Slope at every station: nought in the middle and at extremes, a weighed harmonic mean of the neighbours' between."""
+        steps = [right - left for left, right in pairwise(self.stations)]
+        rates = [(high - low) / step for (low, high), step in zip(pairwise(self.heights), steps, strict=True)]
+        inner = [_mean_slope(*each) for each in zip(pairwise(steps), pairwise(rates), strict=True)]
+        return 0.0, *inner, _end_slope(steps, rates)
+
+    def pieces(self) -> Iterator[tuple[Number, Number, tuple[Number, Number, Number, Number]]]:
+        """By piece: where it starts, how long it is, and its height as a cubic of the share of its length, constant first."""
+        for (left, right), (low, high), (start, end) in zip(*map(pairwise, (self.stations, self.heights, self.slopes)), strict=True):
+            step, change = right - left, high - low
+            yield left, step, (low, step * start, 3.0 * change - step * (2.0 * start + end), step * (start + end) - 2.0 * change)
+
+    def height(self, station: Array) -> Array:
+        """That of the piece a station lies on [m]."""
+        found, away = np.zeros(np.shape(station)), np.abs(station)
+        for left, step, cubic in self.pieces():
+            share = (away - single(left)) / single(step)
+            here = np.polynomial.polynomial.polyval(share, [single(each) for each in cubic])
+            found = np.where(share >= 0.0, here, found)
+        return found
+
+
+def _mean_slope(steps: tuple[Number, Number], rates: tuple[Number, Number]) -> Number:
+    """Weighed harmonic mean of two rates of one sign, nought for others."""
+    (one, two), (first, second) = steps, rates
+    alike = np.real(first) * np.real(second) > 0.0
+    left, right = (np.where(alike, rate, 1.0) for rate in rates)
+    mean = 3.0 * (one + two) / ((2.0 * two + one) / left + (two + 2.0 * one) / right)
+    return np.where(alike, mean, 0.0)
+
+
+def _end_slope(steps: list[Number], rates: list[Number]) -> Number:
+    """Slope at the end: that of the parabola through three points, but of the last rate's sign, and at most three times it at a turn."""
+    last = rates[-1]
+    before, step = (rates[-2], steps[-2]) if len(rates) > 1 else (-last, steps[-1])
+    slope = ((2.0 * steps[-1] + step) * last - steps[-1] * before) / (steps[-1] + step)
+    turned = np.real(slope) * np.real(last) <= 0.0
+    steep = (np.real(last) * np.real(before) <= 0.0) & (np.abs(np.real(slope)) > 3.0 * np.abs(np.real(last)))
+    return np.where(turned, 0.0, np.where(steep, 3.0 * last, slope))
+
+
+_ARC = np.deg2rad([0.0, 45.0, 90.0])
+_SHARES = np.linspace(0.0, 1.0, 5)
+
+Profile: TypeAlias = Circular | Elliptic | Filleted | Straight | Parabolic | Hyperbolic | Power | Vee | FreeForm
 
 
 def length(profile: Profile) -> Number:
@@ -61,7 +313,7 @@ def length(profile: Profile) -> Number:
         return 2.0 * profile.radius
     if isinstance(profile, Elliptic):
         return 2.0 * profile.along
-    return profile.length
+    return profile.span if isinstance(profile, Contour) else profile.length
 
 
 def rise(profile: Profile) -> Number:
@@ -74,6 +326,8 @@ def rise(profile: Profile) -> Number:
         return profile.radius
     if isinstance(profile, Elliptic):
         return profile.across
+    if isinstance(profile, Contour):
+        return profile.rise
     return profile.radius if isinstance(profile, Filleted) else 0.0
 
 
@@ -96,6 +350,10 @@ def stations_of(profile: Profile) -> tuple[Array, Array]:
     (-0.005, [0.005, 0.001464, 0.0, 0.001464, 0.005])
     """
     half = 0.5 * single(length(profile))
+    if isinstance(profile, Contour):
+        right = np.unique(np.concatenate([start + (end - start) * _SHARES for start, end in pairwise(profile.knots)]))
+        stations = np.concatenate([-right[:0:-1], right])
+        return stations, profile.height(stations)
     if isinstance(profile, (Circular, Elliptic)):
         across = single(rise(profile))
         stations, heights = half * np.sin(_ARC), across * (1.0 - np.cos(_ARC))

@@ -8,6 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import reduce
+from itertools import pairwise
 from typing import ClassVar
 
 import numpy as np
@@ -15,9 +17,23 @@ import numpy as np
 from flexstage.base.digest import Description
 from flexstage.base.finding import Finding
 from flexstage.base.number import Number
-from flexstage.base.quantity import LENGTH, Quantity
+from flexstage.base.quantity import LENGTH, RATIO, Quantity
 from flexstage.parts.freedom import Freedom
-from flexstage.parts.profile import Circular, Elliptic, Filleted, Profile, Straight, closing, length, rise, single, stations_of
+from flexstage.parts.profile import (
+    Circular,
+    Contour,
+    Elliptic,
+    Filleted,
+    FreeForm,
+    Profile,
+    Straight,
+    Vee,
+    closing,
+    length,
+    rise,
+    single,
+    stations_of,
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -169,7 +185,7 @@ class Profiled(Shaped):
 
     @property
     def throat(self) -> Section:
-        """The section in its middle."""
+        """The section where the cuts are deepest, for arcs in its middle."""
         return self.grown(0.0)
 
     @property
@@ -185,7 +201,7 @@ class Profiled(Shaped):
     @property
     def has_arc(self) -> bool:
         """Whether its profile is an arc."""
-        return isinstance(self.profile, (Circular, Elliptic))
+        return self.profile.has_arc if isinstance(self.profile, Contour) else isinstance(self.profile, (Circular, Elliptic))
 
     @property
     def closing(self) -> float:
@@ -199,7 +215,30 @@ class Profiled(Shaped):
 
     @property
     def orders(self) -> Iterator[Order]:
-        """Two fillets fit into its length."""
+        """Two fillets fit into its length, and a tip's arc; a table begins in the middle and ascends."""
         if isinstance(self.profile, Filleted):
             advice = "Two fillets take 2 r of the length: make it longer or the radius smaller"
             yield Order("profile.radius", self.profile.radius, 0.5 * self.profile.length, "half the length", advice, strict=False)
+        if isinstance(self.profile, Vee):
+            most = 0.5 * self.profile.length / np.sin(self.profile.slope)
+            advice = "Make the length or the angle larger, or the radius smaller"
+            yield Order("profile.radius", self.profile.radius, most, "that of an arc over the whole length", advice, strict=False)
+        if isinstance(self.profile, FreeForm):
+            yield from _table_orders(self.profile)
+
+
+def _table_orders(table: FreeForm) -> Iterator[Order]:
+    """A table has as many heights as stations, two at least, begins in the middle, ascends, and counts heights from the least."""
+    stations, heights = table.stations, table.heights
+    counts = (float(len(stations)), float(len(heights)))
+    both, few = "State one height for each station", "State the middle, an end, and what lies between"
+    yield Order("profile.stations", counts[0], counts[1], "the number of heights", both, RATIO, strict=False)
+    yield Order("profile.heights", counts[1], counts[0], "the number of stations", both, RATIO, strict=False)
+    yield Order("profile.stations", 2.0, counts[0], "the number of stations", few, RATIO, strict=False)
+    if stations:
+        yield Order("profile.stations.0", stations[0], 0.0, "the middle of the hinge", "Begin with 0 mm", strict=False)
+    for place, (near, far) in enumerate(pairwise(stations)):
+        yield Order(f"profile.stations.{place}", near, far, "the next station", "State them from the middle outwards")
+    if heights:
+        least, advice = reduce(np.minimum, heights), "Count the heights from the thinnest place, which has 0 mm"
+        yield Order("profile.heights", least, 0.0, "the least height", advice, strict=False)

@@ -153,4 +153,6 @@ def _real(part: Any) -> Any:
 
 
 def _real_number(value: Any) -> Any:
+    if isinstance(value, tuple):
+        return tuple(_real_number(each) for each in value)
     return np.real(value) if isinstance(value, np.ndarray) and np.iscomplexobj(value) else value

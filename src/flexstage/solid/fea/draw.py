@@ -23,10 +23,11 @@ from flexstage.parts.leaf import Leaf
 from flexstage.parts.neck import Neck
 from flexstage.parts.notch import Notch
 from flexstage.parts.piezo import Piezo
-from flexstage.parts.profile import Circular, Filleted, Profile, length
+from flexstage.parts.profile import Circular, Contour, Filleted, Profile, length
 from flexstage.parts.profile import rise as cut_height
 from flexstage.parts.rod import Rod
 from flexstage.parts.shape import Shaped
+from flexstage.solid.fea.contour import contour_edges
 from flexstage.solid.fea.imported import imported_shape
 from flexstage.solid.fea.piece import MILLIMETRES, Form
 from flexstage.solid.fea.specimen import Specimen, bar, cut
@@ -154,6 +155,8 @@ def _ends(rise: float, profile: Profile) -> tuple[float, float]:
 
 def _upper(rise: float, profile: Profile, side: float = 1.0) -> Curve:
     """The edge curve y = side (rise + w(x)) from one end face to the other, in the xy plane."""
+    if isinstance(profile, Contour):
+        return contour_edges(profile, rise, side)
     half, height = 0.5 * _mm(length(profile)), rise + _mm(cut_height(profile))
     if height == rise:
         return _polyline([(-half, side * rise), (half, side * rise)])

@@ -17,7 +17,7 @@ from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.number import Array
 from flexstage.parts.material import Material
 from flexstage.parts.part import is_actuator
-from flexstage.parts.profile import Filleted
+from flexstage.parts.profile import Contour, Filleted
 from flexstage.parts.shape import Profiled, Shaped
 from flexstage.solid.fea.draw import specimen
 from flexstage.solid.fea.estimate import Accuracy, change, remaining
@@ -135,8 +135,9 @@ def _refusals(part: Shaped) -> Iterator[Finding]:
     profile = part.profile if isinstance(part, Profiled) else None
     for owner in (part, profile):
         for name, value in vars(owner).items() if owner is not None else ():
-            if np.ndim(value) > 0:
-                yield Finding(f"{_label(part)}'s {name}", f"is a batch of {np.size(value)}", "A solid is one design: read them one by one")
+            sizes = [np.size(each) for each in (value if isinstance(value, tuple) else (value,)) if np.ndim(each) > 0]
+            if sizes:
+                yield Finding(f"{_label(part)}'s {name}", f"is a batch of {max(sizes)}", "A solid is one design: read them one by one")
     if isinstance(profile, Filleted) and np.ndim(profile.length) == np.ndim(profile.radius) == 0:
         total, radius = float(np.real(profile.length)), float(np.real(profile.radius))
         if 2.0 * radius > total:
@@ -152,7 +153,8 @@ def _error(part: Shaped, found: Sequence[Array]) -> float:
 
 def _blunting_error(part: Shaped, stubs: tuple[float, float]) -> float:
     """What is not known because arcs that end on a rigid face are blunted there."""
-    return _BLUNT if min(stubs) == 0.0 and rises(part) else 0.0
+    is_blunt = isinstance(part, Profiled) and not isinstance(part.profile, Contour) and rises(part)
+    return _BLUNT if is_blunt and min(stubs) == 0.0 else 0.0
 
 
 def _label(part: Shaped) -> str:

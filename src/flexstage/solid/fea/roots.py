@@ -8,6 +8,8 @@ from flexstage.mechanism.expand import Assembly, PlacedLink
 from flexstage.parts.shape import Profiled, Shaped
 from flexstage.solid.fea.component import is_elastic
 
+_ROUNDING = 1e-9
+
 
 @dataclass(frozen=True)
 class Roots:
@@ -43,7 +45,8 @@ def rises(part: Shaped) -> bool:
     >>> rises(Leaf("steel", length=0.01, thickness=1e-3, width=5e-3))
     False
     """
-    return isinstance(part, Profiled) and not part.is_prismatic
+    highest = max(section.height for _, section in part.silhouette) * (1.0 - _ROUNDING)
+    return isinstance(part, Profiled) and bool(part.end.first.height >= highest > part.throat.first.height)
 
 
 def roots_of(assembly: Assembly, link: PlacedLink) -> Roots:

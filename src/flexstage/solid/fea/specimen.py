@@ -16,9 +16,10 @@ import numpy as np
 from netgen import occ
 
 from flexstage.base.number import Number
-from flexstage.parts.profile import Elliptic, Filleted, Profile, Straight, length
+from flexstage.parts.profile import Contour, Elliptic, Filleted, Profile, Straight, length
 from flexstage.parts.profile import rise as cut_height
 from flexstage.parts.shape import Profiled, Section, Shaped
+from flexstage.solid.fea.contour import contour_edges
 from flexstage.solid.fea.piece import MILLIMETRES, bends_both_ways
 from flexstage.solid.fea.roots import rises
 
@@ -86,6 +87,8 @@ class _Side:
     @property
     def tops(self) -> tuple[float, float]:
         """Heights at the start and the end."""
+        if isinstance(self.profile, Contour):
+            return self.height, self.height
         first, last = (self.rise + (self.height - self.rise) * (1.0 - float(np.cos(angle))) for angle in self.angles)
         return first, last
 
@@ -125,6 +128,12 @@ def cut(part: Profiled, stubs: tuple[float, float], size: float) -> Specimen:
     """
     if part.is_prismatic:
         return bar(part, stubs, size)
+    if not rises(part):
+        return bar(part, stubs, size, _draw_cut(part, (0.0, 0.0), size).solid)
+    return _draw_cut(part, stubs, size)
+
+
+def _draw_cut(part: Profiled, stubs: tuple[float, float], size: float) -> Specimen:
     side = _Side(0.5 * _mm(part.throat.height), part.profile, stubs)
     if part.throat.is_round:
         return _name_faces(_revolve(side), side, 2.0 * side.rise, size)
@@ -196,7 +205,10 @@ def _edge(side: _Side, sign: float) -> _Curve:
     if isinstance(side.profile, Straight):
         return _lines([(-side.half, sign * side.rise), (side.half, sign * side.rise)])
     (start, end), (first, last) = side.ends, side.tops
-    curve, near, far = _cut(side, sign)
+    if isinstance(side.profile, Contour):
+        curve, near, far = contour_edges(side.profile, side.rise, sign), (-side.half, sign * first), (side.half, sign * last)
+    else:
+        curve, near, far = _cut(side, sign)
     return [*_lines([(start, sign * first), near]), *curve, *_lines([far, (end, sign * last)])]
 
 
@@ -257,13 +269,21 @@ def _name_faces(solid: occ.TopoDS_Shape, side: _Side, thin: float, size: float) 
         elif all(abs(vertex.p.x - start) < near for vertex in face.vertices):
             face.name = START
     for edge in solid.edges:
-        if all(abs(vertex.p.x) <= _thin_reach(side) + near and abs(vertex.p.y) <= side.height + near for vertex in edge.vertices):
+        if any(all(_is_thin(vertex.p, side, between) for vertex in edge.vertices) for between in _thin_places(side)):
             edge.maxh = size * thin
     return Specimen(solid, size * (thin if isinstance(side.profile, Straight) else max(thin, side.height)))
 
 
-def _thin_reach(side: _Side) -> float:
-    """How far from the middle the section is thinnest: all along a prism that ends on wider blocks."""
+def _is_thin(point: occ.gp_Pnt, side: _Side, between: tuple[float, float]) -> bool:
+    near = _NEAR * side.half
+    return between[0] - near <= abs(point.x) <= between[1] + near and abs(point.y) <= side.height + near
+
+
+def _thin_places(side: _Side) -> list[tuple[float, float]]:
+    """Between which distances from the middle the section is thinnest: all along a prism that ends on wider blocks."""
+    if isinstance(side.profile, Contour):
+        knots = np.array(side.profile.knots)
+        return [(place, place) for place in MILLIMETRES * knots[side.profile.height(knots) == 0.0]]
     if isinstance(side.profile, Straight):
-        return side.half if any(side.stubs) else 0.0
-    return side.half - (side.height - side.rise) if isinstance(side.profile, Filleted) else 0.0
+        return [(0.0, side.half if any(side.stubs) else 0.0)]
+    return [(0.0, side.half - (side.height - side.rise) if isinstance(side.profile, Filleted) else 0.0)]
