@@ -26,6 +26,8 @@ HOMES = {
     "parts.cross_hinge": "CrossHinge",
     "parts.cartwheel": "Cartwheel",
     "parts.folded_leaf": "FoldedLeaf",
+    "parts.superelement": "Superelement Port FileUnits MatrixNames",
+    "parts.condensation": "superelement",
     "parts.gauge": "Gauge Positive",
     "parts.body": "Body Block Cylinder Imported Inertia Payload",
     "parts.freedom": "Freedom",

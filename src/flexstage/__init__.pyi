@@ -125,6 +125,9 @@ from flexstage.parts.body import (
 from flexstage.parts.cartwheel import (
     Cartwheel as Cartwheel,
 )
+from flexstage.parts.condensation import (
+    superelement as superelement,
+)
 from flexstage.parts.cross_hinge import (
     CrossHinge as CrossHinge,
 )
@@ -171,6 +174,12 @@ from flexstage.parts.profile import (
 )
 from flexstage.parts.rod import (
     Rod as Rod,
+)
+from flexstage.parts.superelement import (
+    FileUnits as FileUnits,
+    MatrixNames as MatrixNames,
+    Port as Port,
+    Superelement as Superelement,
 )
 from flexstage.show.matlab import (
     to_mat as to_mat,

@@ -128,6 +128,9 @@ def _lossless(mechanism: Mechanism) -> Iterator[Default]:
         if not isinstance(inner, Joint) and getattr(holder, "loss_factor", None) is None:
             where = f"materials.{material}" if material else f"parts.{link.link.part}"
             told[where] = "State the drawn part that it stands_for" if isinstance(inner, Given) else "State it: loss_factor = 0.002"
+    for item in expand(mechanism).superelements.values():
+        if item.part.loss_factor is None:
+            told[f"parts.{item.link.part}"] = "State it: loss_factor = 0.002"
     for where, advice in told.items():
         yield Default(where, "it states no loss factor: structural damping takes it as losing nothing", advice, _UNDAMPED)
 

@@ -21,6 +21,7 @@ from flexstage.base.quantity import ANGLE, DISPLACEMENT, FORCE, FREQUENCY, LENGT
 from flexstage.base.register import Register
 from flexstage.beams.mass import mass as link_mass
 from flexstage.mechanism.mechanism import PLATFORM
+from flexstage.parts.condensation import condense
 from flexstage.spatial.frame import COMPONENTS, transport
 
 ROTATION = Quantity("rotation", ANGLE.si, "urad", "244 urad")
@@ -262,7 +263,8 @@ def total_mass(bench: Bench, _: Measure) -> Array:
     bodies = [body.mass.mass for body in bench.assembly.bodies.values() if body.mass is not None]
     ends = [link_mass(link.part, link.material) for link in bench.assembly.links.values()]
     links = [each[..., 0, 0] + each[..., 0, 6] + each[..., 6, 0] + each[..., 6, 6] for each in ends]
-    return sum([*bodies, *links], np.asarray(0.0))
+    elements = [condense(item.part).mass for item in bench.assembly.superelements.values()]
+    return sum([*bodies, *links, *elements], np.asarray(0.0))
 
 
 @partial(MeasureKind, "envelope.<dimension>", LENGTH)

@@ -79,12 +79,12 @@ def lever_theory(mechanism: Mechanism, name: str) -> Restrictions:
     ['rz']
     """
     links = mechanism.units[name].links
-    joined = [body for link in links.values() for body in link.joins]
+    joined = [body for link in links.values() for body in link.bodies]
     known: dict[str, tuple[tuple[Freedom, ...], tuple[Freedom, ...]]] = {}
     for key, link in links.items():
         part = mechanism.parts[link.part]
         intended = link.free if link.free is not None else part.intended
-        turns = GROUND in link.joins and any(joined.count(body) > 2 for body in link.joins if body not in (GROUND, PLATFORM))
+        turns = GROUND in link.bodies and any(joined.count(body) > 2 for body in link.bodies if body not in (GROUND, PLATFORM))
         if not isinstance(part, Joint):
             known[f"{name}/{key}"] = (intended, ()) if turns else ((Freedom.X,), intended)
     return known

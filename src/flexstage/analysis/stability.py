@@ -17,7 +17,7 @@ import scipy
 
 from flexstage.analysis.workspace.load import dead_loads
 from flexstage.analysis.workspace.stroke import StrokeLimits
-from flexstage.base.finding import DesignError, Finding
+from flexstage.base.finding import DesignError, Finding, require
 from flexstage.base.number import Array, stack
 from flexstage.base.quantity import LENGTH, RATIO
 from flexstage.beams.compliance import locked_freedoms as locked_by
@@ -98,7 +98,8 @@ def _lower(factor: float) -> float:
 def stability(mechanism: Mechanism, model: LinearModel, limits: StrokeLimits | None = None) -> Stability:
     """Load factors of the whole stage; with `limits`, of the worst strokes between them too. Kept for what asks the same next.
 
-    `model` is the lumped one. The worst strokes lie at a corner, as the reciprocal of the factor is convex in them.
+    `model` is the lumped one. The worst strokes lie at a corner, as the reciprocal of the factor is convex in them. Raises `DesignError`
+    where the stage has superelements: what forces add to their stiffness is not known.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.lumped import lumped
@@ -106,6 +107,7 @@ def stability(mechanism: Mechanism, model: LinearModel, limits: StrokeLimits | N
     >>> bool(stability(stage, lumped(stage)).dead > 100.0)
     True
     """
+    require(_unknown_softening(expand(mechanism)))
     pieces = _Pieces.of(mechanism, model)
     dead = pieces.softening(*_dead(mechanism, pieces))
     unit = [pieces.softening(*_stroke(mechanism, pieces, name)) for name in (() if limits is None else limits.actuators)]
@@ -126,6 +128,12 @@ def stability(mechanism: Mechanism, model: LinearModel, limits: StrokeLimits | N
         moving=pieces.moving(rows[0].shapes),
         provenance=f"linearised buckling of the {model.provenance}",
     )
+
+
+def _unknown_softening(assembly: Assembly) -> Iterator[Finding]:
+    for name in assembly.superelements:
+        what = "it is known by its matrices alone: what the forces in it add to its stiffness, and so whether it buckles, is not known"
+        yield Finding(name, what, "Judge it in the code that its matrices come from")
 
 
 _Loads: TypeAlias = Mapping[str, list[tuple[Array, Array]]]

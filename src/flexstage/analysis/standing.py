@@ -7,6 +7,7 @@ from functools import lru_cache
 from flexstage.analysis.stability import Stability, stability
 from flexstage.analysis.workspace.stroke import stroke_limits
 from flexstage.base.finding import DesignError, require
+from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.linear.model import LinearModel
 from flexstage.models.lumped import lumped
@@ -16,7 +17,7 @@ _CORNERS = 12
 
 
 def standing(mechanism: Mechanism) -> LinearModel:
-    """The lumped model of a stage whose dead load lets the drawn position stand; of a batch nothing is looked at.
+    """The lumped model of a stage whose dead load lets the drawn position stand; of a batch, or with superelements, nothing is looked at.
 
     Raises `DesignError` where the load factor of weight, payloads and forces is below 1.
 
@@ -31,7 +32,7 @@ def standing(mechanism: Mechanism) -> LinearModel:
 
 
 def under_load(mechanism: Mechanism) -> Stability | None:
-    """Load factors of the dead load, strokes at rest; `None` of a batch."""
+    """Load factors of the dead load, strokes at rest; `None` of a batch and of a stage with superelements."""
     return _under_load(mechanism)[1]
 
 
@@ -39,7 +40,8 @@ def under_load(mechanism: Mechanism) -> Stability | None:
 def _under_load(mechanism: Mechanism) -> tuple[LinearModel, Stability | None]:
     """The lumped model and how it stands, kept for what else one command asks of the same description."""
     model = lumped(mechanism)
-    return model, stability(mechanism, model) if model.stiffness_matrix.ndim == 2 else None
+    known = model.stiffness_matrix.ndim == 2 and not expand(mechanism).superelements
+    return model, stability(mechanism, model) if known else None
 
 
 def require_standing(mechanism: Mechanism) -> None:

@@ -35,6 +35,8 @@ MEMORY = 1_000_000_000
 _SLOW = 1e-7
 _COPIES = 3
 _TEXTS = 100_000
+_FULL = 4000
+"""Rows of sparse arrays that are read in full."""
 _NUMBERS = "fiub"
 _COMPLEX_FIELDS = (("r", "i"), ("real", "imag"))
 
@@ -399,8 +401,9 @@ def _mat(question: _Question) -> list[tuple[str, Array | tuple[str, ...]]]:
 
 
 def _flatten(name: str, value: Any) -> Iterator[tuple[str, Any]]:
-    """Arrays, texts and lists of texts, those of a structure by their paths; nothing of what else there is."""
-    array = np.asarray(value)
+    """Arrays, texts and lists of texts, those of a structure by their paths; sparse arrays in full; nothing of what else there is."""
+    sparse = scipy.sparse.issparse(value) and max(value.shape) <= _FULL
+    array = value.toarray() if sparse else np.asarray(value)
     if array.dtype.kind == "U":
         yield name, [text.rstrip() for text in array.ravel().tolist()] or [""]
     elif array.dtype.names and array.size == 1:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import itertools
 import re
-from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, fields, replace
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, fields, replace
 from functools import cached_property, lru_cache
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -20,15 +21,17 @@ from flexstage.parts.actuator import Actuator
 from flexstage.parts.body import Body, Solid, owner_of, solid_frame
 from flexstage.parts.compound import FIRST, SECOND, Composition, Compound
 from flexstage.parts.gauge import DisplacementGauge, Positive
+from flexstage.parts.given import Joint
 from flexstage.parts.mass import MassProperties, combine, drawn_solids, mass_properties, union_properties, within
 from flexstage.parts.material import Material
-from flexstage.parts.part import Part, Restricted, actuator_of, inner, is_actuator, material_of
+from flexstage.parts.part import Part, Restricted, actuator_of, inner, is_actuator, material_of, ports_of
+from flexstage.parts.superelement import Superelement
 from flexstage.spatial.frame import Frame, axes, identity, reflection, turn_z
 
 _Copy: TypeAlias = tuple[str, str, Frame]
 NO_IMAGE = ("the mirror image of its part is not known", "Draw the other side in a unit of its own, or mirror a unit without it")
 """What is said of a link in a mirrored copy whose part does not say what it looks like there, and advice."""
-_LINK_FIELDS = frozenset(field.name for field in fields(Link))
+_LINK_FIELDS = frozenset(each.name for each in fields(Link))
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,6 +87,53 @@ class PlacedLink:
         """The link as the description has it: itself, or the one whose part it is a member of."""
         return self.of or self
 
+    def joints(self, body: str) -> tuple[Array, ...]:
+        """Where it is joined to a body (..., 3): its centre."""
+        return (self.frame.position,) if body in self.joins else ()
+
+
+@dataclass(frozen=True, eq=False)
+class PlacedPort:
+    """A port of a superelement: the body it is joined to, and its frame in the stage's frame."""
+
+    body: str
+    frame: Frame
+
+
+@dataclass(frozen=True, eq=False)
+class PlacedSuperelement:
+    """A superelement of the expanded stage: its part, the frame of the part's axes in the stage's, its ports in the order of its file."""
+
+    name: str
+    drawn: str
+    link: Link
+    part: Superelement
+    frame: Frame
+    ports: Mapping[str, PlacedPort]
+
+    @property
+    def joins(self) -> tuple[str, ...]:
+        """The bodies it joins, a port each."""
+        return tuple(port.body for port in self.ports.values())
+
+    def joints(self, body: str) -> tuple[Array, ...]:
+        """Where it is joined to a body (..., 3): its ports there."""
+        return tuple(port.frame.position for port in self.ports.values() if port.body == body)
+
+    def welds(self) -> Iterator[PlacedLink]:
+        """Joints between its first port's body and that of each other port, rigid but for the freedoms that its link states of two.
+
+        So does the ideal model take it. Ports on the body of the first one need none.
+        """
+        first, *others = self.ports
+        free = self.link.free or ()
+        for name in others:
+            port = self.ports[name]
+            frame = self.frame if free else port.frame
+            if port.body != self.ports[first].body:
+                joins = (self.ports[first].body, port.body)
+                yield PlacedLink(f"{self.name}.{name}", self.drawn, joins, self.link, Joint(free), None, frame)
+
 
 @dataclass(frozen=True, eq=False)
 class PlacedGauge:
@@ -101,8 +151,9 @@ class PlacedGauge:
 class Assembly:
     """The expanded stage: every body that moves, every link and gauge by name. `actuators` maps input names to link names.
 
-    `strokes` are those of them that impose a stroke, `thrusts` those that exert a force. Bodies that are `of` another one are no bodies
-    here: their solids are their owner's, or among `ground`, the outlines of the ground.
+    `strokes` are those of them that impose a stroke, `thrusts` those that exert a force. Links of parts with ports are no `links` here but
+    `superelements`: they join any number of bodies. Bodies that are `of` another one are no bodies here: their solids are their owner's, or
+    among `ground`, the outlines of the ground.
     """
 
     bodies: Mapping[str, PlacedBody]
@@ -111,6 +162,13 @@ class Assembly:
     actuators: Mapping[str, str]
     points: Mapping[str, tuple[str, Array]]
     ground: Mapping[str, PlacedSolid]
+    superelements: Mapping[str, PlacedSuperelement] = field(default_factory=lambda: Table({}))
+
+    @property
+    def welded(self) -> Assembly:
+        """The stage with its superelements as rigid bodies that join those at their ports (see `PlacedSuperelement.welds`)."""
+        welds = {weld.name: weld for item in self.superelements.values() for weld in item.welds()}
+        return replace(self, links={**self.links, **welds}, superelements=Table({})) if self.superelements else self
 
     def actuator(self, name: str) -> Actuator:
         """The part of an input, by the input's name."""
@@ -202,16 +260,19 @@ def _assembly(key: _Same) -> Assembly:
     require([*_unknown_names(mechanism), *compound_findings(mechanism)])
     placed = tuple(copies(mechanism))
     described = tuple(_links(mechanism, placed))
+    elements = {link.name: link for link in described if isinstance(link, PlacedSuperelement)}
     compositions = _compositions(described)
-    links = {link.name: link for whole in described for link in _members(mechanism, whole, compositions.get(id(whole.part)))}
+    wholes = (whole for whole in described if isinstance(whole, PlacedLink))
+    links = {link.name: link for whole in wholes for link in _members(mechanism, whole, compositions.get(id(whole.part)))}
     drawn = (*_bodies(mechanism, placed), *_inner_bodies(mechanism, described, compositions))
+    joined = (*links.values(), *elements.values())
     lent = _by_owner(drawn)
     bodies = {
-        item.name: _placed_body((item, *lent.get(item.name, ())), links, mechanism.materials) for item in drawn if item.body.of is None
+        item.name: _placed_body((item, *lent.get(item.name, ())), joined, mechanism.materials) for item in drawn if item.body.of is None
     }
-    require(_unknown_bodies(bodies, links, mechanism.gauges))
+    require(_unknown_bodies(bodies, joined, mechanism.gauges))
     ground = {address: solid for item in lent.get(GROUND, ()) for address, solid in item.solids()}
-    return Assembly(bodies, links, dict(_gauges(mechanism)), _actuators(links), dict(_points(drawn)), ground)
+    return Assembly(bodies, links, dict(_gauges(mechanism)), _actuators(links), dict(_points(drawn)), ground, elements)
 
 
 def _unknown_names(mechanism: Mechanism) -> Iterator[Finding]:
@@ -223,6 +284,7 @@ def _unknown_names(mechanism: Mechanism) -> Iterator[Finding]:
     named: list[tuple[str, str, str | None, Mapping[str, object]]] = [
         (f"{where}.part", "part", link.part, mechanism.parts) for where, link in drawn
     ]
+    yield from (finding for where, link in drawn if link.part in mechanism.parts for finding in port_findings(where, link, mechanism.parts))
     named += [(f"parts.{name}.material", "material", material_of(part), mechanism.materials) for name, part in mechanism.parts.items()]
     named += [
         (f"{where}.solids.{name}.material", "material", solid.material, mechanism.materials)
@@ -236,9 +298,30 @@ def _unknown_names(mechanism: Mechanism) -> Iterator[Finding]:
             yield Finding(where, f'there is no {kind} "{name}"', suggest_nearest(name, known))
 
 
-def _unknown_bodies(bodies: Mapping[str, PlacedBody], links: Mapping[str, PlacedLink], gauges: Mapping[str, Probe]) -> Iterator[Finding]:
+def port_findings(where: str, link: Link, parts: Mapping[str, Part]) -> Iterator[Finding]:
+    """A link joins a body at each port of its part by the port's name, or two bodies where the part has none."""
+    ports, known = ports_of(parts[link.part]), isinstance(link.joins, Mapping)
+    example = ", ".join(f'{name} = "{body}"' for name, body in zip(ports, itertools.cycle((GROUND, PLATFORM)), strict=False))
+    if known and not ports:
+        yield Finding(f"{where}.joins", f'part "{link.part}" has no ports', f'Name its two bodies: joins = ["{GROUND}", "{PLATFORM}"]')
+    elif ports and (not known or set(link.joins) != set(ports)):
+        found = f"it joins {', '.join(link.joins)}" if known else "it names no ports"
+        yield Finding(
+            f"{where}.joins", f'part "{link.part}" has the ports {", ".join(ports)}, and {found}', f"Write joins = {{ {example} }}"
+        )
+    if ports and isinstance(parts[link.part], Restricted):
+        what = f'part "{link.part}" restricts a part with ports to some freedoms, of which it has six a port'
+        yield Finding(f"{where}.part", what, "Link the part itself")
+    if ports and link.free and len(ports) > 2:
+        what = f'part "{link.part}" has {len(ports)} ports, and free states the freedoms between two'
+        yield Finding(f"{where}.free", what, "Leave it out: the ideal model takes the part as rigid")
+
+
+def _unknown_bodies(
+    bodies: Mapping[str, PlacedBody], links: Iterable[PlacedLink | PlacedSuperelement], gauges: Mapping[str, Probe]
+) -> Iterator[Finding]:
     known = (*bodies, GROUND)
-    ends = [(f"{link.name}.joins", body) for link in links.values() for body in link.joins]
+    ends = [(f"{link.name}.joins", body) for link in links for body in link.joins]
     ends += [(f"gauges.{name}", body) for name, probe in gauges.items() for body in (probe.body, probe.base or GROUND)]
     yield from (Finding(where, f'there is no body "{body}"', suggest_nearest(body, known)) for where, body in ends if body not in known)
 
@@ -269,15 +352,14 @@ def placed_bodies(mechanism: Mechanism) -> dict[str, Body]:
     return dict(mechanism.bodies) | {f"{copy}/{name}": body for copy, bodies in placed for name, body in bodies.items()}
 
 
-def joined(link: Link, bodies: Mapping[str, Body], copy: str = "", own: Iterable[str] = ()) -> tuple[str, str]:
-    """The bodies that move at a link's ends, owners in the places of bodies that are `of` them; `own` are those of its unit.
+def joined(link: Link, bodies: Mapping[str, Body], copy: str = "", own: Iterable[str] = ()) -> tuple[str, ...]:
+    """The bodies that move at a link's ends or ports, owners in the places of bodies that are `of` them; `own` are those of its unit.
 
     >>> strut = Link(("pad", "W/slide"), "wire", at=(0.0, 0.0, 0.0), along=(1.0, 0.0, 0.0))
     >>> joined(strut, {"pad": Body(of="ground"), "W/slide": Body()})
     ('ground', 'W/slide')
     """
-    first, second = (owner_of(bodies, f"{copy}/{name}" if name in own else name) for name in link.joins)
-    return first, second
+    return tuple(owner_of(bodies, f"{copy}/{name}" if name in own else name) for name in link.bodies)
 
 
 @dataclass(frozen=True, eq=False)
@@ -341,7 +423,7 @@ def _points(drawn: tuple[_DrawnBody, ...]) -> Iterator[tuple[str, tuple[str, Arr
                 yield point if item.name == PLATFORM else f"{item.name}.{point}", (owner, item.frame.point(stack(at)))
 
 
-def _links(mechanism: Mechanism, placed: tuple[_Copy, ...]) -> Iterator[PlacedLink]:
+def _links(mechanism: Mechanism, placed: tuple[_Copy, ...]) -> Iterator[PlacedLink | PlacedSuperelement]:
     bodies = placed_bodies(mechanism)
     for name, drawn in _drawn_links("links.", mechanism.links).items():
         yield _placed_link(mechanism, drawn, identity(), name, joined(drawn.link, bodies))
@@ -370,7 +452,7 @@ def compound_findings(mechanism: Mechanism) -> Iterator[Finding]:
             yield Finding(f"{where}.free", f"part {link.part} consists of several, each with freedoms of its own", advice)
 
 
-def _compositions(links: Iterable[PlacedLink]) -> dict[int, Composition]:
+def _compositions(links: Iterable[PlacedLink | PlacedSuperelement]) -> dict[int, Composition]:
     """What the compounds among the parts of links consist of, by their identity: copies of one part share its members."""
     parts = {id(link.part): link.part for link in links}
     return {key: part.composition for key, part in parts.items() if isinstance(part, Compound)}
@@ -399,7 +481,9 @@ def _members(mechanism: Mechanism, whole: PlacedLink, composition: Composition |
         yield _image(link)
 
 
-def _inner_bodies(mechanism: Mechanism, links: Iterable[PlacedLink], compositions: Mapping[int, Composition]) -> Iterator[_DrawnBody]:
+def _inner_bodies(
+    mechanism: Mechanism, links: Iterable[PlacedLink | PlacedSuperelement], compositions: Mapping[int, Composition]
+) -> Iterator[_DrawnBody]:
     """The bodies within compounds."""
     for whole in links:
         if (composition := compositions.get(id(whole.part))) is not None:
@@ -416,11 +500,22 @@ def _link_frame(link: Link) -> Frame:
     return Frame(axes(link.along, link.bends), stack(link.at))
 
 
-def _placed_link(mechanism: Mechanism, drawn: _DrawnLink, outer: Frame, name: str, joins: tuple[str, str]) -> PlacedLink:
+def _placed_link(mechanism: Mechanism, drawn: _DrawnLink, outer: Frame, name: str, ends: Sequence[str]) -> PlacedLink | PlacedSuperelement:
     link, part = apply_changes(mechanism, drawn.link, (drawn.address, name))
+    frame = (drawn.frame if link is drawn.link else _link_frame(link)).within(outer)
+    if ports_of(part):
+        if frame.mirrored:
+            raise refuse(name, *NO_IMAGE)
+        return PlacedSuperelement(name, drawn.address, link, inner(part), frame, _placed_ports(inner(part), frame, link.joins, ends))
     material = material_of(part)
-    frame = drawn.frame if link is drawn.link else _link_frame(link)
-    return PlacedLink(name, drawn.address, joins, link, part, mechanism.materials[material] if material else None, frame.within(outer))
+    first, second = ends
+    return PlacedLink(name, drawn.address, (first, second), link, part, mechanism.materials[material] if material else None, frame)
+
+
+def _placed_ports(part: Any, outer: Frame, names: Iterable[str], ends: Sequence[str]) -> dict[str, PlacedPort]:
+    bodies = dict(zip(names, ends, strict=True))
+    frames = {name: Frame(axes(port.along, port.up), stack(port.at)) for name, port in part.ports.items()}
+    return {name: PlacedPort(bodies[name], frames[name].within(outer)) for name in part.order}
 
 
 def _image(link: PlacedLink) -> PlacedLink:
@@ -458,7 +553,9 @@ def apply_changes(mechanism: Mechanism, link: Link, owners: tuple[str, ...]) -> 
     return link, part
 
 
-def _placed_body(drawn: tuple[_DrawnBody, ...], links: Mapping[str, PlacedLink], materials: Mapping[str, Material]) -> PlacedBody:
+def _placed_body(
+    drawn: tuple[_DrawnBody, ...], links: Iterable[PlacedLink | PlacedSuperelement], materials: Mapping[str, Material]
+) -> PlacedBody:
     """The first body, with what the others lend it."""
     name, body, frame = drawn[0].name, drawn[0].body, drawn[0].frame
     mass = _mass(drawn, materials)
@@ -467,7 +564,7 @@ def _placed_body(drawn: tuple[_DrawnBody, ...], links: Mapping[str, PlacedLink],
     elif mass is not None:
         reference = mass.centre
     else:
-        joints = [link.frame.position for link in links.values() if name in link.joins]
+        joints = [place for link in links for place in link.joints(name)]
         reference = sum(joints, np.zeros(3)) / len(joints) if joints else frame.position
     return PlacedBody(name, body, frame, reference, mass, drawn)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -59,6 +59,7 @@ def expansion(mechanism: Mechanism, ground: str | None = None) -> Expansion:
     (1.03e-05, 'steel, of its solids')
     """
     assembly = expand(mechanism)
+    require(_unknown_growth(assembly))
     choices = {name: _body_material(mechanism, assembly, name) for name in assembly.bodies}
     floor = ground_of(mechanism, ground)
     if floor.material is not None:
@@ -69,6 +70,12 @@ def expansion(mechanism: Mechanism, ground: str | None = None) -> Expansion:
     parts = {name: (coefficient(link), span(link.part)) for name, link in drawn.items() if _grows(link)}
     taken = {name: f"{material}, {source}" for name, (material, source) in choices.items()}
     return Expansion({GROUND: 0.0, **bodies}, parts, {GROUND: f"does not grow, {floor.source}", **taken}, floor)
+
+
+def _unknown_growth(assembly: Assembly) -> Iterator[Finding]:
+    for name in assembly.superelements:
+        what = "it is known by its matrices alone: how its ports move apart with temperature is not known"
+        yield Finding(name, what, "Work out its growth in the code that its matrices come from")
 
 
 def _stated_expansion(mechanism: Mechanism, material: str) -> Number:

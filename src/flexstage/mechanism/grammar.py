@@ -20,7 +20,7 @@ from flexstage.base.digest import digest
 from flexstage.base.finding import refuse, suggest_nearest
 from flexstage.base.number import Table
 from flexstage.base.quantity import COMPLIANCE_MATRIX, DIRECTION, Bound, Quantity
-from flexstage.mechanism.mechanism import BESIDE, Mechanism, ModalDamping, NamedNumber, RayleighDamping, StructuralDamping
+from flexstage.mechanism.mechanism import BESIDE, Joins, Mechanism, ModalDamping, NamedNumber, RayleighDamping, StructuralDamping
 from flexstage.mechanism.node import (
     BAD,
     ChoiceNode,
@@ -194,6 +194,40 @@ class OpenNode(Node):
     def wanted(self, value: Any) -> Wanted:
         """A mapping by names."""
         return _wanted_mapping(value)
+
+
+class JoinsNode(Node):
+    """The two bodies that a link joins, or a table of bodies by port."""
+
+    shown = '["ground", "platform"]'
+
+    def _node(self, value: Any) -> Node:
+        return TableNode(TextNode()) if isinstance(value, Mapping) else ListNode(TextNode(), 2)
+
+    def read(self, raw: Any, where: str, reader: Reader) -> Any:
+        """Two texts, or a table of texts."""
+        return self._node(raw).read(raw, where, reader)
+
+    def write(self, value: Any, where: str, writer: Writer) -> Any:
+        """A list, or a table."""
+        return self._node(value).write(value, where, writer)
+
+    def schema(self, definitions: Definitions) -> dict[str, Any]:
+        """An array of two, or an object."""
+        by_port = {"type": "object", "additionalProperties": {"type": "string"}, "minProperties": 2}
+        return {"oneOf": [ListNode(TextNode(), 2).schema(definitions), by_port]}
+
+    def wanted(self, value: Any) -> Wanted:
+        """Two names, or a mapping of names."""
+        return None if self._node(value).wanted(value) is None else ("a row of two names", "Give a tuple of two names, or a dict by port")
+
+    def members(self, value: Any) -> Iterator[tuple[str, Node, Any]]:
+        """The names."""
+        return self._node(value).members(value)
+
+    def child(self, value: Any, name: str) -> Node:
+        """A name."""
+        return self._node(value).child(value, name)
 
 
 CHANGES = OpenNode("Departures by address: unit/link.field of all copies, copy/link.field of one.")
@@ -514,6 +548,8 @@ def _node(hint: Any) -> Node:
         return _annotated_node(hint)
     if hint is NamedNumber:
         return NamedNode()
+    if hint == Joins:
+        return JoinsNode()
     if hint is DisplacementGauge:
         kinds = {name: RecordNode(option) for name, option in GAUGES.all.items()}
         return UnionNode(_KIND, tuple(kinds.items()), Gauge.kind)

@@ -39,6 +39,10 @@ BESIDE = {"beside": True}
 """Metadata of a field that has no key of its own in a file: formulas stand where the values do."""
 
 
+Joins: TypeAlias = tuple[str, str] | Mapping[str, str]
+"""Bodies that a link joins: first and second, or by the port of its part."""
+
+
 def _empty() -> Any:
     return field(default_factory=lambda: Table({}))
 
@@ -53,19 +57,27 @@ class NamedNumber(Description):
 
 @dataclass(frozen=True, eq=False)
 class Link(Description):
-    """A part between two bodies.
+    """A part between two bodies, or between as many as it has ports.
 
     `joins` names them, first to second: the relative twist is that of the second against the first. `part` names an entry of the
     mechanism's parts. The link frame has its origin at the part's centre `at`, x along `along`, from the first body to the second, z along
     `bends` (the axis of the compliant rotation; needed for parts that are not round). `free` overrides the part's intended freedoms.
+
+    A part with ports (a superelement) joins a body at each, by name: several ports may be joined to one body. The link frame is then that
+    of the part's axes, and `free` the freedoms of the second port's body against the first's, about its origin, where it has two.
     """
 
-    joins: tuple[str, str]
+    joins: Joins
     part: str
     at: Annotated[Vector, LENGTH]
     along: Annotated[Vector, DIRECTION]
     bends: Annotated[Vector, DIRECTION] | None = None
     free: tuple[Freedom, ...] | None = None
+
+    @property
+    def bodies(self) -> tuple[str, ...]:
+        """The names of the bodies it joins."""
+        return tuple(self.joins.values()) if isinstance(self.joins, Mapping) else self.joins
 
 
 @dataclass(frozen=True, eq=False)

@@ -66,7 +66,7 @@ def isolate(mechanism: Mechanism, copy: str, *, guide: Vector | None = None) -> 
     if copy not in units:
         raise refuse(copy, "no unit is placed under this name", f"Placed are {', '.join(units)}")
     unit = mechanism.units[units[copy]]
-    joint = next((link for link in unit.links.values() if PLATFORM in (owner_of(unit.bodies, body) for body in link.joins)), None)
+    joint = next((link for link in unit.links.values() if PLATFORM in (owner_of(unit.bodies, body) for body in link.bodies)), None)
     if joint is None:
         raise refuse(copy, "its unit does not join the platform", "Only units with an output can be taken alone")
     own = {name: body if body.of is None else replace(body, solids={}) for name, body in unit.bodies.items()}

@@ -214,7 +214,7 @@ def _newton(links: _Links, state: _State) -> tuple[_State, int]:
 
 
 def _links(mechanism: Mechanism, kinematics: Kinematics, *, posed: bool) -> _Links:
-    assembly = expand(mechanism)
+    assembly = expand(mechanism).welded
     bodies = layout(assembly).bodies
     index = {name: number for number, name in enumerate((*bodies, GROUND))}
     placed = tuple(assembly.links.values())

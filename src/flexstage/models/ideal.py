@@ -1,4 +1,4 @@
-"""Ideal model: rigid bodies, hinges free about their intended freedoms and locked in all others.
+"""Ideal model: rigid bodies, hinges free about their intended freedoms and locked in all others; superelements are rigid.
 
 Unknowns are the twists of all bodies and the strokes; every link's locked deformations vanish, an actuator's equal its free deformation
 times its stroke. From the motions that are left follow R_a = da/dx and R_s = ds/dx (Eqs. 13 and 14 of Shin & Moon), the platform's
@@ -118,7 +118,7 @@ def _comparable(graph: _Graph) -> Array:
 
 
 def _graph(mechanism: Mechanism) -> _Graph:
-    assembly = expand(mechanism)
+    assembly = expand(mechanism).welded
     require_room(assembly, _MATRICES)
     order = layout(assembly)
     operators = [deformation(assembly, order, link) for link in assembly.links.values()]

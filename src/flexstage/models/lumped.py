@@ -19,7 +19,7 @@ from flexstage.base.number import Array, Number, first_design
 from flexstage.beams.compliance import Law, law, viscous_damping
 from flexstage.beams.mass import mass
 from flexstage.mechanism.drawn import as_drawn
-from flexstage.mechanism.expand import Assembly, PlacedLink, expand
+from flexstage.mechanism.expand import Assembly, PlacedLink, PlacedSuperelement, expand
 from flexstage.mechanism.grammar import node_of
 from flexstage.mechanism.incidence import Layout, end_twists, layout, require_room, twist_at, with_ground
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
@@ -34,15 +34,17 @@ from flexstage.models.linear.channels import (
     output_channels,
     place_twists,
     twist_places,
+    wrench_owners,
     wrench_places,
 )
 from flexstage.models.linear.eigen import sign_weights
 from flexstage.models.linear.elimination import Elimination, eliminate, imposed_motion, pivoted_qr
 from flexstage.models.linear.model import Contribution, LinearModel, assemble, strain_forces
+from flexstage.parts.condensation import Condensed, condense
 from flexstage.parts.freedom import Freedom
 from flexstage.parts.material import Material
 from flexstage.parts.part import Part, Restricted
-from flexstage.spatial.frame import FORCES, twist_transform
+from flexstage.spatial.frame import FORCES, spatial_rotation, twist_transform
 
 _SINGULAR = 1e-11
 _ROUNDING = 1e-12
@@ -67,11 +69,14 @@ class Masses(Enum):
 
 @dataclass(frozen=True, eq=False)
 class _Stage:
-    """The stage as operators: twists of every link's `ends`, `strains`, rows of locked `freedoms`, `rigid` motion with the ground."""
+    """The stage as operators: twists of every link's `ends`, `strains`, rows of locked `freedoms`, `rigid` motion with the ground.
+
+    The ends of a superelement are its ports, its strains the twists at them against the body of the first one.
+    """
 
     assembly: Assembly
     order: Layout
-    ends: Mapping[str, tuple[Array, Array]]
+    ends: Mapping[str, tuple[Array, ...]]
     strains: Mapping[str, Contribution]
     freedoms: Mapping[str, tuple[Freedom, ...]]
     rigid: Array
@@ -164,15 +169,34 @@ def _stage(mechanism: Mechanism) -> _Stage:
     require_room(assembly, _MATRICES)
     with np.errstate(all="ignore"):  # what comes of it is told below
         laws = _by_part(law, assembly)
-    order = layout(assembly, {name: item.inner.shape[-1] for name, item in laws.items() if item.inner is not None})
-    ends = {name: end_twists(assembly, order, link) for name, link in assembly.links.items()}
+    inner = {name: item.inner.shape[-1] for name, item in laws.items() if item.inner is not None}
+    inner |= {name: len(_condensed(element).squares) for name, element in assembly.superelements.items()}
+    order = layout(assembly, inner)
+    ends: dict[str, tuple[Array, ...]] = {name: end_twists(assembly, order, link) for name, link in assembly.links.items()}
     strains: dict[str, Contribution] = {}
     for name, link in assembly.links.items():
         operator = _with_inner(order, name, (ends[name][1] - ends[name][0],))
         strains[name] = Contribution(operator, _whole_law(laws[name]), _loss_factor(as_drawn(mechanism, link)))
+    for name, element in assembly.superelements.items():
+        ends[name] = tuple(twist_at(assembly, order, port.body, port.frame) for port in element.ports.values())
+        strains[name] = _strain_of(assembly, order, element)
     require(_endless(assembly, {name: item.stiffness for name, item in laws.items()}, "stiffness"))
     locked = {name: item.locked for name, item in laws.items() if item.locked}
     return _Stage(assembly, order, ends, strains, locked, with_ground(assembly, order))
+
+
+def _condensed(element: PlacedSuperelement) -> Condensed:
+    return condense(element.part, f"parts.{element.link.part}")
+
+
+def _strain_of(assembly: Assembly, order: Layout, element: PlacedSuperelement) -> Contribution:
+    """A superelement's stiffness over the twists of its ports against the body of the first one, and over its modes."""
+    found = _condensed(element)
+    first, *others = element.ports.values()
+    relative = [twist_at(assembly, order, each.body, each.frame) - twist_at(assembly, order, first.body, each.frame) for each in others]
+    loss = element.part.loss_factor
+    law = _block_diagonal(found.stiffness, np.diag(found.squares))
+    return Contribution(_with_inner(order, element.name, tuple(relative)), law, 0.0 if loss is None else loss)
 
 
 def _with_inner(order: Layout, link: str, rows: tuple[Array, ...]) -> Array:
@@ -182,13 +206,14 @@ def _with_inner(order: Layout, link: str, rows: tuple[Array, ...]) -> Array:
 
 def _whole_law(law: Law) -> Array:
     """The stiffness (..., 6 + m, 6 + m) of a link's relative twist and its inner coordinates, which do not feel one another."""
-    if law.inner is None:
-        return law.stiffness
-    modes = law.inner[..., None] * np.eye(law.inner.shape[-1])
-    batch = np.broadcast_shapes(law.stiffness.shape[:-2], modes.shape[:-2])
-    size = 6 + modes.shape[-1]
-    result = np.zeros((*batch, size, size), dtype=np.result_type(law.stiffness, modes))
-    result[..., :6, :6], result[..., 6:, 6:] = law.stiffness, modes
+    return law.stiffness if law.inner is None else _block_diagonal(law.stiffness, law.inner[..., None] * np.eye(law.inner.shape[-1]))
+
+
+def _block_diagonal(first: Array, second: Array) -> Array:
+    batch, count = np.broadcast_shapes(first.shape[:-2], second.shape[:-2]), first.shape[-1]
+    size = count + second.shape[-1]
+    result = np.zeros((*batch, size, size), dtype=np.result_type(first, second))
+    result[..., :count, :count], result[..., count:, count:] = first, second
     return result
 
 
@@ -213,15 +238,19 @@ def _endless(assembly: Assembly, values: Mapping[str, Array], what: str) -> Iter
 
 def _require_told_apart(stage: _Stage, loose: Array, basis: Array | None) -> None:
     """A motion that stretches a link is not loose: where rounding of stiffer links hides it, no answer would be right."""
-    stiffness = {name: np.diag(np.real(first_design(item.law, 2)))[:6] / _OVER**2 for name, item in stage.strains.items()}
+    over = {
+        name: np.tile(_OVER, (item.law.shape[-1] - stage.order.inner.get(name, 0)) // 6)[:, None] for name, item in stage.strains.items()
+    }
+    stiffness = {
+        name: np.diag(np.real(first_design(item.law, 2)))[: len(over[name])] / over[name][:, 0] ** 2 for name, item in stage.strains.items()
+    }
     full = loose if basis is None else np.real(first_design(basis, 2)) @ loose
     weights = sign_weights(stage.order.coordinates)
     size = np.max(np.abs(full) * weights[:, None], axis=0)
-    hidden = [
-        name
-        for name, item in stage.strains.items()
-        if np.any((np.abs(np.real(first_design(item.operator, 2))[:6] @ full) * _OVER[:, None])[stiffness[name] > 0.0] > _STRETCHES * size)
-    ]
+    seen = {
+        name: np.abs(np.real(first_design(item.operator, 2))[: len(over[name])] @ full) * over[name] for name, item in stage.strains.items()
+    }
+    hidden = [name for name in stage.strains if np.any(seen[name][stiffness[name] > 0.0] > _STRETCHES * size)]
     if hidden:
         ends = {name: value[value > 0.0] for name, value in stiffness.items() if np.any(value > 0.0)}
         soft = min(hidden, key=lambda name: ends[name].min())
@@ -352,7 +381,7 @@ def _momentum(inertia: Mapping[str, Contribution], motion: Array) -> Array:
 
 def _unsprung(stage: _Stage, output: Array) -> Array:
     """The output rows (..., p, N) without those of link forces, which know what is imposed by their own deformation."""
-    forces = 6 * len(stage.assembly.links)
+    forces = 6 * len(wrench_owners(stage.assembly))
     return np.concatenate([output[..., : output.shape[-2] - forces, :], np.zeros((*output.shape[:-2], forces, output.shape[-1]))], axis=-2)
 
 
@@ -434,6 +463,8 @@ def _inertia(mechanism: Mechanism, stage: _Stage, masses: Masses) -> dict[str, C
         require(_endless(stage.assembly, own, "inertia"))
         for name, matrix in own.items():
             result[_of_link(name)] = Contribution(_with_inner(stage.order, name, stage.ends[name]), matrix)
+        for name, element in stage.assembly.superelements.items():
+            result[_of_link(name)] = Contribution(_with_inner(stage.order, name, stage.ends[name]), _condensed(element).inertia)
     return result
 
 
@@ -449,6 +480,9 @@ def _carrier_forces(stage: _Stage, inertia: Mapping[str, Contribution]) -> Array
         carry = twist_transform(link.frame, centre)
         still = np.zeros((*carry.shape[:-2], stage.order.inner.get(name, 0), 6))
         seen[_of_link(name)] = np.concatenate([carry, carry, still], axis=-2)
+    for name, element in stage.assembly.superelements.items():
+        carries = [twist_transform(port.frame, centre) for port in element.ports.values()]
+        seen[_of_link(name)] = np.concatenate(_broadcast((*carries, np.zeros((stage.order.inner[name], 6)))), axis=-2)
     return strain_forces(inertia, seen) if inertia else np.zeros((stage.order.size, 6))
 
 
@@ -490,10 +524,20 @@ def _outputs(stage: _Stage, imposed: Mapping[str, Array]) -> tuple[Array, Array]
     passed = [np.zeros((row.shape[-2], inputs)) for row in rows]
     exerted = exerted_wrenches(stage.assembly)
     for name, item in stage.strains.items():
-        rows.append(item.law[..., :6, :] @ item.operator)
-        own = -item.law[..., :6, :] @ imposed[name] if name in imposed else np.zeros((6, inputs))
+        element = stage.assembly.superelements.get(name)
+        law = item.law[..., :6, :] if element is None else _port_wrenches(element) @ item.law[..., : 6 * len(element.ports) - 6, :]
+        rows.append(law @ item.operator)
+        own = -law @ imposed[name] if name in imposed else np.zeros((law.shape[-2], inputs))
         passed.append(own - exerted[name] if name in exerted else own)
     return np.concatenate(_broadcast(tuple(rows)), axis=-2), np.concatenate(_broadcast(tuple(passed)), axis=-2)
+
+
+def _port_wrenches(element: PlacedSuperelement) -> Array:
+    """What gives the wrenches (..., 6 p, 6 (p - 1)) at all ports from those at all but the first, which balances them."""
+    first, *others = (port.frame for port in element.ports.values())
+    carries = [twist_transform(frame, first.position) @ spatial_rotation(first.rotation) for frame in others]
+    balance = -_transpose(np.concatenate(_broadcast(tuple(carries)), axis=-2))
+    return np.concatenate(_broadcast((balance, np.eye(balance.shape[-1]))), axis=-2)
 
 
 def _rigid_coordinates(stage: _Stage, coordinates: tuple[str, ...]) -> Array:

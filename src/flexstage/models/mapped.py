@@ -77,7 +77,7 @@ def mapped(mechanism: Mechanism) -> LinearModel:
     """
     kinematics = ideal(mechanism)
     kinematics.mapping  # noqa: B018  (refuses under-actuated stages)
-    assembly = expand(mechanism)
+    assembly = expand(mechanism).welded
     springs = unit_stiffness(mechanism, assembly)
     mass = moving_inertia(mechanism, assembly.bodies[PLATFORM])
     if mass is None:

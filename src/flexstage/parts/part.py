@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import ClassVar, TypeAlias
 
@@ -11,6 +12,7 @@ from flexstage.parts.actuator import Actuator
 from flexstage.parts.freedom import Freedom
 from flexstage.parts.given import Joint
 from flexstage.parts.shape import Elastic
+from flexstage.parts.superelement import Port
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,3 +87,12 @@ def material_of(part: Part) -> str | None:
     True
     """
     return getattr(inner(part), "material", None)
+
+
+def ports_of(part: Part) -> Mapping[str, Port]:
+    """The interface frames that a part is joined by, by name; empty for a part between two bodies.
+
+    >>> ports_of(Joint())
+    {}
+    """
+    return getattr(inner(part), "ports", {})

@@ -137,10 +137,15 @@ def _model(model: LinearModel) -> dict[str, Any]:
         "D": model.feedthrough,
         **({} if model.inertial is None else {"Mu": model.inertial}),
         "coordinates": _cells(model.coordinates),
-        "coordinate_units": _cells(["rad" if name.rpartition(".")[2].startswith("r") else "m" for name in model.coordinates]),
+        "coordinate_units": _cells([_coordinate_unit(name.rpartition(".")[2]) for name in model.coordinates]),
         **_channels("input", model.inputs),
         **_channels("output", model.outputs),
     }
+
+
+def _coordinate_unit(component: str) -> str:
+    """The unit of a twist's component, or of a mass-normalised mode's amplitude."""
+    return "m kg^0.5" if component.startswith("mode") else "rad" if component.startswith("r") else "m"
 
 
 def _channels(kind: str, channels: tuple[Channel, ...]) -> dict[str, Any]:

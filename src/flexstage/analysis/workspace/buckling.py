@@ -16,7 +16,7 @@ from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, Number, index_of_largest
 from flexstage.base.quantity import RATIO
 from flexstage.base.record import VIEW, Along
-from flexstage.mechanism.expand import Assembly, PlacedLink, expand
+from flexstage.mechanism.expand import Assembly, PlacedLink, PlacedSuperelement, expand
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
 from flexstage.models.linear.model import LinearModel
 from flexstage.parts.piezo import Piezo
@@ -144,9 +144,9 @@ def _strut_length(assembly: Assembly, link: PlacedLink, piezo: Piezo) -> Array:
     for body, own in zip(link.joins, (link.frame.position - axis, link.frame.position + axis), strict=True):
         others = [other for other in _links_at(assembly, body) if other.name != link.name]
         inner = body not in {GROUND, PLATFORM} and len(others) == 1
-        ends.append(others[0].frame.position if inner else own)
+        ends.append(others[0].joints(body)[0] if inner else own)
     return np.sqrt(np.sum((ends[1] - ends[0]) ** 2, axis=-1))
 
 
-def _links_at(assembly: Assembly, body: str) -> list[PlacedLink]:
-    return [link for link in assembly.links.values() if body in link.joins]
+def _links_at(assembly: Assembly, body: str) -> list[PlacedLink | PlacedSuperelement]:
+    return [link for link in (*assembly.links.values(), *assembly.superelements.values()) if body in link.joins]

@@ -10,7 +10,7 @@ from dataclasses import replace
 
 from flexstage.base.finding import Finding, require
 from flexstage.base.number import Table
-from flexstage.mechanism.checks.geometry import geometry_findings
+from flexstage.mechanism.checks.geometry import geometry_findings, matrix_findings
 from flexstage.mechanism.checks.graph import graph_findings
 from flexstage.mechanism.checks.kind import kind_findings, package_findings
 from flexstage.mechanism.checks.name import copy_findings, name_findings
@@ -28,7 +28,7 @@ def check(mechanism: Mechanism) -> tuple[Finding, ...]:
     """Return all findings about a description, none if it can be read.
 
     A check is left out where its ground is not sound: numbers are not compared before they are finite, the graph is not followed before its
-    names exist.
+    names exist, files of matrices are not read before all else is sound.
 
     >>> [str(finding) for finding in check(Mechanism("empty"))]
     ['bodies: there is no body "platform". Declare the moving part under bodies.platform.']
@@ -45,7 +45,8 @@ def check(mechanism: Mechanism) -> tuple[Finding, ...]:
     findings = (*names, *changes, *tag_findings(mechanism), *values)
     if not values:
         findings += (*geometry_findings(sound, departures=not findings), *orientation_findings(sound))
-    return findings if names else (*findings, *graph_findings(mechanism))
+    findings = findings if names else (*findings, *graph_findings(mechanism))
+    return findings or tuple(matrix_findings(mechanism))
 
 
 def require_valid(mechanism: Mechanism) -> Mechanism:

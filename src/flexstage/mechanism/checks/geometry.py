@@ -18,10 +18,12 @@ from flexstage.mechanism.expand import NO_IMAGE, apply_changes, placed_bodies
 from flexstage.mechanism.locate import locate
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.parts.body import Body, Cylinder, Imported, Inertia, Solid
+from flexstage.parts.condensation import superelement_findings
 from flexstage.parts.given import Given
 from flexstage.parts.mass import tensor
 from flexstage.parts.part import Part, Restricted
 from flexstage.parts.shape import Elastic
+from flexstage.parts.superelement import Superelement
 
 _SLACK = 1e-9
 """Relative slack of comparisons that rounding may spoil: a thin plate has xx + yy = zz."""
@@ -68,6 +70,17 @@ def _without_image(mechanism: Mechanism) -> Iterator[Finding]:
             for solid in [each for each, form in body.solids.items() if isinstance(form, Imported)]:
                 what = f"{placement.unit}/{name}.{solid} is drawn in a STEP file, which cannot be mirrored"
                 yield Finding(f"place.{key}", what, "Draw the other side in a unit of its own, with a file of its own")
+
+
+def matrix_findings(mechanism: Mechanism) -> Iterator[Finding]:
+    """Findings about the files of superelements: presupposes that what the description states of them is sound.
+
+    >>> list(matrix_findings(Mechanism("")))
+    []
+    """
+    for name, part in mechanism.parts.items():
+        if isinstance(part, Superelement):
+            yield from superelement_findings(part, f"parts.{name}")
 
 
 def _departed_parts(mechanism: Mechanism) -> Iterator[tuple[str, Part]]:

@@ -41,12 +41,19 @@ def graph_findings(mechanism: Mechanism) -> Iterator[Finding]:
 
 def _graph(mechanism: Mechanism) -> tuple[list[str], list[_Edge]]:
     bodies = placed_bodies(mechanism)
-    edges = [_Edge(name, joined(link, bodies), link.part) for name, link in mechanism.links.items()]
+    edges = [edge for name, link in mechanism.links.items() for edge in _edges(name, link.part, joined(link, bodies))]
     for key, placement in mechanism.place.items():
         unit = mechanism.units[placement.unit]
         for copy in copy_names(key):
-            edges += [_Edge(f"{copy}/{name}", joined(link, bodies, copy, unit.bodies), link.part) for name, link in unit.links.items()]
+            for name, link in unit.links.items():
+                edges += _edges(f"{copy}/{name}", link.part, joined(link, bodies, copy, unit.bodies))
     return [name for name, body in bodies.items() if body.of is None], edges
+
+
+def _edges(name: str, part: str, joins: tuple[str, ...]) -> Iterator[_Edge]:
+    """A link as an edge; one with ports as edges from its first body to each other."""
+    first, *others = dict.fromkeys(joins)
+    yield from (_Edge(name if len(others) == 1 else f"{name}.{other}", (first, other), part) for other in others)
 
 
 def _reach(edges: Iterable[_Edge]) -> set[str]:

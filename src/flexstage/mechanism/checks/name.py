@@ -7,7 +7,7 @@ from collections import Counter
 from collections.abc import Iterable, Iterator
 
 from flexstage.base.finding import Finding, suggest_nearest
-from flexstage.mechanism.expand import copy_names, joined, placed_bodies
+from flexstage.mechanism.expand import copy_names, joined, placed_bodies, port_findings
 from flexstage.mechanism.grammar import RESERVED
 from flexstage.mechanism.mechanism import GROUND, NOT_GROWING, PLATFORM, Link, Mechanism, Unit
 from flexstage.parts.body import Body, owner_of
@@ -164,11 +164,11 @@ def _loops(mechanism: Mechanism) -> Iterator[Finding]:
     bodies = placed_bodies(mechanism)
     for key, placement in mechanism.place.items():
         unit = mechanism.units.get(placement.unit, Unit({}, {}))
-        far = {name: link for name, link in unit.links.items() if any("/" in body for body in link.joins)}
+        far = {name: link for name, link in unit.links.items() if any("/" in body for body in link.bodies)}
         for copy in copy_names(key) if far else ():
             for name, link in far.items():
-                first, second = joined(link, bodies, copy, unit.bodies)
-                if first == second:
+                first, *others = set(joined(link, bodies, copy, unit.bodies))
+                if not others:
                     advice = "Draw that link in the stage itself, or in a unit of its own"
                     yield Finding(f"{copy}/{name}.joins", f'in this copy both ends join "{first}"', advice)
 
@@ -182,9 +182,12 @@ def _clashes(mechanism: Mechanism) -> Iterator[Finding]:
 
 
 def _link(mechanism: Mechanism, where: str, link: Link, bodies: dict[str, Body]) -> Iterator[Finding]:
-    for body in link.joins:
+    for body in link.bodies:
         yield from _check_known(f"{where}.joins", "body", body, {GROUND, *bodies})
-    first, second = (owner_of(bodies, body) for body in link.joins)
-    if first == second:
-        yield Finding(f"{where}.joins", f'both ends join "{first}"', "Name two different bodies")
+    owners = {owner_of(bodies, body) for body in link.bodies}
+    if len(owners) == 1:
+        both = "both ends" if len(link.bodies) == 2 else "all ports"
+        yield Finding(f"{where}.joins", f'{both} join "{owners.pop()}"', "Name two different bodies")
     yield from _check_known(f"{where}.part", "part", link.part, mechanism.parts)
+    if link.part in mechanism.parts:
+        yield from port_findings(where, link, mechanism.parts)

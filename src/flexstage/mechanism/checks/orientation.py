@@ -14,7 +14,7 @@ from flexstage.mechanism.pattern import Pattern, Pose
 from flexstage.parts.body import Body, Cylinder
 from flexstage.parts.freedom import Freedom
 from flexstage.parts.given import Given, Joint
-from flexstage.parts.part import Part, Restricted
+from flexstage.parts.part import Part, Restricted, ports_of
 
 _TOLERANCE = np.deg2rad(0.1)
 """Directions written with three digits are perpendicular to this; frames are then made exactly so."""
@@ -32,6 +32,9 @@ def orientation_findings(mechanism: Mechanism) -> Iterator[Finding]:
         yield from _links(mechanism, f"units.{unit}.", drawn.links.items())
         yield from _solids(f"units.{unit}.bodies", drawn.bodies.items())
     yield from _solids("bodies", mechanism.bodies.items())
+    for name, part in mechanism.parts.items():
+        for port, placed in ports_of(part).items():
+            yield from _pair(f"parts.{name}.ports.{port}.along", placed.along, f"parts.{name}.ports.{port}.up", placed.up)
     for name, placement in mechanism.place.items():
         yield from _pattern(f"place.{name}", placement.pattern)
     for name, probe in mechanism.gauges.items():
@@ -44,8 +47,14 @@ def _links(mechanism: Mechanism, prefix: str, links: Iterable[tuple[str, Link]])
         yield from _pair(f"{where}.along", link.along, f"{where}.bends", link.bends)
         part = mechanism.parts.get(link.part)
         if part is not None and link.bends is None and not is_round(part, link.free):
-            what = f'part "{link.part}" is not round, and the link does not say which way it bends'
-            yield Finding(where, what, 'Write for example bends = "y": the axis of its compliant rotation')
+            yield Finding(where, *_unsaid(link.part, ported=bool(ports_of(part))))
+
+
+def _unsaid(part: str, *, ported: bool) -> tuple[str, str]:
+    if ported:
+        return f'part "{part}" has ports, and the link does not say which way its z axis points', 'Write for example bends = "z"'
+    what = f'part "{part}" is not round, and the link does not say which way it bends'
+    return what, 'Write for example bends = "y": the axis of its compliant rotation'
 
 
 def is_round(part: Part, free: tuple[Freedom, ...] | None = None) -> bool:

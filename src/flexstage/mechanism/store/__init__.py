@@ -28,25 +28,26 @@ def load(path: str | os.PathLike[str], *, checked: bool = True) -> Mechanism:
     """Return the description in a design file.
 
     Raises `DesignError` with everything that is wrong with the file; with `checked` also with the description (see `checks.check`).
-    Relative paths of imported solids are looked for from the file's folder, and whole in the description.
+    Relative paths of imported solids and of parts' files are looked for from the file's folder, and whole in the description.
 
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     load(dump(Mechanism("empty"), f"{folder}/stage.toml"), checked=False) == Mechanism("empty")
     True
     """
-    return anchor_paths(loads(read_text(path), where=os.fspath(path), checked=checked), Path(path).parent)
+    return loads(read_text(path), where=os.fspath(path), checked=checked, folder=Path(path).parent)
 
 
-def loads(text: str, *, where: str = "text", checked: bool = True) -> Mechanism:
-    """Return the description in a design file's text; `where` names it in findings.
+def loads(text: str, *, where: str = "text", checked: bool = True, folder: Path | None = None) -> Mechanism:
+    """Return the description in a design file's text; `where` names it in findings, relative paths in it are from `folder`, if given.
 
     >>> loads("format = 'flexstage 1'; name = 'empty'".replace("; ", chr(10)), checked=False).name
     'empty'
     """
     raw = parse_toml(text, where)
     try:
-        mechanism = mechanism_from(raw, shipped_catalogue())
+        drawn = mechanism_from(raw, shipped_catalogue())
+        mechanism = drawn if folder is None else anchor_paths(drawn, folder)
         return require_valid(mechanism) if checked else mechanism
     except DesignError as error:
         raise DesignError(replace(finding, where=f"{where}: {finding.where}") for finding in error.findings) from None

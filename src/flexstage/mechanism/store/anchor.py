@@ -1,4 +1,4 @@
-"""Paths of imported solids: whole in a description, relative to the design file in the file where that is beside or above them."""
+"""Paths of files that solids and parts are known by: whole in a description, relative to the design file where that is beside or above."""
 
 from __future__ import annotations
 
@@ -11,10 +11,11 @@ from flexstage.mechanism.store.encode import tree_of
 from flexstage.mechanism.store.tidy import round_to_digits
 from flexstage.mechanism.store.toml import text_of
 from flexstage.parts.body import Body, Imported
+from flexstage.parts.shape import Elastic
 
 
 def anchor_paths(mechanism: Mechanism, folder: Path) -> Mechanism:
-    """The description with the relative paths of imported solids made whole, from the folder of its file.
+    """The description with the relative paths of imported solids and of parts made whole, from the folder of its file.
 
     >>> anchor_paths(Mechanism("a"), Path()) == Mechanism("a")
     True
@@ -24,7 +25,7 @@ def anchor_paths(mechanism: Mechanism, folder: Path) -> Mechanism:
 
 
 def beside(mechanism: Mechanism, folder: Path) -> Mechanism:
-    """The description with the paths of imported solids relative to a folder, where they are within it.
+    """The description with the paths of imported solids and of parts relative to a folder, where they are within it.
 
     >>> beside(Mechanism("a"), Path()) == Mechanism("a")
     True
@@ -55,7 +56,10 @@ def outline_text(body: str, name: str, solid: Imported, folder: Path) -> str:
 
 
 def _with_paths(mechanism: Mechanism, change: Callable[[str], str]) -> Mechanism:
-    """The description itself where nothing is imported."""
+    """The description itself where nothing stands in other files."""
+    parts = {name: part.with_paths(change) if isinstance(part, Elastic) else part for name, part in mechanism.parts.items()}
+    if any(part is not mechanism.parts[name] for name, part in parts.items()):
+        mechanism = replace(mechanism, parts=parts)
     units = {name: unit.bodies for name, unit in mechanism.units.items()}
     if not any(
         isinstance(solid, Imported)

@@ -103,7 +103,7 @@ def topology(assembly: Assembly) -> Topology:
     links = tuple((_number(parts, link), numbers[link.joins[0]], numbers[link.joins[1]]) for link in assembly.links.values())
     laws = [law_and_mass(link.part, link.material)[0] for link in parts.values()]
     loose = any(bool(item.locked) or item.inner is not None or not np.all(np.any(np.real(item.stiffness) != 0.0, axis=-1)) for item in laws)
-    return Topology(bodies, links, len(parts), loose)
+    return Topology(bodies, links, len(parts), loose or bool(assembly.superelements))
 
 
 def _distinct(assembly: Assembly) -> dict[tuple[int, int], PlacedLink]:

@@ -1,7 +1,8 @@
 """Inputs and outputs of a stage, by name and in order, as every elastic model gives them: so their answers can be compared by name.
 
 Inputs: strokes and forces of the actuators; wrenches on the platform and the named points. Outputs: twists of the platform, the points and
-all other bodies; readings of the gauges; stress resultants of every link, at its centre in its frame.
+all other bodies; readings of the gauges; stress resultants of every link, at its centre in its frame; wrenches at the ports of
+superelements, in their frames.
 """
 
 from __future__ import annotations
@@ -71,7 +72,7 @@ def input_channels(assembly: Assembly) -> tuple[Channel, ...]:
 
 
 def output_channels(assembly: Assembly) -> tuple[Channel, ...]:
-    """Twists by place, gauges, stress resultants by link.
+    """Twists by place, gauges, stress resultants by link, wrenches by port (`frame.left.fx`): what the body there exerts on the element.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.mechanism.expand import expand
@@ -82,8 +83,19 @@ def output_channels(assembly: Assembly) -> tuple[Channel, ...]:
     return (
         *_components(twist_places(assembly), COMPONENTS, TWIST_UNITS),
         *(Channel(name, "m") for name in assembly.gauges),
-        *_components(assembly.links, FORCES, WRENCH_UNITS),
+        *_components(wrench_owners(assembly), FORCES, WRENCH_UNITS),
     )
+
+
+def wrench_owners(assembly: Assembly) -> tuple[str, ...]:
+    """What passes a wrench that is an output: the links, then the ports of superelements.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.mechanism.expand import expand
+    >>> wrench_owners(expand(parallelogram()))[:2]
+    ('left', 'right')
+    """
+    return (*assembly.links, *(f"{name}.{port}" for name, item in assembly.superelements.items() for port in item.ports))
 
 
 def _components(owners: Iterable[str], names: tuple[str, ...], units: tuple[str, ...]) -> list[Channel]:

@@ -40,12 +40,13 @@ def composition_table(mechanism: Mechanism) -> Table:
     ['bodies', '0', '']
     """
     assembly = expand(mechanism)
-    kinds = Counter(kind_name(link.part) for link in assembly.links.values())
+    links = (*assembly.links.values(), *assembly.superelements.values())
+    kinds = Counter(kind_name(link.part) for link in links)
     gauges = Counter(probe.gauge for key, probe in mechanism.gauges.items() for _ in copy_names(key))
     units = Counter(placement.unit for key, placement in mechanism.place.items() for _ in copy_names(key))
     rows = [
         ("bodies", str(len(assembly.bodies)), ", ".join(f"{count} x {unit}" for unit, count in units.items())),
-        ("links", str(len(assembly.links)), ", ".join(f"{count} {kind}" for kind, count in kinds.items())),
+        ("links", str(len(links)), ", ".join(f"{count} {kind}" for kind, count in kinds.items())),
         ("actuators", str(len(assembly.actuators)), ", ".join(assembly.actuators)),
         ("gauges", str(len(assembly.gauges)), ", ".join(f"{count} x {gauge}" for gauge, count in gauges.items())),
     ]
@@ -69,11 +70,12 @@ def link_table(mechanism: Mechanism) -> Table:
     >>> link_table(Mechanism("")).rows
     ()
     """
-    links = list(expand(mechanism).links.values())
+    assembly = expand(mechanism)
+    links = [*assembly.links.values(), *assembly.superelements.values()]
     counts = Counter(link.drawn for link in links)
     first = {link.drawn: link for link in reversed(links)}
     rows = [
-        (Cell(drawn.removeprefix("links."), Mark.STRONG), " - ".join(first[drawn].link.joins), first[drawn].link.part, str(count))
+        (Cell(drawn.removeprefix("links."), Mark.STRONG), " - ".join(first[drawn].link.bodies), first[drawn].link.part, str(count))
         for drawn, count in counts.items()
     ]
     return make_table("Links as drawn", ["link", "joins", "part", Column("copies")], rows)

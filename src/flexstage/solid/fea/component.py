@@ -142,7 +142,7 @@ def is_elastic(assembly: Assembly, body: str) -> bool:
 
 
 def _forms(assembly: Assembly) -> dict[str, Form]:
-    drawn = {name: form_of(link) for name, link in assembly.links.items()}
+    drawn = {name: form_of(link) for name, link in (*assembly.links.items(), *assembly.superelements.items())}
     require(form for form in drawn.values() if isinstance(form, Finding))
     return {name: form for name, form in drawn.items() if not isinstance(form, Finding)}
 

@@ -11,7 +11,7 @@ from flexstage.base.digest import digest
 from flexstage.base.finding import Finding
 from flexstage.base.number import Number
 from flexstage.base.register import Register
-from flexstage.mechanism.expand import PlacedLink
+from flexstage.mechanism.expand import PlacedLink, PlacedSuperelement
 from flexstage.parts.body import Block, Cylinder, Imported
 from flexstage.parts.freedom import Freedom
 from flexstage.parts.material import Material
@@ -92,7 +92,7 @@ def stack_medium(stack: Piezo) -> Medium:
     return Medium(_single(stack.stiffness) * size / area, _single(stack.poisson), _single(stack.mass) / (area * size))
 
 
-def form_of(link: PlacedLink) -> Form | Finding:
+def form_of(link: PlacedLink | PlacedSuperelement) -> Form | Finding:
     """The form of a link's part, or why it has none.
 
     >>> from flexstage.cases.double_triangle import double_triangle

@@ -47,7 +47,7 @@ def stage_pieces(mechanism: Mechanism) -> Stage:
     (27, 'steel', 'platform')
     """
     assembly = expand(mechanism)
-    forms = {name: form_of(link) for name, link in assembly.links.items()}
+    forms = {name: form_of(link) for name, link in (*assembly.links.items(), *assembly.superelements.items())}
     require(form for form in forms.values() if isinstance(form, Finding))
     pieces: dict[str, Piece] = {}
     materials: dict[str, str] = {}

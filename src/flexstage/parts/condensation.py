@@ -1,0 +1,396 @@
+"""Superelements checked and reduced: their matrices over ports and modes with the ports held."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from pathlib import Path
+
+import numpy as np
+import scipy
+
+from flexstage.base.finding import DesignError, Finding, refuse, require
+from flexstage.base.number import Array, first_design, stack
+from flexstage.parts.mass import tensor
+from flexstage.parts.matrix_file import LARGEST_DENSE, MatrixLike, digest_of, read_matrices
+from flexstage.parts.superelement import FileUnits, Port, Superelement
+from flexstage.spatial.frame import Frame, axes, twist_transform
+
+SYMMETRIC = 1e-6
+"""Largest difference of an entry from its mirror image, over the largest entry."""
+RIGID = 1e-3
+"""Largest stiffness against a rigid motion, over the softest elastic one: what of the file's rounding is let pass."""
+STATED = 1e-3
+"""Share within which stated mass, centre (of the distance of the ports) and inertia agree with the matrices."""
+_NEGATIVE = 1e-8
+_NOTHING = 1e-10
+_MASSLESS = 1e-13
+MOST_MODES = 1000
+"""Inner coordinates that a model may be given by one superelement."""
+
+
+@dataclass(frozen=True, eq=False)
+class Condensed:
+    """A superelement over its ports and modes with the ports held, SI, each port's twist at its origin in its axes, ports in file order.
+
+    `stiffness` (6 (p - 1), 6 (p - 1)) of the ports but the first, that one held; `squares` (m,) of the modes' angular frequencies, the
+    modes mass-normalised; `inertia` (6 p + m, 6 p + m) of all. `mass`, `centre` (3,) and `moments` (3, 3) about it, in the part's axes, are
+    what the matrices say of a rigid motion. `error` is the stiffness against rigid motions over the softest elastic one, before it was
+    taken off.
+    """
+
+    stiffness: Array
+    squares: Array
+    inertia: Array
+    mass: float
+    centre: Array
+    moments: Array
+    error: float
+
+
+def condense(part: Superelement, where: str = "superelement") -> Condensed:
+    """The part's matrices, checked and reduced; read once. Raises `DesignError` with all that is wrong, at its keys below `where`."""
+    found = _condensed(part)
+    if isinstance(found, DesignError):
+        raise DesignError(_at(where, finding) for finding in found.findings)
+    return found
+
+
+def superelement_findings(part: Superelement, where: str) -> Iterator[Finding]:
+    """What is wrong with a superelement, at its keys below `where` (`parts.frame.ports.left.row`)."""
+    found = _condensed(part)
+    if isinstance(found, DesignError):
+        yield from (_at(where, finding) for finding in found.findings)
+
+
+def _at(where: str, finding: Finding) -> Finding:
+    """A finding at a key of the part, or, of one of its files, at the part."""
+    if finding.where.split(".")[0] in Superelement.__dataclass_fields__:
+        return replace(finding, where=f"{where}.{finding.where}")
+    return replace(finding, where=where, what=f"{finding.where}: {finding.what}")
+
+
+@lru_cache(maxsize=16)
+def _condensed(part: Superelement) -> Condensed | DesignError:
+    try:
+        return _reduce(part, *read_matrices(part))
+    except DesignError as error:
+        return error
+
+
+@dataclass(frozen=True, eq=False)
+class _Split:
+    """Matrices with the ports' coordinates first, in the file's units: `basis` (n, 6 p) is how all follow the ports, at rest within."""
+
+    stiffness: MatrixLike
+    inertia: MatrixLike
+    ports: int
+    inner: MatrixLike
+    basis: Array
+
+    @property
+    def at_ports(self) -> Array:
+        """The stiffness (6 p, 6 p) seen at the ports."""
+        return _symmetrise(_dense(self.basis.T @ (self.stiffness @ self.basis)))
+
+    @property
+    def carried(self) -> Array:
+        """The mass (6 p, 6 p) seen at the ports, all else following at rest."""
+        return _symmetrise(_dense(self.basis.T @ (self.inertia @ self.basis)))
+
+
+def _reduce(part: Superelement, stiffness: MatrixLike, inertia: MatrixLike) -> Condensed:
+    require(_shape_findings(part, stiffness, inertia))
+    require([*_entry_findings("stiffness matrix", stiffness), *_entry_findings("mass matrix", inertia)])
+    split = _split(part, _symmetrise(stiffness), _symmetrise(inertia))
+    scale, energy = _in_si(part)
+    at_ports, carried = (energy * scale * each * scale[:, None] for each in (split.at_ports, split.carried))
+    frames = _frames(part)
+    error, findings = _rigid_findings(part, at_ports, split.at_ports, frames)
+    require(findings)
+    motion = _rigid(frames)
+    mass, centre, moments, told = _mass_findings(part, motion.T @ carried @ motion, _span(frames))
+    require([*told, *_negative_findings(split.inertia)])
+    squares, modes = _modes(part, split)
+    whole = np.hstack([split.basis, modes])
+    size = np.concatenate([scale, np.full(len(squares), 1.0 / np.sqrt(energy))])
+    reduced = energy * size * _symmetrise(_dense(whole.T @ (split.inertia @ whole))) * size[:, None]
+    return Condensed(at_ports[6:, 6:], squares, reduced, mass, centre, moments, error)
+
+
+def _shape_findings(part: Superelement, stiffness: MatrixLike, inertia: MatrixLike) -> Iterator[Finding]:
+    if len(part.ports) < 2:
+        yield Finding("ports", f"it has {len(part.ports)}, and a superelement joins two or more", "State all its interface frames")
+    sizes = {"stiffness matrix": stiffness.shape, "mass matrix": inertia.shape}
+    for name, shape in sizes.items():
+        if len(shape) != 2 or shape[0] != shape[-1]:
+            yield Finding(name, f"it is {_by(shape)}, not square", "Export the whole matrix over ports and inner coordinates")
+    if len(set(sizes.values())) > 1:
+        what = f"stiffness is {_by(stiffness.shape)} and mass {_by(inertia.shape)}"
+        yield Finding("mass matrix", what, "Export both over the same coordinates")
+    rows = np.zeros(min(map(min, sizes.values())), dtype=int)
+    for name in part.order:
+        port = part.ports[name]
+        if port.row + 5 > len(rows):
+            what = (
+                f"its six rows end at {port.row + 5}, and the matrices have {len(rows)}: 6 x {len(part.ports)} ports and inner coordinates"
+            )
+            yield Finding(f"ports.{name}.row", what, "State the first of its rows, counted from 1")
+            continue
+        if np.any(rows[port.row - 1 : port.row + 5]):
+            yield Finding(f"ports.{name}.row", f"its rows {port.row} to {port.row + 5} are also another port's", "Give each port six rows")
+        rows[port.row - 1 : port.row + 5] = 1
+
+
+def _by(shape: tuple[int, ...]) -> str:
+    return " x ".join(map(str, shape))
+
+
+def _entry_findings(name: str, matrix: MatrixLike) -> Iterator[Finding]:
+    """Entries that are no finite numbers, or differ from their mirror images."""
+    sparse = scipy.sparse.issparse(matrix)
+    entries = matrix.data if sparse else matrix
+    if not np.all(np.isfinite(entries)):
+        yield Finding(name, f"{int(np.sum(~np.isfinite(entries)))} of its entries are no finite numbers", "Export it anew")
+        return
+    largest = np.max(np.abs(entries), initial=0.0)
+    off = abs(matrix - matrix.T)
+    row, column = np.unravel_index(int(off.argmax()), matrix.shape)
+    if off[row, column] > SYMMETRIC * largest:
+        what = (
+            f"it is not symmetric: entry ({row + 1}, {column + 1}) is {matrix[row, column]:.6g} and its mirror image "
+            f"{matrix[column, row]:.6g}, {off[row, column] / largest:.2g} of the largest entry, at most {SYMMETRIC:g} expected"
+        )
+        yield Finding(name, what, "Export the whole matrix (a triangle alone is to be mirrored), of a model without rotors or contact")
+
+
+def _split(part: Superelement, stiffness: MatrixLike, inertia: MatrixLike) -> _Split:
+    ports = np.concatenate([np.arange(part.ports[name].row - 1, part.ports[name].row + 5) for name in part.order])
+    order = np.concatenate([ports, np.setdiff1d(np.arange(stiffness.shape[0]), ports)])
+    stiffness, inertia = (each[order][:, order] for each in (stiffness, inertia))
+    count = len(ports)
+    inner = stiffness[count:, count:]
+    follow = -_solve_within(inner, _dense(stiffness[count:, :count]))
+    return _Split(stiffness, inertia, count, inner, np.vstack([np.eye(count), follow]))
+
+
+def _solve_within(inner: MatrixLike, force: Array) -> Array:
+    """K_ii^-1 times forces on the inner coordinates; refused where they can move while the ports are held."""
+    if not inner.shape[0]:
+        return force
+    advice = "Every inner freedom needs stiffness against the ports: leave out free nodes and rigid-body modes"
+    if scipy.sparse.issparse(inner):
+        try:
+            factors = scipy.sparse.linalg.splu(inner.tocsc(), diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+        except RuntimeError:
+            raise refuse("stiffness matrix", "the inner coordinates can move freely while the ports are held", advice) from None
+        if np.min(factors.U.diagonal()) <= 0.0:
+            raise refuse("stiffness matrix", "with the ports held some motion within has no or negative stiffness", advice)
+        return factors.solve(force)
+    diagonal = np.diag(inner)
+    root = 1.0 / np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0))
+    scaled = inner * root * root[:, None]
+    least = min(float(np.linalg.eigvalsh(scaled)[0]), float(np.min(diagonal)))
+    if least <= _MASSLESS:
+        what = f"with the ports held some motion within has no or negative stiffness (least scaled eigenvalue {least:.2g})"
+        raise refuse("stiffness matrix", what, advice)
+    return root[:, None] * np.linalg.solve(scaled, root[:, None] * force)
+
+
+def _in_si(part: Superelement, units: FileUnits | None = None) -> tuple[Array, float]:
+    """What the file's port coordinates (6 p,) are of SI ones, and its unit of energy [J]: K = energy S K_file S."""
+    length, energy = (1.0, 1.0) if (units or part.units) is FileUnits.SI else (1e3, 1e-3)
+    return np.tile(np.repeat([length, 1.0], 3), len(part.ports)), energy
+
+
+def _frames(part: Superelement) -> list[Frame]:
+    return [_frame(part.ports[name]) for name in part.order]
+
+
+def _frame(port: Port) -> Frame:
+    return Frame(np.real(first_design(axes(port.along, port.up), 2)), np.real(first_design(stack(port.at), 1)))
+
+
+def _rigid(frames: list[Frame]) -> Array:
+    """Twists (6 p, 6) of the ports when the part moves rigidly, its twist at its own origin."""
+    return np.vstack([twist_transform(frame, np.zeros(3)) for frame in frames])
+
+
+def _span(frames: list[Frame]) -> float:
+    """The largest distance between ports [m]; 0.1 m where they coincide."""
+    places = np.array([frame.position for frame in frames])
+    return float(np.max(np.linalg.norm(places[:, None] - places, axis=-1))) or 0.1
+
+
+def _rigid_error(at_ports: Array, frames: list[Frame]) -> tuple[float, float, float]:
+    """Largest stiffness against rigid motions, softest and stiffest elastic one [N/m], rotations times the distance of the ports."""
+    span = _span(frames)
+    weights = np.tile(np.repeat([1.0, 1.0 / span], 3), len(frames))
+    middle = np.mean([frame.position for frame in frames], axis=0)
+    motion = np.vstack([twist_transform(frame, middle) for frame in frames]) * weights[:6] / weights[:, None]
+    scaled = weights * at_ports * weights[:, None]
+    values = np.linalg.eigvalsh(scaled[6:, 6:])
+    elastic = values[values > _NOTHING * values[-1]] if values[-1] > 0.0 else values[-1:]
+    return float(np.linalg.norm(scaled @ motion, 2)), float(elastic[0]), float(elastic[-1])
+
+
+def _rigid_findings(part: Superelement, at_ports: Array, in_file: Array, frames: list[Frame]) -> tuple[float, list[Finding]]:
+    """The error in rigid motions over the softest stiffness, and what is wrong with the stiffness at the ports."""
+    left, softest, stiffest = _rigid_error(at_ports, frames)
+    if stiffest <= 0.0:
+        return 0.0, [
+            Finding("stiffness matrix", "it holds the ports nowhere: no relative motion of theirs has stiffness", "Check the file")
+        ]
+    if left > RIGID * softest:
+        what = (
+            f"it resists rigid motions of all ports with {left:.3g} N/m (rotations over {_span(frames) * 1e3:.4g} mm), "
+            f"{left / stiffest:.2g} of its stiffest motion and {left / softest:.2g} of its softest; at most {RIGID:g} of the softest "
+            "is expected"
+        )
+        return left / softest, [Finding("ports", what, _hint(part, at_ports, in_file, frames))]
+    least = float(np.linalg.eigvalsh(at_ports[6:, 6:])[0])
+    if least < -_NEGATIVE * stiffest:
+        what = f"with port {part.order[0]} held some motion of the others has negative stiffness ({least:.3g})"
+        return left / softest, [Finding("stiffness matrix", what, "Export the elastic stiffness of the unloaded part")]
+    return left / softest, []
+
+
+def _hint(part: Superelement, at_ports: Array, in_file: Array, frames: list[Frame]) -> str:
+    """What would make rigid motions free, if anything that is commonly mistaken does."""
+    for units in FileUnits:
+        scale, energy = _in_si(part, units)
+        if units is not part.units and _is_free(energy * scale * in_file * scale[:, None], frames):
+            far = "as far apart" if part.units is FileUnits.SI else "as near"
+            return f'They are free if units = "{units.value}" is meant, or if the ports stand a thousand times {far}'
+    if _is_free(at_ports, [Frame(np.eye(3), frame.position) for frame in frames]):
+        return "They are free if all ports have the axes of the part: leave out along and up"
+    for first, second in itertools.combinations(range(len(frames)), 2):
+        swapped = list(frames)
+        swapped[first], swapped[second] = frames[second], frames[first]
+        if _is_free(at_ports, swapped):
+            return f"They are free if the rows of {part.order[first]} and {part.order[second]} are exchanged"
+    return "Check the places and axes of the ports and the order of the rows (x, y, z, rx, ry, rz), and that nothing holds the model"
+
+
+def _is_free(at_ports: Array, frames: list[Frame]) -> bool:
+    left, softest, _ = _rigid_error(at_ports, frames)
+    return softest > 0.0 and left <= RIGID * softest
+
+
+def _mass_findings(part: Superelement, seen: Array, span: float) -> tuple[float, Array, Array, list[Finding]]:
+    """Mass, centre and moments that the matrices say of rigid motions (6, 6) about the part's origin, and what contradicts them."""
+    along = np.diag(seen)[:3]
+    mass = float(np.mean(along))
+    if mass <= 0.0:
+        told = [Finding("mass matrix", f"rigid motions have the mass {mass:.4g} kg", "Export the mass matrix")] if mass < 0.0 else []
+        return mass, np.zeros(3), np.zeros((3, 3)), told + list(_stated_findings(part, mass, np.zeros(3), np.zeros((3, 3)), span))
+    lever = -seen[:3, 3:] / mass
+    centre = 0.5 * np.array([lever[2, 1] - lever[1, 2], lever[0, 2] - lever[2, 0], lever[1, 0] - lever[0, 1]])
+    cross = 0.5 * (lever - lever.T)
+    moments = seen[3:, 3:] - mass * cross.T @ cross
+    findings: list[Finding] = []
+    if np.max(np.abs(seen[:3, :3] - mass * np.eye(3))) > STATED * mass:
+        what = f"rigid motions along x, y and z have the masses {along[0]:.6g}, {along[1]:.6g} and {along[2]:.6g} kg, which should be one"
+        findings.append(Finding("mass matrix", what, "Export the whole mass matrix: mass on the ports or on some directions is missing"))
+    elif np.max(np.abs(lever + lever.T)) > STATED * span:
+        what = "its coupling of translations and rotations is that of no body"
+        findings.append(Finding("mass matrix", what, "Check the places and axes of the ports, and export the consistent mass matrix"))
+    return mass, centre, moments, [*findings, *_stated_findings(part, mass, centre, moments, span)]
+
+
+def _stated_findings(part: Superelement, mass: float, centre: Array, moments: Array, span: float) -> Iterator[Finding]:
+    advice = "Check which of the two is meant, and the units of the file"
+    if part.mass is not None:
+        stated = float(np.real(np.ravel(part.mass)[0]))
+        if abs(stated - mass) > STATED * max(abs(stated), abs(mass)):
+            yield Finding("mass", f"{stated:.6g} kg is stated, and rigid motions of the matrices have {mass:.6g} kg", advice)
+    if part.centre is not None:
+        stated = np.real(first_design(stack(part.centre), 1))
+        off = float(np.linalg.norm(stated - centre))
+        if off > STATED * span:
+            what = f"the stated centre is {off * 1e3:.4g} mm from that of the matrices, ({_millimetres(centre)}) mm"
+            yield Finding("centre", what, advice)
+    if part.inertia is not None:
+        stated = np.real(first_design(tensor(part.inertia), 2))
+        off = float(np.max(np.abs(stated - moments)))
+        if off > STATED * max(float(np.trace(stated)), float(np.trace(moments))):
+            found = ", ".join(f"{each:.4g}" for each in np.diag(moments))
+            yield Finding("inertia", f"it differs by {off:.4g} kg m^2 from that of the matrices (xx, yy, zz = {found})", advice)
+
+
+def _millimetres(place: Array) -> str:
+    return ", ".join(f"{each * 1e3:.5g}" for each in place)
+
+
+def _negative_findings(inertia: MatrixLike) -> Iterator[Finding]:
+    """Negative mass: on the diagonal, or in some motion."""
+    diagonal = inertia.diagonal()
+    largest = np.max(np.abs(diagonal), initial=0.0)
+    below = np.flatnonzero(diagonal < -_NEGATIVE * largest)
+    if len(below):
+        what = f"{len(below)} of its diagonal entries are negative, the least {diagonal[below].min():.4g} in the file's units"
+        yield Finding("mass matrix", what, "Export the mass matrix of the model, not a dynamic stiffness")
+        return
+    if scipy.sparse.issparse(inertia):
+        return
+    root = 1.0 / np.sqrt(np.where(diagonal > _MASSLESS * largest, diagonal, largest or 1.0))
+    least = float(np.linalg.eigvalsh(inertia * root * root[:, None])[0])
+    if least < -_NEGATIVE * len(root):
+        what = f"some motion has negative mass (least eigenvalue {least:.3g}, the diagonal scaled to 1)"
+        yield Finding("mass matrix", what, "Export the consistent or the lumped mass matrix, with all its digits")
+
+
+def _modes(part: Superelement, split: _Split) -> tuple[Array, Array]:
+    """Squares (m,) of the angular frequencies of the modes kept, and their shapes (n, m), mass-normalised, the ports held."""
+    size = split.inner.shape[0]
+    mass = split.inertia[split.ports :, split.ports :]
+    if not size or part.modes == 0 or not np.any(mass.diagonal()):
+        return np.zeros(0), np.zeros((split.ports + size, 0))
+    most = np.inf if part.below is None else float(2.0 * np.pi * np.real(np.ravel(part.below)[0])) ** 2
+    if scipy.sparse.issparse(split.inner):
+        squares, shapes = _lowest(part, split.inner, mass)
+    else:
+        inverses, shapes = scipy.linalg.eigh(mass, split.inner)
+        kept = inverses > _MASSLESS * inverses[-1]
+        squares, shapes = 1.0 / inverses[kept][::-1], (shapes[:, kept] / np.sqrt(inverses[kept]))[:, ::-1]
+    few = (squares < most)[: part.modes]
+    squares, shapes = squares[: part.modes][few], shapes[:, : part.modes][:, few]
+    if len(squares) > MOST_MODES:
+        what = f"{len(squares)} inner coordinates would be kept, at most {MOST_MODES} are"
+        raise refuse("modes", what, 'State how many modes to keep (modes = 20), or up to which frequency (below = "2 kHz")')
+    return squares, np.vstack([np.zeros((split.ports, len(squares))), shapes])
+
+
+def _lowest(part: Superelement, inner: MatrixLike, mass: MatrixLike) -> tuple[Array, Array]:
+    """The lowest modes of sparse matrices, by shift and invert at zero."""
+    if part.modes is None:
+        what = f"the matrices have {inner.shape[0]} inner coordinates, beyond {LARGEST_DENSE}"
+        raise refuse("modes", what, "State how many modes to keep: modes = 20")
+    count = min(part.modes, inner.shape[0] - 2)
+    start = np.random.default_rng(0).standard_normal(inner.shape[0])
+    squares, shapes = scipy.sparse.linalg.eigsh(inner.tocsc(), k=count, M=mass.tocsc(), sigma=0.0, v0=start)
+    order = np.argsort(squares)
+    return squares[order], shapes[:, order]
+
+
+def _symmetrise(matrix: MatrixLike) -> MatrixLike:
+    return 0.5 * (matrix + matrix.T)
+
+
+def _dense(matrix: MatrixLike) -> Array:
+    return matrix.toarray() if scipy.sparse.issparse(matrix) else np.asarray(matrix)
+
+
+def superelement(part: Superelement) -> Superelement:
+    """The part with whole paths and the digest of its files as they are now. Raises `DesignError` as `condense` does.
+
+    For parts made in Python from files just written; what a design file states is held to the files that are there.
+    """
+    whole = replace(
+        part, **{key: str(Path(path).resolve()) for key in ("file", "stiffness_file", "mass_file") if (path := getattr(part, key))}
+    )
+    versioned = replace(whole, sha256=digest_of(whole.files))
+    condense(versioned)
+    return versioned

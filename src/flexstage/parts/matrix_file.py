@@ -1,0 +1,165 @@
+"""Files of stiffness and mass matrices that finite element codes write: MAT, NPZ and Matrix Market, read with guards."""
+
+from __future__ import annotations
+
+import hashlib
+import zipfile
+import zlib
+from collections.abc import Callable, Iterator, Mapping
+from pathlib import Path
+from typing import Any, TypeAlias
+
+import numpy as np
+import scipy
+
+from flexstage.base.files import hdf, mat, require_regular
+from flexstage.base.finding import DesignError, Finding, refuse, require
+from flexstage.base.memory import gigabytes, require_memory
+from flexstage.parts.superelement import Superelement
+
+MatrixLike: TypeAlias = Any
+"""A dense array, or a sparse one of scipy."""
+LARGEST_DENSE = 4000
+"""Rows of matrices that are worked on as dense ones."""
+_COPIES = 8
+_LEAST_ENTRY = 2
+"""Bytes that an entry of a text file takes at least: a digit and a space."""
+_HDF = b"\x89HDF\r\n\x1a\n"
+_HEAD = 512
+_CHUNK = 2**20
+
+
+def read_matrices(part: Superelement) -> tuple[MatrixLike, MatrixLike]:
+    """Stiffness and mass as they stand in a superelement's files, in the files' units, real, square in nothing yet.
+
+    Raises `DesignError` where a file is not stated, is not there, is of another version than stated, is damaged, holds no such array or
+    numbers of another kind, or is too large.
+    """
+    require(_statement_findings(part))
+    for path in map(Path, part.files):
+        require_regular(path)
+    require(_version_findings(part))
+    if not part.file:
+        return _matrix_market(Path(part.stiffness_file)), _matrix_market(Path(part.mass_file))
+    path = Path(part.file)
+    names = (part.arrays.stiffness, part.arrays.mass)
+    found = _READERS[path.suffix.lower()](path, names)
+    require(_missing_findings(path, names, found))
+    first, second = (_plain(path, name, found[name]) for name in names)
+    return first, second
+
+
+def digest_of(paths: tuple[str, ...]) -> str:
+    """SHA-256 of the bytes of files, one after the other.
+
+    >>> digest_of(())[:8]
+    'e3b0c442'
+    """
+    state = hashlib.sha256()
+    for path in map(Path, paths):
+        require_regular(path)
+        with path.open("rb") as stream:
+            while chunk := stream.read(_CHUNK):
+                state.update(chunk)
+    return state.hexdigest()
+
+
+def _statement_findings(part: Superelement) -> Iterator[Finding]:
+    stated = [key for key in ("file", "stiffness_file", "mass_file") if getattr(part, key)]
+    if stated not in (["file"], ["stiffness_file", "mass_file"]):
+        what = f"it states {' and '.join(stated) or 'none'} of file, stiffness_file and mass_file"
+        yield Finding("file", what, "State file (MAT or NPZ), or stiffness_file and mass_file (Matrix Market)")
+    for key in stated:
+        path = getattr(part, key)
+        known = tuple(_READERS) if key == "file" else (".mtx",)
+        if Path(path).suffix.lower() not in known:
+            advice = "MAT and NPZ files stand under file, Matrix Market files under stiffness_file and mass_file"
+            yield Finding(key, f"{path} does not end in {' or '.join(known)}", advice)
+
+
+def _version_findings(part: Superelement) -> Iterator[Finding]:
+    found = digest_of(part.files)
+    named = " and ".join(Path(path).name for path in part.files)
+    if not part.sha256:
+        yield Finding("sha256", f"which version of {named} is meant is not stated", f'If it is this one, write sha256 = "{found}"')
+    elif found != part.sha256.lower():
+        what = f"{named} has another content than stated (sha256 {found[:12]}..., stated {part.sha256[:12]}...)"
+        yield Finding("sha256", what, f'Restore that version, or if this one is meant write sha256 = "{found}"')
+
+
+def _missing_findings(path: Path, names: tuple[str, ...], found: Mapping[str, MatrixLike]) -> Iterator[Finding]:
+    for key, name in zip(("stiffness", "mass"), names, strict=True):
+        if name not in found:
+            there = ", ".join(list(found)[:8]) or "no array of numbers"
+            yield Finding(
+                f"arrays.{key}", f'{path.name} has no array "{name}"; it has {there}', f'Write for example arrays = {{ {key} = "..." }}'
+            )
+
+
+def _plain(path: Path, name: str, matrix: MatrixLike) -> MatrixLike:
+    """The matrix in floats; refused where its numbers are of another kind."""
+    kind = matrix.dtype.kind
+    if kind == "c" and not np.any(np.imag(matrix.data if scipy.sparse.issparse(matrix) else matrix)):
+        return _plain(path, name, matrix.real)
+    if kind not in "fiu":
+        what = f"{name} holds {'complex numbers' if kind == 'c' else f'values of kind {matrix.dtype}'} where real numbers are expected"
+        raise refuse(str(path), what, "Export the real stiffness and mass; damping of the material is stated as loss_factor")
+    return matrix.astype(float)
+
+
+def _npz(path: Path, names: tuple[str, ...]) -> dict[str, MatrixLike]:
+    advice = "Write it with numpy.savez(file, K=..., M=...), arrays of numbers only"
+    try:
+        with zipfile.ZipFile(path) as archive:
+            sizes = {info.filename.removesuffix(".npy"): info.file_size for info in archive.infolist()}
+        for name in names:
+            _require_room(path, name, sizes.get(name, 0))
+        with np.load(path, allow_pickle=False) as found:
+            return {name: found[name] if name in names else np.zeros(0) for name in found.files}
+    except (zipfile.BadZipFile, zlib.error, ValueError, OSError, EOFError, KeyError, NotImplementedError) as error:
+        if isinstance(error, DesignError):
+            raise
+        raise refuse(str(path), f"it cannot be read as an NPZ file ({' '.join(str(error).split())[:200]})", advice) from None
+
+
+def _mat(path: Path, names: tuple[str, ...]) -> dict[str, MatrixLike]:
+    with path.open("rb") as stream:
+        start = stream.read(_HEAD + len(_HDF))
+    if not start.startswith(b"MATLAB 7.3") and _HDF not in (start[:8], start[_HEAD:]):
+        return {name: value for name, value in mat(path) if not isinstance(value, tuple)}
+    held = hdf(path)
+    sparse = [name for name in names if "MATLAB_sparse" in held.groups.get(name, {})]
+    if sparse:
+        raise refuse(
+            str(path), f"{' and '.join(sparse)} is sparse, which is not read from files of version 7.3", "Save full(K), or as version 7"
+        )
+    return {name: held.read(name).T if name in names else np.zeros(0) for name, each in held.arrays.items() if each.kind in "fiuc"}
+
+
+_READERS: Mapping[str, Callable[[Path, tuple[str, ...]], dict[str, MatrixLike]]] = {".mat": _mat, ".npz": _npz}
+
+
+def _matrix_market(path: Path) -> MatrixLike:
+    advice = "Write it with scipy.io.mmwrite, or as the code exports Matrix Market files: real or integer, general or symmetric"
+    try:
+        rows, columns, entries, form, kind, _ = scipy.io.mminfo(str(path))
+        if kind not in ("real", "integer", "double"):
+            raise refuse(str(path), f"it holds {kind} entries where real ones are expected", advice)
+        size = path.stat().st_size
+        if entries * _LEAST_ENTRY > 2 * size:
+            raise refuse(str(path), f"it breaks off: {entries} entries are announced, and it has {size} bytes", "Copy or export it anew")
+        _require_room(path, "its matrix", 8 * rows * columns if form == "array" else 24 * entries)
+        found = scipy.io.mmread(str(path))
+    except (ValueError, OSError, OverflowError, MemoryError) as error:
+        if isinstance(error, DesignError):
+            raise
+        raise refuse(str(path), f"it cannot be read as a Matrix Market file ({' '.join(str(error).split())[:200]})", advice) from None
+    whole = found.tocsc() if scipy.sparse.issparse(found) else found
+    return _plain(path, "it", whole.toarray() if scipy.sparse.issparse(whole) and max(whole.shape) <= LARGEST_DENSE else whole)
+
+
+def _require_room(path: Path, what: str, size: float) -> None:
+    def fits(there: float) -> str:
+        return f"Reduce it in the code it comes from (Craig-Bampton, Guyan): matrices of {gigabytes(there / _COPIES)} would fit"
+
+    require_memory(str(path), what, _COPIES * size, fits)
