@@ -214,7 +214,7 @@ class JoinsNode(Node):
 
     def schema(self, definitions: Definitions) -> dict[str, Any]:
         """An array of two, or an object."""
-        by_port = {"type": "object", "additionalProperties": {"type": "string"}, "minProperties": 2}
+        by_port = {"type": "object", "additionalProperties": {"type": "string"}}
         return {"oneOf": [ListNode(TextNode(), 2).schema(definitions), by_port]}
 
     def wanted(self, value: Any) -> Wanted:
