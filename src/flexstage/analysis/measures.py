@@ -263,7 +263,7 @@ def total_mass(bench: Bench, _: Measure) -> Array:
     bodies = [body.mass.mass for body in bench.assembly.bodies.values() if body.mass is not None]
     ends = [link_mass(link.part, link.material) for link in bench.assembly.links.values()]
     links = [each[..., 0, 0] + each[..., 0, 6] + each[..., 6, 0] + each[..., 6, 6] for each in ends]
-    elements = [condense(item.part).mass for item in bench.assembly.superelements.values()]
+    elements = [np.asarray(condense(item.part).mass) for item in bench.assembly.superelements.values()]
     return sum([*bodies, *links, *elements], np.asarray(0.0))
 
 

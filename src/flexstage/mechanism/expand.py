@@ -7,7 +7,7 @@ import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from functools import cached_property, lru_cache
-from typing import Any, TypeAlias
+from typing import TypeAlias, cast
 
 import numpy as np
 
@@ -506,13 +506,14 @@ def _placed_link(mechanism: Mechanism, drawn: _DrawnLink, outer: Frame, name: st
     if ports_of(part):
         if frame.mirrored:
             raise refuse(name, *NO_IMAGE)
-        return PlacedSuperelement(name, drawn.address, link, inner(part), frame, _placed_ports(inner(part), frame, link.joins, ends))
+        whole = cast("Superelement", inner(part))
+        return PlacedSuperelement(name, drawn.address, link, whole, frame, _placed_ports(whole, frame, link.joins, ends))
     material = material_of(part)
     first, second = ends
     return PlacedLink(name, drawn.address, (first, second), link, part, mechanism.materials[material] if material else None, frame)
 
 
-def _placed_ports(part: Any, outer: Frame, names: Iterable[str], ends: Sequence[str]) -> dict[str, PlacedPort]:
+def _placed_ports(part: Superelement, outer: Frame, names: Iterable[str], ends: Sequence[str]) -> dict[str, PlacedPort]:
     bodies = dict(zip(names, ends, strict=True))
     frames = {name: Frame(axes(port.along, port.up), stack(port.at)) for name, port in part.ports.items()}
     return {name: PlacedPort(bodies[name], frames[name].within(outer)) for name in part.order}
