@@ -22,6 +22,7 @@ HOMES = {
     "parts.leaf": "Leaf LeafSection",
     "parts.rod": "Rod",
     "parts.given": "Given Joint",
+    "parts.spring": "Spring",
     "parts.piezo": "Piezo",
     "parts.cross_hinge": "CrossHinge",
     "parts.cartwheel": "Cartwheel",

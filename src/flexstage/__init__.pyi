@@ -175,6 +175,9 @@ from flexstage.parts.profile import (
 from flexstage.parts.rod import (
     Rod as Rod,
 )
+from flexstage.parts.spring import (
+    Spring as Spring,
+)
 from flexstage.parts.superelement import (
     FileUnits as FileUnits,
     MatrixNames as MatrixNames,

@@ -29,6 +29,7 @@ from flexstage.mechanism.mechanism import GROUND, Mechanism
 from flexstage.mechanism.moving_mass import carried_masses
 from flexstage.models.linear.model import LinearModel
 from flexstage.models.linear.static import displacement
+from flexstage.parts.part import push_of
 from flexstage.spatial.frame import COMPONENTS, FORCES, spatial_rotation, transport, twist_transform
 
 DOUBTFUL = 20.0
@@ -253,8 +254,14 @@ def _dead(mechanism: Mechanism, pieces: _Pieces) -> tuple[dict[str, Array], _Loa
     loads = _weights(mechanism)
     total = sum(dead_loads(mechanism, model).values(), np.zeros(len(model.coordinates)))
     motion = displacement(model, total[..., None])
-    sprung = {name: (_rows(model, name, FORCES) @ motion)[..., 0] for name in pieces.assembly.links}
+    sprung = {name: (_rows(model, name, FORCES) @ motion)[..., 0] - _pushed(link) for name, link in pieces.assembly.links.items()}
     return _whole(mechanism, sprung, loads), loads
+
+
+def _pushed(link: PlacedLink) -> Array:
+    """The compression (..., 6) that a link has as drawn."""
+    push = push_of(link.part)
+    return np.zeros(6) if push is None else np.asarray(push)[..., None] * np.eye(6)[0]
 
 
 def _stroke(mechanism: Mechanism, pieces: _Pieces, actuator: str) -> tuple[dict[str, Array], _Loads]:

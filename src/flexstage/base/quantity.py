@@ -81,6 +81,7 @@ FORCE = Quantity("force", "N", "N", "5000 N")
 MOMENT = Quantity("moment", "N m", "N m", "1 N m")
 STIFFNESS = Quantity("stiffness", "N/m", "N/um", "17 N/um")
 ROTATIONAL_STIFFNESS = Quantity("rotational stiffness", "N m/rad", "N m/rad", "217 N m/rad")
+COUPLING_STIFFNESS = Quantity("coupling stiffness", "N/rad", "N/rad", "12 N/rad", also=("N m/m",))
 BENDING_RIGIDITY = Quantity("bending rigidity", "N m^2", "N m^2", "180 N m^2")
 EXPANSION = Quantity("thermal expansion", "1/K", "1/K", "10.3e-6 1/K")
 TEMPERATURE = Quantity("temperature difference", "K", "K", "0.1 K")
@@ -118,3 +119,6 @@ COMPLIANCE_MATRIX = Quantity("compliance matrix", "mixed", "mixed", "2.91 um/N")
 
 ANY = Quantity("number", "mixed", "mixed", "26 mm")
 """A number of the quantity that stands beside it."""
+
+STIFFNESS_MATRIX = Quantity("stiffness matrix", "mixed", "mixed", "17 N/um")
+"""A 6x6 whose blocks are `STIFFNESS`, `COUPLING_STIFFNESS` and `ROTATIONAL_STIFFNESS`."""

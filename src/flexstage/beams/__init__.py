@@ -9,6 +9,7 @@ from flexstage.beams.neck import NECK
 from flexstage.beams.notch import NOTCH
 from flexstage.beams.piezo import PIEZO
 from flexstage.beams.rod import ROD
+from flexstage.beams.spring import SPRING
 from flexstage.beams.voice_coil import VOICE_COIL
 from flexstage.parts.force_actuator import ForceActuator
 from flexstage.parts.given import Given
@@ -17,8 +18,10 @@ from flexstage.parts.neck import Neck
 from flexstage.parts.notch import Notch
 from flexstage.parts.piezo import Piezo
 from flexstage.parts.rod import Rod
+from flexstage.parts.spring import Spring
 from flexstage.parts.voice_coil import VoiceCoil
 
-_OWN = {Notch: NOTCH, Neck: NECK, Leaf: LEAF, Rod: ROD, Given: GIVEN, Piezo: PIEZO, ForceActuator: FORCE_ACTUATOR, VoiceCoil: VOICE_COIL}
+_HINGES = {Notch: NOTCH, Neck: NECK, Leaf: LEAF, Rod: ROD, Given: GIVEN, Spring: SPRING}
+_OWN = {**_HINGES, Piezo: PIEZO, ForceActuator: FORCE_ACTUATOR, VoiceCoil: VOICE_COIL}
 LAWS: Register[PartLaw] = Register("flexstage.laws", {part.kind: law for part, law in _OWN.items()})
 """The laws of parts by kind."""

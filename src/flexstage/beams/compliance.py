@@ -178,7 +178,7 @@ def _regular(part: Elastic, stated: Array, freedoms: Array = _EVERY) -> Array:
         names = ", ".join(ALL[index].value for index in freedoms[moved])
         what = f"it has no stiffness in some motion of {names}, so that its compliance does not exist"
         raise refuse(f"a part of kind {part.kind}", what, "State a stiffness there, or use the lumped model, which needs none")
-    return np.where(none.any(axis=-1)[..., None, None], np.nan, stated)
+    return np.where(np.any(none, axis=-1, keepdims=True)[..., None], np.nan, stated)
 
 
 def _stiff_among(freedoms: Array, stiffness: Array) -> Array:

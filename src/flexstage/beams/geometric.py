@@ -47,7 +47,8 @@ def geometric(part: Part, material: Material | None) -> Geometric:
     own = inner(part)
     known = law_of(own)
     if isinstance(own, Joint) or (known is not None and known.beam is None):
-        return _of_point()
+        length = None if isinstance(own, Joint) else own.strut
+        return _of_point() if length is None else _of_strut(np.asarray(length))
     return _of_beam(beam_of(own, material), _SLENDER if isinstance(own, Shaped) and own.slender else _STOUT)
 
 
@@ -61,6 +62,25 @@ def _of_point() -> Geometric:
     forces = -2.0 * np.einsum("ijk,ja,kb->iab", _CROSS, mean, step)
     moments = -np.einsum("ijk,ja,kb->iab", _CROSS, mean, turn)
     return Geometric(_symmetric(np.concatenate([forces, moments])), np.zeros(0), np.asarray(0.0))
+
+
+def _of_strut(length: Array) -> Geometric:
+    """A strut that turns about both ends, at +-L/2: its axial force F moves with them, F/L |D|^2 / 2, D what they shift across its axis.
+
+    As everywhere, ends are taken at the centre: the arms to the ends turn too and add -F L/4 theta^2 each. What else it passes acts as in
+    `_of_point`.
+    """
+    arm = 0.5 * length[..., None, None]
+    step, lever = np.zeros((2, ENDS)), np.zeros((2, ENDS))
+    step[[0, 1], [1, 2]], step[[0, 1], [7, 8]] = -1.0, 1.0
+    lever[0, [5, 11]], lever[1, [4, 10]] = 1.0, -1.0
+    shift = step + arm * lever
+    turns = np.zeros(ENDS)
+    turns[[4, 5, 10, 11]] = 1.0
+    axial = np.swapaxes(shift, -1, -2) @ shift / length[..., None, None] - arm * np.diag(turns)
+    point = _of_point()
+    others = np.broadcast_to(point.per_force[1:], (*length.shape, 5, ENDS, ENDS))
+    return Geometric(np.concatenate([axial[..., None, :, :], others], axis=-3), point.inner, point.half)
 
 
 def _of_beam(beam: Beam, inner: tuple[int, int, int]) -> Geometric:

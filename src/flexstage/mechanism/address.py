@@ -34,7 +34,7 @@ from flexstage.mechanism.locate import Place, canonical, locate
 from flexstage.mechanism.mechanism import Link, Mechanism
 from flexstage.mechanism.misalignment import misalignment_of
 from flexstage.mechanism.node import NumberNode
-from flexstage.mechanism.path import member, replace_member
+from flexstage.mechanism.path import member, replace_member, with_mirror
 from flexstage.parts.part import Part
 
 ASSUMED = "assumed"
@@ -63,7 +63,7 @@ def get(mechanism: Mechanism, address: str) -> Any:
 def set_value(mechanism: Mechanism, address: str, value: Any) -> Mechanism:
     """Return the mechanism with another value (SI number, array, or name) at an address; a tag of the old value is dropped.
 
-    A departure is written to `changes`. An entry of a compliance matrix is written with its mirror image. What formulas work out of a named
+    A departure is written to `changes`. An entry of a 6x6 is written with its mirror image. What formulas work out of a named
     number is worked out anew; of a value that has a formula the formula is dropped.
 
     >>> from flexstage.parts.rod import Rod
@@ -74,7 +74,7 @@ def set_value(mechanism: Mechanism, address: str, value: Any) -> Mechanism:
     place = locate(mechanism, address)
     fitting = place.node.fit(freeze(value), address)
     changed, lost = mechanism, [place.address]
-    for path in _with_mirror(place.path):
+    for path in with_mirror(place.path):
         written = replace(place, path=path)
         changed = _without_formulas(_write(changed, written, fitting), written.address)
     if place.number:
@@ -134,7 +134,7 @@ def _set_formula(mechanism: Mechanism, place: Place, where: str, text: str) -> M
         what = f'"{text}" is worked out of {", ".join(sorted(circle))}, and so of {place.number} itself'
         raise refuse(where, what, "Give it a number, or a formula of others")
     changed = set_value(mechanism, where, value)
-    own = {replace(place, path=path).address: text for path in _with_mirror(place.path)}
+    own = {replace(place, path=path).address: text for path in with_mirror(place.path)}
     return replace(changed, formulas=Table({**changed.formulas, **own}))
 
 
@@ -237,13 +237,6 @@ def _link_and_part(mechanism: Mechanism, place: Place) -> tuple[Link, Part]:
 def _link_of(mechanism: Mechanism, owners: tuple[str, ...]) -> Link:
     owner, slash, name = owners[0].partition("/")
     return mechanism.units[owner].links[name] if slash else mechanism.links[owner]
-
-
-def _with_mirror(path: tuple[str, ...]) -> tuple[tuple[str, ...], ...]:
-    """The path, and for an entry of a compliance matrix also that of its mirror image."""
-    if path[-3:-2] == ("compliance",) and path[-1] != path[-2]:
-        return path, (*path[:-2], path[-1], path[-2])
-    return (path,)
 
 
 def _write(mechanism: Mechanism, place: Place, value: Any) -> Mechanism:

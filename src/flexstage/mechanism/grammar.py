@@ -19,10 +19,12 @@ from typing import Annotated, Any
 from flexstage.base.digest import digest
 from flexstage.base.finding import refuse, suggest_nearest
 from flexstage.base.number import Table
-from flexstage.base.quantity import COMPLIANCE_MATRIX, DIRECTION, Bound, Quantity
+from flexstage.base.quantity import COMPLIANCE_MATRIX, DIRECTION, STIFFNESS_MATRIX, Bound, Quantity
 from flexstage.mechanism.mechanism import BESIDE, Joins, Mechanism, ModalDamping, NamedNumber, RayleighDamping, StructuralDamping
 from flexstage.mechanism.node import (
     BAD,
+    COMPLIANCES,
+    STIFFNESSES,
     ChoiceNode,
     Definitions,
     DirectionNode,
@@ -589,8 +591,8 @@ def _annotated_node(hint: Any) -> Node:
     bound = next((extra for extra in extras if isinstance(extra, Bound)), None)
     if quantity is DIRECTION:
         return DirectionNode()
-    if quantity is COMPLIANCE_MATRIX:
-        return MatrixNode()
+    if quantity in (COMPLIANCE_MATRIX, STIFFNESS_MATRIX):
+        return MatrixNode(COMPLIANCES if quantity is COMPLIANCE_MATRIX else STIFFNESSES)
     if typing.get_origin(inner) is tuple:
         return VectorNode((NumberNode(quantity, bound),) * len(typing.get_args(inner)))
     return NumberNode(quantity, bound)

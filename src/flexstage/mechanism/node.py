@@ -18,7 +18,18 @@ import numpy as np
 
 from flexstage.base.expression import UnknownAmountError
 from flexstage.base.finding import DesignError, Finding, refuse
-from flexstage.base.quantity import COMPLIANCE, COUPLING, DIRECTION, RATIO, ROTATIONAL_COMPLIANCE, Bound, Quantity
+from flexstage.base.quantity import (
+    COMPLIANCE,
+    COUPLING,
+    COUPLING_STIFFNESS,
+    DIRECTION,
+    RATIO,
+    ROTATIONAL_COMPLIANCE,
+    ROTATIONAL_STIFFNESS,
+    STIFFNESS,
+    Bound,
+    Quantity,
+)
 from flexstage.base.unit import parse, quantity_of_unit, show
 from flexstage.mechanism.catalogue import Catalogue
 from flexstage.mechanism.formulas import Numbers, formula_value, is_formula
@@ -437,17 +448,30 @@ class DirectionNode(Node):
 
 
 @dataclass(frozen=True)
+class Blocks:
+    """What the entries of a 6x6 are: its `name`, and the quantities of entries between translations, of mixed ones, between rotations."""
+
+    name: str
+    quantities: tuple[Quantity, Quantity, Quantity]
+
+
+COMPLIANCES = Blocks("compliance", (COMPLIANCE, COUPLING, ROTATIONAL_COMPLIANCE))
+STIFFNESSES = Blocks("stiffness", (STIFFNESS, COUPLING_STIFFNESS, ROTATIONAL_STIFFNESS))
+
+
+@dataclass(frozen=True)
 class RowNode(Node):
-    """A row of a 6x6 compliance; files and departures state the whole matrix or single entries."""
+    """A row of a 6x6; files and departures state the whole matrix or single entries."""
 
     row: int
+    blocks: Blocks = COMPLIANCES
     components: ClassVar[bool] = True
 
     def read(self, raw: Any, where: str, reader: Reader) -> Any:
         """The entries, of which zero stands without unit."""
         if not isinstance(raw, list) or len(raw) != 6:
             what = f"found {kind(raw)} where a row of six entries is expected"
-            return reader.refuse(where, what, 'Write entries such as "2.91 um/N", or 0')
+            return reader.refuse(where, what, f'Write entries such as "{self.blocks.quantities[0].example}", or 0')
         return every(
             [
                 0.0 if is_bare(part) and part == 0 else reader.read(self.child(raw, name), part, f"{where}.{name}")
@@ -480,45 +504,54 @@ class RowNode(Node):
         ('coupling compliance', 'rotational compliance')
         """
         rotations = (self.row > 2) + (COMPONENTS.index(name) > 2)
-        return NumberNode((COMPLIANCE, COUPLING, ROTATIONAL_COMPLIANCE)[rotations])
+        return NumberNode(self.blocks.quantities[rotations])
 
 
 @dataclass(frozen=True)
 class MatrixNode(Node):
-    """A 6x6 compliance."""
+    """A 6x6 compliance or stiffness."""
 
+    blocks: Blocks = COMPLIANCES
     components: ClassVar[bool] = True
-    shown: ClassVar[str] = '[["2.91 um/N", 0, 0, 0, 0, 0], ...]'
+
+    @property
+    def example(self) -> str:
+        """A text as it may stand in a file."""
+        return f'[["{self.blocks.quantities[0].example}", 0, 0, 0, 0, 0], ...]'
+
+    def row(self, index: int) -> RowNode:
+        """The node of a row."""
+        return RowNode(index, self.blocks)
 
     def read(self, raw: Any, where: str, reader: Reader) -> Any:
         """Six rows."""
         if not is_row(self, raw, 6, where, reader):
             return BAD
-        return every([RowNode(row).read(item, f"{where}.{COMPONENTS[row]}", reader) for row, item in enumerate(raw)])
+        return every([self.row(row).read(item, f"{where}.{COMPONENTS[row]}", reader) for row, item in enumerate(raw)])
 
     def write(self, value: Any, where: str, writer: Writer) -> list[Any]:
         """Six rows."""
-        return [RowNode(row).write(parts, f"{where}.{COMPONENTS[row]}", writer) for row, parts in enumerate(value)]
+        return [self.row(row).write(parts, f"{where}.{COMPONENTS[row]}", writer) for row, parts in enumerate(value)]
 
     def schema(self, definitions: Definitions) -> dict[str, Any]:
         """Six rows."""
-        rows = row_schema([RowNode(row).schema(definitions) for row in range(6)])
-        return rows | {"description": "6x6 compliance about the centre, rows x, y, z, rx, ry, rz; zero stands without unit"}
+        rows = row_schema([self.row(row).schema(definitions) for row in range(6)])
+        return rows | {"description": f"6x6 {self.blocks.name} about the centre, rows x, y, z, rx, ry, rz; zero stands without unit"}
 
     def wanted(self, value: Any) -> Wanted:
         """Six rows of six numbers."""
-        fits = isinstance(value, tuple) and len(value) == 6 and all(RowNode(row).wanted(item) is None for row, item in enumerate(value))
+        fits = isinstance(value, tuple) and len(value) == 6 and all(self.row(row).wanted(item) is None for row, item in enumerate(value))
         return None if fits else ("a 6x6", "Give six rows of six numbers or arrays, as tuples")
 
     def members(self, value: Any) -> Iterator[tuple[str, Node, Any]]:
         """Its entries on the diagonal and above."""
         for row, column in itertools.combinations_with_replacement(range(6), 2):
             name = COMPONENTS[column]
-            yield f"{COMPONENTS[row]}.{name}", RowNode(row).child(None, name), value[row][column]
+            yield f"{COMPONENTS[row]}.{name}", self.row(row).child(None, name), value[row][column]
 
     def child(self, value: Any, name: str) -> Node:
         """A row."""
-        return RowNode(COMPONENTS.index(name))
+        return self.row(COMPONENTS.index(name))
 
 
 @dataclass(frozen=True)

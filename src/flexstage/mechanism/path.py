@@ -16,6 +16,21 @@ def _index(name: str) -> int:
     return int(name) if name.isdecimal() else _INDEX.get(name, -1)
 
 
+MATRICES = ("compliance", "matrix")
+"""Fields that hold a symmetric 6x6."""
+
+
+def with_mirror(path: tuple[str, ...]) -> tuple[tuple[str, ...], ...]:
+    """The path, and for an entry of a symmetric 6x6 also that of its mirror image.
+
+    >>> with_mirror(("compliance", "x", "rz"))
+    (('compliance', 'x', 'rz'), ('compliance', 'rz', 'x'))
+    """
+    if path[-3:-2] and path[-3] in MATRICES and path[-1] != path[-2]:
+        return path, (*path[:-2], path[-1], path[-2])
+    return (path,)
+
+
 def member(value: Any, name: str) -> Any:
     """Return the field, entry or component of that name.
 

@@ -7,16 +7,16 @@ equal and opposite wrenches H^T w on the two bodies of theirs.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 from typing import TypeVar
 
 import numpy as np
 
 from flexstage.base.digest import digest
-from flexstage.base.finding import Finding, refuse, require
+from flexstage.base.finding import DesignError, Finding, refuse, require
 from flexstage.base.number import Array, Number, first_design
-from flexstage.beams.compliance import Law, law, viscous_damping
+from flexstage.beams.compliance import Law, law, law_of, viscous_damping
 from flexstage.beams.mass import mass
 from flexstage.mechanism.drawn import as_drawn
 from flexstage.mechanism.expand import Assembly, PlacedLink, PlacedSuperelement, expand
@@ -37,13 +37,14 @@ from flexstage.models.linear.channels import (
     wrench_owners,
     wrench_places,
 )
-from flexstage.models.linear.eigen import sign_weights
+from flexstage.models.linear.eigen import cholesky, sign_weights
 from flexstage.models.linear.elimination import Elimination, eliminate, imposed_motion, pivoted_qr
-from flexstage.models.linear.model import Contribution, LinearModel, assemble, strain_forces
+from flexstage.models.linear.model import Contribution, Contributions, LinearModel, assemble, strain_forces
 from flexstage.parts.condensation import Condensed, condense
-from flexstage.parts.freedom import Freedom
+from flexstage.parts.freedom import ALL, Freedom
 from flexstage.parts.material import Material
 from flexstage.parts.part import Part, Restricted
+from flexstage.parts.stated import negative_part
 from flexstage.spatial.frame import FORCES, spatial_rotation, twist_transform
 
 _SINGULAR = 1e-11
@@ -99,7 +100,8 @@ def lumped(mechanism: Mechanism, masses: Masses = Masses.ALL) -> LinearModel:
     Valid for small displacements about the drawn position and frequencies below the first resonance of the parts themselves. Locked
     freedoms of `Restricted` and `Joint` parts are eliminated exactly, a stroke along a locked axis as an imposed motion. Motions without
     stiffness that nothing feels keep their inertia, drop out with their zero modes and are listed in `idle`. Raises `DesignError` for a
-    mechanism (K singular), naming the bodies that can move freely, and for a stroke that locked freedoms block.
+    mechanism (K singular), naming the bodies that can move freely, for a stroke that locked freedoms block, and for a stage that negative
+    stiffnesses push out of its drawn position; a later design of a batch that they do has no numbers (NaN).
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> len(lumped(double_triangle()).coordinates)
@@ -117,7 +119,7 @@ def lumped(mechanism: Mechanism, masses: Masses = Masses.ALL) -> LinearModel:
     idle = kept.idle
     return LinearModel(
         coordinates=kept.coordinates,
-        stiffness={name: _through(item, basis) for name, item in stage.strains.items()},
+        stiffness=_stable(stage, {name: _through(item, basis) for name, item in stage.strains.items()}, len(kept.coordinates)),
         inertia={name: _through(item, basis) for name, item in inertia.items()},
         inputs=input_channels(stage.assembly),
         force=_project(force, basis),
@@ -407,9 +409,61 @@ def _loose(stage: _Stage, basis: Array | None) -> Array:
     except np.linalg.LinAlgError:
         pass
     values, vectors = np.linalg.eigh(scaled)
+    if values[0] < -_SINGULAR:
+        motion = vectors[:, 0] / diagonal
+        raise _unstable(stage, strains, motion if first is None else first @ motion)
     loose = vectors[:, values < _SINGULAR] / diagonal[:, None]
     _require_told_apart(stage, loose, basis)
     return loose
+
+
+def _unstable(stage: _Stage, strains: Contributions, motion: Array) -> DesignError:
+    """The refusal of a stage that negative stiffnesses push out of its drawn position in a `motion` (N,): which, where, and up to what."""
+    depths = {name: negative_part(strains[name].law, _OVER) for name in stage.assembly.links}
+    pushing = {name: Contribution(strains[name].operator, depth) for name, depth in depths.items() if depth.any()}
+    size = strains[next(iter(strains))].operator.shape[-1]
+    steep = assemble(pushing, size)
+    share = _critical_share(assemble(strains, size) + steep, steep)
+    told = ", ".join(f"{name} has {_least_entry(np.diag(strains[name].law), share)}" for name in pushing)
+    what = f"the drawn position is not stable: {told}, which is what the stage holds. {_largest_coordinate(stage, motion)} gives way"
+    return refuse(", ".join(pushing), what, "Make it less negative, or the stage stiffer in that motion")
+
+
+def _critical_share(rest: Array, steep: Array) -> float:
+    """By what the negative stiffness `steep` may be multiplied at most before it exceeds what the `rest` (n, n) holds."""
+    root = np.sqrt(np.where(np.diag(rest) > 0.0, np.diag(rest), 1.0))
+    rest, steep = (each / root / root[:, None] for each in (rest, steep))
+    values, vectors = np.linalg.eigh(rest)
+    loose, held = vectors[:, values < _SINGULAR], vectors[:, values >= _SINGULAR]
+    if np.max(np.diag(loose.T @ steep @ loose), initial=0.0) > _SINGULAR * np.max(np.diag(steep)):
+        return 0.0
+    half = held / np.sqrt(values[values >= _SINGULAR])
+    return float(1.0 / np.linalg.eigvalsh(half.T @ steep @ half)[-1])
+
+
+def _least_entry(diagonal: Array, share: float) -> str:
+    """The most negative stiffness of a part by freedom, rotations over 0.1 m, and the share of it that is stable."""
+    place = int(np.argmin(diagonal / _OVER**2))
+    if diagonal[place] >= 0.0:
+        return f"a negative stiffness where freedoms are coupled, beyond {share:.4g} times that"
+    unit = "N/m" if place < len(_OVER) // 2 else "N m/rad"
+    return f"{diagonal[place]:.6g} {unit} in {ALL[place].value}, beyond {share * diagonal[place]:.6g} {unit} ({share:.4g} times that)"
+
+
+def _largest_coordinate(stage: _Stage, motion: Array) -> str:
+    """The coordinate that moves most, rotations over 0.1 m."""
+    return stage.order.coordinates[int(np.argmax(np.abs(motion) * sign_weights(stage.order.coordinates)))]
+
+
+def _stable(stage: _Stage, strains: Contributions, size: int) -> Contributions:
+    """The contributions; a later design of a batch that negative stiffnesses make unstable has no numbers."""
+    links = stage.assembly.links.items()
+    stated = next((name for name, link in links if (known := law_of(link.part)) is not None and known.stiffness is not None), None)
+    total = assemble(strains, size)
+    if stated is None or total.ndim == 2:
+        return strains
+    failed = np.isnan(cholesky(np.real(total))[..., :1, :1])
+    return {**strains, stated: replace(strains[stated], law=np.where(failed, np.nan, strains[stated].law))}
 
 
 def _without_rounding(operator: Array, basis: Array | None) -> Array:

@@ -13,13 +13,14 @@ from flexstage.parts.notch import Notch
 from flexstage.parts.piezo import Piezo
 from flexstage.parts.rod import Rod
 from flexstage.parts.shape import Elastic
+from flexstage.parts.spring import Spring
 from flexstage.parts.superelement import Superelement
 from flexstage.parts.voice_coil import VoiceCoil
 
 _COMPOUNDS = (CrossHinge, Cartwheel, FoldedLeaf)
 _ACTUATORS = (Piezo, ForceActuator, VoiceCoil)
 PARTS: Register[type[Elastic]] = Register(
-    "flexstage.parts", {part.kind: part for part in (Notch, Neck, Leaf, Rod, Given, Superelement, *_COMPOUNDS, *_ACTUATORS)}
+    "flexstage.parts", {part.kind: part for part in (Notch, Neck, Leaf, Rod, Given, Spring, Superelement, *_COMPOUNDS, *_ACTUATORS)}
 )
 """Kinds of parts that have a stiffness of their own, or whose members have."""
 

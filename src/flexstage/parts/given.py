@@ -6,14 +6,12 @@ from dataclasses import dataclass, field, replace
 from enum import Enum
 from typing import Annotated, ClassVar
 
-import numpy as np
-
 from flexstage.base.digest import DOCUMENT_ONLY, Description
-from flexstage.base.number import Number
+from flexstage.base.number import Number, stack
 from flexstage.base.quantity import COMPLIANCE_MATRIX, MASS, NOT_NEGATIVE
 from flexstage.parts.freedom import Freedom
 from flexstage.parts.shape import Elastic
-from flexstage.spatial.frame import mirror
+from flexstage.parts.stated import is_even, mirror_rows, turns_into_itself
 
 
 class Origin(Enum):
@@ -49,12 +47,12 @@ class Given(Elastic):
     @property
     def mirrored(self) -> Given:
         """Its compliance with the entries reversed that tell a motion along y, or a rotation about x or z, with another one."""
-        signs = [float(sign) for sign in np.diag(mirror(1))]
-        rows = tuple(
-            tuple(one * other * entry for other, entry in zip(signs, row, strict=True))
-            for one, row in zip(signs, self.compliance, strict=True)
-        )
-        return replace(self, compliance=rows)
+        return replace(self, compliance=mirror_rows(self.compliance))
+
+    @property
+    def is_round(self) -> bool:
+        """Whether freedoms and compliance are the same along and about y and z."""
+        return is_even(self.free) and turns_into_itself(stack(self.compliance))
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,6 +8,7 @@ from typing import ClassVar, TypeAlias
 
 from flexstage.base.digest import Description
 from flexstage.base.finding import refuse
+from flexstage.base.number import Number
 from flexstage.parts.actuator import Actuator
 from flexstage.parts.freedom import Freedom
 from flexstage.parts.given import Joint
@@ -96,3 +97,13 @@ def ports_of(part: Part) -> Mapping[str, Port]:
     {}
     """
     return getattr(inner(part), "ports", {})
+
+
+def push_of(part: Part) -> Number | None:
+    """The constant force with which a part pushes its ends apart as drawn [N]; `None` where it has none.
+
+    >>> push_of(Joint()) is None
+    True
+    """
+    own = inner(part)
+    return None if isinstance(own, Joint) else own.push

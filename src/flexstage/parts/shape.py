@@ -95,6 +95,16 @@ class Elastic(Description):
         yield from ()
 
     @property
+    def push(self) -> Number | None:
+        """The constant force with which it pushes its ends apart along x as drawn [N], negative where it pulls them together."""
+        return None
+
+    @property
+    def strut(self) -> Number | None:
+        """Length [m] over which a part without a shape turns about both of its ends; `None`: it acts in one point."""
+        return None
+
+    @property
     def is_round(self) -> bool:
         """Whether it behaves alike in all directions across its axis, so that links need not say which way it bends."""
         return True

@@ -12,14 +12,15 @@ from flexstage.analysis.workspace.stroke import StrokeLimits, stroke_actuators
 from flexstage.base.finding import Finding, refuse
 from flexstage.base.labelled import Matrix, ratio_units
 from flexstage.base.notebook import InNotebook
-from flexstage.base.number import Array, Number, stack
+from flexstage.base.number import Array, Number, Vector, stack
 from flexstage.base.quantity import FORCE, RATIO
 from flexstage.base.record import Along
-from flexstage.mechanism.expand import expand
+from flexstage.mechanism.expand import Assembly, expand
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Force, Mechanism
 from flexstage.models.linear.model import LinearModel
 from flexstage.models.linear.static import displacement, static_gain
 from flexstage.models.linear.undetermined import require_balanced, require_known
+from flexstage.parts.part import push_of
 from flexstage.spatial.frame import COMPONENTS, FORCES, WRENCH_UNITS, transport
 
 OWN_WEIGHT = "own weight"
@@ -161,7 +162,7 @@ def load_share(mechanism: Mechanism, model: LinearModel) -> LoadShare:
 
 
 def dead_loads(mechanism: Mechanism, model: LinearModel) -> dict[str, Array]:
-    """Generalised forces (..., n) by cause: the stage's own weight, each payload's, each stated force.
+    """Generalised forces (..., n) by cause: the stage's own weight, each payload's, each stated force, each preload of a spring.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.lumped import lumped
@@ -173,7 +174,37 @@ def dead_loads(mechanism: Mechanism, model: LinearModel) -> dict[str, Array]:
     everything = model.base_inertia[..., :3] @ stack(mechanism.gravity)
     own = everything - sum(carried.values(), np.zeros(len(model.coordinates)))
     forces = {name: applied_forces(mechanism, model, force) for name, force in mechanism.forces.items()}
-    return {OWN_WEIGHT: own, **{f"payload {name}": load for name, load in carried.items()}, **forces}
+    return {OWN_WEIGHT: own, **{f"payload {name}": load for name, load in carried.items()}, **forces, **_preloads(mechanism, model)}
+
+
+def _preloads(mechanism: Mechanism, model: LinearModel) -> dict[str, Array]:
+    """What links that push or pull as drawn exert on the bodies that they join."""
+    return {
+        f"preload of {name}": sum((applied_forces(mechanism, model, each) for each in pair), np.zeros(len(model.coordinates)))
+        for name, pair in preload_pairs(expand(mechanism)).items()
+    }
+
+
+def preload_pairs(assembly: Assembly) -> dict[str, tuple[Force, Force]]:
+    """The forces with which links push their bodies apart as drawn, by link: on the first and on the second body.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> preload_pairs(expand(double_triangle()))
+    {}
+    """
+    found: dict[str, tuple[Force, Force]] = {}
+    for name, link in assembly.links.items():
+        push = push_of(link.part)
+        if push is not None:
+            at, along = (tuple(np.moveaxis(each, -1, 0)) for each in (link.frame.position, link.frame.rotation[..., :, 0]))
+            first, second = (Force(body, at, _times(sign * push, along)) for body, sign in zip(link.joins, (-1.0, 1.0), strict=True))
+            found[name] = first, second
+    return found
+
+
+def _times(factor: Number, direction: Vector) -> Vector:
+    x, y, z = (factor * component for component in direction)
+    return x, y, z
 
 
 def _weight(mechanism: Mechanism, name: str) -> Force:

@@ -17,6 +17,7 @@ from flexstage.mechanism.checks.value import first_failing
 from flexstage.mechanism.expand import NO_IMAGE, apply_changes, placed_bodies
 from flexstage.mechanism.locate import locate
 from flexstage.mechanism.mechanism import Mechanism
+from flexstage.mechanism.node import join
 from flexstage.parts.body import Body, Cylinder, Imported, Inertia, Solid
 from flexstage.parts.condensation import superelement_findings
 from flexstage.parts.given import Given
@@ -101,8 +102,8 @@ def _part(where: str, part: Part) -> Iterator[Finding]:
     for order in part.orders if isinstance(part, Elastic) else ():
         compared = _Order(f"{where}.{order.field}", order.quantity, order.other, order.advice)
         yield from (compared.strict if order.strict else compared.loose)(order.small, order.large)
-    for fault in part.faults if isinstance(part, Elastic) else ():
-        yield replace(fault, where=f"{where}.{fault.where}")
+    if isinstance(part, Elastic):
+        yield from (replace(fault, where=join(where, fault.where) if fault.where else where) for fault in part.faults)
     if isinstance(part, Given):
         yield from _given_findings(where, part)
 

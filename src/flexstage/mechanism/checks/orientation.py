@@ -13,8 +13,9 @@ from flexstage.mechanism.mechanism import Link, Mechanism
 from flexstage.mechanism.pattern import Pattern, Pose
 from flexstage.parts.body import Body, Cylinder
 from flexstage.parts.freedom import Freedom
-from flexstage.parts.given import Given, Joint
+from flexstage.parts.given import Joint
 from flexstage.parts.part import Part, Restricted, ports_of
+from flexstage.parts.stated import is_even
 
 _TOLERANCE = np.deg2rad(0.1)
 """Directions written with three digits are perpendicular to this; frames are then made exactly so."""
@@ -63,28 +64,11 @@ def is_round(part: Part, free: tuple[Freedom, ...] | None = None) -> bool:
     >>> is_round(Joint((Freedom.RZ,))), is_round(Joint((Freedom.RY, Freedom.RZ)))
     (False, True)
     """
-    if free is not None and not _even(free):
+    if free is not None and not is_even(free):
         return False
     if isinstance(part, Restricted):
-        return _even(part.elastic) and _even(part.free) and is_round(part.part)
-    if isinstance(part, Joint):
-        return _even(part.free)
-    if isinstance(part, Given):
-        return _even(part.free) and _turns_into_itself(part)
-    return part.is_round
-
-
-def _even(freedoms: tuple[Freedom, ...]) -> bool:
-    pairs = ((Freedom.Y, Freedom.Z), (Freedom.RY, Freedom.RZ))
-    return all((one in freedoms) == (other in freedoms) for one, other in pairs)
-
-
-def _turns_into_itself(part: Given) -> bool:
-    """Whether a quarter turn about x leaves the compliance as it is."""
-    matrix = stack(part.compliance)
-    quarter = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
-    turn = np.kron(np.eye(2), quarter)
-    return bool(np.allclose(turn @ matrix @ turn.T, matrix, rtol=1e-9, atol=0.0))
+        return is_even(part.elastic) and is_even(part.free) and part.part.is_round
+    return is_even(part.free) if isinstance(part, Joint) else part.is_round
 
 
 def _solids(where: str, bodies: Iterable[tuple[str, Body]]) -> Iterator[Finding]:

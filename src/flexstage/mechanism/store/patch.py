@@ -15,7 +15,7 @@ from flexstage.mechanism.grammar import TAGS, node_of
 from flexstage.mechanism.locate import canonical, locate
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.node import Node
-from flexstage.mechanism.path import member
+from flexstage.mechanism.path import member, with_mirror
 from flexstage.mechanism.store.decode import mechanism_from
 from flexstage.mechanism.store.encode import plain
 from flexstage.mechanism.store.file import parse_toml
@@ -73,8 +73,7 @@ def _set(document: Any, mechanism: Mechanism, changed: Mechanism, address: str) 
     if place.owners:
         _set_changes(document, mechanism, changed)
         return
-    paths = {place.path} | ({(*place.path[:-2], place.path[-1], place.path[-2])} if place.path[-3:-2] == ("compliance",) else set())
-    for path in paths:
+    for path in with_mirror(place.path):
         _set_at(document, changed, path)
 
 

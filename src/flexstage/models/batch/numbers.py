@@ -17,7 +17,7 @@ from flexstage.mechanism.address import get, set_value
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.locate import locate
 from flexstage.mechanism.mechanism import Mechanism
-from flexstage.mechanism.path import replace_member
+from flexstage.mechanism.path import MATRICES, replace_member
 from flexstage.models.batch.features import Feature, Topology, empty_rows, features, pack, topology
 
 _STEP = 1e-20
@@ -168,7 +168,7 @@ def _set(family_: Family, mechanism: Mechanism, values: Mapping[int, Array]) -> 
     for number, value in values.items():
         address = family_.addresses[number]
         place = locate(mechanism, address)
-        plain = not place.owners and not place.number and "compliance" not in place.path
+        plain = not place.owners and not place.number and not set(MATRICES) & set(place.path)
         mechanism = replace_member(mechanism, place.path, value) if plain else set_value(mechanism, address, value)
     return mechanism
 

@@ -1,0 +1,110 @@
+"""Springs without a drawn shape: coil springs, magnets, cables, membranes, by their stiffness, which may be negative."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+from typing import Annotated, ClassVar, TypeAlias
+
+import numpy as np
+
+from flexstage.base.digest import DOCUMENT_ONLY
+from flexstage.base.finding import Finding
+from flexstage.base.number import Array, Number, stack
+from flexstage.base.quantity import (
+    FORCE,
+    LENGTH,
+    MASS,
+    NOT_NEGATIVE,
+    POSITIVE,
+    RATIO,
+    ROTATIONAL_STIFFNESS,
+    STIFFNESS,
+    STIFFNESS_MATRIX,
+)
+from flexstage.parts.freedom import ALL, Freedom
+from flexstage.parts.shape import Elastic
+from flexstage.parts.stated import is_even, mirror_rows, symmetry_findings, turns_into_itself
+
+_Along: TypeAlias = Annotated[Number, STIFFNESS]
+_About: TypeAlias = Annotated[Number, ROTATIONAL_STIFFNESS]
+
+
+@dataclass(frozen=True, eq=False)
+class Spring(Elastic):
+    """A spring along x, without a drawn shape: what it is stated to have, and no stiffness in any other freedom.
+
+    One of: `stiffness` along its axis alone, `diagonal` of all six freedoms (x, y, z, rx, ry, rz), `matrix`, a whole symmetric 6x6 about
+    its centre. Any of them may be negative (magnets); the stage must be stable, not each part of it. `free` are the freedoms that the
+    ideal model takes for free: all, as a spring guides nothing.
+
+    With a `length` it turns about both of its ends, so that the force it carries stiffens it across its axis by F / L; without, it acts in
+    one point. `preload` is the force with which it pushes its ends apart as drawn (negative: pulls), or, with `free_length`,
+    k (free_length - length). It has no stroke of its own. `mass` is spread evenly over its length.
+    """
+
+    kind: ClassVar[str] = "spring"
+    stiffness: _Along | None = None
+    diagonal: tuple[_Along, _Along, _Along, _About, _About, _About] | None = None
+    matrix: Annotated[tuple[tuple[Number, ...], ...], STIFFNESS_MATRIX] | None = None
+    free: tuple[Freedom, ...] = ALL
+    length: Annotated[Number, LENGTH, POSITIVE] | None = None
+    free_length: Annotated[Number, LENGTH, POSITIVE] | None = None
+    preload: Annotated[Number, FORCE] | None = None
+    mass: Annotated[Number, MASS, NOT_NEGATIVE] = 0.0
+    loss_factor: Annotated[Number, RATIO, NOT_NEGATIVE] | None = None
+    source: str = field(default="", metadata=DOCUMENT_ONLY)
+
+    @property
+    def intended(self) -> tuple[Freedom, ...]:
+        """The freedoms it leaves free."""
+        return self.free
+
+    @property
+    def whole(self) -> Array:
+        """Its whole stiffness (..., 6, 6) about its centre.
+
+        >>> Spring(stiffness=-2e3).whole.diagonal().tolist()
+        [-2000.0, 0.0, 0.0, 0.0, 0.0, 0.0]
+        """
+        if self.matrix is not None:
+            return stack(self.matrix)
+        diagonal = (self.stiffness, 0.0, 0.0, 0.0, 0.0, 0.0) if self.diagonal is None else self.diagonal
+        return stack(diagonal)[..., None] * np.eye(6)
+
+    @property
+    def is_round(self) -> bool:
+        """Whether freedoms and stiffness are the same along and about y and z."""
+        return is_even(self.free) and turns_into_itself(self.whole)
+
+    @property
+    def mirrored(self) -> Spring:
+        """Its stiffness as its own mirror across y shows it."""
+        return self if self.matrix is None else replace(self, matrix=mirror_rows(self.matrix))
+
+    @property
+    def push(self) -> Number | None:
+        """Its preload, as stated or by its free length."""
+        if self.free_length is None or self.length is None:
+            return self.preload
+        return self.whole[..., 0, 0] * (self.free_length - self.length)
+
+    @property
+    def strut(self) -> Number | None:
+        """Its length."""
+        return self.length
+
+    @property
+    def faults(self) -> Iterator[Finding]:
+        """It states its stiffness once, symmetric, and a length where a force acts over it."""
+        stated = [name for name in ("stiffness", "diagonal", "matrix") if getattr(self, name) is not None]
+        if len(stated) != 1:
+            what = f"it states {' and '.join(stated)}" if stated else "it states no stiffness"
+            yield Finding("", what, "State one of stiffness (along its axis), diagonal (six) and matrix (6x6)")
+        if self.matrix is not None:
+            yield from symmetry_findings("matrix", self.whole)
+        if self.free_length is not None and self.preload is not None:
+            yield Finding("free_length", "it states a preload too", "Leave one of them: the preload is k (free_length - length)")
+        if self.length is None and (self.free_length is not None or self.preload is not None):
+            what = "it states a preload and no length, and the force stiffens or softens it across its axis by force over length"
+            yield Finding("length", what, 'Add its length between its ends, for example length = "20 mm"')

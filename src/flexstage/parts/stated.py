@@ -1,0 +1,73 @@
+"""Stated 6x6 matrices of parts: whether they are symmetric, and alike in all directions across x."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from flexstage.base.finding import Finding
+from flexstage.base.number import Array, Number, first_design
+from flexstage.parts.freedom import Freedom
+from flexstage.spatial.frame import mirror
+
+_SLACK = 1e-9
+_QUARTER: Array = np.kron(np.eye(2), np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]]))
+
+
+def is_even(freedoms: tuple[Freedom, ...]) -> bool:
+    """Whether freedoms along and about y are those along and about z.
+
+    >>> is_even((Freedom.RZ,)), is_even((Freedom.RY, Freedom.RZ))
+    (False, True)
+    """
+    pairs = ((Freedom.Y, Freedom.Z), (Freedom.RY, Freedom.RZ))
+    return all((one in freedoms) == (other in freedoms) for one, other in pairs)
+
+
+def turns_into_itself(matrix: Array) -> bool:
+    """Whether a quarter turn about x leaves a 6x6 (..., 6, 6) as it is.
+
+    >>> turns_into_itself(np.eye(6)), turns_into_itself(np.diag([1.0, 2.0, 3.0, 1.0, 1.0, 1.0]))
+    (True, False)
+    """
+    return bool(np.allclose(_QUARTER @ matrix @ _QUARTER.T, matrix, rtol=1e-9, atol=0.0))
+
+
+def mirror_rows(rows: tuple[tuple[Number, ...], ...]) -> tuple[tuple[Number, ...], ...]:
+    """A 6x6 with the entries reversed that tell a motion along y, or a rotation about x or z, with another one.
+
+    >>> mirror_rows(tuple(map(tuple, np.ones((6, 6)).tolist())))[0]
+    (1.0, -1.0, 1.0, -1.0, 1.0, -1.0)
+    """
+    signs = [float(sign) for sign in np.diag(mirror(1))]
+    return tuple(tuple(one * other * entry for other, entry in zip(signs, row, strict=True)) for one, row in zip(signs, rows, strict=True))
+
+
+def symmetry_findings(where: str, matrix: Array) -> Iterator[Finding]:
+    """A finding where a 6x6 (..., 6, 6) is not symmetric, telling the first design's entries.
+
+    >>> [each.what for each in symmetry_findings("parts.a.matrix", np.eye(6) + np.eye(6, k=1))]
+    ['it is not symmetric: 1 and 0 SI']
+    """
+    real = np.real(matrix)
+    mirrored = np.swapaxes(real, -1, -2)
+    size = np.max(np.abs(real), axis=-1)
+    scale = np.sqrt(size[..., :, None] * size[..., None, :])
+    unequal = np.abs(real - mirrored) > _SLACK * scale
+    if np.any(unequal):
+        flat = [each.reshape(-1, 6, 6) for each in (unequal, real, mirrored)]
+        at = tuple(np.argwhere(flat[0])[0])
+        what = f"it is not symmetric: {flat[1][at]:.6g} and {flat[2][at]:.6g} SI"
+        yield Finding(where, what, "Give equal entries on both sides")
+
+
+def negative_part(matrix: Array, lengths: Array) -> Array:
+    """What is negative in the first design of a stiffness (..., 6, 6), as a positive semidefinite matrix; `lengths` (6,) compare freedoms.
+
+    >>> negative_part(np.diag([-2.0, 1.0, 0.0, 0.0, 0.0, 0.0]), np.ones(6)).diagonal()[:2].tolist()
+    [2.0, 0.0]
+    """
+    values, vectors = np.linalg.eigh(np.real(first_design(matrix, 2)) / lengths[:, None] / lengths)
+    depth = np.where(values < -_SLACK * np.max(np.abs(values), initial=0.0), -values, 0.0)
+    return (vectors * depth) @ vectors.T * lengths[:, None] * lengths

@@ -1,0 +1,162 @@
+"""Laws of springs on random stages: they are their stiffness, negative ones too, as long as the sum of all holds."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import assume, given
+from hypothesis import strategies as st
+
+from flexstage.analysis.deflection import deflection
+from flexstage.analysis.stability import stability
+from flexstage.analysis.statics import statics
+from flexstage.base.finding import DesignError
+from flexstage.beams.compliance import stiffness
+from flexstage.beams.mass import mass
+from flexstage.mechanism.checks import check
+from flexstage.mechanism.expand import expand
+from flexstage.mechanism.mechanism import Link, Mechanism
+from flexstage.mechanism.store import dumps, loads
+from flexstage.models.batch.engine import Status, plan, platform_modes
+from flexstage.models.ideal import ideal
+from flexstage.models.linear.eigen import eigen
+from flexstage.models.lumped import lumped
+from flexstage.parts.body import Body, Inertia
+from flexstage.parts.given import Given
+from flexstage.parts.spring import Spring
+from tests.conftest import examples
+from tests.laws.strategies import mechanisms, orientations, places
+
+
+def added(stage, **parts):
+    """The stage with more links between ground and platform, each with its part and pose; twists are given where they were."""
+    centre = tuple(float(part) for part in expand(stage).bodies["platform"].reference)
+    stage = replace(stage, bodies={**stage.bodies, "platform": replace(stage.bodies["platform"], reference=centre)})
+    links = {name: Link(("ground", "platform"), name, at, along, bends) for name, (_, at, along, bends) in parts.items()}
+    return replace(stage, parts={**stage.parts, **{name: each[0] for name, each in parts.items()}}, links={**stage.links, **links})
+
+
+@st.composite
+def matrices(draw):
+    """A symmetric 6x6 of any signs, rotations over a metre."""
+    half = np.random.default_rng(draw(st.integers(0, 2**32 - 1))).normal(size=(6, 6)) * 1e3
+    return half + half.T
+
+
+@given(mechanisms())
+@examples(30, 200)
+def test_a_spring_with_the_stiffness_of_a_given_part_is_that_part(stage):
+    givens = {name: part for name, part in stage.parts.items() if isinstance(part, Given)}
+    assume(givens)
+    springs = {name: Spring(matrix=tuple(map(tuple, stiffness(part, None).tolist())), free=part.free) for name, part in givens.items()}
+    massless = replace(stage, parts={**stage.parts, **{name: replace(part, mass=0.0) for name, part in givens.items()}})
+    swapped = replace(stage, parts={**stage.parts, **springs})
+    one, other = (lumped(each) for each in (massless, swapped))
+    np.testing.assert_allclose(other.stiffness_matrix, one.stiffness_matrix, rtol=1e-12, atol=1e-12 * np.max(one.stiffness_matrix))
+    np.testing.assert_array_equal(other.inertia_matrix, one.inertia_matrix)
+    assert [link.part.intended for link in expand(swapped).links.values()] == [link.part.intended for link in expand(stage).links.values()]
+
+
+@given(mechanisms(), matrices(), places, orientations())
+@examples(30, 200)
+def test_a_spring_and_its_negative_cancel(stage, matrix, at, pose):
+    whole = tuple(map(tuple, matrix.tolist()))
+    opposite = tuple(map(tuple, (-matrix).tolist()))
+    both = added(stage, plus=(Spring(matrix=whole), at, *pose), minus=(Spring(matrix=opposite), at, *pose))
+    assert not check(both)
+    assert loads(dumps(both)) == both
+    one, other = lumped(stage), lumped(both)
+    np.testing.assert_allclose(other.stiffness_matrix, one.stiffness_matrix, rtol=1e-12, atol=1e-13 * np.max(one.stiffness_matrix))
+
+
+@given(mechanisms(), st.sampled_from((0.9, 0.999, 1.001, 5.0)))
+@examples(30, 200)
+def test_a_stage_bears_as_much_negative_stiffness_as_it_has(stage, share):
+    model = lumped(stage)
+    centre = tuple(float(part) for part in expand(stage).bodies["platform"].reference)
+    held = 1.0 / statics(model).compliance.values[1, 1]
+    magnet = added(stage, magnet=(Spring(stiffness=-share * held), centre, (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)))
+    if share < 1.0:
+        softer = 1.0 / statics(lumped(magnet)).compliance.values[1, 1]
+        np.testing.assert_allclose(softer, (1.0 - share) * held, rtol=1e-6)
+        return
+    with pytest.raises(DesignError, match=rf"magnet: the drawn position is not stable: .* in x, beyond .*\({1.0 / share:.4g} times that\)"):
+        lumped(magnet)
+
+
+def held(**springs: Spring) -> Mechanism:
+    """A platform on a spring at the origin, with others along x at x = -10 mm."""
+    stiff = Spring(diagonal=(1e6, 2e4, 1e6, 1e4, 1e4, 1e4))
+    links = {"stiff": Link(("ground", "platform"), "stiff", (0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 0.0, 1.0))}
+    links |= {name: Link(("ground", "platform"), name, (-0.01, 0.0, 0.0), (1.0, 0.0, 0.0)) for name in springs}
+    body = Body(mass=1.0, centre=(0.0, 0.0, 0.0), inertia=Inertia(1e-3, 1e-3, 1e-3))
+    return Mechanism("held", parts={"stiff": stiff, **springs}, bodies={"platform": body}, links=links, gravity=(0.0, 0.0, 0.0))
+
+
+def test_a_preload_is_a_pair_of_forces_and_says_so():
+    stage = held(coil=Spring(stiffness=1e3, length=0.02, free_length=0.025))
+    found = deflection(stage, lumped(stage))
+    assert found.by_cause.columns == ("own weight", "preload of coil")
+    np.testing.assert_allclose(found.by_cause.at("platform.x", "preload of coil"), 5.0 / (1e6 + 1e3), rtol=1e-9)
+    assert deflection(held(coil=Spring(stiffness=1e3)), lumped(stage)).by_cause.columns == ("own weight",)
+
+
+@pytest.mark.parametrize("preload", [10.0, -10.0])
+def test_a_preload_softens_or_stiffens_across_by_force_over_length(preload):
+    """A strut of length L under F, turning about both ends, the far one on k: it falls over at F = k L."""
+    stage = held(strut=Spring(stiffness=0.0, length=0.02, preload=preload))
+    found = stability(stage, lumped(stage))
+    across = 2e4 * 0.02 / 10.0
+    if preload > 0.0:
+        np.testing.assert_allclose(found.dead, across, rtol=2e-3)  # what else gives: the platform's tilt on 1e4 N m/rad
+    else:
+        np.testing.assert_allclose(found.stiffens, 1.0 / across, rtol=2e-3)
+
+
+def test_freedoms_that_nothing_holds_are_named():
+    stage = held()
+    loose = replace(stage, parts={"stiff": Spring(stiffness=1e6)})
+    with pytest.raises(DesignError, match="singular: 5 motion"):
+        lumped(loose)
+    assert ideal(stage).mobility == 6
+    locked = replace(stage, links={"stiff": replace(stage.links["stiff"], free=())})
+    assert ideal(locked).mobility == 0
+
+
+def test_designs_that_are_unstable_have_no_numbers():
+    stage = held(magnet=Spring(stiffness=np.array([-1e3, -2e6, -5e5])))
+    model = lumped(stage)
+    frequencies = eigen(model).values
+    assert np.isnan(frequencies[1]).all()
+    assert np.isfinite(frequencies[[0, 2]]).all()
+    assert np.isnan(statics(model).compliance.values[1]).all()
+    family = plan(held(magnet=Spring(stiffness=-1e3)), ("parts.magnet.stiffness",))
+    found = platform_modes(family, np.array([[-1e3], [-2e6], [-5e5]]))
+    assert found.status.tolist() == [Status.WHOLE, Status.SINGULAR, Status.WHOLE]
+    lowest = np.sort(np.sqrt(frequencies[0]))[: found.frequencies.shape[1]] / (2.0 * np.pi)
+    np.testing.assert_allclose(np.sort(found.frequencies[0]), lowest, rtol=1e-9)
+
+
+@given(st.floats(0.01, 0.1), st.floats(0.1, 5.0))
+def test_the_mass_of_a_spring_is_that_of_a_straight_line(length, weight):
+    matrix = mass(Spring(stiffness=1.0, length=length, mass=weight), None)
+    whole = matrix[:6, :6] + matrix[:6, 6:] + matrix[6:, :6] + matrix[6:, 6:]
+    turning = weight * length**2 / 12.0
+    np.testing.assert_allclose(whole, np.diag([weight, weight, weight, 0.0, turning, turning]), atol=1e-14)
+    np.testing.assert_allclose(matrix[6, 6], weight / 3.0)  # Rayleigh: a third of the spring's mass
+
+
+@pytest.mark.parametrize(
+    ("spring", "what"),
+    [
+        (Spring(), "parts.spring: it states no stiffness"),
+        (Spring(stiffness=1.0, diagonal=(1.0,) * 6), "parts.spring: it states stiffness and diagonal"),
+        (Spring(stiffness=1.0, preload=2.0), "parts.spring.length: it states a preload and no length"),
+        (Spring(stiffness=1.0, preload=2.0, length=0.1, free_length=0.1), "parts.spring.free_length: it states a preload too"),
+        (Spring(matrix=tuple(map(tuple, np.triu(np.ones((6, 6))).tolist()))), "parts.spring.matrix: it is not symmetric: 1 and 0 SI"),
+    ],
+)
+def test_bad_springs_are_told(spring, what):
+    assert any(str(finding).startswith(what) for finding in check(replace(held(), parts={"stiff": spring, "spring": spring})))
