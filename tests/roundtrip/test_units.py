@@ -32,7 +32,7 @@ from flexstage.base.unit import convert, parse, show
 MEASURABLE = [
     value
     for value in vars(quantity).values()
-    if isinstance(value, Quantity) and value not in (quantity.DIRECTION, quantity.COMPLIANCE_MATRIX, quantity.STIFFNESS_MATRIX)
+    if isinstance(value, Quantity) and value is not quantity.DIRECTION and value.si != "mixed"
 ]
 
 
