@@ -8,6 +8,7 @@ HOMES = {
     "fea.estimate": "Accuracy",
     "fea.hinge": "hinge_compliance",
     "fea.model": "model",
+    "exchange.matrices": "export_superelement",
     "resolution": "Resolution",
     "hinges": "solid_hinges",
     "units": "solid_units",

@@ -1,6 +1,9 @@
 from flexstage.solid.calibration import (
     calibrate as calibrate,
 )
+from flexstage.solid.exchange.matrices import (
+    export_superelement as export_superelement,
+)
 from flexstage.solid.fea.cache import (
     Cache as Cache,
 )

@@ -1,0 +1,87 @@
+"""Reduced matrices of one solid of a stage in a file, as a part with ports that theory and other programs can take."""
+
+from __future__ import annotations
+
+import os
+from collections import Counter
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from flexstage.base.finding import refuse, suggest_nearest
+from flexstage.base.progress import Progress
+from flexstage.base.store import atomic_write
+from flexstage.mechanism.drawn import with_drawn_parts
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.parts.condensation import superelement
+from flexstage.parts.superelement import FileUnits, Port, Superelement
+from flexstage.solid.fea.cache import Cache
+from flexstage.solid.fea.component import Component, Interface, components
+from flexstage.solid.fea.fineness import Reduction
+from flexstage.solid.fea.parts import Ways, reduce_parts
+from flexstage.solid.fea.remote import Limits
+from flexstage.solid.fea.sound import sound_components
+
+_CACHE, _STANDARD = Cache(), Reduction()
+
+
+def export_superelement(
+    mechanism: Mechanism,
+    name: str,
+    path: str | os.PathLike[str],
+    reduction: Reduction = _STANDARD,
+    *,
+    cache: Cache | None = _CACHE,
+    progress: Progress | None = None,
+    memory: float | None = None,
+) -> Superelement:
+    """Reduce one solid of a stage by finite elements, write its matrices as an NPZ file, and return the part that is known by them.
+
+    The solid is that of the body or link of this `name`, with all that is one solid with it (see `fea.component`). Its ports are the end
+    faces of links where it meets what is not: the ground, rigid bodies, stacks, other units. Each keeps plane; it is named after the link
+    (`left`, or `left-platform` where the link ends on two of them), its frame is at the middle of the face, in the axes the solid is drawn
+    in: those of the stage, or of the unit. Stiffness `K` and mass `M` are in SI over the ports' twists, then inner coordinates: the
+    `reduction.modes` lowest modes with all ports held, and the static response to wrenches on its bodies. Raises `DesignError` as `model`
+    does, where no solid has that name, where it has less than two ports, and for a stack, whose stroke the matrices would not hold.
+    """
+    target = Path(path)
+    if target.suffix != ".npz":
+        raise refuse(str(path), "the matrices are written as an NPZ file", "Choose a name that ends in .npz")
+    shape = with_drawn_parts(mechanism)
+    whole = _free(_component(components(shape), name))
+    sound_components(shape, cache)
+    ((_, element),) = reduce_parts((whole,), reduction, Ways(cache, progress, Limits(memory=memory))).parts
+    if element.strokes:
+        raise refuse(name, "a stack's stroke is not in its stiffness and mass", "Export the bodies on its both sides")
+    with atomic_write(target) as place, place.open("wb") as stream:
+        np.savez(stream, K=sum(element.stiffness.values()), M=sum(element.inertia.values()))
+    return superelement(Superelement(FileUnits.SI, _ports(whole), file=str(target), source=f"flexstage, {reduction.modes} modes"))
+
+
+def _component(parts: tuple[Component, ...], name: str) -> Component:
+    """The component that a body or link is part of."""
+    held = {piece.body or piece.name: part for part in parts for piece in part.pieces}
+    if name not in held:
+        raise refuse(name, "no solid of the stage has this name", suggest_nearest(name, held))
+    return held[name]
+
+
+def _free(part: Component) -> Component:
+    """The component joined to nothing, all its joints ports that stay plane."""
+    joints = [item.joint for item in part.interfaces]
+    if len(joints) + len(part.fixed) < 2:
+        raise refuse(
+            part.name, f"it meets what is not of it at {len(joints) + len(part.fixed)} place", "A superelement has two or more ports"
+        )
+    interfaces = (*(replace(item, yields=False) for item in part.interfaces), *(Interface(joint) for joint in part.fixed))
+    return replace(part, interfaces=interfaces, fixed=())
+
+
+def _ports(part: Component) -> dict[str, Port]:
+    joints = [item.joint for item in part.interfaces]
+    ends = Counter(joint.link for joint in joints)
+    names = [joint.link if ends[joint.link] == 1 else f"{joint.link}-{joint.body}" for joint in joints]
+    places = [tuple(float(each) for each in joint.frame.position) for joint in joints]
+    rows = range(1, 6 * len(joints), 6)
+    return {name.replace("/", "-"): Port(row, at=(x, y, z)) for name, row, (x, y, z) in zip(names, rows, places, strict=True)}
