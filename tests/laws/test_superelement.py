@@ -289,7 +289,7 @@ def test_matrices_that_are_wrong_are_refused_with_what_is_found(tmp_path, fault)
 
 def test_units_that_are_not_the_files_are_told(tmp_path):
     part = replace(written(elastic(13), tmp_path, "millimetres"), units=FileUnits.SI)
-    with pytest.raises(DesignError, match='if units = "N, mm, t" is meant'):
+    with pytest.raises(DesignError, match='if units = "N-mm-t" is meant'):
         superelement(part)
 
 

@@ -18,8 +18,8 @@ from flexstage.parts.shape import Elastic
 class FileUnits(Enum):
     """Units of force, length and mass that a file of matrices is in; times are in seconds, angles in radians."""
 
-    SI = "N, m, kg"
-    MILLIMETRES = "N, mm, t"
+    SI = "N-m-kg"
+    MILLIMETRES = "N-mm-t"
 
 
 @dataclass(frozen=True, eq=False)
