@@ -10,7 +10,7 @@ from flexstage.parts.notch import Notch
 from flexstage.parts.profile import Circular
 
 STEEL = Material(young=200e3, poisson=0.3, density=7.75e-9)
-"""Of the worked examples, in N-mm-tonne: E = 200 GPa, nu = 0.3."""
+"""Of the worked examples, in N, mm, tonne: E = 200 GPa, nu = 0.3."""
 
 UNIT = Material(young=1.0, poisson=0.3, density=1.0)
 """Of the tables: E = 1, nu = 0.3, scaled by E, b and R."""
